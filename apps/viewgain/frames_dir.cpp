@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "frames_dir.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <string_view>
+#include <system_error>
+
+#include "png_io.hpp"
+#include "sensor_toml.hpp"
+#include "viewgain/core/atomic_file.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/pose_io.hpp"
+
+namespace viewgain::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kFramePrefix = "frame-";
+constexpr std::string_view kDepthSuffix = ".depth.png";
+constexpr std::string_view kPoseSuffix = ".pose.txt";
+constexpr std::uint16_t kOutOfRangeValue = 65535;
+
+std::string frame_name(std::size_t index, std::string_view suffix) {
+  std::array<char, 32> number{};
+  std::snprintf(number.data(), number.size(), "%06zu", index);
+  return std::string(kFramePrefix) + number.data() + std::string(suffix);
+}
+
+// "000050" of "frame-000050.depth.png"; nothing for other names.
+std::optional<std::string> frame_number(const std::string& name, std::string_view suffix) {
+  if (!name.starts_with(kFramePrefix) || !name.ends_with(suffix)) return std::nullopt;
+  if (name.size() <= kFramePrefix.size() + suffix.size()) return std::nullopt;
+  const std::string digits =
+      name.substr(kFramePrefix.size(), name.size() - kFramePrefix.size() - suffix.size());
+  if (digits.size() > 18 || !std::all_of(digits.begin(), digits.end(),
+                                         [](unsigned char c) { return std::isdigit(c) != 0; })) {
+    return std::nullopt;
+  }
+  return digits;
+}
+
+// Depth images of the folder by their number, as "frame-NNNNNN".
+std::map<std::uint64_t, std::string> list_frames(const fs::path& dir) {
+  std::map<std::uint64_t, std::string> frames;
+  for (const auto& entry : fs::directory_iterator(dir)) {
+    if (const auto digits = frame_number(entry.path().filename().string(), kDepthSuffix)) {
+      frames.emplace(std::stoull(*digits), std::string(kFramePrefix) + *digits);
+    }
+  }
+  return frames;
+}
+
+// Nine numbers of a 3x3 matrix fx 0 cx / 0 fy cy / 0 0 1.
+void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
+  std::ifstream file(path);
+  if (!file) throw Error(ErrorCode::io, path.string() + ": cannot be opened");
+  std::array<double, 9> k{};
+  for (double& value : k) {
+    if (!(file >> value) || !std::isfinite(value)) {
+      throw Error(ErrorCode::format, path.string() + ": needs the nine numbers of a 3x3 matrix");
+    }
+  }
+  std::string rest;
+  if (file >> rest) throw Error(ErrorCode::format, path.string() + ": more than nine numbers");
+  if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
+    throw Error(ErrorCode::format,
+                path.string() + ": must have the form fx 0 cx, 0 fy cy, 0 0 1 (no skew)");
+  }
+  camera.fx = k[0];
+  camera.cx = k[2];
+  camera.fy = k[4];
+  camera.cy = k[5];
+}
+
+void open_own_layout(const fs::path& dir, FrameSequence& frames) {
+  PoseList list = read_tum(dir / "poses.txt");
+  const auto on_disk = list_frames(dir);
+  if (on_disk.size() > list.poses.size()) {
+    throw Error(ErrorCode::format, (dir / "poses.txt").string() + ": has " +
+                                       std::to_string(list.poses.size()) + " poses for " +
+                                       std::to_string(on_disk.size()) + " frames");
+  }
+  for (std::size_t i = 0; i < list.poses.size(); ++i) {
+    frames.images.push_back(dir / frame_name(i, kDepthSuffix));
+    if (!fs::exists(frames.images.back())) {
+      throw Error(ErrorCode::io, frames.images.back().string() + ": no such file, poses.txt has " +
+                                     std::to_string(list.poses.size()) + " poses");
+    }
+  }
+  frames.poses = std::move(list.poses);
+  frames.orthonormalized = list.orthonormalized;
+}
+
+void open_recorded_layout(const fs::path& dir, FrameSequence& frames) {
+  frames.recorded = true;
+  for (const auto& [number, name] : list_frames(dir)) {
+    bool mended = false;
+    frames.images.push_back(dir / (name + std::string(kDepthSuffix)));
+    frames.poses.push_back(read_pose_matrix(dir / (name + std::string(kPoseSuffix)), &mended));
+    frames.orthonormalized += mended ? 1 : 0;
+  }
+  if (frames.images.empty()) {
+    throw Error(ErrorCode::io, dir.string() + ": no poses.txt and no frame-NNNNNN.depth.png");
+  }
+  if (fs::exists(dir / "camera-intrinsics.txt")) {
+    apply_intrinsics_file(dir / "camera-intrinsics.txt", frames.sensor.camera);
+    frames.sensor.validate();
+  }
+}
+
+}  // namespace
+
+FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
+                          std::optional<double> depth_scale) {
+  std::error_code ignored;
+  if (!fs::is_directory(dir, ignored)) {
+    throw Error(ErrorCode::io, dir.string() + ": no such folder");
+  }
+  const bool has_sensor = fs::exists(dir / "sensor.toml");
+  FrameSequence frames;
+  frames.depth_scale = depth_scale.value_or(has_sensor ? kDepthUnit : kRecordedDepthUnit);
+  if (!(frames.depth_scale > 0) || !std::isfinite(frames.depth_scale)) {
+    throw Error(ErrorCode::invalid_argument, "--depth-scale must be positive and finite");
+  }
+  if (sensor.empty() && !has_sensor) {
+    throw Error(ErrorCode::invalid_argument,
+                dir.string() + ": has no sensor.toml, so --sensor is needed");
+  }
+  frames.sensor = sensor.empty() ? read_sensor_toml(dir / "sensor.toml") : load_sensor(sensor);
+  if (fs::exists(dir / "poses.txt")) {
+    open_own_layout(dir, frames);
+  } else {
+    open_recorded_layout(dir, frames);
+  }
+  return frames;
+}
+
+DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRangeMeaning meaning) {
+  const PinholeCamera& camera = frames.sensor.camera;
+  const GrayImage image = read_gray_png(frames.images[index], camera.width, camera.height);
+  const float out_of_range =
+      meaning == OutOfRangeMeaning::carve ? DepthFrame::kOutOfRange : DepthFrame::kInvalid;
+  DepthFrame frame{image.width, image.height, {}};
+  frame.depth.reserve(image.pixels.size());
+  for (const std::uint16_t value : image.pixels) {
+    frame.depth.push_back(
+        value == kOutOfRangeValue ? out_of_range : static_cast<float>(value * frames.depth_scale));
+  }
+  return frame;
+}
+
+FramesWriter::FramesWriter(const fs::path& dir) : dir_(dir) {
+  if (!dir_.has_filename()) dir_ = dir_.parent_path();  // a slash at the end
+  std::error_code code;
+  if (dir_.empty() || (fs::exists(dir_, code) && !fs::is_directory(dir_, code))) {
+    throw Error(ErrorCode::io, dir.string() + ": not a folder");
+  }
+  const std::string suffix = ".viewgain-" + std::to_string(::getpid());
+  staging_ = fs::exists(dir_, code) ? dir_ / suffix : fs::path(dir_.string() + suffix);
+  const fs::path parent = fs::absolute(staging_, code).parent_path();
+  for (fs::path p = parent; !fs::exists(p, code) && p.has_relative_path(); p = p.parent_path()) {
+    created_parent_ = p;
+  }
+  if (!fs::create_directories(staging_, code) || code) {
+    if (!created_parent_.empty()) fs::remove_all(created_parent_, code);
+    throw Error(ErrorCode::io, dir.string() + ": cannot be created");
+  }
+}
+
+FramesWriter::~FramesWriter() {
+  std::error_code ignored;
+  fs::remove_all(staging_, ignored);
+  if (!committed_ && !created_parent_.empty()) fs::remove_all(created_parent_, ignored);
+}
+
+void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
+  GrayImage image{frame.width, frame.height, {}};
+  image.pixels.reserve(frame.depth.size());
+  for (const float z : frame.depth) {
+    const double value = std::round(static_cast<double>(z) / kDepthUnit);
+    image.pixels.push_back(value < kOutOfRangeValue ? static_cast<std::uint16_t>(value)
+                                                    : kOutOfRangeValue);
+  }
+  write_png(staging_ / frame_name(index, kDepthSuffix), image);
+}
+
+void FramesWriter::commit(const std::vector<Pose>& poses, const Sensor& sensor) {
+  write_tum(staging_ / "poses.txt", poses);
+  write_file_atomically(staging_ / "sensor.toml", sensor_toml(sensor));
+  std::error_code code;
+  if (!fs::exists(dir_)) {
+    fs::rename(staging_, dir_, code);
+  } else {
+    for (const auto& [number, name] : list_frames(dir_)) {
+      fs::remove(dir_ / (name + std::string(kDepthSuffix)), code);
+    }
+    const std::vector<fs::path> written{fs::directory_iterator(staging_), {}};
+    for (const fs::path& path : written) {
+      if (!code) fs::rename(path, dir_ / path.filename(), code);
+    }
+  }
+  if (code) throw Error(ErrorCode::io, dir_.string() + ": cannot be written: " + code.message());
+  committed_ = true;
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "commands.hpp"
+#include "terminal.hpp"
+#include "values.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+
+namespace viewgain::app {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string map;
+  bool hash = false;
+  std::string criterion = "log_diagonal";
+};
+
+void info(const Options& options) {
+  const Criterion criterion = parse_criterion(options.criterion);
+  const BeliefGrid grid = load_vdb(options.map);
+  if (options.hash) {
+    std::printf("%s\n", grid.content_hash().c_str());
+    return;
+  }
+  const GridStatistics statistics = grid.statistics(criterion);
+  const Index3 dims = grid.dims();
+  const double per_occupied = static_cast<double>(statistics.bytes) /
+                              static_cast<double>(statistics.occupied);  // NaN or infinity: null
+  if (options.common.json) {
+    print_json({{"voxel_size", grid.voxel_size()},
+                {"workspace", to_json(grid.workspace())},
+                {"T_world_grid", to_json(grid.T_world_grid())},
+                {"dims", {dims.x, dims.y, dims.z}},
+                {"unknown", statistics.unknown},
+                {"free", statistics.free},
+                {"occupied", statistics.occupied},
+                {"bytes", statistics.bytes},
+                {"bytes_per_occupied_voxel", per_occupied},
+                {"criterion", criterion_name(criterion)},
+                {"entropy_removed", statistics.entropy_removed},
+                {"prior_sigma", grid.prior_sigma()},
+                {"views", grid.views().size()},
+                {"hash", grid.content_hash()}});
+    return;
+  }
+  const bool metres = criterion == Criterion::trace;
+  std::printf("workspace        %s m (grid frame)\n", describe(grid.workspace()).c_str());
+  std::printf("voxels           %d x %d x %d of %g m\n", dims.x, dims.y, dims.z, grid.voxel_size());
+  std::printf("unknown          %s\n", with_commas(statistics.unknown).c_str());
+  std::printf("free             %s\n", with_commas(statistics.free).c_str());
+  std::printf("occupied         %s\n", with_commas(statistics.occupied).c_str());
+  if (statistics.occupied > 0) {
+    std::printf("memory           %s bytes, %.1f per occupied voxel\n",
+                with_commas(statistics.bytes).c_str(), per_occupied);
+  } else {
+    std::printf("memory           %s bytes\n", with_commas(statistics.bytes).c_str());
+  }
+  std::printf("entropy removed  %.6g %s (%s)\n", statistics.entropy_removed, metres ? "m^2" : "nat",
+              options.criterion.c_str());
+  std::printf("prior sigma      %g m\n", grid.prior_sigma());
+  std::printf("views            %zu\n", grid.views().size());
+  std::printf("hash             %s\n", grid.content_hash().c_str());
+}
+
+}  // namespace
+
+Command add_info(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* app = program.add_subcommand(
+      "info", "What a map holds: dimensions, voxel states, memory, entropy removed, views.");
+  app->add_option("MAP", options->map, "map (.vdb)")->required();
+  app->add_flag("--hash", options->hash,
+                "print only the hash of grids and metadata: equal maps have equal ones");
+  app->add_option("--criterion", options->criterion,
+                  "of the entropy: log_diagonal, log_determinant [nat] or trace [m^2]")
+      ->capture_default_str();
+  add_common_options(*app, options->common);
+  return {app, [options] { info(*options); }};
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace {
+
+constexpr int kInternalError = 1;
+constexpr int kBadInput = 2;
+
+// One line, whatever a message or a file name holds.
+int report(std::string message, int exit_code) {
+  for (char& c : message) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  std::fprintf(stderr, "viewgain: %s\n", message.c_str());
+  return exit_code;
+}
+
+int run(int argc, char** argv) {
+  CLI::App program(
+      "viewgain scores camera poses by expected information gain: simulate or read depth frames, "
+      "integrate them into a voxel map, score candidate views against it. Units: m, rad, s, nat, "
+      "unless said otherwise.",
+      "viewgain");
+  program.set_version_flag("--version", std::string("viewgain ") + VIEWGAIN_VERSION);
+  program.require_subcommand(1);
+  const std::vector<viewgain::app::Command> commands{
+      viewgain::app::add_simulate(program), viewgain::app::add_integrate(program),
+      viewgain::app::add_score(program), viewgain::app::add_info(program)};
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+      return program.exit(error);  // --help, --version
+    }
+    return report(std::string(error.what()) + " (see --help)", kBadInput);
+  }
+  for (const viewgain::app::Command& command : commands) {
+    if (command.app->parsed()) command.run();
+  }
+  if (std::fflush(stdout) != 0)
+    return report("cannot write to the standard output", kInternalError);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const viewgain::Error& error) {
+    const bool internal = error.code() == viewgain::ErrorCode::backend;
+    return report(error.what(), internal ? kInternalError : kBadInput);
+  } catch (const std::bad_alloc&) {
+    return report("out of memory", kInternalError);
+  } catch (const std::exception& error) {
+    return report(std::string("internal error: ") + error.what(), kInternalError);
+  }
+}

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::app {
+
+/// A picture of one view, 1280x960 px: the map's occupied voxels as little grey cubes, the view's
+/// frustum, and the voxels where its rays end, unknown ones orange, occupied ones blue; seen from a
+/// place that shows both. Atomic: a temporary file is renamed. Throws Error(io).
+void write_picture(const std::filesystem::path& path, const GainEvaluator& evaluator,
+                   const Sensor& sensor, const Pose& T_world_camera, const ExecConfig& exec);
+
+}  // namespace viewgain::app

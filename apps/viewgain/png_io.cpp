@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "png_io.hpp"
+
+#include <png.h>
+
+#include <csetjmp>
+#include <cstddef>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <system_error>
+
+#include "viewgain/core/atomic_file.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::app {
+namespace {
+
+// Everything that must survive libpng's longjmp lives here, outside of the functions that it
+// leaves.
+struct PngState {
+  std::string bytes;
+  std::size_t position = 0;
+  std::string message;
+  std::vector<png_bytep> rows;
+};
+
+void on_error(png_structp png, png_const_charp message) {
+  static_cast<PngState*>(png_get_error_ptr(png))->message = message;
+  png_longjmp(png, 1);
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+void read_bytes(png_structp png, png_bytep out, std::size_t count) {
+  auto* state = static_cast<PngState*>(png_get_io_ptr(png));
+  if (count > state->bytes.size() - state->position) png_error(png, "the file ends early");
+  std::memcpy(out, state->bytes.data() + state->position, count);
+  state->position += count;
+}
+
+void write_bytes(png_structp png, png_bytep data, std::size_t count) {
+  static_cast<PngState*>(png_get_io_ptr(png))
+      ->bytes.append(reinterpret_cast<const char*>(data), count);
+}
+
+void flush_nothing(png_structp) {}
+
+// False with a message in `state` if it failed. No object with a destructor may live in here.
+bool decode(png_structp png, png_infop info, PngState& state, GrayImage& image) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  png_set_read_fn(png, &state, read_bytes);
+  png_read_info(png, info);
+  if (png_get_bit_depth(png, info) != 16 || png_get_color_type(png, info) != PNG_COLOR_TYPE_GRAY) {
+    png_error(png, "not a 16-bit grayscale image");
+  }
+  if (png_get_image_width(png, info) != static_cast<png_uint_32>(image.width) ||
+      png_get_image_height(png, info) != static_cast<png_uint_32>(image.height)) {
+    // snprintf into a string of fixed size keeps this function free of temporaries.
+    std::snprintf(state.message.data(), state.message.size(),
+                  "the image has %lux%lu pixels, the sensor %dx%d",
+                  static_cast<unsigned long>(png_get_image_width(png, info)),
+                  static_cast<unsigned long>(png_get_image_height(png, info)), image.width,
+                  image.height);
+    return false;
+  }
+  png_set_swap(png);  // PNG is big-endian, this machine is not
+  (void)png_set_interlace_handling(png);
+  png_read_update_info(png, info);
+  png_read_image(png, state.rows.data());
+  png_read_end(png, nullptr);
+  return true;
+}
+
+bool encode(png_structp png, png_infop info, PngState& state, int width, int height, int bit_depth,
+            int color_type) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  png_set_write_fn(png, &state, write_bytes, flush_nothing);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height),
+               bit_depth, color_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(png, info);
+  if (bit_depth == 16) png_set_swap(png);
+  png_write_image(png, state.rows.data());
+  png_write_end(png, info);
+  return true;
+}
+
+[[noreturn]] void fail(ErrorCode code, const std::filesystem::path& path, const std::string& what) {
+  throw Error(code, path.string() + ": " + what);
+}
+
+void write_image(const std::filesystem::path& path, int width, int height, int bit_depth,
+                 int color_type, const void* pixels, std::size_t row_bytes) {
+  PngState state;
+  // libpng takes rows that it does not write to as non-const.
+  auto* first = static_cast<png_bytep>(const_cast<void*>(pixels));
+  for (int v = 0; v < height; ++v) {
+    state.rows.push_back(first + static_cast<std::size_t>(v) * row_bytes);
+  }
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &state, on_error, on_warning);
+  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
+  const bool ok = info != nullptr && encode(png, info, state, width, height, bit_depth, color_type);
+  png_destroy_write_struct(&png, &info);
+  if (!ok) fail(ErrorCode::io, path, "cannot encode the image: " + state.message);
+  write_file_atomically(path, state.bytes);
+}
+
+}  // namespace
+
+GrayImage read_gray_png(const std::filesystem::path& path, int width, int height) {
+  PngState state;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    fail(ErrorCode::io, path, "no such file");
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail(ErrorCode::io, path, "cannot be opened");
+  state.bytes.assign(std::istreambuf_iterator<char>(file), {});
+  if (file.bad()) fail(ErrorCode::io, path, "cannot be read");
+
+  GrayImage image{width, height, {}};
+  const auto columns = static_cast<std::size_t>(width);
+  image.pixels.resize(columns * static_cast<std::size_t>(height));
+  for (std::size_t v = 0; v < static_cast<std::size_t>(height); ++v) {
+    state.rows.push_back(reinterpret_cast<png_bytep>(image.pixels.data() + v * columns));
+  }
+  state.message.resize(160);
+  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &state, on_error, on_warning);
+  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
+  const bool ok = info != nullptr && decode(png, info, state, image);
+  png_destroy_read_struct(&png, &info, nullptr);
+  if (!ok) {
+    fail(ErrorCode::format, path,
+         "not a usable depth image: " + std::string(state.message.c_str()));
+  }
+  return image;
+}
+
+void write_png(const std::filesystem::path& path, const GrayImage& image) {
+  write_image(path, image.width, image.height, 16, PNG_COLOR_TYPE_GRAY, image.pixels.data(),
+              sizeof(std::uint16_t) * static_cast<std::size_t>(image.width));
+}
+
+void write_png(const std::filesystem::path& path, const RgbImage& image) {
+  write_image(path, image.width, image.height, 8, PNG_COLOR_TYPE_RGB, image.pixels.data(),
+              3 * static_cast<std::size_t>(image.width));
+}
+
+}  // namespace viewgain::app

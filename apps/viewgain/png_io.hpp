@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace viewgain::app {
+
+/// 16-bit grayscale image, row by row.
+struct GrayImage {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint16_t> pixels;
+};
+
+/// 8-bit RGB image, row by row.
+struct RgbImage {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;  ///< 3 * width * height
+};
+
+/// Reads a 16-bit grayscale PNG of exactly this size; raw values, no gamma. Throws Error(io) if the
+/// file cannot be read and Error(format), naming the file, if it is damaged or of another kind or
+/// size.
+[[nodiscard]] GrayImage read_gray_png(const std::filesystem::path& path, int width, int height);
+
+/// Atomic: a temporary file is renamed. Throws Error(io).
+void write_png(const std::filesystem::path& path, const GrayImage& image);
+void write_png(const std::filesystem::path& path, const RgbImage& image);
+
+}  // namespace viewgain::app

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "viewgain/core/pose.hpp"
+
+namespace viewgain::app {
+
+/// Poses that the command line asked for.
+struct PoseSource {
+  std::vector<Pose> poses;          ///< T_world_camera
+  std::size_t orthonormalized = 0;  ///< of a file: how many rotations were mended
+};
+
+/// The options of which one must be given; empty: not given.
+struct PoseOptions {
+  std::string file;    ///< --poses FILE, TUM
+  std::string orbit;   ///< --orbit N,RADIUS,ELEVATION_DEG[,START_DEG,STEP_DEG]
+  std::string sphere;  ///< --sphere N,RADIUS[,CX,CY,CZ]
+  std::string dome;    ///< --dome N,RADIUS[,CX,CY,CZ]
+};
+
+/// Throws Error(invalid_argument), naming the flag, or what read_tum throws.
+[[nodiscard]] PoseSource make_poses(const PoseOptions& options);
+
+}  // namespace viewgain::app

@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ray_tracer.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <numbers>
+
+#include "terminal.hpp"
+#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/raycast/surface_scene.hpp"
+
+namespace viewgain::app {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kSamplesPerSide = 2;  // of a pixel
+constexpr int kOcclusionRays = 6;   // a sample
+constexpr double kAmbient = 0.62;   // share of the sky's light, the sun has the rest
+constexpr double kOffset = 1.5e-4;  // of the occlusion range: a ray must not hit its own start
+
+// Two directions that make a right-handed frame with the unit vector n.
+std::pair<Vector3d, Vector3d> tangents(const Vector3d& n) {
+  const Vector3d helper = std::abs(n.z()) < 0.9 ? Vector3d::UnitZ() : Vector3d::UnitX();
+  const Vector3d u = n.cross(helper).normalized();
+  return {u, n.cross(u)};
+}
+
+// A well mixed number in [0, 1) for an integer, so that the picture does not depend on who renders.
+double random_unit(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15ULL;
+  x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
+  return static_cast<double>((x ^ (x >> 31U)) >> 11U) * 0x1.0p-53;
+}
+
+class Renderer {
+ public:
+  Renderer(const PaintedMesh& painted, const SurfaceScene& scene, const Vector3d& to_sun,
+           double occlusion_range)
+      : painted_(painted), scene_(scene), to_sun_(to_sun), occlusion_range_(occlusion_range) {}
+
+  // `height` in [0, 1] runs down the picture; `seed` is unique to the sample.
+  [[nodiscard]] Vector3d color(const Vector3d& eye, const Vector3d& direction, double height,
+                               std::uint64_t seed) const {
+    const SurfaceHit hit = scene_.intersect(eye, direction);
+    if (!std::isfinite(hit.range)) return background(height);
+    const Paint& paint = painted_.paint_of(hit.triangle);
+    if (!paint.lit) return paint.color;
+    const Vector3d normal = hit.normal.dot(direction) < 0 ? hit.normal : Vector3d(-hit.normal);
+    const Vector3d point = eye + hit.range * direction + kOffset * occlusion_range_ * normal;
+    const double facing = std::max(0.0, normal.dot(to_sun_));
+    const double sun = facing > 0 && !blocked(point, to_sun_, kFar) ? facing : 0.0;
+    return paint.color * (kAmbient * open_sky(point, normal, seed) + (1 - kAmbient) * 1.5 * sun);
+  }
+
+ private:
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+
+  static Vector3d background(double height) {
+    const Vector3d top(0.80, 0.86, 0.93), bottom(0.97, 0.97, 0.97);
+    return top + height * (bottom - top);
+  }
+
+  [[nodiscard]] bool blocked(const Vector3d& from, const Vector3d& direction, double range) const {
+    const SurfaceHit hit = scene_.intersect(from, direction, range);
+    return std::isfinite(hit.range) && painted_.paint_of(hit.triangle).lit;
+  }
+
+  // Share of the sky that the point sees, cosine-weighted, stratified in azimuth.
+  [[nodiscard]] double open_sky(const Vector3d& point, const Vector3d& normal,
+                                std::uint64_t seed) const {
+    const auto [u, v] = tangents(normal);
+    int open = 0;
+    for (int i = 0; i < kOcclusionRays; ++i) {
+      const std::uint64_t ray = seed * kOcclusionRays + static_cast<std::uint64_t>(i);
+      const double azimuth =
+          2 * std::numbers::pi * (i + random_unit(2 * ray)) / static_cast<double>(kOcclusionRays);
+      const double r2 = random_unit(2 * ray + 1);
+      const double r = std::sqrt(r2);
+      const Vector3d direction =
+          r * std::cos(azimuth) * u + r * std::sin(azimuth) * v + std::sqrt(1 - r2) * normal;
+      open += blocked(point, direction.normalized(), occlusion_range_) ? 0 : 1;
+    }
+    return static_cast<double>(open) / kOcclusionRays;
+  }
+
+  const PaintedMesh& painted_;
+  const SurfaceScene& scene_;
+  Vector3d to_sun_;
+  double occlusion_range_;
+};
+
+std::uint8_t encoded(double linear) {
+  const double x = std::clamp(linear, 0.0, 1.0);
+  return static_cast<std::uint8_t>(std::lround(255 * std::pow(x, 1 / 2.2)));
+}
+
+}  // namespace
+
+std::uint8_t PaintedMesh::add_paint(const Paint& paint) {
+  paints_.push_back(paint);
+  return static_cast<std::uint8_t>(paints_.size() - 1);
+}
+
+void PaintedMesh::add_hexahedron(const std::array<Vector3d, 8>& corners, std::uint8_t paint) {
+  static constexpr std::array<std::array<std::uint32_t, 3>, 12> kTriangles{{{0, 2, 1},
+                                                                            {1, 2, 3},
+                                                                            {4, 5, 6},
+                                                                            {5, 7, 6},
+                                                                            {0, 1, 4},
+                                                                            {1, 5, 4},
+                                                                            {2, 6, 3},
+                                                                            {3, 6, 7},
+                                                                            {0, 4, 2},
+                                                                            {2, 4, 6},
+                                                                            {1, 3, 5},
+                                                                            {3, 7, 5}}};
+  const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
+  for (const Vector3d& p : corners) mesh_.vertices.push_back({p.x(), p.y(), p.z()});
+  for (const auto& t : kTriangles) {
+    mesh_.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    paint_of_triangle_.push_back(paint);
+  }
+}
+
+void PaintedMesh::add_line(const Vector3d& a, const Vector3d& b, double width, std::uint8_t paint) {
+  const auto [u, v] = tangents((b - a).normalized());
+  std::array<Vector3d, 8> corners;
+  for (unsigned k = 0; k < 8; ++k) {
+    corners[k] = ((k & 4U) != 0 ? b : a) + ((k & 1U) != 0 ? 0.5 : -0.5) * width * u +
+                 ((k & 2U) != 0 ? 0.5 : -0.5) * width * v;
+  }
+  add_hexahedron(corners, paint);
+}
+
+RgbImage render(const PaintedMesh& scene, const PinholeCamera& camera, const Pose& T_world_camera,
+                double occlusion_range, const ExecConfig& exec) {
+  const SurfaceScene surfaces(scene.mesh(), exec);
+  const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
+  const Vector3d eye = T_world_camera.translation();
+  // The sun stands over the viewer's left shoulder.
+  const Vector3d to_sun = (R_world_camera * Vector3d(-0.45, -0.75, -0.6)).normalized();
+  const Renderer renderer(scene, surfaces, to_sun, occlusion_range);
+
+  RgbImage image{camera.width, camera.height, {}};
+  const auto columns = static_cast<std::size_t>(camera.width);
+  const auto rows = static_cast<std::size_t>(camera.height);
+  image.pixels.resize(3 * columns * rows);
+  Progress progress("picture row");
+  std::mutex progress_mutex;
+  std::size_t rows_done = 0;
+  ThreadPool pool(exec.num_threads);
+  pool.for_each_chunk(rows, 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      for (std::size_t u = 0; u < columns; ++u) {
+        Vector3d sum = Vector3d::Zero();
+        for (int s = 0; s < kSamplesPerSide * kSamplesPerSide; ++s) {
+          const double du = (s % kSamplesPerSide + 0.5) / kSamplesPerSide - 0.5;
+          const double dv = (s / kSamplesPerSide + 0.5) / kSamplesPerSide - 0.5;
+          const Vector3d ray = camera.ray(static_cast<double>(u) + du, static_cast<double>(v) + dv);
+          const auto seed = 4 * (v * columns + u) + static_cast<std::size_t>(s);
+          sum += renderer.color(eye, (R_world_camera * ray).normalized(),
+                                static_cast<double>(v) / static_cast<double>(rows), seed);
+        }
+        sum /= kSamplesPerSide * kSamplesPerSide;
+        for (std::size_t k = 0; k < 3; ++k) {
+          image.pixels[3 * (v * columns + u) + k] = encoded(sum[static_cast<Eigen::Index>(k)]);
+        }
+      }
+    }
+    const std::lock_guard lock(progress_mutex);
+    rows_done += end - begin;
+    progress.update(rows_done, rows);
+  });
+  return image;
+}
+
+}  // namespace viewgain::app

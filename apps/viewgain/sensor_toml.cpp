@@ -1,0 +1,309 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sensor_toml.hpp"
+
+#include <toml++/toml.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "values.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::app {
+namespace {
+
+template <typename Model>
+struct NoiseField {
+  const char* key;
+  double Model::* member;
+};
+
+// One list a model: what it is called in a file and its parameters. Reader and writer share them.
+template <typename Model>
+struct NoiseLayout;
+template <>
+struct NoiseLayout<ShotNoise> {
+  static constexpr const char* kName = "shot";
+  static constexpr std::array<NoiseField<ShotNoise>, 4> kFields{
+      {{"reference_sigma", &ShotNoise::reference_sigma},
+       {"reference_range", &ShotNoise::reference_range},
+       {"reference_integration_time", &ShotNoise::reference_integration_time},
+       {"integration_time", &ShotNoise::integration_time}}};
+};
+template <>
+struct NoiseLayout<StructuredLightNoise> {
+  static constexpr const char* kName = "structured_light";
+  static constexpr std::array<NoiseField<StructuredLightNoise>, 6> kFields{
+      {{"offset", &StructuredLightNoise::offset},
+       {"quadratic", &StructuredLightNoise::quadratic},
+       {"vertex", &StructuredLightNoise::vertex},
+       {"grazing", &StructuredLightNoise::grazing},
+       {"lateral_px", &StructuredLightNoise::lateral_px},
+       {"lateral_grazing_px", &StructuredLightNoise::lateral_grazing_px}}};
+};
+template <>
+struct NoiseLayout<StereoNoise> {
+  static constexpr const char* kName = "stereo";
+  static constexpr std::array<NoiseField<StereoNoise>, 3> kFields{
+      {{"subpixel", &StereoNoise::subpixel},
+       {"focal", &StereoNoise::focal},
+       {"baseline", &StereoNoise::baseline}}};
+};
+template <>
+struct NoiseLayout<QuadraticNoise> {
+  static constexpr const char* kName = "quadratic";
+  static constexpr std::array<NoiseField<QuadraticNoise>, 2> kFields{
+      {{"offset", &QuadraticNoise::offset}, {"quadratic", &QuadraticNoise::quadratic}}};
+};
+template <>
+struct NoiseLayout<ConstantNoise> {
+  static constexpr const char* kName = "constant";
+  static constexpr std::array<NoiseField<ConstantNoise>, 2> kFields{
+      {{"sigma_axial", &ConstantNoise::sigma_axial},
+       {"sigma_lateral", &ConstantNoise::sigma_lateral}}};
+};
+
+// A TOML float needs a point or an exponent.
+std::string toml_float(double value) {
+  std::string text = short_text(value);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string toml_string(const std::string& value) {
+  std::ostringstream text;
+  text << toml::value<std::string>(value);
+  return text.str();
+}
+
+// One table of the file; remembers which keys were asked for, so that the others can be refused.
+class TableReader {
+ public:
+  TableReader(const toml::table& table, std::string file, std::string prefix)
+      : table_(table), file_(std::move(file)), prefix_(std::move(prefix)) {}
+
+  [[noreturn]] void fail(std::string_view key, const std::string& what) const {
+    throw Error(ErrorCode::format, file_ + ": key \"" + prefix_ + std::string(key) + "\" " + what);
+  }
+
+  const toml::node* find(std::string_view key) {
+    known_.emplace_back(key);
+    return table_.get(key);
+  }
+
+  const toml::node& require(std::string_view key) {
+    const toml::node* node = find(key);
+    if (node == nullptr) fail(key, "is missing");
+    return *node;
+  }
+
+  double number(std::string_view key) { return number_of(require(key), key); }
+
+  double number_of(const toml::node& node, std::string_view key) const {
+    const auto value = node.value<double>();
+    if (!value || !node.is_number()) fail(key, "must be a number");
+    if (!std::isfinite(*value)) fail(key, "must be finite");
+    return *value;
+  }
+
+  int whole_number(std::string_view key) {
+    const toml::node& node = require(key);
+    const auto value = node.value<std::int64_t>();
+    if (!node.is_integer() || !value || *value < 0 || *value > 1'000'000) {
+      fail(key, "must be a whole number from 0 to 1000000");
+    }
+    return static_cast<int>(*value);
+  }
+
+  std::string text(std::string_view key) {
+    const toml::node& node = require(key);
+    if (!node.is_string()) fail(key, "must be a string");
+    return *node.value<std::string>();
+  }
+
+  std::vector<double> numbers(std::string_view key, const toml::node& node,
+                              std::size_t count) const {
+    const toml::array* array = node.as_array();
+    if (array == nullptr || array->size() != count) {
+      fail(key, "must be a list of " + std::to_string(count) + " numbers");
+    }
+    std::vector<double> values;
+    for (const toml::node& element : *array) values.push_back(number_of(element, key));
+    return values;
+  }
+
+  TableReader table(std::string_view key) {
+    const toml::node& node = require(key);
+    if (!node.is_table()) fail(key, "must be a table");
+    return {*node.as_table(), file_, prefix_ + std::string(key) + "."};
+  }
+
+  void refuse_unknown_keys() const {
+    for (const auto& [key, node] : table_) {
+      if (std::find(known_.begin(), known_.end(), std::string(key.str())) == known_.end()) {
+        fail(key.str(), "is unknown");
+      }
+    }
+  }
+
+ private:
+  const toml::table& table_;
+  std::string file_;
+  std::string prefix_;
+  std::vector<std::string> known_;
+};
+
+PinholeCamera read_camera(TableReader reader) {
+  PinholeCamera camera;
+  camera.width = reader.whole_number("width");
+  camera.height = reader.whole_number("height");
+  camera.fx = reader.number("fx");
+  camera.fy = reader.number("fy");
+  camera.cx = reader.number("cx");
+  camera.cy = reader.number("cy");
+  if (const toml::node* node = reader.find("distortion"); node != nullptr) {
+    const std::vector<double> values = reader.numbers("distortion", *node, 5);
+    std::copy(values.begin(), values.end(), camera.distortion.begin());
+  }
+  reader.refuse_unknown_keys();
+  return camera;
+}
+
+template <typename Model>
+bool read_noise_as(TableReader& reader, const std::string& model, NoiseModel& noise) {
+  if (model != NoiseLayout<Model>::kName) return false;
+  Model parameters;
+  for (const auto& field : NoiseLayout<Model>::kFields) {
+    parameters.*field.member = reader.number(field.key);
+  }
+  noise = parameters;
+  return true;
+}
+
+NoiseModel read_noise(TableReader reader) {
+  const std::string model = reader.text("model");
+  NoiseModel noise;
+  const bool known = read_noise_as<ShotNoise>(reader, model, noise) ||
+                     read_noise_as<StructuredLightNoise>(reader, model, noise) ||
+                     read_noise_as<StereoNoise>(reader, model, noise) ||
+                     read_noise_as<QuadraticNoise>(reader, model, noise) ||
+                     read_noise_as<ConstantNoise>(reader, model, noise);
+  if (!known) {
+    reader.fail("model", "is \"" + model +
+                             "\", not one of shot, structured_light, stereo, quadratic, constant");
+  }
+  reader.refuse_unknown_keys();
+  return noise;
+}
+
+Pose read_mounting(const TableReader& reader, const toml::node& node) {
+  constexpr const char* kKey = "T_flange_camera";
+  constexpr double kMendable = 1e-2, kExact = 1e-9;
+  const toml::array* rows = node.as_array();
+  if (rows == nullptr || rows->size() != 4)
+    reader.fail(kKey, "must have four rows of four numbers");
+  Pose pose;
+  for (std::size_t r = 0; r < 4; ++r) {
+    const std::vector<double> row = reader.numbers(kKey, *rows->get(r), 4);
+    if (r < 3) {
+      std::copy(row.begin(), row.end(), pose.m.begin() + static_cast<std::ptrdiff_t>(4 * r));
+    } else if (row != std::vector<double>{0, 0, 0, 1}) {
+      reader.fail(kKey, "must end with the row 0, 0, 0, 1");
+    }
+  }
+  const double error = orthonormality_error(pose);
+  if (!(error <= kMendable)) reader.fail(kKey, "is no rigid transform");
+  return error > kExact ? orthonormalized(pose) : pose;
+}
+
+}  // namespace
+
+std::string sensor_toml(const Sensor& sensor) {
+  std::ostringstream text;
+  text << "# A depth camera for viewgain. Ranges are along the ray.\n"
+       << "name = " << toml_string(sensor.name) << "\n"
+       << "min_range = " << toml_float(sensor.min_range) << "  # [m]\n"
+       << "max_range = " << toml_float(sensor.max_range) << "  # [m]\n"
+       << "working_distance = " << toml_float(sensor.working_distance) << "  # [m]\n";
+  if (sensor.T_flange_camera) {
+    const auto& m = sensor.T_flange_camera->m;
+    text << "T_flange_camera = [  # rows, [m]\n";
+    for (std::size_t r = 0; r < 3; ++r) {
+      text << "  [" << toml_float(m[4 * r]) << ", " << toml_float(m[4 * r + 1]) << ", "
+           << toml_float(m[4 * r + 2]) << ", " << toml_float(m[4 * r + 3]) << "],\n";
+    }
+    text << "  [0.0, 0.0, 0.0, 1.0],\n]\n";
+  }
+  const PinholeCamera& camera = sensor.camera;
+  text << "\n[camera]  # pixel (0,0) has its centre at (0,0); [px]\n"
+       << "width = " << camera.width << "\nheight = " << camera.height
+       << "\nfx = " << toml_float(camera.fx) << "\nfy = " << toml_float(camera.fy)
+       << "\ncx = " << toml_float(camera.cx) << "\ncy = " << toml_float(camera.cy)
+       << "\ndistortion = [";
+  for (std::size_t k = 0; k < camera.distortion.size(); ++k) {
+    text << (k > 0 ? ", " : "") << toml_float(camera.distortion[k]);
+  }
+  text << "]  # k1 k2 p1 p2 k3, as in OpenCV\n\n[noise]\n";
+  std::visit(
+      [&text]<typename Model>(const Model& model) {
+        text << "model = \"" << NoiseLayout<Model>::kName << "\"\n";
+        for (const auto& field : NoiseLayout<Model>::kFields) {
+          text << field.key << " = " << toml_float(model.*field.member) << "\n";
+        }
+      },
+      sensor.noise);
+  return std::move(text).str();
+}
+
+Sensor read_sensor_toml(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  std::error_code ignored;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream || !std::filesystem::is_regular_file(path, ignored)) {
+    throw Error(ErrorCode::io, file + ": cannot be opened");
+  }
+  const std::string contents{std::istreambuf_iterator<char>(stream), {}};
+  toml::table root;
+  try {
+    root = toml::parse(contents);
+  } catch (const toml::parse_error& error) {
+    throw Error(ErrorCode::format, file + ": line " + std::to_string(error.source().begin.line) +
+                                       ": " + std::string(error.description()));
+  }
+  TableReader reader(root, file, "");
+  Sensor sensor;
+  sensor.name = reader.text("name");
+  sensor.min_range = reader.number("min_range");
+  sensor.max_range = reader.number("max_range");
+  sensor.working_distance = reader.number("working_distance");
+  if (const toml::node* node = reader.find("T_flange_camera"); node != nullptr) {
+    sensor.T_flange_camera = read_mounting(reader, *node);
+  }
+  sensor.camera = read_camera(reader.table("camera"));
+  sensor.noise = read_noise(reader.table("noise"));
+  reader.refuse_unknown_keys();
+  try {
+    sensor.validate();
+  } catch (const Error& error) {
+    throw Error(ErrorCode::format, file + ": " + error.what());
+  }
+  return sensor;
+}
+
+Sensor load_sensor(const std::string& preset_or_file) {
+  if (std::filesystem::path(preset_or_file).extension() == ".toml") {
+    return read_sensor_toml(preset_or_file);
+  }
+  return sensor_preset(preset_or_file);
+}
+
+}  // namespace viewgain::app

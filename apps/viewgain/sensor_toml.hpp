@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "viewgain/core/sensor.hpp"
+
+namespace viewgain::app {
+
+/// The TOML description of a sensor; apps/README.md shows the layout. Reading what was written
+/// gives an equal sensor.
+[[nodiscard]] std::string sensor_toml(const Sensor& sensor);
+
+/// Throws Error(io) if the file cannot be read and Error(format), naming the file and the key, for
+/// a key that is missing, unknown, of the wrong type or out of bounds.
+[[nodiscard]] Sensor read_sensor_toml(const std::filesystem::path& path);
+
+/// A preset by its name, or a file that ends in .toml. Throws Error.
+[[nodiscard]] Sensor load_sensor(const std::string& preset_or_file);
+
+}  // namespace viewgain::app

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "commands.hpp"
+#include "frames_dir.hpp"
+#include "pose_source.hpp"
+#include "sensor_toml.hpp"
+#include "terminal.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/mesh/mesh_io.hpp"
+#include "viewgain/raycast/simulated_sensor.hpp"
+#include "viewgain/raycast/surface_scene.hpp"
+
+namespace viewgain::app {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string mesh;
+  PoseOptions poses;
+  std::string sensor;
+  double size = 0.35;
+  bool center = false;
+  double background = 1.5;
+  std::string up = "z";
+  std::string noise = "off";
+  std::uint64_t seed = 1;
+  std::string out;
+};
+
+struct PixelCounts {
+  std::uint64_t readings = 0, out_of_range = 0, invalid = 0;
+
+  void add(const DepthFrame& frame) {
+    for (const float z : frame.depth) {
+      if (z == DepthFrame::kInvalid) {
+        ++invalid;
+      } else if (z == DepthFrame::kOutOfRange) {
+        ++out_of_range;
+      } else {
+        ++readings;
+      }
+    }
+  }
+};
+
+MeshPlacement placement_of(const Options& options) {
+  MeshPlacement placement;
+  placement.up = options.up == "x" ? UpAxis::x : options.up == "y" ? UpAxis::y : UpAxis::z;
+  placement.center = options.center;
+  placement.longest_side = options.size;
+  return placement;
+}
+
+void simulate(const Options& options) {
+  const ExecConfig exec{options.common.threads};
+  const Sensor sensor = load_sensor(options.sensor);
+  sensor.validate();
+  const PoseSource source = make_poses(options.poses);
+  TriangleMesh mesh = placed(read_mesh(options.mesh), placement_of(options));
+  const std::size_t triangles = mesh.triangles.size();
+  const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
+  const SimulationConfig config{options.background, options.noise == "on", options.seed};
+  const SimulatedSensor camera(scene, sensor, config, exec);
+
+  const Stopwatch watch;
+  FramesWriter writer(options.out);
+  PixelCounts counts;
+  {
+    Progress progress("frame");
+    for (std::size_t i = 0; i < source.poses.size(); ++i) {
+      const DepthFrame frame = camera.acquire(source.poses[i], i);
+      counts.add(frame);
+      writer.write_frame(i, frame);
+      progress.update(i + 1, source.poses.size());
+    }
+  }
+  writer.commit(source.poses, sensor);
+  const double seconds = watch.seconds();
+
+  if (options.common.json) {
+    print_json({{"frames", source.poses.size()},
+                {"width", sensor.camera.width},
+                {"height", sensor.camera.height},
+                {"sensor", sensor.name},
+                {"triangles", triangles},
+                {"readings", counts.readings},
+                {"out_of_range", counts.out_of_range},
+                {"invalid", counts.invalid},
+                {"noise", options.noise == "on"},
+                {"seed", options.seed},
+                {"orthonormalized_poses", source.orthonormalized},
+                {"out", options.out},
+                {"seconds", seconds}});
+    return;
+  }
+  std::printf("%zu frames of %dx%d px (%s) of %s triangles in %.2f s: %s\n", source.poses.size(),
+              sensor.camera.width, sensor.camera.height, sensor.name.c_str(),
+              with_commas(triangles).c_str(), seconds, options.out.c_str());
+  std::printf("pixels: %s readings, %s out of range, %s invalid\n",
+              with_commas(counts.readings).c_str(), with_commas(counts.out_of_range).c_str(),
+              with_commas(counts.invalid).c_str());
+  if (source.orthonormalized > 0) {
+    std::printf("rotations that were off and were orthonormalised: %zu\n", source.orthonormalized);
+  }
+}
+
+}  // namespace
+
+Command add_simulate(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* app = program.add_subcommand(
+      "simulate",
+      "Depth frames of a mesh: frame-NNNNNN.depth.png (16 bit, depth along z in 0.1 mm, 0 invalid, "
+      "65535 out of range), poses.txt (TUM, line i is frame i), sensor.toml.");
+  app->add_option("MESH", options->mesh, "OFF, OBJ, STL or PLY file")->required();
+  auto* poses = app->add_option_group("poses", "exactly one of");
+  poses->add_option("--poses", options->poses.file,
+                    "TUM file of camera-to-world poses: time tx ty tz qx qy qz qw [s, m]");
+  poses->add_option("--orbit", options->poses.orbit,
+                    "N,RADIUS,ELEVATION_DEG[,START_DEG,STEP_DEG]: N views on a circle of latitude "
+                    "round the origin, looking at it [m, degrees]; START 0, STEP 360/N");
+  poses->require_option(1);
+  app->add_option("--sensor", options->sensor, kSensorHelp)->required();
+  app->add_option("--size", options->size,
+                  "longest side of the mesh's bounding box [m]; 0: the file's own size")
+      ->capture_default_str();
+  app->add_flag("--center", options->center, "move the bounding box's centre to the origin");
+  app->add_option("--background", options->background,
+                  "radius of a sphere round the origin that stands for the room [m]; 0: none")
+      ->capture_default_str();
+  app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  app->add_option("--noise", options->noise, "Gaussian noise along the ray by the sensor's model")
+      ->check(CLI::IsMember({"off", "on"}))
+      ->capture_default_str();
+  app->add_option("--seed", options->seed, "of the noise")->capture_default_str();
+  app->add_option("--out", options->out,
+                  "folder to write; frames of an earlier run in it are replaced")
+      ->required();
+  add_common_options(*app, options->common);
+  return {app, [options] { simulate(*options); }};
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "values.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::app {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+[[noreturn]] void fail(std::string_view flag, std::string_view text, const std::string& what) {
+  throw Error(ErrorCode::invalid_argument,
+              std::string(flag) + " " + std::string(text) + ": " + what);
+}
+
+}  // namespace
+
+std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
+                                  std::size_t min_count, std::size_t max_count) {
+  std::vector<double> numbers;
+  std::string_view rest = text;
+  for (bool more = true; more;) {
+    const std::size_t comma = rest.find(',');
+    more = comma != std::string_view::npos;
+    std::string_view word = trimmed(rest.substr(0, comma));
+    if (more) rest.remove_prefix(comma + 1);
+    if (word.size() > 1 && word.front() == '+') word.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || end != word.data() + word.size()) {
+      fail(flag, text, std::string("\"").append(word).append("\" is no number"));
+    }
+    if (!std::isfinite(value)) fail(flag, text, "numbers must be finite");
+    numbers.push_back(value);
+  }
+  if (numbers.size() < min_count || numbers.size() > max_count) {
+    fail(flag, text,
+         "needs " + std::to_string(min_count) +
+             (min_count == max_count ? "" : " to " + std::to_string(max_count)) +
+             " numbers separated by commas, has " + std::to_string(numbers.size()));
+  }
+  return numbers;
+}
+
+std::size_t parse_count(std::string_view flag, double value) {
+  constexpr double kMaxCount = 1e8;
+  if (!(value >= 0 && value <= kMaxCount && value == std::floor(value))) {
+    fail(flag, short_text(value), "the count must be a whole number from 0 to 100000000");
+  }
+  return static_cast<std::size_t>(value);
+}
+
+Box box_of(std::string_view flag, const std::vector<double>& numbers) {
+  const Box box{{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(box.min[k] < box.max[k])) {
+      fail(flag, describe(box), "the box is inside out or has no extent");
+    }
+  }
+  return box;
+}
+
+Box parse_box(std::string_view flag, std::string_view text) {
+  return box_of(flag, parse_numbers(flag, text, 6, 6));
+}
+
+std::string exact_text(double value) {
+  if (std::isnan(value)) return "nan";
+  std::array<char, 40> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.17g", value);
+  return buffer.data();
+}
+
+std::string short_text(double value) {
+  if (std::isnan(value)) return "nan";
+  std::array<char, 40> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), end};
+}
+
+std::string describe(const Box& box) {
+  std::array<char, 200> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%g,%g,%g,%g,%g,%g", box.min[0], box.min[1],
+                box.min[2], box.max[0], box.max[1], box.max[2]);
+  return buffer.data();
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/box.hpp"
+
+namespace viewgain::app {
+
+/// Numbers separated by commas; each must be finite and their count in [min_count, max_count].
+/// Throws Error(invalid_argument) that names the flag and the text.
+[[nodiscard]] std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
+                                                std::size_t min_count, std::size_t max_count);
+
+/// A count among parse_numbers' values: a whole number that is not negative and at most 1e8.
+[[nodiscard]] std::size_t parse_count(std::string_view flag, double value);
+
+/// x0,y0,z0,x1,y1,z1 [m]. Throws Error(invalid_argument) if it is inside out or has no extent.
+[[nodiscard]] Box parse_box(std::string_view flag, std::string_view text);
+[[nodiscard]] Box box_of(std::string_view flag, const std::vector<double>& numbers);
+
+/// With 17 significant digits, so that it reads back as the same double; "nan" for a NaN.
+[[nodiscard]] std::string exact_text(double value);
+
+/// The shortest text that reads back as the same double.
+[[nodiscard]] std::string short_text(double value);
+
+/// x0, y0, z0 .. x1, y1, z1 for people.
+[[nodiscard]] std::string describe(const Box& box);
+
+}  // namespace viewgain::app

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace viewgain {
+
+/// A file that appears whole or not at all. What is written goes to temporary_path(), in the
+/// target's folder; commit() renames it to the target, and without a commit() the destructor
+/// removes it. Writers that want a file name (OpenVDB, PNG libraries) get temporary_path(), others
+/// use write(). The temporary's name begins with a dot, is unique by process and counter, and keeps
+/// the target's ending. A target that is there and is no regular file (/dev/stdout, a pipe) is
+/// written in place, without a rename; a symbolic link stays and the file behind it is replaced.
+/// Every failure throws Error(io) that names the target. Thread safety: distinct objects may be
+/// used from distinct threads.
+class AtomicFile {
+ public:
+  /// Creates the empty temporary file, so that a target that cannot be written is known at once.
+  explicit AtomicFile(const std::filesystem::path& target);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Where to write; exists.
+  [[nodiscard]] const std::filesystem::path& temporary_path() const noexcept { return temporary_; }
+
+  /// Appends bytes.
+  void write(std::string_view bytes);
+
+  /// Makes the file appear. To be called once, when all is written and other writers have closed
+  /// it.
+  void commit();
+
+ private:
+  std::filesystem::path target_;     // as given, for messages
+  std::filesystem::path resolved_;   // behind symbolic links
+  std::filesystem::path temporary_;  // equals resolved_ when written in place
+  bool committed_ = false;
+};
+
+/// The common case: the whole contents at once.
+void write_file_atomically(const std::filesystem::path& target, std::string_view contents);
+
+}  // namespace viewgain

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+namespace viewgain {
+
+/// Axis-aligned box [m], in the frame that its use names.
+struct Box {
+  std::array<double, 3> min{};
+  std::array<double, 3> max{};
+
+  [[nodiscard]] bool contains(double x, double y, double z) const {
+    return x >= min[0] && x < max[0] && y >= min[1] && y < max[1] && z >= min[2] && z < max[2];
+  }
+  bool operator==(const Box&) const = default;
+};
+
+}  // namespace viewgain

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace viewgain {
+
+/// Pinhole camera with OpenCV's distortion model, optical frame: x right, y down, z forward. Pixel
+/// (0,0) has its centre at (0,0), as in OpenCV. A value type.
+struct PinholeCamera {
+  int width = 0;                       ///< [px]
+  int height = 0;                      ///< [px]
+  double fx = 0, fy = 0;               ///< focal lengths [px]
+  double cx = 0, cy = 0;               ///< principal point [px]
+  std::array<double, 5> distortion{};  ///< k1 k2 p1 p2 k3
+
+  [[nodiscard]] bool has_distortion() const { return distortion != std::array<double, 5>{}; }
+
+  /// Throws Error(invalid_argument), naming the field, unless sizes are in 1..16384, focal lengths
+  /// are positive and all numbers are finite.
+  void validate() const;
+
+  /// Direction (x, y, 1) in the camera frame of the ray through pixel coordinates (u, v) [px],
+  /// distortion undone (fixed-point then Newton to 1e-12; NaN where the model has no solution that
+  /// is joined to the optical axis without a fold). Exact, and cheap, without distortion.
+  [[nodiscard]] Eigen::Vector3d ray(double u, double v) const;
+
+  /// Pixel coordinates (u, v) [px] of the camera-frame point p [m], distortion applied; NaN unless
+  /// p.z > 0. As in OpenCV a strong distortion may fold a point far outside the view back into it.
+  [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& p_camera) const;
+
+  /// ray() of every pixel centre, row by row: directions (x, y, 1), width * height of them.
+  [[nodiscard]] std::vector<Eigen::Vector3d> ray_table() const;
+
+  bool operator==(const PinholeCamera&) const = default;
+};
+
+}  // namespace viewgain

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/covariance.hpp"
+
+namespace viewgain {
+
+/// How the uncertainty of a voxel's position is measured, from Σ = Λ⁻¹.
+enum class Criterion : std::uint8_t {
+  log_diagonal,  ///< ½ Σ_k ln Σ_kk in grid axes [nat]: the paper's eq. (3) and (6) with eq. (2)'s ½
+  log_determinant,  ///< ½ ln det Σ [nat]: eq. (2); the same in every frame
+  trace,            ///< tr Σ [m²]: A-optimality; the same in every frame
+};
+
+[[nodiscard]] const std::vector<std::string>& criterion_names();
+[[nodiscard]] std::string_view criterion_name(Criterion criterion);
+
+/// Throws Error(invalid_argument) that lists the valid names.
+[[nodiscard]] Criterion parse_criterion(std::string_view name);
+
+/// H(Λ) by the criterion [nat, or m² for trace]; Λ [m⁻²] must be positive definite.
+[[nodiscard]] double entropy(const SymmetricMatrix3& information, Criterion criterion);
+
+/// H(before) - H(before + added) >= 0 for a positive semidefinite `added`. One logarithm of a
+/// ratio, so small gains keep their digits.
+[[nodiscard]] double entropy_reduction(const SymmetricMatrix3& before,
+                                       const SymmetricMatrix3& added, Criterion criterion);
+
+}  // namespace viewgain

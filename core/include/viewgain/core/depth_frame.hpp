@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <vector>
+
+namespace viewgain {
+
+/// Depth image along the optical axis (z, not range) [m], row by row. Three kinds of pixel
+/// (DESIGN.md section 5): a reading (0 < z < infinity), kInvalid, kOutOfRange. A value type.
+struct DepthFrame {
+  static constexpr float kInvalid = 0.0F;  ///< says nothing
+  static constexpr float kOutOfRange =
+      std::numeric_limits<float>::infinity();  ///< nothing up to max_range
+
+  int width = 0;             ///< [px]
+  int height = 0;            ///< [px]
+  std::vector<float> depth;  ///< width * height values
+
+  [[nodiscard]] float at(int u, int v) const {
+    return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+                 static_cast<std::size_t>(u)];
+  }
+  bool operator==(const DepthFrame&) const = default;
+};
+
+}  // namespace viewgain

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace viewgain {
+
+/// What kind of thing went wrong; the message says which value, line or file.
+enum class ErrorCode {
+  invalid_argument,  ///< a value outside its documented range
+  io,                ///< a file cannot be opened, read or written
+  format,            ///< a file's contents are not what they should be
+  capacity,          ///< more voxels, primitives or memory than the data structures can hold
+  backend,           ///< Embree or OpenVDB reported a failure
+};
+
+/// The one exception type of the library. Thrown at set-up and by file readers and writers, never
+/// from the scoring of a pose. Thread safety: a value type.
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  [[nodiscard]] ErrorCode code() const noexcept { return code_; }
+
+ private:
+  ErrorCode code_;
+};
+
+}  // namespace viewgain

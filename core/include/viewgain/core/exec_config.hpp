@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <stop_token>
+
+namespace viewgain {
+
+/// What changes only speed, never an answer.
+struct ExecConfig {
+  int num_threads = 0;  ///< 0: all hardware threads; 1: the caller alone; n: caller and n - 1 more
+};
+
+/// Watches or ends one long call.
+struct BatchControl {
+  std::stop_token stop{};  ///< when a stop is requested the call returns early, see the call
+  std::function<void(std::size_t done, std::size_t total)>
+      progress{};  ///< from any worker, one at a time
+};
+
+}  // namespace viewgain

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace viewgain {
+
+/// Instruction sets that the SIMD kernels are built for, in rising order.
+enum class Isa : std::uint8_t {
+  baseline,  ///< other architectures than x86-64: what the compiler assumes
+  sse4,      ///< the least that x86-64 needs
+  avx2,
+  avx512,
+};
+
+[[nodiscard]] std::string_view isa_name(Isa isa);
+
+/// What this CPU and operating system can run, best first. Empty on an x86-64 without SSE4.2.
+[[nodiscard]] std::vector<Isa> supported_isas();
+
+/// The best supported set, lowered by the environment variable VIEWGAIN_ISA (avx512, avx2 or
+/// sse4; a set that the CPU lacks gives the best it has). Throws Error(invalid_argument) that lists
+/// the names for any other value, Error(backend) if the CPU has none. Reads the environment at each
+/// call; keeps no state.
+[[nodiscard]] Isa select_isa();
+
+}  // namespace viewgain

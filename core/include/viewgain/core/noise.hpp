@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <variant>
+
+namespace viewgain {
+
+/// Smallest cosine of incidence that the noise models accept; below it they stay at this value.
+inline constexpr double kMinCosIncidence = 0.1;
+
+/// Smallest range [m] that the noise models accept; nearer readings count as this far, so that a
+/// sigma is never 0 and an information matrix never infinite.
+inline constexpr double kMinNoiseRange = 1e-3;
+
+/// Time-of-flight shot noise: sigma_ax = reference_sigma * (t / reference_range)
+/// * sqrt(reference_integration_time / integration_time) / sqrt(max(cos, 0.1)); the amplitude falls
+/// with cos / t². sigma_lat is the pixel footprint t / fx.
+struct ShotNoise {
+  double reference_sigma = 4.0e-3;             ///< [m]
+  double reference_range = 1.30;               ///< [m]
+  double reference_integration_time = 8.5e-3;  ///< [s]
+  double integration_time = 1.0e-3;            ///< [s]
+  bool operator==(const ShotNoise&) const = default;
+};
+
+/// Structured light (Nguyen, Izadi, Lovell, 3DIMPVT 2012), z taken as the range along the ray:
+/// sigma_ax = offset + quadratic (z - vertex)² + grazing / sqrt(z) * theta² / (pi/2 - theta)², the
+/// last term beyond 60°; sigma_lat = (lateral_px + lateral_grazing_px * theta / (pi/2 - theta)) * z
+/// / fx.
+struct StructuredLightNoise {
+  double offset = 1.2e-3;             ///< [m]
+  double quadratic = 1.9e-3;          ///< [1/m]
+  double vertex = 0.4;                ///< [m]
+  double grazing = 1.0e-4;            ///< [m^1.5]
+  double lateral_px = 0.8;            ///< [px]
+  double lateral_grazing_px = 0.035;  ///< [px]
+  bool operator==(const StructuredLightNoise&) const = default;
+};
+
+/// Stereo: sigma_ax = t² * subpixel / (focal * baseline); sigma_lat = t / fx.
+struct StereoNoise {
+  double subpixel = 0.08;  ///< matching error [px]
+  double focal = 447.0;    ///< [px]
+  double baseline = 0.05;  ///< [m]
+  bool operator==(const StereoNoise&) const = default;
+};
+
+/// sigma_ax = offset + quadratic * t²; sigma_lat = t / fx.
+struct QuadraticNoise {
+  double offset = 1.0e-3;       ///< [m]
+  double quadratic = 1.074e-3;  ///< [1/m]
+  bool operator==(const QuadraticNoise&) const = default;
+};
+
+/// The same everywhere; equal sigmas make an isotropic sensor.
+struct ConstantNoise {
+  double sigma_axial = 1.0e-3;    ///< [m]
+  double sigma_lateral = 1.0e-3;  ///< [m]
+  bool operator==(const ConstantNoise&) const = default;
+};
+
+/// Standard deviations of one measurement, along the ray and across it [m].
+struct MeasurementSigmas {
+  double axial = 0;
+  double lateral = 0;
+};
+
+using NoiseModel =
+    std::variant<ShotNoise, StructuredLightNoise, StereoNoise, QuadraticNoise, ConstantNoise>;
+
+/// Sigmas of a reading at range t >= 0 [m] along the ray, for a camera with focal length fx [px]
+/// and a surface whose normal makes an angle with the cosine cos_incidence (1: frontal) with the
+/// ray. One overload a model and one for the variant. Thread safe; costs a few flops.
+[[nodiscard]] MeasurementSigmas sigmas(const ShotNoise&, double t, double fx, double cos_incidence);
+[[nodiscard]] MeasurementSigmas sigmas(const StructuredLightNoise&, double t, double fx,
+                                       double cos_incidence);
+[[nodiscard]] MeasurementSigmas sigmas(const StereoNoise&, double t, double fx,
+                                       double cos_incidence);
+[[nodiscard]] MeasurementSigmas sigmas(const QuadraticNoise&, double t, double fx,
+                                       double cos_incidence);
+[[nodiscard]] MeasurementSigmas sigmas(const ConstantNoise&, double t, double fx,
+                                       double cos_incidence);
+[[nodiscard]] MeasurementSigmas sigmas(const NoiseModel&, double t, double fx,
+                                       double cos_incidence = 1.0);
+
+}  // namespace viewgain

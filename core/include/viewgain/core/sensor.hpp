@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/camera.hpp"
+#include "viewgain/core/noise.hpp"
+#include "viewgain/core/pose.hpp"
+
+namespace viewgain {
+
+/// A depth camera: intrinsics, range limits along the ray, noise. A value type.
+struct Sensor {
+  std::string name;  ///< preset's or file's name, for reports
+  PinholeCamera camera;
+  double min_range = 0;         ///< along the ray [m]
+  double max_range = 0;         ///< along the ray [m]
+  double working_distance = 0;  ///< where it is meant to be used [m]
+  NoiseModel noise;
+  std::optional<Pose> T_flange_camera;  ///< mounting on the robot's flange, if known
+
+  /// Standard deviations at range t [m]; see sigmas() in noise.hpp.
+  [[nodiscard]] MeasurementSigmas sigmas(double t, double cos_incidence = 1.0) const {
+    return viewgain::sigmas(noise, t, camera.fx, cos_incidence);
+  }
+
+  /// Throws Error(invalid_argument), naming the field: camera as in PinholeCamera::validate(),
+  /// 0 <= min_range < max_range, working_distance > 0 and within them, all noise parameters
+  /// positive and finite, T_flange_camera rigid (1e-3).
+  void validate() const;
+};
+
+/// The presets of DESIGN.md section 4: sr4000, azure_kinect_nfov, kinect_v1, d435.
+[[nodiscard]] const std::vector<std::string>& sensor_preset_names();
+
+/// Throws Error(invalid_argument) that lists the valid names.
+[[nodiscard]] Sensor sensor_preset(std::string_view name);
+
+/// sigma_0 [m] of an unknown voxel when the map does not say: max(voxel / 2, 2 sigma_ax at the
+/// working distance, frontal), so that unknown is never surer than one reading.
+[[nodiscard]] double default_prior_sigma(double voxel_size, const Sensor& sensor);
+
+}  // namespace viewgain

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+
+namespace viewgain {
+
+/// Reusable threads for data-parallel loops. The caller takes part. A call that finds the pool
+/// busy, from another thread or from inside a loop body, runs its whole loop on its caller, so
+/// nested and concurrent use cannot deadlock. Thread safety: every member may be called from any
+/// thread; the destructor only when no call is running.
+class ThreadPool {
+ public:
+  /// num_threads counts the caller; 0 means all hardware threads. Throws Error(invalid_argument) if
+  /// negative or over 1024.
+  explicit ThreadPool(int num_threads = 0);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  [[nodiscard]] int num_threads() const noexcept;
+
+  /// Calls body(begin, end) for consecutive ranges of at most `chunk` indices that cover [0, count)
+  /// once each; ranges are handed out by an atomic counter, so which thread gets which is not
+  /// determined. count 0 does nothing. The first exception a body throws ends the loop early and is
+  /// rethrown here. Throws Error(invalid_argument) if chunk is 0 and count is not. Allocates
+  /// nothing.
+  template <typename Body>
+  void for_each_chunk(std::size_t count, std::size_t chunk, Body&& body) {
+    using Plain = std::remove_reference_t<Body>;
+    // The callable may be const; Plain puts the const back.
+    void* address = const_cast<void*>(static_cast<const volatile void*>(std::addressof(body)));
+    run(count, chunk, Task{address, [](void* b, std::size_t begin, std::size_t end) {
+                             (*static_cast<Plain*>(b))(begin, end);
+                           }});
+  }
+
+ private:
+  /// A borrowed callable; alive while run() is.
+  struct Task {
+    void* body = nullptr;
+    void (*call)(void*, std::size_t, std::size_t) = nullptr;
+  };
+  void run(std::size_t count, std::size_t chunk, Task task);
+
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace viewgain

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/camera.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr int kMaxSize = 16384;           // [px]
+constexpr double kTolerance = 1e-12;      // of normalised coordinates
+constexpr int kFixedPointIterations = 4;  // brings usual lenses into Newton's basin
+constexpr int kNewtonIterations = 30;
+constexpr int kBranchChecks = 16;  // points between the axis and a solution
+constexpr int kContinuationSteps = 64;
+
+/// OpenCV's distortion of the normalised point p = (x, y), and its Jacobian.
+struct Distorted {
+  Eigen::Vector2d point;
+  Eigen::Matrix2d jacobian;
+};
+
+Distorted distort(const std::array<double, 5>& d, const Eigen::Vector2d& p) {
+  const auto [k1, k2, p1, p2, k3] = d;
+  const double x = p.x(), y = p.y();
+  const double r2 = x * x + y * y;
+  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  const double d_radial = k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3);  // by r²
+  Distorted out;
+  out.point = {x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
+               y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};
+  const double mixed = 2.0 * x * y * d_radial + 2.0 * p1 * x + 2.0 * p2 * y;
+  out.jacobian << radial + 2.0 * x * x * d_radial + 2.0 * p1 * y + 6.0 * p2 * x, mixed, mixed,
+      radial + 2.0 * y * y * d_radial + 6.0 * p1 * y + 2.0 * p2 * x;
+  return out;
+}
+
+/// Newton from `p`; false if it leaves the region where the model keeps orientation or stalls.
+bool newton(const std::array<double, 5>& d, const Eigen::Vector2d& target, Eigen::Vector2d& p) {
+  for (int i = 0; i < kNewtonIterations; ++i) {
+    const Distorted at = distort(d, p);
+    const Eigen::Vector2d residual = target - at.point;
+    if (!(at.jacobian.determinant() > 0)) return false;
+    p += at.jacobian.inverse() * residual;
+    // Tested before the step: the step that follows a residual this small is the last improvement.
+    if (residual.lpNorm<Eigen::Infinity>() < kTolerance) return true;
+  }
+  return false;
+}
+
+/// A folded lens model maps several points to one pixel; the real one is joined to the optical axis
+/// by points where the model has not folded yet.
+bool on_central_branch(const std::array<double, 5>& d, const Eigen::Vector2d& p) {
+  for (int i = 1; i <= kBranchChecks; ++i) {
+    const Eigen::Vector2d q = p * (static_cast<double>(i) / kBranchChecks);
+    if (!(distort(d, q).jacobian.determinant() > 0)) return false;
+  }
+  return true;
+}
+
+Eigen::Vector2d undistort(const std::array<double, 5>& d, const Eigen::Vector2d& target) {
+  Eigen::Vector2d p = target;
+  for (int i = 0; i < kFixedPointIterations; ++i) p += target - distort(d, p).point;
+  if (newton(d, target, p) && on_central_branch(d, p)) return p;
+
+  // Strong distortion: follow the solution outwards from the axis.
+  p.setZero();
+  for (int i = 1; i <= kContinuationSteps; ++i) {
+    if (!newton(d, target * (static_cast<double>(i) / kContinuationSteps), p)) {
+      return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  if (on_central_branch(d, p)) return p;
+  return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+
+[[noreturn]] void fail(const std::string& what) {
+  throw Error(ErrorCode::invalid_argument, "camera: " + what);
+}
+
+}  // namespace
+
+void PinholeCamera::validate() const {
+  const auto check_size = [](const char* name, int value) {
+    if (value < 1 || value > kMaxSize) {
+      fail(std::string(name) + " must be in 1.." + std::to_string(kMaxSize) + " px, not " +
+           std::to_string(value));
+    }
+  };
+  check_size("width", width);
+  check_size("height", height);
+  const auto check_focal = [](const char* name, double value) {
+    if (!(std::isfinite(value) && value > 0)) {
+      fail(std::string(name) + " must be positive and finite, not " + std::to_string(value));
+    }
+  };
+  check_focal("fx", fx);
+  check_focal("fy", fy);
+  if (!std::isfinite(cx)) fail("cx must be finite");
+  if (!std::isfinite(cy)) fail("cy must be finite");
+  constexpr std::array<const char*, 5> kNames{"k1", "k2", "p1", "p2", "k3"};
+  for (std::size_t i = 0; i < distortion.size(); ++i) {
+    if (!std::isfinite(distortion[i])) {
+      fail(std::string("distortion ") + kNames[i] + " must be finite");
+    }
+  }
+}
+
+Eigen::Vector3d PinholeCamera::ray(double u, double v) const {
+  Eigen::Vector2d p((u - cx) / fx, (v - cy) / fy);
+  if (has_distortion()) p = undistort(distortion, p);
+  return {p.x(), p.y(), 1.0};
+}
+
+Eigen::Vector2d PinholeCamera::project(const Eigen::Vector3d& p_camera) const {
+  if (!(p_camera.z() > 0)) {
+    return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
+  Eigen::Vector2d p(p_camera.x() / p_camera.z(), p_camera.y() / p_camera.z());
+  if (has_distortion()) p = distort(distortion, p).point;
+  return {fx * p.x() + cx, fy * p.y() + cy};
+}
+
+std::vector<Eigen::Vector3d> PinholeCamera::ray_table() const {
+  std::vector<Eigen::Vector3d> table;
+  table.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) table.push_back(ray(u, v));
+  }
+  return table;
+}
+
+}  // namespace viewgain

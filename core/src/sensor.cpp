@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/sensor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+namespace {
+
+using NamedValues = std::initializer_list<std::pair<const char*, double>>;
+
+void check_positive(NamedValues values) {
+  for (const auto& [name, value] : values) {
+    if (!(std::isfinite(value) && value > 0)) {
+      throw Error(ErrorCode::invalid_argument, std::string("noise: ") + name +
+                                                   " must be positive and finite, not " +
+                                                   std::to_string(value));
+    }
+  }
+}
+
+void validate_noise(const ShotNoise& n) {
+  check_positive({{"reference_sigma", n.reference_sigma},
+                  {"reference_range", n.reference_range},
+                  {"reference_integration_time", n.reference_integration_time},
+                  {"integration_time", n.integration_time}});
+}
+void validate_noise(const StructuredLightNoise& n) {
+  check_positive({{"offset", n.offset},
+                  {"quadratic", n.quadratic},
+                  {"vertex", n.vertex},
+                  {"grazing", n.grazing},
+                  {"lateral_px", n.lateral_px},
+                  {"lateral_grazing_px", n.lateral_grazing_px}});
+}
+void validate_noise(const StereoNoise& n) {
+  check_positive({{"subpixel", n.subpixel}, {"focal", n.focal}, {"baseline", n.baseline}});
+}
+void validate_noise(const QuadraticNoise& n) {
+  check_positive({{"offset", n.offset}, {"quadratic", n.quadratic}});
+}
+void validate_noise(const ConstantNoise& n) {
+  check_positive({{"sigma_axial", n.sigma_axial}, {"sigma_lateral", n.sigma_lateral}});
+}
+
+Sensor make_sensor(std::string_view name, const PinholeCamera& camera, double min_range,
+                   double max_range, double working_distance, const NoiseModel& noise) {
+  Sensor sensor;
+  sensor.name = name;
+  sensor.camera = camera;
+  sensor.min_range = min_range;
+  sensor.max_range = max_range;
+  sensor.working_distance = working_distance;
+  sensor.noise = noise;
+  return sensor;
+}
+
+PinholeCamera make_camera(int width, int height, double fx, double fy, double cx, double cy) {
+  return {
+      .width = width, .height = height, .fx = fx, .fy = fy, .cx = cx, .cy = cy, .distortion = {}};
+}
+
+/// The models' default parameters are those of the presets that use them.
+const std::vector<Sensor>& presets() {
+  static const std::vector<Sensor> sensors{
+      make_sensor("sr4000", make_camera(176, 144, 220.0, 231.2, 87.5, 71.5), 0.2, 5.0, 0.4,
+                  ShotNoise{}),
+      make_sensor("azure_kinect_nfov", make_camera(640, 576, 417.0, 452.1, 319.5, 287.5), 0.5, 3.86,
+                  1.0, QuadraticNoise{}),
+      make_sensor("kinect_v1", make_camera(640, 480, 585.0, 585.0, 319.5, 239.5), 0.5, 4.5, 1.0,
+                  StructuredLightNoise{}),
+      make_sensor("d435", make_camera(640, 480, 447.0, 447.0, 319.5, 239.5), 0.2, 3.0, 0.5,
+                  StereoNoise{}),
+  };
+  return sensors;
+}
+
+}  // namespace
+
+void Sensor::validate() const {
+  const auto fail = [](const std::string& what) {
+    throw Error(ErrorCode::invalid_argument, "sensor: " + what);
+  };
+  camera.validate();
+  if (!(std::isfinite(min_range) && min_range >= 0)) {
+    fail("min_range must be finite and not negative, not " + std::to_string(min_range));
+  }
+  if (!(std::isfinite(max_range) && max_range > min_range)) {
+    fail("max_range must be finite and over min_range, not " + std::to_string(max_range));
+  }
+  if (!(working_distance > 0 && working_distance >= min_range && working_distance <= max_range)) {
+    fail("working_distance must be positive and within min_range and max_range, not " +
+         std::to_string(working_distance));
+  }
+  std::visit([](const auto& model) { validate_noise(model); }, noise);
+  if (T_flange_camera && !(orthonormality_error(*T_flange_camera) <= 1e-3)) {
+    fail("T_flange_camera is not a rigid transform");
+  }
+}
+
+const std::vector<std::string>& sensor_preset_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const Sensor& sensor : presets()) list.push_back(sensor.name);
+    return list;
+  }();
+  return names;
+}
+
+Sensor sensor_preset(std::string_view name) {
+  std::string valid;
+  for (const Sensor& sensor : presets()) {
+    if (sensor.name == name) return sensor;
+    valid += (valid.empty() ? "" : ", ") + sensor.name;
+  }
+  throw Error(ErrorCode::invalid_argument,
+              "unknown sensor '" + std::string(name) + "', valid are " + valid);
+}
+
+double default_prior_sigma(double voxel_size, const Sensor& sensor) {
+  return std::max(voxel_size / 2.0, 2.0 * sensor.sigmas(sensor.working_distance).axial);
+}
+
+}  // namespace viewgain

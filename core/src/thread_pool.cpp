@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/thread_pool.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+
+/// Looks at the flag before sleeping: some microseconds, less than a wake-up costs.
+constexpr int kSpins = 200;
+
+void relax() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
+
+template <typename Condition>
+bool spin_until(const Condition& condition) {
+  for (int i = 0; i < kSpins; ++i) {
+    if (condition()) return true;
+    relax();
+  }
+  return condition();
+}
+
+}  // namespace
+
+/// A run invites workers by `slots`. Each worker that takes a slot works and counts itself in
+/// `finished`; the caller, when no range is left, withdraws the slots nobody took and waits for the
+/// others. So the job's fields change only while nobody holds a slot.
+struct ThreadPool::Impl {
+  std::atomic<bool> busy{false};
+
+  std::mutex mutex;  // for sleeping only
+  std::condition_variable wake;
+  std::condition_variable done;
+  std::atomic<bool> stopping{false};
+
+  std::atomic<int> slots{0};     // workers still invited
+  std::atomic<int> finished{0};  // workers that took a slot and are through
+
+  Task task;
+  std::size_t count = 0;
+  std::size_t chunk = 0;
+  std::size_t chunks = 0;
+  std::atomic<std::size_t> next_chunk{0};
+  std::atomic<bool> failed{false};
+  std::exception_ptr error;
+
+  std::vector<std::thread> workers;
+
+  ~Impl() {
+    {
+      const std::lock_guard lock(mutex);
+      stopping.store(true);
+    }
+    wake.notify_all();
+    for (std::thread& worker : workers) worker.join();
+  }
+
+  bool take_slot() {
+    int open = slots.load(std::memory_order_relaxed);
+    while (open > 0) {
+      if (slots.compare_exchange_weak(open, open - 1, std::memory_order_acquire,
+                                      std::memory_order_relaxed)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void work() {
+    for (;;) {
+      const std::size_t i = next_chunk.fetch_add(1, std::memory_order_relaxed);
+      if (i >= chunks) return;
+      const std::size_t begin = i * chunk;
+      try {
+        task.call(task.body, begin, begin + std::min(chunk, count - begin));
+      } catch (...) {
+        if (!failed.exchange(true)) error = std::current_exception();
+        next_chunk.store(chunks, std::memory_order_relaxed);
+        return;
+      }
+    }
+  }
+
+  void worker_loop() {
+    for (;;) {
+      bool have_slot = false;
+      spin_until(
+          [&] { return stopping.load(std::memory_order_relaxed) || (have_slot = take_slot()); });
+      while (!have_slot) {
+        std::unique_lock lock(mutex);
+        wake.wait(lock,
+                  [&] { return stopping.load() || slots.load(std::memory_order_relaxed) > 0; });
+        if (stopping.load()) return;
+        lock.unlock();
+        have_slot = take_slot();
+      }
+      work();
+      finished.fetch_add(1, std::memory_order_release);
+      {
+        const std::lock_guard lock(mutex);
+      }  // the caller is asleep by now or will look first
+      done.notify_one();
+    }
+  }
+
+  void run_parallel(std::size_t n, std::size_t size, std::size_t ranges, Task job) {
+    const int helpers = static_cast<int>(std::min<std::size_t>(workers.size(), ranges - 1));
+    task = job;
+    count = n;
+    chunk = size;
+    chunks = ranges;
+    next_chunk.store(0, std::memory_order_relaxed);
+    failed.store(false, std::memory_order_relaxed);
+    finished.store(0, std::memory_order_relaxed);
+    {
+      const std::lock_guard lock(mutex);
+      slots.store(helpers, std::memory_order_release);
+    }
+    for (int i = 0; i < helpers; ++i) wake.notify_one();
+
+    work();
+
+    const int taken = helpers - slots.exchange(0, std::memory_order_relaxed);
+    const auto all_finished = [&] { return finished.load(std::memory_order_acquire) == taken; };
+    if (!spin_until(all_finished)) {
+      std::unique_lock lock(mutex);
+      done.wait(lock, all_finished);
+    }
+    const std::exception_ptr first = std::exchange(error, nullptr);
+    busy.store(false, std::memory_order_release);
+    if (first) std::rethrow_exception(first);
+  }
+};
+
+ThreadPool::ThreadPool(int num_threads) : impl_(std::make_unique<Impl>()) {
+  if (num_threads < 0 || num_threads > kMaxThreads) {
+    throw Error(ErrorCode::invalid_argument, "number of threads must be in 0.." +
+                                                 std::to_string(kMaxThreads) + ", not " +
+                                                 std::to_string(num_threads));
+  }
+  if (num_threads == 0) {
+    num_threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads);
+  }
+  impl_->workers.reserve(static_cast<std::size_t>(num_threads - 1));
+  try {
+    for (int i = 1; i < num_threads; ++i) {
+      impl_->workers.emplace_back([impl = impl_.get()] { impl->worker_loop(); });
+    }
+  } catch (const std::system_error& e) {
+    throw Error(ErrorCode::capacity,
+                "cannot start " + std::to_string(num_threads) + " threads: " + e.what());
+  }
+}
+
+ThreadPool::~ThreadPool() = default;
+
+int ThreadPool::num_threads() const noexcept { return static_cast<int>(impl_->workers.size()) + 1; }
+
+void ThreadPool::run(std::size_t count, std::size_t chunk, Task task) {
+  if (count == 0) return;
+  if (chunk == 0) throw Error(ErrorCode::invalid_argument, "a loop's chunk must not be 0");
+  const std::size_t chunks = (count - 1) / chunk + 1;
+  if (!impl_->workers.empty() && chunks > 1 &&
+      !impl_->busy.exchange(true, std::memory_order_acquire)) {
+    impl_->run_parallel(count, chunk, chunks, task);
+    return;
+  }
+  for (std::size_t begin = 0; begin < count;) {
+    const std::size_t end = begin + std::min(chunk, count - begin);
+    task.call(task.body, begin, end);
+    begin = end;
+  }
+}
+
+}  // namespace viewgain

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "viewgain/core/box.hpp"
+#include "viewgain/core/covariance.hpp"
+#include "viewgain/core/criterion.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/grid/grid_snapshot.hpp"
+
+namespace viewgain {
+
+/// How a map is laid out. A value type.
+struct GridConfig {
+  double voxel_size = 0;  ///< V [m]
+  Box workspace{};      ///< in the grid's frame [m]; grown outward to whole voxels, see BeliefGrid
+  Pose T_world_grid{};  ///< places the grid's frame
+  double prior_sigma =
+      0;  ///< sigma_0 [m] of an unknown voxel; default_prior_sigma() in core suggests one
+};
+
+/// Voxel counts and the paper's measure of progress.
+struct GridStatistics {
+  std::uint64_t unknown = 0;  ///< voxels of the workspace never observed
+  std::uint64_t free = 0;
+  std::uint64_t occupied = 0;
+  std::uint64_t bytes = 0;  ///< memory of the map: tree, beliefs, book-keeping
+  double entropy_removed =
+      0;  ///< sum over occupied of H(Λ_0) - H(Λ_0 + Λ_v) [nat, or m² for trace]
+};
+
+/// The belief grid: what is known of a workspace, voxel by voxel (DESIGN.md section 5).
+///
+/// Voxel (i,j,k) is [i,i+1) x [j,j+1) x [k,k+1) times V in the grid's frame. The workspace is grown
+/// outward to the lattice; a face within 1e-6 voxel of the lattice is not moved. Every voxel starts
+/// unknown and an unknown workspace costs a few tiles. A known voxel has a log-odds in steps of
+/// 0.05 within [-2, 3.5]: occupied above 0, else free. A voxel that was ever hit has a Belief,
+/// which it keeps when it turns free.
+///
+/// Thread safety: const members may run from many threads at once; nothing may run beside a
+/// non-const member. Snapshots are independent of the grid once taken.
+class BeliefGrid {
+ public:
+  /// Throws Error(invalid_argument) naming the value unless voxel_size and prior_sigma are positive
+  /// and finite, the workspace is finite and not inside out, T_world_grid is a rigid transform
+  /// (1e-9), and Error(capacity) if the workspace has more than 65,536 voxels along an axis, more
+  /// than 2^40 in all, or indices beyond +-2^30.
+  explicit BeliefGrid(const GridConfig& config);
+  ~BeliefGrid();
+  BeliefGrid(BeliefGrid&&) noexcept;
+  BeliefGrid& operator=(BeliefGrid&&) noexcept;
+
+  /// From a dense array of states, [x][y][z] with z fastest, one per voxel of the workspace: 0
+  /// unknown, 1 free (log-odds -0.4), 2 occupied (log-odds 0.85, no belief yet). Throws
+  /// Error(invalid_argument) for another size or another state.
+  [[nodiscard]] static BeliefGrid from_states(const GridConfig& config,
+                                              std::span<const std::uint8_t> states);
+
+  /// A deep copy.
+  [[nodiscard]] BeliefGrid clone() const;
+
+  [[nodiscard]] double voxel_size() const noexcept;  ///< [m]
+  [[nodiscard]] const Pose& T_world_grid() const noexcept;
+  [[nodiscard]] double prior_sigma() const noexcept;  ///< [m]
+  [[nodiscard]] Index3 min_index() const noexcept;    ///< lowest voxel of the workspace
+  [[nodiscard]] Index3 dims() const noexcept;         ///< voxels along x, y, z
+  [[nodiscard]] Box workspace() const noexcept;       ///< grown to the lattice, grid frame [m]
+  [[nodiscard]] std::uint64_t voxel_count() const noexcept;
+
+  /// Outside the workspace a voxel is unknown, has no log-odds and no belief.
+  [[nodiscard]] VoxelState state(Index3 voxel) const;
+  [[nodiscard]] std::optional<float> log_odds(Index3 voxel) const;
+  [[nodiscard]] std::optional<Belief> belief(Index3 voxel) const;
+
+  /// Fills the dense array of states, [x][y][z] with z fastest; size must be voxel_count().
+  void copy_states(std::span<std::uint8_t> states) const;
+
+  /// Sets one voxel of the workspace, for importers and tests. log_odds is rounded to the nearest
+  /// step of 0.05 and clamped. Throws Error(invalid_argument) outside the workspace.
+  void set(Index3 voxel, float log_odds, const std::optional<Belief>& belief = {});
+
+  /// T_world_camera of every frame integrated so far, in order.
+  [[nodiscard]] const std::vector<Pose>& views() const noexcept;
+  void append_view(const Pose& T_world_camera);
+
+  [[nodiscard]] GridStatistics statistics(Criterion criterion = Criterion::log_diagonal) const;
+
+  /// 16 hexadecimal digits over states, log-odds, beliefs, layout, prior and views. The same for
+  /// equal maps however they came about (thread count, save and load, tree topology).
+  [[nodiscard]] std::string content_hash() const;
+
+  /// What a scene needs, immutable and independent of later changes to the grid; beliefs are shared
+  /// and copied only when written. Costs one pass over the non-free leaves.
+  [[nodiscard]] GridSnapshot snapshot() const;
+
+  /// The storage behind the grid, for this module's other sources (private header
+  /// grid_storage.hpp).
+  struct Storage;
+  [[nodiscard]] Storage& storage() noexcept { return *storage_; }
+  [[nodiscard]] const Storage& storage() const noexcept { return *storage_; }
+
+ private:
+  explicit BeliefGrid(std::unique_ptr<Storage> storage);
+  std::unique_ptr<Storage> storage_;
+};
+
+}  // namespace viewgain

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "viewgain/grid/grid_snapshot.hpp"
+
+namespace viewgain::detail {
+
+inline constexpr int kBlockSize = 8;    ///< an OpenVDB leaf
+inline constexpr int kRegionSize = 32;  ///< what one thread updates at a time
+inline constexpr int kNodeSize = 128;   ///< an OpenVDB node of leaves
+
+/// The lattices of 8³ blocks, 32³ regions and 128³ nodes over a workspace, and numbers for them. A
+/// key names a block: node, then region in the node, then block in the region, so blocks sorted by
+/// key are grouped by region and by node.
+struct BlockLattice {
+  Index3 min;  ///< workspace: [min, max)
+  Index3 max;
+  Index3 node_min;                       ///< origin of the lowest node
+  std::array<std::uint32_t, 3> nodes{};  ///< nodes along x, y, z
+
+  BlockLattice(Index3 min_index, Index3 dims)
+      : min(min_index),
+        max{min_index.x + dims.x, min_index.y + dims.y, min_index.z + dims.z},
+        node_min{min.x & ~(kNodeSize - 1), min.y & ~(kNodeSize - 1), min.z & ~(kNodeSize - 1)} {
+    const auto count = [](std::int32_t from, std::int32_t to) {
+      return static_cast<std::uint32_t>((to - from + kNodeSize - 1) / kNodeSize);
+    };
+    nodes = {count(node_min.x, max.x), count(node_min.y, max.y), count(node_min.z, max.z)};
+  }
+
+  [[nodiscard]] bool contains(Index3 v) const {
+    return v.x >= min.x && v.x < max.x && v.y >= min.y && v.y < max.y && v.z >= min.z &&
+           v.z < max.z;
+  }
+
+  /// Does the cube [origin, origin + size) share a voxel with the workspace?
+  [[nodiscard]] bool overlaps(Index3 origin, int size) const {
+    return origin.x < max.x && origin.x + size > min.x && origin.y < max.y &&
+           origin.y + size > min.y && origin.z < max.z && origin.z + size > min.z;
+  }
+  [[nodiscard]] bool covers(Index3 origin, int size) const {
+    return origin.x >= min.x && origin.x + size <= max.x && origin.y >= min.y &&
+           origin.y + size <= max.y && origin.z >= min.z && origin.z + size <= max.z;
+  }
+
+  [[nodiscard]] std::uint64_t node_count() const {
+    return std::uint64_t{nodes[0]} * nodes[1] * nodes[2];
+  }
+
+  /// Key of the block that holds the voxel, which must lie in the nodes' range.
+  [[nodiscard]] std::uint64_t key(Index3 v) const {
+    const auto x = static_cast<std::uint32_t>(v.x - node_min.x);
+    const auto y = static_cast<std::uint32_t>(v.y - node_min.y);
+    const auto z = static_cast<std::uint32_t>(v.z - node_min.z);
+    const std::uint64_t node =
+        (std::uint64_t{x >> 7U} * nodes[1] + (y >> 7U)) * nodes[2] + (z >> 7U);
+    const auto two_bits = [&](unsigned shift) {
+      return std::uint64_t{((x >> shift & 3U) << 4U) | ((y >> shift & 3U) << 2U) |
+                           (z >> shift & 3U)};
+    };
+    return node << 12U | two_bits(5) << 6U | two_bits(3);
+  }
+
+  /// Lowest voxel of the block with this key.
+  [[nodiscard]] Index3 origin(std::uint64_t key) const {
+    const std::uint64_t node = key >> 12U;
+    const auto low = static_cast<std::uint32_t>(key & 4095U);
+    const auto part = [low](unsigned axis) {
+      return static_cast<std::int32_t>((low >> (10U - 2U * axis) & 3U) * kRegionSize +
+                                       (low >> (4U - 2U * axis) & 3U) * kBlockSize);
+    };
+    return {
+        node_min.x + static_cast<std::int32_t>(node / nodes[2] / nodes[1]) * kNodeSize + part(0),
+        node_min.y + static_cast<std::int32_t>(node / nodes[2] % nodes[1]) * kNodeSize + part(1),
+        node_min.z + static_cast<std::int32_t>(node % nodes[2]) * kNodeSize + part(2)};
+  }
+
+  /// The voxels of a block that belong to the workspace.
+  [[nodiscard]] LeafMask clip(Index3 origin) const {
+    const auto range = [](std::int32_t low, std::int32_t from, std::int32_t to) {
+      return std::array{std::clamp(from - low, 0, kBlockSize), std::clamp(to - low, 0, kBlockSize)};
+    };
+    const auto x = range(origin.x, min.x, max.x), y = range(origin.y, min.y, max.y),
+               z = range(origin.z, min.z, max.z);
+    std::uint64_t plane = 0;
+    for (int j = y[0]; j < y[1]; ++j) {
+      for (int k = z[0]; k < z[1]; ++k) plane |= std::uint64_t{1} << (8 * j + k);
+    }
+    LeafMask mask{};
+    for (int i = x[0]; i < x[1]; ++i) mask[static_cast<std::size_t>(i)] = plane;
+    return mask;
+  }
+};
+
+/// Offset of a voxel in its 8³ block: x << 6 | y << 3 | z.
+[[nodiscard]] inline unsigned block_offset(Index3 v) {
+  return static_cast<unsigned>((v.x & 7) << 6 | (v.y & 7) << 3 | (v.z & 7));
+}
+[[nodiscard]] inline Index3 offset_voxel(Index3 origin, unsigned offset) {
+  return {origin.x + static_cast<std::int32_t>(offset >> 6U),
+          origin.y + static_cast<std::int32_t>(offset >> 3U & 7U),
+          origin.z + static_cast<std::int32_t>(offset & 7U)};
+}
+[[nodiscard]] inline Index3 block_origin(Index3 v) { return {v.x & ~7, v.y & ~7, v.z & ~7}; }
+
+[[nodiscard]] inline std::uint64_t count_bits(const LeafMask& mask) {
+  int n = 0;
+  for (const std::uint64_t word : mask) n += std::popcount(word);
+  return static_cast<std::uint64_t>(n);
+}
+
+/// Calls f(offset) for every set bit, in rising order.
+template <typename F>
+void for_each_bit(const LeafMask& mask, F&& f) {
+  for (unsigned w = 0; w < 8; ++w) {
+    for (std::uint64_t word = mask[w]; word != 0; word &= word - 1) {
+      f(w * 64U + static_cast<unsigned>(std::countr_zero(word)));
+    }
+  }
+}
+
+}  // namespace viewgain::detail

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "block_kernels.hpp"
+
+namespace viewgain::detail {
+
+/// What a frame can say about the voxel centres of a cube.
+enum class CubeClass : std::uint8_t {
+  untouched,  ///< no centre is crossed
+  crossed,    ///< every centre is crossed at full weight
+  mixed,      ///< each must be looked at
+};
+
+/// Minima and maxima over squares of 2^level pixels.
+class RangePyramid {
+ public:
+  void build(std::span<const double> reach_taper, std::int32_t width, std::int32_t height);
+
+  struct Bounds {
+    double clear = 0;  ///< nearer than this every pixel crosses at full weight
+    double reach = 0;  ///< at or beyond this no pixel crosses
+  };
+  /// Bounds that hold for the pixels [u0, u1] x [v0, v1], inside the image.
+  [[nodiscard]] Bounds bounds(std::int32_t u0, std::int32_t v0, std::int32_t u1,
+                              std::int32_t v1) const;
+
+ private:
+  struct Level {
+    std::int32_t width = 0, height = 0;
+    std::vector<Bounds> texels;
+  };
+  std::vector<Level> levels_;
+};
+
+/// Sorts cubes of voxels into classes, conservatively: exact decisions are left to the block
+/// kernel.
+class ConeCull {
+ public:
+  ConeCull(const ConeCamera& camera, const RangePyramid& pyramid, double voxel_size)
+      : camera_(camera), pyramid_(pyramid), voxel_size_(voxel_size) {}
+
+  /// The cube [origin, origin + size) of voxels.
+  [[nodiscard]] CubeClass classify(Index3 origin, int size) const;
+
+ private:
+  const ConeCamera& camera_;
+  const RangePyramid& pyramid_;
+  double voxel_size_;
+};
+
+}  // namespace viewgain::detail

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "file_seal.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "hash64.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+constexpr std::string_view kMark = "VGSEAL01";
+constexpr std::size_t kSealSize = 24;
+
+std::uint64_t word_at(std::string_view bytes, std::size_t at, std::size_t count) {
+  std::uint64_t word = 0;  // little-endian on every machine
+  for (std::size_t i = 0; i < count; ++i) {
+    word |= std::uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
+  }
+  return word;
+}
+
+std::uint64_t hash_bytes(std::string_view bytes) {
+  Hash64 hash;
+  std::size_t i = 0;
+  for (; i + 8 <= bytes.size(); i += 8) hash.add(word_at(bytes, i, 8));
+  hash.add(word_at(bytes, i, bytes.size() - i));
+  hash.add(bytes.size());
+  return hash.value();
+}
+
+}  // namespace
+
+std::string make_seal(std::string_view bytes) {
+  std::string seal(kMark);
+  for (const std::uint64_t word : {std::uint64_t{bytes.size()}, hash_bytes(bytes)}) {
+    for (unsigned i = 0; i < 8; ++i) seal.push_back(static_cast<char>(word >> (8U * i) & 255U));
+  }
+  return seal;
+}
+
+SealCheck check_seal(std::string_view file) {
+  if (file.size() < kSealSize) return SealCheck::absent;
+  const std::string_view bytes = file.substr(0, file.size() - kSealSize);
+  const std::string_view seal = file.substr(bytes.size());
+  if (!seal.starts_with(kMark)) return SealCheck::absent;
+  return seal == make_seal(bytes) ? SealCheck::intact : SealCheck::broken;
+}
+
+std::string poses_to_text(const std::vector<Pose>& poses) {
+  std::string text;
+  std::array<char, 32> digits;
+  for (const Pose& pose : poses) {
+    for (std::size_t i = 0; i < pose.m.size(); ++i) {
+      const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), pose.m[i]);
+      text.append(digits.data(), end.ptr);
+      text.push_back(i + 1 < pose.m.size() ? ' ' : '\n');
+    }
+  }
+  return text;
+}
+
+std::optional<std::vector<Pose>> poses_from_text(std::string_view text) {
+  std::vector<Pose> poses;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at != end) {
+    Pose pose;
+    for (std::size_t i = 0; i < pose.m.size(); ++i) {
+      const auto result = std::from_chars(at, end, pose.m[i]);
+      if (result.ec != std::errc{} || !std::isfinite(pose.m[i]) || result.ptr == end) {
+        return std::nullopt;
+      }
+      at = result.ptr;
+      if (*at++ != (i + 1 < pose.m.size() ? ' ' : '\n')) return std::nullopt;
+    }
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+}  // namespace viewgain::detail

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "frame_pixels.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <string>
+
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+constexpr std::size_t kRowChunk = 8;
+constexpr double kTaperSigmas = 3.0;
+constexpr double kNoDepth = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+FramePixels::FramePixels(const Sensor& sensor) : sensor_(sensor) {
+  sensor_.validate();
+  rays_ = sensor_.camera.ray_table();
+  norms_.reserve(rays_.size());
+  for (const Eigen::Vector3d& ray : rays_) norms_.push_back(ray.norm());
+  kinds_.resize(rays_.size());
+  points_.resize(rays_.size());
+  sigmas_.resize(rays_.size());
+  reach_taper_.resize(2 * rays_.size());
+  depths_.assign((static_cast<std::size_t>(sensor_.camera.width) + 2) *
+                     (static_cast<std::size_t>(sensor_.camera.height) + 2),
+                 kNoDepth);
+}
+
+void FramePixels::check(const DepthFrame& frame) const {
+  const PinholeCamera& camera = sensor_.camera;
+  if (frame.width != camera.width || frame.height != camera.height ||
+      frame.depth.size() != rays_.size()) {
+    throw Error(ErrorCode::invalid_argument,
+                "depth frame is " + std::to_string(frame.width) + " x " +
+                    std::to_string(frame.height) + " px with " +
+                    std::to_string(frame.depth.size()) + " values, the sensor has " +
+                    std::to_string(camera.width) + " x " + std::to_string(camera.height));
+  }
+}
+
+void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool) {
+  const auto width = static_cast<std::size_t>(sensor_.camera.width);
+  const auto height = static_cast<std::size_t>(sensor_.camera.height);
+  // A centre at max_range itself is still crossed.
+  const double out_of_range_reach =
+      std::nextafter(sensor_.max_range, std::numeric_limits<double>::infinity());
+
+  pool.for_each_chunk(height, kRowChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin * width; i < end * width; ++i) {
+      const double depth = frame.depth[i];
+      const double range = depth * norms_[i];  // NaN where the lens model has no ray
+      PixelKind kind = PixelKind::invalid;
+      if (depth > 0 && range >= sensor_.min_range) {
+        kind = range <= sensor_.max_range ? PixelKind::reading : PixelKind::out_of_range;
+      }
+      kinds_[i] = kind;
+      points_[i] = kind == PixelKind::reading ? Eigen::Vector3d(rays_[i] * depth)
+                                              : Eigen::Vector3d(Eigen::Vector3d::Zero());
+      reach_taper_[2 * i] = kind == PixelKind::reading        ? range
+                            : kind == PixelKind::out_of_range ? out_of_range_reach
+                                                              : 0.0;
+      reach_taper_[2 * i + 1] = 0.0;
+      depths_[(i / width + 1) * (width + 2) + i % width + 1] =
+          kind == PixelKind::reading ? depth : kNoDepth;
+    }
+  });
+
+  pool.for_each_chunk(height, kRowChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      for (std::size_t u = 0; u < width; ++u) {
+        const std::size_t i = v * width + u;
+        if (kinds_[i] != PixelKind::reading) continue;
+        const double cosine = cos_incidence(static_cast<int>(u), static_cast<int>(v));
+        sigmas_[i] = sensor_.sigmas(reach_taper_[2 * i], cosine);
+        if (tapered) reach_taper_[2 * i + 1] = kTaperSigmas * sigmas_[i].axial;
+      }
+    }
+  });
+}
+
+double FramePixels::cos_incidence(int u, int v) const {
+  const PinholeCamera& camera = sensor_.camera;
+  const Eigen::Vector3d* points =
+      points_.data() + static_cast<std::ptrdiff_t>(v) * camera.width + u;
+  const double* depths =
+      depths_.data() + static_cast<std::ptrdiff_t>(v + 1) * (camera.width + 2) + u + 1;
+  const auto at = [&](int i, int j) -> const Eigen::Vector3d& {
+    return points[static_cast<std::ptrdiff_t>(j) * camera.width + i];
+  };
+  const Eigen::Vector3d& center = at(0, 0);
+  // Depth per pixel of the steepest surface that the noise models tell apart.
+  static const double kMaxSlope =
+      std::sqrt(1.0 - kMinCosIncidence * kMinCosIncidence) / kMinCosIncidence;
+  const double max_step = kMaxSlope * center.z() / std::min(camera.fx, camera.fy);
+
+  bool ok[3][3];
+  for (int j = -1; j <= 1; ++j) {
+    for (int i = -1; i <= 1; ++i) {
+      const double depth = depths[static_cast<std::ptrdiff_t>(j) * (camera.width + 2) + i];
+      const double pixels = std::abs(i) + std::abs(j);
+      ok[j + 1][i + 1] = std::abs(depth - center.z()) <= pixels * max_step;  // not for NaN
+    }
+  }
+  Eigen::Vector3d du = Eigen::Vector3d::Zero(), dv = Eigen::Vector3d::Zero();
+  bool has_du = false, has_dv = false;
+  for (int n = -1; n <= 1; ++n) {
+    if (ok[n + 1][0] && ok[n + 1][2]) du += at(1, n) - at(-1, n), has_du = true;
+    if (ok[0][n + 1] && ok[2][n + 1]) dv += at(n, 1) - at(n, -1), has_dv = true;
+  }
+  if (!has_du) {
+    if (ok[1][2]) du = at(1, 0) - center, has_du = true;
+    if (!has_du && ok[1][0]) du = center - at(-1, 0), has_du = true;
+  }
+  if (!has_dv) {
+    if (ok[2][1]) dv = at(0, 1) - center, has_dv = true;
+    if (!has_dv && ok[0][1]) dv = center - at(0, -1), has_dv = true;
+  }
+  if (!has_du || !has_dv) return 1.0;
+  const Eigen::Vector3d normal = du.cross(dv);
+  const double length = normal.norm();
+  if (!(length > 0)) return 1.0;
+  return std::min(1.0, std::abs(normal.dot(center)) / (length * center.norm()));
+}
+
+}  // namespace viewgain::detail

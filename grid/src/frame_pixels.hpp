@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/core/thread_pool.hpp"
+
+namespace viewgain::detail {
+
+enum class PixelKind : std::uint8_t { invalid, reading, out_of_range };
+
+/// One sensor's pixels: where they look and what the current frame says there.
+class FramePixels {
+ public:
+  /// Undoes the lens distortion of every pixel once.
+  explicit FramePixels(const Sensor& sensor);
+
+  /// Throws Error(invalid_argument) unless the frame has the sensor's size.
+  void check(const DepthFrame& frame) const;
+
+  /// Sorts the frame's pixels into the three kinds and computes what follows from the readings
+  /// alone. With `tapered` false crossings keep their weight up to the reading.
+  void load(const DepthFrame& frame, bool tapered, ThreadPool& pool);
+
+  [[nodiscard]] const Sensor& sensor() const { return sensor_; }
+  [[nodiscard]] std::size_t size() const { return rays_.size(); }
+  [[nodiscard]] PixelKind kind(std::size_t pixel) const { return kinds_[pixel]; }
+  [[nodiscard]] const std::vector<PixelKind>& kinds() const { return kinds_; }
+
+  /// A reading's point in the camera frame [m].
+  [[nodiscard]] Eigen::Vector3d point(std::size_t pixel) const { return points_[pixel]; }
+  /// Unit vector along the pixel's ray, camera frame.
+  [[nodiscard]] Eigen::Vector3d direction(std::size_t pixel) const {
+    return rays_[pixel] / norms_[pixel];
+  }
+  [[nodiscard]] MeasurementSigmas sigmas(std::size_t pixel) const { return sigmas_[pixel]; }
+
+  /// Two numbers a pixel: a voxel is crossed if its range is below the first, with less than the
+  /// full weight over the last stretch of the length of the second; 0, 0 for invalid pixels.
+  [[nodiscard]] const std::vector<double>& reach_taper() const { return reach_taper_; }
+
+  /// Cosine of the angle between a reading's ray and the normal of its 3×3 neighbourhood: the cross
+  /// product of the sums, over rows and over columns, of differences across the pixel (one-sided at
+  /// the pixel itself if there is no such pair). Neighbours that are no readings, or whose depth
+  /// differs by more than a surface at the least cosine of the noise models would explain, do not
+  /// count. 1 where no normal is left.
+  [[nodiscard]] double cos_incidence(int u, int v) const;
+
+ private:
+  Sensor sensor_;
+  std::vector<Eigen::Vector3d> rays_;  ///< (x, y, 1)
+  std::vector<double> norms_;
+  std::vector<PixelKind> kinds_;
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<MeasurementSigmas> sigmas_;
+  std::vector<double> reach_taper_;
+  std::vector<double> depths_;  ///< of readings, else NaN; with a border of one pixel
+};
+
+}  // namespace viewgain::detail

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Exceptions.h>
+#include <openvdb/tree/InternalNode.h>
+#include <openvdb/tree/LeafNode.h>
+#include <openvdb/tree/RootNode.h>
+#include <openvdb/tree/Tree.h>
+
+#include <cstring>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "block_lattice.hpp"
+#include "log_odds_code.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+
+namespace viewgain {
+
+namespace detail {
+
+// One byte a voxel (log_odds_code.hpp); active means not free. Upper nodes span 2048 voxels rather
+// than OpenVDB's usual 4096: small maps around the origin touch eight of them, at 33 KB instead of
+// 270 KB.
+using CodeTree = openvdb::tree::Tree4<std::uint8_t, 4, 4, 3>::Type;
+using CodeLeaf = CodeTree::LeafNodeType;
+using CodeUpper = CodeTree::RootNodeType::ChildNodeType;
+using CodeNode = CodeUpper::ChildNodeType;
+static_assert(CodeLeaf::DIM == kBlockSize && CodeNode::DIM == kNodeSize);
+
+// Levels of OpenVDB's tiles by their size: 8³ in nodes, 128³ in upper nodes, 2048³ in the root.
+inline constexpr openvdb::Index kBlockTileLevel = 1;
+inline constexpr openvdb::Index kNodeTileLevel = 2;
+
+[[nodiscard]] inline openvdb::Coord to_coord(Index3 v) { return {v.x, v.y, v.z}; }
+[[nodiscard]] inline Index3 to_index(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
+
+[[nodiscard]] inline LeafMask leaf_mask(const CodeLeaf::NodeMaskType& mask) {
+  LeafMask words;
+  for (openvdb::Index i = 0; i < 8; ++i) words[i] = mask.getWord<std::uint64_t>(i);
+  return words;
+}
+
+}  // namespace detail
+
+struct BeliefGrid::Storage {
+  double voxel_size = 0;
+  Pose T_world_grid;
+  double prior_sigma = 0;
+  Index3 min_index;
+  Index3 dims;
+  detail::BlockLattice lattice;
+  std::vector<Pose> views;
+
+  /// Unknown fills the workspace grown outward to multiples of 2048 voxels, so that only tiles of
+  /// the root arise; whoever reads the tree clips to the workspace. Voxels outside it hold no
+  /// meaning.
+  detail::CodeTree tree{detail::kUnknownCode};
+
+  /// By BlockLattice::key. Blocks are never changed in place: snapshots and clones share them.
+  std::unordered_map<std::uint64_t, std::shared_ptr<const BeliefBlock>> beliefs;
+
+  /// Checks everything, as BeliefGrid's constructor says.
+  Storage(double voxel_size, const Pose& T_world_grid, double prior_sigma, Index3 min_index,
+          Index3 dims);
+  Storage(const Storage&) = default;
+
+  [[nodiscard]] static BeliefGrid wrap(std::unique_ptr<Storage> storage) {
+    return BeliefGrid(std::move(storage));
+  }
+
+  [[nodiscard]] const BeliefBlock* find_beliefs(std::uint64_t key) const {
+    const auto found = beliefs.find(key);
+    return found == beliefs.end() ? nullptr : found->second.get();
+  }
+
+  /// Writes the 512 codes of a block, as a leaf or, if they are uniform, as a tile.
+  void put_block(Index3 origin, const std::uint8_t* codes);
+};
+
+namespace detail {
+
+/// Calls leaf(const CodeLeaf&) and tile(Index3 origin, int size, std::uint8_t code) for all leaves
+/// and tiles that overlap the workspace.
+template <typename LeafFn, typename TileFn>
+void visit_blocks(const BeliefGrid::Storage& storage, LeafFn&& leaf, TileFn&& tile) {
+  const BlockLattice& lattice = storage.lattice;
+  const auto visit_tile = [&](const openvdb::Coord& at, int size, std::uint8_t code) {
+    if (lattice.overlaps(to_index(at), size)) tile(to_index(at), size, code);
+  };
+  const auto& root = storage.tree.root();
+  for (auto it = root.cbeginValueAll(); it; ++it) {
+    visit_tile(it.getCoord(), static_cast<int>(CodeUpper::DIM), *it);
+  }
+  for (auto upper = root.cbeginChildOn(); upper; ++upper) {
+    for (auto it = upper->cbeginValueAll(); it; ++it) {
+      visit_tile(it.getCoord(), static_cast<int>(CodeNode::DIM), *it);
+    }
+    for (auto node = upper->cbeginChildOn(); node; ++node) {
+      for (auto it = node->cbeginValueAll(); it; ++it) visit_tile(it.getCoord(), kBlockSize, *it);
+      for (auto it = node->cbeginChildOn(); it; ++it) {
+        if (lattice.overlaps(to_index(it->origin()), kBlockSize)) leaf(*it);
+      }
+    }
+  }
+}
+
+/// The part [min, max) of a cube that belongs to the workspace.
+struct IndexBox {
+  Index3 min, max;
+  [[nodiscard]] std::uint64_t volume() const {
+    return static_cast<std::uint64_t>(max.x - min.x) * static_cast<std::uint64_t>(max.y - min.y) *
+           static_cast<std::uint64_t>(max.z - min.z);
+  }
+};
+[[nodiscard]] inline IndexBox clipped(const BlockLattice& lattice, Index3 origin, int size) {
+  return {{std::max(origin.x, lattice.min.x), std::max(origin.y, lattice.min.y),
+           std::max(origin.z, lattice.min.z)},
+          {std::min(origin.x + size, lattice.max.x), std::min(origin.y + size, lattice.max.y),
+           std::min(origin.z + size, lattice.max.z)}};
+}
+
+/// Bits of the voxels whose code satisfies the predicate.
+template <typename Predicate>
+[[nodiscard]] LeafMask code_mask(const std::uint8_t* codes, Predicate&& holds) {
+  LeafMask mask{};
+  for (std::size_t word = 0; word < 8; ++word) {
+    for (std::size_t bit = 0; bit < 64; ++bit) {
+      mask[word] |= std::uint64_t{holds(codes[word * 64 + bit])} << bit;
+    }
+  }
+  return mask;
+}
+
+}  // namespace detail
+}  // namespace viewgain

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <mutex>
+
+#include "grid_storage.hpp"
+
+// What the writer and the reader of map files share.
+namespace viewgain::detail {
+
+inline constexpr std::int32_t kVdbLayoutVersion = 1;
+
+inline void initialize_openvdb() {
+  static std::once_flag once;
+  std::call_once(once, [] { openvdb::initialize(); });
+}
+
+[[nodiscard]] inline openvdb::math::Transform::Ptr make_transform(const BeliefGrid::Storage& s) {
+  // OpenVDB multiplies row vectors: rows are the images of the index axes, the last the origin's.
+  const Eigen::Matrix3d scaled = s.T_world_grid.rotation() * s.voxel_size;
+  const Eigen::Vector3d origin = s.T_world_grid * Eigen::Vector3d::Constant(0.5 * s.voxel_size);
+  openvdb::Mat4R m = openvdb::Mat4R::identity();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int r = 0; r < 3; ++r) m(axis, r) = scaled(r, axis);
+    m(3, axis) = origin[axis];
+  }
+  return openvdb::math::Transform::createLinearTransform(m);
+}
+
+}  // namespace viewgain::detail

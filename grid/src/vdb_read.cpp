@@ -1,0 +1,294 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <openvdb/io/Stream.h>
+#include <openvdb/tree/ValueAccessor.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "file_seal.hpp"
+#include "vdb_layout.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace detail;
+using openvdb::Coord;
+using openvdb::CoordBBox;
+using openvdb::FloatGrid;
+using openvdb::Int32Grid;
+using openvdb::Vec3f;
+using openvdb::Vec3SGrid;
+
+struct Contents {
+  openvdb::MetaMap::Ptr metadata;
+  openvdb::GridPtrVecPtr grids;
+};
+
+class Loader {
+ public:
+  explicit Loader(std::filesystem::path path) : path_(std::move(path)) {}
+
+  [[nodiscard]] BeliefGrid load() const {
+    const Contents contents = read();
+    auto storage = make_storage(*contents.metadata);
+    load_states(contents, *storage);
+    load_beliefs(contents, *storage);
+    return BeliefGrid::Storage::wrap(std::move(storage));
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorCode::format, path_.string() + ": " + what);
+  }
+
+  [[nodiscard]] Contents read() const {
+    std::error_code code;
+    if (std::filesystem::is_directory(path_, code)) {
+      throw Error(ErrorCode::io, path_.string() + ": cannot be read: it is a directory");
+    }
+    std::ifstream file(path_, std::ios::binary);
+    if (!file) throw Error(ErrorCode::io, path_.string() + ": cannot be opened");
+    std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    if (file.bad()) throw Error(ErrorCode::io, path_.string() + ": cannot be read");
+    if (!bytes.starts_with(" BDV")) fail("is no OpenVDB file");
+    if (check_seal(bytes) == SealCheck::broken) fail("is corrupt: its checksum does not fit");
+
+    initialize_openvdb();
+    std::istringstream stream(std::move(bytes), std::ios::binary);
+    // OpenVDB does not look whether a read came short.
+    stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
+    try {
+      openvdb::io::Stream archive(stream, /*delayLoad=*/false);
+      return {archive.getMetadata(), archive.getGrids()};
+    } catch (const std::ios_base::failure&) {
+      fail("is truncated or corrupt");
+    } catch (const std::bad_alloc&) {
+      fail("is corrupt: it asks for more memory than there is");
+    } catch (const std::length_error&) {
+      fail("is corrupt: it asks for more memory than there is");
+    } catch (const std::exception& error) {
+      fail(std::string("cannot be read by OpenVDB: ") + error.what());
+    }
+  }
+
+  template <typename Metadata>
+  [[nodiscard]] auto value(const openvdb::MetaMap& metadata, const char* name) const {
+    const auto found = metadata.getMetadata<Metadata>(name);
+    if (!found) {
+      fail(std::string("has no metadata '") + name + "' of type " + Metadata::staticTypeName() +
+           ": it is no viewgain map");
+    }
+    return found->value();
+  }
+
+  [[nodiscard]] std::vector<Pose> poses(const openvdb::MetaMap& metadata, const char* name) const {
+    auto result = poses_from_text(value<openvdb::StringMetadata>(metadata, name));
+    if (!result) fail(std::string("metadata '") + name + "' is no list of poses");
+    return *std::move(result);
+  }
+
+  [[nodiscard]] std::unique_ptr<BeliefGrid::Storage> make_storage(
+      const openvdb::MetaMap& metadata) const {
+    const auto version = value<openvdb::Int32Metadata>(metadata, "viewgain_version");
+    if (version != kVdbLayoutVersion) {
+      fail("has viewgain_version " + std::to_string(version) + ", this program reads " +
+           std::to_string(kVdbLayoutVersion));
+    }
+    const auto low = value<openvdb::Vec3IMetadata>(metadata, "workspace_min");
+    const auto high = value<openvdb::Vec3IMetadata>(metadata, "workspace_max");
+    std::int32_t dims[3];
+    for (int a = 0; a < 3; ++a) {
+      const std::int64_t count = std::int64_t{high[a]} - low[a];
+      if (count < 1 || count > std::numeric_limits<std::int32_t>::max()) {
+        fail("workspace_max must be above workspace_min");
+      }
+      dims[a] = static_cast<std::int32_t>(count);
+    }
+    const std::vector<Pose> T_world_grid = poses(metadata, "T_world_grid");
+    if (T_world_grid.size() != 1) fail("metadata 'T_world_grid' is not one pose");
+    try {
+      auto storage = std::make_unique<BeliefGrid::Storage>(
+          value<openvdb::DoubleMetadata>(metadata, "voxel_size"), T_world_grid.front(),
+          value<openvdb::DoubleMetadata>(metadata, "prior_sigma"), Index3{low[0], low[1], low[2]},
+          Index3{dims[0], dims[1], dims[2]});
+      storage->views = poses(metadata, "views");
+      return storage;
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::format) throw;
+      fail(error.what());
+    }
+  }
+
+  template <typename Grid>
+  [[nodiscard]] const typename Grid::TreeType& tree(const Contents& contents,
+                                                    const BeliefGrid::Storage& s,
+                                                    const std::string& name) const {
+    typename Grid::Ptr found;
+    for (const auto& grid : *contents.grids) {
+      if (grid->getName() != name) continue;
+      found = openvdb::gridPtrCast<Grid>(grid);
+      if (!found) fail("grid '" + name + "' has values of type " + grid->valueType());
+    }
+    if (!found) fail("has no grid '" + name + "': it is no viewgain map");
+    CoordBBox box;
+    if (found->tree().evalActiveVoxelBoundingBox(box) &&
+        !(s.lattice.contains(to_index(box.min())) && s.lattice.contains(to_index(box.max())))) {
+      fail("grid '" + name + "' has values outside the workspace");
+    }
+    const auto expected = make_transform(s);
+    for (const Coord& corner : {Coord(0, 0, 0), Coord(1, 0, 0), Coord(0, 1, 0), Coord(0, 0, 1)}) {
+      if ((found->indexToWorld(corner) - expected->indexToWorld(corner)).length() >
+          1e-6 * s.voxel_size) {
+        fail("grid '" + name + "' has another transform than voxel_size and T_world_grid say");
+      }
+    }
+    return found->tree();
+  }
+
+  [[nodiscard]] std::uint8_t checked_code(const Coord& at, float log_odds,
+                                          std::int32_t state) const {
+    const auto where = [&at] {
+      std::ostringstream text;
+      text << " at voxel " << at;
+      return text.str();
+    };
+    if (!(log_odds > -2.001F && log_odds < 3.501F)) {
+      fail("log_odds " + std::to_string(log_odds) + where() + " is not within -2 .. 3.5");
+    }
+    const std::uint8_t code = log_odds_code(log_odds);
+    if (std::abs(code_log_odds(code) - log_odds) > 1e-4F) {
+      fail("log_odds " + std::to_string(log_odds) + where() + " is no multiple of 0.05");
+    }
+    if (state != (is_occupied(code) ? 2 : 1)) {
+      fail("state " + std::to_string(state) + where() + " contradicts log_odds " +
+           std::to_string(log_odds));
+    }
+    return code;
+  }
+
+  void load_states(const Contents& contents, BeliefGrid::Storage& s) const {
+    const auto& log_odds = tree<FloatGrid>(contents, s, "log_odds");
+    const auto& state = tree<Int32Grid>(contents, s, "state");
+    if (log_odds.activeVoxelCount() != state.activeVoxelCount()) {
+      fail("grids 'state' and 'log_odds' do not know the same voxels");
+    }
+    const openvdb::tree::ValueAccessor<const openvdb::Int32Tree, false> states(state);
+    const auto state_at = [&](const Coord& at) {
+      std::int32_t found = 0;
+      if (!states.probeValue(at, found)) {
+        fail("grids 'state' and 'log_odds' do not know the same voxels");
+      }
+      return found;
+    };
+
+    std::array<std::uint8_t, kBlockVoxels> codes;
+    for (auto leaf = log_odds.cbeginLeaf(); leaf; ++leaf) {
+      codes.fill(kUnknownCode);
+      bool any = false;
+      for (auto it = leaf->cbeginValueOn(); it; ++it) {
+        codes[it.pos()] = checked_code(it.getCoord(), *it, state_at(it.getCoord()));
+        any = true;
+      }
+      if (any) s.put_block(to_index(leaf->origin()), codes.data());
+    }
+    auto tile = log_odds.cbeginValueOn();
+    tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
+    for (; tile; ++tile) {
+      const bool one_state =
+          states.getValueDepth(tile.getCoord()) <= static_cast<int>(tile.getDepth());
+      load_tile(tile.getBoundingBox(), *tile, one_state, state_at, s);
+    }
+  }
+
+  // A tile of one log-odds. Its states are a tile too, as large or larger, or are looked at one by
+  // one.
+  template <typename StateAt>
+  void load_tile(const CoordBBox& box, float log_odds, bool one_state, const StateAt& state_at,
+                 BeliefGrid::Storage& s) const {
+    const std::uint8_t code = checked_code(box.min(), log_odds, state_at(box.min()));
+    if (!one_state) {
+      for (auto at = box.begin(); at; ++at) (void)checked_code(*at, log_odds, state_at(*at));
+    }
+    if (may_be_tile(code)) {
+      s.tree.sparseFill(box, code, is_non_free(code));
+      return;
+    }
+    std::array<std::uint8_t, kBlockVoxels> codes;
+    codes.fill(code);
+    for (std::int32_t x = box.min().x(); x <= box.max().x(); x += kBlockSize) {
+      for (std::int32_t y = box.min().y(); y <= box.max().y(); y += kBlockSize) {
+        for (std::int32_t z = box.min().z(); z <= box.max().z(); z += kBlockSize) {
+          s.put_block({x, y, z}, codes.data());
+        }
+      }
+    }
+  }
+
+  void load_beliefs(const Contents& contents, BeliefGrid::Storage& s) const {
+    const auto& hits = tree<Int32Grid>(contents, s, "hits");
+    const std::array<const openvdb::Vec3STree*, 3> parts{
+        &tree<Vec3SGrid>(contents, s, "information_diagonal"),
+        &tree<Vec3SGrid>(contents, s, "information_offdiagonal"),
+        &tree<Vec3SGrid>(contents, s, "information_vector")};
+    for (const openvdb::Vec3STree* part : parts) {
+      if (part->activeVoxelCount() != hits.activeVoxelCount()) {
+        fail("the grids of beliefs do not hold the same voxels");
+      }
+    }
+    if (hits.activeTileCount() != 0) fail("grid 'hits' has tiles");
+    for (auto leaf = hits.cbeginLeaf(); leaf; ++leaf) {
+      if (leaf->isEmpty()) continue;
+      auto block = std::make_shared<BeliefBlock>();
+      for (openvdb::Index i = 0; i < 8; ++i) {
+        block->mask[i] = leaf->getValueMask().getWord<std::uint64_t>(i);
+      }
+      block->beliefs.reserve(leaf->onVoxelCount());
+      for (auto it = leaf->cbeginValueOn(); it; ++it) {
+        block->beliefs.push_back(checked_belief(it.getCoord(), *it, parts));
+        if (s.tree.getValue(it.getCoord()) == kUnknownCode) {
+          fail("grid 'hits' has a voxel that is unknown in 'state'");
+        }
+      }
+      s.beliefs[s.lattice.key(to_index(leaf->cbeginValueOn().getCoord()))] = std::move(block);
+    }
+  }
+
+  [[nodiscard]] Belief checked_belief(const Coord& at, std::int32_t hits,
+                                      const std::array<const openvdb::Vec3STree*, 3>& parts) const {
+    Belief belief;
+    for (std::size_t part = 0; part < 3; ++part) {
+      Vec3f value;
+      if (!parts[part]->probeValue(at, value))
+        fail("the grids of beliefs do not hold the same voxels");
+      for (int i = 0; i < 3; ++i) {
+        if (!std::isfinite(value[i]) || (part == 0 && value[i] < 0)) {
+          std::ostringstream text;
+          text << "belief at voxel " << at << " has the value " << value[i];
+          fail(text.str());
+        }
+        const auto position = static_cast<std::size_t>(i);
+        if (part < 2) belief.information[3 * part + position] = value[i];
+        if (part == 2) belief.information_vector[position] = value[i];
+      }
+    }
+    if (hits < 0) fail("grid 'hits' has a negative count");
+    belief.hits = static_cast<std::uint32_t>(hits);
+    return belief;
+  }
+
+  std::filesystem::path path_;
+};
+
+}  // namespace
+
+BeliefGrid load_vdb(const std::filesystem::path& path) { return Loader(path).load(); }
+
+}  // namespace viewgain

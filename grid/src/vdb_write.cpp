@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <openvdb/io/Archive.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "file_seal.hpp"
+#include "vdb_layout.hpp"
+#include "viewgain/core/atomic_file.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace detail;
+using openvdb::FloatGrid;
+using openvdb::Int32Grid;
+using openvdb::Vec3f;
+using openvdb::Vec3SGrid;
+
+/// Writes a seekable file image to memory, so that a full disk is noticed by our own writer.
+class MemoryArchive : public openvdb::io::Archive {
+ public:
+  [[nodiscard]] std::string image(const openvdb::GridCPtrVec& grids,
+                                  const openvdb::MetaMap& metadata) const {
+    std::ostringstream stream(std::ios::binary);
+    stream.exceptions(std::ios::badbit | std::ios::failbit);
+    Archive::write(stream, grids, /*seekable=*/true, metadata);
+    return std::move(stream).str();
+  }
+};
+
+openvdb::MetaMap make_metadata(const BeliefGrid::Storage& s) {
+  const BlockLattice& l = s.lattice;
+  openvdb::MetaMap metadata;
+  metadata.insertMeta("viewgain_version", openvdb::Int32Metadata(kVdbLayoutVersion));
+  metadata.insertMeta("voxel_size", openvdb::DoubleMetadata(s.voxel_size));
+  metadata.insertMeta("prior_sigma", openvdb::DoubleMetadata(s.prior_sigma));
+  metadata.insertMeta("workspace_min", openvdb::Vec3IMetadata({l.min.x, l.min.y, l.min.z}));
+  metadata.insertMeta("workspace_max", openvdb::Vec3IMetadata({l.max.x, l.max.y, l.max.z}));
+  metadata.insertMeta("T_world_grid", openvdb::StringMetadata(poses_to_text({s.T_world_grid})));
+  metadata.insertMeta("views", openvdb::StringMetadata(poses_to_text(s.views)));
+  return metadata;
+}
+
+/// The grids of one file, sharing a transform.
+class GridSet {
+ public:
+  explicit GridSet(openvdb::math::Transform::Ptr transform) : transform_(std::move(transform)) {}
+
+  template <typename Grid>
+  typename Grid::TreeType& add(const char* name) {
+    auto grid = Grid::create();
+    grid->setName(name);
+    grid->setCreator("viewgain");
+    grid->setTransform(transform_);
+    grids_.push_back(grid);
+    return grid->tree();
+  }
+  [[nodiscard]] const openvdb::GridCPtrVec& grids() const { return grids_; }
+
+ private:
+  openvdb::math::Transform::Ptr transform_;
+  openvdb::GridCPtrVec grids_;
+};
+
+/// Adds a leaf whose active voxels, those of the mask, have the values value_at(offset).
+template <typename Tree, typename ValueAt>
+void put_leaf(Tree& tree, Index3 origin, const LeafMask& mask, ValueAt&& value_at) {
+  auto leaf =
+      std::make_unique<typename Tree::LeafNodeType>(to_coord(origin), tree.background(), false);
+  for_each_bit(mask, [&](unsigned offset) { leaf->setValueOn(offset, value_at(offset)); });
+  tree.addLeaf(leaf.release());
+}
+
+void put_states(const BeliefGrid::Storage& s, GridSet& set) {
+  auto& state = set.add<Int32Grid>("state");
+  auto& log_odds = set.add<FloatGrid>("log_odds");
+  const auto state_of = [](std::uint8_t code) {
+    return static_cast<std::int32_t>(is_occupied(code) ? VoxelState::occupied : VoxelState::free);
+  };
+  visit_blocks(
+      s,
+      [&](const CodeLeaf& leaf) {
+        const Index3 origin = to_index(leaf.origin());
+        const std::uint8_t* codes = leaf.buffer().data();
+        LeafMask known = code_mask(codes, [](std::uint8_t code) { return code != kUnknownCode; });
+        const LeafMask inside = s.lattice.clip(origin);
+        for (std::size_t i = 0; i < 8; ++i) known[i] &= inside[i];
+        if (known == LeafMask{}) return;
+        put_leaf(state, origin, known, [&](unsigned at) { return state_of(codes[at]); });
+        put_leaf(log_odds, origin, known, [&](unsigned at) { return code_log_odds(codes[at]); });
+      },
+      [&](Index3 origin, int size, std::uint8_t code) {
+        if (code == kUnknownCode) return;
+        if (size == kBlockSize && s.lattice.covers(origin, size)) {
+          state.addTile(kBlockTileLevel, to_coord(origin), state_of(code), true);
+          log_odds.addTile(kBlockTileLevel, to_coord(origin), code_log_odds(code), true);
+          return;
+        }
+        const IndexBox box = clipped(s.lattice, origin, size);
+        const openvdb::CoordBBox part(to_coord(box.min), to_coord(box.max).offsetBy(-1));
+        state.sparseFill(part, state_of(code), true);
+        log_odds.sparseFill(part, code_log_odds(code), true);
+      });
+}
+
+void put_beliefs(const BeliefGrid::Storage& s, GridSet& set, bool with_covariance) {
+  auto& diagonal = set.add<Vec3SGrid>("information_diagonal");
+  auto& offdiagonal = set.add<Vec3SGrid>("information_offdiagonal");
+  auto& vector = set.add<Vec3SGrid>("information_vector");
+  auto& hits = set.add<Int32Grid>("hits");
+  for (const auto& [key, block_pointer] : s.beliefs) {
+    const BeliefBlock& block = *block_pointer;
+    const Index3 origin = s.lattice.origin(key);
+    const auto information = [&](unsigned at, std::size_t first) {
+      const auto& values = block.find(at)->information;
+      return Vec3f(values[first], values[first + 1], values[first + 2]);
+    };
+    put_leaf(diagonal, origin, block.mask, [&](unsigned at) { return information(at, 0); });
+    put_leaf(offdiagonal, origin, block.mask, [&](unsigned at) { return information(at, 3); });
+    put_leaf(vector, origin, block.mask,
+             [&](unsigned at) { return Vec3f(block.find(at)->information_vector.data()); });
+    put_leaf(hits, origin, block.mask,
+             [&](unsigned at) { return static_cast<std::int32_t>(block.find(at)->hits); });
+  }
+  if (!with_covariance) return;
+
+  auto& covariance = set.add<Vec3SGrid>("covariance_diagonal");
+  auto& off_covariance = set.add<Vec3SGrid>("covariance_offdiagonal");
+  auto& position = set.add<Vec3SGrid>("position");
+  const double floor = s.voxel_size * s.voxel_size / 12.0;  // the resolution's share
+  for (const auto& [key, block_pointer] : s.beliefs) {
+    const Index3 origin = s.lattice.origin(key);
+    for_each_bit(block_pointer->mask, [&](unsigned at) {
+      const Belief& belief = *block_pointer->find(at);
+      const SymmetricMatrix3 sigma = belief.information_matrix().inverse();
+      if (!std::isfinite(sigma.trace())) return;  // an importer's belief without information
+      const auto& eta = belief.information_vector;
+      const Eigen::Vector3d shift = sigma * Eigen::Vector3d(eta[0], eta[1], eta[2]);
+      const Index3 v = offset_voxel(origin, at);
+      const Eigen::Vector3d p =
+          (Eigen::Vector3d(v.x, v.y, v.z).array() + 0.5).matrix() * s.voxel_size + shift;
+      const auto narrow = [](double x, double y, double z) {
+        return Vec3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+      };
+      covariance.setValueOn(to_coord(v),
+                            narrow(sigma.xx + floor, sigma.yy + floor, sigma.zz + floor));
+      off_covariance.setValueOn(to_coord(v), narrow(sigma.xy, sigma.xz, sigma.yz));
+      position.setValueOn(to_coord(v), narrow(p.x(), p.y(), p.z()));
+    });
+  }
+}
+
+}  // namespace
+
+void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
+              const VdbWriteConfig& config) {
+  AtomicFile file(path);
+  try {
+    initialize_openvdb();
+    const BeliefGrid::Storage& s = grid.storage();
+    GridSet set(make_transform(s));
+    put_states(s, set);
+    put_beliefs(s, set, config.with_covariance);
+    const std::string image = MemoryArchive().image(set.grids(), make_metadata(s));
+    file.write(image);
+    file.write(make_seal(image));
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::io, path.string() + ": cannot be written: " + error.what());
+  }
+  file.commit();
+}
+
+}  // namespace viewgain

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "viewgain/core/triangle_mesh.hpp"
+
+namespace viewgain {
+
+/// Reads OFF, OBJ, STL or PLY (ASCII and binary), chosen by the file name's ending; polygons are split
+/// into triangle fans. Throws Error(io) if the file cannot be opened and Error(format), naming the file,
+/// if it cannot be parsed, has no faces, a coordinate that is not finite, an index out of range, or a
+/// header that promises more than the file can hold. Reads through CGAL's polygon soup reader.
+[[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& path);
+
+/// Which axis of the mesh file points up.
+enum class UpAxis : std::uint8_t { x, y, z };
+
+/// How a file's mesh is placed in the world.
+struct MeshPlacement {
+  UpAxis up = UpAxis::z;     ///< this axis is turned to +z by a cyclic permutation of the axes
+  bool center = false;       ///< moves the bounding box's centre to the origin
+  double longest_side = 0;   ///< scales so that the bounding box's longest side is this [m]; 0: as it is
+};
+
+/// Applies turn, then scale about the origin, then centring. Throws Error(invalid_argument) if
+/// longest_side is negative or not finite, or the mesh has no extent to scale.
+[[nodiscard]] TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement);
+
+}  // namespace viewgain

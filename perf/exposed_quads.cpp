@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "exposed_quads.hpp"
+
+#include <algorithm>
+
+namespace viewgain::bench {
+namespace {
+
+/// Faces of one plane, a cell [row][column] each.
+class FacePlane {
+ public:
+  FacePlane(int rows, int columns)
+      : rows_(rows),
+        columns_(columns),
+        exposed_(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns)) {}
+
+  std::uint8_t& at(int row, int column) {
+    return exposed_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                    static_cast<std::size_t>(column)];
+  }
+
+  /// Takes the faces as rectangles: emit(row, column, rows, columns).
+  template <typename Emit>
+  void merge(Emit&& emit) {
+    for (int row = 0; row < rows_; ++row) {
+      for (int column = 0; column < columns_; ++column) {
+        if (at(row, column) == 0) continue;
+        int width = 1;
+        while (column + width < columns_ && at(row, column + width) != 0) ++width;
+        int height = 1;
+        while (row + height < rows_ && row_is_exposed(row + height, column, width)) ++height;
+        for (int r = row; r < row + height; ++r) {
+          std::fill_n(&at(r, column), width, std::uint8_t{0});
+        }
+        emit(row, column, height, width);
+      }
+    }
+  }
+
+ private:
+  bool row_is_exposed(int row, int column, int width) {
+    return std::all_of(&at(row, column), &at(row, column) + width,
+                       [](std::uint8_t face) { return face != 0; });
+  }
+
+  int rows_;
+  int columns_;
+  std::vector<std::uint8_t> exposed_;
+};
+
+}  // namespace
+
+std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis) {
+  const std::array<int, 3> dims{map.dims.x, map.dims.y, map.dims.z};
+  const auto a = static_cast<std::size_t>(axis);
+  const std::size_t b = (a + 1) % 3;
+  const std::size_t c = (a + 2) % 3;
+  const auto is_free = [&](int along, int row, int column) {
+    std::array<int, 3> i{};
+    i[a] = along;
+    i[b] = row;
+    i[c] = column;
+    return map.state({map.min_index.x + i[0], map.min_index.y + i[1], map.min_index.z + i[2]}) ==
+           VoxelState::free;
+  };
+  std::vector<Quad> quads;
+  for (int plane = 0; plane <= dims[a]; ++plane) {
+    FacePlane faces(dims[b], dims[c]);
+    for (int row = 0; row < dims[b]; ++row) {
+      for (int column = 0; column < dims[c]; ++column) {
+        faces.at(row, column) =
+            is_free(plane - 1, row, column) != is_free(plane, row, column) ? 1 : 0;
+      }
+    }
+    faces.merge([&](int row, int column, int rows, int columns) {
+      const auto corner = [&](int r, int k) {
+        std::array<float, 3> p{};
+        p[a] = static_cast<float>(plane);
+        p[b] = static_cast<float>(r);
+        p[c] = static_cast<float>(k);
+        return p;
+      };
+      quads.push_back({{corner(row, column), corner(row + rows, column),
+                        corner(row + rows, column + columns), corner(row, column + columns)}});
+    });
+  }
+  return quads;
+}
+
+}  // namespace viewgain::bench

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+namespace viewgain::bench {
+
+struct IntegrateOptions {
+  int num_threads = 0;  ///< ours; 0: all hardware threads. OctoMap has one.
+  int voxels = 128;     ///< a side
+  int repetitions = 9;
+  std::filesystem::path mesh;
+  bool json = false;
+};
+
+/// Times one more frame into camel-N, OctoMap against ours with lines and with cones; prints a
+/// table or JSON. Returns the exit code: 0, or 1 if the maps differ without a reason.
+int run_integrate(const IntegrateOptions& options);
+
+}  // namespace viewgain::bench

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <span>
+#include <string>
+
+namespace viewgain::bench {
+
+/// Wall time of a call [s].
+template <typename Call>
+[[nodiscard]] double seconds_of(Call&& call) {
+  const auto start = std::chrono::steady_clock::now();
+  call();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Of a sample: the value below which the given share of it lies, interpolated between neighbours.
+[[nodiscard]] double quantile(std::span<const double> sample, double share);
+
+[[nodiscard]] inline double median(std::span<const double> sample) { return quantile(sample, 0.5); }
+
+/// The CPU's name as the operating system gives it.
+[[nodiscard]] std::string cpu_name();
+
+}  // namespace viewgain::bench

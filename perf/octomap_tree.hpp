@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <octomap/OcTree.h>
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+
+#include "oracle/dense_map.hpp"
+
+namespace viewgain::bench {
+
+/// OctoMap's lattice goes through the origin as ours does: voxel i has the key i + 2^15 an axis.
+inline constexpr int kOctomapKeyOffset = 1 << 15;
+
+[[nodiscard]] octomap::OcTreeKey key_of(Index3 voxel);
+[[nodiscard]] Index3 voxel_of(const octomap::OcTreeKey& key);
+
+/// An empty tree with the update rule of DESIGN.md section 5: +0.85, -0.4, clamped to -2..3.5.
+[[nodiscard]] std::unique_ptr<octomap::OcTree> empty_octree(double voxel_size);
+
+/// The map's known voxels; unknown ones have no node. Pruned. T_world_grid must be the identity.
+[[nodiscard]] std::unique_ptr<octomap::OcTree> octree_of(const oracle::DenseMap& map);
+
+/// The part of the segment from `from` to `to` [m, grid frame] inside the workspace, kept 1e-5
+/// voxel off its faces since OctoMap's coordinates are single precision; nothing if there is none.
+/// `leaves` says whether the segment ends outside.
+struct ClippedSegment {
+  Eigen::Vector3d begin;
+  Eigen::Vector3d end;
+  bool leaves = false;
+};
+[[nodiscard]] std::optional<ClippedSegment> clip_to_workspace(const oracle::DenseMap& map,
+                                                              const Eigen::Vector3d& from,
+                                                              const Eigen::Vector3d& to);
+
+}  // namespace viewgain::bench

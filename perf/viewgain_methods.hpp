@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "trace_method.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+namespace viewgain::bench {
+
+using ScenePointer = std::shared_ptr<const VoxelScene>;
+
+/// GainEvaluator::evaluate on a batch: tracing, sums by voxel, entropies.
+[[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_gain(const TraceTask& task,
+                                                              ScenePointer scene);
+
+/// Its tracing alone: the same kernel through the same BVH, the voxel's number kept for each ray.
+[[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task,
+                                                               ScenePointer scene);
+
+/// The same kernel when the leaves that are hit are known beforehand, tile by tile: what no way of
+/// finding them could beat. Knows the way for task.poses only.
+[[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_floor(const TraceTask& task,
+                                                               ScenePointer scene);
+
+}  // namespace viewgain::bench

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/box.hpp"
+#include "viewgain/core/criterion.hpp"
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+namespace viewgain {
+
+/// A task weight for a part of the workspace: the paper's "selected parts".
+struct WeightRegion {
+  Box box;            ///< grid frame [m]; a voxel belongs to it if its centre does
+  double weight = 1;  ///< w_v >= 0; the last region that holds a voxel counts, 1 outside all
+};
+
+/// What changes the answer.
+struct GainConfig {
+  Criterion criterion = Criterion::log_diagonal;
+  int pixel_stride = 1;                 ///< every s-th pixel of every s-th row, from pixel (0,0)
+  std::optional<double> prior_sigma{};  ///< sigma_0 [m]; the map's unless given
+  std::optional<double> min_range{};    ///< along the ray [m]; the sensor's unless given
+  std::optional<double> max_range{};    ///< along the ray [m]; the sensor's unless given
+  std::vector<WeightRegion> weights{};
+};
+
+enum class ViewStatus : std::uint8_t {
+  ok,
+  bad_pose,            ///< a number that is not finite, or a rotation off by more than 1e-3: gain NaN
+  camera_in_occupied,  ///< the camera's centre lies in an occupied voxel: gain 0
+};
+[[nodiscard]] std::string_view view_status_name(ViewStatus status);
+
+/// What a view is expected to bring. Gains in nats, in m² for the criterion trace.
+struct ViewGain {
+  double gain = std::numeric_limits<double>::quiet_NaN();  ///< exploration + refinement; NaN: bad pose
+  double exploration = std::numeric_limits<double>::quiet_NaN();  ///< share of unknown voxels
+  double refinement = std::numeric_limits<double>::quiet_NaN();   ///< share of occupied voxels
+  /// The paper's eq. (6) over the touched voxels: Σ_v Σ_k ln[(Λ_v + ΣΛ_r)⁻¹]_kk, lengths in metres.
+  double posterior_entropy = std::numeric_limits<double>::quiet_NaN();
+  std::uint32_t rays = 0;
+  std::uint32_t hits = 0;             ///< rays that end in a voxel
+  std::uint32_t unknown_voxels = 0;   ///< distinct
+  std::uint32_t occupied_voxels = 0;  ///< distinct
+  ViewStatus status = ViewStatus::bad_pose;
+};
+
+/// Where one ray of a view ends.
+struct RayHit {
+  enum class Kind : std::uint8_t { none, unknown, occupied, obstacle };
+  Kind kind = Kind::none;
+  Index3 voxel{};  ///< the voxel it ends in (unknown, occupied)
+  double range = std::numeric_limits<double>::infinity();  ///< max(range of the entry point, min_range) [m]
+};
+
+/// Scores camera poses against a scene by expected information gain (DESIGN.md section 6).
+///
+/// Thread safety: all const members may run from many threads at once on one evaluator. Allocation:
+/// none per pose once as many threads as ever run at once have each scored one pose. Determinism: the
+/// same bits for any number of threads, run after run.
+class GainEvaluator {
+ public:
+  /// Undoes the lens distortion once. Throws Error(invalid_argument), naming the value, for a null
+  /// scene, a sensor that is not valid, a stride below 1, a prior or weight or range that is negative
+  /// or not finite, min_range >= max_range, or a weight box inside out.
+  GainEvaluator(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
+                const GainConfig& config = {}, const ExecConfig& exec = {});
+  ~GainEvaluator();
+  GainEvaluator(GainEvaluator&&) noexcept;
+  GainEvaluator& operator=(GainEvaluator&&) noexcept;
+
+  /// The expected gain of one pose, on the calling thread.
+  [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera) const;
+
+  /// The expected gains of a batch, result i for pose i, on all threads of the evaluator. A bad pose
+  /// spoils only its own result. Returns how many poses were scored: all, or fewer if control.stop was
+  /// requested, when the results not reached keep status bad_pose and NaN. Throws
+  /// Error(invalid_argument) if the sizes differ.
+  std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<ViewGain> results,
+                       const BatchControl& control = {}) const;
+  [[nodiscard]] std::vector<ViewGain> evaluate(std::span<const Pose> T_world_camera) const;
+
+  /// Where the rays of a pose end, in pixel order (row by row, strided); the hits that evaluate() uses.
+  /// Empty for a bad pose.
+  [[nodiscard]] std::vector<RayHit> trace(const Pose& T_world_camera) const;
+
+  [[nodiscard]] std::size_t rays_per_pose() const noexcept;
+  [[nodiscard]] int num_threads() const noexcept;
+  [[nodiscard]] double prior_sigma() const noexcept;  ///< [m]
+  [[nodiscard]] const VoxelScene& scene() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Indices of the k best results: larger gain first, ties to the lower index, NaN last. k is clamped.
+[[nodiscard]] std::vector<std::size_t> best_indices(std::span<const ViewGain> results, std::size_t k);
+
+}  // namespace viewgain

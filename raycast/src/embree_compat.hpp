@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// The one place that knows Embree 3 from Embree 4. CMake chooses the major version.
+#if VIEWGAIN_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+static_assert(RTC_VERSION_MAJOR == VIEWGAIN_EMBREE_MAJOR,
+              "the Embree headers are not of the version that CMake found");
+
+namespace viewgain::detail {
+
+/// What a query hands to Embree. Data for user geometry callbacks goes into a struct whose first member
+/// is this one's `context`: derive from RayQuery and cast back with query_of().
+struct RayQuery {
+#if RTC_VERSION_MAJOR >= 4
+  RTCRayQueryContext context;
+  RTCIntersectArguments arguments;
+  explicit RayQuery(bool coherent) {
+    rtcInitRayQueryContext(&context);
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &context;
+    arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+    arguments.feature_mask = RTC_FEATURE_FLAG_ALL;
+  }
+#else
+  RTCIntersectContext context;
+  explicit RayQuery(bool coherent) {
+    rtcInitIntersectContext(&context);
+    context.flags =
+        coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  }
+#endif
+  // The arguments point at the context.
+  RayQuery(const RayQuery&) = delete;
+  RayQuery& operator=(const RayQuery&) = delete;
+};
+
+/// The query that a callback belongs to; Query derives from RayQuery and from nothing else.
+template <typename Query>
+inline Query& query_of(const RTCIntersectFunctionNArguments* args) {
+  return *reinterpret_cast<Query*>(args->context);
+}
+
+#if RTC_VERSION_MAJOR >= 4
+inline void intersect1(RTCScene s, RTCRayHit* r, RayQuery* q) { rtcIntersect1(s, r, &q->arguments); }
+inline void intersect4(const int* valid, RTCScene s, RTCRayHit4* r, RayQuery* q) {
+  rtcIntersect4(valid, s, r, &q->arguments);
+}
+inline void intersect8(const int* valid, RTCScene s, RTCRayHit8* r, RayQuery* q) {
+  rtcIntersect8(valid, s, r, &q->arguments);
+}
+inline void intersect16(const int* valid, RTCScene s, RTCRayHit16* r, RayQuery* q) {
+  rtcIntersect16(valid, s, r, &q->arguments);
+}
+#else
+inline void intersect1(RTCScene s, RTCRayHit* r, RayQuery* q) { rtcIntersect1(s, &q->context, r); }
+inline void intersect4(const int* valid, RTCScene s, RTCRayHit4* r, RayQuery* q) {
+  rtcIntersect4(valid, s, &q->context, r);
+}
+inline void intersect8(const int* valid, RTCScene s, RTCRayHit8* r, RayQuery* q) {
+  rtcIntersect8(valid, s, &q->context, r);
+}
+inline void intersect16(const int* valid, RTCScene s, RTCRayHit16* r, RayQuery* q) {
+  rtcIntersect16(valid, s, &q->context, r);
+}
+#endif
+
+}  // namespace viewgain::detail

@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "gain_accumulator.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <variant>
+
+namespace viewgain::detail {
+namespace {
+
+// Vectors reach up to this many elements beyond the last voxel.
+constexpr std::size_t kOverhang = 8;
+
+}  // namespace
+
+FrontalSigmas frontal_sigmas(const Sensor& sensor) {
+  struct Visitor {
+    double fx;
+    FrontalSigmas operator()(const ShotNoise& n) const {
+      return {.a1 = n.reference_sigma / n.reference_range *
+                    std::sqrt(n.reference_integration_time / n.integration_time),
+              .l1 = 1.0 / fx};
+    }
+    FrontalSigmas operator()(const StructuredLightNoise& n) const {
+      return {.a0 = n.offset, .a2 = n.quadratic, .v = n.vertex, .l1 = n.lateral_px / fx};
+    }
+    FrontalSigmas operator()(const StereoNoise& n) const {
+      return {.a2 = n.subpixel / (n.focal * n.baseline), .l1 = 1.0 / fx};
+    }
+    FrontalSigmas operator()(const QuadraticNoise& n) const {
+      return {.a0 = n.offset, .a2 = n.quadratic, .l1 = 1.0 / fx};
+    }
+    FrontalSigmas operator()(const ConstantNoise& n) const {
+      return {.a0 = n.sigma_axial, .l0 = n.sigma_lateral};
+    }
+  };
+  return std::visit(Visitor{sensor.camera.fx}, sensor.noise);
+}
+
+GainAccumulator::GainAccumulator(const VoxelScene::Data& scene, const GainSettings& settings,
+                                 std::size_t max_rays)
+    : scene_(scene), settings_(settings), kernels_(gain_kernels(scene.kernels->isa)) {
+  by_primitive_.assign(scene.block_count, kNone);
+  if (scene.boxes.size() > scene.block_count) {
+    const std::size_t size = std::bit_ceil(std::max<std::size_t>(2 * max_rays, 64));
+    by_key_.resize(size);
+    shift_ = 64U - static_cast<unsigned>(std::countr_zero(size));
+  }
+  touched_.resize(max_rays + kOverhang);
+  sums_.resize(max_rays + kOverhang);
+  unknown_.resize(max_rays + kOverhang);
+  occupied_.resize(max_rays + kOverhang);
+  known_.resize(max_rays + kOverhang);
+  if (settings.criterion == Criterion::trace || !settings.weights.empty()) {
+    each_.resize(max_rays + kOverhang);
+  }
+}
+
+void GainAccumulator::begin() {
+  batch_.count = 0;
+  hits_ = 0;
+  for (std::size_t i = 0; i < touched_count_; ++i) places_[touched_[i]] = kNone;
+  for (const std::uint32_t primitive : touched_primitives_) by_primitive_[primitive] = kNone;
+  std::fill_n(sums_.begin(), touched_count_, VoxelSum{});
+  touched_primitives_.clear();
+  blocks_.clear();
+  touched_count_ = 0;
+  if (++generation_ == 0) {  // after 2^32 views old stamps would look new
+    std::fill(by_key_.begin(), by_key_.end(), BlockSlot{});
+    generation_ = 1;
+  }
+}
+
+std::uint32_t GainAccumulator::start_block(std::uint64_t key, const SnapshotLeaf* leaf) {
+  const auto block = static_cast<std::uint32_t>(blocks_.size());
+  blocks_.push_back({leaf, key});
+  if (places_.size() < blocks_.size() << 9U) places_.resize(blocks_.size() << 9U, kNone);
+  return block;
+}
+
+// The block of a larger box whose first voxel has this key.
+std::uint32_t GainAccumulator::block_in_box(std::uint64_t key) {
+  // Fibonacci hashing, linear probing; the table is at most half full.
+  std::size_t place = static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> shift_);
+  while (true) {
+    BlockSlot& slot = by_key_[place];
+    if (slot.generation != generation_) {
+      slot = {key, generation_, start_block(key, nullptr)};
+      return slot.block;
+    }
+    if (slot.key == key) return slot.block;
+    place = (place + 1) & (by_key_.size() - 1);
+  }
+}
+
+// The code of the voxel that a hit ends in.
+inline std::uint32_t GainAccumulator::code_of(std::uint32_t primitive, std::uint32_t offset) {
+  if (primitive >= scene_.block_count) [[unlikely]] {
+    const std::uint64_t key = scene_.hit_key(primitive, offset);
+    return block_in_box(key & ~std::uint64_t{511}) << 9U | static_cast<std::uint32_t>(key & 511U);
+  }
+  std::uint32_t block = by_primitive_[primitive];
+  if (block == kNone) [[unlikely]] {
+    const bool may_be_occupied = primitive < scene_.leaf_count && scene_.has_occupied[primitive];
+    block = start_block(scene_.block_keys[primitive],
+                        may_be_occupied ? &scene_.snapshot.leaves[scene_.leaf_source[primitive]]
+                                        : nullptr);
+    by_primitive_[primitive] = block;
+    touched_primitives_.push_back(primitive);
+  }
+  return block << 9U | offset;
+}
+
+void GainAccumulator::flush() {
+  kernels_.expand(settings_.sigmas, scene_.snapshot.voxel_size, batch_);
+  // Three loops of independent steps, so that many memory requests are in flight at once.
+  const std::size_t count = batch_.count;
+  std::uint32_t codes[kBatchSize + kTileRays];
+  for (std::size_t i = 0; i < count; ++i) {
+    codes[i] = code_of(batch_.primitive[i], batch_.offset[i]);
+    __builtin_prefetch(&places_[codes[i]], 1);
+  }
+  // Whether a voxel is new cannot be predicted, so what a new one needs is done for all.
+  std::uint32_t places[kBatchSize + kTileRays];
+  auto touched_count = static_cast<std::uint32_t>(touched_count_);
+  std::uint32_t* const place_of = places_.data();
+  std::uint32_t* const touched = touched_.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t code = codes[i];
+    const std::uint32_t held = place_of[code];
+    const std::uint32_t is_new = held == kNone ? 1U : 0U;
+    const std::uint32_t place = held ^ ((held ^ touched_count) & (0U - is_new));
+    place_of[code] = place;
+    touched[place] = code;
+    touched_count += is_new;
+    places[i] = place;
+  }
+  touched_count_ = touched_count;
+  VoxelSum* const sums = sums_.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    double* sum = sums[places[i]].value;
+    for (std::size_t k = 0; k < 6; ++k) sum[k] += batch_.information[k][i];
+  }
+  hits_ += static_cast<std::uint32_t>(count);
+  batch_.count = 0;
+}
+
+// Parts the touched voxels into unknown and occupied ones and looks up what is known of the latter.
+void GainAccumulator::classify() {
+  unknown_count_ = 0;
+  occupied_count_ = 0;
+  for (std::uint32_t i = 0; i < touched_count_; ++i) {
+    const std::uint32_t offset = touched_[i] & 511U;
+    const SnapshotLeaf* leaf = blocks_[touched_[i] >> 9U].leaf;
+    if (leaf == nullptr || !test_bit(leaf->occupied, offset)) {
+      unknown_[unknown_count_++] = i;
+      continue;
+    }
+    VoxelInformation& known = known_[occupied_count_];
+    const Belief* belief = leaf->beliefs ? leaf->beliefs->find(offset) : nullptr;
+    for (std::size_t k = 0; k < 6; ++k) {
+      known.value[k] = belief != nullptr ? static_cast<double>(belief->information[k]) : 0.0;
+    }
+    occupied_[occupied_count_++] = i;
+  }
+}
+
+double GainAccumulator::weight(std::uint32_t code) const {
+  const Index3 voxel = scene_.voxel_at(blocks_[code >> 9U].key | (code & 511U));
+  const double size = scene_.snapshot.voxel_size;
+  const double x = (voxel.x + 0.5) * size, y = (voxel.y + 0.5) * size, z = (voxel.z + 0.5) * size;
+  for (auto region = settings_.weights.rbegin(); region != settings_.weights.rend(); ++region) {
+    if (region->box.contains(x, y, z)) return region->weight;
+  }
+  return 1.0;
+}
+
+double GainAccumulator::finish_class(std::span<const std::uint32_t> members,
+                                     const VoxelInformation* known, LogProduct& posterior) {
+  const bool logarithmic = settings_.criterion != Criterion::trace;
+  LogProduct ratios;
+  kernels_.finish(settings_.criterion, settings_.prior_information,
+                  {sums_.data(), members.data(), known, members.size()}, ratios, posterior,
+                  each_.empty() ? nullptr : each_.data());
+  if (each_.empty()) return 0.5 * ratios.log();
+  double sum = 0;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const double w = settings_.weights.empty() ? 1.0 : weight(touched_[members[i]]);
+    sum += w * (logarithmic ? 0.5 * std::log(each_[i]) : each_[i]);
+  }
+  return sum;
+}
+
+void GainAccumulator::finish(ViewGain& result) {
+  flush();
+  classify();
+  LogProduct posterior;
+  result.exploration = finish_class({unknown_.data(), unknown_count_}, nullptr, posterior);
+  result.refinement = finish_class({occupied_.data(), occupied_count_}, known_.data(), posterior);
+  result.gain = result.exploration + result.refinement;
+  result.posterior_entropy = posterior.log();
+  result.hits = hits_;
+  result.unknown_voxels = static_cast<std::uint32_t>(unknown_count_);
+  result.occupied_voxels = static_cast<std::uint32_t>(occupied_count_);
+}
+
+}  // namespace viewgain::detail

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gain_kernels.hpp"
+#include "scene_data.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::detail {
+
+/// Frontal sigmas of a sensor in the form the kernels take.
+[[nodiscard]] FrontalSigmas frontal_sigmas(const Sensor& sensor);
+
+/// What the gain of a view depends on besides the scene and the hits.
+struct GainSettings {
+  Criterion criterion = Criterion::log_diagonal;
+  double prior_information = 0;  ///< sigma_0⁻² [m⁻²]
+  FrontalSigmas sigmas;
+  std::vector<WeightRegion> weights;
+};
+
+/// Sums the hits of one view by voxel and turns the sums into a gain (DESIGN.md section 6). One object
+/// serves one thread, view after view; it allocates when made and when a view touches more voxels than
+/// any before.
+class GainAccumulator {
+ public:
+  /// max_rays bounds the hits of one view.
+  GainAccumulator(const VoxelScene::Data& scene, const GainSettings& settings, std::size_t max_rays);
+
+  void begin();
+  /// Takes the hits of a traced tile.
+  void add(const RayTile& tile) {
+    if (tile.hit == 0) return;
+    kernels_.append(tile, batch_);
+    if (batch_.count >= kBatchSize) flush();
+  }
+  /// Fills gain, exploration, refinement, posterior_entropy, hits and voxel counts.
+  void finish(ViewGain& result);
+
+ private:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+  // An 8³ block that the view has touched.
+  struct Block {
+    const SnapshotLeaf* leaf;  // null: no occupied voxel
+    std::uint64_t key;         // of the block's first voxel
+  };
+  // Where a block of a larger box is; void unless its generation is the view's.
+  struct BlockSlot {
+    std::uint64_t key = 0;
+    std::uint32_t generation = 0;
+    std::uint32_t block = 0;
+  };
+
+  void flush();
+  std::uint32_t code_of(std::uint32_t primitive, std::uint32_t offset);
+  std::uint32_t block_in_box(std::uint64_t key);
+  std::uint32_t start_block(std::uint64_t key, const SnapshotLeaf* leaf);
+  void classify();
+  double finish_class(std::span<const std::uint32_t> members, const VoxelInformation* known,
+                      LogProduct& posterior);
+  [[nodiscard]] double weight(std::uint32_t code) const;
+
+  const VoxelScene::Data& scene_;
+  const GainSettings& settings_;
+  const GainKernels& kernels_;
+  HitBatch batch_;
+  // Touched blocks. Those that are primitives of their own are found by the primitive's number (kNone:
+  // not touched), those of larger boxes by their key in an open-addressing table.
+  std::vector<Block> blocks_;
+  std::vector<std::uint32_t> by_primitive_, touched_primitives_;
+  std::vector<BlockSlot> by_key_;
+  unsigned shift_ = 0;
+  std::uint32_t generation_ = 0;
+  // A voxel's code is block << 9 | offset; its place in the list of touched voxels, or kNone. Grows to
+  // the most blocks that a view has touched.
+  std::vector<std::uint32_t> places_;
+  std::uint32_t hits_ = 0;
+  // The touched voxels in the order in which the view first meets them, and their sums, which are zero
+  // beyond. All are sized for the most that a view can touch.
+  std::size_t touched_count_ = 0;
+  std::vector<std::uint32_t> touched_;  // codes
+  std::vector<VoxelSum> sums_;
+  std::vector<std::uint32_t> unknown_, occupied_;  // places in touched_
+  std::size_t unknown_count_ = 0, occupied_count_ = 0;
+  std::vector<VoxelInformation> known_;  // of occupied_
+  std::vector<double> each_;             // for weights and for the trace
+};
+
+}  // namespace viewgain::detail

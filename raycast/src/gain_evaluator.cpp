@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+#include <string>
+
+#include "gain_accumulator.hpp"
+#include "ray_tile.hpp"
+#include "scene_data.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/thread_pool.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr double kMaxPoseError = 1e-3;
+constexpr double kMendPoseError = 1e-9;
+
+[[noreturn]] void reject(const std::string& what) { throw Error(ErrorCode::invalid_argument, what); }
+
+void check_range(const char* name, double value) {
+  if (!std::isfinite(value) || value < 0) {
+    reject(std::string(name) + " is " + std::to_string(value) + " m; it must be >= 0 and finite");
+  }
+}
+
+void check(const GainConfig& config, double min_range, double max_range, double prior_sigma) {
+  if (config.pixel_stride < 1) {
+    reject("pixel stride is " + std::to_string(config.pixel_stride) + "; it must be >= 1");
+  }
+  check_range("min_range", min_range);
+  check_range("max_range", max_range);
+  if (min_range >= max_range) {
+    reject("min_range " + std::to_string(min_range) + " m is not below max_range " +
+           std::to_string(max_range) + " m");
+  }
+  if (!std::isfinite(prior_sigma) || prior_sigma <= 0) {
+    reject("prior sigma is " + std::to_string(prior_sigma) + " m; it must be > 0 and finite");
+  }
+  for (const WeightRegion& region : config.weights) {
+    if (!std::isfinite(region.weight) || region.weight < 0) {
+      reject("task weight is " + std::to_string(region.weight) + "; it must be >= 0 and finite");
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!(region.box.min[axis] < region.box.max[axis])) reject("a task weight's box is inside out");
+    }
+  }
+}
+
+}  // namespace
+
+struct GainEvaluator::Impl {
+  std::shared_ptr<const VoxelScene> scene;
+  const VoxelScene::Data& data;
+  detail::GainSettings settings;
+  double min_range = 0;    // [m]
+  double max_range = 0;    // [m]
+  double prior_sigma = 0;  // [m]
+  detail::TileTable table;
+  std::uint32_t ray_count = 0;
+  Pose T_grid_world;
+  mutable ThreadPool pool;
+
+  // Accumulators that no thread is using, so that a call need not make one.
+  mutable std::mutex idle_mutex;
+  mutable std::vector<std::unique_ptr<detail::GainAccumulator>> idle;
+
+  Impl(std::shared_ptr<const VoxelScene> s, const Sensor& sensor, const GainConfig& config,
+       const ExecConfig& exec)
+      : scene(std::move(s)),
+        data(scene->data()),
+        min_range(config.min_range.value_or(sensor.min_range)),
+        max_range(config.max_range.value_or(sensor.max_range)),
+        prior_sigma(config.prior_sigma.value_or(data.snapshot.prior_sigma)),
+        table(sensor.camera, std::max(config.pixel_stride, 1)),
+        T_grid_world(data.snapshot.T_world_grid.inverse()),
+        pool(exec.num_threads) {
+    check(config, min_range, max_range, prior_sigma);
+    settings = {config.criterion, 1.0 / (prior_sigma * prior_sigma), detail::frontal_sigmas(sensor),
+                config.weights};
+    for (const std::uint16_t lanes : table.valid) {
+      ray_count += static_cast<std::uint32_t>(std::popcount(lanes));
+    }
+  }
+
+  // An accumulator for as long as the lease lives.
+  class Lease {
+   public:
+    explicit Lease(const Impl& impl) : impl_(impl) {
+      const std::lock_guard lock(impl.idle_mutex);
+      if (!impl.idle.empty()) {
+        accumulator_ = std::move(impl.idle.back());
+        impl.idle.pop_back();
+      }
+    }
+    ~Lease() {
+      if (!accumulator_) return;
+      const std::lock_guard lock(impl_.idle_mutex);
+      impl_.idle.push_back(std::move(accumulator_));
+    }
+    Lease(const Lease&) = delete;
+    Lease& operator=(const Lease&) = delete;
+
+    detail::GainAccumulator& get() {
+      if (!accumulator_) {
+        accumulator_ = std::make_unique<detail::GainAccumulator>(impl_.data, impl_.settings,
+                                                                 impl_.table.ray_count());
+      }
+      return *accumulator_;
+    }
+
+   private:
+    const Impl& impl_;
+    std::unique_ptr<detail::GainAccumulator> accumulator_;
+  };
+
+  // The pose in the scene's coordinates; nothing if it is no rigid transform.
+  [[nodiscard]] std::optional<detail::PoseFrame> frame_of(const Pose& T_world_camera) const {
+    const double error = orthonormality_error(T_world_camera);
+    if (!(error <= kMaxPoseError)) return std::nullopt;
+    const Pose T_grid_camera =
+        T_grid_world * (error <= kMendPoseError ? T_world_camera : orthonormalized(T_world_camera));
+    const double voxel = data.snapshot.voxel_size;
+    detail::PoseFrame frame;
+    const Index3& base = data.snapshot.min_index;
+    const Eigen::Vector3d origin =
+        T_grid_camera.translation() / voxel - Eigen::Vector3d(base.x, base.y, base.z);
+    for (std::size_t i = 0; i < 3; ++i) frame.origin[i] = static_cast<float>(origin[static_cast<int>(i)]);
+    const Eigen::Matrix3d R = T_grid_camera.rotation();
+    for (std::size_t i = 0; i < 9; ++i) {
+      frame.rotation[i] = static_cast<float>(R(static_cast<int>(i / 3), static_cast<int>(i % 3)));
+    }
+    frame.min_range = static_cast<float>(min_range / voxel);
+    frame.max_range = static_cast<float>(max_range / voxel);
+    return frame;
+  }
+
+  [[nodiscard]] bool is_in_occupied(const detail::PoseFrame& frame) const {
+    const Index3& dims = data.snapshot.dims;
+    const std::array<std::int32_t, 3> size{dims.x, dims.y, dims.z};
+    std::array<std::int32_t, 3> voxel{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float c = std::floor(frame.origin[i]);
+      if (!(c >= 0 && c < static_cast<float>(size[i]))) return false;
+      voxel[i] = static_cast<std::int32_t>(c);
+    }
+    const std::uint64_t key = data.voxel_key(voxel[0], voxel[1], voxel[2]);
+    const auto leaf = std::lower_bound(data.leaf_by_block.begin(), data.leaf_by_block.end(),
+                                       std::pair<std::uint64_t, std::uint32_t>(key >> 9U, 0U));
+    return leaf != data.leaf_by_block.end() && leaf->first == key >> 9U &&
+           test_bit(data.snapshot.leaves[leaf->second].occupied, static_cast<unsigned>(key & 511U));
+  }
+
+  [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera, Lease& lease) const {
+    ViewGain result;
+    const auto frame = frame_of(T_world_camera);
+    if (!frame) return result;
+    result.rays = ray_count;
+    if (is_in_occupied(*frame)) {
+      result.gain = result.exploration = result.refinement = result.posterior_entropy = 0;
+      result.status = ViewStatus::camera_in_occupied;
+      return result;
+    }
+    detail::GainAccumulator& accumulator = lease.get();
+    accumulator.begin();
+    detail::RayTile tile;
+    for (std::size_t i = 0; i < table.tile_count; ++i) {
+      data.kernels->trace(data, table, *frame, i, tile);
+      accumulator.add(tile);
+    }
+    accumulator.finish(result);
+    result.status = ViewStatus::ok;
+    return result;
+  }
+};
+
+std::string_view view_status_name(ViewStatus status) {
+  switch (status) {
+    case ViewStatus::ok: return "ok";
+    case ViewStatus::camera_in_occupied: return "camera_in_occupied";
+    case ViewStatus::bad_pose: break;
+  }
+  return "bad_pose";
+}
+
+GainEvaluator::GainEvaluator(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
+                             const GainConfig& config, const ExecConfig& exec) {
+  if (!scene) reject("the gain evaluator has no scene");
+  sensor.validate();
+  impl_ = std::make_unique<Impl>(std::move(scene), sensor, config, exec);
+}
+
+GainEvaluator::~GainEvaluator() = default;
+GainEvaluator::GainEvaluator(GainEvaluator&&) noexcept = default;
+GainEvaluator& GainEvaluator::operator=(GainEvaluator&&) noexcept = default;
+
+ViewGain GainEvaluator::evaluate(const Pose& T_world_camera) const {
+  Impl::Lease lease(*impl_);
+  return impl_->evaluate(T_world_camera, lease);
+}
+
+std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera, std::span<ViewGain> results,
+                                    const BatchControl& control) const {
+  if (T_world_camera.size() != results.size()) {
+    reject(std::to_string(T_world_camera.size()) + " poses but room for " +
+           std::to_string(results.size()) + " results");
+  }
+  std::fill(results.begin(), results.end(), ViewGain{});
+  std::atomic<std::size_t> done{0};
+  std::mutex progress_mutex;
+  std::size_t reported = 0;
+  impl_->pool.for_each_chunk(results.size(), 4, [&](std::size_t begin, std::size_t end) {
+    Impl::Lease lease(*impl_);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (control.stop.stop_requested()) return;
+      results[i] = impl_->evaluate(T_world_camera[i], lease);
+      const std::size_t count = done.fetch_add(1) + 1;
+      if (!control.progress) continue;
+      const std::lock_guard lock(progress_mutex);
+      if (count <= reported) continue;  // another thread has already said more
+      reported = count;
+      control.progress(count, results.size());
+    }
+  });
+  return done;
+}
+
+std::vector<ViewGain> GainEvaluator::evaluate(std::span<const Pose> T_world_camera) const {
+  std::vector<ViewGain> results(T_world_camera.size());
+  evaluate(T_world_camera, results);
+  return results;
+}
+
+std::vector<RayHit> GainEvaluator::trace(const Pose& T_world_camera) const {
+  const auto frame = impl_->frame_of(T_world_camera);
+  if (!frame) return {};
+  const VoxelScene::Data& data = impl_->data;
+  std::vector<RayHit> hits(impl_->table.ray_count());
+  detail::RayTile tile;
+  for (std::size_t i = 0; i < impl_->table.tile_count; ++i) {
+    data.kernels->trace(data, impl_->table, *frame, i, tile);
+    for (int lane = 0; lane < detail::kTileRays; ++lane) {
+      const std::uint32_t bit = 1U << lane;
+      if (((tile.hit | tile.blocked) & bit) == 0) continue;
+      RayHit& hit = hits[impl_->table.ray_index(i, lane)];
+      hit.range = static_cast<double>(tile.range[lane]) * data.snapshot.voxel_size;
+      if ((tile.blocked & bit) != 0) {
+        hit.kind = RayHit::Kind::obstacle;
+        continue;
+      }
+      const std::uint32_t primitive = tile.primitive[lane], offset = tile.offset[lane];
+      const bool occupied =
+          primitive < data.leaf_count &&
+          test_bit(data.snapshot.leaves[data.leaf_source[primitive]].occupied, offset);
+      hit.kind = occupied ? RayHit::Kind::occupied : RayHit::Kind::unknown;
+      hit.voxel = data.voxel_index(primitive, offset);
+    }
+  }
+  return hits;
+}
+
+std::size_t GainEvaluator::rays_per_pose() const noexcept { return impl_->table.ray_count(); }
+int GainEvaluator::num_threads() const noexcept { return impl_->pool.num_threads(); }
+double GainEvaluator::prior_sigma() const noexcept { return impl_->prior_sigma; }
+const VoxelScene& GainEvaluator::scene() const noexcept { return *impl_->scene; }
+
+std::vector<std::size_t> best_indices(std::span<const ViewGain> results, std::size_t k) {
+  std::vector<std::size_t> indices(results.size());
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  k = std::min(k, indices.size());
+  const auto better = [&](std::size_t a, std::size_t b) {
+    const double ga = results[a].gain, gb = results[b].gain;
+    if (std::isnan(ga) || std::isnan(gb)) {
+      return std::isnan(ga) == std::isnan(gb) ? a < b : std::isnan(gb);
+    }
+    return ga != gb ? ga > gb : a < b;
+  };
+  std::partial_sort(indices.begin(), indices.begin() + static_cast<std::ptrdiff_t>(k), indices.end(),
+                    better);
+  indices.resize(k);
+  return indices;
+}
+
+}  // namespace viewgain

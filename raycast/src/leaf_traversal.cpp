@@ -1,0 +1,377 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Tracing a packet of rays through the 512-bit masks of 8³ leaves, compiled once for each instruction
+// set. Only + - × / min max and comparisons are used, so each set takes the same steps bit for bit.
+//
+// All plane distances are (plane - origin) * inverse with the plane an exact integer. Whoever asks for
+// the same plane gets the same number, so leaves that share a face agree on which side of it a ray is at
+// any t, and no ray slips between them.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "leaf_traversal.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+//
+#include <hwy/highway.h>
+
+#include "scene_data.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace viewgain::detail::HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// At most 16 lanes: a tile. On x86 this is 16, 8 or 4, a constant.
+using DF = hn::CappedTag<float, kTileRays>;
+using DU = hn::RebindToUnsigned<DF>;
+using DI = hn::RebindToSigned<DF>;
+constexpr DF df;
+constexpr DU du;
+constexpr DI di;
+using VF = hn::Vec<DF>;
+using VU = hn::Vec<DU>;
+using MF = hn::Mask<DF>;
+constexpr int kWidth = static_cast<int>(hn::MaxLanes(df));
+
+// What a packet's callbacks need to know; the tile's lanes [lane0, lane0 + kWidth) are the packet's.
+struct PacketQuery : RayQuery {
+  PacketQuery() : RayQuery(true) {}
+  const VoxelScene::Data* scene = nullptr;
+  const PoseFrame* frame = nullptr;
+  RayTile* tile = nullptr;
+  int lane0 = 0;
+};
+
+// Entry and exit of a box [lo, hi) along the rays; lo and hi are relative to the origin.
+struct Interval {
+  VF enter, exit;
+};
+HWY_INLINE Interval intersect_slabs(VF ix, VF iy, VF iz, const float* lo, const float* hi,
+                                    float min_range) {
+  const VF x0 = hn::Mul(hn::Set(df, lo[0]), ix), x1 = hn::Mul(hn::Set(df, hi[0]), ix);
+  const VF y0 = hn::Mul(hn::Set(df, lo[1]), iy), y1 = hn::Mul(hn::Set(df, hi[1]), iy);
+  const VF z0 = hn::Mul(hn::Set(df, lo[2]), iz), z1 = hn::Mul(hn::Set(df, hi[2]), iz);
+  const VF enter =
+      hn::Max(hn::Max(hn::Set(df, min_range), hn::Min(x0, x1)), hn::Max(hn::Min(y0, y1), hn::Min(z0, z1)));
+  const VF exit = hn::Min(hn::Max(x0, x1), hn::Min(hn::Max(y0, y1), hn::Max(z0, z1)));
+  return {enter, exit};
+}
+
+// Which lanes may take a hit at `enter` from `primitive`: nearer than what they have, or as near and of
+// a lower number, so that the order in which the BVH is walked does not show.
+HWY_INLINE MF is_nearer(VF enter, VF range, VU held, std::uint32_t primitive) {
+  const MF lower = hn::RebindMask(
+      df, hn::Lt(hn::Set(di, static_cast<std::int32_t>(primitive)), hn::BitCast(di, held)));
+  return hn::Or(hn::Lt(enter, range), hn::And(hn::Eq(enter, range), lower));
+}
+
+// Bits of the mask for voxel offsets: the words that hold them.
+HWY_INLINE VU mask_words(const TraceMask& mask, VU offset) {
+  const VU word = hn::ShiftRight<5>(offset);
+#if HWY_TARGET == HWY_AVX3
+  return hn::TableLookupLanes(hn::Load(du, mask.words.data()), hn::IndicesFromVec(du, word));
+#else
+  return hn::GatherIndex(du, mask.words.data(), hn::BitCast(di, word));
+#endif
+}
+
+// Walks the voxels of a leaf along the active rays and notes the first one whose bit is set, if it is
+// nearer than what the ray has. Returns the lanes that took a hit; `range` is updated.
+HWY_INLINE MF walk_leaf(const VoxelScene::Data& scene, const PoseFrame& frame, RayTile& tile, int lane0,
+                        std::uint32_t leaf, MF active, VF& range) {
+  const PrimitiveBox& box = scene.boxes[leaf];
+  const float lo[3] = {box.min[0] - frame.origin[0], box.min[1] - frame.origin[1],
+                       box.min[2] - frame.origin[2]};
+  const float hi[3] = {box.max[0] - frame.origin[0], box.max[1] - frame.origin[1],
+                       box.max[2] - frame.origin[2]};
+  const VF ix = hn::Load(df, tile.ix + lane0), iy = hn::Load(df, tile.iy + lane0),
+           iz = hn::Load(df, tile.iz + lane0);
+  const Interval slab = intersect_slabs(ix, iy, iz, lo, hi, frame.min_range);
+  active = hn::And(active, hn::And(hn::Lt(slab.enter, slab.exit), hn::Le(slab.enter, range)));
+  if (hn::AllFalse(df, active)) return active;
+
+  // The voxel at the entry point; rounding may name a neighbour, whose visit then has no length.
+  const VF zero = hn::Zero(df), one = hn::Set(df, 1.0F);
+  VF t = slab.enter;
+  const auto cell = [&](const float* direction, std::size_t axis) HWY_ATTR {
+    const VF p = hn::Sub(hn::Mul(hn::Load(df, direction + lane0), t), hn::Set(df, lo[axis]));
+    const VF last = hn::Set(df, (box.max[axis] - box.min[axis]) - 1.0F);
+    return hn::ConvertTo(di, hn::Min(hn::Max(p, zero), last));
+  };
+  const auto cx = cell(tile.dx, 0), cy = cell(tile.dy, 1), cz = cell(tile.dz, 2);
+  VU offset = hn::Add(
+      hn::Set(du, box.first_offset),
+      hn::BitCast(du, hn::Or(hn::ShiftLeft<6>(cx), hn::Or(hn::ShiftLeft<3>(cy), cz))));
+
+  // The plane by which each axis is left next, and what stepping over it changes.
+  const VF minus_one = hn::Set(df, -1.0F);
+  const MF backward_x = hn::Lt(ix, zero), backward_y = hn::Lt(iy, zero), backward_z = hn::Lt(iz, zero);
+  const VF step_x = hn::IfThenElse(backward_x, minus_one, one);
+  const VF step_y = hn::IfThenElse(backward_y, minus_one, one);
+  const VF step_z = hn::IfThenElse(backward_z, minus_one, one);
+  const VU offset_x = hn::BitCast(du, hn::IfThenElse(hn::RebindMask(di, backward_x), hn::Set(di, -64),
+                                                     hn::Set(di, 64)));
+  const VU offset_y = hn::BitCast(
+      du, hn::IfThenElse(hn::RebindMask(di, backward_y), hn::Set(di, -8), hn::Set(di, 8)));
+  const VU offset_z = hn::BitCast(
+      du, hn::IfThenElse(hn::RebindMask(di, backward_z), hn::Set(di, -1), hn::Set(di, 1)));
+  const VF ox = hn::Set(df, frame.origin[0]), oy = hn::Set(df, frame.origin[1]),
+           oz = hn::Set(df, frame.origin[2]);
+  const auto first_plane = [&](auto c, VF step, float low) HWY_ATTR {
+    return hn::Add(hn::Add(hn::Set(df, low), hn::ConvertTo(df, c)), hn::Max(step, zero));
+  };
+  VF px = first_plane(cx, step_x, box.min[0]), py = first_plane(cy, step_y, box.min[1]),
+     pz = first_plane(cz, step_z, box.min[2]);
+  VF tx = hn::Mul(hn::Sub(px, ox), ix), ty = hn::Mul(hn::Sub(py, oy), iy),
+     tz = hn::Mul(hn::Sub(pz, oz), iz);
+
+  const TraceMask& mask = scene.masks[leaf];
+  const VU bit = hn::Set(du, 1U), low_five = hn::Set(du, 31U);
+  MF hits = hn::MaskFromVec(zero);
+  while (true) {
+    const VF next = hn::Min(tx, hn::Min(ty, tz));
+    const VU word = mask_words(mask, offset);
+    const MF solid = hn::RebindMask(df, hn::TestBit(word, hn::Shl(bit, hn::And(offset, low_five))));
+    // A visit of no length does not count.
+    MF found = hn::And(hn::And(active, solid), hn::Lt(t, next));
+    if (!hn::AllFalse(df, found)) {
+      active = hn::AndNot(found, active);
+      const VU held = hn::Load(du, tile.primitive + lane0);
+      found = hn::And(found, is_nearer(t, range, held, leaf));
+      hits = hn::Or(hits, found);
+      range = hn::IfThenElse(found, t, range);
+      const auto found_u = hn::RebindMask(du, found);
+      hn::Store(hn::IfThenElse(found_u, hn::Set(du, leaf), held), du, tile.primitive + lane0);
+      hn::BlendedStore(offset, found_u, du, tile.offset + lane0);
+      if (hn::AllFalse(df, active)) break;
+    }
+    // Axes whose planes are met at the same t step together, over the edge or the corner.
+    const MF over_x = hn::Le(tx, next), over_y = hn::Le(ty, next), over_z = hn::Le(tz, next);
+    t = hn::Max(t, next);
+    // At the plane where the box ends t equals slab.exit exactly, so no index leaves it.
+    active = hn::And(active, hn::Lt(t, slab.exit));
+    if (hn::AllFalse(df, active)) break;
+    px = hn::Add(px, hn::IfThenElseZero(over_x, step_x));
+    py = hn::Add(py, hn::IfThenElseZero(over_y, step_y));
+    pz = hn::Add(pz, hn::IfThenElseZero(over_z, step_z));
+    offset = hn::Add(offset, hn::IfThenElseZero(hn::RebindMask(du, over_x), offset_x));
+    offset = hn::Add(offset, hn::IfThenElseZero(hn::RebindMask(du, over_y), offset_y));
+    offset = hn::Add(offset, hn::IfThenElseZero(hn::RebindMask(du, over_z), offset_z));
+    tx = hn::Mul(hn::Sub(px, ox), ix);
+    ty = hn::Mul(hn::Sub(py, oy), iy);
+    tz = hn::Mul(hn::Sub(pz, oz), iz);
+  }
+  return hits;
+}
+
+// The entry into a box of unknown voxels.
+HWY_INLINE MF enter_box(const VoxelScene::Data& scene, const PoseFrame& frame, RayTile& tile, int lane0,
+                        std::uint32_t primitive, MF active, VF& range) {
+  const PrimitiveBox& box = scene.boxes[primitive];
+  const float lo[3] = {box.min[0] - frame.origin[0], box.min[1] - frame.origin[1],
+                       box.min[2] - frame.origin[2]};
+  const float hi[3] = {box.max[0] - frame.origin[0], box.max[1] - frame.origin[1],
+                       box.max[2] - frame.origin[2]};
+  const Interval slab = intersect_slabs(hn::Load(df, tile.ix + lane0), hn::Load(df, tile.iy + lane0),
+                                        hn::Load(df, tile.iz + lane0), lo, hi, frame.min_range);
+  const VU held = hn::Load(du, tile.primitive + lane0);
+  const MF hits = hn::And(active, hn::And(hn::Lt(slab.enter, slab.exit),
+                                          is_nearer(slab.enter, range, held, primitive)));
+  if (hn::AllFalse(df, hits)) return hits;
+  const auto cell = [&](const float* direction, std::size_t axis) HWY_ATTR {
+    const VF p =
+        hn::Sub(hn::Mul(hn::Load(df, direction + lane0), slab.enter), hn::Set(df, lo[axis]));
+    const VF last = hn::Set(df, (box.max[axis] - box.min[axis]) - 1.0F);
+    return hn::BitCast(du, hn::ConvertTo(di, hn::Min(hn::Max(p, hn::Zero(df)), last)));
+  };
+  const int bits = primitive < scene.block_count ? kBlockBits : kBoxBits;
+  const VU offset = hn::Or(hn::ShiftLeftSame(cell(tile.dx, 0), 2 * bits),
+                           hn::Or(hn::ShiftLeftSame(cell(tile.dy, 1), bits), cell(tile.dz, 2)));
+  range = hn::IfThenElse(hits, slab.enter, range);
+  const auto hits_u = hn::RebindMask(du, hits);
+  hn::Store(hn::IfThenElse(hits_u, hn::Set(du, primitive), held), du, tile.primitive + lane0);
+  hn::BlendedStore(offset, hits_u, du, tile.offset + lane0);
+  return hits;
+}
+
+// Embree's callback. Almost always the packet is the one that was sent, N = kWidth with lanes in order;
+// else each ray is looked up by the lane in its id and goes through the same kernel alone.
+template <typename Kernel>
+HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint32_t primitive,
+                          Kernel kernel) {
+  PacketQuery& query = query_of<PacketQuery>(args);
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
+  if (args->N == static_cast<unsigned>(kWidth)) {
+    float* tfar = &RTCRayN_tfar(rays, args->N, 0);
+    VF range = hn::LoadU(df, tfar);
+    const MF active = hn::RebindMask(df, hn::Ne(hn::LoadU(di, args->valid), hn::Zero(di)));
+    const MF hits = kernel(*query.scene, *query.frame, *query.tile, query.lane0, primitive, active, range);
+    if (hn::AllFalse(df, hits)) return;
+    hn::StoreU(range, df, tfar);
+    hn::BlendedStore(hn::Set(du, args->geomID), hn::RebindMask(du, hits), du,
+                     &RTCHitN_geomID(hit, args->N, 0));
+    return;
+  }
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    const unsigned lane = RTCRayN_id(rays, args->N, i);
+    VF range = hn::Set(df, RTCRayN_tfar(rays, args->N, i));
+    const MF active = hn::RebindMask(df, hn::Eq(hn::Iota(du, 0U), hn::Set(du, lane)));
+    const MF hits = kernel(*query.scene, *query.frame, *query.tile, query.lane0, primitive, active, range);
+    if (hn::AllFalse(df, hits)) continue;
+    HWY_ALIGN float ranges[kWidth];
+    hn::Store(range, df, ranges);
+    RTCRayN_tfar(rays, args->N, i) = ranges[lane];
+    RTCHitN_geomID(hit, args->N, i) = args->geomID;
+  }
+}
+
+void intersect_leaf(const RTCIntersectFunctionNArguments* args) {
+  intersect(args, args->primID,
+            [](auto&&... a) HWY_ATTR { return walk_leaf(static_cast<decltype(a)>(a)...); });
+}
+
+void intersect_box(const RTCIntersectFunctionNArguments* args) {
+  const PacketQuery& query = query_of<PacketQuery>(args);
+  intersect(args, static_cast<std::uint32_t>(query.scene->leaf_count) + args->primID,
+            [](auto&&... a) HWY_ATTR { return enter_box(static_cast<decltype(a)>(a)...); });
+}
+
+// Directions of a tile in the grid's frame and their inverses.
+void set_up(const TileTable& table, const PoseFrame& frame, std::size_t tile, RayTile& out) {
+  const float* table_x = table.directions.data() + tile * 3 * kTileRays;
+  const float* table_y = table_x + kTileRays;
+  const float* table_z = table_y + kTileRays;
+  const VF tiny = hn::Set(df, 1e-20F);
+  for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
+    const VF x = hn::LoadU(df, table_x + lane0), y = hn::LoadU(df, table_y + lane0),
+             z = hn::LoadU(df, table_z + lane0);
+    const auto row = [&](std::size_t r, float* direction, float* inverse) HWY_ATTR {
+      const VF d = hn::Add(hn::Add(hn::Mul(hn::Set(df, frame.rotation[3 * r]), x),
+                                   hn::Mul(hn::Set(df, frame.rotation[3 * r + 1]), y)),
+                           hn::Mul(hn::Set(df, frame.rotation[3 * r + 2]), z));
+      // Zero counts as a small positive number: 0 * inverse stays 0, and a ray that runs in a face
+      // belongs to the larger index.
+      const VF safe = hn::IfThenElse(hn::Lt(hn::Abs(d), tiny), tiny, d);
+      hn::Store(safe, df, direction + lane0);
+      hn::Store(hn::Div(hn::Set(df, 1.0F), safe), df, inverse + lane0);
+    };
+    row(0, out.dx, out.ix);
+    row(1, out.dy, out.iy);
+    row(2, out.dz, out.iz);
+    hn::Store(hn::Set(df, frame.max_range), df, out.range + lane0);
+    hn::Store(hn::Set(du, kNoPrimitive), du, out.primitive + lane0);
+  }
+  out.valid = table.valid[tile];
+  out.hit = 0;
+  out.blocked = 0;
+}
+
+#if HWY_TARGET == HWY_AVX3
+using Packet = RTCRayHit16;
+constexpr auto intersect_packet = intersect16;
+#elif HWY_TARGET == HWY_AVX2
+using Packet = RTCRayHit8;
+constexpr auto intersect_packet = intersect8;
+#else
+using Packet = RTCRayHit4;
+constexpr auto intersect_packet = intersect4;
+#endif
+static_assert(sizeof(Packet::ray.tfar) == kWidth * sizeof(float));
+
+void trace(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
+           std::size_t tile, RayTile& out) {
+  set_up(table, frame, tile, out);
+  PacketQuery query;
+  query.scene = &scene;
+  query.frame = &frame;
+  query.tile = &out;
+  const VU none = hn::Set(du, RTC_INVALID_GEOMETRY_ID);
+  for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
+    query.lane0 = lane0;
+    Packet packet;
+    alignas(64) int valid[kWidth];
+    const VU lane_bits = hn::Shl(hn::Set(du, 1U), hn::Iota(du, static_cast<std::uint32_t>(lane0)));
+    const auto usable = hn::TestBit(hn::Set(du, out.valid), lane_bits);
+    hn::Store(hn::BitCast(di, hn::VecFromMask(du, usable)), di, valid);
+    hn::Store(hn::Set(df, frame.origin[0]), df, packet.ray.org_x);
+    hn::Store(hn::Set(df, frame.origin[1]), df, packet.ray.org_y);
+    hn::Store(hn::Set(df, frame.origin[2]), df, packet.ray.org_z);
+    hn::Store(hn::Load(df, out.dx + lane0), df, packet.ray.dir_x);
+    hn::Store(hn::Load(df, out.dy + lane0), df, packet.ray.dir_y);
+    hn::Store(hn::Load(df, out.dz + lane0), df, packet.ray.dir_z);
+    // Obstacles block at any range; voxels count from min_range on, which the kernels see to.
+    hn::Store(hn::Set(df, scene.has_obstacles ? 0.0F : frame.min_range), df, packet.ray.tnear);
+    hn::Store(hn::Set(df, frame.max_range), df, packet.ray.tfar);
+    hn::Store(hn::Zero(df), df, packet.ray.time);
+    hn::Store(hn::Set(du, 0xFFFFFFFFU), du, packet.ray.mask);
+    hn::Store(hn::Iota(du, 0U), du, packet.ray.id);
+    hn::Store(hn::Zero(du), du, packet.ray.flags);
+    hn::Store(none, du, packet.hit.geomID);
+    hn::Store(none, du, packet.hit.instID[0]);
+    intersect_packet(valid, scene.scene.get(), &packet, &query);
+
+    const VU geometry = hn::Load(du, packet.hit.geomID);
+    const auto ended = hn::And(usable, hn::Ne(geometry, none));
+    const auto in_obstacle = hn::Eq(geometry, hn::Set(du, kObstacleGeometry));
+    const auto in_voxel = hn::AndNot(in_obstacle, ended);
+    hn::Store(hn::Load(df, packet.ray.tfar), df, out.range + lane0);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(du, in_voxel, bits);
+    out.hit |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U) << lane0;
+    std::uint8_t blocked[8] = {};
+    hn::StoreMaskBits(du, in_obstacle, blocked);
+    out.blocked |=
+        (static_cast<std::uint32_t>(blocked[0]) | static_cast<std::uint32_t>(blocked[1]) << 8U) << lane0;
+  }
+}
+
+void replay(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
+            std::size_t tile, std::span<const std::uint32_t> primitives, RayTile& out) {
+  set_up(table, frame, tile, out);
+  for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
+    VF range = hn::Set(df, frame.max_range);
+    const VU lane_bits = hn::Shl(hn::Set(du, 1U), hn::Iota(du, static_cast<std::uint32_t>(lane0)));
+    const MF active = hn::RebindMask(df, hn::TestBit(hn::Set(du, out.valid), lane_bits));
+    MF hits = hn::MaskFromVec(hn::Zero(df));
+    for (const std::uint32_t primitive : primitives) {
+      const MF more = primitive < scene.leaf_count
+                          ? walk_leaf(scene, frame, out, lane0, primitive, active, range)
+                          : enter_box(scene, frame, out, lane0, primitive, active, range);
+      hits = hn::Or(hits, more);
+    }
+    hn::Store(range, df, out.range + lane0);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(df, hits, bits);
+    out.hit |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U) << lane0;
+  }
+}
+
+}  // namespace
+
+const TraceKernels& kernels(Isa isa) {
+  static const TraceKernels table{isa, kWidth, intersect_leaf, intersect_box, trace, replay};
+  return table;
+}
+
+}  // namespace viewgain::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace viewgain::detail {
+
+const TraceKernels& trace_kernels(Isa isa) {
+  switch (isa) {
+#if HWY_TARGETS & HWY_AVX3
+    case Isa::avx512: return N_AVX3::kernels(isa);
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Isa::avx2: return N_AVX2::kernels(isa);
+#endif
+    default: return HWY_STATIC_DISPATCH(kernels)(isa);
+  }
+}
+
+}  // namespace viewgain::detail
+#endif

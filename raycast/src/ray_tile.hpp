@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "viewgain/core/camera.hpp"
+#include "viewgain/core/pose.hpp"
+
+namespace viewgain::detail {
+
+/// Rays are traced in tiles of 4×4 pixels, whatever the packet width of the CPU, so that every
+/// instruction set meets the hits in the same order.
+inline constexpr int kTileEdge = 4;
+inline constexpr int kTileRays = kTileEdge * kTileEdge;
+
+/// Above every primitive's number, also when compared as a signed one.
+inline constexpr std::uint32_t kNoPrimitive = 0x7FFFFFFFU;
+
+/// Unit directions of a sensor's (strided) pixels in the camera frame, tile by tile: 16 x, 16 y, 16 z.
+/// Lanes beyond the image's edge repeat a ray and are not valid.
+struct TileTable {
+  int columns = 0;  ///< rays a row
+  int rows = 0;
+  std::size_t tile_count = 0;
+  std::vector<float> directions;          ///< 48 a tile
+  std::vector<std::uint16_t> valid;       ///< one bit a lane
+  std::vector<std::uint32_t> first_lane;  ///< ray index (row by row) of lane 0 of each tile
+
+  TileTable(const PinholeCamera& camera, int pixel_stride);
+
+  [[nodiscard]] std::size_t ray_count() const {
+    return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  }
+  /// Ray index of a valid lane.
+  [[nodiscard]] std::size_t ray_index(std::size_t tile, int lane) const {
+    return first_lane[tile] + static_cast<std::size_t>(lane / kTileEdge) *
+                                  static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(lane % kTileEdge);
+  }
+};
+
+/// A camera pose as the tracer sees it. Lengths are in voxels, coordinates relative to the lowest corner
+/// of the workspace, so that single precision serves the workspace and not its distance from an origin.
+struct PoseFrame {
+  std::array<float, 3> origin{};    ///< camera centre
+  std::array<float, 9> rotation{};  ///< R_grid_camera, row by row
+  float min_range = 0;
+  float max_range = 0;
+};
+
+/// One tile of rays and where they end.
+struct alignas(64) RayTile {
+  float dx[kTileRays], dy[kTileRays], dz[kTileRays];        ///< unit directions, grid frame
+  float ix[kTileRays], iy[kTileRays], iz[kTileRays];        ///< 1 / direction; zero counts as 1e-20
+  float range[kTileRays];                                   ///< where the ray ends [voxels]
+  std::uint32_t primitive[kTileRays];                       ///< leaf or box, kNoPrimitive: no voxel
+  std::uint32_t offset[kTileRays];                          ///< voxel in the leaf; undefined for boxes
+  std::uint32_t valid = 0;                                  ///< one bit a lane
+  std::uint32_t hit = 0;                                    ///< lanes that end in a voxel
+  std::uint32_t blocked = 0;                                ///< lanes that end at an obstacle
+};
+
+}  // namespace viewgain::detail

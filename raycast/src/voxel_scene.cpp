@@ -1,0 +1,296 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/raycast/voxel_scene.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "scene_data.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+namespace {
+
+using detail::PrimitiveBox;
+
+constexpr std::size_t kMaxPrimitives = std::size_t{1} << 23U;
+
+// Embree's own arithmetic may put a ray on the wrong side of a box by a few ulps of the distance; boxes
+// that are larger by this much [voxels] are met all the same. The kernels decide exactly.
+constexpr float kBoundsMargin = 0.02F;
+
+void check(const Obstacles& obstacles) {
+  for (const Box& box : obstacles.boxes) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis]) ||
+          box.min[axis] >= box.max[axis]) {
+        throw Error(ErrorCode::invalid_argument, "an obstacle box is inside out or not finite");
+      }
+    }
+  }
+  for (const TriangleMesh& mesh : obstacles.meshes) {
+    for (const auto& vertex : mesh.vertices) {
+      for (const double c : vertex) {
+        if (!std::isfinite(c)) {
+          throw Error(ErrorCode::invalid_argument, "an obstacle has a vertex that is not finite");
+        }
+      }
+    }
+    for (const auto& triangle : mesh.triangles) {
+      for (const std::uint32_t index : triangle) {
+        if (index >= mesh.vertices.size()) {
+          throw Error(ErrorCode::invalid_argument,
+                      "an obstacle's triangle refers to vertex " + std::to_string(index) + " of " +
+                          std::to_string(mesh.vertices.size()));
+        }
+      }
+    }
+  }
+}
+
+// A box's twelve triangles, added to a mesh.
+void append_box(const Box& box, TriangleMesh& mesh) {
+  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    mesh.vertices.push_back({(corner & 1U) != 0 ? box.max[0] : box.min[0],
+                             (corner & 2U) != 0 ? box.max[1] : box.min[1],
+                             (corner & 4U) != 0 ? box.max[2] : box.min[2]});
+  }
+  constexpr std::array<std::array<std::uint32_t, 4>, 6> kFaces{
+      {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}}};
+  for (const auto& f : kFaces) {
+    mesh.triangles.push_back({base + f[0], base + f[1], base + f[2]});
+    mesh.triangles.push_back({base + f[0], base + f[2], base + f[3]});
+  }
+}
+
+// The tightest box round the set bits of a leaf.
+PrimitiveBox tight_box(const LeafMask& mask, const std::array<float, 3>& origin) {
+  unsigned x_min = 8, x_max = 0;
+  std::uint64_t any = 0;
+  for (unsigned x = 0; x < 8; ++x) {
+    if (mask[x] == 0) continue;
+    x_min = std::min(x_min, x);
+    x_max = x;
+    any |= mask[x];
+  }
+  // Bits of `any` are y << 3 | z: fold the bytes for z, take first and last byte for y.
+  const auto y_min = static_cast<unsigned>(std::countr_zero(any)) / 8U;
+  const auto y_max = 7U - static_cast<unsigned>(std::countl_zero(any)) / 8U;
+  std::uint64_t fold = any | any >> 32U;
+  fold |= fold >> 16U;
+  const auto z_bits = static_cast<std::uint8_t>(fold | fold >> 8U);
+  const auto z_min = static_cast<unsigned>(std::countr_zero(z_bits));
+  const auto z_max = 7U - static_cast<unsigned>(std::countl_zero(z_bits));
+  return {{origin[0] + static_cast<float>(x_min), origin[1] + static_cast<float>(y_min),
+           origin[2] + static_cast<float>(z_min)},
+          {origin[0] + static_cast<float>(x_max + 1U), origin[1] + static_cast<float>(y_max + 1U),
+           origin[2] + static_cast<float>(z_max + 1U)},
+          x_min << 6U | y_min << 3U | z_min};
+}
+
+std::array<float, 3> relative(const Index3& voxel, const Index3& base) {
+  return {static_cast<float>(voxel.x - base.x), static_cast<float>(voxel.y - base.y),
+          static_cast<float>(voxel.z - base.z)};
+}
+
+// Cuts a box into pieces whose offsets fit.
+void append_pieces(const Index3& min, const Index3& max, const Index3& base,
+                   std::vector<PrimitiveBox>& out) {
+  constexpr std::int32_t kEdge = detail::kMaxBoxEdge;
+  for (std::int32_t x = min.x; x < max.x; x += kEdge) {
+    for (std::int32_t y = min.y; y < max.y; y += kEdge) {
+      for (std::int32_t z = min.z; z < max.z; z += kEdge) {
+        const auto low = relative({x, y, z}, base);
+        const auto high = relative(
+            {std::min(x + kEdge, max.x), std::min(y + kEdge, max.y), std::min(z + kEdge, max.z)}, base);
+        out.push_back({{low[0], low[1], low[2]}, {high[0], high[1], high[2]}, 0});
+      }
+    }
+  }
+}
+
+bool is_whole_block(const SnapshotTile& tile) {
+  const auto aligned = [](std::int32_t min, std::int32_t max) { return max - min == 8 && (min & 7) == 0; };
+  return aligned(tile.min.x, tile.max.x) && aligned(tile.min.y, tile.max.y) &&
+         aligned(tile.min.z, tile.max.z);
+}
+
+bool is_wholly_unknown(const SnapshotLeaf& leaf) {
+  return std::all_of(leaf.non_free.begin(), leaf.non_free.end(),
+                     [](std::uint64_t word) { return word == ~std::uint64_t{0}; }) &&
+         std::all_of(leaf.occupied.begin(), leaf.occupied.end(),
+                     [](std::uint64_t word) { return word == 0; });
+}
+
+void gather(VoxelScene::Data& data) {
+  const GridSnapshot& snapshot = data.snapshot;
+  const Index3& base = snapshot.min_index;
+  std::vector<Index3> blocks;
+  for (std::size_t i = 0; i < snapshot.leaves.size(); ++i) {
+    const SnapshotLeaf& leaf = snapshot.leaves[i];
+    const Index3& origin = leaf.origin;
+    if (is_wholly_unknown(leaf)) {
+      blocks.push_back(origin);
+      continue;
+    }
+    detail::TraceMask mask;
+    static_assert(sizeof(mask.words) == sizeof(leaf.non_free) &&
+                  std::endian::native == std::endian::little);
+    std::memcpy(mask.words.data(), leaf.non_free.data(), sizeof(mask.words));
+    const std::uint64_t block = data.block_of(origin.x >> 3, origin.y >> 3, origin.z >> 3);
+    data.masks.push_back(mask);
+    data.boxes.push_back(tight_box(leaf.non_free, relative(origin, base)));
+    data.block_keys.push_back(block << 9U);
+    data.leaf_source.push_back(static_cast<std::uint32_t>(i));
+    data.has_occupied.push_back(leaf.occupied != LeafMask{} ? 1 : 0);
+    data.leaf_by_block.emplace_back(block, static_cast<std::uint32_t>(i));
+  }
+  std::sort(data.leaf_by_block.begin(), data.leaf_by_block.end());
+  data.leaf_count = data.masks.size();
+
+  std::vector<PrimitiveBox> larger;
+  for (const SnapshotTile& tile : snapshot.tiles) {
+    if (is_whole_block(tile)) {
+      blocks.push_back(tile.min);
+    } else {
+      append_pieces(tile.min, tile.max, base, larger);
+    }
+  }
+  for (const Index3& origin : blocks) {
+    const auto low = relative(origin, base);
+    data.boxes.push_back(
+        {{low[0], low[1], low[2]}, {low[0] + 8.0F, low[1] + 8.0F, low[2] + 8.0F}, 0});
+    data.block_keys.push_back(data.block_of(origin.x >> 3, origin.y >> 3, origin.z >> 3) << 9U);
+  }
+  data.block_count = data.boxes.size();
+  data.boxes.insert(data.boxes.end(), larger.begin(), larger.end());
+  if (data.boxes.size() > kMaxPrimitives) {
+    throw Error(ErrorCode::capacity, "the map has " + std::to_string(data.boxes.size()) +
+                                         " leaves and tiles that are not free; a scene holds " +
+                                         std::to_string(kMaxPrimitives));
+  }
+}
+
+void attach_boxes(const VoxelScene::Data& data, unsigned id, std::size_t first, std::size_t count,
+                  RTCIntersectFunctionN intersect) {
+  RTCGeometry geometry = rtcNewGeometry(data.device.get(), RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
+  rtcSetGeometryUserData(geometry, const_cast<PrimitiveBox*>(data.boxes.data() + first));
+  rtcSetGeometryBoundsFunction(
+      geometry,
+      [](const RTCBoundsFunctionArguments* args) {
+        const PrimitiveBox& box =
+            static_cast<const PrimitiveBox*>(args->geometryUserPtr)[args->primID];
+        RTCBounds& out = *args->bounds_o;
+        out.lower_x = box.min[0] - kBoundsMargin;
+        out.lower_y = box.min[1] - kBoundsMargin;
+        out.lower_z = box.min[2] - kBoundsMargin;
+        out.upper_x = box.max[0] + kBoundsMargin;
+        out.upper_y = box.max[1] + kBoundsMargin;
+        out.upper_z = box.max[2] + kBoundsMargin;
+      },
+      nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect);
+  rtcSetGeometryMask(geometry, 0xFFFFFFFFU);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(data.scene.get(), geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+// Obstacles in the scene's coordinates: voxels from the workspace's lowest corner.
+void attach_obstacles(const VoxelScene::Data& data, const Obstacles& obstacles) {
+  const Pose T_grid_world = data.snapshot.T_world_grid.inverse();
+  const Eigen::Vector3d base(data.snapshot.min_index.x, data.snapshot.min_index.y,
+                             data.snapshot.min_index.z);
+  TriangleMesh boxes;
+  for (const Box& box : obstacles.boxes) append_box(box, boxes);
+  std::vector<float> vertices;
+  std::vector<unsigned> indices;
+  const auto append = [&](const TriangleMesh& mesh) {
+    const auto first = static_cast<std::uint32_t>(vertices.size() / 3);
+    for (const auto& v : mesh.vertices) {
+      const Eigen::Vector3d p_world(v[0], v[1], v[2]);
+      const Eigen::Vector3d p = (T_grid_world * p_world) / data.snapshot.voxel_size - base;
+      for (const double c : p) vertices.push_back(static_cast<float>(c));
+    }
+    for (const auto& triangle : mesh.triangles) {
+      for (const std::uint32_t index : triangle) indices.push_back(first + index);
+    }
+  };
+  append(boxes);
+  for (const TriangleMesh& mesh : obstacles.meshes) append(mesh);
+  if (indices.empty()) return;
+  detail::attach_triangles(data.device.get(), data.scene.get(), detail::kObstacleGeometry,
+                           vertices.data(), vertices.size() / 3, indices.data(), indices.size() / 3);
+}
+
+// The best kernels for which Embree has packets of the same width.
+void choose_kernels(VoxelScene::Data& data, int num_threads) {
+  const Isa best = select_isa();
+  for (const Isa isa : supported_isas()) {
+    if (isa > best) continue;
+    data.device = detail::make_device(isa, num_threads);
+    const int width = detail::trace_kernels(isa).width;
+    const RTCDeviceProperty native = width == 16  ? RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED
+                                     : width == 8 ? RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED
+                                                  : RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED;
+    if (rtcGetDeviceProperty(data.device.get(), native) != 0) {
+      data.kernels = &detail::trace_kernels(isa);
+      return;
+    }
+  }
+  throw Error(ErrorCode::backend, "this build of Embree has no ray packets");
+}
+
+}  // namespace
+
+std::shared_ptr<const VoxelScene> VoxelScene::build(const BeliefGrid& grid, const Obstacles& obstacles,
+                                                    const ExecConfig& exec) {
+  return build(grid.snapshot(), obstacles, exec);
+}
+
+std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot, const Obstacles& obstacles,
+                                                    const ExecConfig& exec) {
+  check(obstacles);
+  auto data = std::make_unique<Data>();
+  data->snapshot = std::move(snapshot);
+  gather(*data);
+  choose_kernels(*data, exec.num_threads);
+  data->has_obstacles = !obstacles.boxes.empty() || !obstacles.meshes.empty();
+
+  data->scene.reset(rtcNewScene(data->device.get()));
+  rtcSetSceneBuildQuality(data->scene.get(), RTC_BUILD_QUALITY_HIGH);
+  attach_boxes(*data, detail::kLeafGeometry, 0, data->leaf_count, data->kernels->intersect_leaf);
+  attach_boxes(*data, detail::kBoxGeometry, data->leaf_count, data->boxes.size() - data->leaf_count,
+               data->kernels->intersect_box);
+  attach_obstacles(*data, obstacles);
+  rtcCommitScene(data->scene.get());
+  detail::check_device(data->device.get(), "building the voxel scene");
+  return std::shared_ptr<const VoxelScene>(new VoxelScene(std::move(data)));
+}
+
+VoxelScene::VoxelScene(std::unique_ptr<const Data> data) : data_(std::move(data)) {}
+VoxelScene::~VoxelScene() = default;
+
+const GridSnapshot& VoxelScene::snapshot() const noexcept { return data_->snapshot; }
+std::string_view VoxelScene::isa() const noexcept { return isa_name(data_->kernels->isa); }
+std::size_t VoxelScene::primitive_count() const noexcept { return data_->boxes.size(); }
+
+std::uint64_t VoxelScene::bytes() const noexcept {
+  return data_->masks.size() * sizeof(detail::TraceMask) + data_->boxes.size() * sizeof(PrimitiveBox) +
+         data_->block_keys.size() * sizeof(std::uint64_t) +
+         data_->leaf_source.size() * (sizeof(std::uint32_t) + sizeof(std::uint8_t)) +
+         data_->leaf_by_block.size() * sizeof(data_->leaf_by_block.front());
+}
+
+std::vector<std::string> available_isas() {
+  std::vector<std::string> names;
+  for (const Isa isa : supported_isas()) names.emplace_back(isa_name(isa));
+  return names;
+}
+
+}  // namespace viewgain

@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "frames_dir.hpp"
+#include "png_io.hpp"
+#include "program_runner.hpp"
+#include "sensor_toml.hpp"
+#include "values.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::app {
+namespace {
+
+class Files : public test::ProgramTest {
+ protected:
+  // The message of the Error that reading `name` throws.
+  std::string sensor_error(const std::string& text) const {
+    write("bad.toml", text);
+    try {
+      (void)read_sensor_toml(dir / "bad.toml");
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::format);
+      EXPECT_NE(std::string(error.what()).find("bad.toml"), std::string::npos) << error.what();
+      return error.what();
+    }
+    ADD_FAILURE() << "was read: " << text;
+    return {};
+  }
+};
+
+bool equal(const Sensor& a, const Sensor& b) {
+  return a.name == b.name && a.camera == b.camera && a.min_range == b.min_range &&
+         a.max_range == b.max_range && a.working_distance == b.working_distance &&
+         a.noise == b.noise && a.T_flange_camera == b.T_flange_camera;
+}
+
+TEST_F(Files, SensorsReadBackEqual) {
+  int cases = 0;
+  for (const std::string& name : sensor_preset_names()) {
+    const Sensor sensor = sensor_preset(name);
+    write("sensor.toml", sensor_toml(sensor));
+    EXPECT_TRUE(equal(read_sensor_toml(dir / "sensor.toml"), sensor)) << sensor_toml(sensor);
+    EXPECT_TRUE(equal(load_sensor(name), sensor));
+    ++cases;
+  }
+  EXPECT_EQ(cases, 4);
+
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(0.01, 1.0);
+  for (int i = 0; i < 200; ++i) {
+    Sensor sensor = sensor_preset("sr4000");
+    sensor.name = "a \"name\" with \\ and \xc3\xa4 " + std::to_string(i);
+    sensor.camera.fx = 100 * unit(random);
+    sensor.camera.cy = std::ldexp(unit(random), i % 40 - 20);
+    sensor.camera.distortion = {-unit(random), unit(random), 1e-5 * unit(random), 0, -1e-17};
+    const NoiseModel models[]{ShotNoise{unit(random), 1, 2, 1e-3}, StructuredLightNoise{},
+                              StereoNoise{unit(random), 400, 0.1}, QuadraticNoise{unit(random), 3},
+                              ConstantNoise{unit(random), unit(random)}};
+    sensor.noise = models[i % 5];
+    sensor.T_flange_camera =
+        look_at({unit(random), -unit(random), unit(random)}, {unit(random), 1.5, -unit(random)});
+    write("sensor.toml", sensor_toml(sensor));
+    EXPECT_TRUE(equal(read_sensor_toml(dir / "sensor.toml"), sensor)) << sensor_toml(sensor);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 204);
+}
+
+TEST_F(Files, SensorErrorsNameTheKey) {
+  const std::string good = sensor_toml(sensor_preset("d435"));
+  const auto with = [&good](const std::string& from, const std::string& to) {
+    std::string text = good;
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  };
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {with("fx = 447.0", ""), "\"camera.fx\" is missing"},
+      {with("fx = 447.0", "fx = \"447\""), "\"camera.fx\" must be a number"},
+      {with("fx = 447.0", "fx = nan"), "\"camera.fx\" must be finite"},
+      {with("width = 640", "width = 640.5"), "\"camera.width\" must be a whole number"},
+      {with("width = 640", "width = -1"), "\"camera.width\""},
+      {with("width = 640", "width = 0"), "width"},
+      {with("distortion = [0.0, ", "distortion = ["), "\"camera.distortion\""},
+      {with("min_range", "min_rang"), "\"min_range\" is missing"},
+      {with("[camera]", "colour = 3\n[camera]"), "\"colour\" is unknown"},
+      {with("[noise]", "[noise]\nsigma = 1"), "\"noise.sigma\" is unknown"},
+      {with("\"stereo\"", "\"laser\""), "not one of shot"},
+      {with("baseline = 0.05", "baseline = -0.05"), "baseline"},
+      {with("[camera]", "T_flange_camera = [[1,0,0,0],[0,1,0,0],[0,0,3,0],[0,0,0,1]]\n[camera]"),
+       "\"T_flange_camera\" is no rigid transform"},
+      {with("[camera]", "T_flange_camera = [1, 2]\n[camera]"), "\"T_flange_camera\""},
+      {with("[camera]", "[camera"), "line "},
+      {"", "\"name\" is missing"}};
+  int count = 0;
+  for (const auto& [text, wanted] : cases) {
+    const std::string message = sensor_error(text);
+    EXPECT_NE(message.find(wanted), std::string::npos) << message << " <- " << wanted;
+    ++count;
+  }
+  EXPECT_EQ(count, 16);
+  EXPECT_THROW((void)load_sensor("none.toml"), Error);
+  EXPECT_THROW((void)load_sensor("sr5000"), Error);
+}
+
+TEST_F(Files, GrayImagesReadBackAndDamageIsRefused) {
+  GrayImage image{37, 23, {}};
+  std::mt19937 random(5);
+  for (int i = 0; i < 37 * 23; ++i) image.pixels.push_back(static_cast<std::uint16_t>(random()));
+  image.pixels[0] = 0;
+  image.pixels[1] = 65535;
+  image.pixels[2] = 0x1234;
+  write_png(dir / "a.png", image);
+  EXPECT_EQ(read_gray_png(dir / "a.png", 37, 23).pixels, image.pixels);
+  EXPECT_THROW((void)read_gray_png(dir / "a.png", 23, 37), Error);
+
+  write_png(dir / "rgb.png", RgbImage{4, 2, std::vector<std::uint8_t>(24, 9)});
+  EXPECT_THROW((void)read_gray_png(dir / "rgb.png", 4, 2), Error);
+  EXPECT_THROW((void)read_gray_png(dir / "none.png", 4, 2), Error);
+
+  const std::string bytes = read("a.png");
+  int cases = 0;
+  for (std::size_t length = 0; length < bytes.size() - 12; length += 17) {
+    write("cut.png", bytes.substr(0, length));
+    EXPECT_THROW((void)read_gray_png(dir / "cut.png", 37, 23), Error) << length;
+    ++cases;
+  }
+  EXPECT_GT(cases, 50);
+  EXPECT_EQ(list(), (std::vector<std::string>{"a.png", "cut.png", "rgb.png"}));
+}
+
+TEST_F(Files, FramesReadBackInTenthsOfAMillimetre) {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera.width = 4;
+  sensor.camera.height = 2;
+  const DepthFrame frame{4,
+                         2,
+                         {DepthFrame::kInvalid, DepthFrame::kOutOfRange, 0.12344F, 0.12346F,
+                          6.5534F, 6.5536F, 1e-5F, 1.0F}};
+  const std::vector<Pose> poses{look_at({1, 0, 0}, {0, 0, 0}), look_at({0, 1, 0}, {0, 0, 0})};
+  {
+    FramesWriter writer(dir / "frames");
+    writer.write_frame(0, frame);
+    writer.write_frame(1, frame);
+    EXPECT_FALSE(std::filesystem::exists(dir / "frames"));
+    writer.commit(poses, sensor);
+  }
+  EXPECT_EQ(list("frames"),
+            (std::vector<std::string>{"frame-000000.depth.png", "frame-000001.depth.png",
+                                      "poses.txt", "sensor.toml"}));
+  const FrameSequence frames = open_frames(dir / "frames", "", std::nullopt);
+  EXPECT_TRUE(equal(frames.sensor, sensor));
+  EXPECT_EQ(frames.depth_scale, 1e-4);
+  ASSERT_EQ(frames.poses.size(), 2U);
+  const std::vector<float> expected{0.0F,    DepthFrame::kOutOfRange, 0.1234F, 0.1235F,
+                                    6.5534F, DepthFrame::kOutOfRange, 0.0F,    1.0F};
+  EXPECT_EQ(load_frame(frames, 1, OutOfRangeMeaning::carve).depth, expected);
+  const DepthFrame read_back = load_frame(frames, 1, OutOfRangeMeaning::invalid);
+  EXPECT_EQ(read_back.depth[1], DepthFrame::kInvalid);
+
+  // A run into the same folder leaves none of the old frames; one that fails changes nothing.
+  {
+    FramesWriter failing(dir / "frames");
+    failing.write_frame(0, frame);
+  }
+  EXPECT_EQ(list("frames").size(), 4U);
+  {
+    FramesWriter writer(dir / "frames");
+    writer.write_frame(0, frame);
+    writer.commit({poses[0]}, sensor);
+  }
+  EXPECT_EQ(list("frames").size(), 3U);
+  {
+    FramesWriter failing(dir / "a" / "b" / "c");
+  }
+  EXPECT_EQ(list(), std::vector<std::string>{"frames"});
+}
+
+TEST(Values, NumbersAndBoxes) {
+  EXPECT_EQ(parse_numbers("--x", "1,-2.5e-3, +4", 1, 3), (std::vector<double>{1, -2.5e-3, 4}));
+  for (const char* bad : {"", "1,", "a", "1,nan", "inf", "1;2", "1,2,3,4", "0x10"}) {
+    EXPECT_THROW((void)parse_numbers("--x", bad, 1, 3), Error) << bad;
+  }
+  EXPECT_EQ(parse_box("--b", "-1,-2,-3,1,2,3"), (Box{{-1, -2, -3}, {1, 2, 3}}));
+  EXPECT_THROW((void)parse_box("--b", "0,0,0,1,1,0"), Error);
+  EXPECT_THROW((void)parse_box("--b", "0,0,0,1,-1,1"), Error);
+  EXPECT_EQ(parse_count("--n", 12), 12U);
+  for (const double bad : {-1.0, 0.5, 1e9, std::nan("")}) {
+    EXPECT_THROW((void)parse_count("--n", bad), Error) << bad;
+  }
+  std::mt19937_64 random(3);
+  int cases = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const double value = std::ldexp(static_cast<double>(random()), i % 200 - 150);
+    EXPECT_EQ(std::stod(exact_text(value)), value);
+    EXPECT_EQ(std::stod(short_text(value)), value);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 1000);
+  EXPECT_EQ(exact_text(-std::nan("")), "nan");
+}
+
+}  // namespace
+}  // namespace viewgain::app

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program_runner.hpp"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+namespace viewgain::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+ProgramTest::ProgramTest() {
+  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+  dir = fs::temp_directory_path() /
+        ("viewgain-apps-" + std::string(info->name()) + "-" + std::to_string(::getpid()));
+  fs::create_directories(dir / "work");
+  dir /= "work";
+}
+
+ProgramTest::~ProgramTest() { fs::remove_all(dir.parent_path()); }
+
+ProgramResult ProgramTest::run(const std::vector<std::string>& arguments) const {
+  const fs::path out = dir.parent_path() / "stdout", err = dir.parent_path() / "stderr";
+  std::vector<char*> argv{const_cast<char*>("viewgain")};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int in_file = ::open("/dev/null", O_RDONLY);
+    const int out_file = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    const int err_file = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    if (in_file >= 0 && out_file >= 0 && err_file >= 0 && ::dup2(in_file, STDIN_FILENO) >= 0 &&
+        ::dup2(out_file, STDOUT_FILENO) >= 0 && ::dup2(err_file, STDERR_FILENO) >= 0 &&
+        ::chdir(dir.c_str()) == 0) {
+      ::execv(VIEWGAIN_PROGRAM, argv.data());
+    }
+    ::_exit(127);
+  }
+  ProgramResult result;
+  int status = 0;
+  EXPECT_EQ(::waitpid(child, &status, 0), child);
+  if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
+  result.out = read_file(out);
+  result.err = read_file(err);
+  return result;
+}
+
+std::string ProgramTest::run_well(const std::vector<std::string>& arguments) const {
+  const ProgramResult result = run(arguments);
+  EXPECT_EQ(result.exit_code, 0) << arguments.front() << ": " << result.err;
+  EXPECT_EQ(result.err, "") << arguments.front();
+  return result.out;
+}
+
+void ProgramTest::write(const std::string& name, const std::string& bytes) const {
+  fs::create_directories((dir / name).parent_path());
+  std::ofstream(dir / name, std::ios::binary) << bytes;
+}
+
+std::string ProgramTest::read(const std::string& name) const { return read_file(dir / name); }
+
+std::vector<std::string> ProgramTest::list(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(dir / name)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void ProgramTest::write_cube() const {
+  write("cube.off",
+        "OFF\n8 6 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n0 0 2\n2 0 2\n2 2 2\n0 2 2\n"
+        "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+}
+
+void ProgramTest::write_small_sensor() const {
+  write("small.toml",
+        "name = \"small\"\nmin_range = 0.2\nmax_range = 5.0\nworking_distance = 0.4\n"
+        "[camera]\nwidth = 48\nheight = 36\nfx = 60.0\nfy = 60.0\ncx = 23.5\ncy = 17.5\n"
+        "[noise]\nmodel = \"quadratic\"\noffset = 0.001\nquadratic = 0.001\n");
+}
+
+}  // namespace viewgain::test

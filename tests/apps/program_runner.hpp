@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace viewgain::test {
+
+/// What the program viewgain said.
+struct ProgramResult {
+  int exit_code = -1;  ///< -1: it did not end by itself
+  std::string out;
+  std::string err;
+};
+
+/// A test in an empty folder of its own that can run the built program as a user would.
+class ProgramTest : public testing::Test {
+ protected:
+  ProgramTest();
+  ~ProgramTest() override;
+
+  /// Runs viewgain with these arguments, the test's folder as working directory.
+  [[nodiscard]] ProgramResult run(const std::vector<std::string>& arguments) const;
+
+  /// As run(), and fails the test unless the exit code is 0 and stderr empty. Returns stdout.
+  std::string run_well(const std::vector<std::string>& arguments) const;
+
+  void write(const std::string& name, const std::string& bytes) const;
+  [[nodiscard]] std::string read(const std::string& name) const;
+
+  /// Names in the folder (of its subfolder `name`), sorted, hidden ones too.
+  [[nodiscard]] std::vector<std::string> list(const std::string& name = ".") const;
+
+  /// A cube of side 2 round (1, 1, 1) with quadrilateral faces: cube.off.
+  void write_cube() const;
+
+  /// A sensor of 48x36 px: small.toml.
+  void write_small_sensor() const;
+
+  std::filesystem::path dir;
+};
+
+}  // namespace viewgain::test

@@ -1,0 +1,352 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "frames_dir.hpp"
+#include "program_runner.hpp"
+#include "viewgain/core/generators.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain {
+namespace {
+
+using nlohmann::json;
+using Strings = std::vector<std::string>;
+
+std::vector<Strings> rows_of(const std::string& csv) {
+  std::vector<Strings> rows;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    Strings& row = rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
+  }
+  return rows;
+}
+
+// simulate -> integrate -> info -> score on a cube, each as a user would run it.
+class Workflow : public test::ProgramTest {
+ protected:
+  Workflow() {
+    write_cube();
+    write_small_sensor();
+  }
+
+  void simulate(const std::string& out, const Strings& more = {}) const {
+    Strings arguments{"simulate", "cube.off", "--orbit",  "3,0.6,27,0,46", "--sensor", "small.toml",
+                      "--size",   "0.3",      "--center", "--out",         out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run_well(arguments);
+  }
+
+  void integrate(const std::string& frames, const std::string& map,
+                 const Strings& more = {}) const {
+    Strings arguments{
+        "integrate", frames, "--voxel", "0.02", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+        "--out",     map};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run_well(arguments);
+  }
+
+  [[nodiscard]] std::string hash(const std::string& map) const {
+    return run_well({"info", map, "--hash"});
+  }
+};
+
+TEST_F(Workflow, JsonHasTheDocumentedKeys) {
+  const json simulated = json::parse(
+      run_well({"simulate", "cube.off", "--orbit", "3,0.6,27,0,46", "--sensor", "small.toml",
+                "--size", "0.3", "--center", "--out", "frames", "--json"}));
+  EXPECT_EQ(simulated.at("frames"), 3);
+  EXPECT_EQ(simulated.at("readings").get<int>() + simulated.at("out_of_range").get<int>() +
+                simulated.at("invalid").get<int>(),
+            3 * 48 * 36);
+  EXPECT_EQ(list("frames"), (Strings{"frame-000000.depth.png", "frame-000001.depth.png",
+                                     "frame-000002.depth.png", "poses.txt", "sensor.toml"}));
+
+  const json integrated =
+      json::parse(run_well({"integrate", "frames", "--voxel", "0.02", "--workspace",
+                            "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "map.vdb", "--json"}));
+  EXPECT_EQ(integrated.at("frames"), 3);
+  EXPECT_EQ(integrated.at("dims"), json({20, 20, 20}));
+  EXPECT_EQ(integrated.at("depth_scale"), 1e-4);
+
+  const json info = json::parse(run_well({"info", "map.vdb", "--json"}));
+  for (const char* key :
+       {"voxel_size", "bytes_per_occupied_voxel", "entropy_removed", "prior_sigma"}) {
+    EXPECT_TRUE(info.at(key).is_number_float()) << key;
+  }
+  for (const char* key : {"unknown", "free", "occupied", "bytes", "views"}) {
+    EXPECT_TRUE(info.at(key).is_number_unsigned()) << key;
+  }
+  EXPECT_EQ(info.at("voxel_size"), 0.02);
+  EXPECT_EQ(info.at("views"), 3);
+  EXPECT_EQ(info.at("workspace").size(), 6U);
+  EXPECT_GT(info.at("occupied"), 0);
+  EXPECT_GT(info.at("entropy_removed"), 0);
+  EXPECT_EQ(
+      info.at("unknown").get<int>() + info.at("free").get<int>() + info.at("occupied").get<int>(),
+      20 * 20 * 20);
+  EXPECT_EQ(info.at("hash"), integrated.at("hash"));
+  EXPECT_EQ(info.at("hash").get<std::string>() + "\n", hash("map.vdb"));
+
+  const json scored =
+      json::parse(run_well({"score", "map.vdb", "--sphere", "40,0.6", "--sensor", "small.toml",
+                            "--top", "7", "--stride", "2", "--json"}));
+  EXPECT_EQ(scored.at("poses"), 40);
+  EXPECT_EQ(scored.at("rays_per_pose"), 24 * 18);
+  EXPECT_EQ(scored.at("voxel_size"), 0.02);
+  EXPECT_EQ(scored.at("criterion"), "log_diagonal");
+  EXPECT_EQ(scored.at("prior_sigma"), info.at("prior_sigma"));
+  EXPECT_GE(scored.at("threads"), 1);
+  for (const char* key : {"seconds", "poses_per_second", "rays_per_second"}) {
+    EXPECT_GT(scored.at(key).get<double>(), 0) << key;
+  }
+  ASSERT_EQ(scored.at("best").size(), 7U);
+  double last = std::numeric_limits<double>::infinity();
+  for (const json& entry : scored.at("best")) {
+    for (const char* key : {"index", "rays", "hits", "unknown_voxels", "occupied_voxels"}) {
+      EXPECT_TRUE(entry.at(key).is_number_unsigned()) << key;
+    }
+    for (const char* key : {"gain", "exploration", "refinement", "posterior_entropy"}) {
+      EXPECT_TRUE(entry.at(key).is_number_float()) << key;
+    }
+    EXPECT_EQ(entry.at("status"), "ok");
+    EXPECT_LE(entry.at("gain"), last);
+    last = entry.at("gain");
+  }
+  EXPECT_GT(last, 0);
+}
+
+TEST_F(Workflow, CsvReadsBackTheSameDoubles) {
+  simulate("frames");
+  integrate("frames", "map.vdb");
+  run_well({"score", "map.vdb", "--sphere", "30,0.6", "--sensor", "small.toml", "--out", "s.csv"});
+  const auto rows = rows_of(read("s.csv"));
+  ASSERT_EQ(rows.size(), 31U);
+  EXPECT_EQ(rows[0], (Strings{"index", "gain", "exploration", "refinement", "posterior_entropy",
+                              "rays", "hits", "unknown_voxels", "occupied_voxels", "status"}));
+  const BeliefGrid grid = load_vdb(dir / "map.vdb");
+  const GainEvaluator evaluator(VoxelScene::build(grid),
+                                app::open_frames(dir / "frames", "", std::nullopt).sensor);
+  const auto expected = evaluator.evaluate(sphere_poses(30, 0.6));
+  std::size_t cases = 0;
+  for (; cases < expected.size(); ++cases) {
+    const Strings& row = rows[cases + 1];
+    const ViewGain& gain = expected[cases];
+    EXPECT_EQ(row[0], std::to_string(cases));
+    EXPECT_EQ(std::stod(row[1]), gain.gain);
+    EXPECT_EQ(std::stod(row[2]), gain.exploration);
+    EXPECT_EQ(std::stod(row[3]), gain.refinement);
+    EXPECT_EQ(std::stod(row[4]), gain.posterior_entropy);
+    EXPECT_EQ(row[5], std::to_string(gain.rays));
+    EXPECT_EQ(row[6], std::to_string(gain.hits));
+    EXPECT_EQ(row[7], std::to_string(gain.unknown_voxels));
+    EXPECT_EQ(row[8], std::to_string(gain.occupied_voxels));
+    EXPECT_EQ(row[9], "ok");
+  }
+  EXPECT_EQ(cases, 30U);
+}
+
+TEST_F(Workflow, TheSameForAnyNumberOfThreadsAndRunAfterRun) {
+  std::string first_hash, first_csv;
+  int cases = 0;
+  for (const std::string threads : {"1", "3", "1", "8"}) {
+    simulate("frames" + threads, {"--threads", threads, "--noise", "on", "--seed", "5"});
+    integrate("frames" + threads, "map.vdb", {"--threads", threads});
+    run_well({"score", "map.vdb", "--dome", "50,0.6", "--sensor", "small.toml", "--out", "s.csv",
+              "--threads", threads});
+    if (cases == 0) {
+      first_hash = hash("map.vdb");
+      first_csv = read("s.csv");
+    }
+    EXPECT_EQ(hash("map.vdb"), first_hash) << threads;
+    EXPECT_EQ(read("s.csv"), first_csv) << threads;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 4);
+  simulate("other", {"--noise", "on", "--seed", "6"});
+  integrate("other", "other.vdb");
+  EXPECT_NE(hash("other.vdb"), first_hash);
+}
+
+TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
+  simulate("frames");
+  integrate("frames", "own.vdb");
+
+  // The same frames as a recording: gaps in the numbers, matrices, intrinsics in a file, and a
+  // sensor whose own intrinsics are wrong.
+  const PoseList poses = read_tum(dir / "frames" / "poses.txt");
+  std::filesystem::create_directories(dir / "recorded");
+  for (std::size_t i = 0; i < poses.poses.size(); ++i) {
+    const std::string number = i == 0 ? "000000" : i == 1 ? "000050" : "001000";
+    std::filesystem::copy(dir / "frames" / ("frame-00000" + std::to_string(i) + ".depth.png"),
+                          dir / "recorded" / ("frame-" + number + ".depth.png"));
+    std::ostringstream text;
+    text.precision(17);
+    text << poses.poses[i].isometry().matrix() << "\n";
+    write("recorded/frame-" + number + ".pose.txt", text.str());
+  }
+  write("recorded/camera-intrinsics.txt", "60 0 23.5\n0 60 17.5\n0 0 1\n");
+  std::string sensor = read("small.toml");
+  for (const std::string wrong : {"fx = 60", "fy = 60", "cx = 23", "cy = 17"}) {
+    sensor.replace(sensor.find(wrong) + 5, 2, "99");
+  }
+  write("wrong.toml", sensor);
+  integrate("recorded", "recorded.vdb", {"--sensor", "wrong.toml", "--depth-scale", "1e-4"});
+  EXPECT_EQ(hash("recorded.vdb"), hash("own.vdb"));
+
+  // Without the scale the depths are ten times too long: all readings lie out of range.
+  const json far = json::parse(
+      run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02", "--workspace",
+                "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "far.vdb", "--json"}));
+  EXPECT_EQ(far.at("depth_scale"), 1e-3);
+  EXPECT_EQ(far.at("occupied"), 0);
+
+  // A rotation that is off by 1e-4 is mended and said; another map than with the exact one.
+  std::string pose = read("recorded/frame-000050.pose.txt");
+  std::istringstream numbers(pose);
+  double first = 0;
+  numbers >> first;
+  std::string rest;
+  std::getline(numbers, rest, '\0');
+  write("recorded/frame-000050.pose.txt", std::to_string(first * (1 + 1e-4)) + rest);
+  const json mended =
+      json::parse(run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
+                            "--depth-scale", "1e-4", "--out", "mended.vdb", "--json"}));
+  EXPECT_EQ(mended.at("orthonormalized_poses"), 1);
+}
+
+TEST_F(Workflow, OutOfRangePixelsCarveOrSayNothing) {
+  simulate("frames", {"--background", "0"});
+  integrate("frames", "carve.vdb");
+  integrate("frames", "invalid.vdb", {"--out-of-range", "invalid"});
+  const json carve = json::parse(run_well({"info", "carve.vdb", "--json"}));
+  const json invalid = json::parse(run_well({"info", "invalid.vdb", "--json"}));
+  EXPECT_EQ(carve.at("occupied"), invalid.at("occupied"));
+  EXPECT_GT(carve.at("free").get<int>(), invalid.at("free").get<int>() + 1000);
+}
+
+TEST_F(Workflow, DefaultWorkspaceHoldsWhatTheFramesSee) {
+  simulate("frames", {"--background", "0"});
+  const json made = json::parse(
+      run_well({"integrate", "frames", "--voxel", "0.03", "--out", "map.vdb", "--json"}));
+  EXPECT_EQ(made.at("readings_inside"), made.at("readings"));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double low = made.at("workspace")[k], high = made.at("workspace")[k + 3];
+    EXPECT_NEAR(std::round(low / 0.03), low / 0.03, 1e-9);
+    EXPECT_LT(low, 0);
+    EXPECT_GE(low, -0.15 - 0.1);
+    EXPECT_LE(high, 0.15 + 0.1);
+  }
+  EXPECT_NE(
+      run_well({"integrate", "frames", "--voxel", "0.03", "--out", "map.vdb"}).find("workspace"),
+      std::string::npos);
+}
+
+TEST_F(Workflow, AMapIsContinued) {
+  simulate("frames");
+  integrate("frames", "once.vdb");
+  integrate("frames", "twice.vdb", {"--map", "once.vdb"});
+  run_well({"integrate", "frames", "--map", "once.vdb", "--out", "once.vdb"});
+  EXPECT_EQ(hash("once.vdb"), hash("twice.vdb"));
+  EXPECT_EQ(json::parse(run_well({"info", "once.vdb", "--json"})).at("views"), 6);
+  int cases = 0;
+  for (const Strings& conflict : std::vector<Strings>{
+           {"--voxel", "0.03"}, {"--workspace", "0,0,0,1,1,1"}, {"--prior-sigma", "0.5"}}) {
+    Strings arguments{"integrate", "frames", "--map", "once.vdb", "--out", "new.vdb"};
+    arguments.insert(arguments.end(), conflict.begin(), conflict.end());
+    const auto result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(result.err.find("conflicts"), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(dir / "new.vdb"));
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
+TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
+  simulate("frames");
+  integrate("frames", "map.vdb");
+  const auto best = [this](const Strings& more) {
+    Strings arguments{"score",  "map.vdb", "--poses", "frames/poses.txt", "--sensor", "small.toml",
+                      "--json", "--top",   "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json::parse(run_well(arguments)).at("best").at(0);
+  };
+  const double gain = best({}).at("gain");
+  EXPECT_EQ(best({}).at("rays"), 48 * 36);
+  EXPECT_EQ(best({"--weight", "-1,-1,-1,1,1,1,0"}).at("gain"), 0.0);
+  EXPECT_NEAR(best({"--weight", "-1,-1,-1,1,1,1,2"}).at("gain"), 2 * gain, 1e-9 * gain);
+  EXPECT_NEAR(best({"--weight", "-1,-1,-1,1,1,1,0", "--weight", "-1,-1,-1,1,1,1,1"}).at("gain"),
+              gain, 1e-9 * gain);
+  EXPECT_EQ(best({"--max-range", "0.3"}).at("hits"), 0);
+  EXPECT_EQ(best({"--min-range", "2"}).at("hits"), 0);
+  EXPECT_GT(best({"--prior-sigma", "0.5"}).at("gain"), gain);
+  EXPECT_NE(best({"--criterion", "trace"}).at("gain"), gain);
+  EXPECT_LT(best({"--stride", "3"}).at("gain"), gain);
+
+  // --up and --center: a cube that stands off the origin is seen by the orbit only when centred.
+  const auto readings = [this](const Strings& more) {
+    Strings arguments{"simulate", "cube.off",     "--orbit", "2,0.6,20",
+                      "--sensor", "small.toml",   "--out",   "other_frames",
+                      "--json",   "--background", "0"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json::parse(run_well(arguments)).at("readings").get<int>();
+  };
+  EXPECT_GT(readings({"--center"}), readings({"--center", "--size", "0.1"}));
+  EXPECT_NE(readings({"--center"}), readings({}));
+}
+
+TEST_F(Workflow, ThePictureIsAPictureAndTheOnlyNewFile) {
+  simulate("frames");
+  integrate("frames", "map.vdb");
+  const Strings before = list();
+  run_well(
+      {"score", "map.vdb", "--sphere", "20,0.6", "--sensor", "small.toml", "--picture", "v.png"});
+  Strings after = list();
+  ASSERT_EQ(after.size(), before.size() + 1);
+  const std::string png = read("v.png");
+  ASSERT_GT(png.size(), 10000U);
+  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x05\0\0\0\x03\xc0", 8));  // 1280 x 960
+}
+
+TEST_F(Workflow, HelpNamesEveryFlag) {
+  const std::vector<std::pair<std::string, Strings>> commands{
+      {"simulate",
+       {"MESH", "--poses", "--orbit", "--sensor", "--size", "--center", "--background", "--up",
+        "--noise", "--seed", "--out", "--json", "--threads", "[0.35]", "[1.5]", "[m]"}},
+      {"integrate",
+       {"FRAMES_DIR", "--voxel", "--workspace", "--sensor", "--depth-scale", "--out-of-range",
+        "--carve", "--occupancy", "--prior-sigma", "--with-covariance", "--out", "--map", "--json",
+        "--threads", "[carve]", "[cones]", "[probabilistic]", "1e-4", "[m]"}},
+      {"score",
+       {"MAP", "--poses", "--sphere", "--dome", "--sensor", "--criterion", "--stride", "--weight",
+        "--prior-sigma", "--min-range", "--max-range", "--top", "--out", "--picture", "--json",
+        "--threads", "[log_diagonal]", "[10]", "[m]"}},
+      {"info", {"MAP", "--hash", "--criterion", "--json", "--threads", "[log_diagonal]"}}};
+  const std::string top = run_well({"--help"});
+  int flags = 0;
+  for (const auto& [command, words] : commands) {
+    EXPECT_NE(top.find(command), std::string::npos);
+    const std::string help = run_well({command, "--help"});
+    for (const std::string& word : words) {
+      EXPECT_NE(help.find(word), std::string::npos) << command << " " << word;
+      ++flags;
+    }
+  }
+  EXPECT_EQ(flags, 16 + 19 + 19 + 6);
+  EXPECT_EQ(run_well({"--version"}).substr(0, 9), "viewgain ");
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/atomic_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "expect_error.hpp"
+#include "temporary_folder.hpp"
+
+namespace viewgain {
+namespace {
+
+namespace fs = std::filesystem;
+using test::expect_error;
+using test::read_all;
+using test::TemporaryFolder;
+
+TEST(AtomicFile, AppearsOnlyWithCommit) {
+  const TemporaryFolder folder;
+  const fs::path target = folder.path() / "map.vdb";
+  {
+    AtomicFile file(target);
+    EXPECT_EQ(file.temporary_path().parent_path(), folder.path());
+    EXPECT_EQ(file.temporary_path().extension(), ".vdb");
+    EXPECT_TRUE(fs::exists(file.temporary_path()));
+    file.write("one, ");
+    file.write("");
+    file.write("two");
+    EXPECT_FALSE(fs::exists(target));
+    file.commit();
+    EXPECT_EQ(read_all(target), "one, two");
+  }
+  EXPECT_EQ(read_all(target), "one, two");
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(AtomicFile, WithoutCommitNothingChanges) {
+  const TemporaryFolder folder;
+  const fs::path target = folder.file("scores.csv", "old");
+  {
+    AtomicFile file(target);
+    file.write("half a");
+  }
+  EXPECT_EQ(read_all(target), "old");
+  EXPECT_EQ(folder.entries(), 1);
+  try {
+    AtomicFile file(target);
+    throw std::runtime_error("writer failed");
+  } catch (const std::runtime_error&) {
+  }
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(AtomicFile, AnotherWriterMayWriteByName) {
+  const TemporaryFolder folder;
+  const fs::path target = folder.file("a.png", "old");
+  AtomicFile file(target);
+  std::ofstream(file.temporary_path(), std::ios::trunc) << "picture";
+  file.commit();
+  EXPECT_EQ(read_all(target), "picture");
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(AtomicFile, RefusesWhatCannotBeWritten) {
+  const TemporaryFolder folder;
+  const fs::path nowhere = folder.path() / "no" / "such" / "file";
+  expect_error(ErrorCode::io, nowhere.string(), [&] { AtomicFile{nowhere}; });
+  expect_error(ErrorCode::io, "No such file", [&] { AtomicFile{nowhere}; });
+  expect_error(ErrorCode::io, "directory", [&] { AtomicFile{folder.path()}; });
+  expect_error(ErrorCode::io, "directory", [&] { AtomicFile{folder.path() / "new" / ""}; });
+  expect_error(ErrorCode::io, "without a name", [&] { AtomicFile{fs::path()}; });
+  expect_error(ErrorCode::io, "too long",
+               [&] { AtomicFile{folder.path() / std::string(300, 'x')}; });
+  EXPECT_EQ(folder.entries(), 0);
+}
+
+TEST(AtomicFile, CommitFailsIfTheTargetBecameAFolder) {
+  const TemporaryFolder folder;
+  const fs::path target = folder.path() / "target";
+  {
+    AtomicFile file(target);
+    fs::create_directories(target / "inside");
+    expect_error(ErrorCode::io, target.string(), [&] { file.commit(); });
+  }
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(AtomicFile, ALinkStaysALink) {
+  const TemporaryFolder folder;
+  const fs::path real = folder.file("real.txt", "old");
+  const fs::path link = folder.path() / "link.txt";
+  fs::create_symlink(real, link);
+  write_file_atomically(link, "new");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_all(real), "new");
+  EXPECT_EQ(folder.entries(), 2);
+}
+
+TEST(AtomicFile, ADeviceIsWrittenInPlace) {
+  write_file_atomically("/dev/null", "nothing");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST(AtomicFile, ManyWritersOfOneTargetNeverMix) {
+  const TemporaryFolder folder;
+  const fs::path target = folder.path() / "shared.txt";
+  std::vector<std::thread> writers;
+  for (int w = 0; w < 8; ++w) {
+    writers.emplace_back([&target, w] {
+      const std::string contents(10'000, static_cast<char>('a' + w));
+      for (int i = 0; i < 20; ++i) write_file_atomically(target, contents);
+    });
+  }
+  int looks = 0;
+  for (; looks < 200; ++looks) {
+    const std::string seen = read_all(target);
+    if (seen.empty()) continue;  // not there yet
+    ASSERT_EQ(seen, std::string(10'000, seen[0]));
+  }
+  for (std::thread& writer : writers) writer.join();
+  EXPECT_EQ(looks, 200);
+  const std::string seen = read_all(target);
+  EXPECT_EQ(seen, std::string(10'000, seen.empty() ? '?' : seen[0]));
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+}  // namespace
+}  // namespace viewgain

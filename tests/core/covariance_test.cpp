@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/covariance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "random_values.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::RandomValues;
+
+TEST(SymmetricMatrix3, AgreesWithEigen) {
+  RandomValues random(1);
+  int cases = 0;
+  for (int i = 0; i < 2000; ++i, ++cases) {
+    const Eigen::Matrix3d a = random.spd(0.1, 10), b = random.spd(0.1, 10);
+    const Eigen::Vector3d v = random.vector();
+    const auto m = SymmetricMatrix3::from(a);
+    ASSERT_EQ(m.matrix(), a);
+    ASSERT_LT(((m + SymmetricMatrix3::from(b)).matrix() - (a + b)).norm(), 1e-14);
+    ASSERT_LT((m * v - a * v).norm(), 1e-13);
+    ASSERT_NEAR(m.trace(), a.trace(), 1e-13);
+    ASSERT_NEAR(m.determinant() / a.determinant(), 1, 1e-10);
+    ASSERT_LT((m.inverse().matrix() * a - Eigen::Matrix3d::Identity()).norm(), 1e-10);
+  }
+  EXPECT_EQ(cases, 2000);
+}
+
+TEST(SymmetricMatrix3, KeepsTheOrderOfTheMapFiles) {
+  const SymmetricMatrix3 m{1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(m.matrix(), (Eigen::Matrix3d() << 1, 4, 5, 4, 2, 6, 5, 6, 3).finished());
+  EXPECT_EQ(SymmetricMatrix3::identity(7).matrix(), 7 * Eigen::Matrix3d::Identity());
+  SymmetricMatrix3 sum = m;
+  sum += SymmetricMatrix3::identity();
+  EXPECT_EQ(sum, (SymmetricMatrix3{2, 3, 4, 4, 5, 6}));
+}
+
+TEST(SymmetricMatrix3, ASingularMatrixHasNoFiniteInverse) {
+  EXPECT_FALSE(std::isfinite(SymmetricMatrix3{}.inverse().xx));
+}
+
+TEST(Measurement, CovarianceHasTheSigmasAlongAndAcrossTheRay) {
+  RandomValues random(2);
+  int cases = 0;
+  for (int i = 0; i < 2000; ++i, ++cases) {
+    const Eigen::Vector3d d = random.unit_vector();
+    const MeasurementSigmas s{random.magnitude(1e-4, 1e-1), random.magnitude(1e-4, 1e-1)};
+    const Eigen::Matrix3d covariance = measurement_covariance(d, s).matrix();
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - d * d.transpose();
+    const Eigen::Matrix3d expected =
+        s.lateral * s.lateral * across + s.axial * s.axial * d * d.transpose();
+    ASSERT_LT((covariance - expected).norm(), 1e-14 * expected.norm());
+    ASSERT_NEAR(d.dot(covariance * d) / (s.axial * s.axial), 1, 1e-9);
+    const Eigen::Vector3d side = d.unitOrthogonal();
+    ASSERT_NEAR(side.dot(covariance * side) / (s.lateral * s.lateral), 1, 1e-9);
+  }
+  EXPECT_EQ(cases, 2000);
+}
+
+TEST(Measurement, InformationIsTheInverseOfTheCovariance) {
+  RandomValues random(3);
+  int cases = 0;
+  for (int i = 0; i < 2000; ++i, ++cases) {
+    const Eigen::Vector3d d = random.unit_vector();
+    const MeasurementSigmas s{random.magnitude(1e-3, 1e-2), random.magnitude(1e-3, 1e-2)};
+    const Eigen::Matrix3d product =
+        measurement_information(d, s).matrix() * measurement_covariance(d, s).matrix();
+    ASSERT_LT((product - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  }
+  EXPECT_EQ(cases, 2000);
+}
+
+TEST(Measurement, FusionOfEqualReadingsDividesTheCovariance) {
+  // Eq. (4) in information form: n equal readings leave Σ / n.
+  const Eigen::Vector3d d = Eigen::Vector3d(1, -2, 2) / 3.0;
+  const MeasurementSigmas s{3.6e-3, 1.8e-3};
+  SymmetricMatrix3 fused;
+  for (int i = 0; i < 10; ++i) fused += measurement_information(d, s);
+  const Eigen::Matrix3d expected = measurement_covariance(d, s).matrix() / 10.0;
+  EXPECT_LT((fused.inverse().matrix() - expected).norm(), 1e-12 * expected.norm());
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/isa.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "expect_error.hpp"
+
+namespace viewgain {
+namespace {
+
+/// Sets VIEWGAIN_ISA (nullptr: unsets) and puts the old value back at the end.
+class IsaEnvironment {
+ public:
+  explicit IsaEnvironment(const char* value) {
+    if (const char* old = std::getenv("VIEWGAIN_ISA")) old_ = old, was_set_ = true;
+    if (value != nullptr) {
+      ::setenv("VIEWGAIN_ISA", value, 1);
+    } else {
+      ::unsetenv("VIEWGAIN_ISA");
+    }
+  }
+  ~IsaEnvironment() {
+    if (was_set_) {
+      ::setenv("VIEWGAIN_ISA", old_.c_str(), 1);
+    } else {
+      ::unsetenv("VIEWGAIN_ISA");
+    }
+  }
+
+ private:
+  std::string old_;
+  bool was_set_ = false;
+};
+
+TEST(Isa, TheBestIsTakenUnlessLowered) {
+  const std::vector<Isa> isas = supported_isas();
+  ASSERT_FALSE(isas.empty());
+  EXPECT_TRUE(std::is_sorted(isas.rbegin(), isas.rend()));
+  {
+    const IsaEnvironment unset(nullptr);
+    EXPECT_EQ(select_isa(), isas.front());
+  }
+  {
+    const IsaEnvironment empty("");
+    EXPECT_EQ(select_isa(), isas.front());
+  }
+  std::size_t cases = 0;
+  for (const Isa isa : isas) {
+    const IsaEnvironment environment(std::string(isa_name(isa)).c_str());
+    if (isa != Isa::baseline) {
+      EXPECT_EQ(select_isa(), isa);
+    }
+    ++cases;
+  }
+  EXPECT_EQ(cases, isas.size());
+}
+
+TEST(Isa, AWishTheCpuLacksGivesTheBestItHas) {
+  const IsaEnvironment environment("avx512");
+  EXPECT_EQ(select_isa(), supported_isas().front());
+}
+
+TEST(Isa, AnUnknownNameListsTheValidOnes) {
+  const IsaEnvironment environment("mmx");
+  test::expect_error(ErrorCode::invalid_argument, "'mmx'; valid are avx512, avx2, sse4",
+                     [] { (void)select_isa(); });
+}
+
+}  // namespace
+}  // namespace viewgain

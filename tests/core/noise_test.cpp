@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/noise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "random_values.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::RandomValues;
+
+TEST(ShotNoise, ScalesWithRangeTimeAndIncidence) {
+  const ShotNoise noise{.reference_sigma = 4e-3,
+                        .reference_range = 1.3,
+                        .reference_integration_time = 8.5e-3,
+                        .integration_time = 8.5e-3};
+  EXPECT_NEAR(sigmas(noise, 1.30, 220, 1.0).axial, 4.0e-3, 1e-15);  // the measured anchor
+  EXPECT_NEAR(sigmas(noise, 2.60, 220, 1.0).axial, 8.0e-3, 1e-15);
+  EXPECT_NEAR(sigmas(noise, 1.30, 220, 0.25).axial, 8.0e-3, 1e-15);
+  EXPECT_NEAR(sigmas(noise, 1.30, 220, 0.25).lateral, 1.30 / 220, 1e-15);
+  ShotNoise shorter = noise;
+  shorter.integration_time = 8.5e-3 / 9;
+  EXPECT_NEAR(sigmas(shorter, 1.30, 220, 1.0).axial, 12.0e-3, 1e-15);
+}
+
+TEST(StructuredLightNoise, IsNguyensModel) {
+  const StructuredLightNoise noise;
+  EXPECT_NEAR(sigmas(noise, 0.4, 585, 1.0).axial, 1.2e-3, 1e-15);
+  EXPECT_NEAR(sigmas(noise, 1.4, 585, 1.0).axial, 3.1e-3, 1e-15);
+  EXPECT_NEAR(sigmas(noise, 1.0, 585, 1.0).lateral, 0.8 / 585, 1e-15);
+  // Up to 60° the axial sigma does not depend on the incidence.
+  EXPECT_EQ(sigmas(noise, 1.0, 585, 0.51).axial, sigmas(noise, 1.0, 585, 1.0).axial);
+  // At 75°: θ²/(π/2-θ)² = 25, θ/(π/2-θ) = 5.
+  const double cos_75 = std::cos(75 * std::numbers::pi / 180);
+  EXPECT_NEAR(sigmas(noise, 0.64, 585, cos_75).axial,
+              1.2e-3 + 1.9e-3 * 0.24 * 0.24 + 1e-4 / 0.8 * 25, 1e-12);
+  EXPECT_NEAR(sigmas(noise, 0.64, 585, cos_75).lateral, (0.8 + 0.035 * 5) * 0.64 / 585, 1e-12);
+}
+
+TEST(StereoNoise, GrowsWithTheSquareOfTheRange) {
+  const StereoNoise noise;
+  EXPECT_NEAR(sigmas(noise, 1.0, 447, 1.0).axial, 0.08 / (447 * 0.05), 1e-15);
+  EXPECT_NEAR(sigmas(noise, 2.0, 447, 0.3).axial, 4 * 0.08 / (447 * 0.05), 1e-15);
+  EXPECT_NEAR(sigmas(noise, 2.0, 447, 0.3).lateral, 2.0 / 447, 1e-15);
+}
+
+TEST(QuadraticNoise, IsOffsetPlusSquare) {
+  const QuadraticNoise noise{.offset = 2e-3, .quadratic = 0.5e-3};
+  EXPECT_NEAR(sigmas(noise, 2.0, 400, 1.0).axial, 4e-3, 1e-15);
+  EXPECT_NEAR(sigmas(noise, 2.0, 400, 1.0).lateral, 5e-3, 1e-15);
+}
+
+TEST(ConstantNoise, IsConstant) {
+  const ConstantNoise noise{.sigma_axial = 3e-3, .sigma_lateral = 2e-3};
+  EXPECT_EQ(sigmas(noise, 0.1, 400, 0.2).axial, 3e-3);
+  EXPECT_EQ(sigmas(noise, 9.0, 100, 1.0).lateral, 2e-3);
+}
+
+TEST(NoiseModel, SigmasArePositiveFiniteAndGrowWithRangeAndIncidence) {
+  const std::vector<NoiseModel> models{ShotNoise{}, StructuredLightNoise{}, StereoNoise{},
+                                       QuadraticNoise{}, ConstantNoise{}};
+  RandomValues random(1);
+  int cases = 0;
+  for (const NoiseModel& model : models) {
+    for (int i = 0; i < 1000; ++i, ++cases) {
+      const double t = random.uniform(0.4, 5), cos_incidence = random.uniform(-0.2, 1.2);
+      const MeasurementSigmas here = sigmas(model, t, 300, cos_incidence);
+      const MeasurementSigmas farther = sigmas(model, 1.1 * t, 300, cos_incidence);
+      const MeasurementSigmas steeper = sigmas(model, t, 300, cos_incidence - 0.2);
+      ASSERT_TRUE(std::isfinite(here.axial) && here.axial > 0);
+      ASSERT_TRUE(std::isfinite(here.lateral) && here.lateral > 0);
+      ASSERT_GE(farther.axial, 0.95 * here.axial);  // the grazing term falls with sqrt(z)
+      ASSERT_GE(farther.lateral, here.lateral);
+      ASSERT_GE(steeper.axial, here.axial);
+      ASSERT_GE(steeper.lateral, here.lateral);
+    }
+  }
+  EXPECT_EQ(cases, 5000);
+}
+
+TEST(NoiseModel, StaysFiniteAtRangeZero) {
+  int cases = 0;
+  for (const NoiseModel& model : std::vector<NoiseModel>{
+           ShotNoise{}, StructuredLightNoise{}, StereoNoise{}, QuadraticNoise{}, ConstantNoise{}}) {
+    const MeasurementSigmas zero = sigmas(model, 0.0, 300);
+    const MeasurementSigmas near = sigmas(model, kMinNoiseRange, 300);
+    EXPECT_GT(zero.axial, 0);
+    EXPECT_GT(zero.lateral, 0);
+    EXPECT_EQ(zero.axial, near.axial);
+    EXPECT_EQ(zero.lateral, near.lateral);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5);
+}
+
+TEST(NoiseModel, CosineIsClampedAtATenth) {
+  EXPECT_EQ(sigmas(ShotNoise{}, 1.0, 300, 0.01).axial, sigmas(ShotNoise{}, 1.0, 300, 0.1).axial);
+  EXPECT_EQ(sigmas(StructuredLightNoise{}, 1.0, 300, -1).axial,
+            sigmas(StructuredLightNoise{}, 1.0, 300, 0.1).axial);
+}
+
+}  // namespace
+}  // namespace viewgain

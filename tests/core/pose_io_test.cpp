@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/pose_io.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "expect_error.hpp"
+#include "random_values.hpp"
+#include "temporary_folder.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::expect_error;
+using test::RandomValues;
+using test::TemporaryFolder;
+
+TEST(Tum, RoundTripIsExactInPositionAndCloseInRotation) {
+  const TemporaryFolder folder;
+  RandomValues random(1);
+  std::vector<Pose> poses;
+  for (int i = 0; i < 1000; ++i) {
+    poses.emplace_back(random.rotation(), random.magnitude(1e-6, 1e6) * random.vector());
+  }
+  // Half turns, where the conversion to quaternions changes its formula.
+  for (const auto& axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0),
+                           Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(1, 1, 1)}) {
+    poses.emplace_back(
+        Eigen::AngleAxisd(3.14159265358979323846, axis.normalized()).toRotationMatrix(),
+        Eigen::Vector3d(0, -0.0, 1.0 / 3.0));
+  }
+  write_tum(folder.path() / "poses.txt", poses);
+  const PoseList list = read_tum(folder.path() / "poses.txt");
+  ASSERT_EQ(list.poses.size(), 1004U);
+  ASSERT_EQ(list.timestamps.size(), 1004U);
+  EXPECT_EQ(list.orthonormalized, 0U);
+  std::size_t cases = 0;
+  for (; cases < poses.size(); ++cases) {
+    ASSERT_EQ(list.timestamps[cases], static_cast<double>(cases));
+    ASSERT_EQ(list.poses[cases].translation(), poses[cases].translation());
+    const Eigen::Matrix3d difference = list.poses[cases].rotation() - poses[cases].rotation();
+    ASSERT_LT(difference.lpNorm<Eigen::Infinity>(), 2e-15);
+    ASSERT_LT(orthonormality_error(list.poses[cases]), 2e-15);
+  }
+  EXPECT_EQ(cases, 1004U);
+}
+
+TEST(Tum, ReadsWhatOthersWrite) {
+  const TemporaryFolder folder;
+  const auto path = folder.file("poses.txt",
+                                "# ground truth\r\n"
+                                "\r\n"
+                                "  \t \n"
+                                "1305031102.1758 1.5 -2 +3e-1 0 0 0 1\r\n"
+                                "   # indented comment, 1 2 3\n"
+                                "\t7\t1 2 3   0.5 0.5 0.5 0.5  \n"
+                                "8 0 0 0 0 0 -0.7071 0.7071");  // no line end, norm 0.99999
+  const PoseList list = read_tum(path);
+  ASSERT_EQ(list.poses.size(), 3U);
+  EXPECT_EQ(list.timestamps, (std::vector<double>{1305031102.1758, 7, 8}));
+  EXPECT_EQ(list.poses[0], Pose(Eigen::Matrix3d::Identity(), {1.5, -2, 0.3}));
+  // (1+i+j+k)/2 turns x to y, y to z, z to x.
+  const Eigen::Vector3d turned = list.poses[1].rotation() * Eigen::Vector3d::UnitX();
+  EXPECT_LT((turned - Eigen::Vector3d::UnitY()).norm(), 1e-15);
+  EXPECT_LT((list.poses[2] * Eigen::Vector3d::UnitX() + Eigen::Vector3d::UnitY()).norm(), 1e-12);
+  EXPECT_EQ(list.orthonormalized, 1U);
+}
+
+TEST(Tum, MalformedLinesAreNamed) {
+  const TemporaryFolder folder;
+  const std::string good = "0 1 2 3 0 0 0 1\n";
+  struct Case {
+    const char* line;
+    const char* message;
+  };
+  const std::vector<Case> bad{
+      {"1 2 3 0 0 0 1", "expected 8 numbers (timestamp tx ty tz qx qy qz qw), found 7"},
+      {"0 1 2 3 0 0 0 1 9", "found 9"},
+      {"5", "found 1"},
+      {"0 1 2 3 0 0 0 one", "'one' is not a number"},
+      {"0 1 2 3 0 0 0 1x", "'1x' is not a number"},
+      {"0 1,5 2 3 0 0 0 1", "'1,5' is not a number"},
+      {"0,1,2,3,0,0,0,1", "is not a number"},
+      {"0 0x10 2 3 0 0 0 1", "'0x10' is not a number"},
+      {"0 1 2 3 0 0 0 --1", "'--1' is not a number"},
+      {"0 + 2 3 0 0 0 1", "'+' is not a number"},
+      {"0 +-1 2 3 0 0 0 1", "'+-1' is not a number"},
+      {"0 1 2 nan 0 0 0 1", "'nan' is not finite"},
+      {"0 1 -inf 3 0 0 0 1", "'-inf' is not finite"},
+      {"infinity 1 2 3 0 0 0 1", "'infinity' is not finite"},
+      {"0 1e999 2 3 0 0 0 1", "'1e999' is out of range"},
+      {"0 1 2 3 0 0 0 0", "the quaternion's norm is 0, not 1"},
+      {"0 1 2 3 0 0 0 1.02", "the quaternion's norm is 1.02, not 1"},
+      {"0 1 2 3 0.5 0.5 0.5 0.4", "not 1"},
+      {"0 1 2 3 1e200 0 0 1e200", "not 1"},
+      {"\x01\x02\xff", "'?\?\?' is not a number"},
+      {"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa",
+       "'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...'"},
+  };
+  std::size_t cases = 0;
+  for (const Case& c : bad) {
+    const auto path = folder.file("bad.txt", "# header\n" + good + "\n" + c.line + "\n" + good);
+    expect_error(ErrorCode::format, path.string() + ":4: ", [&] { (void)read_tum(path); });
+    expect_error(ErrorCode::format, c.message, [&] { (void)read_tum(path); });
+    ++cases;
+  }
+  EXPECT_EQ(cases, 21U);
+}
+
+TEST(Tum, AByteZeroIsNoNumber) {
+  const TemporaryFolder folder;
+  const auto path = folder.file("bad.txt", std::string_view("0 1 2 3 0 0 0 1\0\n", 17));
+  expect_error(ErrorCode::format, ":1: ", [&] { (void)read_tum(path); });
+}
+
+TEST(Tum, FilesWithoutAPose) {
+  const TemporaryFolder folder;
+  for (const char* contents : {"", "\n\n", "# timestamp tx ty tz qx qy qz qw\n"}) {
+    const auto path = folder.file("empty.txt", contents);
+    expect_error(ErrorCode::format, path.string() + ": holds no pose",
+                 [&] { (void)read_tum(path); });
+  }
+}
+
+TEST(Tum, FilesThatCannotBeReadOrWritten) {
+  const TemporaryFolder folder;
+  const auto missing = folder.path() / "missing.txt";
+  expect_error(ErrorCode::io, missing.string(), [&] { (void)read_tum(missing); });
+  expect_error(ErrorCode::io, "No such file", [&] { (void)read_tum(missing); });
+  expect_error(ErrorCode::io, "is a directory", [&] { (void)read_tum(folder.path()); });
+  const auto nowhere = folder.path() / "no" / "folder.txt";
+  const std::vector<Pose> poses(1);
+  expect_error(ErrorCode::io, nowhere.string(), [&] { write_tum(nowhere, poses); });
+}
+
+TEST(Tum, ABadPoseIsNotWrittenAndLeavesTheOldFile) {
+  const TemporaryFolder folder;
+  const auto path = folder.file("poses.txt", "old");
+  std::vector<Pose> poses(3);
+  poses[2].m[0] = 2;
+  expect_error(ErrorCode::invalid_argument, "pose 2 is not a rigid transform",
+               [&] { write_tum(path, poses); });
+  EXPECT_EQ(test::read_all(path), "old");
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(PoseMatrix, ReadsAndMends) {
+  const TemporaryFolder folder;
+  bool mended = true;
+  auto path = folder.file("a.txt", "0 -1 0 1.5\n1 0 0 2.5e0\n0 0 1 -3\n0 0 0 1\n");
+  const Pose exact = read_pose_matrix(path, &mended);
+  EXPECT_FALSE(mended);
+  EXPECT_EQ(exact.m, (std::array<double, 12>{0, -1, 0, 1.5, 1, 0, 0, 2.5, 0, 0, 1, -3}));
+
+  path = folder.file("b.txt", "0 -1.001 0 1.5 1 0 0 2.5 0\t0 1 -3\r\n\r\n0 0 0 1");
+  const Pose pose = read_pose_matrix(path, &mended);
+  EXPECT_TRUE(mended);
+  EXPECT_LE(orthonormality_error(pose), 1e-15);
+  EXPECT_EQ(pose.translation(), Eigen::Vector3d(1.5, 2.5, -3));
+  EXPECT_LT((pose.rotation() - exact.rotation()).norm(), 1e-12);
+  EXPECT_EQ(read_pose_matrix(path), pose);
+}
+
+TEST(PoseMatrix, RefusesWhatIsNoPose) {
+  const TemporaryFolder folder;
+  struct Case {
+    const char* contents;
+    const char* message;
+  };
+  const std::vector<Case> bad{
+      {"", "expected 16 numbers (a 4x4 matrix), found 0"},
+      {"1 0 0 0 0 1 0 0 0 0 1 0", "found 12"},
+      {"1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0", "found 17"},
+      {"1 0 0 0\n0 1 0 0\n0 0 x 0\n0 0 0 1", ":3: 'x' is not a number"},
+      {"1 0 0 0\n0 1 0 nan\n0 0 1 0\n0 0 0 1", ":2: the number 'nan' is not finite"},
+      {"1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2", "last row is not 0 0 0 1"},
+      {"1 0 0 0\n0 1 0 0\n0 0 1 0\n1 0 0 1", "last row is not 0 0 0 1"},
+      {"1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1", "not a rigid transform"},
+      {"1 0 0 0\n0 1.02 0 0\n0 0 1 0\n0 0 0 1", "not a rigid transform"},
+      {"0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 1", "not a rigid transform"},
+  };
+  std::size_t cases = 0;
+  for (const Case& c : bad) {
+    const auto path = folder.file("bad.txt", c.contents);
+    expect_error(ErrorCode::format, path.string() + ":", [&] { (void)read_pose_matrix(path); });
+    expect_error(ErrorCode::format, c.message, [&] { (void)read_pose_matrix(path); });
+    ++cases;
+  }
+  EXPECT_EQ(cases, 10U);
+  expect_error(ErrorCode::io, "missing",
+               [&] { (void)read_pose_matrix(folder.path() / "missing"); });
+}
+
+}  // namespace
+}  // namespace viewgain

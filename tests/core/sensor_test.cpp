@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/sensor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "expect_error.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::expect_error;
+
+double field_of_view(int pixels, double focal) {
+  return 2 * std::atan(pixels / (2 * focal)) * 180 / std::numbers::pi;
+}
+
+TEST(SensorPresets, AreAllValid) {
+  EXPECT_EQ(sensor_preset_names(),
+            (std::vector<std::string>{"sr4000", "azure_kinect_nfov", "kinect_v1", "d435"}));
+  int cases = 0;
+  for (const std::string& name : sensor_preset_names()) {
+    const Sensor sensor = sensor_preset(name);
+    EXPECT_NO_THROW(sensor.validate()) << name;
+    EXPECT_EQ(sensor.name, name);
+    EXPECT_FALSE(sensor.camera.has_distortion());
+    EXPECT_FALSE(sensor.T_flange_camera.has_value());
+    ++cases;
+  }
+  EXPECT_EQ(cases, 4);
+  expect_error(ErrorCode::invalid_argument,
+               "unknown sensor 'sr3000', valid are sr4000, azure_kinect_nfov, kinect_v1, d435",
+               [] { (void)sensor_preset("sr3000"); });
+}
+
+TEST(SensorPresets, Sr4000) {
+  const Sensor s = sensor_preset("sr4000");
+  EXPECT_EQ(s.camera, (PinholeCamera{176, 144, 220.0, 231.2, 87.5, 71.5, {}}));
+  EXPECT_NEAR(field_of_view(176, s.camera.fx), 43.6, 0.05);
+  EXPECT_NEAR(field_of_view(144, s.camera.fy), 34.6, 0.05);
+  EXPECT_EQ(s.min_range, 0.2);
+  EXPECT_EQ(s.max_range, 5.0);
+  EXPECT_EQ(s.working_distance, 0.4);
+  EXPECT_EQ(std::get<ShotNoise>(s.noise).integration_time, 1e-3);
+  EXPECT_NEAR(s.sigmas(0.4).axial, 3.6e-3, 0.05e-3);
+  EXPECT_NEAR(s.sigmas(0.4).axial, 4e-3 * (0.4 / 1.3) * std::sqrt(8.5), 1e-15);
+  EXPECT_NEAR(s.sigmas(0.4).lateral, 1.8e-3, 0.05e-3);
+}
+
+TEST(SensorPresets, AzureKinectMeetsItsMakersBoundAtTheFarEnd) {
+  const Sensor s = sensor_preset("azure_kinect_nfov");
+  EXPECT_EQ(s.camera, (PinholeCamera{640, 576, 417.0, 452.1, 319.5, 287.5, {}}));
+  EXPECT_EQ(s.min_range, 0.5);
+  EXPECT_EQ(s.max_range, 3.86);
+  EXPECT_EQ(s.working_distance, 1.0);
+  EXPECT_NEAR(s.sigmas(3.86).axial, 17e-3, 0.01e-3);
+  EXPECT_NEAR(s.sigmas(1.0).axial, 2.074e-3, 1e-15);
+  EXPECT_NEAR(s.sigmas(1.0).lateral, 1 / 417.0, 1e-15);
+}
+
+TEST(SensorPresets, KinectV1) {
+  const Sensor s = sensor_preset("kinect_v1");
+  EXPECT_EQ(s.camera, (PinholeCamera{640, 480, 585, 585, 319.5, 239.5, {}}));
+  EXPECT_EQ(s.min_range, 0.5);
+  EXPECT_EQ(s.max_range, 4.5);
+  EXPECT_EQ(s.working_distance, 1.0);
+  EXPECT_NEAR(s.sigmas(1.0).axial, 1.2e-3 + 1.9e-3 * 0.36, 1e-15);
+  EXPECT_NEAR(s.sigmas(1.0).lateral, 0.8 / 585, 1e-15);
+}
+
+TEST(SensorPresets, D435) {
+  const Sensor s = sensor_preset("d435");
+  EXPECT_EQ(s.camera, (PinholeCamera{640, 480, 447, 447, 319.5, 239.5, {}}));
+  EXPECT_EQ(s.min_range, 0.2);
+  EXPECT_EQ(s.max_range, 3.0);
+  EXPECT_EQ(s.working_distance, 0.5);
+  EXPECT_NEAR(s.sigmas(0.5).axial, 0.25 * 0.08 / (447 * 0.05), 1e-15);
+  EXPECT_NEAR(s.sigmas(0.5).lateral, 0.5 / 447, 1e-15);
+}
+
+TEST(Sensor, ValidateNamesTheField) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  int cases = 0;
+  const auto expect_bad = [&cases](const char* field, const auto& spoil) {
+    Sensor sensor = sensor_preset("sr4000");
+    spoil(sensor);
+    expect_error(ErrorCode::invalid_argument, field, [&] { sensor.validate(); });
+    ++cases;
+  };
+  expect_bad("width", [](Sensor& s) { s.camera.width = 0; });
+  expect_bad("min_range", [](Sensor& s) { s.min_range = -0.1; });
+  expect_bad("min_range", [](Sensor& s) { s.min_range = kNan; });
+  expect_bad("max_range", [](Sensor& s) { s.max_range = 0.2; });
+  expect_bad("max_range", [](Sensor& s) { s.max_range = std::numeric_limits<double>::infinity(); });
+  expect_bad("working_distance", [](Sensor& s) { s.working_distance = 0.1; });
+  expect_bad("working_distance", [](Sensor& s) { s.working_distance = 6; });
+  expect_bad("working_distance", [](Sensor& s) { s.working_distance = kNan; });
+  expect_bad("integration_time", [](Sensor& s) { s.noise = ShotNoise{.integration_time = 0}; });
+  expect_bad("grazing", [](Sensor& s) { s.noise = StructuredLightNoise{.grazing = -1}; });
+  expect_bad("baseline", [](Sensor& s) { s.noise = StereoNoise{.baseline = kNan}; });
+  expect_bad("offset", [](Sensor& s) { s.noise = QuadraticNoise{.offset = 0}; });
+  expect_bad("sigma_lateral", [](Sensor& s) { s.noise = ConstantNoise{.sigma_lateral = 0}; });
+  expect_bad("T_flange_camera", [](Sensor& s) {
+    s.T_flange_camera = Pose(2 * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
+  });
+  EXPECT_EQ(cases, 14);
+  Sensor touching = sensor_preset("sr4000");
+  touching.min_range = 0;
+  touching.T_flange_camera = look_at({0, 0, 1}, {0, 0, 0});
+  EXPECT_NO_THROW(touching.validate());
+}
+
+TEST(Sensor, DefaultPriorIsNeverSurerThanTwoReadings) {
+  const Sensor s = sensor_preset("sr4000");
+  EXPECT_EQ(default_prior_sigma(3.125e-3, s), 2 * s.sigmas(0.4).axial);
+  EXPECT_EQ(default_prior_sigma(0.02, s), 0.01);
+}
+
+}  // namespace
+}  // namespace viewgain

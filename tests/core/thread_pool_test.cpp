@@ -1,0 +1,316 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/thread_pool.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "expect_error.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::expect_error;
+
+constexpr std::size_t kMaxSize = std::numeric_limits<std::size_t>::max();
+
+/// Waits until `arrived` reaches `expected`; false after a minute.
+bool meet(std::atomic<int>& arrived, int expected) {
+  arrived.fetch_add(1);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (arrived.load() < expected) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+TEST(ThreadPool, CoversEveryIndexOnce) {
+  int cases = 0;
+  for (const int threads : {1, 2, 3, 8}) {
+    ThreadPool pool(threads);
+    ASSERT_EQ(pool.num_threads(), threads);
+    for (const std::size_t count : {0, 1, 2, 7, 64, 1000, 4097}) {
+      for (const std::size_t chunk :
+           {std::size_t{1}, std::size_t{3}, std::size_t{64}, std::size_t{4097}, kMaxSize}) {
+        std::vector<std::atomic<int>> visits(count);
+        std::atomic<int> bad_ranges{0};
+        pool.for_each_chunk(count, chunk, [&](std::size_t begin, std::size_t end) {
+          const bool full = end - begin == chunk || end == count;
+          if (begin >= end || end > count || begin % chunk != 0 || !full) bad_ranges.fetch_add(1);
+          for (std::size_t i = begin; i < end; ++i) visits[i].fetch_add(1);
+        });
+        ASSERT_EQ(bad_ranges.load(), 0);
+        for (const auto& v : visits) ASSERT_EQ(v.load(), 1);
+        ++cases;
+      }
+    }
+  }
+  EXPECT_EQ(cases, 140);
+}
+
+TEST(ThreadPool, CountsNearTheLargestSizeDoNotOverflow) {
+  for (const int threads : {1, 4}) {
+    ThreadPool pool(threads);
+    std::atomic<std::size_t> covered{0};
+    std::atomic<int> calls{0};
+    pool.for_each_chunk(kMaxSize, kMaxSize / 3, [&](std::size_t begin, std::size_t end) {
+      covered.fetch_add(end - begin);
+      calls.fetch_add(1);
+    });
+    EXPECT_EQ(covered.load(), kMaxSize);
+    EXPECT_EQ(calls.load(), 3);
+  }
+}
+
+TEST(ThreadPool, AllThreadsWorkAtOnce) {
+  ThreadPool pool(4);
+  int cases = 0;
+  for (int repetition = 0; repetition < 50; ++repetition, ++cases) {
+    std::atomic<int> arrived{0};
+    std::atomic<bool> met{true};
+    pool.for_each_chunk(4, 1, [&](std::size_t, std::size_t) {
+      if (!meet(arrived, 4)) met = false;
+    });
+    ASSERT_TRUE(met.load());
+  }
+  EXPECT_EQ(cases, 50);
+}
+
+TEST(ThreadPool, OneThreadIsTheCallerInOrder) {
+  ThreadPool pool(1);
+  std::vector<std::size_t> order;
+  bool same_thread = true;
+  const auto caller = std::this_thread::get_id();
+  pool.for_each_chunk(100, 7, [&](std::size_t begin, std::size_t end) {
+    same_thread = same_thread && std::this_thread::get_id() == caller;
+    for (std::size_t i = begin; i < end; ++i) order.push_back(i);
+  });
+  std::vector<std::size_t> expected(100);
+  std::iota(expected.begin(), expected.end(), 0U);
+  EXPECT_TRUE(same_thread);
+  EXPECT_EQ(order, expected);
+}
+
+TEST(ThreadPool, ASingleChunkStaysOnTheCaller) {
+  ThreadPool pool(4);
+  std::thread::id worker;
+  pool.for_each_chunk(10, 10,
+                      [&](std::size_t, std::size_t) { worker = std::this_thread::get_id(); });
+  EXPECT_EQ(worker, std::this_thread::get_id());
+}
+
+TEST(ThreadPool, NestedLoopsRunOnTheirCaller) {
+  ThreadPool pool(3);
+  std::vector<std::atomic<int>> visits(20 * 30 * 4);
+  std::atomic<int> elsewhere{0};
+  pool.for_each_chunk(20, 1, [&](std::size_t i, std::size_t) {
+    const auto outer = std::this_thread::get_id();
+    pool.for_each_chunk(30, 1, [&](std::size_t k, std::size_t) {
+      if (std::this_thread::get_id() != outer) elsewhere.fetch_add(1);
+      pool.for_each_chunk(
+          4, 1, [&](std::size_t l, std::size_t) { visits[(i * 30 + k) * 4 + l].fetch_add(1); });
+    });
+  });
+  EXPECT_EQ(elsewhere.load(), 0);
+  for (const auto& v : visits) ASSERT_EQ(v.load(), 1);
+}
+
+TEST(ThreadPool, ConcurrentCallersAllFinish) {
+  ThreadPool pool(3);
+  constexpr int kCallers = 8, kLoops = 300;
+  std::vector<std::uint64_t> sums(kCallers, 0);
+  std::vector<std::thread> callers;
+  for (std::size_t c = 0; c < kCallers; ++c) {
+    callers.emplace_back([&pool, &sums, c] {
+      for (int i = 0; i < kLoops; ++i) {
+        std::atomic<std::uint64_t> sum{0};
+        pool.for_each_chunk(100, 3, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t k = begin; k < end; ++k) sum.fetch_add(k);
+        });
+        sums[c] += sum.load();
+      }
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
+  for (const std::uint64_t sum : sums) EXPECT_EQ(sum, 4950U * kLoops);
+}
+
+TEST(ThreadPool, ACallerThatFindsThePoolBusyIsNotHeldUp) {
+  ThreadPool pool(2);
+  std::atomic<int> inside{0};
+  std::atomic<bool> release{false};
+  std::thread holder([&] {
+    pool.for_each_chunk(2, 1, [&](std::size_t, std::size_t) {
+      inside.fetch_add(1);
+      while (!release.load()) std::this_thread::yield();
+    });
+  });
+  while (inside.load() < 2) std::this_thread::yield();
+  std::set<std::thread::id> ids;
+  pool.for_each_chunk(50, 1,
+                      [&](std::size_t, std::size_t) { ids.insert(std::this_thread::get_id()); });
+  EXPECT_EQ(ids, std::set<std::thread::id>{std::this_thread::get_id()});
+  release = true;
+  holder.join();
+}
+
+TEST(ThreadPool, ExceptionsReachTheCallerAndThePoolLives) {
+  int cases = 0;
+  for (const int threads : {1, 2, 4}) {
+    ThreadPool pool(threads);
+    for (std::size_t bad = 0; bad < 40; ++bad, ++cases) {
+      try {
+        pool.for_each_chunk(40, 1, [&](std::size_t begin, std::size_t) {
+          if (begin == bad) throw std::out_of_range("index " + std::to_string(begin));
+        });
+        FAIL() << "nothing thrown";
+      } catch (const std::out_of_range& e) {
+        ASSERT_EQ(std::string(e.what()), "index " + std::to_string(bad));
+      }
+      std::atomic<int> visits{0};
+      pool.for_each_chunk(40, 1, [&](std::size_t, std::size_t) { visits.fetch_add(1); });
+      ASSERT_EQ(visits.load(), 40);
+    }
+  }
+  EXPECT_EQ(cases, 120);
+}
+
+TEST(ThreadPool, AnExceptionEndsTheLoopEarly) {
+  ThreadPool pool(4);
+  std::atomic<int> visits{0};
+  std::atomic<bool> thrown{false};
+  EXPECT_THROW(pool.for_each_chunk(10'000, 1,
+                                   [&](std::size_t begin, std::size_t) {
+                                     visits.fetch_add(1);
+                                     if (begin == 0) {
+                                       thrown = true;
+                                       throw std::runtime_error("at once");
+                                     }
+                                     while (!thrown.load()) std::this_thread::yield();
+                                     // Leaves the other thread the time to end the loop.
+                                     std::this_thread::sleep_for(std::chrono::microseconds(100));
+                                   }),
+               std::runtime_error);
+  EXPECT_GE(visits.load(), 1);
+  EXPECT_LT(visits.load(), 5'000);
+}
+
+TEST(ThreadPool, AllThrowingAtOnceGivesOneOfTheExceptions) {
+  ThreadPool pool(4);
+  int cases = 0;
+  for (int i = 0; i < 200; ++i, ++cases) {
+    std::atomic<int> arrived{0};
+    ASSERT_THROW(pool.for_each_chunk(4, 1,
+                                     [&](std::size_t, std::size_t) {
+                                       meet(arrived, 4);
+                                       throw std::runtime_error("all");
+                                     }),
+                 std::runtime_error);
+  }
+  EXPECT_EQ(cases, 200);
+}
+
+TEST(ThreadPool, ManyShortLoops) {
+  ThreadPool pool(3);
+  int cases = 0;
+  for (int i = 0; i < 20'000; ++i, ++cases) {
+    std::atomic<int> sum{0};
+    const auto count = static_cast<std::size_t>(i % 5);
+    pool.for_each_chunk(count, 1, [&](std::size_t begin, std::size_t) {
+      sum.fetch_add(static_cast<int>(begin) + 1);
+    });
+    ASSERT_EQ(sum.load(), static_cast<int>(count * (count + 1) / 2));
+  }
+  EXPECT_EQ(cases, 20'000);
+}
+
+TEST(ThreadPool, PlainResultsAreVisibleAfterTheLoop) {
+  ThreadPool pool(4);
+  std::vector<std::size_t> out(1000);
+  int cases = 0;
+  for (std::size_t round = 0; round < 500; ++round, ++cases) {
+    pool.for_each_chunk(out.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) out[i] = i * round;
+    });
+    for (std::size_t i = 0; i < out.size(); ++i) ASSERT_EQ(out[i], i * round);
+  }
+  EXPECT_EQ(cases, 500);
+}
+
+TEST(ThreadPool, SleepingWorkersWakeUp) {
+  ThreadPool pool(2);
+  for (int i = 0; i < 5; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    std::atomic<int> arrived{0};
+    std::atomic<bool> met{true};
+    pool.for_each_chunk(2, 1, [&](std::size_t, std::size_t) {
+      if (!meet(arrived, 2)) met = false;
+    });
+    ASSERT_TRUE(met.load());
+  }
+}
+
+TEST(ThreadPool, StartsAndStopsManyTimes) {
+  int cases = 0;
+  for (int i = 0; i < 200; ++i, ++cases) {
+    ThreadPool pool(1 + i % 5);
+    std::atomic<int> visits{0};
+    if (i % 3 != 0) {
+      pool.for_each_chunk(10, 1, [&](std::size_t, std::size_t) { visits.fetch_add(1); });
+      ASSERT_EQ(visits.load(), 10);
+    }
+  }
+  EXPECT_EQ(cases, 200);
+}
+
+std::atomic<std::size_t> g_covered{0};
+void cover(std::size_t begin, std::size_t end) { g_covered.fetch_add(end - begin); }
+
+TEST(ThreadPool, TakesEveryKindOfCallable) {
+  ThreadPool pool(2);
+  std::atomic<std::size_t> covered{0};
+  const auto constant = [&covered](std::size_t begin, std::size_t end) { covered += end - begin; };
+  pool.for_each_chunk(10, 2, constant);
+  struct {
+    std::atomic<std::size_t> covered{0};
+    void operator()(std::size_t begin, std::size_t end) { covered += end - begin; }
+  } mutable_body;
+  pool.for_each_chunk(10, 2, mutable_body);
+  pool.for_each_chunk(10, 2, [calls = 0, &covered](std::size_t, std::size_t) mutable {
+    (void)calls;
+    covered += 1;
+  });
+  g_covered = 0;
+  void (*const pointer)(std::size_t, std::size_t) = cover;
+  pool.for_each_chunk(10, 2, pointer);
+  EXPECT_EQ(covered.load(), 15U);
+  EXPECT_EQ(mutable_body.covered.load(), 10U);
+  EXPECT_EQ(g_covered.load(), 10U);
+}
+
+TEST(ThreadPool, RefusesBadArguments) {
+  expect_error(ErrorCode::invalid_argument, "-1", [] { ThreadPool pool(-1); });
+  expect_error(ErrorCode::invalid_argument, "1025", [] { ThreadPool pool(1025); });
+  ThreadPool pool(2);
+  expect_error(ErrorCode::invalid_argument, "chunk",
+               [&] { pool.for_each_chunk(3, 0, [](std::size_t, std::size_t) {}); });
+  pool.for_each_chunk(0, 0, [](std::size_t, std::size_t) { ADD_FAILURE(); });
+}
+
+TEST(ThreadPool, ZeroMeansAllHardwareThreads) {
+  const ThreadPool pool(0);
+  EXPECT_EQ(pool.num_threads(), std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+}
+
+}  // namespace
+}  // namespace viewgain

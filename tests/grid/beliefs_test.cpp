@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What readings do to the belief of the voxel that encloses them.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+#include <numbers>
+
+#include "analytic_frames.hpp"
+#include "viewgain/grid/integrate.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace test;
+
+/// One pixel that looks along the z axis of its pose.
+Sensor one_pixel(const NoiseModel& noise) {
+  Sensor sensor = small_sensor(1, 1);
+  sensor.camera.fx = sensor.camera.fy = 220.0;
+  sensor.camera.cx = sensor.camera.cy = 0;
+  sensor.noise = noise;
+  return sensor;
+}
+
+DepthFrame one_reading(double depth) { return {1, 1, {static_cast<float>(depth)}}; }
+
+const GridConfig kCube{0.01, {{-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}}, {}, 0.01};
+
+/// Axis-aligned plane z = z0 + slope x of the world, seen along +z from the origin.
+DepthFrame see_plane(const Sensor& sensor, double z0, double slope) {
+  DepthFrame frame{sensor.camera.width, sensor.camera.height, {}};
+  for (const Eigen::Vector3d& ray : sensor.camera.ray_table()) {
+    frame.depth.push_back(static_cast<float>(z0 / (1.0 - slope * ray.x())));
+  }
+  return frame;
+}
+
+TEST(Beliefs, TwoPerpendicularReadings) {
+  // The paper's figure 3: each reading is sure across its ray, together they are sure everywhere.
+  const ConstantNoise noise{0.004, 0.001};
+  BeliefGrid grid(kCube);
+  FrameIntegrator integrator(one_pixel(noise));
+  const Eigen::Vector3d target(0.005, 0.005, 0.005);
+  integrator.integrate(grid, one_reading(0.5),
+                       look_at(target - Eigen::Vector3d(0.5, 0, 0), target));
+  integrator.integrate(grid, one_reading(0.5),
+                       look_at(target - Eigen::Vector3d(0, 0.5, 0), target));
+  const auto belief = grid.belief({0, 0, 0});
+  ASSERT_TRUE(belief.has_value());
+  EXPECT_EQ(belief->hits, 2U);
+  const double axial = 1.0 / (0.004 * 0.004), lateral = 1.0 / (0.001 * 0.001);
+  const auto& L = belief->information;
+  EXPECT_NEAR(L[0], axial + lateral, 1e-6 * lateral);
+  EXPECT_NEAR(L[1], axial + lateral, 1e-6 * lateral);
+  EXPECT_NEAR(L[2], 2 * lateral, 1e-6 * lateral);
+  for (std::size_t i = 3; i < 6; ++i) EXPECT_NEAR(L[i], 0.0, 1e-6 * lateral);
+}
+
+TEST(Beliefs, ExactReadingsOfOnePointFuseToIt) {
+  const Eigen::Vector3d target(0.0437, -0.0281, 0.0119);
+  GridConfig config = kCube;
+  config.T_world_grid =
+      Pose(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 1, 2).normalized()).toRotationMatrix(),
+           Eigen::Vector3d(0.01, -0.02, 0.005));
+  BeliefGrid grid(config);
+  FrameIntegrator integrator(one_pixel(ShotNoise{}));
+  for (int i = 0; i < 30; ++i) {
+    const Eigen::Vector3d eye =
+        target + Eigen::Vector3d(std::cos(i * 1.7), std::sin(i * 1.7), std::cos(i * 0.9)) * 0.4;
+    integrator.integrate(grid, one_reading((target - eye).norm()), look_at(eye, target));
+  }
+  const Eigen::Vector3d p_grid = config.T_world_grid.inverse() * target;
+  const Index3 voxel{static_cast<int>(std::floor(p_grid.x() / 0.01)),
+                     static_cast<int>(std::floor(p_grid.y() / 0.01)),
+                     static_cast<int>(std::floor(p_grid.z() / 0.01))};
+  const auto belief = grid.belief(voxel);
+  ASSERT_TRUE(belief.has_value());
+  EXPECT_EQ(belief->hits, 30U);
+  const Eigen::Vector3d center((voxel.x + 0.5) * 0.01, (voxel.y + 0.5) * 0.01,
+                               (voxel.z + 0.5) * 0.01);
+  const auto& eta = belief->information_vector;
+  const Eigen::Vector3d fused = center + belief->information_matrix().matrix().inverse() *
+                                             Eigen::Vector3d(eta[0], eta[1], eta[2]);
+  EXPECT_LT((fused - p_grid).norm(), 1e-6);  // the depth itself is in single precision
+}
+
+TEST(Beliefs, IncidenceComesFromTheNeighbourhood) {
+  Sensor sensor = small_sensor(64, 48);
+  sensor.noise = ShotNoise{};
+  sensor.camera.cx = 32;
+  sensor.camera.cy = 24;
+  const GridConfig config{0.1, {{-1, -1, 0}, {1, 1, 1.5}}, {}, 0.01};
+  const auto axial_sigma = [&](const DepthFrame& frame) {
+    BeliefGrid grid(config);
+    DepthFrame alone{64, 48, frame.depth};
+    FrameIntegrator(sensor).integrate(grid, alone, Pose{});
+    // All readings in the voxel share cosθ up to the perspective; along z only the axial part
+    // counts.
+    const auto belief = grid.belief({0, 0, 5});
+    EXPECT_TRUE(belief.has_value());
+    return std::sqrt(belief->hits / static_cast<double>(belief->information[2]));
+  };
+  int cases = 0;
+  for (const double degrees : {0.0, 30.0, 50.0, 65.0, 75.0}) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    // Tilted about y, so that z = 0.52 + tan(angle) x; few pixels lie in the voxel [0, 0.1]² x
+    // [0.5, 0.6].
+    BeliefGrid grid(config);
+    const DepthFrame frame = see_plane(sensor, 0.52, std::tan(angle));
+    FrameIntegrator(sensor).integrate(grid, frame, Pose{});
+    const auto belief = grid.belief({0, 0, 5});
+    ASSERT_TRUE(belief.has_value());
+    // The same sum with the analytic cosine, on the pixels whose readings lie in that voxel.
+    SymmetricMatrix3 expected;
+    std::uint32_t hits = 0;
+    const Eigen::Vector3d normal = Eigen::Vector3d(-std::tan(angle), 0, 1).normalized();
+    for (int v = 0; v < 48; ++v) {
+      for (int u = 0; u < 64; ++u) {
+        const Eigen::Vector3d ray = sensor.camera.ray(u, v);
+        const Eigen::Vector3d p = ray * double{frame.at(u, v)};
+        if (!(Eigen::Vector3d(0, 0, 0.5).array() <= p.array()).all() ||
+            !(p.array() < Eigen::Vector3d(0.1, 0.1, 0.6).array()).all()) {
+          continue;
+        }
+        const Eigen::Vector3d d = ray.normalized();
+        expected += measurement_information(d, sensor.sigmas(p.norm(), std::abs(normal.dot(d))));
+        ++hits;
+      }
+    }
+    EXPECT_EQ(belief->hits, hits) << degrees;
+    EXPECT_GT(hits, 3U);
+    EXPECT_NEAR(belief->information[2], expected.zz, 2e-4 * expected.zz) << degrees;
+    EXPECT_NEAR(belief->information[0], expected.xx, 2e-4 * expected.xx) << degrees;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5);
+
+  // Where a pixel has no neighbours its surface counts as frontal; so it does beside a jump on all
+  // sides.
+  const DepthFrame tilted = see_plane(sensor, 0.52, std::tan(1.2));
+  DepthFrame sparse = tilted, jumps = tilted;
+  for (int v = 0; v < 48; ++v) {
+    for (int u = 0; u < 64; ++u) {
+      if (u % 2 == 0 && v % 2 == 0) continue;
+      const auto i = static_cast<std::size_t>(v * 64 + u);
+      sparse.depth[i] = DepthFrame::kInvalid;
+      jumps.depth[i] *= 3.0F;
+    }
+  }
+  const double frontal = sensor.sigmas(0.55, 1.0).axial;
+  EXPECT_NEAR(axial_sigma(sparse), frontal, 0.1 * frontal);
+  EXPECT_NEAR(axial_sigma(jumps), frontal, 0.1 * frontal);
+  EXPECT_GT(axial_sigma(tilted), 1.4 * frontal);
+}
+
+// Readings in the last voxels of a column or row still get their incidence from one side.
+TEST(Beliefs, OneSidedAtTheImageBorder) {
+  Sensor sensor = small_sensor(2, 2);
+  sensor.camera.fx = sensor.camera.fy = 220;
+  sensor.camera.cx = sensor.camera.cy = 0;
+  sensor.noise = ShotNoise{};
+  BeliefGrid grid({0.1, {{-1, -1, 0}, {1, 1, 1.5}}, {}, 0.01});
+  const double slope = std::tan(1.0);
+  FrameIntegrator(sensor).integrate(grid, see_plane(sensor, 0.52, slope), Pose{});
+  const auto belief = grid.belief({0, 0, 5});
+  ASSERT_TRUE(belief.has_value());
+  EXPECT_EQ(belief->hits, 4U);
+  const double expected = sensor.sigmas(0.52, std::cos(1.0)).axial;
+  EXPECT_NEAR(std::sqrt(4.0 / static_cast<double>(belief->information[2])), expected,
+              0.01 * expected);
+}
+
+TEST(Beliefs, StayWithAVoxelThatTurnsFreeAndGoOnLater) {
+  const ConstantNoise noise{0.002, 0.002};
+  BeliefGrid grid(kCube);
+  FrameIntegrator integrator(one_pixel(noise));
+  const Pose pose = look_at({0.005, 0.005, -0.5}, {0.005, 0.005, 0.0});
+  const auto see = [&](double depth) { integrator.integrate(grid, one_reading(depth), pose); };
+  see(0.505);
+  ASSERT_EQ(grid.state({0, 0, 0}), VoxelState::occupied);
+  const auto first = grid.belief({0, 0, 0});
+  see(0.575), see(0.575), see(0.575);  // 0.85 - 3 * 0.4 < 0
+  EXPECT_EQ(grid.state({0, 0, 0}), VoxelState::free);
+  EXPECT_EQ(grid.belief({0, 0, 0}), first);
+  // It is no part of entropy_removed while it is free.
+  const double with_it = grid.statistics().entropy_removed;
+  see(0.505);
+  EXPECT_EQ(grid.state({0, 0, 0}), VoxelState::occupied);
+  const auto again = grid.belief({0, 0, 0});
+  ASSERT_TRUE(again.has_value());
+  EXPECT_EQ(again->hits, 2U);
+  EXPECT_FLOAT_EQ(again->information[0], 2 * first->information[0]);
+  EXPECT_GT(grid.statistics().entropy_removed, with_it);
+}
+
+TEST(Beliefs, EntropyRemovedIsTheSumOverOccupiedVoxels) {
+  BeliefGrid grid(object_grid(48));
+  const Sensor sensor = small_sensor(64, 48);
+  FrameIntegrator integrator(sensor);
+  for (int i = 0; i < 4; ++i) {
+    integrator.integrate(grid, see_spheres(sensor, ring_view(i), three_spheres_in_a_room()),
+                         ring_view(i));
+  }
+  const double prior = 1.0 / (grid.prior_sigma() * grid.prior_sigma());
+  int voxels = 0;
+  for (const Criterion criterion :
+       {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
+    double sum = 0;
+    voxels = 0;
+    for (int i = -24; i < 24; ++i) {
+      for (int j = -24; j < 24; ++j) {
+        for (int k = -24; k < 24; ++k) {
+          if (grid.state({i, j, k}) != VoxelState::occupied) continue;
+          const auto belief = grid.belief({i, j, k});
+          ASSERT_TRUE(belief.has_value());
+          const SymmetricMatrix3 before = SymmetricMatrix3::identity(prior);
+          sum += entropy(before, criterion) -
+                 entropy(before + belief->information_matrix(), criterion);
+          ++voxels;
+        }
+      }
+    }
+    EXPECT_NEAR(grid.statistics(criterion).entropy_removed, sum, 1e-9 * sum);
+    EXPECT_GT(sum, 0);
+  }
+  EXPECT_EQ(static_cast<std::uint64_t>(voxels), grid.statistics().occupied);
+  EXPECT_GT(voxels, 300);
+}
+
+}  // namespace
+}  // namespace viewgain

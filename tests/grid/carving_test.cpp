@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Which voxels a frame crosses and hits, against loops over all voxels.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <tuple>
+
+#include "analytic_frames.hpp"
+#include "viewgain/grid/integrate.hpp"
+#include "voxel_oracle.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace test;
+
+/// A frame of the object with all three kinds of pixel, readings too near and too far among them.
+DepthFrame mixed_frame(const Sensor& sensor, const Pose& pose, std::mt19937& random) {
+  DepthFrame frame = see_spheres(sensor, pose, three_spheres_in_a_room());
+  std::uniform_int_distribution<int> dice(0, 39);
+  for (float& depth : frame.depth) {
+    switch (dice(random)) {
+      case 0:
+        depth = DepthFrame::kInvalid;
+        break;
+      case 1:
+        depth = DepthFrame::kOutOfRange;
+        break;
+      case 2:
+        depth = std::numeric_limits<float>::quiet_NaN();
+        break;
+      case 3:
+        depth = -depth;
+        break;
+      case 4:
+        depth = 0.01F;
+        break;  // nearer than min_range
+      case 5:
+        depth = 50.0F;
+        break;  // farther than max_range
+      case 6:
+        depth *= 0.7F;
+        break;  // in free space
+      default:
+        break;
+    }
+  }
+  return frame;
+}
+
+struct Setting {
+  const char* name;
+  GridConfig grid;
+  std::array<double, 5> distortion{};
+  double focal_scale = 1.0;
+};
+
+std::vector<Setting> settings() {
+  const GridConfig plain{0.0125, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01};
+  // No multiple of 8 voxels, and no corner on the lattice.
+  const GridConfig odd{0.0131, {{-0.19, -0.171, -0.2}, {0.17, 0.205, 0.113}}, {}, 0.01};
+  GridConfig turned = odd;
+  const Eigen::Vector3d t(0.03, -0.05, 0.02);
+  turned.T_world_grid =
+      Pose(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix(), t);
+  // The same cube of the world, described far off the grid's origin.
+  GridConfig far = odd;
+  const Eigen::Vector3d off(1310.0, -2620.0, 655.0);
+  for (std::size_t a = 0; a < 3; ++a) {
+    far.workspace.min[a] += off[static_cast<Eigen::Index>(a)];
+    far.workspace.max[a] += off[static_cast<Eigen::Index>(a)];
+  }
+  far.T_world_grid = Pose(Eigen::Matrix3d::Identity(), -off);
+  return {{"plain", plain, {}, 1.0},
+          {"odd", odd, {}, 1.0},
+          {"turned", turned, {}, 1.0},
+          {"far", far, {}, 1.0},
+          {"distorted", turned, {-0.25, 0.08, 0.002, -0.0015, -0.01}, 1.0},
+          // The lens model folds back inside the field of view.
+          {"folded", turned, {-0.35, 0.0, 0.0, 0.0, 0.0}, 0.42}};
+}
+
+Sensor carving_sensor(const Setting& setting, Carve carve) {
+  // The oracle tests every voxel with every line, hence fewer of them.
+  Sensor sensor = carve == Carve::cones ? small_sensor(32, 24) : small_sensor(14, 10);
+  sensor.noise = ConstantNoise{0.006, 0.003};
+  sensor.max_range = 1.52;
+  sensor.camera.fx *= setting.focal_scale;
+  sensor.camera.fy *= setting.focal_scale;
+  sensor.camera.distortion = setting.distortion;
+  return sensor;
+}
+
+/// A view of the object; every fourth from inside the workspace.
+Pose carving_view(int i) {
+  if (i % 4 != 3) return ring_view(i);
+  return look_at({0.15, -0.12, 0.08}, {-0.05, 0.02, 0.0});
+}
+
+class Carving : public testing::TestWithParam<std::tuple<Carve, Occupancy>> {
+ protected:
+  IntegrationConfig config_{std::get<0>(GetParam()), std::get<1>(GetParam())};
+};
+
+TEST_P(Carving, EqualsLoopsOverAllVoxels) {
+  std::mt19937 random(11);
+  int cases = 0;
+  for (const Setting& setting : settings()) {
+    const Sensor sensor = carving_sensor(setting, config_.carve);
+    BeliefGrid grid(setting.grid);
+    VoxelOracle oracle(grid);
+    FrameIntegrator integrator(sensor, config_, {2});
+    for (int view = 0; view < 4; ++view) {
+      const Pose pose = carving_view(view);
+      const DepthFrame frame = mixed_frame(sensor, pose, random);
+      const IntegrationReport report = integrator.integrate(grid, frame, pose);
+      oracle.integrate(sensor, frame, pose, config_);
+      EXPECT_EQ(oracle.differences(grid), 0U) << setting.name << ", view " << view;
+      EXPECT_EQ(report.voxels_crossed, oracle.crossed()) << setting.name << ", view " << view;
+      EXPECT_EQ(report.voxels_hit, oracle.hit()) << setting.name << ", view " << view;
+      EXPECT_GT(oracle.crossed(), oracle.voxels() / 100);
+      EXPECT_EQ(report.readings + report.out_of_range + report.invalid, frame.depth.size());
+      ++cases;
+    }
+    const GridStatistics statistics = grid.statistics();
+    EXPECT_EQ(statistics.unknown + statistics.free + statistics.occupied, oracle.voxels());
+  }
+  EXPECT_EQ(cases, 24);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AllRules, Carving,
+    testing::Combine(testing::Values(Carve::cones, Carve::lines),
+                     testing::Values(Occupancy::probabilistic, Occupancy::literal)),
+    [](const auto& test) {
+      return std::string(std::get<0>(test.param) == Carve::cones ? "Cones" : "Lines") +
+             (std::get<1>(test.param) == Occupancy::literal ? "Literal" : "Probabilistic");
+    });
+
+// Large blocks are judged as a whole; what decides must not show.
+TEST(Carving, ManyVoxelsAPixelAndManyPixelsAVoxel) {
+  int cases = 0;
+  for (const auto& [width, n] : {std::pair{8, 64}, std::pair{96, 12}}) {
+    Sensor sensor = small_sensor(width, width * 3 / 4);
+    sensor.noise = ConstantNoise{0.002, 0.002};
+    BeliefGrid grid(object_grid(n));
+    VoxelOracle oracle(grid);
+    FrameIntegrator integrator(sensor, {}, {1});
+    for (int view = 0; view < 3; ++view) {
+      const DepthFrame frame = see_spheres(sensor, ring_view(view), three_spheres_in_a_room());
+      integrator.integrate(grid, frame, ring_view(view));
+      oracle.integrate(sensor, frame, ring_view(view), {});
+      EXPECT_EQ(oracle.differences(grid), 0U) << width << " px, " << n << " voxels";
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 6);
+}
+
+TEST(Carving, ThreeKindsOfPixel) {
+  Sensor sensor = small_sensor(8, 6);
+  sensor.camera.cx = 4;  // the ray of pixel (4, 3) is the z axis
+  sensor.camera.cy = 3;
+  sensor.min_range = 0.3;
+  sensor.max_range = 0.55;
+  const GridConfig config{0.005, {{-0.02, -0.02, 0.1}, {0.02, 0.02, 0.7}}, {}, 0.01};
+  const Pose pose;  // looks along +z
+  const auto column = [&](float depth) {
+    BeliefGrid grid(config);
+    DepthFrame frame{8, 6, std::vector<float>(48, depth)};
+    const IntegrationReport report = FrameIntegrator(sensor).integrate(grid, frame, pose);
+    std::string states;
+    for (int k = grid.min_index().z; k < grid.min_index().z + grid.dims().z; ++k) {
+      states += ".fo"[static_cast<int>(grid.state({0, 0, k}))];
+    }
+    return std::tuple(states, report.readings, report.out_of_range, report.invalid);
+  };
+  const std::size_t all = 120;  // voxels of 5 mm between 0.1 and 0.7
+  const auto line = [&](std::size_t free, std::size_t occupied) {
+    return std::string(free, 'f') + std::string(occupied, 'o') +
+           std::string(all - free - occupied, '.');
+  };
+  const std::string nothing(all, '.');
+  // A reading carves what lies before it, also nearer than min_range, and says nothing beyond.
+  EXPECT_EQ(column(0.4025F), std::tuple(line(60, 1), 48U, 0U, 0U));
+  // Out of range carves up to max_range: the last centre within 0.55 is at 0.5475.
+  EXPECT_EQ(column(DepthFrame::kOutOfRange), std::tuple(line(90, 0), 0U, 48U, 0U));
+  EXPECT_EQ(column(0.6F), std::tuple(line(90, 0), 0U, 48U, 0U));
+  for (const float invalid : {DepthFrame::kInvalid, -1.0F, std::nanf(""), 0.25F}) {
+    EXPECT_EQ(column(invalid), std::tuple(nothing, 0U, 0U, 48U)) << invalid;
+  }
+}
+
+// Pyramids against dense sub-rays inside the pixels: they may disagree only next to a pyramid's
+// face or to a reading.
+TEST(Carving, ConesAgreeWithDenseSubRays) {
+  Sensor sensor = small_sensor(12, 9);
+  sensor.noise = ConstantNoise{0.001, 0.001};
+  const Pose pose = look_at({0.02, -0.45, 0.03}, {0, 0, 0});
+  const GridConfig config{0.004, {{-0.06, -0.06, -0.06}, {0.06, 0.06, 0.06}}, {}, 0.01};
+  const DepthFrame frame = see_spheres(sensor, pose, {{{0, 0, 0}, 0.05}, {{0, 0, 0}, 1.5}});
+  BeliefGrid grid(config);
+  FrameIntegrator(sensor).integrate(grid, frame, pose);
+
+  constexpr int kSub = 24;
+  const Index3 min = grid.min_index(), dims = grid.dims();
+  const auto position = [&](int x, int y, int z) {
+    return static_cast<std::size_t>(((x - min.x) * dims.y + (y - min.y)) * dims.z + (z - min.z));
+  };
+  std::vector<bool> crossed(grid.voxel_count());
+  for (int v = 0; v < sensor.camera.height; ++v) {
+    for (int u = 0; u < sensor.camera.width; ++u) {
+      const double reach = frame.at(u, v) * sensor.camera.ray(u, v).norm();
+      for (int s = 0; s < kSub * kSub; ++s) {
+        const double du = (s % kSub + 0.5) / kSub - 0.5, dv = (s / kSub + 0.5) / kSub - 0.5;
+        const Eigen::Vector3d d =
+            (pose.rotation() * sensor.camera.ray(u + du, v + dv)).normalized();
+        for (double t = 0.3; t < std::min(reach, 0.6); t += 0.001) {
+          const Eigen::Vector3d p = (pose.translation() + t * d) / config.voxel_size;
+          if (!(p.cwiseAbs().maxCoeff() < 15)) continue;  // the workspace is 30 voxels wide
+          crossed[position(static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
+                           static_cast<int>(std::floor(p.z())))] = true;
+        }
+      }
+    }
+  }
+
+  const double one_voxel = std::sqrt(3.0) * config.voxel_size;
+  std::uint64_t compared = 0, agreed = 0, explained = 0;
+  for (int i = min.x; i < min.x + dims.x; ++i) {
+    for (int j = min.y; j < min.y + dims.y; ++j) {
+      for (int k = min.z; k < min.z + dims.z; ++k) {
+        ++compared;
+        const bool known = grid.state({i, j, k}) != VoxelState::unknown;
+        if (known == crossed[position(i, j, k)]) {
+          ++agreed;
+          continue;
+        }
+        const Eigen::Vector3d p =
+            pose.inverse() * (Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5) * config.voxel_size);
+        const Eigen::Vector2d at = sensor.camera.project(p);
+        const Eigen::Vector2d to_face =
+            Eigen::Vector2d::Constant(0.5) - (at - at.array().round().matrix()).cwiseAbs();
+        const bool near_face = to_face.x() * p.z() / sensor.camera.fx < one_voxel ||
+                               to_face.y() * p.z() / sensor.camera.fy < one_voxel;
+        const int u = static_cast<int>(std::lround(at.x())),
+                  v = static_cast<int>(std::lround(at.y()));
+        const bool seen = u >= 0 && v >= 0 && u < sensor.camera.width && v < sensor.camera.height;
+        const double reach = seen ? frame.at(u, v) * sensor.camera.ray(u, v).norm() : 0.0;
+        if (near_face || std::abs(reach - p.norm()) < one_voxel) ++explained;
+      }
+    }
+  }
+  EXPECT_EQ(compared, 27000U);
+  EXPECT_EQ(agreed + explained, compared);
+  EXPECT_GT(agreed, compared * 3 / 4);
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// How log-odds behave over many frames.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "analytic_frames.hpp"
+#include "viewgain/grid/integrate.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace test;
+
+DepthFrame wall(const Sensor& sensor, double z) {
+  const auto pixels = static_cast<std::size_t>(sensor.camera.width) *
+                      static_cast<std::size_t>(sensor.camera.height);
+  return {sensor.camera.width, sensor.camera.height,
+          std::vector<float>(pixels, static_cast<float>(z))};
+}
+
+// Frontal wall, SR4000 noise, voxels finer than the noise; all of the workspace is in view.
+TEST(Occupancy, AWallSeenFiftyTimesWithNoiseStays) {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera.width = 60;
+  sensor.camera.height = 60;
+  sensor.camera.cx = sensor.camera.cy = 29.5;
+  const double z = 0.45;
+  BeliefGrid grid({0.003125, {{-0.05, -0.05, 0.4}, {0.05, 0.05, 0.5}}, {}, 0.0072});
+  FrameIntegrator integrator(sensor);
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0.0, sensor.sigmas(z).axial);
+  int columns = 0;
+  for (int frame = 1; frame <= 50; ++frame) {
+    DepthFrame noisy = wall(sensor, z);
+    for (float& depth : noisy.depth) depth += static_cast<float>(normal(random));
+    integrator.integrate(grid, noisy, Pose{});
+    if (frame != 3 && frame != 10 && frame != 50) continue;
+    // No line along the optical axis may see through, nor stop far from the wall.
+    for (int i = -16; i < 16; ++i) {
+      for (int j = -16; j < 16; ++j) {
+        int k = grid.min_index().z;
+        while (k < grid.min_index().z + grid.dims().z && grid.state({i, j, k}) == VoxelState::free)
+          ++k;
+        EXPECT_NEAR((k + 0.5) * grid.voxel_size(), z, 4 * sensor.sigmas(z).axial)
+            << i << " " << j << " after " << frame;
+        if (frame == 50) {
+          bool occupied = false;
+          for (int n = -3; n <= 3; ++n) {
+            occupied = occupied || grid.state({i, j, 144 + n}) == VoxelState::occupied;
+          }
+          EXPECT_TRUE(occupied) << i << " " << j;
+          ++columns;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(columns, 1024);
+  EXPECT_EQ(grid.views().size(), 50U);
+}
+
+TEST(Occupancy, OneFlyingPixelInSpaceSeenFreeFiftyTimesStaysFree) {
+  const Sensor sensor = small_sensor(24, 18);
+  const GridConfig config{0.01, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01};
+  int cases = 0;
+  for (const int when : {0, 1, 25, 50}) {  // among 51 frames
+    BeliefGrid grid(config);
+    FrameIntegrator integrator(sensor);
+    for (int i = 0; i <= 50; ++i) {
+      DepthFrame frame = wall(sensor, 0.55);
+      if (i == when) frame.depth[9 * 24 + 12] = 0.355F;
+      integrator.integrate(grid, frame, Pose{});
+    }
+    const Eigen::Vector3d p = sensor.camera.ray(12, 9) * 0.355;
+    const Index3 voxel{static_cast<int>(std::floor(p.x() / 0.01)),
+                       static_cast<int>(std::floor(p.y() / 0.01)), 35};
+    const auto belief = grid.belief(voxel);
+    ASSERT_TRUE(belief.has_value());
+    EXPECT_EQ(belief->hits, 1U);
+    EXPECT_EQ(grid.state(voxel), VoxelState::free) << when;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 4);
+}
+
+TEST(Occupancy, LogOddsAreClampedAndRoundedToSteps) {
+  const Sensor sensor = small_sensor(24, 18);
+  BeliefGrid grid({0.02, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01});
+  FrameIntegrator integrator(sensor);
+  const Index3 before{0, 0, 15}, at{0, 0, 25};  // centres at 0.31 and 0.51
+  for (int i = 1; i <= 8; ++i) {
+    integrator.integrate(grid, wall(sensor, 0.51), Pose{});
+    EXPECT_FLOAT_EQ(grid.log_odds(before).value(), std::max(-0.4F * static_cast<float>(i), -2.0F));
+    EXPECT_FLOAT_EQ(grid.log_odds(at).value(), std::min(0.85F * static_cast<float>(i), 3.5F));
+  }
+  EXPECT_FALSE(grid.log_odds({0, 0, 27}).has_value());
+}
+
+// No thin unknown shell may stay in front of a surface: weight 0 makes a voxel known, and free.
+TEST(Occupancy, CrossedWithoutWeightIsFree) {
+  Sensor sensor = small_sensor(24, 18);
+  sensor.noise = ConstantNoise{0.05, 0.05};  // 3 sigma are 150 mm
+  BeliefGrid grid({0.005, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01});
+  FrameIntegrator(sensor).integrate(grid, wall(sensor, 0.501), Pose{});
+  std::vector<float> column;
+  for (int k = 60; k < 100; ++k) {
+    ASSERT_EQ(grid.state({0, 0, k}), VoxelState::free) << k;
+    column.push_back(grid.log_odds({0, 0, k}).value());
+  }
+  EXPECT_EQ(column.back(), 0.0F);  // 3.5 mm before the reading, 8 * 3.5 / 150 rounds to 0
+  EXPECT_FLOAT_EQ(column.front(), -0.4F);
+  EXPECT_TRUE(std::is_sorted(column.begin(), column.end()));
+  // Rounded to nearest at each distance.
+  for (int k = 60; k < 100; ++k) {
+    const double range = Eigen::Vector3d(0.0025, 0.0025, (k + 0.5) * 0.005).norm();
+    const Eigen::Vector2d at = sensor.camera.project({0.0025, 0.0025, (k + 0.5) * 0.005});
+    const double reading =
+        0.501F * sensor.camera.ray(std::floor(at.x() + 0.5), std::floor(at.y() + 0.5)).norm();
+    const double weight = std::min(8.0, 8.0 * (reading - range) / 0.15);
+    EXPECT_FLOAT_EQ(column[static_cast<std::size_t>(k - 60)],
+                    static_cast<float>(-0.05 * std::floor(weight + 0.5)))
+        << k;
+  }
+  EXPECT_EQ(column.size(), 40U);
+}
+
+TEST(Occupancy, LiteralFollowsTheLastFrame) {
+  const Sensor sensor = small_sensor(24, 18);
+  BeliefGrid grid({0.02, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01});
+  FrameIntegrator integrator(sensor, {Carve::cones, Occupancy::literal});
+  const Index3 voxel{0, 0, 20};
+  for (int i = 0; i < 5; ++i) integrator.integrate(grid, wall(sensor, 0.41), Pose{});
+  EXPECT_EQ(grid.state(voxel), VoxelState::occupied);
+  integrator.integrate(grid, wall(sensor, 0.51), Pose{});
+  EXPECT_EQ(grid.state(voxel), VoxelState::free);
+  EXPECT_TRUE(grid.belief(voxel).has_value());
+  integrator.integrate(grid, wall(sensor, 0.41), Pose{});
+  EXPECT_EQ(grid.state(voxel), VoxelState::occupied);
+}
+
+}  // namespace
+}  // namespace viewgain

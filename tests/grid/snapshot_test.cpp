@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <tuple>
+
+#include "analytic_frames.hpp"
+#include "viewgain/grid/integrate.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace test;
+
+/// The states that a snapshot tells; counts voxels that are told twice or lie outside the
+/// workspace.
+std::vector<std::uint8_t> states_of(const GridSnapshot& s, std::uint64_t& faults) {
+  std::vector<std::uint8_t> states(static_cast<std::size_t>(s.dims.x) *
+                                       static_cast<std::size_t>(s.dims.y) *
+                                       static_cast<std::size_t>(s.dims.z),
+                                   1);
+  faults = 0;
+  const auto tell = [&](int x, int y, int z, std::uint8_t state) {
+    x -= s.min_index.x, y -= s.min_index.y, z -= s.min_index.z;
+    if (x < 0 || y < 0 || z < 0 || x >= s.dims.x || y >= s.dims.y || z >= s.dims.z) {
+      ++faults;
+      return;
+    }
+    auto& at = states[(static_cast<std::size_t>(x) * static_cast<std::size_t>(s.dims.y) +
+                       static_cast<std::size_t>(y)) *
+                          static_cast<std::size_t>(s.dims.z) +
+                      static_cast<std::size_t>(z)];
+    if (at != 1) ++faults;
+    at = state;
+  };
+  for (const SnapshotLeaf& leaf : s.leaves) {
+    if (leaf.origin.x % 8 != 0 || leaf.origin.y % 8 != 0 || leaf.origin.z % 8 != 0) ++faults;
+    for (unsigned n = 0; n < 512; ++n) {
+      if (test_bit(leaf.occupied, n) && !test_bit(leaf.non_free, n)) ++faults;
+      if (!test_bit(leaf.non_free, n)) continue;
+      tell(leaf.origin.x + static_cast<int>(n >> 6U),
+           leaf.origin.y + static_cast<int>(n >> 3U & 7U), leaf.origin.z + static_cast<int>(n & 7U),
+           test_bit(leaf.occupied, n) ? 2 : 0);
+    }
+  }
+  for (const SnapshotTile& tile : s.tiles) {
+    for (int x = tile.min.x; x < tile.max.x; ++x) {
+      for (int y = tile.min.y; y < tile.max.y; ++y) {
+        for (int z = tile.min.z; z < tile.max.z; ++z) tell(x, y, z, 0);
+      }
+    }
+  }
+  return states;
+}
+
+std::vector<std::uint8_t> states_of(const BeliefGrid& grid) {
+  std::vector<std::uint8_t> states(grid.voxel_count());
+  grid.copy_states(states);
+  return states;
+}
+
+void expect_equal(const GridSnapshot& snapshot, const BeliefGrid& grid) {
+  std::uint64_t faults = 0;
+  EXPECT_EQ(states_of(snapshot, faults), states_of(grid));
+  EXPECT_EQ(faults, 0U);
+  std::uint64_t beliefs = 0;
+  for (const SnapshotLeaf& leaf : snapshot.leaves) {
+    for (unsigned n = 0; n < 512; ++n) {
+      if (!test_bit(leaf.occupied, n)) continue;
+      const Belief* told = leaf.beliefs != nullptr ? leaf.beliefs->find(n) : nullptr;
+      const auto held = grid.belief({leaf.origin.x + static_cast<int>(n >> 6U),
+                                     leaf.origin.y + static_cast<int>(n >> 3U & 7U),
+                                     leaf.origin.z + static_cast<int>(n & 7U)});
+      ASSERT_EQ(told != nullptr, held.has_value());
+      if (held) {
+        ASSERT_EQ(*told, *held);
+        ++beliefs;
+      }
+    }
+  }
+  EXPECT_LE(beliefs, grid.statistics().occupied);
+}
+
+TEST(Snapshot, TellsTheStatesOfTheGrid) {
+  std::mt19937 random(23);
+  int cases = 0;
+  for (const double share : {0.0, 0.002, 0.2, 1.0}) {
+    for (const int rest : {0, 1, 2}) {
+      for (const double low : {-0.16, 0.013, 12.345}) {
+        const GridConfig config{
+            0.01, {{low, low, low}, {low + 0.41, low + 0.16, low + 0.27}}, {}, 0.01};
+        std::vector<std::uint8_t> states(BeliefGrid(config).voxel_count(),
+                                         static_cast<std::uint8_t>(rest));
+        std::bernoulli_distribution other(share);
+        std::uniform_int_distribution<int> which(0, 2);
+        for (std::uint8_t& s : states) {
+          if (other(random)) s = static_cast<std::uint8_t>(which(random));
+        }
+        const BeliefGrid grid = BeliefGrid::from_states(config, states);
+        const GridSnapshot snapshot = grid.snapshot();
+        std::uint64_t faults = 0;
+        EXPECT_EQ(states_of(snapshot, faults), states);
+        EXPECT_EQ(faults, 0U);
+        EXPECT_EQ(snapshot.dims, grid.dims());
+        EXPECT_EQ(snapshot.min_index, grid.min_index());
+        EXPECT_EQ(snapshot.voxel_size, 0.01);
+        ++cases;
+      }
+    }
+  }
+  EXPECT_EQ(cases, 36);
+}
+
+TEST(Snapshot, AnUnknownWorkspaceIsAFewBoxes) {
+  const BeliefGrid grid(GridConfig{0.01, {{-20, -20, -20}, {20, 20, 20}}, {}, 0.01});
+  const GridSnapshot snapshot = grid.snapshot();
+  EXPECT_TRUE(snapshot.leaves.empty());
+  EXPECT_LE(snapshot.tiles.size(), 27U);
+  std::uint64_t volume = 0;
+  for (const SnapshotTile& tile : snapshot.tiles) {
+    volume += static_cast<std::uint64_t>(tile.max.x - tile.min.x) *
+              static_cast<std::uint64_t>(tile.max.y - tile.min.y) *
+              static_cast<std::uint64_t>(tile.max.z - tile.min.z);
+  }
+  EXPECT_EQ(volume, grid.voxel_count());
+}
+
+TEST(Snapshot, StaysAsItWasAndSharesWhatDidNotChange) {
+  const Sensor sensor = small_sensor(64, 48);
+  const auto frame = [&](int view) {
+    return see_spheres(sensor, ring_view(view), three_spheres_in_a_room());
+  };
+  BeliefGrid grid(object_grid(64));
+  FrameIntegrator integrator(sensor, {}, {2});
+  for (int view = 0; view < 3; ++view) integrator.integrate(grid, frame(view), ring_view(view));
+  const GridSnapshot before = grid.snapshot();
+  expect_equal(before, grid);
+  const BeliefGrid then = grid.clone();
+
+  integrator.integrate(grid, frame(4), ring_view(4));
+  grid.set({0, 0, 0}, 1.0F, Belief{{1, 1, 1, 0, 0, 0}, {}, 1});
+  expect_equal(before, then);
+  const GridSnapshot after = grid.snapshot();
+  expect_equal(after, grid);
+
+  std::map<std::tuple<int, int, int>, const BeliefBlock*> old_blocks;
+  for (const SnapshotLeaf& leaf : before.leaves) {
+    old_blocks[{leaf.origin.x, leaf.origin.y, leaf.origin.z}] = leaf.beliefs.get();
+  }
+  std::size_t shared = 0, changed = 0;
+  for (const SnapshotLeaf& leaf : after.leaves) {
+    const auto found = old_blocks.find({leaf.origin.x, leaf.origin.y, leaf.origin.z});
+    if (leaf.beliefs == nullptr || found == old_blocks.end() || found->second == nullptr) continue;
+    ++(leaf.beliefs.get() == found->second ? shared : changed);
+  }
+  EXPECT_GT(shared, 20U);   // blocks that the last view did not see
+  EXPECT_GT(changed, 20U);  // blocks that it did
+}
+
+TEST(Snapshot, OutlivesTheGrid) {
+  GridSnapshot snapshot;
+  {
+    BeliefGrid grid(object_grid(32));
+    const Sensor sensor = small_sensor(32, 24);
+    FrameIntegrator(sensor).integrate(
+        grid, see_spheres(sensor, ring_view(0), three_spheres_in_a_room()), ring_view(0));
+    snapshot = grid.snapshot();
+  }
+  std::uint64_t hits = 0;
+  for (const SnapshotLeaf& leaf : snapshot.leaves) {
+    if (leaf.beliefs == nullptr) continue;
+    for (const Belief& belief : leaf.beliefs->beliefs) hits += belief.hits;
+  }
+  EXPECT_GT(hits, 50U);
+}
+
+}  // namespace
+}  // namespace viewgain

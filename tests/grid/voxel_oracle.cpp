@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "voxel_oracle.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace viewgain::test {
+namespace {
+
+constexpr int kUnknown = std::numeric_limits<int>::min();
+constexpr int kNothing = std::numeric_limits<int>::min();
+
+/// What a pixel says: how far it looks, and whether it ends in a reading.
+struct Pixel {
+  bool valid = false;
+  bool reading = false;
+  double range = 0;  // of the reading, or max_range
+};
+
+Pixel pixel_at(const Sensor& sensor, const DepthFrame& frame, int u, int v) {
+  const double depth = frame.at(u, v);
+  const double range = depth * sensor.camera.ray(u, v).norm();
+  Pixel pixel;
+  if (!(depth > 0) || !(range >= sensor.min_range)) return pixel;
+  pixel.valid = true;
+  pixel.reading = range <= sensor.max_range;
+  pixel.range = pixel.reading ? range : sensor.max_range;
+  return pixel;
+}
+
+/// Steps that a crossing at range r takes off, or nothing.
+std::optional<int> crossing(const Sensor& sensor, const Pixel& pixel, double r) {
+  if (!pixel.valid) return std::nullopt;
+  if (!pixel.reading) return r <= pixel.range ? std::optional(-8) : std::nullopt;
+  if (!(r < pixel.range)) return std::nullopt;
+  const double sigma = sensor.sigmas(pixel.range).axial;
+  const double weight = 8.0 * std::min(1.0, (pixel.range - r) / (3.0 * sigma));
+  return -static_cast<int>(std::floor(weight + 0.5));
+}
+
+/// The pixel whose pyramid holds the point; false beyond the lens model's fold, where the pixel's
+/// own ray comes back elsewhere.
+bool holding_pixel(const PinholeCamera& camera, const Eigen::Vector3d& p, int& u, int& v) {
+  if (!(p.z() > 0)) return false;
+  const Eigen::Vector2d at = camera.project(p);
+  const double pu = std::floor(at.x() + 0.5), pv = std::floor(at.y() + 0.5);
+  if (!(pu >= 0 && pu < camera.width && pv >= 0 && pv < camera.height)) return false;
+  u = static_cast<int>(pu);
+  v = static_cast<int>(pv);
+  if (!camera.has_distortion()) return true;
+  const Eigen::Vector3d ray = camera.ray(at.x(), at.y());
+  return (ray - p / p.z()).norm() < 1e-6;
+}
+
+}  // namespace
+
+VoxelOracle::VoxelOracle(const BeliefGrid& grid)
+    : min_(grid.min_index()),
+      dims_(grid.dims()),
+      voxel_size_(grid.voxel_size()),
+      T_world_grid_(grid.T_world_grid()),
+      steps_(grid.voxel_count(), kUnknown) {}
+
+std::size_t VoxelOracle::position(Index3 v) const {
+  return (static_cast<std::size_t>(v.x - min_.x) * static_cast<std::size_t>(dims_.y) +
+          static_cast<std::size_t>(v.y - min_.y)) *
+             static_cast<std::size_t>(dims_.z) +
+         static_cast<std::size_t>(v.z - min_.z);
+}
+
+Eigen::Vector3d VoxelOracle::center(Index3 v) const {
+  return {(v.x + 0.5) * voxel_size_, (v.y + 0.5) * voxel_size_, (v.z + 0.5) * voxel_size_};
+}
+
+void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
+                            const Pose& T_world_camera, const IntegrationConfig& config) {
+  const PinholeCamera& camera = sensor.camera;
+  const Pose T_camera_grid = T_world_camera.inverse() * T_world_grid_;
+  const Pose T_grid_camera = T_world_grid_.inverse() * T_world_camera;
+  std::vector<int> deltas(steps_.size(), kNothing);
+
+  std::vector<Pixel> pixels;
+  std::vector<Eigen::Vector3d> rays;  // unit, grid frame
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      pixels.push_back(pixel_at(sensor, frame, u, v));
+      rays.push_back(T_grid_camera.rotation() * camera.ray(u, v).normalized());
+    }
+  }
+  const Eigen::Vector3d eye = T_grid_camera.translation();
+
+  for (int i = min_.x; i < min_.x + dims_.x; ++i) {
+    for (int j = min_.y; j < min_.y + dims_.y; ++j) {
+      for (int k = min_.z; k < min_.z + dims_.z; ++k) {
+        int& delta = deltas[position({i, j, k})];
+        if (config.carve == Carve::cones) {
+          const Eigen::Vector3d c = center({i, j, k});
+          const auto& T = T_camera_grid.m;
+          const Eigen::Vector3d p(T[0] * c.x() + T[1] * c.y() + T[2] * c.z() + T[3],
+                                  T[4] * c.x() + T[5] * c.y() + T[6] * c.z() + T[7],
+                                  T[8] * c.x() + T[9] * c.y() + T[10] * c.z() + T[11]);
+          int u = 0, v = 0;
+          if (!holding_pixel(camera, p, u, v)) continue;
+          const double range = std::sqrt(p.x() * p.x() + p.y() * p.y() + p.z() * p.z());
+          const auto said =
+              crossing(sensor, pixels[static_cast<std::size_t>(v * camera.width + u)], range);
+          if (said) delta = *said;
+          continue;
+        }
+        // Lines: the slab test of every ray with this voxel.
+        for (std::size_t n = 0; n < pixels.size(); ++n) {
+          if (!pixels[n].valid) continue;
+          double enter = 0, leave = std::numeric_limits<double>::infinity();
+          const int index[3] = {i, j, k};
+          for (int a = 0; a < 3; ++a) {
+            const double t0 = (index[a] * voxel_size_ - eye[a]) / rays[n][a];
+            const double t1 = ((index[a] + 1) * voxel_size_ - eye[a]) / rays[n][a];
+            enter = std::max(enter, std::min(t0, t1));
+            leave = std::min(leave, std::max(t0, t1));
+          }
+          if (!(leave - enter > 1e-13)) continue;
+          const auto said = crossing(sensor, pixels[n], enter);
+          if (said) delta = delta == kNothing ? *said : std::min(delta, *said);
+        }
+      }
+    }
+  }
+
+  std::vector<bool> is_hit(steps_.size(), false);
+  for (std::size_t n = 0; n < pixels.size(); ++n) {
+    if (!pixels[n].reading) continue;
+    const int u = static_cast<int>(n) % camera.width, v = static_cast<int>(n) / camera.width;
+    const Eigen::Vector3d p = T_grid_camera * (camera.ray(u, v) * double{frame.at(u, v)});
+    const Index3 voxel{static_cast<int>(std::floor(p.x() / voxel_size_)),
+                       static_cast<int>(std::floor(p.y() / voxel_size_)),
+                       static_cast<int>(std::floor(p.z() / voxel_size_))};
+    if (voxel.x < min_.x || voxel.x >= min_.x + dims_.x || voxel.y < min_.y ||
+        voxel.y >= min_.y + dims_.y || voxel.z < min_.z || voxel.z >= min_.z + dims_.z) {
+      continue;
+    }
+    is_hit[position(voxel)] = true;
+    const MeasurementSigmas s = sensor.sigmas(pixels[n].range);
+    const Eigen::Matrix3d along = rays[n] * rays[n].transpose();
+    const Eigen::Matrix3d covariance =
+        s.lateral * s.lateral * (Eigen::Matrix3d::Identity() - along) + s.axial * s.axial * along;
+    const Eigen::Matrix3d information = covariance.inverse();
+    Fused& fused = fused_[position(voxel)];
+    fused.information += information;
+    fused.vector += information * (p - center(voxel));
+    ++fused.hits;
+  }
+
+  crossed_ = hit_ = 0;
+  for (std::size_t n = 0; n < steps_.size(); ++n) {
+    const int before = steps_[n] == kUnknown ? 0 : steps_[n];
+    const bool literal = config.occupancy == Occupancy::literal;
+    if (is_hit[n]) {
+      steps_[n] = literal ? 17 : std::min(before + 17, 70);
+      ++hit_;
+    } else if (deltas[n] != kNothing) {
+      steps_[n] = literal ? -8 : std::max(before + deltas[n], -40);
+      ++crossed_;
+    }
+  }
+}
+
+std::uint64_t VoxelOracle::differences(const BeliefGrid& grid) const {
+  std::uint64_t differences = 0;
+  for (int i = min_.x; i < min_.x + dims_.x; ++i) {
+    for (int j = min_.y; j < min_.y + dims_.y; ++j) {
+      for (int k = min_.z; k < min_.z + dims_.z; ++k) {
+        const Index3 voxel{i, j, k};
+        const int steps = steps_[position(voxel)];
+        const VoxelState state = steps == kUnknown ? VoxelState::unknown
+                                 : steps > 0       ? VoxelState::occupied
+                                                   : VoxelState::free;
+        const auto log_odds = grid.log_odds(voxel);
+        bool same = grid.state(voxel) == state && log_odds.has_value() == (steps != kUnknown);
+        if (log_odds) same = same && *log_odds == static_cast<float>(0.05 * steps);
+
+        const auto belief = grid.belief(voxel);
+        const auto fused = fused_.find(position(voxel));
+        same = same && belief.has_value() == (fused != fused_.end());
+        if (belief && fused != fused_.end()) {
+          const Eigen::Matrix3d information = belief->information_matrix().matrix();
+          const auto& eta = belief->information_vector;
+          const Eigen::Vector3d vector(eta[0], eta[1], eta[2]);
+          same = same && belief->hits == fused->second.hits &&
+                 (information - fused->second.information).norm() <
+                     1e-5 * fused->second.information.norm() &&
+                 (vector - fused->second.vector).norm() <
+                     1e-5 * fused->second.information.norm() * voxel_size_;
+        }
+        if (!same) ++differences;
+      }
+    }
+  }
+  return differences;
+}
+
+}  // namespace viewgain::test

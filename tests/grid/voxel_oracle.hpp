@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/integrate.hpp"
+
+namespace viewgain::test {
+
+/// The map update of DESIGN.md section 5 as plain loops over all voxels and all pixels, one entry a
+/// voxel. For sensors whose noise does not depend on the angle of incidence.
+class VoxelOracle {
+ public:
+  explicit VoxelOracle(const BeliefGrid& grid);
+
+  void integrate(const Sensor& sensor, const DepthFrame& frame, const Pose& T_world_camera,
+                 const IntegrationConfig& config);
+
+  /// Voxels whose state, log-odds or belief is not the grid's: exactly for the first two, beliefs
+  /// to single precision. Each of the workspace's voxels is compared.
+  [[nodiscard]] std::uint64_t differences(const BeliefGrid& grid) const;
+
+  [[nodiscard]] std::uint64_t voxels() const { return steps_.size(); }
+  [[nodiscard]] std::uint64_t crossed() const { return crossed_; }  ///< and not hit, last frame
+  [[nodiscard]] std::uint64_t hit() const { return hit_; }          ///< last frame
+
+ private:
+  struct Fused {
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+    std::uint32_t hits = 0;
+  };
+  [[nodiscard]] std::size_t position(Index3 voxel) const;
+  [[nodiscard]] Eigen::Vector3d center(Index3 voxel) const;
+
+  Index3 min_, dims_;
+  double voxel_size_;
+  Pose T_world_grid_;
+  std::vector<int> steps_;  ///< log-odds in steps of 0.05, kUnknown
+  std::map<std::size_t, Fused> fused_;
+  std::uint64_t crossed_ = 0, hit_ = 0;
+};
+
+}  // namespace viewgain::test
