@@ -3,9 +3,8 @@
 #include "embree_quads.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <type_traits>
 
 #include "device.hpp"
@@ -19,17 +18,30 @@ namespace {
 /// The quads in a BVH; geometry number = axis that its quads are perpendicular to.
 class QuadScene {
  public:
-  explicit QuadScene(const TraceTask& task)
+  QuadScene(const TraceTask& task, bool robust)
       : device_(detail::make_device(select_isa(), task.num_threads)),
         scene_(rtcNewScene(device_.get())) {
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
-    for (unsigned axis = 0; axis < 3; ++axis)
-      attach(axis, exposed_quads(task.map, static_cast<int>(axis)));
+    rtcSetSceneFlags(scene_.get(), robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::vector<Quad> quads = exposed_quads(task.map, static_cast<int>(axis));
+      attach(static_cast<unsigned>(axis), quads);
+      for (const Quad& quad : quads) behind_[axis].push_back(voxels_behind(quad, axis));
+    }
     rtcCommitScene(scene_.get());
     detail::check_device(device_.get(), "building the quads");
   }
 
   [[nodiscard]] RTCScene get() const { return scene_.get(); }
+
+  /// First and last voxel along each axis behind a quad, relative to the workspace's lowest one.
+  struct Voxels {
+    std::array<int, 3> first;
+    std::array<int, 3> last;
+  };
+  [[nodiscard]] const Voxels& behind(unsigned axis, unsigned quad) const {
+    return behind_[axis][quad];
+  }
 
  private:
   void attach(unsigned axis, const std::vector<Quad>& quads) {
@@ -51,8 +63,20 @@ class QuadScene {
     rtcReleaseGeometry(geometry);
   }
 
+  static Voxels voxels_behind(const Quad& quad, std::size_t axis) {
+    Voxels voxels{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      voxels.first[k] = static_cast<int>(quad.corners[0][k]);
+      voxels.last[k] = static_cast<int>(quad.corners[2][k]) - 1;
+    }
+    const int layer = quad.is_lower_side ? voxels.first[axis] : voxels.first[axis] - 1;
+    voxels.first[axis] = voxels.last[axis] = layer;
+    return voxels;
+  }
+
   detail::DevicePtr device_;
   detail::ScenePtr scene_;
+  std::array<std::vector<Voxels>, 3> behind_;
 };
 
 /// kWidth rays a packet.
@@ -120,25 +144,23 @@ class EmbreeQuads final : public TraceMethod {
     }
   }
 
-  /// The voxel behind the face that a ray enters by: half a voxel on along the face's axis.
+  /// The voxel behind the entry face at the hit point, which rounding may put beside the quad.
   void store(const Packet& packet, const Eigen::Vector3f& origin, std::size_t tile, int first,
              std::span<Ending> endings) const {
-    alignas(64) Ending ending[kWidth];
-    for (int i = 0; i < kWidth; ++i) {
-      const unsigned axis = packet.hit.geomID[i];
-      const float t = packet.ray.tfar[i];
-      const auto index = [&](unsigned k, float o, float d, int dim) {
-        const float p = o + t * d + (axis == k ? std::copysign(0.5F, d) : 0.0F);
-        return std::min(std::max(static_cast<int>(p), 0), dim - 1);
-      };
-      const int x = index(0, origin.x(), packet.ray.dir_x[i], dims_[0]);
-      const int y = index(1, origin.y(), packet.ray.dir_y[i], dims_[1]);
-      const int z = index(2, origin.z(), packet.ray.dir_z[i], dims_[2]);
-      ending[i] = axis == RTC_INVALID_GEOMETRY_ID ? kMiss : (x * dims_[1] + y) * dims_[2] + z;
-    }
     for (int i = 0; i < kWidth; ++i) {
       if ((table_.valid[tile] >> (first + i) & 1) == 0) continue;
-      endings[table_.ray_index(tile, first + i)] = ending[i];
+      Ending& ending = endings[table_.ray_index(tile, first + i)];
+      ending = kMiss;
+      if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+      const auto& behind = scene_->behind(packet.hit.geomID[i], packet.hit.primID[i]);
+      const float t = packet.ray.tfar[i];
+      const auto index = [&](std::size_t k, float o, float d) {
+        return std::clamp(static_cast<int>(o + t * d), behind.first[k], behind.last[k]);
+      };
+      const int x = index(0, origin.x(), packet.ray.dir_x[i]);
+      const int y = index(1, origin.y(), packet.ray.dir_y[i]);
+      const int z = index(2, origin.z(), packet.ray.dir_z[i]);
+      ending = (x * dims_[1] + y) * dims_[2] + z;
     }
   }
 
@@ -155,12 +177,15 @@ class EmbreeQuads final : public TraceMethod {
 }  // namespace
 
 std::vector<std::unique_ptr<TraceMethod>> make_embree_quads(const TraceTask& task) {
-  const auto scene = std::make_shared<const QuadScene>(task);
   std::vector<std::unique_ptr<TraceMethod>> methods;
-  for (const bool coherent : {true, false}) {
-    const std::string kind = coherent ? "coherent" : "incoherent";
-    methods.push_back(std::make_unique<EmbreeQuads<8>>(kind + " 8", scene, task, coherent));
-    methods.push_back(std::make_unique<EmbreeQuads<16>>(kind + " 16", scene, task, coherent));
+  for (const bool robust : {true, false}) {
+    const auto scene = std::make_shared<const QuadScene>(task, robust);
+    for (const bool coherent : {true, false}) {
+      const std::string kind =
+          std::string(robust ? "robust" : "fast") + (coherent ? " coherent" : " incoherent");
+      methods.push_back(std::make_unique<EmbreeQuads<8>>(kind + " 8", scene, task, coherent));
+      methods.push_back(std::make_unique<EmbreeQuads<16>>(kind + " 16", scene, task, coherent));
+    }
   }
   return methods;
 }

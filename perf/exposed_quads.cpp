@@ -65,12 +65,14 @@ std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis) {
            VoxelState::free;
   };
   std::vector<Quad> quads;
-  for (int plane = 0; plane <= dims[a]; ++plane) {
+  const auto add_plane = [&](int plane, bool lower_side) {
     FacePlane faces(dims[b], dims[c]);
+    const int front = lower_side ? plane - 1 : plane;
+    const int behind = lower_side ? plane : plane - 1;
     for (int row = 0; row < dims[b]; ++row) {
       for (int column = 0; column < dims[c]; ++column) {
-        faces.at(row, column) =
-            is_free(plane - 1, row, column) != is_free(plane, row, column) ? 1 : 0;
+        const bool exposed = is_free(front, row, column) && !is_free(behind, row, column);
+        faces.at(row, column) = exposed ? 1 : 0;
       }
     }
     faces.merge([&](int row, int column, int rows, int columns) {
@@ -82,8 +84,12 @@ std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis) {
         return p;
       };
       quads.push_back({{corner(row, column), corner(row + rows, column),
-                        corner(row + rows, column + columns), corner(row, column + columns)}});
+                        corner(row + rows, column + columns), corner(row, column + columns)},
+                       lower_side});
     });
+  };
+  for (const bool lower_side : {true, false}) {
+    for (int plane = 0; plane <= dims[a]; ++plane) add_plane(plane, lower_side);
   }
   return quads;
 }

@@ -11,12 +11,13 @@ namespace viewgain::bench {
 
 /// An axis-aligned rectangle in voxels, relative to the workspace's lowest corner.
 struct Quad {
-  std::array<std::array<float, 3>, 4> corners;
+  std::array<std::array<float, 3>, 4> corners;  ///< [0] the lowest, [2] the highest
+  bool is_lower_side = false;                   ///< of the voxels: they lie above it along the axis
 };
 
-/// The faces between non-free voxels and free ones (or the outside), perpendicular to `axis` and
-/// merged greedily: rows first, then equal rows. Both sides of the voxels; overlapping faces of the
-/// two sides do not exist, since a face is exposed on one side only.
+/// The faces perpendicular to `axis` by which a ray can enter a non-free voxel from a free one or
+/// from the outside, those on the voxels' lower side before those on the upper; the faces of a
+/// plane and a side are merged greedily, rows first, then equal rows.
 [[nodiscard]] std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis);
 
 }  // namespace viewgain::bench

@@ -104,6 +104,7 @@ std::vector<Entry> make_entries(const TraceTask& task, const ScenePointer& scene
   std::vector<Entry> entries;
   entries.push_back({make_viewgain_gain(task, scene), all});
   entries.push_back({make_viewgain_trace(task, scene), all});
+  entries.push_back({make_viewgain_trace_bvh(task, scene), all});
   entries.push_back({make_viewgain_floor(task, scene), all});
   for (auto& method : make_embree_quads(task)) entries.push_back({std::move(method), all});
   entries.push_back({make_openvdb_dda(task), thinned(task.poses, 8, least)});
@@ -127,7 +128,11 @@ bool is_embree(const Entry& entry) {
   return entry.method->name().find("coherent") != std::string::npos;
 }
 
-/// What is reported: Embree's four variants become one, the fastest.
+/// Embree without its robust flag lets a ray in some millions slip through the seam of two
+/// triangles; those variants are timed for comparison, but do not count.
+bool is_robust(const Entry& entry) { return entry.method->name().find("robust") == 0; }
+
+/// What is reported: of Embree's variants the fastest that is watertight.
 struct Report {
   struct Row {
     std::string name;
@@ -138,9 +143,8 @@ struct Report {
 
   explicit Report(const std::vector<Entry>& entries) {
     for (const Entry& entry : entries) {
-      if (is_embree(entry) && (embree == nullptr || median(entry.rates) > median(embree->rates))) {
-        embree = &entry;
-      }
+      if (!is_embree(entry) || !is_robust(entry)) continue;
+      if (embree == nullptr || median(entry.rates) > median(embree->rates)) embree = &entry;
     }
     bool has_embree = false;
     for (const Entry& entry : entries) {
@@ -188,7 +192,7 @@ Json to_json(const TraceOptions& options, const TraceTask& task, const VoxelScen
   json["embree_variant"] = report.embree->method->name();
   for (const Entry& entry : entries) {
     if (is_embree(entry)) json["embree_variants"][entry.method->name()] = median(entry.rates);
-    agree = agree && entry.agreement.agrees();
+    agree = agree && (entry.agreement.agrees() || (is_embree(entry) && !is_robust(entry)));
   }
   for (const char* ours : {"viewgain_gain", "viewgain_trace"}) {
     for (const auto& [name, entry] : report.rows) {
@@ -222,11 +226,12 @@ void print_table(const Json& json) {
                 json["agreement"][name].get<double>(), json["ties"][name].get<int>(),
                 json["wrong"][name].get<int>());
   }
-  std::printf("\nembree_quads is the best of:");
+  std::printf("\nembree_quads is \"%s\", the best robust one of:\n",
+              json["embree_variant"].get<std::string>().c_str());
   for (const auto& [name, rate] : json["embree_variants"].items()) {
-    std::printf("  %s %.1f", name.c_str(), rate.get<double>() / 1e6);
+    std::printf("  %-24s %8.3f\n", name.c_str(), rate.get<double>() / 1e6);
   }
-  std::printf("\n\n");
+  std::printf("\n");
   for (const auto& [name, ratio] : json["ratios"].items()) {
     std::printf("%-36s %10.3f\n", name.c_str(), ratio.get<double>());
   }

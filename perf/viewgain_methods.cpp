@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <vector>
 
-#include "leaf_traversal.hpp"
-#include "ray_tile.hpp"
 #include "scene_data.hpp"
+#include "view_tracer.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::bench {
@@ -23,6 +23,11 @@ class ViewgainGain final : public TraceMethod {
 
   void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
     const std::vector<RayHit> hits = evaluator_.trace(T_world_camera);
+    const auto ends = std::count_if(
+        hits.begin(), hits.end(), [](const RayHit& hit) { return hit.kind != RayHit::Kind::none; });
+    if (evaluator_.evaluate(T_world_camera).hits != ends) {
+      throw std::runtime_error("the gain was made of other hits than trace() gives");
+    }
     std::transform(hits.begin(), hits.end(), endings.begin(), [&](const RayHit& hit) {
       return hit.kind == RayHit::Kind::none ? kMiss : static_cast<Ending>(map_.position(hit.voxel));
     });
@@ -40,161 +45,102 @@ class ViewgainGain final : public TraceMethod {
   std::vector<ViewGain> results_;
 };
 
-/// Calls the tracing kernel tile by tile.
-class ViewgainKernel : public TraceMethod {
+/// Traces as the evaluator does, and keeps where each ray ends.
+class ViewgainTrace : public TraceMethod {
  public:
-  ViewgainKernel(std::string name, const TraceTask& task, ScenePointer scene)
+  ViewgainTrace(std::string name, const TraceTask& task, ScenePointer scene)
       : TraceMethod(std::move(name), task.sensor.camera.ray_table().size()),
         map_(task.map),
         scene_(std::move(scene)),
         data_(scene_->data()),
-        table_(task.sensor.camera, 1),
-        T_grid_world_(task.map.T_world_grid.inverse()),
-        min_range_(static_cast<float>(task.sensor.min_range / task.map.voxel_size)),
-        max_range_(static_cast<float>(task.sensor.max_range / task.map.voxel_size)) {}
+        tracer_(data_, task.sensor.camera, 1, task.sensor.min_range, task.sensor.max_range) {}
+
+  void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
+    std::fill(endings.begin(), endings.end(), kMiss);
+    for_each_tile(T_world_camera, [&](std::size_t number, const detail::RayTile& tile) {
+      for (int lane = 0; lane < detail::kTileRays; ++lane) {
+        if ((tile.hit >> lane & 1U) == 0) continue;
+        endings[tracer_.table().ray_index(number, lane)] = static_cast<Ending>(
+            map_.position(data_.voxel_index(tile.primitive[lane], tile.offset[lane])));
+      }
+    });
+  }
+
+  void run(std::span<const Pose> poses, ThreadPool& pool) override {
+    pool.for_each_chunk(poses.size(), 1, [&](std::size_t begin, std::size_t end) {
+      // A voxel as the evaluator's sums know it: primitive and offset.
+      thread_local std::vector<std::uint64_t> voxels;
+      voxels.resize(tracer_.table().tile_count * detail::kTileRays);
+      for (std::size_t p = begin; p < end; ++p) {
+        for_each_tile(poses[p], [&](std::size_t number, const detail::RayTile& tile) {
+          std::uint64_t* out = &voxels[number * detail::kTileRays];
+          for (std::size_t lane = 0; lane < detail::kTileRays; ++lane) {
+            out[lane] = static_cast<std::uint64_t>(tile.primitive[lane]) << 32U | tile.offset[lane];
+          }
+        });
+      }
+    });
+  }
 
  protected:
+  using Visit = std::function<void(std::size_t, const detail::RayTile&)>;
+
+  /// The tiles that may have hit something.
+  virtual void for_each_tile(const Pose& T_world_camera, const Visit& visit) const {
+    thread_local detail::TileBins bins;
+    tracer_.trace(frame_of(T_world_camera), bins, visit);
+  }
+
   [[nodiscard]] detail::PoseFrame frame_of(const Pose& T_world_camera) const {
-    const Pose T_grid_camera = T_grid_world_ * T_world_camera;
-    const Index3& base = data_.snapshot.min_index;
-    const Eigen::Vector3d origin =
-        T_grid_camera.translation() / map_.voxel_size - Eigen::Vector3d(base.x, base.y, base.z);
-    const Eigen::Matrix3d R = T_grid_camera.rotation();
-    detail::PoseFrame frame;
-    for (int i = 0; i < 3; ++i) {
-      frame.origin[static_cast<std::size_t>(i)] = static_cast<float>(origin[i]);
-    }
-    for (int i = 0; i < 9; ++i) {
-      frame.rotation[static_cast<std::size_t>(i)] = static_cast<float>(R(i / 3, i % 3));
-    }
-    frame.min_range = min_range_;
-    frame.max_range = max_range_;
-    return frame;
-  }
-
-  /// The endings of a traced tile, in pixel order.
-  void store(const detail::RayTile& tile, std::size_t number, std::span<Ending> endings) const {
-    for (int lane = 0; lane < detail::kTileRays; ++lane) {
-      if ((tile.valid >> lane & 1U) == 0) continue;
-      const bool hit = (tile.hit >> lane & 1U) != 0;
-      endings[table_.ray_index(number, lane)] =
-          hit ? static_cast<Ending>(
-                    map_.position(data_.voxel_index(tile.primitive[lane], tile.offset[lane])))
-              : kMiss;
-    }
-  }
-
-  /// What the gain's sums are keyed by, kept for every ray as any user of the trace would.
-  using VoxelNames = std::vector<std::uint64_t>;
-  void keep(const detail::RayTile& tile, std::size_t number, VoxelNames& names) const {
-    std::uint64_t* out = &names[number * detail::kTileRays];
-    for (std::size_t lane = 0; lane < detail::kTileRays; ++lane) {
-      out[lane] = static_cast<std::uint64_t>(tile.primitive[lane]) << 32U | tile.offset[lane];
-    }
+    return tracer_.frame_of(T_world_camera).value();
   }
 
   const oracle::DenseMap& map_;
   ScenePointer scene_;
   const VoxelScene::Data& data_;
-  detail::TileTable table_;
-
- private:
-  Pose T_grid_world_;
-  float min_range_;  ///< [voxel]
-  float max_range_;  ///< [voxel]
+  detail::ViewTracer tracer_;
 };
 
-class ViewgainTrace final : public ViewgainKernel {
- public:
-  ViewgainTrace(const TraceTask& task, ScenePointer scene)
-      : ViewgainKernel("viewgain_trace", task, std::move(scene)) {}
-
-  void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
-    const detail::PoseFrame frame = frame_of(T_world_camera);
-    detail::RayTile tile;
-    for (std::size_t i = 0; i < table_.tile_count; ++i) {
-      data_.kernels->trace(data_, table_, frame, i, tile);
-      store(tile, i, endings);
-    }
-  }
-
-  void run(std::span<const Pose> poses, ThreadPool& pool) override {
-    pool.for_each_chunk(poses.size(), 1, [&](std::size_t begin, std::size_t end) {
-      thread_local VoxelNames names;
-      names.resize(table_.tile_count * detail::kTileRays);
-      detail::RayTile tile;
-      for (std::size_t p = begin; p < end; ++p) {
-        const detail::PoseFrame frame = frame_of(poses[p]);
-        for (std::size_t i = 0; i < table_.tile_count; ++i) {
-          data_.kernels->trace(data_, table_, frame, i, tile);
-          keep(tile, i, names);
-        }
-      }
-    });
-  }
-};
-
-class ViewgainFloor final : public ViewgainKernel {
+/// The same kernel on the leaves that each tile is known to end in.
+class ViewgainFloor final : public ViewgainTrace {
  public:
   ViewgainFloor(const TraceTask& task, ScenePointer scene)
-      : ViewgainKernel("viewgain_floor", task, std::move(scene)), poses_(task.poses) {
-    begins_.push_back(0);
-    for (const Pose& pose : poses_) {
-      const detail::PoseFrame frame = frame_of(pose);
-      for (std::size_t i = 0; i < table_.tile_count; ++i) {
-        detail::RayTile tile;
-        data_.kernels->trace(data_, table_, frame, i, tile);
-        add_way(tile);
-      }
+      : ViewgainTrace("viewgain_floor", task, std::move(scene)), poses_(task.poses) {
+    const std::size_t tiles = tracer_.table().tile_count;
+    begins_.assign(poses_.size() * tiles + 1, 0);
+    for (std::size_t p = 0; p < poses_.size(); ++p) {
+      tracer_.trace_bvh(frame_of(poses_[p]), [&](std::size_t tile, const detail::RayTile& out) {
+        add_way(out);
+        begins_[p * tiles + tile + 1] = ways_.size();
+      });
     }
   }
 
-  void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
+ protected:
+  void for_each_tile(const Pose& T_world_camera, const Visit& visit) const override {
+    const auto pose = std::find(poses_.begin(), poses_.end(), T_world_camera) - poses_.begin();
     const detail::PoseFrame frame = frame_of(T_world_camera);
-    const std::size_t pose = number_of(T_world_camera);
-    detail::RayTile tile;
-    for (std::size_t i = 0; i < table_.tile_count; ++i) {
-      data_.kernels->replay(data_, table_, frame, i, way(pose, i), tile);
-      store(tile, i, endings);
+    const std::size_t tiles = tracer_.table().tile_count;
+    detail::RayTile out;
+    for (std::size_t tile = 0; tile < tiles; ++tile) {
+      const std::size_t i = static_cast<std::size_t>(pose) * tiles + tile;
+      if (begins_[i] == begins_[i + 1]) continue;  // known to miss everything
+      const std::span<const std::uint32_t> way(&ways_[begins_[i]], begins_[i + 1] - begins_[i]);
+      data_.kernels->trace_list(data_, tracer_.table(), frame, tile, way, out);
+      visit(tile, out);
     }
-  }
-
-  void run(std::span<const Pose> poses, ThreadPool& pool) override {
-    pool.for_each_chunk(poses.size(), 1, [&](std::size_t begin, std::size_t end) {
-      thread_local VoxelNames names;
-      names.resize(table_.tile_count * detail::kTileRays);
-      detail::RayTile tile;
-      for (std::size_t p = begin; p < end; ++p) {
-        const detail::PoseFrame frame = frame_of(poses[p]);
-        for (std::size_t i = 0; i < table_.tile_count; ++i) {
-          data_.kernels->replay(data_, table_, frame, i, way(p, i), tile);
-          keep(tile, i, names);
-        }
-      }
-    });
   }
 
  private:
   /// Appends the distinct primitives that the tile's rays end in.
   void add_way(const detail::RayTile& tile) {
-    const std::size_t begin = ways_.size();
+    const auto begin = static_cast<std::ptrdiff_t>(ways_.size());
     for (std::size_t lane = 0; lane < detail::kTileRays; ++lane) {
       if ((tile.hit >> lane & 1U) == 0) continue;
-      const auto first = ways_.begin() + static_cast<std::ptrdiff_t>(begin);
-      if (std::find(first, ways_.end(), tile.primitive[lane]) == ways_.end()) {
+      if (std::find(ways_.begin() + begin, ways_.end(), tile.primitive[lane]) == ways_.end()) {
         ways_.push_back(tile.primitive[lane]);
       }
     }
-    begins_.push_back(ways_.size());
-  }
-
-  [[nodiscard]] std::span<const std::uint32_t> way(std::size_t pose, std::size_t tile) const {
-    const std::size_t i = pose * table_.tile_count + tile;
-    return {ways_.data() + begins_[i], begins_[i + 1] - begins_[i]};
-  }
-
-  [[nodiscard]] std::size_t number_of(const Pose& pose) const {
-    return static_cast<std::size_t>(std::find(poses_.begin(), poses_.end(), pose) - poses_.begin());
   }
 
   std::span<const Pose> poses_;
@@ -209,7 +155,11 @@ std::unique_ptr<TraceMethod> make_viewgain_gain(const TraceTask& task, ScenePoin
 }
 
 std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task, ScenePointer scene) {
-  return std::make_unique<ViewgainTrace>(task, std::move(scene));
+  return std::make_unique<ViewgainTrace>(task, std::move(scene), Way::as_evaluator);
+}
+
+std::unique_ptr<TraceMethod> make_viewgain_trace_bvh(const TraceTask& task, ScenePointer scene) {
+  return std::make_unique<ViewgainTrace>(task, std::move(scene), Way::bvh);
 }
 
 std::unique_ptr<TraceMethod> make_viewgain_floor(const TraceTask& task, ScenePointer scene) {

@@ -15,12 +15,18 @@ using ScenePointer = std::shared_ptr<const VoxelScene>;
 [[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_gain(const TraceTask& task,
                                                               ScenePointer scene);
 
-/// Its tracing alone: the same kernel through the same BVH, the voxel's number kept for each ray.
+/// Its tracing alone, the voxel's number kept for each ray.
 [[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task,
                                                                ScenePointer scene);
 
-/// The same kernel when the leaves that are hit are known beforehand, tile by tile: what no way of
-/// finding them could beat. Knows the way for task.poses only.
+/// The same kernel through Embree's BVH for every tile, as the evaluator does where primitives are
+/// many.
+[[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_trace_bvh(const TraceTask& task,
+                                                                   ScenePointer scene);
+
+/// The same kernel when the leaves that are hit are known beforehand, tile by tile, and so are the
+/// tiles that hit nothing: what no way of finding them could beat. Knows the way for task.poses
+/// only.
 [[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_floor(const TraceTask& task,
                                                                ScenePointer scene);
 

@@ -37,11 +37,11 @@ inline void add_common_options(CLI::App& app, CommonOptions& options) {
 inline constexpr const char* kSensorHelp =
     "preset (sr4000, azure_kinect_nfov, kinect_v1, d435) or a .toml file";
 
-[[nodiscard]] inline nlohmann::json to_json(const Box& box) {
+[[nodiscard]] inline nlohmann::ordered_json to_json(const Box& box) {
   return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
 }
 
-[[nodiscard]] inline nlohmann::json to_json(const Pose& pose) {
+[[nodiscard]] inline nlohmann::ordered_json to_json(const Pose& pose) {
   const auto& m = pose.m;
   return {{m[0], m[1], m[2], m[3]},
           {m[4], m[5], m[6], m[7]},
@@ -49,6 +49,8 @@ inline constexpr const char* kSensorHelp =
           {0.0, 0.0, 0.0, 1.0}};
 }
 
-inline void print_json(const nlohmann::json& json) { std::printf("%s\n", json.dump(2).c_str()); }
+inline void print_json(const nlohmann::ordered_json& json) {
+  std::printf("%s\n", json.dump(2).c_str());
+}
 
 }  // namespace viewgain::app

@@ -69,7 +69,7 @@ std::string csv_of(const std::vector<ViewGain>& results) {
   return csv;
 }
 
-nlohmann::json entry_of(std::size_t index, const ViewGain& r, const Pose& pose) {
+nlohmann::ordered_json entry_of(std::size_t index, const ViewGain& r, const Pose& pose) {
   return {{"index", index},
           {"gain", r.gain},  // a NaN becomes null
           {"exploration", r.exploration},
@@ -103,20 +103,20 @@ struct Report {
 };
 
 void print_json_report(const Report& report) {
-  nlohmann::json json{{"poses", report.results.size()},
-                      {"rays_per_pose", report.evaluator.rays_per_pose()},
-                      {"threads", report.evaluator.num_threads()},
-                      {"isa", report.evaluator.scene().isa()},
-                      {"voxel_size", report.grid.voxel_size()},
-                      {"voxels", report.grid.voxel_count()},
-                      {"sensor", report.sensor.name},
-                      {"criterion", report.options.criterion},
-                      {"prior_sigma", report.evaluator.prior_sigma()},
-                      {"orthonormalized_poses", report.source.orthonormalized},
-                      {"seconds", report.seconds},
-                      {"poses_per_second", report.poses_per_second()},
-                      {"rays_per_second", report.rays_per_second()},
-                      {"best", nlohmann::json::array()}};
+  nlohmann::ordered_json json{{"poses", report.results.size()},
+                              {"rays_per_pose", report.evaluator.rays_per_pose()},
+                              {"threads", report.evaluator.num_threads()},
+                              {"isa", report.evaluator.scene().isa()},
+                              {"voxel_size", report.grid.voxel_size()},
+                              {"voxels", report.grid.voxel_count()},
+                              {"sensor", report.sensor.name},
+                              {"criterion", report.options.criterion},
+                              {"prior_sigma", report.evaluator.prior_sigma()},
+                              {"orthonormalized_poses", report.source.orthonormalized},
+                              {"seconds", report.seconds},
+                              {"poses_per_second", report.poses_per_second()},
+                              {"rays_per_second", report.rays_per_second()},
+                              {"best", nlohmann::ordered_json::array()}};
   for (const std::size_t i : report.best) {
     json["best"].push_back(entry_of(i, report.results[i], report.source.poses[i]));
   }

@@ -53,9 +53,9 @@ std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
 }
 
 std::size_t parse_count(std::string_view flag, double value) {
-  constexpr double kMaxCount = 1e8;
+  constexpr double kMaxCount = 1e7;
   if (!(value >= 0 && value <= kMaxCount && value == std::floor(value))) {
-    fail(flag, short_text(value), "the count must be a whole number from 0 to 100000000");
+    fail(flag, short_text(value), "the count must be a whole number from 0 to 10000000");
   }
   return static_cast<std::size_t>(value);
 }

@@ -16,7 +16,7 @@ namespace viewgain::app {
 [[nodiscard]] std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
                                                 std::size_t min_count, std::size_t max_count);
 
-/// A count among parse_numbers' values: a whole number that is not negative and at most 1e8.
+/// A count among parse_numbers' values: a whole number that is not negative and at most 1e7.
 [[nodiscard]] std::size_t parse_count(std::string_view flag, double value);
 
 /// x0,y0,z0,x1,y1,z1 [m]. Throws Error(invalid_argument) if it is inside out or has no extent.

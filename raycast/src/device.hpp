@@ -28,6 +28,7 @@ void check_device(RTCDevice device, const std::string& what);
 
 /// Attaches triangles to a scene as geometry `id`, vertices copied. Throws Error(backend).
 void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, const float* vertices,
-                      std::size_t vertex_count, const unsigned* indices, std::size_t triangle_count);
+                      std::size_t vertex_count, const unsigned* indices,
+                      std::size_t triangle_count);
 
 }  // namespace viewgain::detail

@@ -13,8 +13,8 @@ static_assert(RTC_VERSION_MAJOR == VIEWGAIN_EMBREE_MAJOR,
 
 namespace viewgain::detail {
 
-/// What a query hands to Embree. Data for user geometry callbacks goes into a struct whose first member
-/// is this one's `context`: derive from RayQuery and cast back with query_of().
+/// What a query hands to Embree. Data for user geometry callbacks goes into a struct whose first
+/// member is this one's `context`: derive from RayQuery and cast back with query_of().
 struct RayQuery {
 #if RTC_VERSION_MAJOR >= 4
   RTCRayQueryContext context;
@@ -46,7 +46,9 @@ inline Query& query_of(const RTCIntersectFunctionNArguments* args) {
 }
 
 #if RTC_VERSION_MAJOR >= 4
-inline void intersect1(RTCScene s, RTCRayHit* r, RayQuery* q) { rtcIntersect1(s, r, &q->arguments); }
+inline void intersect1(RTCScene s, RTCRayHit* r, RayQuery* q) {
+  rtcIntersect1(s, r, &q->arguments);
+}
 inline void intersect4(const int* valid, RTCScene s, RTCRayHit4* r, RayQuery* q) {
   rtcIntersect4(valid, s, r, &q->arguments);
 }

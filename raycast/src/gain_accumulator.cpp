@@ -104,9 +104,9 @@ inline std::uint32_t GainAccumulator::code_of(std::uint32_t primitive, std::uint
   std::uint32_t block = by_primitive_[primitive];
   if (block == kNone) [[unlikely]] {
     const bool may_be_occupied = primitive < scene_.leaf_count && scene_.has_occupied[primitive];
-    block = start_block(scene_.block_keys[primitive],
-                        may_be_occupied ? &scene_.snapshot.leaves[scene_.leaf_source[primitive]]
-                                        : nullptr);
+    block = start_block(
+        scene_.block_keys[primitive],
+        may_be_occupied ? &scene_.snapshot.leaves[scene_.leaf_source[primitive]] : nullptr);
     by_primitive_[primitive] = block;
     touched_primitives_.push_back(primitive);
   }

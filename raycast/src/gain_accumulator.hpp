@@ -26,13 +26,14 @@ struct GainSettings {
   std::vector<WeightRegion> weights;
 };
 
-/// Sums the hits of one view by voxel and turns the sums into a gain (DESIGN.md section 6). One object
-/// serves one thread, view after view; it allocates when made and when a view touches more voxels than
-/// any before.
+/// Sums the hits of one view by voxel and turns the sums into a gain (DESIGN.md section 6). One
+/// object serves one thread, view after view; it allocates when made and when a view touches more
+/// voxels than any before.
 class GainAccumulator {
  public:
   /// max_rays bounds the hits of one view.
-  GainAccumulator(const VoxelScene::Data& scene, const GainSettings& settings, std::size_t max_rays);
+  GainAccumulator(const VoxelScene::Data& scene, const GainSettings& settings,
+                  std::size_t max_rays);
 
   void begin();
   /// Takes the hits of a traced tile.
@@ -72,19 +73,19 @@ class GainAccumulator {
   const GainSettings& settings_;
   const GainKernels& kernels_;
   HitBatch batch_;
-  // Touched blocks. Those that are primitives of their own are found by the primitive's number (kNone:
-  // not touched), those of larger boxes by their key in an open-addressing table.
+  // Touched blocks. Those that are primitives of their own are found by the primitive's number
+  // (kNone: not touched), those of larger boxes by their key in an open-addressing table.
   std::vector<Block> blocks_;
   std::vector<std::uint32_t> by_primitive_, touched_primitives_;
   std::vector<BlockSlot> by_key_;
   unsigned shift_ = 0;
   std::uint32_t generation_ = 0;
-  // A voxel's code is block << 9 | offset; its place in the list of touched voxels, or kNone. Grows to
-  // the most blocks that a view has touched.
+  // A voxel's code is block << 9 | offset; its place in the list of touched voxels, or kNone. Grows
+  // to the most blocks that a view has touched.
   std::vector<std::uint32_t> places_;
   std::uint32_t hits_ = 0;
-  // The touched voxels in the order in which the view first meets them, and their sums, which are zero
-  // beyond. All are sized for the most that a view can touch.
+  // The touched voxels in the order in which the view first meets them, and their sums, which are
+  // zero beyond. All are sized for the most that a view can touch.
   std::size_t touched_count_ = 0;
   std::vector<std::uint32_t> touched_;  // codes
   std::vector<VoxelSum> sums_;

@@ -11,18 +11,17 @@
 #include <string>
 
 #include "gain_accumulator.hpp"
-#include "ray_tile.hpp"
 #include "scene_data.hpp"
+#include "view_tracer.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
 
-constexpr double kMaxPoseError = 1e-3;
-constexpr double kMendPoseError = 1e-9;
-
-[[noreturn]] void reject(const std::string& what) { throw Error(ErrorCode::invalid_argument, what); }
+[[noreturn]] void reject(const std::string& what) {
+  throw Error(ErrorCode::invalid_argument, what);
+}
 
 void check_range(const char* name, double value) {
   if (!std::isfinite(value) || value < 0) {
@@ -30,7 +29,10 @@ void check_range(const char* name, double value) {
   }
 }
 
-void check(const GainConfig& config, double min_range, double max_range, double prior_sigma) {
+void check(const GainConfig& config, const Sensor& sensor, const VoxelScene& scene) {
+  const double min_range = config.min_range.value_or(sensor.min_range);
+  const double max_range = config.max_range.value_or(sensor.max_range);
+  const double prior_sigma = config.prior_sigma.value_or(scene.snapshot().prior_sigma);
   if (config.pixel_stride < 1) {
     reject("pixel stride is " + std::to_string(config.pixel_stride) + "; it must be >= 1");
   }
@@ -48,7 +50,8 @@ void check(const GainConfig& config, double min_range, double max_range, double 
       reject("task weight is " + std::to_string(region.weight) + "; it must be >= 0 and finite");
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!(region.box.min[axis] < region.box.max[axis])) reject("a task weight's box is inside out");
+      if (!(region.box.min[axis] < region.box.max[axis]))
+        reject("a task weight's box is inside out");
     }
   }
 }
@@ -59,87 +62,67 @@ struct GainEvaluator::Impl {
   std::shared_ptr<const VoxelScene> scene;
   const VoxelScene::Data& data;
   detail::GainSettings settings;
-  double min_range = 0;    // [m]
-  double max_range = 0;    // [m]
   double prior_sigma = 0;  // [m]
-  detail::TileTable table;
+  detail::ViewTracer tracer;
   std::uint32_t ray_count = 0;
-  Pose T_grid_world;
   mutable ThreadPool pool;
 
-  // Accumulators that no thread is using, so that a call need not make one.
+  // What a thread needs to score a pose.
+  struct Workspace {
+    detail::GainAccumulator accumulator;
+    detail::TileBins bins;
+  };
+  // Those that no thread is using, so that a call need not make one.
   mutable std::mutex idle_mutex;
-  mutable std::vector<std::unique_ptr<detail::GainAccumulator>> idle;
+  mutable std::vector<std::unique_ptr<Workspace>> idle;
 
   Impl(std::shared_ptr<const VoxelScene> s, const Sensor& sensor, const GainConfig& config,
        const ExecConfig& exec)
       : scene(std::move(s)),
         data(scene->data()),
-        min_range(config.min_range.value_or(sensor.min_range)),
-        max_range(config.max_range.value_or(sensor.max_range)),
         prior_sigma(config.prior_sigma.value_or(data.snapshot.prior_sigma)),
-        table(sensor.camera, std::max(config.pixel_stride, 1)),
-        T_grid_world(data.snapshot.T_world_grid.inverse()),
+        tracer(data, sensor.camera, config.pixel_stride,
+               config.min_range.value_or(sensor.min_range),
+               config.max_range.value_or(sensor.max_range)),
         pool(exec.num_threads) {
-    check(config, min_range, max_range, prior_sigma);
     settings = {config.criterion, 1.0 / (prior_sigma * prior_sigma), detail::frontal_sigmas(sensor),
                 config.weights};
-    for (const std::uint16_t lanes : table.valid) {
+    for (const std::uint16_t lanes : tracer.table().valid) {
       ray_count += static_cast<std::uint32_t>(std::popcount(lanes));
     }
   }
 
-  // An accumulator for as long as the lease lives.
+  // A workspace for as long as the lease lives.
   class Lease {
    public:
     explicit Lease(const Impl& impl) : impl_(impl) {
       const std::lock_guard lock(impl.idle_mutex);
       if (!impl.idle.empty()) {
-        accumulator_ = std::move(impl.idle.back());
+        workspace_ = std::move(impl.idle.back());
         impl.idle.pop_back();
       }
     }
     ~Lease() {
-      if (!accumulator_) return;
+      if (!workspace_) return;
       const std::lock_guard lock(impl_.idle_mutex);
-      impl_.idle.push_back(std::move(accumulator_));
+      impl_.idle.push_back(std::move(workspace_));
     }
     Lease(const Lease&) = delete;
     Lease& operator=(const Lease&) = delete;
 
-    detail::GainAccumulator& get() {
-      if (!accumulator_) {
-        accumulator_ = std::make_unique<detail::GainAccumulator>(impl_.data, impl_.settings,
-                                                                 impl_.table.ray_count());
+    Workspace& get() {
+      if (!workspace_) {
+        workspace_ = std::make_unique<Workspace>(Workspace{
+            detail::GainAccumulator(impl_.data, impl_.settings, impl_.tracer.table().ray_count()),
+            {}});
       }
-      return *accumulator_;
+      return *workspace_;
     }
 
    private:
     const Impl& impl_;
-    std::unique_ptr<detail::GainAccumulator> accumulator_;
+    std::unique_ptr<Workspace> workspace_;
   };
-
-  // The pose in the scene's coordinates; nothing if it is no rigid transform.
-  [[nodiscard]] std::optional<detail::PoseFrame> frame_of(const Pose& T_world_camera) const {
-    const double error = orthonormality_error(T_world_camera);
-    if (!(error <= kMaxPoseError)) return std::nullopt;
-    const Pose T_grid_camera =
-        T_grid_world * (error <= kMendPoseError ? T_world_camera : orthonormalized(T_world_camera));
-    const double voxel = data.snapshot.voxel_size;
-    detail::PoseFrame frame;
-    const Index3& base = data.snapshot.min_index;
-    const Eigen::Vector3d origin =
-        T_grid_camera.translation() / voxel - Eigen::Vector3d(base.x, base.y, base.z);
-    for (std::size_t i = 0; i < 3; ++i) frame.origin[i] = static_cast<float>(origin[static_cast<int>(i)]);
-    const Eigen::Matrix3d R = T_grid_camera.rotation();
-    for (std::size_t i = 0; i < 9; ++i) {
-      frame.rotation[i] = static_cast<float>(R(static_cast<int>(i / 3), static_cast<int>(i % 3)));
-    }
-    frame.min_range = static_cast<float>(min_range / voxel);
-    frame.max_range = static_cast<float>(max_range / voxel);
-    return frame;
-  }
 
   [[nodiscard]] bool is_in_occupied(const detail::PoseFrame& frame) const {
     const Index3& dims = data.snapshot.dims;
@@ -159,7 +142,7 @@ struct GainEvaluator::Impl {
 
   [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera, Lease& lease) const {
     ViewGain result;
-    const auto frame = frame_of(T_world_camera);
+    const auto frame = tracer.frame_of(T_world_camera);
     if (!frame) return result;
     result.rays = ray_count;
     if (is_in_occupied(*frame)) {
@@ -167,13 +150,10 @@ struct GainEvaluator::Impl {
       result.status = ViewStatus::camera_in_occupied;
       return result;
     }
-    detail::GainAccumulator& accumulator = lease.get();
+    auto& [accumulator, bins] = lease.get();
     accumulator.begin();
-    detail::RayTile tile;
-    for (std::size_t i = 0; i < table.tile_count; ++i) {
-      data.kernels->trace(data, table, *frame, i, tile);
-      accumulator.add(tile);
-    }
+    tracer.trace(*frame, bins,
+                 [&](std::size_t, const detail::RayTile& tile) { accumulator.add(tile); });
     accumulator.finish(result);
     result.status = ViewStatus::ok;
     return result;
@@ -182,9 +162,12 @@ struct GainEvaluator::Impl {
 
 std::string_view view_status_name(ViewStatus status) {
   switch (status) {
-    case ViewStatus::ok: return "ok";
-    case ViewStatus::camera_in_occupied: return "camera_in_occupied";
-    case ViewStatus::bad_pose: break;
+    case ViewStatus::ok:
+      return "ok";
+    case ViewStatus::camera_in_occupied:
+      return "camera_in_occupied";
+    case ViewStatus::bad_pose:
+      break;
   }
   return "bad_pose";
 }
@@ -193,6 +176,7 @@ GainEvaluator::GainEvaluator(std::shared_ptr<const VoxelScene> scene, const Sens
                              const GainConfig& config, const ExecConfig& exec) {
   if (!scene) reject("the gain evaluator has no scene");
   sensor.validate();
+  check(config, sensor, *scene);
   impl_ = std::make_unique<Impl>(std::move(scene), sensor, config, exec);
 }
 
@@ -205,7 +189,8 @@ ViewGain GainEvaluator::evaluate(const Pose& T_world_camera) const {
   return impl_->evaluate(T_world_camera, lease);
 }
 
-std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera, std::span<ViewGain> results,
+std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera,
+                                    std::span<ViewGain> results,
                                     const BatchControl& control) const {
   if (T_world_camera.size() != results.size()) {
     reject(std::to_string(T_world_camera.size()) + " poses but room for " +
@@ -238,19 +223,18 @@ std::vector<ViewGain> GainEvaluator::evaluate(std::span<const Pose> T_world_came
 }
 
 std::vector<RayHit> GainEvaluator::trace(const Pose& T_world_camera) const {
-  const auto frame = impl_->frame_of(T_world_camera);
+  const auto frame = impl_->tracer.frame_of(T_world_camera);
   if (!frame) return {};
   const VoxelScene::Data& data = impl_->data;
-  std::vector<RayHit> hits(impl_->table.ray_count());
-  detail::RayTile tile;
-  for (std::size_t i = 0; i < impl_->table.tile_count; ++i) {
-    data.kernels->trace(data, impl_->table, *frame, i, tile);
-    for (int lane = 0; lane < detail::kTileRays; ++lane) {
-      const std::uint32_t bit = 1U << lane;
-      if (((tile.hit | tile.blocked) & bit) == 0) continue;
-      RayHit& hit = hits[impl_->table.ray_index(i, lane)];
+  const detail::TileTable& table = impl_->tracer.table();
+  std::vector<RayHit> hits(table.ray_count());
+  detail::TileBins bins;
+  impl_->tracer.trace(*frame, bins, [&](std::size_t number, const detail::RayTile& tile) {
+    for (std::uint32_t left = tile.hit | tile.blocked; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      RayHit& hit = hits[table.ray_index(number, lane)];
       hit.range = static_cast<double>(tile.range[lane]) * data.snapshot.voxel_size;
-      if ((tile.blocked & bit) != 0) {
+      if ((tile.blocked >> lane & 1U) != 0) {
         hit.kind = RayHit::Kind::obstacle;
         continue;
       }
@@ -261,11 +245,13 @@ std::vector<RayHit> GainEvaluator::trace(const Pose& T_world_camera) const {
       hit.kind = occupied ? RayHit::Kind::occupied : RayHit::Kind::unknown;
       hit.voxel = data.voxel_index(primitive, offset);
     }
-  }
+  });
   return hits;
 }
 
-std::size_t GainEvaluator::rays_per_pose() const noexcept { return impl_->table.ray_count(); }
+std::size_t GainEvaluator::rays_per_pose() const noexcept {
+  return impl_->tracer.table().ray_count();
+}
 int GainEvaluator::num_threads() const noexcept { return impl_->pool.num_threads(); }
 double GainEvaluator::prior_sigma() const noexcept { return impl_->prior_sigma; }
 const VoxelScene& GainEvaluator::scene() const noexcept { return *impl_->scene; }
@@ -281,8 +267,8 @@ std::vector<std::size_t> best_indices(std::span<const ViewGain> results, std::si
     }
     return ga != gb ? ga > gb : a < b;
   };
-  std::partial_sort(indices.begin(), indices.begin() + static_cast<std::ptrdiff_t>(k), indices.end(),
-                    better);
+  std::partial_sort(indices.begin(), indices.begin() + static_cast<std::ptrdiff_t>(k),
+                    indices.end(), better);
   indices.resize(k);
   return indices;
 }

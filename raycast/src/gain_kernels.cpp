@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The arithmetic of the expected gain in double precision, compiled once for each instruction set. Every
-// voxel is computed by itself with + - × / only, so the vector width does not show in the result.
+// The arithmetic of the expected gain in double precision, compiled once for each instruction set.
+// Every voxel is computed by itself with + - × / only, so the vector width does not show in the
+// result.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "gain_kernels.cpp"
@@ -14,6 +15,7 @@
 #include <numbers>
 
 #include "gain_kernels.hpp"
+#include "viewgain/core/noise.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
@@ -40,7 +42,8 @@ void append(const RayTile& tile, HitBatch& batch) {
     hn::CompressStore(hn::Load(df, tile.dz + lane0), hit_f, df, batch.dz + n);
     hn::CompressStore(hn::Load(df, tile.range + lane0), hit_f, df, batch.range + n);
     hn::CompressStore(hn::Load(du, tile.offset + lane0), hit, du, batch.offset + n);
-    batch.count += hn::CompressStore(hn::Load(du, tile.primitive + lane0), hit, du, batch.primitive + n);
+    batch.count +=
+        hn::CompressStore(hn::Load(du, tile.primitive + lane0), hit, du, batch.primitive + n);
   }
 }
 
@@ -53,13 +56,15 @@ void expand(const FrontalSigmas& sigmas, double voxel_size, HitBatch& batch) {
     const VD x = hn::PromoteTo(dd, hn::LoadU(half, batch.dx + i));
     const VD y = hn::PromoteTo(dd, hn::LoadU(half, batch.dy + i));
     const VD z = hn::PromoteTo(dd, hn::LoadU(half, batch.dz + i));
-    const VD t = hn::Mul(hn::PromoteTo(dd, hn::LoadU(half, batch.range + i)), voxel);
+    const VD range = hn::Mul(hn::PromoteTo(dd, hn::LoadU(half, batch.range + i)), voxel);
+    const VD t = hn::Max(range, hn::Set(dd, kMinNoiseRange));
     const VD from_vertex = hn::Sub(t, v);
-    const VD axial = hn::Add(hn::Add(a0, hn::Mul(a1, t)), hn::Mul(a2, hn::Mul(from_vertex, from_vertex)));
+    const VD axial =
+        hn::Add(hn::Add(a0, hn::Mul(a1, t)), hn::Mul(a2, hn::Mul(from_vertex, from_vertex)));
     const VD lateral = hn::Add(l0, hn::Mul(l1, t));
     const VD xx = hn::Mul(x, x), yy = hn::Mul(y, y), zz = hn::Mul(z, z);
-    // a = 1 / σ_lat², b = 1 / σ_ax², c = (b - a) / |d|², with one division. The direction is unit to
-    // single precision only; with σ_ax far from σ_lat that would show, hence |d|².
+    // a = 1 / σ_lat², b = 1 / σ_ax², c = (b - a) / |d|², with one division. The direction is unit
+    // to single precision only; with σ_ax far from σ_lat that would show, hence |d|².
     const VD norm = hn::Add(xx, hn::Add(yy, zz));
     const VD var_lateral = hn::Mul(lateral, lateral), var_axial = hn::Mul(axial, axial);
     const VD both = hn::Mul(var_lateral, var_axial);
@@ -152,16 +157,21 @@ HWY_INLINE void finish_as(double prior_information, const VoxelClass& voxels, Lo
         const double* known = voxels.known[first].value;
         const auto line = hn::ShiftLeft<3>(hn::Iota(di, 0));
         const VD kxx = hn::GatherIndex(dd, known, line), kyy = hn::GatherIndex(dd, known + 1, line),
-                 kzz = hn::GatherIndex(dd, known + 2, line), kxy = hn::GatherIndex(dd, known + 3, line),
-                 kxz = hn::GatherIndex(dd, known + 4, line), kyz = hn::GatherIndex(dd, known + 5, line);
-        before = invert(hn::Add(prior, kxx), hn::Add(prior, kyy), hn::Add(prior, kzz), kxy, kxz, kyz);
+                 kzz = hn::GatherIndex(dd, known + 2, line),
+                 kxy = hn::GatherIndex(dd, known + 3, line),
+                 kxz = hn::GatherIndex(dd, known + 4, line),
+                 kyz = hn::GatherIndex(dd, known + 5, line);
+        before =
+            invert(hn::Add(prior, kxx), hn::Add(prior, kyy), hn::Add(prior, kzz), kxy, kxz, kyz);
         xx = hn::Add(xx, kxx), yy = hn::Add(yy, kyy), zz = hn::Add(zz, kzz);
         xy = hn::Add(xy, kxy), xz = hn::Add(xz, kxz), yz = hn::Add(yz, kyz);
       }
-      const Inverse after = invert(hn::Add(prior, xx), hn::Add(prior, yy), hn::Add(prior, zz), xy, xz, yz);
+      const Inverse after =
+          invert(hn::Add(prior, xx), hn::Add(prior, yy), hn::Add(prior, zz), xy, xz, yz);
       const Inverse without_prior = invert(xx, yy, zz, xy, xz, yz);
       const VD gained = reduction<criterion>(before, after);
-      const VD left_over = hn::Div(diagonal_product(without_prior), cube(without_prior.determinant));
+      const VD left_over =
+          hn::Div(diagonal_product(without_prior), cube(without_prior.determinant));
       multiply(posterior_strands, part, hn::IfThenElse(live, left_over, one));
       if (each != nullptr) {
         hn::StoreU(gained, dd, each + first);
@@ -174,13 +184,14 @@ HWY_INLINE void finish_as(double prior_information, const VoxelClass& voxels, Lo
   posterior = posterior_strands;
 }
 
-void finish(Criterion criterion, double prior_information, const VoxelClass& voxels, LogProduct& ratios,
-            LogProduct& posterior, double* each) {
+void finish(Criterion criterion, double prior_information, const VoxelClass& voxels,
+            LogProduct& ratios, LogProduct& posterior, double* each) {
   switch (criterion) {
     case Criterion::log_diagonal:
       return finish_as<Criterion::log_diagonal>(prior_information, voxels, ratios, posterior, each);
     case Criterion::log_determinant:
-      return finish_as<Criterion::log_determinant>(prior_information, voxels, ratios, posterior, each);
+      return finish_as<Criterion::log_determinant>(prior_information, voxels, ratios, posterior,
+                                                   each);
     case Criterion::trace:
       return finish_as<Criterion::trace>(prior_information, voxels, ratios, posterior, each);
   }
@@ -212,12 +223,15 @@ double LogProduct::log() const {
 const GainKernels& gain_kernels(Isa isa) {
   switch (isa) {
 #if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512: return N_AVX3::gain_kernel_table();
+    case Isa::avx512:
+      return N_AVX3::gain_kernel_table();
 #endif
 #if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2: return N_AVX2::gain_kernel_table();
+    case Isa::avx2:
+      return N_AVX2::gain_kernel_table();
 #endif
-    default: return HWY_STATIC_DISPATCH(gain_kernel_table)();
+    default:
+      return HWY_STATIC_DISPATCH(gain_kernel_table)();
   }
 }
 

@@ -20,8 +20,8 @@ struct FrontalSigmas {
 
 inline constexpr std::size_t kBatchSize = 512;
 
-/// Hits on their way from the tracer to the voxels, in the order of tiles and lanes. The arrays have
-/// room for one more tile's vectors beyond kBatchSize.
+/// Hits on their way from the tracer to the voxels, in the order of tiles and lanes. The arrays
+/// have room for one more tile's vectors beyond kBatchSize.
 struct alignas(64) HitBatch {
   static constexpr std::size_t kCapacity = kBatchSize + 2 * kTileRays;
   float dx[kCapacity], dy[kCapacity], dz[kCapacity];
@@ -41,8 +41,9 @@ struct alignas(64) VoxelInformation {
   double value[8];
 };
 
-/// ln of a long product of positive numbers in eight strands, one logarithm for all of it: factor i goes
-/// to strand i mod 8, whatever the vector width, and mantissas hand their exponents over as they grow.
+/// ln of a long product of positive numbers in eight strands, one logarithm for all of it: factor i
+/// goes to strand i mod 8, whatever the vector width, and mantissas hand their exponents over as
+/// they grow.
 struct alignas(64) LogProduct {
   double mantissa[8] = {1, 1, 1, 1, 1, 1, 1, 1};
   std::int64_t exponent[8] = {};
@@ -52,9 +53,10 @@ struct alignas(64) LogProduct {
 
 /// The voxels of one class (unknown or occupied) that a view touches.
 struct VoxelClass {
-  const VoxelSum* sums;             ///< of all voxels
-  const std::uint32_t* members;     ///< which of them belong to the class; readable up to 8 beyond count
-  const VoxelInformation* known;    ///< Λ_v of the members; null: unknown, none
+  const VoxelSum* sums;  ///< of all voxels
+  const std::uint32_t*
+      members;  ///< which of them belong to the class; readable up to 8 beyond count
+  const VoxelInformation* known;  ///< Λ_v of the members; null: unknown, none
   std::size_t count;
 };
 
@@ -65,8 +67,9 @@ struct GainKernels {
   /// Λ_r = a I + (b - a) d dᵀ of every hit (DESIGN.md section 4), d normalised in double.
   void (*expand)(const FrontalSigmas& sigmas, double voxel_size, HitBatch& batch);
   /// What the members gain and what stays. Multiplies the ratios whose logarithms, halved, are
-  /// H(before) - H(after) into `ratios`, or, if `each` is not null (room for 8 beyond count), writes
-  /// each ratio there, for the trace each difference. Multiplies Π_k [(Λ_v + ΣΛ_r)⁻¹]_kk into `posterior`.
+  /// H(before) - H(after) into `ratios`, or, if `each` is not null (room for 8 beyond count),
+  /// writes each ratio there, for the trace each difference. Multiplies Π_k [(Λ_v + ΣΛ_r)⁻¹]_kk
+  /// into `posterior`.
   void (*finish)(Criterion criterion, double prior_information, const VoxelClass& voxels,
                  LogProduct& ratios, LogProduct& posterior, double* each);
 };

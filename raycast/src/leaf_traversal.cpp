@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Tracing a packet of rays through the 512-bit masks of 8³ leaves, compiled once for each instruction
-// set. Only + - × / min max and comparisons are used, so each set takes the same steps bit for bit.
+// Tracing a packet of rays through the 512-bit masks of 8³ leaves, compiled once for each
+// instruction set. Only + - × / min max and comparisons are used, so each set takes the same steps
+// bit for bit.
 //
-// All plane distances are (plane - origin) * inverse with the plane an exact integer. Whoever asks for
-// the same plane gets the same number, so leaves that share a face agree on which side of it a ray is at
-// any t, and no ray slips between them.
+// All plane distances are (plane - origin) * inverse with the plane an exact integer. Whoever asks
+// for the same plane gets the same number, so leaves that share a face agree on which side of it a
+// ray is at any t, and no ray slips between them.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "leaf_traversal.cpp"
@@ -33,7 +34,8 @@ using VU = hn::Vec<DU>;
 using MF = hn::Mask<DF>;
 constexpr int kWidth = static_cast<int>(hn::MaxLanes(df));
 
-// What a packet's callbacks need to know; the tile's lanes [lane0, lane0 + kWidth) are the packet's.
+// What a packet's callbacks need to know; the tile's lanes [lane0, lane0 + kWidth) are the
+// packet's.
 struct PacketQuery : RayQuery {
   PacketQuery() : RayQuery(true) {}
   const VoxelScene::Data* scene = nullptr;
@@ -51,14 +53,14 @@ HWY_INLINE Interval intersect_slabs(VF ix, VF iy, VF iz, const float* lo, const 
   const VF x0 = hn::Mul(hn::Set(df, lo[0]), ix), x1 = hn::Mul(hn::Set(df, hi[0]), ix);
   const VF y0 = hn::Mul(hn::Set(df, lo[1]), iy), y1 = hn::Mul(hn::Set(df, hi[1]), iy);
   const VF z0 = hn::Mul(hn::Set(df, lo[2]), iz), z1 = hn::Mul(hn::Set(df, hi[2]), iz);
-  const VF enter =
-      hn::Max(hn::Max(hn::Set(df, min_range), hn::Min(x0, x1)), hn::Max(hn::Min(y0, y1), hn::Min(z0, z1)));
+  const VF enter = hn::Max(hn::Max(hn::Set(df, min_range), hn::Min(x0, x1)),
+                           hn::Max(hn::Min(y0, y1), hn::Min(z0, z1)));
   const VF exit = hn::Min(hn::Max(x0, x1), hn::Min(hn::Max(y0, y1), hn::Max(z0, z1)));
   return {enter, exit};
 }
 
-// Which lanes may take a hit at `enter` from `primitive`: nearer than what they have, or as near and of
-// a lower number, so that the order in which the BVH is walked does not show.
+// Which lanes may take a hit at `enter` from `primitive`: nearer than what they have, or as near
+// and of a lower number, so that the order in which the BVH is walked does not show.
 HWY_INLINE MF is_nearer(VF enter, VF range, VU held, std::uint32_t primitive) {
   const MF lower = hn::RebindMask(
       df, hn::Lt(hn::Set(di, static_cast<std::int32_t>(primitive)), hn::BitCast(di, held)));
@@ -75,10 +77,10 @@ HWY_INLINE VU mask_words(const TraceMask& mask, VU offset) {
 #endif
 }
 
-// Walks the voxels of a leaf along the active rays and notes the first one whose bit is set, if it is
-// nearer than what the ray has. Returns the lanes that took a hit; `range` is updated.
-HWY_INLINE MF walk_leaf(const VoxelScene::Data& scene, const PoseFrame& frame, RayTile& tile, int lane0,
-                        std::uint32_t leaf, MF active, VF& range) {
+// Walks the voxels of a leaf along the active rays and notes the first one whose bit is set, if it
+// is nearer than what the ray has. Returns the lanes that took a hit; `range` is updated.
+HWY_INLINE MF walk_leaf(const VoxelScene::Data& scene, const PoseFrame& frame, RayTile& tile,
+                        int lane0, std::uint32_t leaf, MF active, VF& range) {
   const PrimitiveBox& box = scene.boxes[leaf];
   const float lo[3] = {box.min[0] - frame.origin[0], box.min[1] - frame.origin[1],
                        box.min[2] - frame.origin[2]};
@@ -99,18 +101,19 @@ HWY_INLINE MF walk_leaf(const VoxelScene::Data& scene, const PoseFrame& frame, R
     return hn::ConvertTo(di, hn::Min(hn::Max(p, zero), last));
   };
   const auto cx = cell(tile.dx, 0), cy = cell(tile.dy, 1), cz = cell(tile.dz, 2);
-  VU offset = hn::Add(
-      hn::Set(du, box.first_offset),
-      hn::BitCast(du, hn::Or(hn::ShiftLeft<6>(cx), hn::Or(hn::ShiftLeft<3>(cy), cz))));
+  VU offset =
+      hn::Add(hn::Set(du, box.first_offset),
+              hn::BitCast(du, hn::Or(hn::ShiftLeft<6>(cx), hn::Or(hn::ShiftLeft<3>(cy), cz))));
 
   // The plane by which each axis is left next, and what stepping over it changes.
   const VF minus_one = hn::Set(df, -1.0F);
-  const MF backward_x = hn::Lt(ix, zero), backward_y = hn::Lt(iy, zero), backward_z = hn::Lt(iz, zero);
+  const MF backward_x = hn::Lt(ix, zero), backward_y = hn::Lt(iy, zero),
+           backward_z = hn::Lt(iz, zero);
   const VF step_x = hn::IfThenElse(backward_x, minus_one, one);
   const VF step_y = hn::IfThenElse(backward_y, minus_one, one);
   const VF step_z = hn::IfThenElse(backward_z, minus_one, one);
-  const VU offset_x = hn::BitCast(du, hn::IfThenElse(hn::RebindMask(di, backward_x), hn::Set(di, -64),
-                                                     hn::Set(di, 64)));
+  const VU offset_x = hn::BitCast(
+      du, hn::IfThenElse(hn::RebindMask(di, backward_x), hn::Set(di, -64), hn::Set(di, 64)));
   const VU offset_y = hn::BitCast(
       du, hn::IfThenElse(hn::RebindMask(di, backward_y), hn::Set(di, -8), hn::Set(di, 8)));
   const VU offset_z = hn::BitCast(
@@ -165,15 +168,16 @@ HWY_INLINE MF walk_leaf(const VoxelScene::Data& scene, const PoseFrame& frame, R
 }
 
 // The entry into a box of unknown voxels.
-HWY_INLINE MF enter_box(const VoxelScene::Data& scene, const PoseFrame& frame, RayTile& tile, int lane0,
-                        std::uint32_t primitive, MF active, VF& range) {
+HWY_INLINE MF enter_box(const VoxelScene::Data& scene, const PoseFrame& frame, RayTile& tile,
+                        int lane0, std::uint32_t primitive, MF active, VF& range) {
   const PrimitiveBox& box = scene.boxes[primitive];
   const float lo[3] = {box.min[0] - frame.origin[0], box.min[1] - frame.origin[1],
                        box.min[2] - frame.origin[2]};
   const float hi[3] = {box.max[0] - frame.origin[0], box.max[1] - frame.origin[1],
                        box.max[2] - frame.origin[2]};
-  const Interval slab = intersect_slabs(hn::Load(df, tile.ix + lane0), hn::Load(df, tile.iy + lane0),
-                                        hn::Load(df, tile.iz + lane0), lo, hi, frame.min_range);
+  const Interval slab =
+      intersect_slabs(hn::Load(df, tile.ix + lane0), hn::Load(df, tile.iy + lane0),
+                      hn::Load(df, tile.iz + lane0), lo, hi, frame.min_range);
   const VU held = hn::Load(du, tile.primitive + lane0);
   const MF hits = hn::And(active, hn::And(hn::Lt(slab.enter, slab.exit),
                                           is_nearer(slab.enter, range, held, primitive)));
@@ -194,8 +198,8 @@ HWY_INLINE MF enter_box(const VoxelScene::Data& scene, const PoseFrame& frame, R
   return hits;
 }
 
-// Embree's callback. Almost always the packet is the one that was sent, N = kWidth with lanes in order;
-// else each ray is looked up by the lane in its id and goes through the same kernel alone.
+// Embree's callback. Almost always the packet is the one that was sent, N = kWidth with lanes in
+// order; else each ray is looked up by the lane in its id and goes through the same kernel alone.
 template <typename Kernel>
 HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint32_t primitive,
                           Kernel kernel) {
@@ -206,7 +210,8 @@ HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint3
     float* tfar = &RTCRayN_tfar(rays, args->N, 0);
     VF range = hn::LoadU(df, tfar);
     const MF active = hn::RebindMask(df, hn::Ne(hn::LoadU(di, args->valid), hn::Zero(di)));
-    const MF hits = kernel(*query.scene, *query.frame, *query.tile, query.lane0, primitive, active, range);
+    const MF hits =
+        kernel(*query.scene, *query.frame, *query.tile, query.lane0, primitive, active, range);
     if (hn::AllFalse(df, hits)) return;
     hn::StoreU(range, df, tfar);
     hn::BlendedStore(hn::Set(du, args->geomID), hn::RebindMask(du, hits), du,
@@ -218,7 +223,8 @@ HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint3
     const unsigned lane = RTCRayN_id(rays, args->N, i);
     VF range = hn::Set(df, RTCRayN_tfar(rays, args->N, i));
     const MF active = hn::RebindMask(df, hn::Eq(hn::Iota(du, 0U), hn::Set(du, lane)));
-    const MF hits = kernel(*query.scene, *query.frame, *query.tile, query.lane0, primitive, active, range);
+    const MF hits =
+        kernel(*query.scene, *query.frame, *query.tile, query.lane0, primitive, active, range);
     if (hn::AllFalse(df, hits)) continue;
     HWY_ALIGN float ranges[kWidth];
     hn::Store(range, df, ranges);
@@ -319,16 +325,18 @@ void trace(const VoxelScene::Data& scene, const TileTable& table, const PoseFram
     hn::Store(hn::Load(df, packet.ray.tfar), df, out.range + lane0);
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(du, in_voxel, bits);
-    out.hit |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U) << lane0;
+    out.hit |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U)
+               << lane0;
     std::uint8_t blocked[8] = {};
     hn::StoreMaskBits(du, in_obstacle, blocked);
     out.blocked |=
-        (static_cast<std::uint32_t>(blocked[0]) | static_cast<std::uint32_t>(blocked[1]) << 8U) << lane0;
+        (static_cast<std::uint32_t>(blocked[0]) | static_cast<std::uint32_t>(blocked[1]) << 8U)
+        << lane0;
   }
 }
 
-void replay(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
-            std::size_t tile, std::span<const std::uint32_t> primitives, RayTile& out) {
+void trace_list(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
+                std::size_t tile, std::span<const std::uint32_t> primitives, RayTile& out) {
   set_up(table, frame, tile, out);
   for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
     VF range = hn::Set(df, frame.max_range);
@@ -344,14 +352,15 @@ void replay(const VoxelScene::Data& scene, const TileTable& table, const PoseFra
     hn::Store(range, df, out.range + lane0);
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(df, hits, bits);
-    out.hit |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U) << lane0;
+    out.hit |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U)
+               << lane0;
   }
 }
 
 }  // namespace
 
 const TraceKernels& kernels(Isa isa) {
-  static const TraceKernels table{isa, kWidth, intersect_leaf, intersect_box, trace, replay};
+  static const TraceKernels table{isa, kWidth, intersect_leaf, intersect_box, trace, trace_list};
   return table;
 }
 
@@ -364,12 +373,15 @@ namespace viewgain::detail {
 const TraceKernels& trace_kernels(Isa isa) {
   switch (isa) {
 #if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512: return N_AVX3::kernels(isa);
+    case Isa::avx512:
+      return N_AVX3::kernels(isa);
 #endif
 #if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2: return N_AVX2::kernels(isa);
+    case Isa::avx2:
+      return N_AVX2::kernels(isa);
 #endif
-    default: return HWY_STATIC_DISPATCH(kernels)(isa);
+    default:
+      return HWY_STATIC_DISPATCH(kernels)(isa);
   }
 }
 

@@ -25,10 +25,10 @@ struct TraceKernels {
   void (*trace)(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
                 std::size_t tile, RayTile& out);
 
-  /// The same answer from a list of the primitives that matter, without the BVH: what tracing costs
-  /// when the way to them is free. For measuring.
-  void (*replay)(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
-                 std::size_t tile, std::span<const std::uint32_t> primitives, RayTile& out);
+  /// The same answer, obstacles apart, from a list of primitives that holds all that the tile's
+  /// rays meet, in any order, without the BVH.
+  void (*trace_list)(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
+                     std::size_t tile, std::span<const std::uint32_t> primitives, RayTile& out);
 };
 
 /// Kernels of an instruction set that the CPU supports.

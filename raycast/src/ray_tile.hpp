@@ -19,8 +19,8 @@ inline constexpr int kTileRays = kTileEdge * kTileEdge;
 /// Above every primitive's number, also when compared as a signed one.
 inline constexpr std::uint32_t kNoPrimitive = 0x7FFFFFFFU;
 
-/// Unit directions of a sensor's (strided) pixels in the camera frame, tile by tile: 16 x, 16 y, 16 z.
-/// Lanes beyond the image's edge repeat a ray and are not valid.
+/// Unit directions of a sensor's (strided) pixels in the camera frame, tile by tile: 16 x, 16 y, 16
+/// z. Lanes beyond the image's edge repeat a ray and are not valid.
 struct TileTable {
   int columns = 0;  ///< rays a row
   int rows = 0;
@@ -36,14 +36,15 @@ struct TileTable {
   }
   /// Ray index of a valid lane.
   [[nodiscard]] std::size_t ray_index(std::size_t tile, int lane) const {
-    return first_lane[tile] + static_cast<std::size_t>(lane / kTileEdge) *
-                                  static_cast<std::size_t>(columns) +
+    return first_lane[tile] +
+           static_cast<std::size_t>(lane / kTileEdge) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(lane % kTileEdge);
   }
 };
 
-/// A camera pose as the tracer sees it. Lengths are in voxels, coordinates relative to the lowest corner
-/// of the workspace, so that single precision serves the workspace and not its distance from an origin.
+/// A camera pose as the tracer sees it. Lengths are in voxels, coordinates relative to the lowest
+/// corner of the workspace, so that single precision serves the workspace and not its distance from
+/// an origin.
 struct PoseFrame {
   std::array<float, 3> origin{};    ///< camera centre
   std::array<float, 9> rotation{};  ///< R_grid_camera, row by row
@@ -53,14 +54,14 @@ struct PoseFrame {
 
 /// One tile of rays and where they end.
 struct alignas(64) RayTile {
-  float dx[kTileRays], dy[kTileRays], dz[kTileRays];        ///< unit directions, grid frame
-  float ix[kTileRays], iy[kTileRays], iz[kTileRays];        ///< 1 / direction; zero counts as 1e-20
-  float range[kTileRays];                                   ///< where the ray ends [voxels]
-  std::uint32_t primitive[kTileRays];                       ///< leaf or box, kNoPrimitive: no voxel
-  std::uint32_t offset[kTileRays];                          ///< voxel in the leaf; undefined for boxes
-  std::uint32_t valid = 0;                                  ///< one bit a lane
-  std::uint32_t hit = 0;                                    ///< lanes that end in a voxel
-  std::uint32_t blocked = 0;                                ///< lanes that end at an obstacle
+  float dx[kTileRays], dy[kTileRays], dz[kTileRays];  ///< unit directions, grid frame
+  float ix[kTileRays], iy[kTileRays], iz[kTileRays];  ///< 1 / direction; zero counts as 1e-20
+  float range[kTileRays];                             ///< where the ray ends [voxels]
+  std::uint32_t primitive[kTileRays];                 ///< leaf or box, kNoPrimitive: no voxel
+  std::uint32_t offset[kTileRays];                    ///< voxel in the leaf; undefined for boxes
+  std::uint32_t valid = 0;                            ///< one bit a lane
+  std::uint32_t hit = 0;                              ///< lanes that end in a voxel
+  std::uint32_t blocked = 0;                          ///< lanes that end at an obstacle
 };
 
 }  // namespace viewgain::detail

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "device.hpp"
 #include "leaf_traversal.hpp"
+#include "tile_bins.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain::detail {
@@ -18,16 +20,17 @@ struct alignas(64) TraceMask {
   std::array<std::uint32_t, 16> words{};  ///< bit of voxel (x,y,z): x << 6 | y << 3 | z
 };
 
-/// A primitive's box in voxels, relative to the workspace's lowest corner: for a leaf the tightest one
-/// round its set bits, whose lowest voxel has the offset first_offset in the leaf.
+/// A primitive's box in voxels, relative to the workspace's lowest corner: for a leaf the tightest
+/// one round its set bits, whose lowest voxel has the offset first_offset in the leaf.
 struct alignas(32) PrimitiveBox {
   float min[3];
   float max[3];
   std::uint32_t first_offset;
 };
 
-/// How a voxel's offset in its primitive is packed, bits an axis: x << 2 bits | y << bits | z. Leaves and
-/// whole unknown blocks of 8³ have three, larger boxes ten; kMaxBoxEdge is what those can hold.
+/// How a voxel's offset in its primitive is packed, bits an axis: x << 2 bits | y << bits | z.
+/// Leaves and whole unknown blocks of 8³ have three, larger boxes ten; kMaxBoxEdge is what those
+/// can hold.
 inline constexpr int kBlockBits = 3;
 inline constexpr int kBoxBits = 10;
 inline constexpr int kMaxBoxEdge = 1 << kBoxBits;
@@ -41,22 +44,24 @@ inline constexpr unsigned kObstacleGeometry = 2;
 
 namespace viewgain {
 
-/// What VoxelScene owns. Primitives are numbered: [0, leaf_count) leaves that are traced by their masks,
-/// [leaf_count, block_count) whole blocks of 8³ unknown voxels, the rest larger or clipped boxes of
-/// unknown voxels.
+/// What VoxelScene owns. Primitives are numbered: [0, leaf_count) leaves that are traced by their
+/// masks, [leaf_count, block_count) whole blocks of 8³ unknown voxels, the rest larger or clipped
+/// boxes of unknown voxels.
 ///
-/// Blocks are the 8³ cells of the lattice that touch the workspace, numbered x-major; a voxel's key is
-/// block << 9 | x << 6 | y << 3 | z of its place in the block.
+/// Blocks are the 8³ cells of the lattice that touch the workspace, numbered x-major; a voxel's key
+/// is block << 9 | x << 6 | y << 3 | z of its place in the block.
 struct VoxelScene::Data {
   GridSnapshot snapshot;
-  std::vector<detail::TraceMask> masks;        ///< one a leaf
-  std::vector<detail::PrimitiveBox> boxes;     ///< one a primitive
-  std::vector<std::uint64_t> block_keys;       ///< block << 9, one a primitive below block_count
-  std::vector<std::uint32_t> leaf_source;      ///< index into snapshot.leaves, one a leaf primitive
-  std::vector<std::uint8_t> has_occupied;      ///< whether a leaf has occupied voxels, one a leaf primitive
+  std::vector<detail::TraceMask> masks;     ///< one a leaf
+  std::vector<detail::PrimitiveBox> boxes;  ///< one a primitive
+  std::vector<std::uint64_t> block_keys;    ///< block << 9, one a primitive below block_count
+  std::vector<std::uint32_t> leaf_source;   ///< index into snapshot.leaves, one a leaf primitive
+  std::vector<std::uint8_t>
+      has_occupied;  ///< whether a leaf has occupied voxels, one a leaf primitive
   std::size_t leaf_count = 0;
   std::size_t block_count = 0;
   bool has_obstacles = false;
+  std::optional<detail::SceneBoxes> scene_boxes;  ///< for sorting into the tiles of a view
   const detail::TraceKernels* kernels = nullptr;
   detail::DevicePtr device;
   detail::ScenePtr scene;  ///< released before the device

@@ -13,8 +13,8 @@
 namespace viewgain {
 namespace {
 
-// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a good hash of a counter, so that each pixel has noise of
-// its own whatever the order in which pixels are made.
+// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a good hash of a counter, so that each pixel has
+// noise of its own whatever the order in which pixels are made.
 std::uint64_t mix(std::uint64_t x) {
   x += 0x9E3779B97F4A7C15ULL;
   x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
@@ -31,8 +31,8 @@ double normal(std::uint64_t seed, std::uint64_t frame, std::uint64_t pixel) {
   return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * v);
 }
 
-// Where a ray from inside the sphere of radius r round the origin leaves it; outside: infinity, then the
-// room is not there.
+// Where a ray from inside the sphere of radius r round the origin leaves it; outside: infinity,
+// then the room is not there.
 double sphere_exit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double r) {
   const double b = origin.dot(direction);
   const double c = origin.squaredNorm() - r * r;
@@ -49,7 +49,8 @@ struct SimulatedSensor::Impl {
   std::vector<Eigen::Vector3d> rays;  // (x, y, 1), camera frame
   mutable ThreadPool pool;
 
-  Impl(std::shared_ptr<const SurfaceScene> s, const Sensor& se, const SimulationConfig& c, int threads)
+  Impl(std::shared_ptr<const SurfaceScene> s, const Sensor& se, const SimulationConfig& c,
+       int threads)
       : scene(std::move(s)), sensor(se), config(c), rays(se.camera.ray_table()), pool(threads) {}
 
   [[nodiscard]] float pixel(const Eigen::Matrix3d& R_world_camera, const Eigen::Vector3d& p_world,
@@ -65,7 +66,8 @@ struct SimulatedSensor::Impl {
       const double wall = sphere_exit(p_world, direction, config.background_radius);
       if (wall < range) {
         range = wall;
-        cos_incidence = std::abs((p_world + wall * direction).dot(direction)) / config.background_radius;
+        cos_incidence =
+            std::abs((p_world + wall * direction).dot(direction)) / config.background_radius;
       }
     }
     if (range < sensor.min_range) return DepthFrame::kInvalid;
@@ -96,7 +98,8 @@ SimulatedSensor& SimulatedSensor::operator=(SimulatedSensor&&) noexcept = defaul
 
 DepthFrame SimulatedSensor::acquire(const Pose& T_world_camera, std::uint64_t frame_index) const {
   if (!(orthonormality_error(T_world_camera) <= 1e-3)) {
-    throw Error(ErrorCode::invalid_argument, "the simulated sensor's pose is not a rigid transform");
+    throw Error(ErrorCode::invalid_argument,
+                "the simulated sensor's pose is not a rigid transform");
   }
   const Pose pose = orthonormalized(T_world_camera);
   const Eigen::Matrix3d R_world_camera = pose.rotation();

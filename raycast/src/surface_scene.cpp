@@ -18,7 +18,8 @@ struct SurfaceScene::Impl {
   detail::ScenePtr scene;
 };
 
-SurfaceScene::SurfaceScene(TriangleMesh mesh, const ExecConfig& exec) : impl_(std::make_unique<Impl>()) {
+SurfaceScene::SurfaceScene(TriangleMesh mesh, const ExecConfig& exec)
+    : impl_(std::make_unique<Impl>()) {
   if (mesh.triangles.empty()) throw Error(ErrorCode::invalid_argument, "the mesh has no triangles");
   std::vector<float> vertices;
   vertices.reserve(3 * mesh.vertices.size());
@@ -35,8 +36,9 @@ SurfaceScene::SurfaceScene(TriangleMesh mesh, const ExecConfig& exec) : impl_(st
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t index : triangle) {
       if (index >= mesh.vertices.size()) {
-        throw Error(ErrorCode::invalid_argument, "a triangle refers to vertex " + std::to_string(index) +
-                                                     " of " + std::to_string(mesh.vertices.size()));
+        throw Error(ErrorCode::invalid_argument, "a triangle refers to vertex " +
+                                                     std::to_string(index) + " of " +
+                                                     std::to_string(mesh.vertices.size()));
       }
       indices.push_back(index);
     }

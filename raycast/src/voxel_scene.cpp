@@ -18,8 +18,8 @@ using detail::PrimitiveBox;
 
 constexpr std::size_t kMaxPrimitives = std::size_t{1} << 23U;
 
-// Embree's own arithmetic may put a ray on the wrong side of a box by a few ulps of the distance; boxes
-// that are larger by this much [voxels] are met all the same. The kernels decide exactly.
+// Embree's own arithmetic may put a ray on the wrong side of a box by a few ulps of the distance;
+// boxes that are larger by this much [voxels] are met all the same. The kernels decide exactly.
 constexpr float kBoundsMargin = 0.02F;
 
 void check(const Obstacles& obstacles) {
@@ -42,9 +42,9 @@ void check(const Obstacles& obstacles) {
     for (const auto& triangle : mesh.triangles) {
       for (const std::uint32_t index : triangle) {
         if (index >= mesh.vertices.size()) {
-          throw Error(ErrorCode::invalid_argument,
-                      "an obstacle's triangle refers to vertex " + std::to_string(index) + " of " +
-                          std::to_string(mesh.vertices.size()));
+          throw Error(ErrorCode::invalid_argument, "an obstacle's triangle refers to vertex " +
+                                                       std::to_string(index) + " of " +
+                                                       std::to_string(mesh.vertices.size()));
         }
       }
     }
@@ -106,7 +106,8 @@ void append_pieces(const Index3& min, const Index3& max, const Index3& base,
       for (std::int32_t z = min.z; z < max.z; z += kEdge) {
         const auto low = relative({x, y, z}, base);
         const auto high = relative(
-            {std::min(x + kEdge, max.x), std::min(y + kEdge, max.y), std::min(z + kEdge, max.z)}, base);
+            {std::min(x + kEdge, max.x), std::min(y + kEdge, max.y), std::min(z + kEdge, max.z)},
+            base);
         out.push_back({{low[0], low[1], low[2]}, {high[0], high[1], high[2]}, 0});
       }
     }
@@ -114,7 +115,9 @@ void append_pieces(const Index3& min, const Index3& max, const Index3& base,
 }
 
 bool is_whole_block(const SnapshotTile& tile) {
-  const auto aligned = [](std::int32_t min, std::int32_t max) { return max - min == 8 && (min & 7) == 0; };
+  const auto aligned = [](std::int32_t min, std::int32_t max) {
+    return max - min == 8 && (min & 7) == 0;
+  };
   return aligned(tile.min.x, tile.max.x) && aligned(tile.min.y, tile.max.y) &&
          aligned(tile.min.z, tile.max.z);
 }
@@ -225,7 +228,8 @@ void attach_obstacles(const VoxelScene::Data& data, const Obstacles& obstacles) 
   for (const TriangleMesh& mesh : obstacles.meshes) append(mesh);
   if (indices.empty()) return;
   detail::attach_triangles(data.device.get(), data.scene.get(), detail::kObstacleGeometry,
-                           vertices.data(), vertices.size() / 3, indices.data(), indices.size() / 3);
+                           vertices.data(), vertices.size() / 3, indices.data(),
+                           indices.size() / 3);
 }
 
 // The best kernels for which Embree has packets of the same width.
@@ -248,17 +252,20 @@ void choose_kernels(VoxelScene::Data& data, int num_threads) {
 
 }  // namespace
 
-std::shared_ptr<const VoxelScene> VoxelScene::build(const BeliefGrid& grid, const Obstacles& obstacles,
+std::shared_ptr<const VoxelScene> VoxelScene::build(const BeliefGrid& grid,
+                                                    const Obstacles& obstacles,
                                                     const ExecConfig& exec) {
   return build(grid.snapshot(), obstacles, exec);
 }
 
-std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot, const Obstacles& obstacles,
+std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
+                                                    const Obstacles& obstacles,
                                                     const ExecConfig& exec) {
   check(obstacles);
   auto data = std::make_unique<Data>();
   data->snapshot = std::move(snapshot);
   gather(*data);
+  data->scene_boxes.emplace(data->boxes);
   choose_kernels(*data, exec.num_threads);
   data->has_obstacles = !obstacles.boxes.empty() || !obstacles.meshes.empty();
 
@@ -281,7 +288,8 @@ std::string_view VoxelScene::isa() const noexcept { return isa_name(data_->kerne
 std::size_t VoxelScene::primitive_count() const noexcept { return data_->boxes.size(); }
 
 std::uint64_t VoxelScene::bytes() const noexcept {
-  return data_->masks.size() * sizeof(detail::TraceMask) + data_->boxes.size() * sizeof(PrimitiveBox) +
+  return data_->masks.size() * sizeof(detail::TraceMask) +
+         data_->boxes.size() * sizeof(PrimitiveBox) +
          data_->block_keys.size() * sizeof(std::uint64_t) +
          data_->leaf_source.size() * (sizeof(std::uint32_t) + sizeof(std::uint8_t)) +
          data_->leaf_by_block.size() * sizeof(data_->leaf_by_block.front());

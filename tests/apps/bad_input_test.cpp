@@ -79,7 +79,7 @@ Strings score(const Strings& more, const std::string& map = "map.vdb",
 
 TEST_F(BadInputTest, CommandLine) {
   expect_refused({{{}, "subcommand"},
-                  {{"scor"}, "scor"},
+                  {{"scor"}, "subcommand"},
                   {{"score"}, "MAP"},
                   {{"info", "map.vdb", "--nonsense"}, "--nonsense"},
                   {{"info", "map.vdb", "--threads", "two"}, "--threads"},

@@ -232,7 +232,7 @@ TEST_F(Workflow, OutOfRangePixelsCarveOrSayNothing) {
   const json carve = json::parse(run_well({"info", "carve.vdb", "--json"}));
   const json invalid = json::parse(run_well({"info", "invalid.vdb", "--json"}));
   EXPECT_EQ(carve.at("occupied"), invalid.at("occupied"));
-  EXPECT_GT(carve.at("free").get<int>(), invalid.at("free").get<int>() + 1000);
+  EXPECT_GT(carve.at("free").get<double>(), 1.5 * invalid.at("free").get<double>());
 }
 
 TEST_F(Workflow, DefaultWorkspaceHoldsWhatTheFramesSee) {
@@ -324,16 +324,16 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
   const std::vector<std::pair<std::string, Strings>> commands{
       {"simulate",
        {"MESH", "--poses", "--orbit", "--sensor", "--size", "--center", "--background", "--up",
-        "--noise", "--seed", "--out", "--json", "--threads", "[0.35]", "[1.5]", "[m]"}},
+        "--noise", "--seed", "--out", "--json", "--threads", "=0.35", "=1.5", "[m]"}},
       {"integrate",
        {"FRAMES_DIR", "--voxel", "--workspace", "--sensor", "--depth-scale", "--out-of-range",
         "--carve", "--occupancy", "--prior-sigma", "--with-covariance", "--out", "--map", "--json",
-        "--threads", "[carve]", "[cones]", "[probabilistic]", "1e-4", "[m]"}},
+        "--threads", "=carve", "=cones", "=probabilistic", "1e-4", "[m]"}},
       {"score",
        {"MAP", "--poses", "--sphere", "--dome", "--sensor", "--criterion", "--stride", "--weight",
         "--prior-sigma", "--min-range", "--max-range", "--top", "--out", "--picture", "--json",
-        "--threads", "[log_diagonal]", "[10]", "[m]"}},
-      {"info", {"MAP", "--hash", "--criterion", "--json", "--threads", "[log_diagonal]"}}};
+        "--threads", "=log_diagonal", "=10", "[m]"}},
+      {"info", {"MAP", "--hash", "--criterion", "--json", "--threads", "=log_diagonal"}}};
   const std::string top = run_well({"--help"});
   int flags = 0;
   for (const auto& [command, words] : commands) {

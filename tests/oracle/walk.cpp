@@ -81,6 +81,25 @@ bool is_voxel(RayHit::Kind kind) {
   return kind == RayHit::Kind::unknown || kind == RayHit::Kind::occupied;
 }
 
+/// first_hit(), with visits of at most `shortest` voxels taken for none.
+RayHit first_visit(const DenseMap& map, const Ray& ray, const RayLimits& limits, double shortest) {
+  RayHit hit;
+  walk(map, ray, [&](Index3 voxel, double t_in, double t_out) {
+    if (t_in > limits.max_range) return true;
+    const VoxelState state = map.state(voxel);
+    if (state == VoxelState::free || t_out <= limits.min_range || t_out - t_in <= shortest) {
+      return false;
+    }
+    hit = {kind_of(state), voxel, std::max(t_in, limits.min_range)};
+    return true;
+  });
+  if (limits.obstacle_range < hit.range) {
+    hit = {RayHit::Kind::obstacle, {}, limits.obstacle_range};
+  }
+  hit.range *= map.voxel_size;
+  return hit;
+}
+
 }  // namespace
 
 void walk(const DenseMap& map, const Ray& ray,
@@ -112,19 +131,7 @@ void walk(const DenseMap& map, const Ray& ray,
 }
 
 RayHit first_hit(const DenseMap& map, const Ray& ray, const RayLimits& limits) {
-  RayHit hit;
-  walk(map, ray, [&](Index3 voxel, double t_in, double t_out) {
-    if (t_in > limits.max_range) return true;
-    const VoxelState state = map.state(voxel);
-    if (state == VoxelState::free || t_out <= limits.min_range) return false;
-    hit = {kind_of(state), voxel, std::max(t_in, limits.min_range)};
-    return true;
-  });
-  if (limits.obstacle_range < hit.range) {
-    hit = {RayHit::Kind::obstacle, {}, limits.obstacle_range};
-  }
-  hit.range *= map.voxel_size;
-  return hit;
+  return first_visit(map, ray, limits, 0);
 }
 
 bool is_tie(const DenseMap& map, const Ray& ray, const RayLimits& limits, const RayHit& tested,
@@ -137,13 +144,17 @@ bool is_tie(const DenseMap& map, const Ray& ray, const RayLimits& limits, const 
       RayLimits moved_limits = limits;
       moved_limits.min_range = std::max(0.0, limits.min_range + shift_min);
       moved_limits.max_range += shift_max;
-      if (same_ending(first_hit(map, ray, moved_limits), tested)) return true;
+      const auto ends_there = [&](const Ray& moved) {
+        return same_ending(first_visit(map, moved, moved_limits, 0), tested) ||
+               same_ending(first_visit(map, moved, moved_limits, tolerance), tested);
+      };
+      if (ends_there(ray)) return true;
       for (const double share : {1.0, 0.3, 0.1, 0.03, 0.01, 0.001}) {
         for (int i = 0; i < kRing; ++i) {
           const double angle = 2 * std::numbers::pi * i / kRing;
           Ray moved = ray;
           moved.origin += share * tolerance * (std::cos(angle) * across + std::sin(angle) * up);
-          if (same_ending(first_hit(map, moved, moved_limits), tested)) return true;
+          if (ends_there(moved)) return true;
         }
       }
     }

@@ -35,9 +35,11 @@ void walk(const DenseMap& map, const Ray& ray,
 [[nodiscard]] RayHit first_hit(const DenseMap& map, const Ray& ray, const RayLimits& limits);
 
 /// Whether `tested` can be where the ray ends if the ray or its range limits are moved by at most
-/// `tolerance` voxels: one of a few hundred rays so close (rings of parallel ones, limits a little
-/// nearer or farther) must end exactly there. Moving a ray cannot take it through a wall, not even
-/// along the seam of two voxels, so a leak is no tie.
+/// `tolerance` voxels: one of a few hundred rays so close must end exactly there. They are rings of
+/// parallel rays, limits a little nearer or farther, and all of those again with the edges and
+/// corners that they cut off by a visit of at most `tolerance` passed exactly, where such a visit
+/// has no length. Nothing of this takes a ray through a wall, not even along the seam of two
+/// voxels: a leak is no tie.
 [[nodiscard]] bool is_tie(const DenseMap& map, const Ray& ray, const RayLimits& limits,
                           const RayHit& tested, double tolerance = 1e-4);
 

@@ -4,6 +4,8 @@
 // The oracle itself, by hand: its rules, and that its proof of ties refuses real errors.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "oracle/gain.hpp"
 #include "scene_makers.hpp"
 
@@ -86,6 +88,21 @@ TEST(Oracle, RefusesWrongVoxelsAndAcceptsGrazedOnes) {
   EXPECT_TRUE(oracle::is_tie(map, middle, grazing_max, hit(RayHit::Kind::none)));
   const RayLimits short_max{.max_range = 7};
   EXPECT_FALSE(oracle::is_tie(map, middle, short_max, hit(occupied, {4, 4, 8})));
+}
+
+TEST(Oracle, AnEdgePassedExactlyIsATieOfACutOne) {
+  // The ray cuts (5,5,z)'s edge by 2e-5 voxel; through the edge itself it would go on to (6,6,z).
+  const double h = std::sqrt(0.5);
+  const DenseMap map(sparse_map({16, 16, 16}, {{6, 5, 4}, {5, 6, 4}, {6, 6, 4}}));
+  for (const double off : {2e-5, -2e-5}) {
+    const Ray ray{{2 + off, 2 - off, 4.5}, {h, h, 0}};
+    const Index3 first = off > 0 ? Index3{6, 5, 4} : Index3{5, 6, 4};
+    EXPECT_EQ(oracle::first_hit(map, ray, {}).voxel, first);
+    EXPECT_TRUE(oracle::is_tie(map, ray, {}, hit(RayHit::Kind::occupied, {6, 6, 4})));
+    EXPECT_FALSE(oracle::is_tie(map, ray, {}, hit(RayHit::Kind::none)));
+  }
+  const Ray deep{{2 + 2e-4, 2 - 2e-4, 4.5}, {h, h, 0}};
+  EXPECT_FALSE(oracle::is_tie(map, deep, {}, hit(RayHit::Kind::occupied, {6, 6, 4})));
 }
 
 TEST(Oracle, ALeakThroughASeamIsNoTie) {

@@ -9,10 +9,11 @@
 
 namespace viewgain {
 
-/// Reads OFF, OBJ, STL or PLY (ASCII and binary), chosen by the file name's ending; polygons are split
-/// into triangle fans. Throws Error(io) if the file cannot be opened and Error(format), naming the file,
-/// if it cannot be parsed, has no faces, a coordinate that is not finite, an index out of range, or a
-/// header that promises more than the file can hold. Reads through CGAL's polygon soup reader.
+/// Reads OFF, OBJ, STL or PLY (ASCII and binary), chosen by the file name's ending; polygons are
+/// split into triangle fans. Throws Error(io) if the file cannot be opened and Error(format),
+/// naming the file, if it cannot be parsed, has no faces, a coordinate that is not finite, an index
+/// out of range, or a header that promises more than the file can hold. Reads through CGAL's
+/// polygon soup reader.
 [[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& path);
 
 /// Which axis of the mesh file points up.
@@ -20,9 +21,10 @@ enum class UpAxis : std::uint8_t { x, y, z };
 
 /// How a file's mesh is placed in the world.
 struct MeshPlacement {
-  UpAxis up = UpAxis::z;     ///< this axis is turned to +z by a cyclic permutation of the axes
-  bool center = false;       ///< moves the bounding box's centre to the origin
-  double longest_side = 0;   ///< scales so that the bounding box's longest side is this [m]; 0: as it is
+  UpAxis up = UpAxis::z;  ///< this axis is turned to +z by a cyclic permutation of the axes
+  bool center = false;    ///< moves the bounding box's centre to the origin
+  double longest_side =
+      0;  ///< scales so that the bounding box's longest side is this [m]; 0: as it is
 };
 
 /// Applies turn, then scale about the origin, then centring. Throws Error(invalid_argument) if

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "ray_tile.hpp"
+#include "scene_data.hpp"
+#include "tile_bins.hpp"
+
+namespace viewgain::detail {
+
+/// Traces the views of one sensor in one scene. There are two ways, which give the same bits:
+/// through Embree's BVH, and, where the scene has few enough primitives and no obstacles, along
+/// lists of the primitives that each tile can meet. Immutable; thread safe.
+class ViewTracer {
+ public:
+  ViewTracer(const VoxelScene::Data& scene, const PinholeCamera& camera, int pixel_stride,
+             double min_range, double max_range);
+
+  /// The pose in the scene's coordinates; nothing if it is not finite or its rotation is off by
+  /// more than 1e-3.
+  [[nodiscard]] std::optional<PoseFrame> frame_of(const Pose& T_world_camera) const;
+
+  /// Calls visit(tile number, RayTile) for the tiles that can meet anything, in order.
+  template <typename Visit>
+  void trace(const PoseFrame& frame, TileBins& bins, Visit&& visit) const {
+    if (scene_.has_obstacles) return trace_bvh(frame, visit);
+    binner_.sort(scene_.kernels->isa, *scene_.scene_boxes, frame, bins);
+    if (!bins.valid()) return trace_bvh(frame, visit);
+    const bool by_list = scene_.scene_boxes->are_primitives;
+    RayTile out;
+    for (std::size_t tile = 0; tile < table_.tile_count; ++tile) {
+      const auto boxes = bins.boxes_of(tile);
+      if (boxes.empty()) continue;
+      if (by_list) {
+        scene_.kernels->trace_list(scene_, table_, frame, tile, boxes, out);
+      } else {
+        scene_.kernels->trace(scene_, table_, frame, tile, out);
+      }
+      visit(tile, out);
+    }
+  }
+
+  /// The same through the BVH alone, every tile.
+  template <typename Visit>
+  void trace_bvh(const PoseFrame& frame, Visit&& visit) const {
+    RayTile out;
+    for (std::size_t tile = 0; tile < table_.tile_count; ++tile) {
+      scene_.kernels->trace(scene_, table_, frame, tile, out);
+      visit(tile, out);
+    }
+  }
+
+  [[nodiscard]] const TileTable& table() const { return table_; }
+
+ private:
+  const VoxelScene::Data& scene_;
+  TileTable table_;
+  TileBinner binner_;
+  Pose T_grid_world_;
+  double min_range_, max_range_;  // [m]
+};
+
+}  // namespace viewgain::detail

@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Map files that another program wrote, well or badly: read, changed and written by OpenVDB itself.
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Prune.h>
+
+#include <functional>
+#include <limits>
+
+#include "core/expect_error.hpp"
+#include "core/temporary_folder.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace test;
+
+/// 20 x 12 x 12 voxels: the lower half unknown but for one voxel, free above, a wall with beliefs
+/// between.
+BeliefGrid small_map() {
+  BeliefGrid grid(GridConfig{0.05, {{0, 0, 0}, {1.0, 0.6, 0.6}}, {}, 0.1});
+  for (int i = 0; i < 20; ++i) {
+    for (int j = 0; j < 12; ++j) {
+      for (int k = 6; k < 12; ++k) grid.set({i, j, k}, -2.0F);
+      grid.set({i, j, 6}, 1.5F,
+               Belief{{1e4F, 2e4F, 3e4F, 5.0F, 6.0F, 7.0F}, {1.0F, 2.0F, 3.0F}, 4});
+    }
+  }
+  grid.set({1, 1, 1}, 0.05F);
+  grid.append_view(Pose{});
+  return grid;
+}
+
+struct Contents {
+  openvdb::MetaMap metadata;
+  openvdb::GridPtrVec grids;
+
+  template <typename Grid>
+  Grid& grid(const std::string& name) {
+    for (const auto& g : grids) {
+      if (g->getName() == name) return *openvdb::gridPtrCast<Grid>(g);
+    }
+    throw std::runtime_error("no grid " + name);
+  }
+  void remove(const std::string& name) {
+    std::erase_if(grids, [&](const auto& g) { return g->getName() == name; });
+  }
+};
+
+class ForeignVdb : public testing::Test {
+ protected:
+  ForeignVdb() { save_vdb(small_map(), path()); }
+
+  [[nodiscard]] std::filesystem::path path() const { return folder_.path() / "map.vdb"; }
+
+  /// Writes the map again after `change`, by OpenVDB.
+  std::filesystem::path rewritten(const std::function<void(Contents&)>& change) {
+    openvdb::io::File in(path().string());
+    in.open(false);
+    Contents contents{*in.getMetadata(), *in.getGrids()};
+    in.close();
+    change(contents);
+    const auto out = folder_.path() / "foreign.vdb";
+    openvdb::io::File(out.string()).write(contents.grids, contents.metadata);
+    return out;
+  }
+
+  void expect_refused(const std::string& part, const std::function<void(Contents&)>& change) {
+    const auto file = rewritten(change);
+    expect_error(ErrorCode::format, part, [&] { (void)load_vdb(file); });
+    expect_error(ErrorCode::format, "foreign.vdb", [&] { (void)load_vdb(file); });
+    ++cases_;
+  }
+
+  TemporaryFolder folder_;
+  int cases_ = 0;
+};
+
+TEST_F(ForeignVdb, WellFormedFilesAreRead) {
+  const std::string hash = small_map().content_hash();
+  EXPECT_EQ(load_vdb(rewritten([](Contents&) {})).content_hash(), hash);
+  // Other tree topologies of the same values.
+  EXPECT_EQ(load_vdb(rewritten([](Contents& c) {
+              openvdb::tools::prune(c.grid<openvdb::Int32Grid>("state").tree());
+            })).content_hash(),
+            hash);
+  EXPECT_EQ(load_vdb(rewritten([](Contents& c) {
+              openvdb::tools::prune(c.grid<openvdb::FloatGrid>("log_odds").tree());
+            })).content_hash(),
+            hash);
+  EXPECT_EQ(load_vdb(rewritten([](Contents& c) {
+              c.grid<openvdb::FloatGrid>("log_odds").tree().voxelizeActiveTiles();
+            })).content_hash(),
+            hash);
+  // More grids and metadata do not matter, nor their order.
+  EXPECT_EQ(load_vdb(rewritten([](Contents& c) {
+              std::reverse(c.grids.begin(), c.grids.end());
+              auto more = openvdb::FloatGrid::create();
+              more->setName("density");
+              c.grids.push_back(more);
+              c.metadata.insertMeta("comment", openvdb::StringMetadata("more"));
+            })).content_hash(),
+            hash);
+}
+
+TEST_F(ForeignVdb, MissingPartsAndWrongTypesAreNamed) {
+  for (const char* name : {"viewgain_version", "voxel_size", "prior_sigma", "workspace_min",
+                           "workspace_max", "T_world_grid", "views"}) {
+    expect_refused(name, [&](Contents& c) { c.metadata.removeMeta(name); });
+    expect_refused(name, [&](Contents& c) {
+      c.metadata.removeMeta(name);
+      c.metadata.insertMeta(name, openvdb::BoolMetadata(true));
+    });
+  }
+  for (const char* name : {"state", "log_odds", "information_diagonal", "information_offdiagonal",
+                           "information_vector", "hits"}) {
+    expect_refused(name, [&](Contents& c) { c.remove(name); });
+    expect_refused(name, [&](Contents& c) {
+      c.remove(name);
+      auto other = openvdb::DoubleGrid::create();
+      other->setName(name);
+      c.grids.push_back(other);
+    });
+  }
+  EXPECT_EQ(cases_, 26);
+}
+
+TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
+  const auto metadata = [&](const std::string& part, const char* name,
+                            const openvdb::Metadata& value) {
+    expect_refused(part, [&](Contents& c) {
+      c.metadata.removeMeta(name);
+      c.metadata.insertMeta(name, value);
+    });
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  metadata("viewgain_version", "viewgain_version", openvdb::Int32Metadata(2));
+  metadata("voxel size", "voxel_size", openvdb::DoubleMetadata(-1));
+  metadata("voxel size", "voxel_size", openvdb::DoubleMetadata(nan));
+  metadata("transform", "voxel_size", openvdb::DoubleMetadata(0.06));
+  metadata("prior sigma", "prior_sigma", openvdb::DoubleMetadata(0));
+  metadata("workspace_max", "workspace_max", openvdb::Vec3IMetadata({20, 0, 12}));
+  metadata("workspace", "workspace_max", openvdb::Vec3IMetadata({2000000000, 12, 12}));
+  metadata("outside", "workspace_max", openvdb::Vec3IMetadata({19, 12, 12}));
+  metadata("outside", "workspace_min", openvdb::Vec3IMetadata({0, 0, 2}));
+  metadata("T_world_grid", "T_world_grid", openvdb::StringMetadata("1 0 0 0 0 1 0 0 0 0 1"));
+  metadata("T_world_grid", "T_world_grid", openvdb::StringMetadata("2 0 0 0 0 1 0 0 0 0 1 0\n"));
+  metadata("T_world_grid", "T_world_grid", openvdb::StringMetadata(""));
+  metadata("views", "views", openvdb::StringMetadata("1 0 0 nan 0 1 0 0 0 0 1 0\n"));
+  metadata("views", "views", openvdb::StringMetadata("x"));
+
+  const openvdb::Coord wall(3, 4, 6), free(3, 4, 9), unknown(3, 4, 3);
+  const auto log_odds = [&](const std::string& part, const openvdb::Coord& at, float value) {
+    expect_refused(part, [&](Contents& c) {
+      c.grid<openvdb::FloatGrid>("log_odds").tree().setValueOn(at, value);
+    });
+  };
+  log_odds("log_odds", wall, 3.6F);
+  log_odds("log_odds", wall, static_cast<float>(nan));
+  log_odds("log_odds", free, -2.1F);
+  log_odds("multiple of 0.05", wall, 1.52F);
+  log_odds("contradicts", wall, -1.0F);
+  log_odds("contradicts", free, 1.0F);
+  log_odds("same voxels", unknown, 1.0F);
+  for (const int state : {0, 1, 3, -1}) {
+    expect_refused("state", [&](Contents& c) {
+      c.grid<openvdb::Int32Grid>("state").tree().setValueOn(wall, state);
+    });
+  }
+  expect_refused("same voxels", [&](Contents& c) {
+    c.grid<openvdb::Int32Grid>("state").tree().setValueOff(wall);
+  });
+  expect_refused("same voxels", [&](Contents& c) {
+    // As many voxels, but others.
+    c.grid<openvdb::Int32Grid>("state").tree().setValueOff(wall);
+    c.grid<openvdb::Int32Grid>("state").tree().setValueOn(unknown, 1);
+  });
+
+  const auto vector = [&](const char* name, const openvdb::Vec3f& value) {
+    expect_refused("belief", [&](Contents& c) {
+      c.grid<openvdb::Vec3SGrid>(name).tree().setValueOn(wall, value);
+    });
+  };
+  const auto bad = static_cast<float>(nan);
+  vector("information_diagonal", {1, -1, 1});
+  vector("information_diagonal", {1, 1, bad});
+  vector("information_offdiagonal", {bad, 0, 0});
+  vector("information_vector", {0, std::numeric_limits<float>::infinity(), 0});
+  expect_refused(
+      "hits", [&](Contents& c) { c.grid<openvdb::Int32Grid>("hits").tree().setValueOn(wall, -4); });
+  expect_refused("beliefs",
+                 [&](Contents& c) { c.grid<openvdb::Int32Grid>("hits").tree().setValueOff(wall); });
+  expect_refused("unknown", [&](Contents& c) {
+    for (const char* name :
+         {"information_diagonal", "information_offdiagonal", "information_vector"}) {
+      c.grid<openvdb::Vec3SGrid>(name).tree().setValueOn(unknown, openvdb::Vec3f(1));
+    }
+    c.grid<openvdb::Int32Grid>("hits").tree().setValueOn(unknown, 1);
+  });
+  expect_refused("tiles", [&](Contents& c) {
+    for (const char* name :
+         {"information_diagonal", "information_offdiagonal", "information_vector"}) {
+      c.grid<openvdb::Vec3SGrid>(name).tree().clear();
+      c.grid<openvdb::Vec3SGrid>(name).tree().addTile(1, {8, 0, 0}, openvdb::Vec3f(1), true);
+    }
+    c.grid<openvdb::Int32Grid>("hits").tree().clear();
+    c.grid<openvdb::Int32Grid>("hits").tree().addTile(1, {8, 0, 0}, 1, true);
+  });
+  EXPECT_EQ(cases_, 35);
+}
+
+// Without a seal a cut file is only as safe as OpenVDB's reader and our stream make it.
+TEST_F(ForeignVdb, TruncatedWithoutASeal) {
+  const std::string whole = read_all(rewritten([](Contents&) {}));
+  int cases = 0;
+  for (std::size_t length = 0; length + 1 < whole.size(); length += whole.size() / 150 + 1) {
+    const auto cut = folder_.file("cut.vdb", std::string_view(whole).substr(0, length));
+    expect_error(ErrorCode::format, "cut.vdb", [&] { (void)load_vdb(cut); });
+    ++cases;
+  }
+  EXPECT_GT(cases, 140);
+}
+
+}  // namespace
+}  // namespace viewgain

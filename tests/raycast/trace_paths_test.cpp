@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// A view is traced through the BVH or along lists of primitives; which one is a matter of speed
+// alone. An obstacle far outside every range makes the evaluator take the BVH for every tile.
+#include <gtest/gtest.h>
+
+#include "scene_makers.hpp"
+
+namespace viewgain {
+namespace {
+
+Obstacles out_of_reach() {
+  return {.boxes = {{{1e6, 1e6, 1e6}, {1e6 + 1, 1e6 + 1, 1e6 + 1}}}, .meshes = {}};
+}
+
+// Compares gains and hits of the two ways; returns the number of rays compared.
+std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vector<Pose>& poses) {
+  const GainEvaluator free_choice(VoxelScene::build(grid), sensor, {}, {.num_threads = 1});
+  const GainEvaluator bvh(VoxelScene::build(grid, out_of_reach()), sensor, {}, {.num_threads = 1});
+  EXPECT_TRUE(test::same_bits(free_choice.evaluate(poses), bvh.evaluate(poses)));
+  std::size_t rays = 0;
+  for (const Pose& pose : poses) {
+    const std::vector<RayHit> a = free_choice.trace(pose), b = bvh.trace(pose);
+    EXPECT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].kind, b[i].kind);
+      EXPECT_EQ(a[i].voxel, b[i].voxel);
+      EXPECT_EQ(a[i].range, b[i].range);
+    }
+    rays += a.size();
+  }
+  return rays;
+}
+
+TEST(TracePaths, ListsAndBvhGiveTheSameBits) {
+  int cases = 0;
+  std::size_t rays = 0;
+  for (const test::MapFamily family :
+       {test::MapFamily::salt_and_pepper_01, test::MapFamily::salt_and_pepper_30,
+        test::MapFamily::tiles_8, test::MapFamily::odd_and_far, test::MapFamily::rotated}) {
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+      test::Random random(100 + seed);
+      const test::RandomMap map = test::random_map(family, random);
+      const Sensor sensor = test::random_sensor(map.grid, random);
+      rays += compare(map.grid, sensor, test::random_poses(map, 12, random));
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 40);
+  EXPECT_GT(rays, 50'000U);
+}
+
+// More primitives than are listed one by one: boxes stand for many, the BVH decides.
+TEST(TracePaths, ManyPrimitivesUnderCoarseBoxesGiveTheSameBits) {
+  constexpr int kEdge = 144;
+  std::vector<Index3> unknown;
+  for (int x = 3; x < kEdge; x += 8) {
+    for (int y = 3; y < kEdge; y += 8) {
+      for (int z = 3; z < kEdge; z += 8) unknown.push_back({x, (y + x) % kEdge, (z + y) % kEdge});
+    }
+  }
+  const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
+  const auto scene = VoxelScene::build(grid);
+  ASSERT_GT(scene->primitive_count(), 4096U);
+  Sensor sensor = test::lattice_sensor(61, 47);
+  sensor.camera.fx = sensor.camera.fy = 80;
+  std::vector<Pose> poses;
+  for (int axis = 0; axis < 3; ++axis) {
+    poses.push_back(test::axis_pose({-70.3, -60.2, -81.7}, axis, true));
+    poses.push_back(test::axis_pose({71.5, 72.5, 70.5}, axis, false));
+  }
+  poses.push_back(look_at({-6, -5, -4}, {2.2, 2.3, 2.1}));
+  poses.push_back(look_at({9, 8, 2}, {2.2, 2.3, 2.1}));
+  EXPECT_EQ(compare(grid, sensor, poses), 8U * 61U * 47U);
+}
+
+}  // namespace
+}  // namespace viewgain
