@@ -45,15 +45,18 @@ class ViewgainGain final : public TraceMethod {
   std::vector<ViewGain> results_;
 };
 
-/// Traces as the evaluator does, and keeps where each ray ends.
+/// Traces, and keeps where each ray ends.
 class ViewgainTrace : public TraceMethod {
  public:
-  ViewgainTrace(std::string name, const TraceTask& task, ScenePointer scene)
+  enum class Way : std::uint8_t { as_evaluator, bvh };
+
+  ViewgainTrace(std::string name, const TraceTask& task, ScenePointer scene, Way way)
       : TraceMethod(std::move(name), task.sensor.camera.ray_table().size()),
         map_(task.map),
         scene_(std::move(scene)),
         data_(scene_->data()),
-        tracer_(data_, task.sensor.camera, 1, task.sensor.min_range, task.sensor.max_range) {}
+        tracer_(data_, task.sensor.camera, 1, task.sensor.min_range, task.sensor.max_range),
+        way_(way) {}
 
   void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
     std::fill(endings.begin(), endings.end(), kMiss);
@@ -87,6 +90,7 @@ class ViewgainTrace : public TraceMethod {
 
   /// The tiles that may have hit something.
   virtual void for_each_tile(const Pose& T_world_camera, const Visit& visit) const {
+    if (way_ == Way::bvh) return tracer_.trace_bvh(frame_of(T_world_camera), visit);
     thread_local detail::TileBins bins;
     tracer_.trace(frame_of(T_world_camera), bins, visit);
   }
@@ -99,13 +103,16 @@ class ViewgainTrace : public TraceMethod {
   ScenePointer scene_;
   const VoxelScene::Data& data_;
   detail::ViewTracer tracer_;
+
+ private:
+  Way way_;
 };
 
 /// The same kernel on the leaves that each tile is known to end in.
 class ViewgainFloor final : public ViewgainTrace {
  public:
   ViewgainFloor(const TraceTask& task, ScenePointer scene)
-      : ViewgainTrace("viewgain_floor", task, std::move(scene)), poses_(task.poses) {
+      : ViewgainTrace("viewgain_floor", task, std::move(scene), Way::bvh), poses_(task.poses) {
     const std::size_t tiles = tracer_.table().tile_count;
     begins_.assign(poses_.size() * tiles + 1, 0);
     for (std::size_t p = 0; p < poses_.size(); ++p) {
@@ -155,11 +162,13 @@ std::unique_ptr<TraceMethod> make_viewgain_gain(const TraceTask& task, ScenePoin
 }
 
 std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task, ScenePointer scene) {
-  return std::make_unique<ViewgainTrace>(task, std::move(scene), Way::as_evaluator);
+  return std::make_unique<ViewgainTrace>("viewgain_trace", task, std::move(scene),
+                                         ViewgainTrace::Way::as_evaluator);
 }
 
 std::unique_ptr<TraceMethod> make_viewgain_trace_bvh(const TraceTask& task, ScenePointer scene) {
-  return std::make_unique<ViewgainTrace>(task, std::move(scene), Way::bvh);
+  return std::make_unique<ViewgainTrace>("viewgain_trace_bvh", task, std::move(scene),
+                                         ViewgainTrace::Way::bvh);
 }
 
 std::unique_ptr<TraceMethod> make_viewgain_floor(const TraceTask& task, ScenePointer scene) {

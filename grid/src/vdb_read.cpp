@@ -13,6 +13,7 @@
 
 #include "file_seal.hpp"
 #include "vdb_layout.hpp"
+#include "vdb_outline.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
@@ -58,7 +59,8 @@ class Loader {
     if (!file) throw Error(ErrorCode::io, path_.string() + ": cannot be opened");
     std::string bytes{std::istreambuf_iterator<char>(file), {}};
     if (file.bad()) throw Error(ErrorCode::io, path_.string() + ": cannot be read");
-    if (!bytes.starts_with(" BDV")) fail("is no OpenVDB file");
+    const std::string fault = fault_in_outline(bytes);
+    if (!fault.empty()) fail(fault);
     if (check_seal(bytes) == SealCheck::broken) fail("is corrupt: its checksum does not fit");
 
     initialize_openvdb();

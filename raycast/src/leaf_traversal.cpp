@@ -69,7 +69,8 @@ HWY_INLINE MF is_nearer(VF enter, VF range, VU held, std::uint32_t primitive) {
 
 // Bits of the mask for voxel offsets: the words that hold them.
 HWY_INLINE VU mask_words(const TraceMask& mask, VU offset) {
-  const VU word = hn::ShiftRight<5>(offset);
+  // Lanes that are done may have left the leaf; the lookup must not leave the mask.
+  const VU word = hn::And(hn::ShiftRight<5>(offset), hn::Set(du, 15U));
 #if HWY_TARGET == HWY_AVX3
   return hn::TableLookupLanes(hn::Load(du, mask.words.data()), hn::IndicesFromVec(du, word));
 #else

@@ -42,6 +42,10 @@ struct TileTable {
   }
 };
 
+/// Cameras farther than this from the workspace's lowest corner [voxels] see nothing: single precision
+/// could not tell one voxel from the next there.
+inline constexpr double kFarthestCamera = 1e7;
+
 /// A camera pose as the tracer sees it. Lengths are in voxels, coordinates relative to the lowest
 /// corner of the workspace, so that single precision serves the workspace and not its distance from
 /// an origin.
@@ -50,6 +54,7 @@ struct PoseFrame {
   std::array<float, 9> rotation{};  ///< R_grid_camera, row by row
   float min_range = 0;
   float max_range = 0;
+  bool sees_nothing = false;  ///< too far away: not to be traced
 };
 
 /// One tile of rays and where they end.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_tracer.hpp"
 
+#include <algorithm>
+
 namespace viewgain::detail {
 namespace {
 
@@ -36,8 +38,11 @@ std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const 
       frame.rotation[static_cast<std::size_t>(3 * r + c)] = static_cast<float>(R(r, c));
     }
   }
+  // Embree's rays have finite ends; all of the workspace is nearer than this.
+  const double end = 4 * kFarthestCamera;
+  frame.sees_nothing = !(origin.cwiseAbs().maxCoeff() <= kFarthestCamera) || min_range_ / voxel >= end;
   frame.min_range = static_cast<float>(min_range_ / voxel);
-  frame.max_range = static_cast<float>(max_range_ / voxel);
+  frame.max_range = static_cast<float>(std::min(max_range_ / voxel, end));
   return frame;
 }
 

@@ -25,6 +25,7 @@ class ViewTracer {
   /// Calls visit(tile number, RayTile) for the tiles that can meet anything, in order.
   template <typename Visit>
   void trace(const PoseFrame& frame, TileBins& bins, Visit&& visit) const {
+    if (frame.sees_nothing) return;
     if (scene_.has_obstacles) return trace_bvh(frame, visit);
     binner_.sort(scene_.kernels->isa, *scene_.scene_boxes, frame, bins);
     if (!bins.valid()) return trace_bvh(frame, visit);
@@ -45,6 +46,7 @@ class ViewTracer {
   /// The same through the BVH alone, every tile.
   template <typename Visit>
   void trace_bvh(const PoseFrame& frame, Visit&& visit) const {
+    if (frame.sees_nothing) return;
     RayTile out;
     for (std::size_t tile = 0; tile < table_.tile_count; ++tile) {
       scene_.kernels->trace(scene_, table_, frame, tile, out);

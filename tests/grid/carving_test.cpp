@@ -89,7 +89,7 @@ std::vector<Setting> settings() {
 
 Sensor carving_sensor(const Setting& setting, Carve carve) {
   // The oracle tests every voxel with every line, hence fewer of them.
-  Sensor sensor = carve == Carve::cones ? small_sensor(32, 24) : small_sensor(14, 10);
+  Sensor sensor = carve == Carve::cones ? small_sensor(32, 24) : small_sensor(10, 7);
   sensor.noise = ConstantNoise{0.006, 0.003};
   sensor.max_range = 1.52;
   sensor.camera.fx *= setting.focal_scale;
@@ -112,7 +112,11 @@ class Carving : public testing::TestWithParam<std::tuple<Carve, Occupancy>> {
 TEST_P(Carving, EqualsLoopsOverAllVoxels) {
   std::mt19937 random(11);
   int cases = 0;
+  const bool literal = config_.occupancy == Occupancy::literal;
   for (const Setting& setting : settings()) {
+    // Literal occupancy differs in the last step only: fewer settings do.
+    if (literal && setting.name != std::string("turned") && setting.name != std::string("folded"))
+      continue;
     const Sensor sensor = carving_sensor(setting, config_.carve);
     BeliefGrid grid(setting.grid);
     VoxelOracle oracle(grid);
@@ -125,14 +129,14 @@ TEST_P(Carving, EqualsLoopsOverAllVoxels) {
       EXPECT_EQ(oracle.differences(grid), 0U) << setting.name << ", view " << view;
       EXPECT_EQ(report.voxels_crossed, oracle.crossed()) << setting.name << ", view " << view;
       EXPECT_EQ(report.voxels_hit, oracle.hit()) << setting.name << ", view " << view;
-      EXPECT_GT(oracle.crossed(), oracle.voxels() / 100);
+      EXPECT_GT(oracle.crossed(), oracle.voxels() / 200);
       EXPECT_EQ(report.readings + report.out_of_range + report.invalid, frame.depth.size());
       ++cases;
     }
     const GridStatistics statistics = grid.statistics();
     EXPECT_EQ(statistics.unknown + statistics.free + statistics.occupied, oracle.voxels());
   }
-  EXPECT_EQ(cases, 24);
+  EXPECT_EQ(cases, literal ? 8 : 24);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -147,13 +151,13 @@ INSTANTIATE_TEST_SUITE_P(
 // Large blocks are judged as a whole; what decides must not show.
 TEST(Carving, ManyVoxelsAPixelAndManyPixelsAVoxel) {
   int cases = 0;
-  for (const auto& [width, n] : {std::pair{8, 64}, std::pair{96, 12}}) {
+  for (const auto& [width, n] : {std::pair{8, 48}, std::pair{96, 12}}) {
     Sensor sensor = small_sensor(width, width * 3 / 4);
     sensor.noise = ConstantNoise{0.002, 0.002};
     BeliefGrid grid(object_grid(n));
     VoxelOracle oracle(grid);
     FrameIntegrator integrator(sensor, {}, {1});
-    for (int view = 0; view < 3; ++view) {
+    for (int view = 0; view < 2; ++view) {
       const DepthFrame frame = see_spheres(sensor, ring_view(view), three_spheres_in_a_room());
       integrator.integrate(grid, frame, ring_view(view));
       oracle.integrate(sensor, frame, ring_view(view), {});
@@ -161,7 +165,19 @@ TEST(Carving, ManyVoxelsAPixelAndManyPixelsAVoxel) {
       ++cases;
     }
   }
-  EXPECT_EQ(cases, 6);
+  // A lens model that folds inside the image, and voxels on both sides of the fold.
+  Sensor folded = small_sensor(28, 20);
+  folded.noise = ConstantNoise{0.002, 0.002};
+  folded.camera.fx = folded.camera.fy = 9.0;
+  folded.camera.distortion = {-0.35, 0, 0, 0, 0};
+  BeliefGrid grid(object_grid(48));
+  VoxelOracle oracle(grid);
+  const Pose corner(Eigen::Matrix3d::Identity(), {-0.16, -0.15, -0.1});
+  const DepthFrame frame = see_spheres(folded, corner, {{{0, 0, 0}, 1.4}});
+  FrameIntegrator(folded).integrate(grid, frame, corner);
+  oracle.integrate(folded, frame, corner, {});
+  EXPECT_EQ(oracle.differences(grid), 0U);
+  EXPECT_EQ(cases, 4);
 }
 
 TEST(Carving, ThreeKindsOfPixel) {
@@ -196,6 +212,12 @@ TEST(Carving, ThreeKindsOfPixel) {
   for (const float invalid : {DepthFrame::kInvalid, -1.0F, std::nanf(""), 0.25F}) {
     EXPECT_EQ(column(invalid), std::tuple(nothing, 0U, 0U, 48U)) << invalid;
   }
+  // A centre at max_range itself is crossed.
+  const double x = 0.5 * 0.005, z = 109.5 * 0.005;
+  sensor.max_range = std::sqrt(x * x + x * x + z * z);
+  EXPECT_EQ(column(DepthFrame::kOutOfRange), std::tuple(line(90, 0), 0U, 48U, 0U));
+  sensor.max_range = std::nextafter(sensor.max_range, 0.0);
+  EXPECT_EQ(column(DepthFrame::kOutOfRange), std::tuple(line(89, 0), 0U, 48U, 0U));
 }
 
 // Pyramids against dense sub-rays inside the pixels: they may disagree only next to a pyramid's
@@ -209,12 +231,14 @@ TEST(Carving, ConesAgreeWithDenseSubRays) {
   BeliefGrid grid(config);
   FrameIntegrator(sensor).integrate(grid, frame, pose);
 
-  constexpr int kSub = 24;
+  constexpr int kSub = 20;
   const Index3 min = grid.min_index(), dims = grid.dims();
   const auto position = [&](int x, int y, int z) {
     return static_cast<std::size_t>(((x - min.x) * dims.y + (y - min.y)) * dims.z + (z - min.z));
   };
-  std::vector<bool> crossed(grid.voxel_count());
+  std::vector<bool> crossed(grid.voxel_count());  // the workspace is 30 voxels wide
+  const double eye[3] = {pose.m[3] / config.voxel_size, pose.m[7] / config.voxel_size,
+                         pose.m[11] / config.voxel_size};
   for (int v = 0; v < sensor.camera.height; ++v) {
     for (int u = 0; u < sensor.camera.width; ++u) {
       const double reach = frame.at(u, v) * sensor.camera.ray(u, v).norm();
@@ -222,11 +246,15 @@ TEST(Carving, ConesAgreeWithDenseSubRays) {
         const double du = (s % kSub + 0.5) / kSub - 0.5, dv = (s / kSub + 0.5) / kSub - 0.5;
         const Eigen::Vector3d d =
             (pose.rotation() * sensor.camera.ray(u + du, v + dv)).normalized();
-        for (double t = 0.3; t < std::min(reach, 0.6); t += 0.001) {
-          const Eigen::Vector3d p = (pose.translation() + t * d) / config.voxel_size;
-          if (!(p.cwiseAbs().maxCoeff() < 15)) continue;  // the workspace is 30 voxels wide
-          crossed[position(static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
-                           static_cast<int>(std::floor(p.z())))] = true;
+        // Plain numbers: millions of steps, also where nothing is optimised.
+        const double d_voxel[3] = {d.x() / config.voxel_size, d.y() / config.voxel_size,
+                                   d.z() / config.voxel_size};
+        for (double t = 0.35; t < std::min(reach, 0.56); t += 0.002) {
+          const double x = eye[0] + t * d_voxel[0], y = eye[1] + t * d_voxel[1],
+                       z = eye[2] + t * d_voxel[2];
+          if (!(std::abs(x) < 15 && std::abs(y) < 15 && std::abs(z) < 15)) continue;
+          crossed[position(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)),
+                           static_cast<int>(std::floor(z)))] = true;
         }
       }
     }

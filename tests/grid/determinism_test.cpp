@@ -44,7 +44,7 @@ class IsaLimit {
 };
 
 Sensor noisy_sensor(bool distorted) {
-  Sensor sensor = small_sensor(72, 54);
+  Sensor sensor = small_sensor(32, 24);
   if (distorted) sensor.camera.distortion = {-0.2, 0.05, 0.001, -0.002, 0.01};
   return sensor;
 }
@@ -64,7 +64,7 @@ DepthFrame noisy_frame(const Sensor& sensor, int view) {
 }
 
 BeliefGrid turned_grid() {
-  GridConfig config = object_grid(60);
+  GridConfig config = object_grid(36);
   config.T_world_grid =
       Pose(Eigen::AngleAxisd(0.3, Eigen::Vector3d(2, 1, -1).normalized()).toRotationMatrix(),
            Eigen::Vector3d(0.01, 0.02, 0.03));
@@ -74,31 +74,35 @@ BeliefGrid turned_grid() {
 std::string hash_of_run(const Sensor& sensor, const IntegrationConfig& config, int threads) {
   BeliefGrid grid = turned_grid();
   FrameIntegrator integrator(sensor, config, {threads});
-  for (int view = 0; view < 4; ++view) {
+  for (int view = 0; view < 3; ++view) {
     integrator.integrate(grid, noisy_frame(sensor, view), ring_view(view));
   }
   return grid.content_hash();
 }
 
 TEST(Determinism, ThreadsAndInstructionSets) {
+  struct Rule {
+    bool distorted;
+    IntegrationConfig config;
+  };
   int cases = 0;
-  for (const bool distorted : {false, true}) {
+  for (const auto& [distorted, config] : {Rule{false, {Carve::cones, Occupancy::probabilistic}},
+                                          Rule{true, {Carve::cones, Occupancy::probabilistic}},
+                                          Rule{true, {Carve::cones, Occupancy::literal}},
+                                          Rule{false, {Carve::lines, Occupancy::probabilistic}},
+                                          Rule{true, {Carve::lines, Occupancy::literal}}}) {
     const Sensor sensor = noisy_sensor(distorted);
-    for (const Carve carve : {Carve::cones, Carve::lines}) {
-      for (const Occupancy occupancy : {Occupancy::probabilistic, Occupancy::literal}) {
-        const std::string expected = hash_of_run(sensor, {carve, occupancy}, 1);
-        for (const int threads : {1, 2, 3, 8}) {
-          EXPECT_EQ(hash_of_run(sensor, {carve, occupancy}, threads), expected) << threads;
-          ++cases;
-        }
-        for (const Isa isa : supported_isas()) {
-          const IsaLimit limit(isa);
-          EXPECT_EQ(hash_of_run(sensor, {carve, occupancy}, 2), expected) << isa_name(isa);
-        }
-      }
+    const std::string expected = hash_of_run(sensor, config, 1);
+    for (const int threads : {1, 2, 3, 8}) {
+      EXPECT_EQ(hash_of_run(sensor, config, threads), expected) << threads;
+      ++cases;
+    }
+    for (const Isa isa : supported_isas()) {
+      const IsaLimit limit(isa);
+      EXPECT_EQ(hash_of_run(sensor, config, 2), expected) << isa_name(isa);
     }
   }
-  EXPECT_EQ(cases, 32);
+  EXPECT_EQ(cases, 20);
 }
 
 TEST(Determinism, AnIntegratorHasNoMemoryOfOtherFrames) {
@@ -123,7 +127,7 @@ TEST(Determinism, SavingAndLoadingBetweenFramesChangesNothing) {
   BeliefGrid straight = turned_grid(), through_files = turned_grid();
   FrameIntegrator integrator(sensor, {}, {2});
   int cases = 0;
-  for (int view = 0; view < 6; ++view) {
+  for (int view = 0; view < 4; ++view) {
     const DepthFrame frame = noisy_frame(sensor, view);
     integrator.integrate(straight, frame, ring_view(view));
     integrator.integrate(through_files, frame, ring_view(view));
@@ -132,7 +136,7 @@ TEST(Determinism, SavingAndLoadingBetweenFramesChangesNothing) {
     EXPECT_EQ(through_files.content_hash(), straight.content_hash()) << view;
     ++cases;
   }
-  EXPECT_EQ(cases, 6);
+  EXPECT_EQ(cases, 4);
 }
 
 }  // namespace

@@ -136,14 +136,14 @@ TEST(VdbIo, TruncatedAtAnyLength) {
   int cases = 0;
   // Every length in the header and close to the end, some in between.
   const auto step = [&](std::size_t length) {
-    return length < 200 || length + 40 > whole.size() ? 1 : whole.size() / 100 + 1;
+    return length < 120 || length + 40 > whole.size() ? 1 : whole.size() / 100 + 1;
   };
   for (std::size_t length = 0; length < whole.size(); length += step(length)) {
     const auto cut = folder.file("cut.vdb", std::string_view(whole).substr(0, length));
     expect_error(ErrorCode::format, "cut.vdb", [&] { (void)load_vdb(cut); });
     ++cases;
   }
-  EXPECT_GT(cases, 250);
+  EXPECT_GT(cases, 200);
 }
 
 TEST(VdbIo, CorruptAnywhere) {
@@ -154,14 +154,14 @@ TEST(VdbIo, CorruptAnywhere) {
   std::mt19937 random(7);
   std::uniform_int_distribution<std::size_t> where(0, whole.size() - 25);  // before the seal
   int cases = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 60; ++i) {
     std::string bytes = whole;
     bytes[where(random)] ^= static_cast<char>(1U << (i % 8));
     const auto bad = folder.file("bad.vdb", bytes);
     expect_error(ErrorCode::format, "bad.vdb", [&] { (void)load_vdb(bad); });
     ++cases;
   }
-  EXPECT_EQ(cases, 300);
+  EXPECT_EQ(cases, 60);
   const auto longer = folder.file("longer.vdb", whole + "x");  // no seal at its end, but readable
   expect_same(load_vdb(longer), load_vdb(path));
 }

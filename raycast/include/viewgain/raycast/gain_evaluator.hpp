@@ -65,6 +65,8 @@ struct RayHit {
 
 /// Scores camera poses against a scene by expected information gain (DESIGN.md section 6).
 ///
+/// A camera that is more than 1e7 voxels away from the workspace sees nothing of it: gain 0.
+///
 /// Thread safety: all const members may run from many threads at once on one evaluator. Allocation:
 /// none per pose once as many threads as ever run at once have each scored one pose. Determinism: the
 /// same bits for any number of threads, run after run.
