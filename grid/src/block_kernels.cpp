@@ -4,10 +4,6 @@
 // Compiled once for each instruction set. Double precision and the operations that IEEE 754 rounds
 // correctly, in one fixed order, so every set gives the same bits as a plain scalar loop.
 
-#if defined(__x86_64__)
-#define HWY_BASELINE_TARGETS \
-  HWY_SSE4  // the lowest set that is built, whatever the compiler's flags
-#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "block_kernels.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h

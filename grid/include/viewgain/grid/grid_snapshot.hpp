@@ -47,7 +47,8 @@ struct BeliefBlock {
   LeafMask mask{};
   std::vector<Belief> beliefs;
 
-  /// Position in `beliefs` of the voxel with this offset (x << 6 | y << 3 | z); the bit must be set.
+  /// Position in `beliefs` of the voxel with this offset (x << 6 | y << 3 | z); the bit must be
+  /// set.
   [[nodiscard]] std::size_t rank(unsigned offset) const {
     int below = 0;
     for (unsigned word = 0; word < offset >> 6U; ++word) below += std::popcount(mask[word]);
@@ -61,8 +62,8 @@ struct BeliefBlock {
 
 /// A leaf with at least one voxel that is not free, clipped to the workspace.
 struct SnapshotLeaf {
-  Index3 origin;       ///< lowest voxel, a multiple of 8
-  LeafMask non_free{}; ///< unknown or occupied
+  Index3 origin;        ///< lowest voxel, a multiple of 8
+  LeafMask non_free{};  ///< unknown or occupied
   LeafMask occupied{};
   std::shared_ptr<const BeliefBlock> beliefs;  ///< may be null; may hold free voxels' beliefs too
 };
@@ -78,8 +79,8 @@ struct GridSnapshot {
   double voxel_size = 0;   ///< [m]
   double prior_sigma = 0;  ///< [m]
   Pose T_world_grid;
-  Index3 min_index;        ///< lowest voxel of the workspace
-  Index3 dims;             ///< voxels along x, y, z
+  Index3 min_index;  ///< lowest voxel of the workspace
+  Index3 dims;       ///< voxels along x, y, z
   std::vector<SnapshotLeaf> leaves;
   std::vector<SnapshotTile> tiles;
 };

@@ -15,7 +15,9 @@ namespace viewgain {
 /// Which voxels count as crossed by a pixel.
 enum class Carve : std::uint8_t {
   cones,  ///< those whose centre lies in the pixel's pyramid nearer than the reading
-  lines,  ///< those that the ray of the pixel's centre passes through: the paper's literal rule
+  /// Those that the ray of the pixel's centre passes through: the paper's literal rule. The weight
+  /// is that of the ray's entry into the voxel; of several rays the strongest counts.
+  lines,
 };
 
 /// How crossings and hits change a voxel's state.
@@ -32,25 +34,26 @@ struct IntegrationConfig {
 
 /// Counts of one integrated frame.
 struct IntegrationReport {
-  std::uint64_t readings = 0;         ///< pixels with a depth whose range is in [min_range, max_range]
-  std::uint64_t out_of_range = 0;     ///< pixels that carve up to max_range
-  std::uint64_t invalid = 0;          ///< pixels that say nothing
+  std::uint64_t readings = 0;      ///< pixels with a depth whose range is in [min_range, max_range]
+  std::uint64_t out_of_range = 0;  ///< pixels that carve up to max_range
+  std::uint64_t invalid = 0;       ///< pixels that say nothing
   std::uint64_t readings_inside = 0;  ///< readings that lie in the workspace
   std::uint64_t voxels_hit = 0;
-  std::uint64_t voxels_crossed = 0;   ///< and not hit
+  std::uint64_t voxels_crossed = 0;  ///< and not hit
 };
 
 /// Puts depth frames of one sensor into a belief grid (DESIGN.md section 5).
 ///
 /// A pixel is a reading if its range along the ray is in [min_range, max_range]; nearer ones are
-/// invalid, farther ones out of range. Readings also carve what lies nearer than min_range. cosθ comes
-/// from the normal of the pixel's 3×3 neighbourhood, 1 where there is none. The map is the same bit for
-/// bit for any number of threads and under each instruction set.
+/// invalid, farther ones out of range. Readings also carve what lies nearer than min_range. cosθ
+/// comes from the normal of the pixel's 3×3 neighbourhood, 1 where there is none. The map is the
+/// same bit for bit for any number of threads and under each instruction set.
 ///
 /// Thread safety: one call at a time on one integrator and on one grid.
 class FrameIntegrator {
  public:
-  /// Undoes the lens distortion once. Throws Error(invalid_argument) if the sensor is not valid.
+  /// Undoes the lens distortion once and chooses the instruction set (select_isa()). Throws
+  /// Error(invalid_argument) if the sensor is not valid.
   explicit FrameIntegrator(const Sensor& sensor, const IntegrationConfig& config = {},
                            const ExecConfig& exec = {});
   ~FrameIntegrator();
@@ -58,9 +61,10 @@ class FrameIntegrator {
   FrameIntegrator& operator=(FrameIntegrator&&) noexcept;
 
   /// Updates states, log-odds and beliefs, and appends the pose to the grid's views. Throws
-  /// Error(invalid_argument) if the frame's size is not the sensor's or the pose is not rigid (1e-3;
-  /// smaller errors are orthonormalised); the grid is unchanged then.
-  IntegrationReport integrate(BeliefGrid& grid, const DepthFrame& frame, const Pose& T_world_camera);
+  /// Error(invalid_argument) if the frame's size is not the sensor's or the pose is not rigid
+  /// (1e-3; smaller errors are orthonormalised); the grid is unchanged then.
+  IntegrationReport integrate(BeliefGrid& grid, const DepthFrame& frame,
+                              const Pose& T_world_camera);
 
  private:
   struct Impl;

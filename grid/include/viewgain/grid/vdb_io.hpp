@@ -9,17 +9,18 @@
 namespace viewgain {
 
 struct VdbWriteConfig {
-  bool with_covariance = false;  ///< adds covariance_diagonal, covariance_offdiagonal, position for viewers
+  /// Adds covariance_diagonal, covariance_offdiagonal and position, for viewers.
+  bool with_covariance = false;
 };
 
-/// Writes the map as a plain OpenVDB file in the layout of DESIGN.md section 7 (active = known). Atomic:
-/// a temporary file beside it is renamed. Throws Error(io).
+/// Writes the map as a plain OpenVDB file in the layout of DESIGN.md section 7 (active = known).
+/// Atomic: a temporary file beside it is renamed. Throws Error(io).
 void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
               const VdbWriteConfig& config = {});
 
-/// Reads a file that save_vdb wrote, or another program in the same layout; exact: the loaded map has
-/// the saved one's content_hash(). Throws Error(io) if it cannot be opened and Error(format), naming the
-/// file and what is missing or out of bounds, if it is truncated or no viewgain map.
+/// Reads a file that save_vdb wrote, or another program in the same layout; exact: the loaded map
+/// has the saved one's content_hash(). Throws Error(io) if it cannot be opened and Error(format),
+/// naming the file and what is missing or out of bounds, if it is truncated or no viewgain map.
 [[nodiscard]] BeliefGrid load_vdb(const std::filesystem::path& path);
 
 }  // namespace viewgain
