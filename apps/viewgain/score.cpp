@@ -225,7 +225,9 @@ Command add_score(CLI::App& program) {
                   "sigma of an unknown voxel [m]; default: the map's");
   app->add_option("--min-range", options->min_range, "along the ray [m]; default: the sensor's");
   app->add_option("--max-range", options->max_range, "along the ray [m]; default: the sensor's");
-  app->add_option("--top", options->top, "how many of the best to print")->capture_default_str();
+  app->add_option("--top", options->top, "how many of the best to print")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app->add_option("--out", options->out, "CSV file of all poses, in input order");
   app->add_option("--picture", options->picture,
                   "PNG file: the map, the best view's frustum and the voxels where its rays end");

@@ -139,7 +139,9 @@ Command add_simulate(CLI::App& program) {
   app->add_option("--noise", options->noise, "Gaussian noise along the ray by the sensor's model")
       ->check(CLI::IsMember({"off", "on"}))
       ->capture_default_str();
-  app->add_option("--seed", options->seed, "of the noise")->capture_default_str();
+  app->add_option("--seed", options->seed, "of the noise")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app->add_option("--out", options->out,
                   "folder to write; frames of an earlier run in it are replaced")
       ->required();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "file_seal.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -41,7 +42,24 @@ std::string make_seal(std::string_view bytes) {
   return seal;
 }
 
+namespace {
+
+// Whether the file ends in the beginning of its seal: it was cut a few bytes short. Fewer than four
+// bytes of it could be there by chance.
+bool ends_in_part_of_seal(std::string_view file) {
+  for (std::size_t kept = 4; kept < std::min(kSealSize, file.size()); ++kept) {
+    const std::string_view tail = file.substr(file.size() - kept);
+    const std::string_view mark = std::string_view(kMark).substr(0, kept);
+    if (!tail.starts_with(mark)) continue;
+    if (make_seal(file.substr(0, file.size() - kept)).starts_with(tail)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 SealCheck check_seal(std::string_view file) {
+  if (ends_in_part_of_seal(file)) return SealCheck::broken;
   if (file.size() < kSealSize) return SealCheck::absent;
   const std::string_view bytes = file.substr(0, file.size() - kSealSize);
   const std::string_view seal = file.substr(bytes.size());

@@ -42,7 +42,7 @@ struct RayQuery {
 /// The query that a callback belongs to; Query derives from RayQuery and from nothing else.
 template <typename Query>
 inline Query& query_of(const RTCIntersectFunctionNArguments* args) {
-  return *reinterpret_cast<Query*>(args->context);
+  return static_cast<Query&>(*reinterpret_cast<RayQuery*>(args->context));
 }
 
 #if RTC_VERSION_MAJOR >= 4

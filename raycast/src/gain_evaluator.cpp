@@ -8,6 +8,7 @@
 #include <cmath>
 #include <mutex>
 #include <numeric>
+#include <sstream>
 #include <string>
 
 #include "gain_accumulator.hpp"
@@ -18,6 +19,13 @@
 
 namespace viewgain {
 namespace {
+
+// Information goes with the inverse square and determinants with its cube; within these bounds [m]
+// they stay far from the ends of double precision.
+constexpr double kMinPriorSigma = 1e-6;
+constexpr double kMaxPriorSigma = 1e3;
+// Determinants of Λ_r lose about the square of this ratio of a sensor's sigmas in digits.
+constexpr double kMaxSigmaRatio = 1e4;
 
 [[noreturn]] void reject(const std::string& what) {
   throw Error(ErrorCode::invalid_argument, what);
@@ -42,8 +50,21 @@ void check(const GainConfig& config, const Sensor& sensor, const VoxelScene& sce
     reject("min_range " + std::to_string(min_range) + " m is not below max_range " +
            std::to_string(max_range) + " m");
   }
-  if (!std::isfinite(prior_sigma) || prior_sigma <= 0) {
-    reject("prior sigma is " + std::to_string(prior_sigma) + " m; it must be > 0 and finite");
+  if (!(prior_sigma >= kMinPriorSigma && prior_sigma <= kMaxPriorSigma)) {
+    std::ostringstream text;
+    text << "prior sigma is " << prior_sigma << " m; it must be in " << kMinPriorSigma << ".."
+         << kMaxPriorSigma << " m";
+    reject(text.str());
+  }
+  for (const double t : {min_range, sensor.working_distance, max_range}) {
+    const MeasurementSigmas sigma = sensor.sigmas(t);
+    const double ratio = sigma.axial / sigma.lateral;
+    if (!(ratio <= kMaxSigmaRatio && ratio >= 1 / kMaxSigmaRatio)) {
+      std::ostringstream text;
+      text << "the sensor's sigmas at " << t << " m, " << sigma.axial << " m along the ray and "
+           << sigma.lateral << " m across, differ by more than a factor of " << kMaxSigmaRatio;
+      reject(text.str());
+    }
   }
   for (const WeightRegion& region : config.weights) {
     if (!std::isfinite(region.weight) || region.weight < 0) {

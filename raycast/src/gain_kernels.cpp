@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "gain_kernels.hpp"
@@ -117,15 +118,21 @@ HWY_INLINE VD reduction(const Inverse& before, const Inverse& after) {
 constexpr std::size_t kStrands = 8;
 constexpr std::size_t kParts = kStrands / kLanes;
 
-// Multiplies positive normal numbers into one part of the strands and takes the exponents out.
+// Multiplies into one part of the strands and takes the exponents out. A product that is no
+// positive normal number (a factor that is not, or NaN before) makes the strand NaN for good.
 HWY_INLINE void multiply(LogProduct& product, std::size_t part, VD factor) {
   constexpr DI di;
   double* mantissa = product.mantissa + part * kLanes;
   std::int64_t* exponent = product.exponent + part * kLanes;
-  const auto bits = hn::BitCast(di, hn::Mul(hn::Load(dd, mantissa), factor));
+  const VD raw = hn::Mul(hn::Load(dd, mantissa), factor);
+  const auto normal = hn::And(hn::Ge(raw, hn::Set(dd, std::numeric_limits<double>::min())),
+                              hn::Le(raw, hn::Set(dd, std::numeric_limits<double>::max())));
+  const auto bits = hn::BitCast(di, raw);
   const auto power = hn::Sub(hn::ShiftRight<52>(bits), hn::Set(di, std::int64_t{1023}));
   const auto fraction = hn::And(bits, hn::Set(di, (std::int64_t{1} << 52) - 1));
-  hn::Store(hn::BitCast(dd, hn::Or(fraction, hn::Set(di, std::int64_t{1023} << 52))), dd, mantissa);
+  const VD scaled = hn::BitCast(dd, hn::Or(fraction, hn::Set(di, std::int64_t{1023} << 52)));
+  const VD nan = hn::Set(dd, std::numeric_limits<double>::quiet_NaN());
+  hn::Store(hn::IfThenElse(normal, scaled, nan), dd, mantissa);
   hn::Store(hn::Add(hn::Load(di, exponent), power), di, exponent);
 }
 

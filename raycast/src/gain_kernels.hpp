@@ -24,8 +24,8 @@ inline constexpr std::size_t kBatchSize = 512;
 /// have room for one more tile's vectors beyond kBatchSize.
 struct alignas(64) HitBatch {
   static constexpr std::size_t kCapacity = kBatchSize + 2 * kTileRays;
-  float dx[kCapacity], dy[kCapacity], dz[kCapacity];
-  float range[kCapacity];  ///< [voxels]
+  float dx[kCapacity] = {}, dy[kCapacity] = {}, dz[kCapacity] = {};
+  float range[kCapacity] = {};  ///< [voxels]
   std::uint32_t primitive[kCapacity], offset[kCapacity];
   double information[6][kCapacity];  ///< Λ_r: xx yy zz xy xz yz [m⁻²], filled by expand()
   std::size_t count = 0;

@@ -183,11 +183,16 @@ HWY_INLINE MF enter_box(const VoxelScene::Data& scene, const PoseFrame& frame, R
   const MF hits = hn::And(active, hn::And(hn::Lt(slab.enter, slab.exit),
                                           is_nearer(slab.enter, range, held, primitive)));
   if (hn::AllFalse(df, hits)) return hits;
+  // An entry point on an inner plane belongs to the side that the ray goes to: the visit of the
+  // other has no length.
   const auto cell = [&](const float* direction, std::size_t axis) HWY_ATTR {
-    const VF p =
-        hn::Sub(hn::Mul(hn::Load(df, direction + lane0), slab.enter), hn::Set(df, lo[axis]));
+    const VF d = hn::Load(df, direction + lane0);
+    const VF p = hn::Sub(hn::Mul(d, slab.enter), hn::Set(df, lo[axis]));
+    const VF floor = hn::Floor(p);
+    const MF below = hn::And(hn::Lt(d, hn::Zero(df)), hn::Eq(floor, p));
+    const VF index = hn::Sub(floor, hn::IfThenElseZero(below, hn::Set(df, 1.0F)));
     const VF last = hn::Set(df, (box.max[axis] - box.min[axis]) - 1.0F);
-    return hn::BitCast(du, hn::ConvertTo(di, hn::Min(hn::Max(p, hn::Zero(df)), last)));
+    return hn::BitCast(du, hn::ConvertTo(di, hn::Min(hn::Max(index, hn::Zero(df)), last)));
   };
   const int bits = primitive < scene.block_count ? kBlockBits : kBoxBits;
   const VU offset = hn::Or(hn::ShiftLeftSame(cell(tile.dx, 0), 2 * bits),
@@ -207,7 +212,16 @@ HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint3
   PacketQuery& query = query_of<PacketQuery>(args);
   RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
-  if (args->N == static_cast<unsigned>(kWidth)) {
+  const bool as_sent =
+      args->N == static_cast<unsigned>(kWidth) &&
+      hn::AllTrue(du, hn::Eq(hn::LoadU(du, &RTCRayN_id(rays, args->N, 0)), hn::Iota(du, 0U)));
+  if (as_sent) {
+    if (query.scene->has_obstacles) {
+      const VU geometry = hn::LoadU(du, &RTCHitN_geomID(hit, args->N, 0));
+      hn::BlendedStore(hn::Set(du, kObstaclePrimitive),
+                       hn::Eq(geometry, hn::Set(du, kObstacleGeometry)), du,
+                       query.tile->primitive + query.lane0);
+    }
     float* tfar = &RTCRayN_tfar(rays, args->N, 0);
     VF range = hn::LoadU(df, tfar);
     const MF active = hn::RebindMask(df, hn::Ne(hn::LoadU(di, args->valid), hn::Zero(di)));
@@ -222,6 +236,9 @@ HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint3
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
     const unsigned lane = RTCRayN_id(rays, args->N, i);
+    if (RTCHitN_geomID(hit, args->N, i) == kObstacleGeometry) {
+      query.tile->primitive[static_cast<unsigned>(query.lane0) + lane] = kObstaclePrimitive;
+    }
     VF range = hn::Set(df, RTCRayN_tfar(rays, args->N, i));
     const MF active = hn::RebindMask(df, hn::Eq(hn::Iota(du, 0U), hn::Set(du, lane)));
     const MF hits =

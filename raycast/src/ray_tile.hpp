@@ -18,6 +18,8 @@ inline constexpr int kTileRays = kTileEdge * kTileEdge;
 
 /// Above every primitive's number, also when compared as a signed one.
 inline constexpr std::uint32_t kNoPrimitive = 0x7FFFFFFFU;
+/// Below every primitive's number as a signed one, so that an obstacle wins a tie with a voxel.
+inline constexpr std::uint32_t kObstaclePrimitive = 0xFFFFFFFFU;
 
 /// Unit directions of a sensor's (strided) pixels in the camera frame, tile by tile: 16 x, 16 y, 16
 /// z. Lanes beyond the image's edge repeat a ray and are not valid.
@@ -42,9 +44,9 @@ struct TileTable {
   }
 };
 
-/// Cameras farther than this from the workspace's lowest corner [voxels] see nothing: single precision
-/// could not tell one voxel from the next there.
-inline constexpr double kFarthestCamera = 1e7;
+/// Cameras farther than this from the workspace's lowest corner [voxels] see nothing: single
+/// precision hardly tells one voxel from the next there, and the margins of boxes would not hold.
+inline constexpr double kFarthestCamera = 1e6;
 
 /// A camera pose as the tracer sees it. Lengths are in voxels, coordinates relative to the lowest
 /// corner of the workspace, so that single precision serves the workspace and not its distance from
@@ -63,10 +65,10 @@ struct alignas(64) RayTile {
   float ix[kTileRays], iy[kTileRays], iz[kTileRays];  ///< 1 / direction; zero counts as 1e-20
   float range[kTileRays];                             ///< where the ray ends [voxels]
   std::uint32_t primitive[kTileRays];                 ///< leaf or box, kNoPrimitive: no voxel
-  std::uint32_t offset[kTileRays];                    ///< voxel in the leaf; undefined for boxes
-  std::uint32_t valid = 0;                            ///< one bit a lane
-  std::uint32_t hit = 0;                              ///< lanes that end in a voxel
-  std::uint32_t blocked = 0;                          ///< lanes that end at an obstacle
+  std::uint32_t offset[kTileRays];  ///< voxel in the primitive, see scene_data.hpp
+  std::uint32_t valid = 0;          ///< one bit a lane
+  std::uint32_t hit = 0;            ///< lanes that end in a voxel
+  std::uint32_t blocked = 0;        ///< lanes that end at an obstacle
 };
 
 }  // namespace viewgain::detail

@@ -40,7 +40,8 @@ std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const 
   }
   // Embree's rays have finite ends; all of the workspace is nearer than this.
   const double end = 4 * kFarthestCamera;
-  frame.sees_nothing = !(origin.cwiseAbs().maxCoeff() <= kFarthestCamera) || min_range_ / voxel >= end;
+  frame.sees_nothing =
+      !(origin.cwiseAbs().maxCoeff() <= kFarthestCamera) || min_range_ / voxel >= end;
   frame.min_range = static_cast<float>(min_range_ / voxel);
   frame.max_range = static_cast<float>(std::min(max_range_ / voxel, end));
   return frame;

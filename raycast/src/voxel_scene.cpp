@@ -34,7 +34,7 @@ void check(const Obstacles& obstacles) {
   for (const TriangleMesh& mesh : obstacles.meshes) {
     for (const auto& vertex : mesh.vertices) {
       for (const double c : vertex) {
-        if (!std::isfinite(c)) {
+        if (!std::isfinite(static_cast<float>(c))) {
           throw Error(ErrorCode::invalid_argument, "an obstacle has a vertex that is not finite");
         }
       }
@@ -271,6 +271,8 @@ std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
 
   data->scene.reset(rtcNewScene(data->device.get()));
   rtcSetSceneBuildQuality(data->scene.get(), RTC_BUILD_QUALITY_HIGH);
+  // Without it a ray may slip between two triangles that share an edge. Voxels do not need it.
+  if (data->has_obstacles) rtcSetSceneFlags(data->scene.get(), RTC_SCENE_FLAG_ROBUST);
   attach_boxes(*data, detail::kLeafGeometry, 0, data->leaf_count, data->kernels->intersect_leaf);
   attach_boxes(*data, detail::kBoxGeometry, data->leaf_count, data->boxes.size() - data->leaf_count,
                data->kernels->intersect_box);

@@ -162,6 +162,11 @@ TEST(VdbIo, CorruptAnywhere) {
     ++cases;
   }
   EXPECT_EQ(cases, 60);
+  // Cut within the seal: refused as long as enough of it is left to know it by.
+  for (std::size_t cut = 1; cut <= 20; ++cut) {
+    const auto bad = folder.file("bad.vdb", whole.substr(0, whole.size() - cut));
+    expect_error(ErrorCode::format, "bad.vdb", [&] { (void)load_vdb(bad); });
+  }
   const auto longer = folder.file("longer.vdb", whole + "x");  // no seal at its end, but readable
   expect_same(load_vdb(longer), load_vdb(path));
 }

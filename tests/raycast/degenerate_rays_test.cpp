@@ -123,6 +123,25 @@ TEST_P(DegenerateRays, ThroughCornersTouchOnlyTheDiagonalsVoxels) {
   EXPECT_NEAR(hit.range, 14 * std::sqrt(3.0) * kExactVoxel, 1e-6);
 }
 
+// Into a wholly unknown box over an edge between two of its voxels.
+TEST_P(DegenerateRays, OverAnEdgeIntoABoxTouchTheVoxelAheadOnly) {
+  const test::ScopedIsa scoped(GetParam());
+  const int edges[] = {16, 256};  // blocks of 8³, and a larger box
+  for (const int edge : edges) {
+    const BeliefGrid grid(
+        {.voxel_size = kExactVoxel,
+         .workspace = {{0, 0, 0}, {edge * kExactVoxel, edge * kExactVoxel, edge * kExactVoxel}},
+         .T_world_grid = {},
+         .prior_sigma = 0.1});
+    const GainEvaluator evaluator(VoxelScene::build(grid, {}, {.num_threads = 1}),
+                                  lattice_sensor(3, 3), {}, {.num_threads = 1});
+    const std::vector<RayHit> hits = evaluator.trace(axis_pose({-2, 10, 4.5}, 0, true));
+    EXPECT_EQ(hits.at(3).voxel, (Index3{0, 7, 4}));   // direction (1, -1, 0)
+    EXPECT_EQ(hits.at(5).voxel, (Index3{0, 12, 4}));  // direction (1, 1, 0)
+    EXPECT_EQ(hits.at(4).voxel, (Index3{0, 10, 4}));  // in the face between two: the larger index
+  }
+}
+
 TEST_P(DegenerateRays, OnTheHalfVoxelLatticeEqualTheOracleExactly) {
   test::Random random(42);
   const test::ScopedIsa scoped(GetParam());

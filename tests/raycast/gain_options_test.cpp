@@ -223,6 +223,48 @@ TEST(GainOptions, ObstaclesInRandomMapsAgreeWithTheOracle) {
   EXPECT_GE(static_cast<double>(same), 0.999 * static_cast<double>(rays));
 }
 
+// An obstacle's face on a voxel's face: the obstacle wins, whichever the BVH meets first; and a ray
+// through the diagonal that a box face's two triangles share does not slip through.
+TEST(GainOptions, ObstaclesWinTiesAndHaveNoSeams) {
+  int cases = 0;
+  const double v = kExactVoxel;
+  for (const std::string& isa : available_isas()) {
+    const test::ScopedIsa scoped(isa);
+    for (const VoxelState state : {VoxelState::occupied, VoxelState::unknown}) {
+      std::vector<Index3> wall;
+      for (int y = 0; y < 16; ++y) {
+        for (int z = 0; z < 16; ++z) wall.push_back({8, y, z});
+      }
+      const BeliefGrid grid = test::sparse_map({16, 16, 16}, wall, state);
+      const Obstacles obstacles{{Box{{8 * v, 0, 0}, {9 * v, 16 * v, 16 * v}}}, {}};
+      const GainEvaluator evaluator(VoxelScene::build(grid, obstacles), test::lattice_sensor(3, 3));
+      for (const Eigen::Vector3d& eye :
+           {Eigen::Vector3d(-2, 8, 8), Eigen::Vector3d(-2, 3.5, 3.5), Eigen::Vector3d(2, 5, 11)}) {
+        const Pose pose = test::axis_pose(eye, 0, true);
+        const std::vector<RayHit> hits = evaluator.trace(pose);
+        EXPECT_EQ(hits.at(4).kind, RayHit::Kind::obstacle);
+        EXPECT_NEAR(hits.at(4).range, (8 - eye.x()) * v, 1e-6);
+        EXPECT_EQ(evaluator.evaluate(pose).gain, 0.0);
+        ++cases;
+      }
+    }
+  }
+  EXPECT_EQ(cases, 6 * static_cast<int>(available_isas().size()));
+}
+
+TEST(GainOptions, PriorsAndSigmasThatDoublePrecisionCannotWeighAreRefused) {
+  const auto scene = VoxelScene::build(make(3).map.grid);
+  Sensor sensor = test::lattice_sensor(3, 3);
+  for (const double prior : {1e-7, 2e3, 1e-11, 1e20}) {
+    EXPECT_THROW(GainEvaluator(scene, sensor, {.prior_sigma = prior}), Error) << prior;
+  }
+  for (const double prior : {1e-6, 1e3}) {
+    EXPECT_NO_THROW(GainEvaluator(scene, sensor, {.prior_sigma = prior})) << prior;
+  }
+  sensor.noise = ConstantNoise{1e-9, 1e-2};
+  EXPECT_THROW(GainEvaluator(scene, sensor), Error);
+}
+
 TEST(GainOptions, BadArgumentsAreNamed) {
   const BeliefGrid grid = test::sparse_map({8, 8, 8}, {{4, 4, 4}});
   const auto scene = VoxelScene::build(grid);

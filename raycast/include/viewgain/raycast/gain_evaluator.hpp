@@ -36,14 +36,16 @@ struct GainConfig {
 
 enum class ViewStatus : std::uint8_t {
   ok,
-  bad_pose,            ///< a number that is not finite, or a rotation off by more than 1e-3: gain NaN
+  bad_pose,  ///< a number that is not finite, or a rotation off by more than 1e-3: gain NaN
   camera_in_occupied,  ///< the camera's centre lies in an occupied voxel: gain 0
 };
 [[nodiscard]] std::string_view view_status_name(ViewStatus status);
 
 /// What a view is expected to bring. Gains in nats, in m² for the criterion trace.
 struct ViewGain {
-  double gain = std::numeric_limits<double>::quiet_NaN();  ///< exploration + refinement; NaN: bad pose
+  /// Exploration + refinement. NaN: a bad pose, or sensor sigmas beyond what double precision can
+  /// weigh.
+  double gain = std::numeric_limits<double>::quiet_NaN();
   double exploration = std::numeric_limits<double>::quiet_NaN();  ///< share of unknown voxels
   double refinement = std::numeric_limits<double>::quiet_NaN();   ///< share of occupied voxels
   /// The paper's eq. (6) over the touched voxels: Σ_v Σ_k ln[(Λ_v + ΣΛ_r)⁻¹]_kk, lengths in metres.
@@ -60,21 +62,23 @@ struct RayHit {
   enum class Kind : std::uint8_t { none, unknown, occupied, obstacle };
   Kind kind = Kind::none;
   Index3 voxel{};  ///< the voxel it ends in (unknown, occupied)
-  double range = std::numeric_limits<double>::infinity();  ///< max(range of the entry point, min_range) [m]
+  double range =
+      std::numeric_limits<double>::infinity();  ///< max(range of the entry point, min_range) [m]
 };
 
 /// Scores camera poses against a scene by expected information gain (DESIGN.md section 6).
 ///
-/// A camera that is more than 1e7 voxels away from the workspace sees nothing of it: gain 0.
+/// A camera that is more than 1e6 voxels away from the workspace sees nothing of it: gain 0.
 ///
 /// Thread safety: all const members may run from many threads at once on one evaluator. Allocation:
-/// none per pose once as many threads as ever run at once have each scored one pose. Determinism: the
-/// same bits for any number of threads, run after run.
+/// none per pose in the steady state: each thread's buffers grow to the largest view that it has
+/// scored and are kept. Determinism: the same bits for any number of threads, run after run.
 class GainEvaluator {
  public:
   /// Undoes the lens distortion once. Throws Error(invalid_argument), naming the value, for a null
-  /// scene, a sensor that is not valid, a stride below 1, a prior or weight or range that is negative
-  /// or not finite, min_range >= max_range, or a weight box inside out.
+  /// scene, a sensor that is not valid or whose sigmas differ by a factor over 1e4, a stride below
+  /// 1, a prior outside 1e-6..1e3 m, a weight or range that is negative or not finite, min_range >=
+  /// max_range, or a weight box inside out.
   GainEvaluator(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
                 const GainConfig& config = {}, const ExecConfig& exec = {});
   ~GainEvaluator();
@@ -84,16 +88,16 @@ class GainEvaluator {
   /// The expected gain of one pose, on the calling thread.
   [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera) const;
 
-  /// The expected gains of a batch, result i for pose i, on all threads of the evaluator. A bad pose
-  /// spoils only its own result. Returns how many poses were scored: all, or fewer if control.stop was
-  /// requested, when the results not reached keep status bad_pose and NaN. Throws
+  /// The expected gains of a batch, result i for pose i, on all threads of the evaluator. A bad
+  /// pose spoils only its own result. Returns how many poses were scored: all, or fewer if
+  /// control.stop was requested, when the results not reached keep status bad_pose and NaN. Throws
   /// Error(invalid_argument) if the sizes differ.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<ViewGain> results,
                        const BatchControl& control = {}) const;
   [[nodiscard]] std::vector<ViewGain> evaluate(std::span<const Pose> T_world_camera) const;
 
-  /// Where the rays of a pose end, in pixel order (row by row, strided); the hits that evaluate() uses.
-  /// Empty for a bad pose.
+  /// Where the rays of a pose end, in pixel order (row by row, strided); the hits that evaluate()
+  /// uses. Empty for a bad pose.
   [[nodiscard]] std::vector<RayHit> trace(const Pose& T_world_camera) const;
 
   [[nodiscard]] std::size_t rays_per_pose() const noexcept;
@@ -106,7 +110,9 @@ class GainEvaluator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Indices of the k best results: larger gain first, ties to the lower index, NaN last. k is clamped.
-[[nodiscard]] std::vector<std::size_t> best_indices(std::span<const ViewGain> results, std::size_t k);
+/// Indices of the k best results: larger gain first, ties to the lower index, NaN last. k is
+/// clamped.
+[[nodiscard]] std::vector<std::size_t> best_indices(std::span<const ViewGain> results,
+                                                    std::size_t k);
 
 }  // namespace viewgain

@@ -15,9 +15,10 @@ namespace viewgain {
 
 /// What surrounds the object and what disturbs the reading.
 struct SimulationConfig {
-  double background_radius = 0;  ///< diffuse sphere round the world's origin that stands for the room [m]; 0: none
-  bool noise = false;            ///< Gaussian axial noise by the sensor's model
-  std::uint64_t seed = 1;        ///< of the noise; with the frame's index it fixes every pixel
+  double background_radius =
+      0;  ///< diffuse sphere round the world's origin that stands for the room [m]; 0: none
+  bool noise = false;      ///< Gaussian axial noise by the sensor's model
+  std::uint64_t seed = 1;  ///< of the noise; with the frame's index it fixes every pixel
 };
 
 /// A depth camera in front of a triangle mesh.
@@ -31,9 +32,10 @@ class SimulatedSensor {
   SimulatedSensor(SimulatedSensor&&) noexcept;
   SimulatedSensor& operator=(SimulatedSensor&&) noexcept;
 
-  /// The depth frame seen from T_world_camera. A pixel whose true range is below min_range is invalid;
-  /// nothing hit, or farther than max_range, is out of range. `frame_index` picks the noise: equal seed,
-  /// index and pose give equal frames. Throws Error(invalid_argument) for a pose that is not rigid (1e-3).
+  /// The depth frame seen from T_world_camera. A pixel whose true range is below min_range is
+  /// invalid; nothing hit, or farther than max_range, is out of range. `frame_index` picks the
+  /// noise: equal seed, index and pose give equal frames. Throws Error(invalid_argument) for a pose
+  /// that is not rigid (1e-3).
   [[nodiscard]] DepthFrame acquire(const Pose& T_world_camera, std::uint64_t frame_index = 0) const;
 
  private:

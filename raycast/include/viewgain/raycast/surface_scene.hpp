@@ -14,17 +14,19 @@ namespace viewgain {
 
 /// Where a ray meets a triangle mesh.
 struct SurfaceHit {
-  double range = std::numeric_limits<double>::infinity();  ///< along the unit direction [m]; infinity: miss
+  double range =
+      std::numeric_limits<double>::infinity();  ///< along the unit direction [m]; infinity: miss
   std::uint32_t triangle = 0;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, right-hand rule of the triangle's vertices
+  Eigen::Vector3d normal =
+      Eigen::Vector3d::Zero();  ///< unit, right-hand rule of the triangle's vertices
 };
 
 /// Triangles to trace, for simulated depth and for pictures. Immutable; owns its copy of the mesh.
 /// Thread safety: const members may run from many threads.
 class SurfaceScene {
  public:
-  /// Throws Error(invalid_argument) for an empty mesh, a vertex that is not finite or an index out of
-  /// range; Error(backend) if Embree fails.
+  /// Throws Error(invalid_argument) for an empty mesh, a vertex that is not finite or an index out
+  /// of range; Error(backend) if Embree fails.
   explicit SurfaceScene(TriangleMesh mesh, const ExecConfig& exec = {});
   ~SurfaceScene();
   SurfaceScene(SurfaceScene&&) noexcept;

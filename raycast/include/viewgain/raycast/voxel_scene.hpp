@@ -15,21 +15,22 @@
 
 namespace viewgain {
 
-/// Known things that are not part of the map: they block rays at any range and gain nothing. World frame.
+/// Known things that are not part of the map: they block rays at any range and gain nothing. World
+/// frame.
 struct Obstacles {
   std::vector<Box> boxes;
   std::vector<TriangleMesh> meshes;
 };
 
-/// An immutable scene to trace: the voxels of a grid that are not free, and obstacles, in Embree's BVH.
-/// Owns all that it reads; the grid may change or go. Copying a shared_ptr of it is how to share it.
-/// Thread safety: all members are const and may run from many threads.
+/// An immutable scene to trace: the voxels of a grid that are not free, and obstacles, in Embree's
+/// BVH. Owns all that it reads; the grid may change or go. Copying a shared_ptr of it is how to
+/// share it. Thread safety: all members are const and may run from many threads.
 class VoxelScene {
  public:
   /// Takes a snapshot of the grid and builds the BVH (about 1 ms per 1,000 leaves). Throws
   /// Error(backend) if Embree fails, Error(capacity) beyond 2^23 leaves and tiles,
-  /// Error(invalid_argument) if an obstacle has a vertex that is not finite, an index out of range or
-  /// a box inside out. exec.num_threads bounds the threads of the build.
+  /// Error(invalid_argument) if an obstacle has a vertex that is not finite, an index out of range
+  /// or a box inside out. exec.num_threads bounds the threads of the build.
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(const BeliefGrid& grid,
                                                                const Obstacles& obstacles = {},
                                                                const ExecConfig& exec = {});
@@ -42,11 +43,13 @@ class VoxelScene {
 
   [[nodiscard]] const GridSnapshot& snapshot() const noexcept;
 
-  /// Which kernel traces this scene: "avx512", "avx2" or "sse4" ("baseline" off x86-64). Chosen when the scene is
-  /// built: the best that the CPU has, lowered by the environment variable VIEWGAIN_ISA.
+  /// Which kernel traces this scene: "avx512", "avx2" or "sse4" ("baseline" off x86-64). Chosen
+  /// when the scene is built: the best that the CPU has, lowered by the environment variable
+  /// VIEWGAIN_ISA.
   [[nodiscard]] std::string_view isa() const noexcept;
 
-  /// Leaves and tiles in the BVH, and the bytes that the scene adds to the snapshot's.
+  /// Leaves and tiles in the BVH, and the bytes that the scene adds to the snapshot's,
+  /// Embree's BVH not counted.
   [[nodiscard]] std::size_t primitive_count() const noexcept;
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
