@@ -226,7 +226,7 @@ Command add_score(CLI::App& program) {
   app->add_option("--min-range", options->min_range, "along the ray [m]; default: the sensor's");
   app->add_option("--max-range", options->max_range, "along the ray [m]; default: the sensor's");
   app->add_option("--top", options->top, "how many of the best to print")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000'000}, "count"))
       ->capture_default_str();
   app->add_option("--out", options->out, "CSV file of all poses, in input order");
   app->add_option("--picture", options->picture,

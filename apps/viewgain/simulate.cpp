@@ -140,7 +140,7 @@ Command add_simulate(CLI::App& program) {
       ->check(CLI::IsMember({"off", "on"}))
       ->capture_default_str();
   app->add_option("--seed", options->seed, "of the noise")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number"))
       ->capture_default_str();
   app->add_option("--out", options->out,
                   "folder to write; frames of an earlier run in it are replaced")
