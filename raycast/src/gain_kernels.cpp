@@ -11,6 +11,7 @@
 //
 #include <hwy/highway.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -30,6 +31,7 @@ using VD = hn::Vec<DD>;
 constexpr std::size_t kLanes = hn::MaxLanes(dd);
 
 void append(const RayTile& tile, HitBatch& batch) {
+#if HWY_TARGET == HWY_AVX3
   constexpr hn::CappedTag<float, kTileRays> df;
   constexpr hn::RebindToUnsigned<decltype(df)> du;
   constexpr std::size_t kWidth = hn::MaxLanes(df);
@@ -46,6 +48,20 @@ void append(const RayTile& tile, HitBatch& batch) {
     batch.count +=
         hn::CompressStore(hn::Load(du, tile.primitive + lane0), hit, du, batch.primitive + n);
   }
+#else
+  // Compressing stores are slower than a loop over the hits where the CPU has no instruction for
+  // them.
+  for (std::uint32_t left = tile.hit; left != 0; left &= left - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+    const std::size_t n = batch.count++;
+    batch.dx[n] = tile.dx[lane];
+    batch.dy[n] = tile.dy[lane];
+    batch.dz[n] = tile.dz[lane];
+    batch.range[n] = tile.range[lane];
+    batch.offset[n] = tile.offset[lane];
+    batch.primitive[n] = tile.primitive[lane];
+  }
+#endif
 }
 
 void expand(const FrontalSigmas& sigmas, double voxel_size, HitBatch& batch) {
