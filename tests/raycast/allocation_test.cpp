@@ -51,35 +51,41 @@ TEST(Allocation, TheCounterCounts) {
   EXPECT_GT(allocations, before);
 }
 
-TEST(Allocation, NonePerPoseOnceEveryThreadHasScoredOne) {
+// A thread's buffers grow to the largest view that it has scored. Which thread gets which pose is
+// not determined, so with several threads it may take some batches until all have grown.
+TEST(Allocation, NonePerPoseInTheSteadyState) {
   test::Random random(4);
   const test::RandomMap map = test::random_map(test::MapFamily::salt_and_pepper_30, random);
   const Sensor sensor = test::random_sensor(map.grid, random);
   const std::vector<Pose> poses = test::random_poses(map, 100, random);
   std::vector<ViewGain> results(poses.size());
+  int cases = 0;
   for (const Criterion criterion :
        {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
     for (const int threads : {1, 2}) {
       const GainEvaluator evaluator(VoxelScene::build(map.grid), sensor, {.criterion = criterion},
                                     {.num_threads = threads});
-      // Which thread gets a pose is not determined: a batch may leave one thread cold.
-      for (int i = 0; i < 5; ++i) evaluator.evaluate(poses, results);
-      const std::size_t one_batch = [&] {
+      const auto allocations_of_a_batch = [&] {
         const std::size_t before = allocations;
-        evaluator.evaluate(std::span(poses).first(10), std::span(results).first(10));
+        evaluator.evaluate(poses, results);
         return allocations - before;
-      }();
-      const std::size_t before = allocations;
-      evaluator.evaluate(poses, results);
-      const std::size_t large_batch = allocations - before;
-      EXPECT_LE(large_batch, one_batch) << "more poses must not mean more allocations";
-      EXPECT_LE(large_batch, 2U);
-      (void)evaluator.evaluate(poses[0]);
-      const std::size_t before_single = allocations;
-      for (const Pose& pose : poses) results[0] = evaluator.evaluate(pose);
-      EXPECT_EQ(allocations - before_single, 0U);
+      };
+      EXPECT_GT(allocations_of_a_batch(), 0U);
+      std::size_t last = allocations_of_a_batch();
+      if (threads == 1) {
+        EXPECT_EQ(last, 0U);
+      }
+      for (int i = 0; i < 60 && last != 0; ++i) last = allocations_of_a_batch();
+      EXPECT_EQ(last, 0U);
+      if (threads == 1) {
+        const std::size_t before = allocations;
+        for (const Pose& pose : poses) results[0] = evaluator.evaluate(pose);
+        EXPECT_EQ(allocations - before, 0U);
+      }
+      ++cases;
     }
   }
+  EXPECT_EQ(cases, 6);
 }
 
 }  // namespace
