@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <exception>
 
+#include "honesty_bench.hpp"
 #include "integrate_bench.hpp"
+#include "iteration_bench.hpp"
 #include "support/camel_scene.hpp"
 #include "trace_bench.hpp"
 #include "viewgain/core/error.hpp"
@@ -49,13 +51,38 @@ int run(int argc, char** argv) {
   add_common(*integrate_app, integrate.num_threads, integrate.voxels, integrate.repetitions,
              integrate.mesh, integrate.json);
 
+  viewgain::bench::IterationOptions iteration;
+  iteration.mesh = viewgain::test::camel_mesh_path();
+  CLI::App* iteration_app = app.add_subcommand(
+      "iteration", "one turn of the loop after eight views of the camel, by stage");
+  add_common(*iteration_app, iteration.num_threads, iteration.voxels, iteration.repetitions,
+             iteration.mesh, iteration.json);
+  iteration_app->add_option("--candidates", iteration.candidates, "views to score")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+
+  viewgain::bench::HonestyOptions honesty;
+  honesty.mesh = viewgain::test::camel_mesh_path();
+  CLI::App* honesty_app = app.add_subcommand(
+      "honesty", "consistency of the sigmas and error of the surface as readings accumulate");
+  honesty_app->add_option("--threads", honesty.num_threads, "threads, 0: all")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  honesty_app->add_option("--views", honesty.views, "views on the sphere, repeated up to ten times")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  honesty_app->add_option("--mesh", honesty.mesh, "mesh file")->capture_default_str();
+  honesty_app->add_flag("--json", honesty.json, "print JSON");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
-  return trace_app->parsed() ? viewgain::bench::run_trace(trace)
-                             : viewgain::bench::run_integrate(integrate);
+  if (trace_app->parsed()) return viewgain::bench::run_trace(trace);
+  if (integrate_app->parsed()) return viewgain::bench::run_integrate(integrate);
+  if (iteration_app->parsed()) return viewgain::bench::run_iteration(iteration);
+  return viewgain::bench::run_honesty(honesty);
 }
 
 }  // namespace

@@ -21,6 +21,8 @@ struct Command {
 [[nodiscard]] Command add_simulate(CLI::App& program);
 [[nodiscard]] Command add_integrate(CLI::App& program);
 [[nodiscard]] Command add_score(CLI::App& program);
+[[nodiscard]] Command add_reconstruct(CLI::App& program);
+[[nodiscard]] Command add_candidates(CLI::App& program);
 [[nodiscard]] Command add_info(CLI::App& program);
 
 /// What every subcommand has.
@@ -35,7 +37,7 @@ inline void add_common_options(CLI::App& app, CommonOptions& options) {
 }
 
 inline constexpr const char* kSensorHelp =
-    "preset (sr4000, azure_kinect_nfov, kinect_v1, d435) or a .toml file";
+    "preset (sr4000, azure_kinect_nfov, kinect_v1, d435, laser_line) or a .toml file";
 
 [[nodiscard]] inline nlohmann::ordered_json to_json(const Box& box) {
   return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};

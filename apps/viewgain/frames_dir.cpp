@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <string_view>
 #include <system_error>
@@ -28,6 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kFramePrefix = "frame-";
 constexpr std::string_view kDepthSuffix = ".depth.png";
+constexpr std::string_view kAmplitudeSuffix = ".amplitude.png";
 constexpr std::string_view kPoseSuffix = ".pose.txt";
 constexpr std::uint16_t kOutOfRangeValue = 65535;
 
@@ -50,15 +52,30 @@ std::optional<std::string> frame_number(const std::string& name, std::string_vie
   return digits;
 }
 
-// Depth images of the folder by their number, as "frame-NNNNNN".
-std::map<std::uint64_t, std::string> list_frames(const fs::path& dir) {
+// Images of the folder by their number, as "frame-NNNNNN".
+std::map<std::uint64_t, std::string> list_frames(const fs::path& dir,
+                                                 std::string_view suffix = kDepthSuffix) {
   std::map<std::uint64_t, std::string> frames;
   for (const auto& entry : fs::directory_iterator(dir)) {
-    if (const auto digits = frame_number(entry.path().filename().string(), kDepthSuffix)) {
+    if (const auto digits = frame_number(entry.path().filename().string(), suffix)) {
       frames.emplace(std::stoull(*digits), std::string(kFramePrefix) + *digits);
     }
   }
   return frames;
+}
+
+// The amplitude image that belongs to a depth image, whether there is one or not.
+fs::path amplitude_path(const fs::path& depth_image) {
+  std::string name = depth_image.filename().string();
+  name.replace(name.size() - kDepthSuffix.size(), kDepthSuffix.size(), kAmplitudeSuffix);
+  return depth_image.parent_path() / name;
+}
+
+// In units, from 0 to the largest value of an image; 0 for what is no number.
+std::uint16_t saturated(double units) {
+  constexpr double kMax = std::numeric_limits<std::uint16_t>::max();
+  return units > 0 ? static_cast<std::uint16_t>(std::min(std::round(units), kMax))
+                   : std::uint16_t{0};
 }
 
 // Nine numbers of a 3x3 matrix fx 0 cx / 0 fy cy / 0 0 1.
@@ -157,6 +174,11 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRange
     frame.depth.push_back(
         value == kOutOfRangeValue ? out_of_range : static_cast<float>(value * frames.depth_scale));
   }
+  const fs::path amplitude = amplitude_path(frames.images[index]);
+  if (!fs::exists(amplitude)) return frame;
+  for (const std::uint16_t value : read_gray_png(amplitude, camera.width, camera.height).pixels) {
+    frame.amplitude.push_back(static_cast<float>(value * kAmplitudeUnit));
+  }
   return frame;
 }
 
@@ -193,6 +215,12 @@ void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
                                                     : kOutOfRangeValue);
   }
   write_png(staging_ / frame_name(index, kDepthSuffix), image);
+  if (frame.amplitude.empty()) return;
+  image.pixels.clear();
+  for (const float amplitude : frame.amplitude) {
+    image.pixels.push_back(saturated(static_cast<double>(amplitude) / kAmplitudeUnit));
+  }
+  write_png(staging_ / frame_name(index, kAmplitudeSuffix), image);
 }
 
 void FramesWriter::commit(const std::vector<Pose>& poses, const Sensor& sensor) {
@@ -202,8 +230,10 @@ void FramesWriter::commit(const std::vector<Pose>& poses, const Sensor& sensor) 
   if (!fs::exists(dir_)) {
     fs::rename(staging_, dir_, code);
   } else {
-    for (const auto& [number, name] : list_frames(dir_)) {
-      fs::remove(dir_ / (name + std::string(kDepthSuffix)), code);
+    for (const std::string_view suffix : {kDepthSuffix, kAmplitudeSuffix}) {
+      for (const auto& [number, name] : list_frames(dir_, suffix)) {
+        fs::remove(dir_ / (name + std::string(suffix)), code);
+      }
     }
     const std::vector<fs::path> written{fs::directory_iterator(staging_), {}};
     for (const fs::path& path : written) {

@@ -16,6 +16,7 @@ namespace viewgain::app {
 
 inline constexpr double kDepthUnit = 1e-4;          ///< of our own depth images [m]
 inline constexpr double kRecordedDepthUnit = 1e-3;  ///< of recorded ones, unless said otherwise [m]
+inline constexpr double kAmplitudeUnit = 1e-3;      ///< of amplitude images [m⁻²]
 
 /// What the value 65535 of a depth image says.
 enum class OutOfRangeMeaning {
@@ -35,11 +36,12 @@ struct FrameSequence {
 
 /// Opens either layout: poses.txt + frame-NNNNNN.depth.png (line i is frame i) + sensor.toml, or
 /// frame-NNNNNN.depth.png + frame-NNNNNN.pose.txt + camera-intrinsics.txt, whose numbers may have
-/// gaps. `sensor`: preset or .toml file, empty for the folder's own. Throws Error naming the file
-/// that is missing or wrong.
+/// gaps. Beside a depth image there may be a frame-NNNNNN.amplitude.png. `sensor`: preset or .toml
+/// file, empty for the folder's own. Throws Error naming the file that is missing or wrong.
 [[nodiscard]] FrameSequence open_frames(const std::filesystem::path& dir, const std::string& sensor,
                                         std::optional<double> depth_scale);
 
+/// Reads the depth image, and the amplitude image (16 bit, 1e-3 m⁻²) if there is one.
 [[nodiscard]] DepthFrame load_frame(const FrameSequence& frames, std::size_t index,
                                     OutOfRangeMeaning meaning);
 
@@ -54,6 +56,7 @@ class FramesWriter {
   FramesWriter(const FramesWriter&) = delete;
   FramesWriter& operator=(const FramesWriter&) = delete;
 
+  /// Writes the depth image, and an amplitude image if the frame has amplitudes.
   void write_frame(std::size_t index, const DepthFrame& frame);
 
   /// Writes poses and sensor and moves all into place; frames of an earlier run in `dir` go.

@@ -13,10 +13,12 @@
 
 #include "commands.hpp"
 #include "frames_dir.hpp"
+#include "sensing.hpp"
 #include "terminal.hpp"
 #include "values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
@@ -33,6 +35,9 @@ struct Options {
   std::string out_of_range = "carve";
   std::string carve = "cones";
   std::string occupancy = "probabilistic";
+  std::string jump_edge_filter = "off";
+  bool jump_edge_two_sided = false;
+  std::optional<double> support_plane;
   std::optional<double> prior_sigma;
   bool with_covariance = false;
   std::string out;
@@ -50,16 +55,25 @@ void check_voxel(double voxel) {
   }
 }
 
+std::optional<JumpEdgeFilter> make_filter(const FrameSequence& frames, const Options& options) {
+  const auto config = parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided);
+  if (!config) return std::nullopt;
+  return JumpEdgeFilter(frames.sensor.camera, *config);
+}
+
 // What the frames see, half a voxel more on each side: a reading on the face of the box would lie
 // outside of it.
-Box seen_workspace(const FrameSequence& frames, const Options& options, double voxel) {
+Box seen_workspace(const FrameSequence& frames, const std::optional<JumpEdgeFilter>& filter,
+                   const Options& options, double voxel) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Box seen{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
   bool any = false;
   Progress progress("bounds of frame");
   for (std::size_t i = 0; i < frames.images.size(); ++i) {
-    const DepthFrame frame = load_frame(frames, i, options.meaning());
-    const auto bounds = reading_bounds(frames.sensor, frame, frames.poses[i]);
+    DepthFrame frame = load_frame(frames, i, options.meaning());
+    if (filter) filter->apply(frame);
+    const auto bounds =
+        reading_bounds(frames.sensor, frame, frames.poses[i], {}, options.support_plane);
     progress.update(i + 1, frames.images.size());
     if (!bounds) continue;
     any = true;
@@ -75,7 +89,8 @@ Box seen_workspace(const FrameSequence& frames, const Options& options, double v
   return seen;
 }
 
-BeliefGrid new_map(const FrameSequence& frames, const Options& options) {
+BeliefGrid new_map(const FrameSequence& frames, const std::optional<JumpEdgeFilter>& filter,
+                   const Options& options) {
   if (!options.voxel) {
     throw Error(ErrorCode::invalid_argument, "--voxel is needed unless --map is given");
   }
@@ -84,8 +99,9 @@ BeliefGrid new_map(const FrameSequence& frames, const Options& options) {
   config.voxel_size = *options.voxel;
   config.prior_sigma =
       options.prior_sigma.value_or(default_prior_sigma(config.voxel_size, frames.sensor));
-  config.workspace = options.workspace.empty() ? seen_workspace(frames, options, config.voxel_size)
-                                               : parse_box("--workspace", options.workspace);
+  config.workspace = options.workspace.empty()
+                         ? seen_workspace(frames, filter, options, config.voxel_size)
+                         : parse_box("--workspace", options.workspace);
   return BeliefGrid(config);
 }
 
@@ -122,24 +138,29 @@ double median(std::vector<double> values) {
 
 struct Totals {
   IntegrationReport sum;
+  std::uint64_t jump_edge_removed = 0;
   std::vector<double> seconds;  // of each frame's integration, reading the image not counted
 };
 
-Totals integrate_frames(const FrameSequence& frames, const Options& options, BeliefGrid& grid) {
+Totals integrate_frames(const FrameSequence& frames, const std::optional<JumpEdgeFilter>& filter,
+                        const Options& options, BeliefGrid& grid) {
   IntegrationConfig config;
   config.carve = options.carve == "cones" ? Carve::cones : Carve::lines;
   config.occupancy =
       options.occupancy == "probabilistic" ? Occupancy::probabilistic : Occupancy::literal;
+  config.support_plane = options.support_plane;
   FrameIntegrator integrator(frames.sensor, config, {options.common.threads});
   Totals totals;
   Progress progress("frame");
   for (std::size_t i = 0; i < frames.images.size(); ++i) {
-    const DepthFrame frame = load_frame(frames, i, options.meaning());
+    DepthFrame frame = load_frame(frames, i, options.meaning());
+    if (filter) totals.jump_edge_removed += filter->apply(frame);
     const Stopwatch watch;
     const IntegrationReport report = integrator.integrate(grid, frame, frames.poses[i]);
     totals.seconds.push_back(watch.seconds());
     totals.sum.readings += report.readings;
     totals.sum.readings_inside += report.readings_inside;
+    totals.sum.plane_readings += report.plane_readings;
     totals.sum.out_of_range += report.out_of_range;
     totals.sum.invalid += report.invalid;
     progress.update(i + 1, frames.images.size());
@@ -157,6 +178,8 @@ void print_summary(const Options& options, const FrameSequence& frames, const Be
                 {"views", grid.views().size()},
                 {"readings", totals.sum.readings},
                 {"readings_inside", totals.sum.readings_inside},
+                {"plane_readings", totals.sum.plane_readings},
+                {"jump_edge_removed", totals.jump_edge_removed},
                 {"out_of_range", totals.sum.out_of_range},
                 {"invalid", totals.sum.invalid},
                 {"orthonormalized_poses", frames.orthonormalized},
@@ -183,6 +206,13 @@ void print_summary(const Options& options, const FrameSequence& frames, const Be
       frames.images.size(), frames.sensor.name.c_str(), with_commas(totals.sum.readings).c_str(),
       with_commas(totals.sum.readings_inside).c_str(), with_commas(totals.sum.out_of_range).c_str(),
       with_commas(totals.sum.invalid).c_str());
+  if (options.jump_edge_filter != "off") {
+    std::printf("flying pixels removed: %s\n", with_commas(totals.jump_edge_removed).c_str());
+  }
+  if (options.support_plane) {
+    std::printf("readings of the support plane: %s\n",
+                with_commas(totals.sum.plane_readings).c_str());
+  }
   if (frames.orthonormalized > 0) {
     std::printf("rotations that were off and were orthonormalised: %zu of %zu\n",
                 frames.orthonormalized, frames.poses.size());
@@ -203,8 +233,9 @@ void integrate(const Options& options) {
   {
     const AtomicFile writable(options.out);
   }  // known now rather than after the work
-  BeliefGrid grid = options.map.empty() ? new_map(frames, options) : continued_map(options);
-  const Totals totals = integrate_frames(frames, options, grid);
+  const std::optional<JumpEdgeFilter> filter = make_filter(frames, options);
+  BeliefGrid grid = options.map.empty() ? new_map(frames, filter, options) : continued_map(options);
+  const Totals totals = integrate_frames(frames, filter, options, grid);
   save_vdb(grid, options.out, {options.with_covariance});
   print_summary(options, frames, grid, totals, watch.seconds());
 }
@@ -217,7 +248,8 @@ Command add_integrate(CLI::App& program) {
       "integrate",
       "Depth frames into a voxel map. FRAMES_DIR holds what simulate writes, or recorded frames: "
       "frame-NNNNNN.depth.png + frame-NNNNNN.pose.txt (4x4, camera to world, m) + "
-      "camera-intrinsics.txt (3x3, overrides the sensor's).");
+      "camera-intrinsics.txt (3x3, overrides the sensor's). Incidence comes from "
+      "frame-NNNNNN.amplitude.png (16 bit, cos/range^2 in 1e-3 m^-2) where there is one.");
   app->add_option("FRAMES_DIR", options->frames, "folder of frames")->required();
   app->add_option("--voxel", options->voxel, "voxel size [m]; needed unless --map is given");
   app->add_option("--workspace", options->workspace,
@@ -239,6 +271,14 @@ Command add_integrate(CLI::App& program) {
   app->add_option("--occupancy", options->occupancy, "log-odds, or the paper's literal rule")
       ->check(CLI::IsMember({"probabilistic", "literal"}))
       ->capture_default_str();
+  app->add_option("--jump-edge-filter", options->jump_edge_filter,
+                  "ANGLE_DEG: a reading goes when the edge to a nearer neighbour is within 1..10 "
+                  "degrees of its ray (5 is a good value); or off")
+      ->capture_default_str();
+  app->add_flag("--jump-edge-two-sided", options->jump_edge_two_sided,
+                "the filter looks at farther neighbours too");
+  app->add_option("--support-plane", options->support_plane,
+                  "height z of the table [m]: its readings carve but do not hit; default: none");
   app->add_option("--prior-sigma", options->prior_sigma,
                   "sigma of an unknown voxel [m]; default: max(voxel/2, twice the sensor's axial "
                   "sigma at its working distance)");

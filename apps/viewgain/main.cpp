@@ -32,8 +32,9 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", std::string("viewgain ") + VIEWGAIN_VERSION);
   program.require_subcommand(1);
   const std::vector<viewgain::app::Command> commands{
-      viewgain::app::add_simulate(program), viewgain::app::add_integrate(program),
-      viewgain::app::add_score(program), viewgain::app::add_info(program)};
+      viewgain::app::add_simulate(program),    viewgain::app::add_integrate(program),
+      viewgain::app::add_score(program),       viewgain::app::add_candidates(program),
+      viewgain::app::add_reconstruct(program), viewgain::app::add_info(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -134,8 +134,7 @@ GrayImage read_gray_png(const std::filesystem::path& path, int width, int height
   const bool ok = info != nullptr && decode(png, info, state, image);
   png_destroy_read_struct(&png, &info, nullptr);
   if (!ok) {
-    fail(ErrorCode::format, path,
-         "not a usable depth image: " + std::string(state.message.c_str()));
+    fail(ErrorCode::format, path, "not a usable image: " + std::string(state.message.c_str()));
   }
   return image;
 }
@@ -148,6 +147,11 @@ void write_png(const std::filesystem::path& path, const GrayImage& image) {
 void write_png(const std::filesystem::path& path, const RgbImage& image) {
   write_image(path, image.width, image.height, 8, PNG_COLOR_TYPE_RGB, image.pixels.data(),
               3 * static_cast<std::size_t>(image.width));
+}
+
+void write_png(const std::filesystem::path& path, const Gray8Image& image) {
+  write_image(path, image.width, image.height, 8, PNG_COLOR_TYPE_GRAY, image.pixels.data(),
+              static_cast<std::size_t>(image.width));
 }
 
 }  // namespace viewgain::app

@@ -22,6 +22,13 @@ struct RgbImage {
   std::vector<std::uint8_t> pixels;  ///< 3 * width * height
 };
 
+/// 8-bit grayscale image, row by row.
+struct Gray8Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;
+};
+
 /// Reads a 16-bit grayscale PNG of exactly this size; raw values, no gamma. Throws Error(io) if the
 /// file cannot be read and Error(format), naming the file, if it is damaged or of another kind or
 /// size.
@@ -30,5 +37,6 @@ struct RgbImage {
 /// Atomic: a temporary file is renamed. Throws Error(io).
 void write_png(const std::filesystem::path& path, const GrayImage& image);
 void write_png(const std::filesystem::path& path, const RgbImage& image);
+void write_png(const std::filesystem::path& path, const Gray8Image& image);
 
 }  // namespace viewgain::app

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pose_source.hpp"
 
+#include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 
@@ -15,7 +17,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-using LatticeGenerator = std::vector<Pose> (*)(std::size_t, double, const Eigen::Vector3d&);
+using CenteredGenerator = std::vector<Pose> (*)(std::size_t, double, const Eigen::Vector3d&);
 
 // Generators know nothing of flags; a user does not know which value is meant without one.
 template <typename Make>
@@ -27,8 +29,8 @@ std::vector<Pose> naming_the_flag(const std::string& flag, const std::string& te
   }
 }
 
-std::vector<Pose> lattice(const std::string& flag, const std::string& text,
-                          LatticeGenerator generator) {
+std::vector<Pose> round_center(const std::string& flag, const std::string& text,
+                               CenteredGenerator generator) {
   const std::vector<double> n = parse_numbers(flag, text, 2, 5);
   if (n.size() != 2 && n.size() != 5) {
     throw Error(ErrorCode::invalid_argument,
@@ -50,6 +52,26 @@ std::vector<Pose> orbit(const std::string& text) {
                          [&] { return orbit_poses(count, n[1], n[2] * kDegree, start, step); });
 }
 
+std::vector<Pose> shell(const std::string& text) {
+  constexpr const char* kFlag = "--shell";
+  constexpr double kMaxSeed = 0x1.0p53;  // whole numbers up to here are exact
+  const std::vector<double> n = parse_numbers(kFlag, text, 4, 7);
+  if (n.size() != 4 && n.size() != 7) {
+    throw Error(ErrorCode::invalid_argument,
+                "--shell " + text + ": needs N,RMIN,RMAX,SEED or N,RMIN,RMAX,SEED,CX,CY,CZ");
+  }
+  const std::size_t count = parse_count(kFlag, n[0]);
+  if (!(n[3] >= 0 && n[3] <= kMaxSeed && n[3] == std::floor(n[3]))) {
+    throw Error(ErrorCode::invalid_argument,
+                "--shell " + text + ": the seed must be a whole number from 0 to 2^53");
+  }
+  const Eigen::Vector3d center =
+      n.size() == 7 ? Eigen::Vector3d(n[4], n[5], n[6]) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  return naming_the_flag(kFlag, text, [&] {
+    return shell_poses(count, n[1], n[2], static_cast<std::uint64_t>(n[3]), center);
+  });
+}
+
 }  // namespace
 
 PoseSource make_poses(const PoseOptions& options) {
@@ -61,9 +83,13 @@ PoseSource make_poses(const PoseOptions& options) {
   } else if (!options.orbit.empty()) {
     source.poses = orbit(options.orbit);
   } else if (!options.sphere.empty()) {
-    source.poses = lattice("--sphere", options.sphere, sphere_poses);
+    source.poses = round_center("--sphere", options.sphere, sphere_poses);
+  } else if (!options.rings.empty()) {
+    source.poses = round_center("--rings", options.rings, literature_ring_poses);
+  } else if (!options.shell.empty()) {
+    source.poses = shell(options.shell);
   } else {
-    source.poses = lattice("--dome", options.dome, dome_poses);
+    source.poses = round_center("--dome", options.dome, dome_poses);
   }
   return source;
 }

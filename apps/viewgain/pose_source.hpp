@@ -21,6 +21,8 @@ struct PoseOptions {
   std::string orbit;   ///< --orbit N,RADIUS,ELEVATION_DEG[,START_DEG,STEP_DEG]
   std::string sphere;  ///< --sphere N,RADIUS[,CX,CY,CZ]
   std::string dome;    ///< --dome N,RADIUS[,CX,CY,CZ]
+  std::string rings;   ///< --rings N,RADIUS[,CX,CY,CZ]
+  std::string shell;   ///< --shell N,RMIN,RMAX,SEED[,CX,CY,CZ]
 };
 
 /// Throws Error(invalid_argument), naming the flag, or what read_tum throws.

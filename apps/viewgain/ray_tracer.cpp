@@ -8,6 +8,8 @@
 #include <limits>
 #include <mutex>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "terminal.hpp"
 #include "viewgain/core/thread_pool.hpp"
@@ -21,6 +23,7 @@ using Eigen::Vector3d;
 constexpr int kSamplesPerSide = 2;  // of a pixel
 constexpr int kOcclusionRays = 6;   // a sample
 constexpr double kAmbient = 0.62;   // share of the sky's light, the sun has the rest
+constexpr double kHidden = 0.02;    // less visible than this is not looked at any more
 constexpr double kOffset = 1.5e-4;  // of the occlusion range: a ray must not hit its own start
 
 // Two directions that make a right-handed frame with the unit vector n.
@@ -38,24 +41,50 @@ double random_unit(std::uint64_t x) {
   return static_cast<double>((x ^ (x >> 31U)) >> 11U) * 0x1.0p-53;
 }
 
+// A part of the picture and what finds its triangles; nothing if it is empty.
+struct TracedPart {
+  TracedPart(const PaintedMesh::Part& painted, const ExecConfig& exec) : part(painted) {
+    if (!painted.mesh.triangles.empty()) scene.emplace(painted.mesh, exec);
+  }
+  [[nodiscard]] SurfaceHit intersect(const Vector3d& origin, const Vector3d& direction,
+                                     double range) const {
+    return scene ? scene->intersect(origin, direction, range) : SurfaceHit{};
+  }
+
+  const PaintedMesh::Part& part;
+  std::optional<SurfaceScene> scene;
+};
+
 class Renderer {
  public:
-  Renderer(const PaintedMesh& painted, const SurfaceScene& scene, const Vector3d& to_sun,
-           double occlusion_range)
-      : painted_(painted), scene_(scene), to_sun_(to_sun), occlusion_range_(occlusion_range) {}
+  Renderer(const PaintedMesh& painted, const Vector3d& to_sun, double occlusion_range,
+           const ExecConfig& exec)
+      : painted_(painted),
+        solid_(painted.solid(), exec),
+        overlay_(painted.overlay(), exec),
+        to_sun_(to_sun),
+        occlusion_range_(occlusion_range) {}
 
   // `height` in [0, 1] runs down the picture; `seed` is unique to the sample.
   [[nodiscard]] Vector3d color(const Vector3d& eye, const Vector3d& direction, double height,
                                std::uint64_t seed) const {
-    const SurfaceHit hit = scene_.intersect(eye, direction);
-    if (!std::isfinite(hit.range)) return background(height);
-    const Paint& paint = painted_.paint_of(hit.triangle);
-    if (!paint.lit) return paint.color;
-    const Vector3d normal = hit.normal.dot(direction) < 0 ? hit.normal : Vector3d(-hit.normal);
-    const Vector3d point = eye + hit.range * direction + kOffset * occlusion_range_ * normal;
-    const double facing = std::max(0.0, normal.dot(to_sun_));
-    const double sun = facing > 0 && !blocked(point, to_sun_, kFar) ? facing : 0.0;
-    return paint.color * (kAmbient * open_sky(point, normal, seed) + (1 - kAmbient) * 1.5 * sun);
+    const SurfaceHit behind = solid_.intersect(eye, direction, kFar);
+    Vector3d sum = Vector3d::Zero();
+    double visible = 1;  // share of what lies behind the translucent triangles so far
+    for (double start = 0; start < behind.range;) {
+      const Vector3d origin = eye + start * direction;
+      const SurfaceHit hit = overlay_.intersect(origin, direction, behind.range - start);
+      if (!std::isfinite(hit.range)) break;
+      const Paint& paint = painted_.paint_of(overlay_.part, hit.triangle);
+      if (paint.lit || paint.opacity >= 1 || visible < kHidden) {
+        return sum + visible * shaded(overlay_.part, origin, direction, hit, seed);
+      }
+      sum += visible * paint.opacity * paint.color;
+      visible *= 1 - paint.opacity;
+      start += hit.range + kOffset * occlusion_range_;
+    }
+    if (!std::isfinite(behind.range)) return sum + visible * background(height);
+    return sum + visible * shaded(solid_.part, eye, direction, behind, seed);
   }
 
  private:
@@ -66,9 +95,25 @@ class Renderer {
     return top + height * (bottom - top);
   }
 
+  [[nodiscard]] Vector3d shaded(const PaintedMesh::Part& part, const Vector3d& eye,
+                                const Vector3d& direction, const SurfaceHit& hit,
+                                std::uint64_t seed) const {
+    const Paint& paint = painted_.paint_of(part, hit.triangle);
+    if (!paint.lit) return paint.color;
+    const bool front = hit.normal.dot(direction) < 0;
+    const Vector3d normal = front ? hit.normal : Vector3d(-hit.normal);
+    const Vector3d on_surface = eye + hit.range * direction;
+    const Vector3d smooth = part.shading_normal(hit.triangle, on_surface, normal);
+    const Vector3d point = on_surface + kOffset * occlusion_range_ * normal;
+    const double facing = std::max(0.0, smooth.dot(to_sun_));
+    const double sun = facing > 0 && !blocked(point, to_sun_, kFar) ? facing : 0.0;
+    const double light = kAmbient * open_sky(point, smooth, seed) + (1 - kAmbient) * 1.5 * sun;
+    return front ? Vector3d(paint.color * light) : Vector3d(paint.back_side * light * paint.color);
+  }
+
   [[nodiscard]] bool blocked(const Vector3d& from, const Vector3d& direction, double range) const {
-    const SurfaceHit hit = scene_.intersect(from, direction, range);
-    return std::isfinite(hit.range) && painted_.paint_of(hit.triangle).lit;
+    const SurfaceHit hit = solid_.intersect(from, direction, range);
+    return std::isfinite(hit.range) && painted_.paint_of(solid_.part, hit.triangle).lit;
   }
 
   // Share of the sky that the point sees, cosine-weighted, stratified in azimuth.
@@ -90,7 +135,7 @@ class Renderer {
   }
 
   const PaintedMesh& painted_;
-  const SurfaceScene& scene_;
+  TracedPart solid_, overlay_;
   Vector3d to_sun_;
   double occlusion_range_;
 };
@@ -120,12 +165,54 @@ void PaintedMesh::add_hexahedron(const std::array<Vector3d, 8>& corners, std::ui
                                                                             {2, 4, 6},
                                                                             {1, 3, 5},
                                                                             {3, 7, 5}}};
-  const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
-  for (const Vector3d& p : corners) mesh_.vertices.push_back({p.x(), p.y(), p.z()});
+  Part& part = part_for(paint);
+  const auto first = static_cast<std::uint32_t>(part.mesh.vertices.size());
+  for (const Vector3d& p : corners) part.mesh.vertices.push_back({p.x(), p.y(), p.z()});
   for (const auto& t : kTriangles) {
-    mesh_.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    paint_of_triangle_.push_back(paint);
+    part.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    part.paint_of_triangle.push_back(paint);
   }
+}
+
+void PaintedMesh::add_surface(const std::vector<std::array<double, 3>>& vertices,
+                              const std::vector<std::array<double, 3>>& normals,
+                              const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                              std::uint8_t paint) {
+  Part& part = part_for(paint);
+  const auto first = static_cast<std::uint32_t>(part.mesh.vertices.size());
+  part.mesh.vertices.insert(part.mesh.vertices.end(), vertices.begin(), vertices.end());
+  part.normals.resize(first, Vector3d::Zero());
+  for (const auto& n : normals) part.normals.emplace_back(n[0], n[1], n[2]);
+  for (const auto& t : triangles) {
+    part.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    part.paint_of_triangle.push_back(paint);
+  }
+}
+
+void PaintedMesh::add_triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c,
+                               std::uint8_t paint) {
+  Part& part = part_for(paint);
+  const auto first = static_cast<std::uint32_t>(part.mesh.vertices.size());
+  for (const Vector3d& p : {a, b, c}) part.mesh.vertices.push_back({p.x(), p.y(), p.z()});
+  part.mesh.triangles.push_back({first, first + 1, first + 2});
+  part.paint_of_triangle.push_back(paint);
+}
+
+Vector3d PaintedMesh::Part::shading_normal(std::uint32_t triangle, const Vector3d& point,
+                                           const Vector3d& normal) const {
+  const auto& t = mesh.triangles[triangle];
+  if (std::max({t[0], t[1], t[2]}) >= normals.size()) return normal;
+  const auto vertex = [&](std::size_t k) {
+    return Eigen::Map<const Vector3d>(mesh.vertices[t[k]].data());
+  };
+  // Each corner's share is the area of the triangle between the point and the opposite edge.
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3d a = vertex((k + 1) % 3) - point, b = vertex((k + 2) % 3) - point;
+    sum += a.cross(b).norm() * normals[t[k]];
+  }
+  if (!(sum.norm() > 0)) return normal;
+  return sum.dot(normal) < 0 ? Vector3d(-sum.normalized()) : Vector3d(sum.normalized());
 }
 
 void PaintedMesh::add_line(const Vector3d& a, const Vector3d& b, double width, std::uint8_t paint) {
@@ -138,14 +225,25 @@ void PaintedMesh::add_line(const Vector3d& a, const Vector3d& b, double width, s
   add_hexahedron(corners, paint);
 }
 
+void PaintedMesh::add_ribbon(const Vector3d& a, const Vector3d& b, double width,
+                             const Vector3d& viewer_eye, std::uint8_t paint) {
+  // In pieces: the box round a long slanting triangle is large and empty, which slows every ray.
+  constexpr int kPieces = 48;
+  const Vector3d half = 0.5 * width * (b - a).cross(a - viewer_eye).normalized();
+  for (int i = 0; i < kPieces; ++i) {
+    const Vector3d begin = a + i * (b - a) / kPieces, end = a + (i + 1) * (b - a) / kPieces;
+    add_triangle(begin - half, begin + half, end - half, paint);
+    add_triangle(end - half, begin + half, end + half, paint);
+  }
+}
+
 RgbImage render(const PaintedMesh& scene, const PinholeCamera& camera, const Pose& T_world_camera,
                 double occlusion_range, const ExecConfig& exec) {
-  const SurfaceScene surfaces(scene.mesh(), exec);
   const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
   const Vector3d eye = T_world_camera.translation();
   // The sun stands over the viewer's left shoulder.
   const Vector3d to_sun = (R_world_camera * Vector3d(-0.45, -0.75, -0.6)).normalized();
-  const Renderer renderer(scene, surfaces, to_sun, occlusion_range);
+  const Renderer renderer(scene, to_sun, occlusion_range, exec);
 
   RgbImage image{camera.width, camera.height, {}};
   const auto columns = static_cast<std::size_t>(camera.width);

@@ -209,6 +209,12 @@ Command add_score(CLI::App& program) {
       "N,RADIUS[,CX,CY,CZ]: Fibonacci lattice on a sphere, looking at its centre [m]");
   poses->add_option("--dome", options->poses.dome,
                     "N,RADIUS[,CX,CY,CZ]: the lattice's upper half, with N points [m]");
+  poses->add_option("--rings", options->poses.rings,
+                    "N,RADIUS[,CX,CY,CZ]: cylinder and dome rings of the literature, N is 48, 80, "
+                    "288 or 864 [m]");
+  poses->add_option("--shell", options->poses.shell,
+                    "N,RMIN,RMAX,SEED[,CX,CY,CZ]: at random between two spheres, looking at their "
+                    "centre [m]");
   poses->require_option(1);
   app->add_option("--sensor", options->sensor, kSensorHelp)->required();
   app->add_option("--criterion", options->criterion,

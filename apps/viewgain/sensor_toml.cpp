@@ -2,19 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sensor_toml.hpp"
 
-#include <toml++/toml.h>
-
 #include <array>
-#include <cmath>
-#include <fstream>
-#include <initializer_list>
-#include <iterator>
 #include <sstream>
-#include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "toml_table.hpp"
 #include "values.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -25,6 +18,7 @@ template <typename Model>
 struct NoiseField {
   const char* key;
   double Model::* member;
+  bool optional = false;  // then the model's default holds
 };
 
 // One list a model: what it is called in a file and its parameters. Reader and writer share them.
@@ -33,11 +27,13 @@ struct NoiseLayout;
 template <>
 struct NoiseLayout<ShotNoise> {
   static constexpr const char* kName = "shot";
-  static constexpr std::array<NoiseField<ShotNoise>, 4> kFields{
+  static constexpr std::array<NoiseField<ShotNoise>, 6> kFields{
       {{"reference_sigma", &ShotNoise::reference_sigma},
        {"reference_range", &ShotNoise::reference_range},
        {"reference_integration_time", &ShotNoise::reference_integration_time},
-       {"integration_time", &ShotNoise::integration_time}}};
+       {"integration_time", &ShotNoise::integration_time},
+       {"modulation_frequency", &ShotNoise::modulation_frequency, true},
+       {"min_amplitude", &ShotNoise::min_amplitude, true}}};
 };
 template <>
 struct NoiseLayout<StructuredLightNoise> {
@@ -85,83 +81,6 @@ std::string toml_string(const std::string& value) {
   return text.str();
 }
 
-// One table of the file; remembers which keys were asked for, so that the others can be refused.
-class TableReader {
- public:
-  TableReader(const toml::table& table, std::string file, std::string prefix)
-      : table_(table), file_(std::move(file)), prefix_(std::move(prefix)) {}
-
-  [[noreturn]] void fail(std::string_view key, const std::string& what) const {
-    throw Error(ErrorCode::format, file_ + ": key \"" + prefix_ + std::string(key) + "\" " + what);
-  }
-
-  const toml::node* find(std::string_view key) {
-    known_.emplace_back(key);
-    return table_.get(key);
-  }
-
-  const toml::node& require(std::string_view key) {
-    const toml::node* node = find(key);
-    if (node == nullptr) fail(key, "is missing");
-    return *node;
-  }
-
-  double number(std::string_view key) { return number_of(require(key), key); }
-
-  double number_of(const toml::node& node, std::string_view key) const {
-    const auto value = node.value<double>();
-    if (!value || !node.is_number()) fail(key, "must be a number");
-    if (!std::isfinite(*value)) fail(key, "must be finite");
-    return *value;
-  }
-
-  int whole_number(std::string_view key) {
-    const toml::node& node = require(key);
-    const auto value = node.value<std::int64_t>();
-    if (!node.is_integer() || !value || *value < 0 || *value > 1'000'000) {
-      fail(key, "must be a whole number from 0 to 1000000");
-    }
-    return static_cast<int>(*value);
-  }
-
-  std::string text(std::string_view key) {
-    const toml::node& node = require(key);
-    if (!node.is_string()) fail(key, "must be a string");
-    return *node.value<std::string>();
-  }
-
-  std::vector<double> numbers(std::string_view key, const toml::node& node,
-                              std::size_t count) const {
-    const toml::array* array = node.as_array();
-    if (array == nullptr || array->size() != count) {
-      fail(key, "must be a list of " + std::to_string(count) + " numbers");
-    }
-    std::vector<double> values;
-    for (const toml::node& element : *array) values.push_back(number_of(element, key));
-    return values;
-  }
-
-  TableReader table(std::string_view key) {
-    const toml::node& node = require(key);
-    if (!node.is_table()) fail(key, "must be a table");
-    return {*node.as_table(), file_, prefix_ + std::string(key) + "."};
-  }
-
-  void refuse_unknown_keys() const {
-    for (const auto& [key, node] : table_) {
-      if (std::find(known_.begin(), known_.end(), std::string(key.str())) == known_.end()) {
-        fail(key.str(), "is unknown");
-      }
-    }
-  }
-
- private:
-  const toml::table& table_;
-  std::string file_;
-  std::string prefix_;
-  std::vector<std::string> known_;
-};
-
 PinholeCamera read_camera(TableReader reader) {
   PinholeCamera camera;
   camera.width = reader.whole_number("width");
@@ -183,6 +102,7 @@ bool read_noise_as(TableReader& reader, const std::string& model, NoiseModel& no
   if (model != NoiseLayout<Model>::kName) return false;
   Model parameters;
   for (const auto& field : NoiseLayout<Model>::kFields) {
+    if (field.optional && reader.find(field.key) == nullptr) continue;
     parameters.*field.member = reader.number(field.key);
   }
   noise = parameters;
@@ -266,19 +186,7 @@ std::string sensor_toml(const Sensor& sensor) {
 
 Sensor read_sensor_toml(const std::filesystem::path& path) {
   const std::string file = path.string();
-  std::error_code ignored;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(path, ignored)) {
-    throw Error(ErrorCode::io, file + ": cannot be opened");
-  }
-  const std::string contents{std::istreambuf_iterator<char>(stream), {}};
-  toml::table root;
-  try {
-    root = toml::parse(contents);
-  } catch (const toml::parse_error& error) {
-    throw Error(ErrorCode::format, file + ": line " + std::to_string(error.source().begin.line) +
-                                       ": " + std::string(error.description()));
-  }
+  const toml::table root = read_toml(path);
   TableReader reader(root, file, "");
   Sensor sensor;
   sensor.name = reader.text("name");

@@ -4,10 +4,14 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "commands.hpp"
 #include "frames_dir.hpp"
 #include "pose_source.hpp"
+#include "sensing.hpp"
+#include "sensing_flags.hpp"
 #include "sensor_toml.hpp"
 #include "terminal.hpp"
 #include "viewgain/core/error.hpp"
@@ -25,11 +29,16 @@ struct Options {
   std::string sensor;
   double size = 0.35;
   bool center = false;
-  double background = 1.5;
   std::string up = "z";
-  std::string noise = "off";
-  std::uint64_t seed = 1;
+  SensingOptions sensing;
+  std::size_t frames_per_view = 1;
+  std::string amplitude;
   std::string out;
+
+  [[nodiscard]] bool writes_amplitude(const Sensor& sensor_in_use) const {
+    return amplitude.empty() ? std::holds_alternative<ShotNoise>(sensor_in_use.noise)
+                             : amplitude == "on";
+  }
 };
 
 struct PixelCounts {
@@ -64,41 +73,53 @@ void simulate(const Options& options) {
   TriangleMesh mesh = placed(read_mesh(options.mesh), placement_of(options));
   const std::size_t triangles = mesh.triangles.size();
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
-  const SimulationConfig config{options.background, options.noise == "on", options.seed};
-  const SimulatedSensor camera(scene, sensor, config, exec);
+  const SimulatedSensor camera(scene, sensor, simulation_config(options.sensing, sensor), exec);
+  std::vector<Pose> poses;  // one a frame
+  for (const Pose& pose : source.poses) poses.insert(poses.end(), options.frames_per_view, pose);
 
   const Stopwatch watch;
   FramesWriter writer(options.out);
   PixelCounts counts;
   {
     Progress progress("frame");
-    for (std::size_t i = 0; i < source.poses.size(); ++i) {
-      const DepthFrame frame = camera.acquire(source.poses[i], i);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      DepthFrame frame = camera.acquire(poses[i], i);
       counts.add(frame);
+      if (!options.writes_amplitude(sensor)) frame.amplitude.clear();
       writer.write_frame(i, frame);
-      progress.update(i + 1, source.poses.size());
+      progress.update(i + 1, poses.size());
     }
   }
-  writer.commit(source.poses, sensor);
+  writer.commit(poses, sensor);
   const double seconds = watch.seconds();
 
   if (options.common.json) {
-    print_json({{"frames", source.poses.size()},
-                {"width", sensor.camera.width},
-                {"height", sensor.camera.height},
-                {"sensor", sensor.name},
-                {"triangles", triangles},
-                {"readings", counts.readings},
-                {"out_of_range", counts.out_of_range},
-                {"invalid", counts.invalid},
-                {"noise", options.noise == "on"},
-                {"seed", options.seed},
-                {"orthonormalized_poses", source.orthonormalized},
-                {"out", options.out},
-                {"seconds", seconds}});
+    const SensingOptions& sensing = options.sensing;
+    print_json(
+        {{"frames", poses.size()},
+         {"views", source.poses.size()},
+         {"frames_per_view", options.frames_per_view},
+         {"width", sensor.camera.width},
+         {"height", sensor.camera.height},
+         {"sensor", sensor.name},
+         {"triangles", triangles},
+         {"readings", counts.readings},
+         {"out_of_range", counts.out_of_range},
+         {"invalid", counts.invalid},
+         {"noise", sensing.noise == "on"},
+         {"flying_pixels", sensing.has_flying_pixels(sensor)},
+         {"wiggling", sensing.wiggling},
+         {"calibrated", sensing.calibrate == "on"},
+         {"support_plane", sensing.support_plane ? nlohmann::ordered_json(*sensing.support_plane)
+                                                 : nlohmann::ordered_json()},
+         {"amplitude", options.writes_amplitude(sensor)},
+         {"seed", sensing.seed},
+         {"orthonormalized_poses", source.orthonormalized},
+         {"out", options.out},
+         {"seconds", seconds}});
     return;
   }
-  std::printf("%zu frames of %dx%d px (%s) of %s triangles in %.2f s: %s\n", source.poses.size(),
+  std::printf("%zu frames of %dx%d px (%s) of %s triangles in %.2f s: %s\n", poses.size(),
               sensor.camera.width, sensor.camera.height, sensor.name.c_str(),
               with_commas(triangles).c_str(), seconds, options.out.c_str());
   std::printf("pixels: %s readings, %s out of range, %s invalid\n",
@@ -116,7 +137,9 @@ Command add_simulate(CLI::App& program) {
   CLI::App* app = program.add_subcommand(
       "simulate",
       "Depth frames of a mesh: frame-NNNNNN.depth.png (16 bit, depth along z in 0.1 mm, 0 invalid, "
-      "65535 out of range), poses.txt (TUM, line i is frame i), sensor.toml.");
+      "65535 out of range), frame-NNNNNN.amplitude.png (16 bit, cos/range^2 in 1e-3 m^-2), "
+      "poses.txt "
+      "(TUM, line i is frame i), sensor.toml.");
   app->add_option("MESH", options->mesh, "OFF, OBJ, STL or PLY file")->required();
   auto* poses = app->add_option_group("poses", "exactly one of");
   poses->add_option("--poses", options->poses.file,
@@ -130,18 +153,17 @@ Command add_simulate(CLI::App& program) {
                   "longest side of the mesh's bounding box [m]; 0: the file's own size")
       ->capture_default_str();
   app->add_flag("--center", options->center, "move the bounding box's centre to the origin");
-  app->add_option("--background", options->background,
-                  "radius of a sphere round the origin that stands for the room [m]; 0: none")
-      ->capture_default_str();
   app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
       ->check(CLI::IsMember({"x", "y", "z"}))
       ->capture_default_str();
-  app->add_option("--noise", options->noise, "Gaussian noise along the ray by the sensor's model")
-      ->check(CLI::IsMember({"off", "on"}))
+  add_sensing_options(*app, options->sensing);
+  app->add_option("--frames-per-view", options->frames_per_view,
+                  "frames from each pose, numbered on; poses.txt repeats the pose")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000}, "number"))
       ->capture_default_str();
-  app->add_option("--seed", options->seed, "of the noise")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number"))
-      ->capture_default_str();
+  app->add_option("--amplitude", options->amplitude,
+                  "write amplitude images; default: on for sensors with shot noise")
+      ->check(CLI::IsMember({"off", "on"}));
   app->add_option("--out", options->out,
                   "folder to write; frames of an earlier run in it are replaced")
       ->required();

@@ -48,6 +48,80 @@ std::vector<Pose> lattice(std::size_t count, double steps, double radius,
   return poses;
 }
 
+void check_finite(const char* what, const char* name, double value) {
+  if (std::isfinite(value)) return;
+  throw Error(ErrorCode::invalid_argument, std::string(what) + ": the " + name + " is not finite");
+}
+
+/// Adds the poses of one ring; its numbers are checked.
+void append_ring(std::size_t count, double radius, double height, double tilt, double start,
+                 const Eigen::Vector3d& center, std::vector<Pose>& poses) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double azimuth =
+        start + 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+    const Eigen::Vector3d outward(std::cos(azimuth), std::sin(azimuth), 0.0);
+    const Eigen::Vector3d eye = center + radius * outward + Eigen::Vector3d(0, 0, height);
+    const Eigen::Vector3d direction =
+        -std::cos(tilt) * outward - Eigen::Vector3d(0, 0, std::sin(tilt));
+    // From the origin, so that the direction is not rounded on its way through a far eye.
+    poses.emplace_back(look_at(Eigen::Vector3d::Zero(), direction).rotation(), eye);
+  }
+}
+
+/// Cylinder rings at `heights` and, on top of the highest, a dome of rings at `elevations` on a
+/// sphere of the cylinder's radius; `tilts` are added to the level or inward direction of each.
+struct RingPattern {
+  std::vector<double> heights;     // [m]
+  std::vector<double> elevations;  // [rad]
+  std::vector<double> tilts;       // [rad]
+};
+
+void append_pattern(const RingPattern& pattern, double radius, double scale,
+                    const Eigen::Vector3d& center, std::vector<Pose>& poses) {
+  constexpr std::size_t kAzimuths = 16;
+  const auto append = [&](double ring_radius, double height, double tilt) {
+    for (const double more : pattern.tilts) {
+      append_ring(kAzimuths, scale * ring_radius, scale * height, tilt + more, 0.0, center, poses);
+    }
+  };
+  for (const double height : pattern.heights) append(radius, height, 0.0);
+  for (const double elevation : pattern.elevations) {
+    append(radius * std::cos(elevation), pattern.heights.back() + radius * std::sin(elevation),
+           elevation);
+  }
+}
+
+/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014). Not <random>, whose distributions differ between
+/// standard libraries.
+class PortableRandom {
+ public:
+  explicit PortableRandom(std::uint64_t seed) : state_(seed) {}
+
+  /// Uniform in [0, 1).
+  double unit() {
+    state_ += 0x9E3779B97F4A7C15ULL;
+    std::uint64_t x = state_;
+    x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+    x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
+    return static_cast<double>((x ^ (x >> 31U)) >> 11U) * 0x1.0p-53;
+  }
+
+  /// Uniform on the unit sphere (Marsaglia 1972): no sine or cosine, whose last bits depend on the
+  /// mathematical library.
+  Eigen::Vector3d direction() {
+    for (;;) {
+      const double a = 2.0 * unit() - 1.0, b = 2.0 * unit() - 1.0;
+      const double s = a * a + b * b;
+      if (s >= 1.0) continue;
+      const double ring = 2.0 * std::sqrt(1.0 - s);
+      return {a * ring, b * ring, 1.0 - 2.0 * s};
+    }
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
 }  // namespace
 
 std::vector<Pose> sphere_poses(std::size_t count, double radius, const Eigen::Vector3d& center) {
@@ -74,6 +148,70 @@ std::vector<Pose> orbit_poses(std::size_t count, double radius, double elevation
     const Eigen::Vector3d offset(std::cos(elevation) * std::cos(azimuth),
                                  std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
     poses.push_back(look_at(center + radius * offset, center));
+  }
+  return poses;
+}
+
+std::vector<Pose> ring_poses(std::size_t count, double radius, double height, double tilt,
+                             double start, const Eigen::Vector3d& center) {
+  check("rings", count, radius, center);
+  check_finite("rings", "height", height);
+  check_finite("rings", "tilt's angle", tilt);
+  check_finite("rings", "start's angle", start);
+  std::vector<Pose> poses;
+  poses.reserve(count);
+  append_ring(count, radius, height, tilt, start, center, poses);
+  return poses;
+}
+
+std::vector<Pose> literature_ring_poses(std::size_t total, double radius,
+                                        const Eigen::Vector3d& center) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  const RingPattern of_48{{0.15, 0.35}, {45 * kDegree}, {0.0}};
+  const RingPattern of_80{{0.15, 0.30, 0.45}, {30 * kDegree, 60 * kDegree}, {0.0}};
+  const RingPattern of_288{
+      {0.1, 0.2, 0.3, 0.4}, {30 * kDegree, 60 * kDegree}, {0.0, -22.5 * kDegree, 22.5 * kDegree}};
+  check("rings", total, radius, center);
+  std::vector<Pose> poses;
+  poses.reserve(total);
+  switch (total) {
+    case 48:
+      append_pattern(of_48, 0.6, radius / 0.6, center, poses);
+      break;
+    case 80:
+      append_pattern(of_80, 0.5, radius / 0.5, center, poses);
+      break;
+    case 288:
+      append_pattern(of_288, 0.5, radius / 0.5, center, poses);
+      break;
+    case 864:
+      for (const double r : {0.4, 0.6, 0.8}) append_pattern(of_288, r, radius / 0.5, center, poses);
+      break;
+    default:
+      throw Error(ErrorCode::invalid_argument, "rings: no set of " + std::to_string(total) +
+                                                   " poses, there are 48, 80, 288 and 864");
+  }
+  return poses;
+}
+
+std::vector<Pose> shell_poses(std::size_t count, double min_radius, double max_radius,
+                              std::uint64_t seed, const Eigen::Vector3d& center) {
+  check("shell", count, min_radius, center);
+  check("shell", count, max_radius, center);
+  if (min_radius > max_radius) {
+    throw Error(ErrorCode::invalid_argument,
+                "shell: the smaller radius " + std::to_string(min_radius) +
+                    " is over the larger one, " + std::to_string(max_radius));
+  }
+  PortableRandom random(seed);
+  std::vector<Pose> poses;
+  poses.reserve(count);
+  while (poses.size() < count) {
+    // Uniform in the radius, kept with probability (r / max)²: uniform in the volume.
+    const double radius = min_radius + (max_radius - min_radius) * random.unit();
+    const double ratio = radius / max_radius;
+    if (random.unit() >= ratio * ratio) continue;
+    poses.push_back(look_at(center + radius * random.direction(), center));
   }
   return poses;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace viewgain {
@@ -56,6 +57,14 @@ MeasurementSigmas sigmas(const ConstantNoise& noise, double /*t*/, double /*fx*/
 
 MeasurementSigmas sigmas(const NoiseModel& noise, double t, double fx, double cos_incidence) {
   return std::visit([&](const auto& model) { return sigmas(model, t, fx, cos_incidence); }, noise);
+}
+
+double unambiguous_range(const NoiseModel& noise) {
+  const auto* shot = std::get_if<ShotNoise>(&noise);
+  if (shot == nullptr || !(shot->modulation_frequency > 0)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return kSpeedOfLight / (2.0 * shot->modulation_frequency);
 }
 
 }  // namespace viewgain

@@ -14,13 +14,20 @@ namespace {
 
 using NamedValues = std::initializer_list<std::pair<const char*, double>>;
 
+[[noreturn]] void refuse(const char* name, const char* rule, double value) {
+  throw Error(ErrorCode::invalid_argument, std::string("noise: ") + name + " must be " + rule +
+                                               " and finite, not " + std::to_string(value));
+}
+
 void check_positive(NamedValues values) {
   for (const auto& [name, value] : values) {
-    if (!(std::isfinite(value) && value > 0)) {
-      throw Error(ErrorCode::invalid_argument, std::string("noise: ") + name +
-                                                   " must be positive and finite, not " +
-                                                   std::to_string(value));
-    }
+    if (!(std::isfinite(value) && value > 0)) refuse(name, "positive", value);
+  }
+}
+
+void check_not_negative(NamedValues values) {
+  for (const auto& [name, value] : values) {
+    if (!(std::isfinite(value) && value >= 0)) refuse(name, "not negative", value);
   }
 }
 
@@ -29,6 +36,8 @@ void validate_noise(const ShotNoise& n) {
                   {"reference_range", n.reference_range},
                   {"reference_integration_time", n.reference_integration_time},
                   {"integration_time", n.integration_time}});
+  check_not_negative(
+      {{"modulation_frequency", n.modulation_frequency}, {"min_amplitude", n.min_amplitude}});
 }
 void validate_noise(const StructuredLightNoise& n) {
   check_positive({{"offset", n.offset},
@@ -65,7 +74,7 @@ PinholeCamera make_camera(int width, int height, double fx, double fy, double cx
       .width = width, .height = height, .fx = fx, .fy = fy, .cx = cx, .cy = cy, .distortion = {}};
 }
 
-/// The models' default parameters are those of the presets that use them.
+/// But for the laser's, the models' default parameters are those of the presets that use them.
 const std::vector<Sensor>& presets() {
   static const std::vector<Sensor> sensors{
       make_sensor("sr4000", make_camera(176, 144, 220.0, 231.2, 87.5, 71.5), 0.2, 5.0, 0.4,
@@ -76,6 +85,9 @@ const std::vector<Sensor>& presets() {
                   StructuredLightNoise{}),
       make_sensor("d435", make_camera(640, 480, 447.0, 447.0, 319.5, 239.5), 0.2, 3.0, 0.5,
                   StereoNoise{}),
+      // A line scanner of one row, for comparison with sure sensors.
+      make_sensor("laser_line", make_camera(640, 1, 800.0, 800.0, 319.5, 0.0), 0.1, 1.0, 0.4,
+                  ConstantNoise{.sigma_axial = 0.2e-3, .sigma_lateral = 0.2e-3}),
   };
   return sensors;
 }

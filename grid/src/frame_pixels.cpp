@@ -18,7 +18,25 @@ constexpr std::size_t kRowChunk = 8;
 constexpr double kTaperSigmas = 3.0;
 constexpr double kNoDepth = std::numeric_limits<double>::quiet_NaN();
 
+/// An amplitude that is no number, or negative, counts as the darkest: least information.
+double cos_from_amplitude(double amplitude, double range) {
+  return amplitude > 0 ? std::min(1.0, amplitude * range * range) : 0.0;
+}
+
+bool is_on_plane(const CameraPlane& plane, const Eigen::Vector3d& point, double range,
+                 double sigma_axial) {
+  const double height = plane.normal.dot(point) - plane.offset;  // [m] above the plane
+  if (height < 0) return true;
+  const double rise = plane.normal.dot(point) / range;  // of the ray, metres a metre
+  // How much farther the ray meets the plane; it must come down to do so.
+  return rise < 0 && height / -rise < kTaperSigmas * sigma_axial;
+}
+
 }  // namespace
+
+CameraPlane::CameraPlane(double height, const Pose& T_world_camera)
+    : normal(T_world_camera.rotation().row(2).transpose()),
+      offset(height - T_world_camera.translation().z()) {}
 
 FramePixels::FramePixels(const Sensor& sensor) : sensor_(sensor) {
   sensor_.validate();
@@ -44,9 +62,15 @@ void FramePixels::check(const DepthFrame& frame) const {
                     std::to_string(frame.depth.size()) + " values, the sensor has " +
                     std::to_string(camera.width) + " x " + std::to_string(camera.height));
   }
+  if (!frame.amplitude.empty() && frame.amplitude.size() != rays_.size()) {
+    throw Error(ErrorCode::invalid_argument,
+                "depth frame has " + std::to_string(frame.amplitude.size()) + " amplitudes for " +
+                    std::to_string(rays_.size()) + " pixels");
+  }
 }
 
-void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool) {
+void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
+                       const std::optional<CameraPlane>& plane) {
   const auto width = static_cast<std::size_t>(sensor_.camera.width);
   const auto height = static_cast<std::size_t>(sensor_.camera.height);
   // A centre at max_range itself is still crossed.
@@ -78,9 +102,15 @@ void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool) 
       for (std::size_t u = 0; u < width; ++u) {
         const std::size_t i = v * width + u;
         if (kinds_[i] != PixelKind::reading) continue;
-        const double cosine = cos_incidence(static_cast<int>(u), static_cast<int>(v));
-        sigmas_[i] = sensor_.sigmas(reach_taper_[2 * i], cosine);
+        const double range = reach_taper_[2 * i];
+        const double cosine = frame.amplitude.empty()
+                                  ? cos_incidence(static_cast<int>(u), static_cast<int>(v))
+                                  : cos_from_amplitude(frame.amplitude[i], range);
+        sigmas_[i] = sensor_.sigmas(range, cosine);
         if (tapered) reach_taper_[2 * i + 1] = kTaperSigmas * sigmas_[i].axial;
+        if (plane && is_on_plane(*plane, points_[i], range, sigmas_[i].axial)) {
+          kinds_[i] = PixelKind::on_plane;
+        }
       }
     }
   });

@@ -4,15 +4,27 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain::detail {
 
-enum class PixelKind : std::uint8_t { invalid, reading, out_of_range };
+/// on_plane: a reading of the support plane, which carves as far as it reaches but is no hit.
+enum class PixelKind : std::uint8_t { invalid, reading, out_of_range, on_plane };
+
+/// The support plane in a camera's frame: points p with normal · p = offset.
+struct CameraPlane {
+  Eigen::Vector3d normal;  ///< unit, up in the world
+  double offset = 0;       ///< [m]; negative where the camera stands above the plane
+
+  /// The plane world z = `height` [m].
+  CameraPlane(double height, const Pose& T_world_camera);
+};
 
 /// One sensor's pixels: where they look and what the current frame says there.
 class FramePixels {
@@ -20,19 +32,23 @@ class FramePixels {
   /// Undoes the lens distortion of every pixel once.
   explicit FramePixels(const Sensor& sensor);
 
-  /// Throws Error(invalid_argument) unless the frame has the sensor's size.
+  /// Throws Error(invalid_argument) unless the frame, and its amplitude if it has one, has the
+  /// sensor's size.
   void check(const DepthFrame& frame) const;
 
-  /// Sorts the frame's pixels into the three kinds and computes what follows from the readings
-  /// alone. With `tapered` false crossings keep their weight up to the reading.
-  void load(const DepthFrame& frame, bool tapered, ThreadPool& pool);
+  /// Sorts the frame's pixels into the kinds and computes what follows from the readings alone.
+  /// cosθ = amplitude · range² where the frame has amplitudes, else cos_incidence(). With `tapered`
+  /// false crossings keep their weight up to the reading. Readings below `plane`, or less than 3
+  /// σ_ax before it, are on_plane.
+  void load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
+            const std::optional<CameraPlane>& plane = {});
 
   [[nodiscard]] const Sensor& sensor() const { return sensor_; }
   [[nodiscard]] std::size_t size() const { return rays_.size(); }
   [[nodiscard]] PixelKind kind(std::size_t pixel) const { return kinds_[pixel]; }
   [[nodiscard]] const std::vector<PixelKind>& kinds() const { return kinds_; }
 
-  /// A reading's point in the camera frame [m].
+  /// A reading's point in the camera frame [m]; on the support plane too.
   [[nodiscard]] Eigen::Vector3d point(std::size_t pixel) const { return points_[pixel]; }
   /// Unit vector along the pixel's ray, camera frame.
   [[nodiscard]] Eigen::Vector3d direction(std::size_t pixel) const {

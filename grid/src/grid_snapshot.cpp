@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -146,6 +147,19 @@ GridSnapshot BeliefGrid::snapshot() const {
         result.tiles.push_back({box.min, box.max});
       });
   return result;
+}
+
+std::vector<BeliefBlockAt> BeliefGrid::belief_blocks() const {
+  std::vector<std::uint64_t> keys;
+  keys.reserve(storage_->beliefs.size());
+  for (const auto& [key, block] : storage_->beliefs) keys.push_back(key);
+  std::sort(keys.begin(), keys.end());
+  std::vector<BeliefBlockAt> blocks;
+  blocks.reserve(keys.size());
+  for (const std::uint64_t key : keys) {
+    blocks.push_back({storage_->lattice.origin(key), storage_->beliefs.at(key)});
+  }
+  return blocks;
 }
 
 GridStatistics BeliefGrid::statistics(Criterion criterion) const {

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include "block_kernels.hpp"
@@ -34,6 +36,19 @@ Pose rigid(const Pose& pose) {
     throw Error(ErrorCode::invalid_argument, text.str());
   }
   return error <= kOrthonormal ? pose : orthonormalized(pose);
+}
+
+std::optional<CameraPlane> plane_seen_from(const Pose& T_world_camera,
+                                           std::optional<double> height) {
+  if (!height) return std::nullopt;
+  return CameraPlane(*height, T_world_camera);
+}
+
+void check_plane(std::optional<double> height) {
+  if (height && !std::isfinite(*height)) {
+    throw Error(ErrorCode::invalid_argument,
+                "support plane " + std::to_string(*height) + " m is not finite");
+  }
 }
 
 // What a thread found in a region and may not put into the tree itself.
@@ -220,7 +235,9 @@ void FrameIntegrator::Impl::put_results(BeliefGrid::Storage& s) {
 
 FrameIntegrator::FrameIntegrator(const Sensor& sensor, const IntegrationConfig& config,
                                  const ExecConfig& exec)
-    : impl_(std::make_unique<Impl>(sensor, config, exec)) {}
+    : impl_(std::make_unique<Impl>(sensor, config, exec)) {
+  check_plane(config.support_plane);
+}
 FrameIntegrator::~FrameIntegrator() = default;
 FrameIntegrator::FrameIntegrator(FrameIntegrator&&) noexcept = default;
 FrameIntegrator& FrameIntegrator::operator=(FrameIntegrator&&) noexcept = default;
@@ -236,7 +253,8 @@ IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame&
   const ConeCamera camera(m.pixels.sensor().camera, T_camera_grid);
   const ConeCull cull(camera, m.pyramid, s.voxel_size);
 
-  m.pixels.load(frame, !m.literal(), m.pool);
+  m.pixels.load(frame, !m.literal(), m.pool,
+                plane_seen_from(T_world_camera, m.config.support_plane));
   m.hits.find(m.pixels, s.lattice, s.voxel_size, T_grid_camera, m.pool);
   if (m.cones()) {
     m.pyramid.build(m.pixels.reach_taper(), camera.width, camera.height);
@@ -261,6 +279,7 @@ IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame&
   IntegrationReport report;
   for (const PixelKind kind : m.pixels.kinds()) {
     ++(kind == PixelKind::reading        ? report.readings
+       : kind == PixelKind::on_plane     ? report.plane_readings
        : kind == PixelKind::out_of_range ? report.out_of_range
                                          : report.invalid);
   }
@@ -273,12 +292,14 @@ IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame&
 }
 
 std::optional<Box> reading_bounds(const Sensor& sensor, const DepthFrame& frame,
-                                  const Pose& T_world_camera, const Pose& T_world_grid) {
+                                  const Pose& T_world_camera, const Pose& T_world_grid,
+                                  std::optional<double> support_plane) {
   FramePixels pixels(sensor);
   pixels.check(frame);
+  check_plane(support_plane);
   const Pose T_grid_camera = T_world_grid.inverse() * rigid(T_world_camera);
   ThreadPool caller_alone(1);
-  pixels.load(frame, false, caller_alone);
+  pixels.load(frame, false, caller_alone, plane_seen_from(rigid(T_world_camera), support_plane));
   std::optional<Box> box;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (pixels.kind(i) != PixelKind::reading) continue;

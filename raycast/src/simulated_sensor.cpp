@@ -2,93 +2,229 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/raycast/simulated_sensor.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <vector>
+#include <span>
+#include <string>
+#include <utility>
 
+#include "tof_pixel.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
 
-// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a good hash of a counter, so that each pixel has
-// noise of its own whatever the order in which pixels are made.
-std::uint64_t mix(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15ULL;
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
-  return x ^ (x >> 31U);
+using detail::PixelRandom;
+using detail::PixelReading;
+using detail::RandomStream;
+using detail::RayReturn;
+
+constexpr int kMaxSubRays = 16;
+constexpr std::size_t kPixelChunk = 1024;
+
+void check(const Sensor& sensor, const SimulationConfig& config) {
+  sensor.validate();
+  const auto fail = [](const std::string& what) {
+    throw Error(ErrorCode::invalid_argument, "simulated sensor: " + what);
+  };
+  if (!(config.background_radius >= 0) || !std::isfinite(config.background_radius)) {
+    fail("background radius " + std::to_string(config.background_radius) + " m is not >= 0");
+  }
+  if (config.sub_rays < 1 || config.sub_rays > kMaxSubRays) {
+    fail("sub-rays " + std::to_string(config.sub_rays) + " are not in 1.." +
+         std::to_string(kMaxSubRays));
+  }
+  if (config.support_plane && !std::isfinite(*config.support_plane)) {
+    fail("support plane " + std::to_string(*config.support_plane) + " m is not finite");
+  }
+  config.calibration.validate();
+  if (config.wiggling == 0) return;
+  const double unambiguous = unambiguous_range(sensor.noise);
+  if (!std::isfinite(unambiguous)) {
+    fail("wiggling " + std::to_string(config.wiggling) + " m, but " + sensor.name +
+         " has no modulation frequency");
+  }
+  const double bound = unambiguous / (8.0 * std::numbers::pi);
+  if (!(std::abs(config.wiggling) < bound)) {
+    fail("wiggling " + std::to_string(config.wiggling) + " m is not under " +
+         std::to_string(bound) + " m");
+  }
 }
 
-// A standard normal number for (seed, frame, pixel), by Box and Muller.
-double normal(std::uint64_t seed, std::uint64_t frame, std::uint64_t pixel) {
-  const std::uint64_t a = mix(mix(mix(seed) ^ frame) ^ pixel);
-  const std::uint64_t b = mix(a);
-  const double u = (static_cast<double>(a >> 11U) + 0.5) * 0x1.0p-53;
-  const double v = static_cast<double>(b >> 11U) * 0x1.0p-53;
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * v);
+void check_pose(const Pose& T_world_camera) {
+  if (!(orthonormality_error(T_world_camera) <= 1e-3)) {
+    throw Error(ErrorCode::invalid_argument,
+                "the simulated sensor's pose is not a rigid transform");
+  }
 }
 
-// Where a ray from inside the sphere of radius r round the origin leaves it; outside: infinity,
-// then the room is not there.
-double sphere_exit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double r) {
-  const double b = origin.dot(direction);
-  const double c = origin.squaredNorm() - r * r;
-  if (c > 0) return std::numeric_limits<double>::infinity();
-  return -b + std::sqrt(b * b - c);
+// A pixel's rays in the camera frame: (x, y, 1) of its centre, and how it changes by one pixel.
+struct PixelRays {
+  Eigen::Vector3d center;
+  Eigen::Vector3d along_u = Eigen::Vector3d::Zero();
+  Eigen::Vector3d along_v = Eigen::Vector3d::Zero();
+};
+
+std::vector<PixelRays> pixel_rays(const PinholeCamera& camera, bool with_steps) {
+  std::vector<PixelRays> pixels;
+  pixels.reserve(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
+  for (const Eigen::Vector3d& center : camera.ray_table()) pixels.push_back({center});
+  if (!with_steps) return pixels;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const auto u = static_cast<double>(i % static_cast<std::size_t>(camera.width));
+    const auto v = static_cast<double>(i / static_cast<std::size_t>(camera.width));
+    const Eigen::Vector3d along_u = camera.ray(u + 0.5, v) - camera.ray(u - 0.5, v);
+    const Eigen::Vector3d along_v = camera.ray(u, v + 0.5) - camera.ray(u, v - 0.5);
+    // Where the lens model folds inside the pixel its rays are all that of the centre.
+    if (!along_u.allFinite() || !along_v.allFinite()) continue;
+    pixels[i].along_u = along_u;
+    pixels[i].along_v = along_v;
+  }
+  return pixels;
+}
+
+PixelTruth truth_of(std::span<const RayReturn> hits, double reading) {
+  PixelTruth truth;
+  double low = 0, high = 0, nearest = 0;
+  for (const RayReturn& hit : hits) {
+    if (!std::isfinite(hit.range)) continue;
+    if (truth.returns == 0) low = high = nearest = hit.range;
+    low = std::min(low, hit.range);
+    high = std::max(high, hit.range);
+    if (std::abs(hit.range - reading) < std::abs(nearest - reading)) nearest = hit.range;
+    ++truth.returns;
+  }
+  truth.min_range = static_cast<float>(low);
+  truth.max_range = static_cast<float>(high);
+  if (reading > 0) truth.nearest_range = static_cast<float>(nearest);
+  return truth;
 }
 
 }  // namespace
 
 struct SimulatedSensor::Impl {
-  std::shared_ptr<const SurfaceScene> scene;
   Sensor sensor;
   SimulationConfig config;
-  std::vector<Eigen::Vector3d> rays;  // (x, y, 1), camera frame
+  detail::SimulatedRoom room;
+  detail::TofPixel pixel_model;
+  std::vector<PixelRays> pixels;
   mutable ThreadPool pool;
 
-  Impl(std::shared_ptr<const SurfaceScene> s, const Sensor& se, const SimulationConfig& c,
-       int threads)
-      : scene(std::move(s)), sensor(se), config(c), rays(se.camera.ray_table()), pool(threads) {}
+  Impl(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor_in,
+       const SimulationConfig& config_in, int threads)
+      : sensor(sensor_in),
+        config(config_in),
+        room{std::move(scene), config.background_radius, config.support_plane},
+        pixel_model(sensor, config),
+        pixels(pixel_rays(sensor.camera, pixel_model.mixes())),
+        pool(threads) {}
 
-  [[nodiscard]] float pixel(const Eigen::Matrix3d& R_world_camera, const Eigen::Vector3d& p_world,
-                            std::size_t index, std::uint64_t frame_index) const {
-    const Eigen::Vector3d& ray = rays[index];
-    if (!ray.allFinite()) return DepthFrame::kInvalid;
+  // A camera's pose, and which of its frames this is.
+  struct View {
+    Eigen::Matrix3d R_world_camera;
+    Eigen::Vector3d p_world;
+    std::uint64_t frame_index = 0;
+  };
+
+  [[nodiscard]] RayReturn trace(const View& view, const Eigen::Vector3d& ray) const {
+    return room.first_return(view.p_world, view.R_world_camera * (ray / ray.norm()));
+  }
+
+  // By how much the pixel's rays (x, y, 1) move, all alike, when it looks beside its place.
+  [[nodiscard]] Eigen::Vector3d displacement(const View& view, const Eigen::Vector3d& ray,
+                                             const PixelRandom& random) const {
     const double length = ray.norm();
-    const Eigen::Vector3d direction = R_world_camera * (ray / length);
-    const SurfaceHit hit = scene->intersect(p_world, direction);
-    double range = hit.range;
-    double cos_incidence = std::abs(hit.normal.dot(direction));
-    if (config.background_radius > 0) {
-      const double wall = sphere_exit(p_world, direction, config.background_radius);
-      if (wall < range) {
-        range = wall;
-        cos_incidence =
-            std::abs((p_world + wall * direction).dot(direction)) / config.background_radius;
+    const Eigen::Vector3d direction = ray / length;
+    const RayReturn center = trace(view, ray);
+    const bool nothing = !(center.range <= sensor.max_range);
+    const double range = nothing ? sensor.max_range : std::max(center.range, kMinNoiseRange);
+    const double sigma = sensor.sigmas(range, nothing ? 1.0 : center.cos_incidence).lateral;
+    const Eigen::Vector3d across_x = Eigen::Vector3d(direction.z(), 0, -direction.x()).normalized();
+    const Eigen::Vector3d across_y = direction.cross(across_x);
+    return sigma / range * length *
+           (random.normal(RandomStream::lateral_x) * across_x +
+            random.normal(RandomStream::lateral_y) * across_y);
+  }
+
+  struct Pixel {
+    float depth = DepthFrame::kInvalid;
+    float amplitude = 0;
+  };
+
+  [[nodiscard]] std::size_t rays_per_pixel() const {
+    const auto n = static_cast<std::size_t>(config.sub_rays);
+    return pixel_model.mixes() ? n * n : 1;
+  }
+
+  // `hits`: room for the returns of a pixel's rays.
+  [[nodiscard]] Pixel pixel(const View& view, std::size_t index, std::span<RayReturn> hits,
+                            PixelTruth* truth) const {
+    const PixelRays& rays = pixels[index];
+    if (truth != nullptr) *truth = {};
+    if (!rays.center.allFinite()) return {};
+    const PixelRandom random(config.seed, view.frame_index, index);
+    Eigen::Vector3d center = rays.center;
+    if (config.lateral_noise) center += displacement(view, rays.center, random);
+
+    PixelReading reading;
+    if (pixel_model.mixes()) {
+      const int n = config.sub_rays;
+      std::size_t k = 0;
+      for (int j = 0; j < n; ++j) {
+        const Eigen::Vector3d row = center + ((j + 0.5) / n - 0.5) * rays.along_v;
+        for (int i = 0; i < n; ++i) {
+          hits[k++] = trace(view, row + ((i + 0.5) / n - 0.5) * rays.along_u);
+        }
       }
+      reading = pixel_model.mixed(hits);
+    } else {
+      hits[0] = trace(view, center);
+      reading = pixel_model.single(hits[0]);
     }
-    if (range < sensor.min_range) return DepthFrame::kInvalid;
-    if (range > sensor.max_range) return DepthFrame::kOutOfRange;
-    if (config.noise) {
-      range += sensor.sigmas(range, cos_incidence).axial * normal(config.seed, frame_index, index);
-      if (range < sensor.min_range) return DepthFrame::kInvalid;
-      if (range > sensor.max_range) return DepthFrame::kOutOfRange;
+    const double length = rays.center.norm();
+    const Pixel result = measured(reading, length, random);
+    if (truth != nullptr) {
+      const bool is_reading = result.depth > 0 && std::isfinite(result.depth);
+      *truth = truth_of(hits, is_reading ? result.depth * length : 0.0);
     }
-    return static_cast<float>(range / length);
+    return result;
+  }
+
+  [[nodiscard]] Pixel measured(PixelReading reading, double ray_length,
+                               const PixelRandom& random) const {
+    if (reading.range < sensor.min_range) return {};
+    if (reading.range > sensor.max_range) return {DepthFrame::kOutOfRange, 0};
+    reading = pixel_model.disturbed(reading, random);
+    if (reading.range < sensor.min_range || pixel_model.too_dark(reading)) return {};
+    if (reading.range > sensor.max_range) return {DepthFrame::kOutOfRange, 0};
+    return {static_cast<float>(reading.range / ray_length), static_cast<float>(reading.amplitude)};
+  }
+
+  [[nodiscard]] DepthFrame acquire(const Pose& T_world_camera, std::uint64_t frame_index,
+                                   PixelTruth* truth) const {
+    const Pose pose = orthonormalized(T_world_camera);
+    const View view{pose.rotation(), pose.translation(), frame_index};
+    DepthFrame frame{sensor.camera.width, sensor.camera.height, std::vector<float>(pixels.size()),
+                     std::vector<float>(pixels.size())};
+    pool.for_each_chunk(pixels.size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
+      std::vector<RayReturn> hits(rays_per_pixel());
+      for (std::size_t i = begin; i < end; ++i) {
+        const Pixel result = pixel(view, i, hits, truth == nullptr ? nullptr : truth + i);
+        frame.depth[i] = result.depth;
+        frame.amplitude[i] = result.amplitude;
+      }
+    });
+    return frame;
   }
 };
 
 SimulatedSensor::SimulatedSensor(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
                                  const SimulationConfig& config, const ExecConfig& exec) {
   if (!scene) throw Error(ErrorCode::invalid_argument, "the simulated sensor has no scene");
-  sensor.validate();
-  if (!(config.background_radius >= 0) || !std::isfinite(config.background_radius)) {
-    throw Error(ErrorCode::invalid_argument,
-                "background radius " + std::to_string(config.background_radius) + " m is not >= 0");
-  }
+  check(sensor, config);
   impl_ = std::make_unique<Impl>(std::move(scene), sensor, config, exec.num_threads);
 }
 
@@ -97,21 +233,15 @@ SimulatedSensor::SimulatedSensor(SimulatedSensor&&) noexcept = default;
 SimulatedSensor& SimulatedSensor::operator=(SimulatedSensor&&) noexcept = default;
 
 DepthFrame SimulatedSensor::acquire(const Pose& T_world_camera, std::uint64_t frame_index) const {
-  if (!(orthonormality_error(T_world_camera) <= 1e-3)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the simulated sensor's pose is not a rigid transform");
-  }
-  const Pose pose = orthonormalized(T_world_camera);
-  const Eigen::Matrix3d R_world_camera = pose.rotation();
-  const Eigen::Vector3d p_world = pose.translation();
-  const PinholeCamera& camera = impl_->sensor.camera;
-  DepthFrame frame{camera.width, camera.height, std::vector<float>(impl_->rays.size())};
-  impl_->pool.for_each_chunk(frame.depth.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      frame.depth[i] = impl_->pixel(R_world_camera, p_world, i, frame_index);
-    }
-  });
-  return frame;
+  check_pose(T_world_camera);
+  return impl_->acquire(T_world_camera, frame_index, nullptr);
+}
+
+DepthFrame SimulatedSensor::acquire(const Pose& T_world_camera, std::uint64_t frame_index,
+                                    std::vector<PixelTruth>& truth) const {
+  check_pose(T_world_camera);
+  truth.resize(impl_->pixels.size());
+  return impl_->acquire(T_world_camera, frame_index, truth.data());
 }
 
 }  // namespace viewgain

@@ -267,6 +267,7 @@ std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
   gather(*data);
   data->scene_boxes.emplace(data->boxes);
   choose_kernels(*data, exec.num_threads);
+  data->obstacles = obstacles;
   data->has_obstacles = !obstacles.boxes.empty() || !obstacles.meshes.empty();
 
   data->scene.reset(rtcNewScene(data->device.get()));

@@ -85,8 +85,13 @@ TEST_F(BadInputTest, CommandLine) {
                   {{"info", "map.vdb", "--threads", "two"}, "--threads"},
                   {simulate("cube.off", {"--up", "w"}), "--up"},
                   {simulate("cube.off", {"--noise", "maybe"}), "--noise"},
+                  {simulate("cube.off", {"--flying-pixels", "3"}), "--flying-pixels"},
+                  {simulate("cube.off", {"--frames-per-view", "0"}), "--frames-per-view"},
+                  {simulate("cube.off", {"--calibrate", "yes"}), "--calibrate"},
+                  {simulate("cube.off", {"--support-plane", "nan"}), "support plane"},
+                  {simulate("cube.off", {"--wiggling", "0.01"}), "no modulation frequency"},
                   {integrate({"--voxel", "abc"}), "--voxel"}},
-                 8);
+                 13);
 }
 
 TEST_F(BadInputTest, Meshes) {

@@ -48,7 +48,7 @@ TEST_F(Files, SensorsReadBackEqual) {
     EXPECT_TRUE(equal(load_sensor(name), sensor));
     ++cases;
   }
-  EXPECT_EQ(cases, 4);
+  EXPECT_EQ(cases, 5);
 
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> unit(0.01, 1.0);
@@ -58,8 +58,9 @@ TEST_F(Files, SensorsReadBackEqual) {
     sensor.camera.fx = 100 * unit(random);
     sensor.camera.cy = std::ldexp(unit(random), i % 40 - 20);
     sensor.camera.distortion = {-unit(random), unit(random), 1e-5 * unit(random), 0, -1e-17};
-    const NoiseModel models[]{ShotNoise{unit(random), 1, 2, 1e-3}, StructuredLightNoise{},
-                              StereoNoise{unit(random), 400, 0.1}, QuadraticNoise{unit(random), 3},
+    const NoiseModel models[]{ShotNoise{unit(random), 1, 2, 1e-3, 1e6 * unit(random), unit(random)},
+                              StructuredLightNoise{}, StereoNoise{unit(random), 400, 0.1},
+                              QuadraticNoise{unit(random), 3},
                               ConstantNoise{unit(random), unit(random)}};
     sensor.noise = models[i % 5];
     sensor.T_flange_camera =
@@ -68,7 +69,24 @@ TEST_F(Files, SensorsReadBackEqual) {
     EXPECT_TRUE(equal(read_sensor_toml(dir / "sensor.toml"), sensor)) << sensor_toml(sensor);
     ++cases;
   }
-  EXPECT_EQ(cases, 204);
+  EXPECT_EQ(cases, 205);
+}
+
+TEST_F(Files, SensorsOfBeforeHaveTheDefaultFrequencyAndLeastAmplitude) {
+  const Sensor sensor = sensor_preset("sr4000");
+  std::string text = sensor_toml(sensor);
+  int cases = 0;
+  for (const std::string key : {"modulation_frequency", "min_amplitude"}) {
+    const std::size_t begin = text.find(key);
+    ASSERT_NE(begin, std::string::npos);
+    text.erase(begin, text.find('\n', begin) + 1 - begin);
+    write("sensor.toml", text);
+    EXPECT_TRUE(equal(read_sensor_toml(dir / "sensor.toml"), sensor)) << text;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 2);
+  EXPECT_NE(sensor_error(text + "modulation_frequency = -1.0\n").find("modulation_frequency"),
+            std::string::npos);
 }
 
 TEST_F(Files, SensorErrorsNameTheKey) {
@@ -179,6 +197,41 @@ TEST_F(Files, FramesReadBackInTenthsOfAMillimetre) {
     FramesWriter failing(dir / "a" / "b" / "c");
   }
   EXPECT_EQ(list(), std::vector<std::string>{"frames"});
+}
+
+TEST_F(Files, AmplitudesReadBackInThousandths) {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera.width = 4;
+  sensor.camera.height = 2;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const DepthFrame frame{4,
+                         2,
+                         std::vector<float>(8, 0.5F),
+                         {0.0F, 0.0104F, 0.0106F, 65.535F, 70.0F, -1.0F, nan, 1.0F}};
+  DepthFrame without = frame;
+  without.amplitude.clear();
+  const std::vector<Pose> poses{look_at({1, 0, 0}, {0, 0, 0}), look_at({0, 1, 0}, {0, 0, 0})};
+  {
+    FramesWriter writer(dir / "frames");
+    writer.write_frame(0, frame);
+    writer.write_frame(1, without);
+    writer.commit(poses, sensor);
+  }
+  EXPECT_EQ(list("frames"),
+            (std::vector<std::string>{"frame-000000.amplitude.png", "frame-000000.depth.png",
+                                      "frame-000001.depth.png", "poses.txt", "sensor.toml"}));
+  const FrameSequence frames = open_frames(dir / "frames", "", std::nullopt);
+  const std::vector<float> expected{0.0F, 0.010F, 0.011F, 65.535F, 65.535F, 0.0F, 0.0F, 1.0F};
+  EXPECT_EQ(load_frame(frames, 0, OutOfRangeMeaning::carve).amplitude, expected);
+  EXPECT_TRUE(load_frame(frames, 1, OutOfRangeMeaning::carve).amplitude.empty());
+
+  // A later run's frames do not inherit amplitudes.
+  {
+    FramesWriter writer(dir / "frames");
+    writer.write_frame(0, without);
+    writer.commit({poses[0]}, sensor);
+  }
+  EXPECT_EQ(list("frames").size(), 3U);
 }
 
 TEST(Values, NumbersAndBoxes) {

@@ -12,6 +12,7 @@
 #include "program_runner.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
@@ -323,17 +324,58 @@ TEST_F(Workflow, ThePictureIsAPictureAndTheOnlyNewFile) {
 TEST_F(Workflow, HelpNamesEveryFlag) {
   const std::vector<std::pair<std::string, Strings>> commands{
       {"simulate",
-       {"MESH", "--poses", "--orbit", "--sensor", "--size", "--center", "--background", "--up",
-        "--noise", "--seed", "--out", "--json", "--threads", "=0.35", "=1.5", "[m]"}},
+       {"MESH",
+        "--poses",
+        "--orbit",
+        "--sensor",
+        "--size",
+        "--center",
+        "--background",
+        "--up",
+        "--noise",
+        "--seed",
+        "--out",
+        "--json",
+        "--threads",
+        "=0.35",
+        "=1.5",
+        "[m]",
+        "--flying-pixels",
+        "--frames-per-view",
+        "--wiggling",
+        "--calibrate",
+        "--support-plane",
+        "--amplitude"}},
       {"integrate",
-       {"FRAMES_DIR", "--voxel", "--workspace", "--sensor", "--depth-scale", "--out-of-range",
-        "--carve", "--occupancy", "--prior-sigma", "--with-covariance", "--out", "--map", "--json",
-        "--threads", "=carve", "=cones", "=probabilistic", "1e-4", "[m]"}},
+       {"FRAMES_DIR",
+        "--voxel",
+        "--workspace",
+        "--sensor",
+        "--depth-scale",
+        "--out-of-range",
+        "--carve",
+        "--occupancy",
+        "--prior-sigma",
+        "--with-covariance",
+        "--out",
+        "--map",
+        "--json",
+        "--threads",
+        "=carve",
+        "=cones",
+        "=probabilistic",
+        "1e-4",
+        "[m]",
+        "--jump-edge-filter",
+        "--jump-edge-two-sided",
+        "--support-plane"}},
       {"score",
-       {"MAP", "--poses", "--sphere", "--dome", "--sensor", "--criterion", "--stride", "--weight",
-        "--prior-sigma", "--min-range", "--max-range", "--top", "--out", "--picture", "--json",
-        "--threads", "=log_diagonal", "=10", "[m]"}},
-      {"info", {"MAP", "--hash", "--criterion", "--json", "--threads", "=log_diagonal"}}};
+       {"MAP",      "--poses",   "--sphere",      "--dome",      "--sensor",      "--criterion",
+        "--stride", "--weight",  "--prior-sigma", "--min-range", "--max-range",   "--top",
+        "--out",    "--picture", "--json",        "--threads",   "=log_diagonal", "=10",
+        "[m]",      "--rings",   "--shell"}},
+      {"info",
+       {"MAP", "--hash", "--criterion", "--json", "--threads", "=log_diagonal", "--region"}}};
   const std::string top = run_well({"--help"});
   int flags = 0;
   for (const auto& [command, words] : commands) {
@@ -344,7 +386,11 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
       ++flags;
     }
   }
-  EXPECT_EQ(flags, 16 + 19 + 19 + 6);
+  EXPECT_EQ(flags, 22 + 22 + 21 + 7);
+  const std::string help = run_well({"simulate", "--help"});
+  for (const std::string& name : sensor_preset_names()) {
+    EXPECT_NE(help.find(name), std::string::npos) << name;
+  }
   EXPECT_EQ(run_well({"--version"}).substr(0, 9), "viewgain ");
 }
 

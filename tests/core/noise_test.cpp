@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -27,6 +28,28 @@ TEST(ShotNoise, ScalesWithRangeTimeAndIncidence) {
   ShotNoise shorter = noise;
   shorter.integration_time = 8.5e-3 / 9;
   EXPECT_NEAR(sigmas(shorter, 1.30, 220, 1.0).axial, 12.0e-3, 1e-15);
+}
+
+TEST(ShotNoise, FrequencyAndLeastAmplitudeDoNotChangeTheSigmas) {
+  const ShotNoise plain;
+  EXPECT_EQ(plain.modulation_frequency, 30e6);
+  EXPECT_EQ(plain.min_amplitude, 0.01);
+  const ShotNoise other{.modulation_frequency = 0, .min_amplitude = 0.5};
+  EXPECT_EQ(sigmas(other, 0.7, 220, 0.4).axial, sigmas(plain, 0.7, 220, 0.4).axial);
+  EXPECT_EQ(sigmas(other, 0.7, 220, 0.4).lateral, sigmas(plain, 0.7, 220, 0.4).lateral);
+}
+
+TEST(NoiseModel, UnambiguousRangeIsHalfAWavelength) {
+  EXPECT_NEAR(unambiguous_range(ShotNoise{}), 4.99654, 1e-5);
+  EXPECT_NEAR(unambiguous_range(ShotNoise{.modulation_frequency = 15e6}), 9.99308, 1e-5);
+  int cases = 0;
+  for (const NoiseModel& model :
+       std::vector<NoiseModel>{ShotNoise{.modulation_frequency = 0}, StructuredLightNoise{},
+                               StereoNoise{}, QuadraticNoise{}, ConstantNoise{}}) {
+    EXPECT_EQ(unambiguous_range(model), std::numeric_limits<double>::infinity());
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5);
 }
 
 TEST(StructuredLightNoise, IsNguyensModel) {

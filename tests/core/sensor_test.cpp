@@ -20,8 +20,8 @@ double field_of_view(int pixels, double focal) {
 }
 
 TEST(SensorPresets, AreAllValid) {
-  EXPECT_EQ(sensor_preset_names(),
-            (std::vector<std::string>{"sr4000", "azure_kinect_nfov", "kinect_v1", "d435"}));
+  EXPECT_EQ(sensor_preset_names(), (std::vector<std::string>{"sr4000", "azure_kinect_nfov",
+                                                             "kinect_v1", "d435", "laser_line"}));
   int cases = 0;
   for (const std::string& name : sensor_preset_names()) {
     const Sensor sensor = sensor_preset(name);
@@ -31,9 +31,10 @@ TEST(SensorPresets, AreAllValid) {
     EXPECT_FALSE(sensor.T_flange_camera.has_value());
     ++cases;
   }
-  EXPECT_EQ(cases, 4);
+  EXPECT_EQ(cases, 5);
   expect_error(ErrorCode::invalid_argument,
-               "unknown sensor 'sr3000', valid are sr4000, azure_kinect_nfov, kinect_v1, d435",
+               "unknown sensor 'sr3000', valid are sr4000, azure_kinect_nfov, kinect_v1, d435, "
+               "laser_line",
                [] { (void)sensor_preset("sr3000"); });
 }
 
@@ -82,6 +83,16 @@ TEST(SensorPresets, D435) {
   EXPECT_NEAR(s.sigmas(0.5).lateral, 0.5 / 447, 1e-15);
 }
 
+TEST(SensorPresets, LaserLineIsOneRowAndIsotropic) {
+  const Sensor s = sensor_preset("laser_line");
+  EXPECT_EQ(s.camera, (PinholeCamera{640, 1, 800, 800, 319.5, 0, {}}));
+  EXPECT_EQ(s.min_range, 0.1);
+  EXPECT_EQ(s.max_range, 1.0);
+  EXPECT_EQ(s.working_distance, 0.4);
+  EXPECT_EQ(s.sigmas(0.3, 0.2).axial, 0.2e-3);
+  EXPECT_EQ(s.sigmas(0.9).lateral, 0.2e-3);
+}
+
 TEST(Sensor, ValidateNamesTheField) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   int cases = 0;
@@ -100,6 +111,11 @@ TEST(Sensor, ValidateNamesTheField) {
   expect_bad("working_distance", [](Sensor& s) { s.working_distance = 6; });
   expect_bad("working_distance", [](Sensor& s) { s.working_distance = kNan; });
   expect_bad("integration_time", [](Sensor& s) { s.noise = ShotNoise{.integration_time = 0}; });
+  expect_bad("modulation_frequency",
+             [](Sensor& s) { s.noise = ShotNoise{.modulation_frequency = -1}; });
+  expect_bad("modulation_frequency",
+             [](Sensor& s) { s.noise = ShotNoise{.modulation_frequency = kNan}; });
+  expect_bad("min_amplitude", [](Sensor& s) { s.noise = ShotNoise{.min_amplitude = -0.1}; });
   expect_bad("grazing", [](Sensor& s) { s.noise = StructuredLightNoise{.grazing = -1}; });
   expect_bad("baseline", [](Sensor& s) { s.noise = StereoNoise{.baseline = kNan}; });
   expect_bad("offset", [](Sensor& s) { s.noise = QuadraticNoise{.offset = 0}; });
@@ -107,8 +123,9 @@ TEST(Sensor, ValidateNamesTheField) {
   expect_bad("T_flange_camera", [](Sensor& s) {
     s.T_flange_camera = Pose(2 * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
   });
-  EXPECT_EQ(cases, 14);
+  EXPECT_EQ(cases, 17);
   Sensor touching = sensor_preset("sr4000");
+  touching.noise = ShotNoise{.modulation_frequency = 0, .min_amplitude = 0};
   touching.min_range = 0;
   touching.T_flange_camera = look_at({0, 0, 1}, {0, 0, 0});
   EXPECT_NO_THROW(touching.validate());

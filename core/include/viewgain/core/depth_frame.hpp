@@ -17,6 +17,9 @@ struct DepthFrame {
   int width = 0;             ///< [px]
   int height = 0;            ///< [px]
   std::vector<float> depth;  ///< width * height values
+  /// Empty, or width * height values: the returned signal cosθ / t² [m⁻²], θ the angle of incidence
+  /// and t the range, for a diffuse surface as bright as the sensor's noise model assumes.
+  std::vector<float> amplitude{};
 
   [[nodiscard]] float at(int u, int v) const {
     return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +

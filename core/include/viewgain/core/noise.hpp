@@ -16,11 +16,14 @@ inline constexpr double kMinNoiseRange = 1e-3;
 /// Time-of-flight shot noise: sigma_ax = reference_sigma * (t / reference_range)
 /// * sqrt(reference_integration_time / integration_time) / sqrt(max(cos, 0.1)); the amplitude falls
 /// with cos / t². sigma_lat is the pixel footprint t / fx.
+/// The last two fields do not change the sigmas.
 struct ShotNoise {
   double reference_sigma = 4.0e-3;             ///< [m]
   double reference_range = 1.30;               ///< [m]
   double reference_integration_time = 8.5e-3;  ///< [s]
   double integration_time = 1.0e-3;            ///< [s]
+  double modulation_frequency = 30e6;          ///< of the light [Hz]; 0: ranges are unambiguous
+  double min_amplitude = 0.01;                 ///< cos / t² under which a reading is invalid [m⁻²]
   bool operator==(const ShotNoise&) const = default;
 };
 
@@ -60,6 +63,8 @@ struct ConstantNoise {
   bool operator==(const ConstantNoise&) const = default;
 };
 
+inline constexpr double kSpeedOfLight = 299'792'458.0;  ///< [m/s]
+
 /// Standard deviations of one measurement, along the ray and across it [m].
 struct MeasurementSigmas {
   double axial = 0;
@@ -83,5 +88,9 @@ using NoiseModel =
                                        double cos_incidence);
 [[nodiscard]] MeasurementSigmas sigmas(const NoiseModel&, double t, double fx,
                                        double cos_incidence = 1.0);
+
+/// c / (2 modulation_frequency) [m]: the phase of the light repeats after it. Infinity for models
+/// without a modulation frequency.
+[[nodiscard]] double unambiguous_range(const NoiseModel&);
 
 }  // namespace viewgain

@@ -30,11 +30,13 @@ struct Sensor {
 
   /// Throws Error(invalid_argument), naming the field: camera as in PinholeCamera::validate(),
   /// 0 <= min_range < max_range, working_distance > 0 and within them, all noise parameters
-  /// positive and finite, T_flange_camera rigid (1e-3).
+  /// positive and finite (modulation frequency and least amplitude may be 0), T_flange_camera
+  /// rigid (1e-3).
   void validate() const;
 };
 
-/// The presets of DESIGN.md section 4: sr4000, azure_kinect_nfov, kinect_v1, d435.
+/// The presets of DESIGN.md section 4: sr4000, azure_kinect_nfov, kinect_v1, d435; and laser_line,
+/// a scanner of one line a pose (640x1 px, 0.2 mm in each direction, 0.1-1.0 m).
 [[nodiscard]] const std::vector<std::string>& sensor_preset_names();
 
 /// Throws Error(invalid_argument) that lists the valid names.

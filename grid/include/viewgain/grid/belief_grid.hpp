@@ -102,6 +102,9 @@ class BeliefGrid {
   /// and copied only when written. Costs one pass over the non-free leaves.
   [[nodiscard]] GridSnapshot snapshot() const;
 
+  /// All beliefs, those of free voxels too, by block in a fixed order; shared, not copied.
+  [[nodiscard]] std::vector<BeliefBlockAt> belief_blocks() const;
+
   /// The storage behind the grid, for this module's other sources (private header
   /// grid_storage.hpp).
   struct Storage;

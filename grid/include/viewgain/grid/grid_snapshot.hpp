@@ -60,6 +60,12 @@ struct BeliefBlock {
   }
 };
 
+/// A block of beliefs and its lowest voxel, a multiple of 8.
+struct BeliefBlockAt {
+  Index3 origin;
+  std::shared_ptr<const BeliefBlock> beliefs;
+};
+
 /// A leaf with at least one voxel that is not free, clipped to the workspace.
 struct SnapshotLeaf {
   Index3 origin;        ///< lowest voxel, a multiple of 8

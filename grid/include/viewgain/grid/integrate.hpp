@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/exec_config.hpp"
@@ -30,13 +31,18 @@ enum class Occupancy : std::uint8_t {
 struct IntegrationConfig {
   Carve carve = Carve::cones;
   Occupancy occupancy = Occupancy::probabilistic;
+  /// Height z [m] of the table that the object stands on, world. Readings whose point is below it,
+  /// or less than 3 σ_ax before the ray's intersection with it, are of the table: they carve as far
+  /// as they reach but do not hit.
+  std::optional<double> support_plane{};
 };
 
 /// Counts of one integrated frame.
 struct IntegrationReport {
-  std::uint64_t readings = 0;      ///< pixels with a depth whose range is in [min_range, max_range]
-  std::uint64_t out_of_range = 0;  ///< pixels that carve up to max_range
-  std::uint64_t invalid = 0;       ///< pixels that say nothing
+  std::uint64_t readings = 0;  ///< pixels with a depth whose range is in [min_range, max_range]
+  std::uint64_t plane_readings = 0;   ///< such pixels that see the support plane, not in `readings`
+  std::uint64_t out_of_range = 0;     ///< pixels that carve up to max_range
+  std::uint64_t invalid = 0;          ///< pixels that say nothing
   std::uint64_t readings_inside = 0;  ///< readings that lie in the workspace
   std::uint64_t voxels_hit = 0;
   std::uint64_t voxels_crossed = 0;  ///< and not hit
@@ -46,14 +52,15 @@ struct IntegrationReport {
 ///
 /// A pixel is a reading if its range along the ray is in [min_range, max_range]; nearer ones are
 /// invalid, farther ones out of range. Readings also carve what lies nearer than min_range. cosθ
-/// comes from the normal of the pixel's 3×3 neighbourhood, 1 where there is none. The map is the
-/// same bit for bit for any number of threads and under each instruction set.
+/// is amplitude · range² (at most 1) where the frame has amplitudes; else it comes from the normal
+/// of the pixel's 3×3 neighbourhood, 1 where there is none. The map is the same bit for bit for any
+/// number of threads and under each instruction set.
 ///
 /// Thread safety: one call at a time on one integrator and on one grid.
 class FrameIntegrator {
  public:
   /// Undoes the lens distortion once and chooses the instruction set (select_isa()). Throws
-  /// Error(invalid_argument) if the sensor is not valid.
+  /// Error(invalid_argument) if the sensor is not valid or the support plane is not finite.
   explicit FrameIntegrator(const Sensor& sensor, const IntegrationConfig& config = {},
                            const ExecConfig& exec = {});
   ~FrameIntegrator();
@@ -61,8 +68,8 @@ class FrameIntegrator {
   FrameIntegrator& operator=(FrameIntegrator&&) noexcept;
 
   /// Updates states, log-odds and beliefs, and appends the pose to the grid's views. Throws
-  /// Error(invalid_argument) if the frame's size is not the sensor's or the pose is not rigid
-  /// (1e-3; smaller errors are orthonormalised); the grid is unchanged then.
+  /// Error(invalid_argument) if the frame's size, or its amplitude's, is not the sensor's or
+  /// the pose is not rigid (1e-3; smaller errors are orthonormalised); the grid is unchanged then.
   IntegrationReport integrate(BeliefGrid& grid, const DepthFrame& frame,
                               const Pose& T_world_camera);
 
@@ -71,10 +78,11 @@ class FrameIntegrator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The box, in the frame of T_world_grid, that holds every reading of the frame [m]; nothing if the
-/// frame has none. For choosing a workspace.
+/// The box, in the frame of T_world_grid, that holds every reading of the frame [m], those of the
+/// support plane left out; nothing if the frame has none. For choosing a workspace.
 [[nodiscard]] std::optional<Box> reading_bounds(const Sensor& sensor, const DepthFrame& frame,
                                                 const Pose& T_world_camera,
-                                                const Pose& T_world_grid = {});
+                                                const Pose& T_world_grid = {},
+                                                std::optional<double> support_plane = {});
 
 }  // namespace viewgain

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "candidate_generation.hpp"
+#include "commands.hpp"
+#include "model.hpp"
+#include "planning_options.hpp"
+#include "reach_toml.hpp"
+#include "sensor_toml.hpp"
+#include "values.hpp"
+#include "viewgain/core/atomic_file.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+
+namespace viewgain::app {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string map;
+  std::string generator;
+  std::string sensor;
+  std::size_t count = 500;
+  std::optional<double> distance;
+  std::string center;
+  std::string reach;
+  std::optional<double> support_plane;
+  std::uint64_t seed = 1;
+  std::string out;
+};
+
+Eigen::Vector3d center_of(const Options& options, const BeliefGrid& grid) {
+  if (!options.center.empty()) {
+    const std::vector<double> n = parse_numbers("--center", options.center, 3, 3);
+    return {n[0], n[1], n[2]};
+  }
+  const Box box = grid.workspace();
+  return grid.T_world_grid() * Eigen::Vector3d(0.5 * (box.min[0] + box.max[0]),
+                                               0.5 * (box.min[1] + box.max[1]),
+                                               0.5 * (box.min[2] + box.max[2]));
+}
+
+double distance_of(const Options& options, const Sensor& sensor, const BeliefGrid& grid) {
+  if (options.distance) return *options.distance;
+  const Box box = grid.workspace();
+  double longest = 0;
+  for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.max[a] - box.min[a]);
+  return filling_distance(sensor, 0.5 * longest * 0.35 / 0.4);  // the object in its workspace
+}
+
+nlohmann::ordered_json candidate_json(const Candidate& candidate, const EstimatedViews& estimated) {
+  nlohmann::ordered_json json{{"generator", candidate.generator},
+                              {"T_world_camera", to_json(candidate.T_world_camera)}};
+  if (!candidate.boundary_class.empty()) {
+    const auto patch = static_cast<std::size_t>(candidate.source);
+    json["class"] = candidate.boundary_class;
+    json["run"] = estimated.run_of_patch[patch];
+    json["patch"] = patch;
+    json["region_vertices"] = estimated.regions[patch].size();
+    json["patch_planar"] = estimated.patches[patch].planar;
+    json["patch_rms"] = estimated.patches[patch].rms;
+  }
+  return json;
+}
+
+void candidates(const Options& options) {
+  const ExecConfig exec{options.common.threads};
+  const Sensor sensor = load_sensor(options.sensor);
+  const ReachRegion reach = options.reach.empty() ? ReachRegion{} : read_reach_toml(options.reach);
+  {
+    const AtomicFile writable(options.out);
+  }  // known now rather than after the work
+  BeliefGrid grid = load_vdb(options.map);
+  GenerationConfig config;
+  config.boundary = options.generator == "boundary";
+  config.estimator = default_estimator(grid.voxel_size());
+  config.working_distance = options.distance.value_or(sensor.working_distance);
+  config.feasibility.body.T_flange_camera = sensor.T_flange_camera;
+  config.feasibility.reach = reach;
+  config.feasibility.support_plane = options.support_plane;
+  config.feasibility.sensor = sensor;
+  if (config.boundary && grid.views().empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                options.map + ": has no views, which boundary candidates need");
+  }
+  if (!config.boundary) {
+    config.sets.push_back(make_pose_set(
+        options.generator, {center_of(options, grid), distance_of(options, sensor, grid),
+                            options.count, options.seed, std::nullopt}));
+  }
+
+  StageSeconds seconds;
+  const Model model(std::move(grid), sensor, {}, exec, seconds);
+  CandidateGeneration generation(model, sensor, config, exec, seconds);
+  const Proposal proposal = generation.generate({});
+  std::vector<Pose> poses;
+  for (const Candidate& candidate : proposal.candidates) poses.push_back(candidate.T_world_camera);
+  write_tum(options.out, poses);
+
+  const EstimatedViews& estimated = generation.estimated();
+  if (options.common.json) {
+    nlohmann::ordered_json json{{"generator", options.generator},
+                                {"candidates", poses.size()},
+                                {"dropped", nlohmann::ordered_json::object()},
+                                {"runs", nlohmann::ordered_json::array()},
+                                {"per_candidate", nlohmann::ordered_json::array()},
+                                {"per_dropped", nlohmann::ordered_json::array()},
+                                {"out", options.out}};
+    for (const auto& [reason, count] : proposal.dropped) json["dropped"][reason] = count;
+    for (const BoundaryRun& run : estimated.runs) {
+      json["runs"].push_back({{"class", boundary_class_name(run.boundary_class)},
+                              {"length", run.length},
+                              {"closed", run.closed},
+                              {"view", run.view}});
+    }
+    for (const Candidate& candidate : proposal.candidates) {
+      json["per_candidate"].push_back(candidate_json(candidate, estimated));
+    }
+    for (const CandidateGeneration::Dropped& dropped : generation.dropped()) {
+      json["per_dropped"].push_back(candidate_json(dropped.candidate, estimated));
+      json["per_dropped"].back()["reason"] = infeasibility_name(dropped.reason);
+    }
+    print_json(json);
+    return;
+  }
+  std::map<std::string, std::size_t> classes;
+  for (const Candidate& candidate : proposal.candidates) ++classes[candidate.boundary_class];
+  std::printf("%zu candidates (%s)", poses.size(), options.generator.c_str());
+  for (const auto& [name, count] : classes) {
+    if (!name.empty()) std::printf(", %zu %s", count, name.c_str());
+  }
+  std::printf("\n");
+  for (const auto& [reason, count] : proposal.dropped) {
+    std::printf("dropped: %zu %s\n", count, reason.c_str());
+  }
+  std::printf("poses in %s\n", options.out.c_str());
+}
+
+}  // namespace
+
+Command add_candidates(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* app = program.add_subcommand(
+      "candidates",
+      "Candidate views for a map, as a poses file for score; --json says for each why it exists or "
+      "why it was dropped.");
+  Options& o = *options;
+  app->add_option("MAP", o.map, "map (.vdb)")->required();
+  app->add_option(
+         "--generator", o.generator,
+         "boundary (open boundaries of the surface in the map), sphere, dome, rings, shell "
+         "or sequence")
+      ->check(CLI::IsMember(generator_names()))
+      ->required();
+  app->add_option("--sensor", o.sensor, kSensorHelp)->required();
+  app->add_option("--count", o.count,
+                  "poses of the sphere, dome or shell; rings: 48, 80, 288 or 864")
+      ->capture_default_str();
+  app->add_option("--distance", o.distance,
+                  "boundary: from the surface; else from the centre [m]; default: the sensor's "
+                  "working distance; the workspace fills the view");
+  app->add_option("--center", o.center,
+                  "x,y,z that poses look at, world [m]; default: the workspace's centre");
+  app->add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
+  app->add_option("--support-plane", o.support_plane, "height z of a table [m]");
+  app->add_option("--seed", o.seed, "of the shell")->capture_default_str();
+  app->add_option("--out", o.out, "TUM file of camera-to-world poses")->required();
+  add_common_options(*app, o.common);
+  return {app, [options] { candidates(*options); }};
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "truth.hpp"
+#include "viewgain/core/criterion.hpp"
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/fused_points.hpp"
+#include "viewgain/grid/integrate.hpp"
+#include "viewgain/mesh/surface.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+namespace viewgain::app {
+
+/// Wall time by stage [s]: acquire, integrate, snapshot, surface, candidates, score, quality.
+using StageSeconds = std::map<std::string, double>;
+
+/// What changes the model.
+struct ModelConfig {
+  GridConfig grid{};
+  IntegrationConfig integration{};
+  std::optional<JumpEdgeConfig> jump_edges{};
+  FusedPointsConfig points{};
+  Criterion criterion = Criterion::log_diagonal;
+  bool refine = true;  ///< false: the first reading of a voxel wins, later ones are ignored
+};
+
+/// The two representations of the scene, the belief grid and the surface seen so far
+/// (UPDATEREPRESENTATIONS of Algorithm 1), and what is derived from them after each view.
+class Model : public RepresentationUpdate {
+ public:
+  /// `truth` may be null: then there is no quality. `seconds` is added to.
+  Model(const Sensor& sensor, const ModelConfig& config, const ExecConfig& exec,
+        std::shared_ptr<const Truth> truth, StageSeconds& seconds);
+
+  /// From an existing map: its surface and scene, ready for candidates.
+  Model(BeliefGrid grid, const Sensor& sensor, const ModelConfig& config, const ExecConfig& exec,
+        StageSeconds& seconds);
+
+  /// Throws Error(invalid_argument) if the first view has no reading in the workspace.
+  ModelProgress update(const Measurements& measurements) override;
+
+  [[nodiscard]] const BeliefGrid& grid() const noexcept { return grid_; }
+  [[nodiscard]] const std::shared_ptr<const VoxelScene>& scene() const noexcept { return scene_; }
+  [[nodiscard]] const std::vector<FusedPoint>& points() const noexcept { return points_; }
+  [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
+  /// After each view, where there is a truth.
+  [[nodiscard]] const std::vector<QualityFigures>& quality() const noexcept { return quality_; }
+  /// Of the last view: the pixels that the jump-edge filter removed.
+  [[nodiscard]] std::size_t jump_edges_removed() const noexcept { return jump_edges_removed_; }
+
+ private:
+  void derive();
+  /// Turns readings whose voxel was hit by an earlier view into invalid ones.
+  void drop_known_readings(DepthFrame& frame, const Pose& T_world_camera) const;
+
+  Sensor sensor_;
+  ModelConfig config_;
+  ExecConfig exec_;
+  std::shared_ptr<const Truth> truth_;
+  StageSeconds& seconds_;
+  BeliefGrid grid_;
+  std::optional<JumpEdgeFilter> filter_;
+  FrameIntegrator integrator_;
+  std::shared_ptr<const VoxelScene> scene_;
+  std::vector<FusedPoint> points_;
+  SurfaceMesh surface_;
+  std::vector<QualityFigures> quality_;
+  std::size_t jump_edges_removed_ = 0;
+};
+
+}  // namespace viewgain::app

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "picture_parts.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+namespace viewgain::app {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kMargin = 0.06;  // of the picture's sides that stay empty
+
+struct Bounds {
+  Vector3d min = Vector3d::Constant(1e300), max = Vector3d::Constant(-1e300);
+
+  void add(const Vector3d& p) {
+    min = min.cwiseMin(p);
+    max = max.cwiseMax(p);
+  }
+};
+
+// The corners of the box [low, high] of the grid's frame, in the world.
+std::array<Vector3d, 8> box_corners(const Pose& T_world_grid, const Vector3d& low,
+                                    const Vector3d& high) {
+  std::array<Vector3d, 8> corners;
+  for (unsigned k = 0; k < 8; ++k) {
+    corners[k] = T_world_grid * Vector3d((k & 1U) != 0 ? high.x() : low.x(),
+                                         (k & 2U) != 0 ? high.y() : low.y(),
+                                         (k & 4U) != 0 ? high.z() : low.z());
+  }
+  return corners;
+}
+
+}  // namespace
+
+PinholeCamera picture_camera() { return {1280, 960, 1700, 1700, 640, 480, {}}; }
+
+bool is_rigid(const Pose& pose) { return orthonormality_error(pose) < 1e-3; }
+
+std::array<Vector3d, 8> workspace_corners(const GridSnapshot& snapshot) {
+  const Vector3d low(snapshot.min_index.x, snapshot.min_index.y, snapshot.min_index.z);
+  const Vector3d size(snapshot.dims.x, snapshot.dims.y, snapshot.dims.z);
+  return box_corners(snapshot.T_world_grid, snapshot.voxel_size * low,
+                     snapshot.voxel_size * (low + size));
+}
+
+void add_box_outline(PaintedMesh& scene, const std::array<Vector3d, 8>& corners, double width,
+                     std::uint8_t paint) {
+  for (unsigned a = 0; a < 8; ++a) {
+    for (const unsigned axis : {1U, 2U, 4U}) {
+      if ((a & axis) == 0) scene.add_line(corners[a], corners[a | axis], width, paint);
+    }
+  }
+}
+
+void add_lattice_cube(PaintedMesh& scene, const Pose& T_world_grid, const Vector3d& index,
+                      double side, std::uint8_t paint) {
+  constexpr double kGap = 0.04;  // of a cube, on each side
+  scene.add_hexahedron(box_corners(T_world_grid, side * (index + Vector3d::Constant(kGap)),
+                                   side * (index + Vector3d::Constant(1 - kGap))),
+                       paint);
+}
+
+std::array<Vector3d, 4> image_corners(const Sensor& sensor, const Pose& T_world_camera,
+                                      double depth) {
+  const double u = sensor.camera.width - 0.5, v = sensor.camera.height - 0.5;
+  std::array<Vector3d, 4> corners{sensor.camera.ray(-0.5, -0.5), sensor.camera.ray(u, -0.5),
+                                  sensor.camera.ray(u, v), sensor.camera.ray(-0.5, v)};
+  for (Vector3d& p : corners) p = T_world_camera * Vector3d(depth * p);
+  return corners;
+}
+
+void add_pyramid(PaintedMesh& scene, const Vector3d& apex, const std::array<Vector3d, 4>& base,
+                 double width, std::uint8_t paint) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    scene.add_line(apex, base[k], width, paint);
+    scene.add_line(base[k], base[(k + 1) % 4], width, paint);
+  }
+}
+
+double frustum_depth(const std::vector<RayHit>& hits, const Sensor& sensor) {
+  std::vector<double> ranges;
+  for (const RayHit& hit : hits) {
+    if (hit.kind != RayHit::Kind::none) ranges.push_back(hit.range);
+  }
+  if (ranges.empty()) return sensor.working_distance;
+  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
+  std::nth_element(ranges.begin(), middle, ranges.end());
+  return *middle;
+}
+
+Vector3d viewer_azimuth(const Vector3d& view_eye, const Vector3d& view_target, Side side) {
+  constexpr double kAside = 58 * std::numbers::pi / 180;
+  Vector3d back = view_eye - view_target;
+  back.z() = 0;
+  if (back.norm() < 1e-6 * (1 + view_eye.norm())) back = Vector3d::UnitX();
+  const double angle = side == Side::counter_clockwise ? kAside : -kAside;
+  return Eigen::AngleAxisd(angle, Vector3d::UnitZ()) * Vector3d(back.normalized());
+}
+
+Pose place_viewer(const std::vector<Vector3d>& points, const Vector3d& view_eye,
+                  const Vector3d& view_target, Side side, PinholeCamera& camera) {
+  constexpr double kAbove = 24 * std::numbers::pi / 180;
+  const Vector3d level = viewer_azimuth(view_eye, view_target, side);
+  const Vector3d direction = std::cos(kAbove) * level + std::sin(kAbove) * Vector3d::UnitZ();
+
+  Bounds bounds;
+  for (const Vector3d& p : points) bounds.add(p);
+  const Vector3d center = 0.5 * (bounds.min + bounds.max);
+  const double radius = 0.5 * (bounds.max - bounds.min).norm();
+  Pose T_world_camera;
+  for (double distance = 1.2 * radius;; distance *= 1.02) {
+    T_world_camera = look_at(center + distance * direction, center);
+    const Pose T_camera_world = T_world_camera.inverse();
+    Bounds pixels;
+    bool in_front = true;
+    for (const Vector3d& p : points) {
+      const Vector3d q = T_camera_world * p;
+      in_front = in_front && q.z() > 0.05 * radius;
+      pixels.add({camera.fx * q.x() / q.z(), camera.fy * q.y() / q.z(), 0});
+    }
+    const Vector3d size = pixels.max - pixels.min;
+    if (in_front && size.x() <= (1 - 2 * kMargin) * camera.width &&
+        size.y() <= (1 - 2 * kMargin) * camera.height) {
+      camera.cx = 0.5 * camera.width - 0.5 * (pixels.min.x() + pixels.max.x());
+      camera.cy = 0.5 * camera.height - 0.5 * (pixels.min.y() + pixels.max.y());
+      return T_world_camera;
+    }
+  }
+}
+
+}  // namespace viewgain::app

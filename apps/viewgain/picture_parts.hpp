@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ray_tracer.hpp"
+#include "viewgain/core/camera.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::app {
+
+// What pictures of views and maps are made of. Points are in the world [m] unless said otherwise.
+
+// Linear colors of voxels in which a view's rays end: orange and blue.
+inline const Eigen::Vector3d kUnknownColor{0.95, 0.30, 0.03}, kOccupiedColor{0.05, 0.26, 0.85};
+
+/// 1280x960 px through a long lens, so that what is near does not look huge.
+[[nodiscard]] PinholeCamera picture_camera();
+
+/// Whether a pose can be drawn: a rigid transform up to 1e-3.
+[[nodiscard]] bool is_rigid(const Pose& pose);
+
+/// The corners of the workspace; bits 0, 1, 2 of the index are its three axes.
+[[nodiscard]] std::array<Eigen::Vector3d, 8> workspace_corners(const GridSnapshot& snapshot);
+
+void add_box_outline(PaintedMesh& scene, const std::array<Eigen::Vector3d, 8>& corners,
+                     double width, std::uint8_t paint);
+
+/// The cube of this side [m] at `index` in the lattice of such cubes, a little smaller so that
+/// single ones stay visible.
+void add_lattice_cube(PaintedMesh& scene, const Pose& T_world_grid, const Eigen::Vector3d& index,
+                      double side, std::uint8_t paint);
+
+/// The four corners of the image at this depth [m], in order round it.
+[[nodiscard]] std::array<Eigen::Vector3d, 4> image_corners(const Sensor& sensor,
+                                                           const Pose& T_world_camera,
+                                                           double depth);
+
+/// The eight edges of a frustum.
+void add_pyramid(PaintedMesh& scene, const Eigen::Vector3d& apex,
+                 const std::array<Eigen::Vector3d, 4>& base, double width, std::uint8_t paint);
+
+/// How far a frustum is drawn [m]: to the middle of what the view sees, or its working distance.
+[[nodiscard]] double frustum_depth(const std::vector<RayHit>& hits, const Sensor& sensor);
+
+/// Which way round from a view the viewer stands, seen from above.
+enum class Side : std::uint8_t { counter_clockwise, clockwise };
+
+/// Level direction from the view towards the viewer's azimuth, unit; a view that looks straight up
+/// or down counts as looking along -x.
+[[nodiscard]] Eigen::Vector3d viewer_azimuth(const Eigen::Vector3d& view_eye,
+                                             const Eigen::Vector3d& view_target, Side side);
+
+/// T_world_camera of a viewer that looks at all `points` from the side of the view's optical axis
+/// and a little from above, so that what the view sees and the way to it are both in sight. Moves
+/// the principal point of `camera` to centre them.
+[[nodiscard]] Pose place_viewer(const std::vector<Eigen::Vector3d>& points,
+                                const Eigen::Vector3d& view_eye, const Eigen::Vector3d& view_target,
+                                Side side, PinholeCamera& camera);
+
+}  // namespace viewgain::app

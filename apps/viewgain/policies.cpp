@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "policies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "terminal.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::app {
+namespace {
+
+// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): the same choice on every machine.
+std::uint64_t mix(std::uint64_t x) {
+  x += 0x9E3779B97F4A7C15ULL;
+  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
+  return x ^ (x >> 31U);
+}
+
+// What a gain is worth after the way to it.
+double utility(const TravelCost& cost, double gain, double distance) {
+  if (cost.speed) return gain / (cost.seconds_per_view + distance / *cost.speed);
+  return gain - cost.per_metre * distance;
+}
+
+}  // namespace
+
+const std::vector<std::string>& policy_names() {
+  static const std::vector<std::string> names{"gain", "kriegel", "sequence", "random", "frontier"};
+  return names;
+}
+
+Policy parse_policy(std::string_view name) {
+  const std::vector<std::string>& names = policy_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    std::string text = "unknown policy \"" + std::string(name) + "\"; valid are";
+    for (const std::string& valid : names) text.append(" ").append(valid);
+    throw Error(ErrorCode::invalid_argument, text);
+  }
+  return static_cast<Policy>(found - names.begin());
+}
+
+PolicyDecision::PolicyDecision(const Model& model, const CandidateGeneration& generation,
+                               const Sensor& sensor, const PolicyConfig& config,
+                               const ExecConfig& exec, StageSeconds& seconds)
+    : model_(model),
+      generation_(generation),
+      sensor_(sensor),
+      config_(config),
+      exec_(exec),
+      seconds_(seconds) {}
+
+std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
+                                               std::span<const Candidate> candidates) {
+  if (candidates.empty()) return std::nullopt;
+  const Stopwatch watch;
+  GainConfig gain_config;
+  gain_config.criterion = config_.criterion;
+  const GainEvaluator evaluator(model_.scene(), sensor_, gain_config, exec_);
+  const bool by_gain = config_.policy == Policy::gain;
+  std::vector<ViewGain> gains(candidates.size());
+  if (by_gain || config_.policy == Policy::frontier) {
+    std::vector<Pose> poses;
+    poses.reserve(candidates.size());
+    for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
+    evaluator.evaluate(poses, gains);
+  }
+  const std::size_t chosen = choose(T_world_camera, candidates, gains);
+  const ViewGain& gain =
+      by_gain ? gains[chosen]
+              : (gains[chosen] = evaluator.evaluate(candidates[chosen].T_world_camera));
+  Decision decision;
+  decision.candidate = chosen;
+  decision.gain = gain.gain;
+  const std::uint32_t touched = gain.unknown_voxels + gain.occupied_voxels;
+  // A fixed order of views does not stop because one of them promises little.
+  if (by_gain) decision.gain_per_voxel = touched > 0 ? gain.gain / touched : 0.0;
+  seconds_["score"] += watch.seconds();
+  return decision;
+}
+
+std::size_t PolicyDecision::choose(const Pose& T_world_camera,
+                                   std::span<const Candidate> candidates,
+                                   const std::vector<ViewGain>& gains) const {
+  const auto best_by = [&](auto&& worth) {
+    std::size_t best = 0;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const double value = worth(i);
+      if (value > most) most = value, best = i;  // ties to the lower index; NaN never
+    }
+    return best;
+  };
+  switch (config_.policy) {
+    case Policy::gain:
+      return best_by([&](std::size_t i) {
+        const double distance =
+            (candidates[i].T_world_camera.translation() - T_world_camera.translation()).norm();
+        return utility(config_.travel, gains[i].gain, distance);
+      });
+    case Policy::frontier:
+      return best_by([&](std::size_t i) { return static_cast<double>(gains[i].unknown_voxels); });
+    case Policy::random:
+      return static_cast<std::size_t>(mix(mix(config_.seed) ^ model_.grid().views().size()) %
+                                      candidates.size());
+    case Policy::kriegel:
+      return choose_by_boundary(candidates);
+    case Policy::sequence:
+      break;
+  }
+  return 0;
+}
+
+std::size_t PolicyDecision::choose_by_boundary(std::span<const Candidate> candidates) const {
+  const EstimatedViews& estimated = generation_.estimated();
+  const auto order = [&](const Candidate& candidate) {
+    const auto patch = static_cast<std::size_t>(candidate.source);
+    const BoundaryRun& run = estimated.runs[estimated.run_of_patch[patch]];
+    return std::tuple(run.boundary_class, -run.length, candidate.source);
+  };
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    if (order(candidates[i]) < order(candidates[first])) first = i;
+  }
+  return first;
+}
+
+}  // namespace viewgain::app

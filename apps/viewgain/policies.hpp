@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "candidate_generation.hpp"
+#include "model.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::app {
+
+/// How the next view is chosen among the feasible candidates.
+enum class Policy : std::uint8_t {
+  gain,      ///< the largest expected gain
+  kriegel,   ///< boundary candidates in the order left, right, top, bottom; longest boundary first
+  sequence,  ///< a fixed set in its order: turntable of eight, then from above
+  random,    ///< uniform over the feasible poses
+  frontier,  ///< the most unknown voxels in view
+};
+[[nodiscard]] const std::vector<std::string>& policy_names();
+/// Throws Error(invalid_argument) that lists the valid names.
+[[nodiscard]] Policy parse_policy(std::string_view name);
+
+/// What moving costs; at most one of the two.
+struct TravelCost {
+  double per_metre = 0;  ///< gain - per_metre · distance [nat/m]
+  /// gain / (seconds_per_view + distance / speed), where a speed is given [m/s].
+  std::optional<double> speed{};
+  double seconds_per_view = 1.0;  ///< [s]
+};
+
+struct PolicyConfig {
+  Policy policy = Policy::gain;
+  Criterion criterion = Criterion::log_diagonal;
+  TravelCost travel{};
+  std::uint64_t seed = 1;
+};
+
+/// DECISIONMAKER of Algorithm 1 for all policies.
+class PolicyDecision : public DecisionMaking {
+ public:
+  PolicyDecision(const Model& model, const CandidateGeneration& generation, const Sensor& sensor,
+                 const PolicyConfig& config, const ExecConfig& exec, StageSeconds& seconds);
+
+  std::optional<Decision> decide(const Pose& T_world_camera,
+                                 std::span<const Candidate> candidates) override;
+
+ private:
+  [[nodiscard]] std::size_t choose(const Pose& T_world_camera,
+                                   std::span<const Candidate> candidates,
+                                   const std::vector<ViewGain>& gains) const;
+  [[nodiscard]] std::size_t choose_by_boundary(std::span<const Candidate> candidates) const;
+
+  const Model& model_;
+  const CandidateGeneration& generation_;
+  Sensor sensor_;
+  PolicyConfig config_;
+  ExecConfig exec_;
+  StageSeconds& seconds_;
+};
+
+}  // namespace viewgain::app

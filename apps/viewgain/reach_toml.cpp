@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "reach_toml.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "toml_table.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/pose_io.hpp"
+
+namespace viewgain::app {
+namespace {
+
+std::array<double, 3> triple(TableReader& reader, std::string_view key) {
+  const std::vector<double> values = reader.numbers(key, 3);
+  return {values[0], values[1], values[2]};
+}
+
+Eigen::Vector3d vector(TableReader& reader, std::string_view key) {
+  const std::array<double, 3> values = triple(reader, key);
+  return {values[0], values[1], values[2]};
+}
+
+Box read_box(TableReader& reader) {
+  const std::array<double, 3> min = triple(reader, "min");
+  return {min, triple(reader, "max")};
+}
+
+Shell read_shell(TableReader& reader) {
+  Shell shell;
+  shell.center = vector(reader, "center");
+  shell.min_radius = reader.number("min_radius");
+  shell.max_radius = reader.number("max_radius");
+  return shell;
+}
+
+HalfSpace read_half_space(TableReader& reader) {
+  HalfSpace half_space;
+  half_space.normal = vector(reader, "normal");
+  half_space.offset = reader.number("offset");
+  return half_space;
+}
+
+PoseTolerance read_tolerance(TableReader reader) {
+  PoseTolerance tolerance;
+  if (reader.find("distance") != nullptr) tolerance.distance = reader.number("distance");
+  if (reader.find("angle_deg") != nullptr) {
+    tolerance.angle = reader.number("angle_deg") * std::numbers::pi / 180;
+  }
+  reader.refuse_unknown_keys();
+  return tolerance;
+}
+
+template <typename Part>
+std::vector<Part> read_parts(TableReader& reader, std::string_view key,
+                             Part (*read)(TableReader&)) {
+  std::vector<Part> parts;
+  for (TableReader& table : reader.tables(key)) {
+    parts.push_back(read(table));
+    table.refuse_unknown_keys();
+  }
+  return parts;
+}
+
+}  // namespace
+
+ReachRegion read_reach_toml(const std::filesystem::path& path) {
+  const toml::table root = read_toml(path);
+  TableReader reader(root, path.string(), "");
+  ReachRegion region;
+  region.boxes = read_parts(reader, "box", read_box);
+  region.shells = read_parts(reader, "shell", read_shell);
+  region.half_spaces = read_parts(reader, "half_space", read_half_space);
+  if (reader.find("poses") != nullptr) {
+    region.poses = read_tum(path.parent_path() / reader.text("poses")).poses;
+    // No poses at all would mean that every pose is in reach.
+    if (region.poses.empty()) reader.fail("poses", "names a file without poses");
+  }
+  if (reader.find("tolerance") != nullptr) {
+    region.tolerance = read_tolerance(reader.table("tolerance"));
+  }
+  reader.refuse_unknown_keys();
+  try {
+    region.validate();
+  } catch (const Error& error) {
+    throw Error(ErrorCode::format, path.string() + ": " + error.what());
+  }
+  return region;
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run_report.hpp"
+
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+
+#include "commands.hpp"
+#include "terminal.hpp"
+
+namespace viewgain::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json to_json(const StageSeconds& seconds) {
+  ordered_json json = ordered_json::object();
+  double total = 0;
+  for (const auto& [stage, value] : seconds) {
+    json[stage] = value;
+    total += value;
+  }
+  json["total"] = total;
+  return json;
+}
+
+ordered_json to_json(const std::map<std::string, std::size_t>& counts) {
+  ordered_json json = ordered_json::object();
+  for (const auto& [reason, count] : counts) json[reason] = count;
+  return json;
+}
+
+// The figures that both a view and the whole run have.
+void put_figures(ordered_json& json, const QualityFigures& quality, const ModelProgress& progress) {
+  json["coverage"] = quality.coverage;
+  json["coverage_visible"] = quality.coverage_visible;
+  json["coverage_2_5mm"] = quality.coverage_2_5mm;
+  json["rms_error"] = quality.surface_error.rms;
+  json["p95_error"] = quality.surface_error.p95;
+  json["rms_error_points"] = quality.points_error.rms;
+  json["p95_error_points"] = quality.points_error.p95;
+  json["consistency"] = quality.consistency.mean_clipped;
+  json["consistency_median"] = quality.consistency.median;
+  json["consistency_above_9"] = quality.consistency.above_9;
+  json["outliers"] = quality.consistency.outliers;
+  json["entropy_removed"] = progress.entropy_removed;
+  json["unknown_voxels"] = progress.unknown_voxels;
+}
+
+__attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...) {
+  std::array<char, 512> text{};
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text.data(), text.size(), format, arguments);
+  va_end(arguments);
+  return text.data();
+}
+
+std::size_t total(const std::map<std::string, std::size_t>& counts) {
+  std::size_t sum = 0;
+  for (const auto& [reason, count] : counts) sum += count;
+  return sum;
+}
+
+std::string counts_text(const std::map<std::string, std::size_t>& counts) {
+  std::string text;
+  for (const auto& [reason, count] : counts) {
+    text.append(text.empty() ? "" : ", ").append(std::to_string(count)).append(" ").append(reason);
+  }
+  return text;
+}
+
+}  // namespace
+
+void RunReport::add_view(const ViewRecord& record, const QualityFigures& quality,
+                         const StageSeconds& seconds) {
+  StageSeconds own = seconds;
+  for (auto& [stage, value] : own) {
+    const auto before = totals_.find(stage);
+    if (before != totals_.end()) value -= before->second;
+  }
+  totals_ = seconds;
+  views_.push_back({record, quality, std::move(own)});
+}
+
+std::string RunReport::progress_line() const {
+  const Entry& e = views_.back();
+  std::string text =
+      formatted("view %2zu  %6.2f %% visible at 5 mm, RMS %.2f mm, unknown %s, +%.4g",
+                e.record.index, 100 * e.quality.coverage_visible, 1e3 * e.quality.surface_error.rms,
+                with_commas(e.record.progress.unknown_voxels).c_str(), e.record.realised_gain);
+  if (e.record.chosen_as && !e.record.chosen_as->boundary_class.empty()) {
+    text.append("  ").append(e.record.chosen_as->boundary_class);
+  }
+  const std::size_t candidates = e.record.proposal.candidates.size();
+  if (e.record.decision) {
+    text += formatted("  next: %.4g nat of %zu candidates, %zu dropped", e.record.decision->gain,
+                      candidates, total(e.record.proposal.dropped));
+  }
+  return text;
+}
+
+ordered_json RunReport::entry_json(std::size_t index) const {
+  const Entry& e = views_[index];
+  ordered_json json{{"index", e.record.index}, {"pose", app::to_json(e.record.T_world_camera)}};
+  const bool chosen = e.record.chosen_as.has_value();
+  const bool of_boundary = chosen && !e.record.chosen_as->boundary_class.empty();
+  json["class"] = of_boundary ? ordered_json(e.record.chosen_as->boundary_class) : ordered_json();
+  json["generator"] = chosen ? ordered_json(e.record.chosen_as->generator) : ordered_json("start");
+  // The proposal that this view was chosen from came after the view before it.
+  const Proposal empty;
+  const Proposal& from = index > 0 ? views_[index - 1].record.proposal : empty;
+  json["candidates"] = from.candidates.size();
+  json["dropped"] = to_json(from.dropped);
+  json["predicted_gain"] = e.record.predicted_gain;
+  json["realised_gain"] = e.record.realised_gain;
+  put_figures(json, e.quality, e.record.progress);
+  json["travelled"] = e.record.travelled;
+  json["seconds"] = to_json(e.seconds);
+  return json;
+}
+
+ordered_json RunReport::json(StopReason reason) const {
+  const Entry& last = views_.back();
+  ordered_json json{{"stop_reason", stop_reason_name(reason)}, {"views", views_.size()}};
+  put_figures(json, last.quality, last.record.progress);
+  json["travelled"] = last.record.travelled;
+  json["final_candidates"] = last.record.proposal.candidates.size();
+  json["final_dropped"] = to_json(last.record.proposal.dropped);
+  json["seconds"] = to_json(totals_);
+  json["per_view"] = ordered_json::array();
+  for (std::size_t i = 0; i < views_.size(); ++i) json["per_view"].push_back(entry_json(i));
+  return json;
+}
+
+std::string RunReport::text(StopReason reason) const {
+  const Entry& last = views_.back();
+  const QualityFigures& q = last.quality;
+  std::string text = formatted("%zu views, stopped: %s\n", views_.size(),
+                               std::string(stop_reason_name(reason)).c_str());
+  const std::map<std::string, std::size_t>& dropped = last.record.proposal.dropped;
+  if (!dropped.empty()) {
+    text += formatted("last candidates: %zu feasible; dropped: %s\n",
+                      last.record.proposal.candidates.size(), counts_text(dropped).c_str());
+  }
+  text += formatted("coverage at 5 mm %.2f %% of all, %.2f %% of the visible; at 2.5 mm %.2f %%\n",
+                    100 * q.coverage, 100 * q.coverage_visible, 100 * q.coverage_2_5mm);
+  text += formatted(
+      "error of the surface: RMS %.2f mm, 95 %% under %.2f mm; of the points: %.2f, %.2f\n",
+      1e3 * q.surface_error.rms, 1e3 * q.surface_error.p95, 1e3 * q.points_error.rms,
+      1e3 * q.points_error.p95);
+  text += formatted(
+      "consistency %.2f (1 if honest), median %.2f (0.455), above 9: %.3f (0.003); "
+      "%zu outliers of %zu points\n",
+      q.consistency.mean_clipped, q.consistency.median, q.consistency.above_9,
+      q.consistency.outliers, q.consistency.points + q.consistency.outliers);
+  text +=
+      formatted("entropy removed %.6g, unknown voxels %s, travelled %.2f m\n",
+                last.record.progress.entropy_removed,
+                with_commas(last.record.progress.unknown_voxels).c_str(), last.record.travelled);
+  double sum = 0;
+  std::string stages;
+  for (const auto& [stage, value] : totals_) {
+    sum += value;
+    stages += formatted("%s%s %.2f", stages.empty() ? "" : ", ", stage.c_str(), value);
+  }
+  return text + formatted("%.2f s: %s\n", sum, stages.c_str());
+}
+
+}  // namespace viewgain::app

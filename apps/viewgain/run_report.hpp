@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "model.hpp"
+#include "viewgain/core/planning.hpp"
+
+namespace viewgain::app {
+
+/// What a run came to, for run.json, --json and people. apps/README.md names the keys.
+class RunReport {
+ public:
+  /// To be called once a view, in order. `seconds` are the totals so far.
+  void add_view(const ViewRecord& record, const QualityFigures& quality,
+                const StageSeconds& seconds);
+
+  /// One line about the last view.
+  [[nodiscard]] std::string progress_line() const;
+
+  /// The keys of `reconstruct --json`.
+  [[nodiscard]] nlohmann::ordered_json json(StopReason reason) const;
+
+  /// The same for people.
+  [[nodiscard]] std::string text(StopReason reason) const;
+
+ private:
+  struct Entry {
+    ViewRecord record;
+    QualityFigures quality;
+    StageSeconds seconds;  ///< of this view alone
+  };
+  [[nodiscard]] nlohmann::ordered_json entry_json(std::size_t index) const;
+
+  std::vector<Entry> views_;
+  StageSeconds totals_;
+};
+
+}  // namespace viewgain::app

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/simulated_sensor.hpp"
+
+namespace viewgain::app {
+
+/// How a camera is simulated, as the command line says it.
+struct SensingOptions {
+  double background = 1.5;                ///< --background [m]
+  std::string noise = "off";              ///< --noise on|off: axial and lateral
+  std::string flying_pixels;              ///< --flying-pixels on|off; empty: as --noise
+  std::uint64_t seed = 1;                 ///< --seed
+  double wiggling = 0;                    ///< --wiggling [m]
+  std::string calibrate = "off";          ///< --calibrate on|off
+  std::optional<double> support_plane{};  ///< --support-plane, world z [m]
+
+  /// Sub-rays mix only in sensors with a modulation frequency.
+  [[nodiscard]] bool has_flying_pixels(const Sensor& sensor) const;
+};
+
+/// With the sensor's calibration measured if that is asked for. Throws Error.
+[[nodiscard]] SimulationConfig simulation_config(const SensingOptions& options,
+                                                 const Sensor& sensor);
+
+/// --jump-edge-filter ANGLE_DEG|off. Throws Error(invalid_argument) for other text; the filter
+/// itself refuses angles out of its bounds.
+[[nodiscard]] std::optional<JumpEdgeConfig> parse_jump_edge_filter(const std::string& text,
+                                                                   bool two_sided);
+
+}  // namespace viewgain::app

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "viewgain/core/planning.hpp"
+#include "viewgain/raycast/simulated_sensor.hpp"
+
+namespace viewgain::app {
+
+/// DATAACQUISITION of Algorithm 1 by a simulated camera: `frames_per_view` frames from each pose,
+/// numbered on, so that view and frame fix the noise.
+class SimulatedAcquisition : public DataAcquisition {
+ public:
+  SimulatedAcquisition(SimulatedSensor camera, std::size_t frames_per_view, double& seconds)
+      : camera_(std::move(camera)), frames_per_view_(frames_per_view), seconds_(seconds) {}
+
+  Measurements acquire(const Pose& T_world_camera, std::size_t view) override;
+
+  /// The first frame of the last view.
+  [[nodiscard]] const DepthFrame& last_frame() const noexcept { return last_frame_; }
+
+ private:
+  SimulatedSensor camera_;
+  std::size_t frames_per_view_;
+  double& seconds_;
+  DepthFrame last_frame_;
+};
+
+}  // namespace viewgain::app

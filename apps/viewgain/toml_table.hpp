@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace viewgain::app {
+
+/// Throws Error(io) if the file cannot be read, Error(format) with the line if it is no TOML.
+[[nodiscard]] toml::table read_toml(const std::filesystem::path& path);
+
+/// One table of a TOML file; remembers which keys were asked for, so that the others can be
+/// refused. Must not outlive the table. Whatever is not as it should be is an Error(format) that
+/// names the file and the key.
+class TableReader {
+ public:
+  TableReader(const toml::table& table, std::string file, std::string prefix);
+
+  [[noreturn]] void fail(std::string_view key, const std::string& what) const;
+
+  /// Null if the key is not there.
+  const toml::node* find(std::string_view key);
+  const toml::node& require(std::string_view key);
+
+  double number(std::string_view key);
+  [[nodiscard]] double number_of(const toml::node& node, std::string_view key) const;
+  int whole_number(std::string_view key);
+  std::string text(std::string_view key);
+  std::vector<double> numbers(std::string_view key, std::size_t count);
+  [[nodiscard]] std::vector<double> numbers(std::string_view key, const toml::node& node,
+                                            std::size_t count) const;
+  TableReader table(std::string_view key);
+  /// The elements of a list of tables; none if the key is not there.
+  std::vector<TableReader> tables(std::string_view key);
+
+  void refuse_unknown_keys() const;
+
+ private:
+  const toml::table& table_;
+  std::string file_;
+  std::string prefix_;
+  std::vector<std::string> known_;
+};
+
+}  // namespace viewgain::app

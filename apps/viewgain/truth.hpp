@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/reach.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/fused_points.hpp"
+#include "viewgain/mesh/quality.hpp"
+#include "viewgain/mesh/surface.hpp"
+#include "viewgain/raycast/surface_scene.hpp"
+
+namespace viewgain::app {
+
+/// DESIGN.md section 10, for one model against a ground truth. Lengths in [m].
+struct QualityFigures {
+  double coverage = 0;          ///< of all samples, 5 mm, surface
+  double coverage_visible = 0;  ///< of the visible ones, 5 mm, surface
+  double coverage_2_5mm = 0;    ///< of all samples, 2.5 mm, surface
+  ErrorStatistics surface_error{};
+  ErrorStatistics points_error{};
+  Consistency consistency{};  ///< of the points
+};
+
+/// From where the visible samples are looked for.
+struct VisibilityConfig {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double distance = 0;  ///< of the 2,562 poses from the centre [m]
+  ReachRegion reach{};
+  std::optional<double> support_plane{};  ///< nothing is seen from under it; world z [m]
+};
+
+/// A ground-truth mesh and which of its samples a camera can see: unoccluded, inside the image and
+/// the range limits, at under 80°, from one of 2,562 Fibonacci poses.
+class Truth {
+ public:
+  Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
+        const VisibilityConfig& config, const ExecConfig& exec);
+
+  [[nodiscard]] QualityFigures figures(const SurfaceMesh& surface,
+                                       std::span<const FusedPoint> points) const;
+  [[nodiscard]] double visible_share() const noexcept { return visible_share_; }
+  /// Errors of the points within a part: those for which `inside` is not 0.
+  [[nodiscard]] const GroundTruth& mesh() const noexcept { return truth_; }
+
+ private:
+  GroundTruth truth_;
+  std::vector<std::uint8_t> visible_;
+  double visible_share_ = 0;
+};
+
+}  // namespace viewgain::app

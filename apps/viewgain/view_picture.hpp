@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+
+#include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/mesh/surface.hpp"
+#include "viewgain/mesh/viewpoint_estimator.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::app {
+
+/// What one turn of the loop looked at (the paper's Fig. 7).
+struct ViewPicture {
+  const SurfaceMesh& surface;             ///< seen so far
+  const EstimatedViews& estimated;        ///< its boundary runs
+  std::span<const Candidate> candidates;  ///< the feasible ones
+  Pose T_world_camera;                    ///< the view just taken
+  std::optional<Pose> chosen{};           ///< the next one
+  const GainEvaluator& evaluator;         ///< traces the chosen view's rays
+  const Sensor& sensor;
+};
+
+/// A picture, 1280x960 px: the surface in grey; boundary runs in class colours (left red, right
+/// green, top blue, bottom yellow); candidates as small frusta, those of boundaries in their
+/// class's colour, others grey; the view just taken as a black frustum; the chosen one as a larger
+/// green frustum with some of its rays, orange where they end in unknown voxels, blue in occupied
+/// ones. The surface's inside is darker; of more than 200 candidates an even subset is drawn, none
+/// right in front of the viewer. Atomic: a temporary file is renamed. Throws Error(io);
+/// Error(invalid_argument) for a view that is no rigid transform (1e-3). The same picture for any
+/// number of threads.
+void write_view_picture(const std::filesystem::path& path, const ViewPicture& picture,
+                        const ExecConfig& exec);
+
+/// The amplitude image of a frame (the paper's Fig. 1), 8-bit grey, enlarged by a whole number to
+/// at least 480 px in width; brightness ∝ the square root of the amplitude, the 99th percentile is
+/// white. Atomic. Throws Error(io); Error(invalid_argument) if the frame has no amplitude.
+void write_amplitude_picture(const std::filesystem::path& path, const DepthFrame& frame);
+
+}  // namespace viewgain::app

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/pose.hpp"
+
+namespace viewgain {
+
+// The paper's Algorithm 1, stated once over four interfaces in its words. Replace any of them.
+
+/// S_i: what the sensor delivered from x_i.
+struct Measurements {
+  Pose T_world_camera;
+  std::vector<DepthFrame> frames;
+};
+
+/// DATAACQUISITION: moves the sensor to x_i and measures.
+class DataAcquisition {
+ public:
+  virtual ~DataAcquisition() = default;
+  /// `view` counts from 0.
+  virtual Measurements acquire(const Pose& T_world_camera, std::size_t view) = 0;
+};
+
+/// How far the representations are, for the stopping rules.
+struct ModelProgress {
+  double entropy_removed = 0;  ///< of the whole map [nat, or m² for trace]
+  std::uint64_t unknown_voxels = 0;
+  std::optional<double> coverage{};  ///< in [0, 1], where a ground truth is known
+};
+
+/// UPDATEREPRESENTATIONS: the model and the occupancy grid (the paper's M and O).
+class RepresentationUpdate {
+ public:
+  virtual ~RepresentationUpdate() = default;
+  virtual ModelProgress update(const Measurements& measurements) = 0;
+};
+
+/// A pose that could be the next view.
+struct Candidate {
+  Pose T_world_camera;
+  std::string generator;       ///< who proposed it
+  std::string boundary_class;  ///< left, right, top, bottom; empty where there is no boundary
+  std::int64_t source = -1;    ///< the generator's own number for why (a boundary run), or -1
+};
+
+/// c_m: the feasible candidates, and how many were dropped and why.
+struct Proposal {
+  std::vector<Candidate> candidates;
+  std::map<std::string, std::size_t> dropped;  ///< reason -> count
+};
+
+/// The reason in Proposal::dropped that means "outside the reachable region".
+inline constexpr std::string_view kUnreachable = "unreachable";
+
+/// VIEWPOINTSGENERATION.
+class ViewpointGeneration {
+ public:
+  virtual ~ViewpointGeneration() = default;
+  virtual Proposal generate(const Pose& T_world_camera) = 0;
+};
+
+/// The choice among the candidates.
+struct Decision {
+  std::size_t candidate = 0;  ///< index of the chosen one
+  double gain =
+      std::numeric_limits<double>::quiet_NaN();  ///< its expected gain [nat, m² for trace]
+  /// Its expected gain per touched voxel, held against PlanningConfig::stop_gain; NaN: this policy
+  /// has none and never stops for it.
+  double gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// DECISIONMAKER: picks x_{i+1}. Returns nothing if none of the candidates will do.
+class DecisionMaking {
+ public:
+  virtual ~DecisionMaking() = default;
+  virtual std::optional<Decision> decide(const Pose& T_world_camera,
+                                         std::span<const Candidate> candidates) = 0;
+};
+
+/// When to stop (DESIGN.md section 9).
+struct PlanningConfig {
+  std::size_t max_views = 20;
+  /// Stop when the best candidate's gain per touched voxel is under this [nat, m² for trace].
+  double stop_gain = 0.15;
+  /// stop_gain is a share of the first decision's gain per voxel instead (for trace: 0.01).
+  bool stop_gain_is_relative = false;
+  std::size_t idle_views = 3;  ///< stop after so many views in a row that brought nothing; 0: never
+  /// Nothing: the view adds less than this share to entropy_removed and takes less than this share
+  /// off the unknown voxels (or nothing at all). The first view is never idle.
+  double idle_fraction = 1e-3;
+  std::optional<double> stop_coverage{};  ///< stop at this coverage
+  /// Asked after each step but the acquisition: what was measured goes into the model. Ends with
+  /// `interrupted`.
+  std::stop_token stop{};
+};
+
+enum class StopReason : std::uint8_t {
+  gain,           ///< the best candidate promises too little
+  no_candidates,  ///< nothing is left to look at
+  unreachable,    ///< candidates are left, all of them out of reach
+  idle,           ///< views in a row brought nothing new
+  max_views,
+  coverage,
+  interrupted,
+};
+[[nodiscard]] std::string_view stop_reason_name(StopReason reason);
+
+/// One turn of the loop: the view taken, and the choice of the one after it.
+struct ViewRecord {
+  std::size_t index = 0;
+  Pose T_world_camera;                   ///< where the measurements say it was taken
+  std::optional<Candidate> chosen_as{};  ///< what this view was as a candidate; none for x_0
+  double predicted_gain = std::numeric_limits<double>::quiet_NaN();  ///< when it was chosen
+  double realised_gain = 0;  ///< what it added to entropy_removed
+  ModelProgress progress;    ///< after it
+  double travelled = 0;      ///< distance between camera centres so far [m]
+  Proposal proposal{};       ///< for the next view; empty if the run ended before it was asked for
+  /// The next view; empty if there was none. With StopReason::gain it is the one that promised too
+  /// little and is not taken.
+  std::optional<Decision> decision{};
+};
+
+struct PlanningResult {
+  StopReason reason = StopReason::max_views;
+  std::vector<ViewRecord> views;
+};
+
+/// The paper's Algorithm 1 from x_0. Calls the parts in turn on the calling thread and `observer`,
+/// if given, once a view, when its record is complete. Exceptions of the parts pass through. Throws
+/// Error(invalid_argument) if max_views is 0, a limit is not finite, or a decision names a
+/// candidate that is not there.
+///
+/// Order of the rules after each view: interrupted; coverage; max_views; idle; then, with the
+/// candidates, no_candidates or unreachable (none left, or the decision maker took none, and some
+/// were dropped as unreachable); gain.
+[[nodiscard]] PlanningResult active_view_planning(
+    const Pose& x_0, DataAcquisition& acquisition, RepresentationUpdate& representation,
+    ViewpointGeneration& generation, DecisionMaking& decision, const PlanningConfig& config = {},
+    const std::function<void(const ViewRecord&)>& observer = {});
+
+}  // namespace viewgain

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+namespace viewgain {
+
+/// Table of a camera's systematic, distance-dependent error: what the paper's ref. [7] (Fuchs and
+/// Hirzinger, CVPR 2008) measures against known distances and subtracts. A value type.
+struct RangeCalibration {
+  /// (measured range, measured minus true range) [m], measured ranges rising. Empty: no correction.
+  std::vector<std::array<double, 2>> table{};
+
+  /// Throws Error(invalid_argument) unless all are finite and measured ranges rise strictly.
+  void validate() const;
+
+  /// measured - error(measured), the error interpolated linearly, held constant beyond the ends
+  /// [m].
+  [[nodiscard]] double corrected(double measured_range) const;
+
+  bool operator==(const RangeCalibration&) const = default;
+};
+
+}  // namespace viewgain

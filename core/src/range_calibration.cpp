@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/range_calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+
+void RangeCalibration::validate() const {
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const auto& [measured, error] = table[i];
+    if (!std::isfinite(measured) || !std::isfinite(error)) {
+      throw Error(ErrorCode::invalid_argument, "range calibration: entry " + std::to_string(i) +
+                                                   " is not finite: " + std::to_string(measured) +
+                                                   ", " + std::to_string(error));
+    }
+    if (i > 0 && !(measured > table[i - 1][0])) {
+      throw Error(ErrorCode::invalid_argument,
+                  "range calibration: measured ranges must rise, but " + std::to_string(measured) +
+                      " m follows " + std::to_string(table[i - 1][0]) + " m");
+    }
+  }
+}
+
+double RangeCalibration::corrected(double measured_range) const {
+  if (table.empty()) return measured_range;
+  const auto above = std::upper_bound(
+      table.begin(), table.end(), measured_range,
+      [](double range, const std::array<double, 2>& entry) { return range < entry[0]; });
+  if (above == table.begin()) return measured_range - table.front()[1];
+  if (above == table.end()) return measured_range - table.back()[1];
+  const std::array<double, 2>& low = *(above - 1);
+  const std::array<double, 2>& high = *above;
+  const double share = (measured_range - low[0]) / (high[0] - low[0]);
+  return measured_range - (low[1] + share * (high[1] - low[1]));
+}
+
+}  // namespace viewgain

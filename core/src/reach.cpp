@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/reach.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+namespace {
+
+[[noreturn]] void fail(const char* part, std::size_t index, const std::string& what) {
+  throw Error(ErrorCode::invalid_argument,
+              std::string("reach: ") + part + " " + std::to_string(index) + " " + what);
+}
+
+bool contains(const Box& box, const Eigen::Vector3d& p) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double value = p[static_cast<Eigen::Index>(k)];
+    if (!(value >= box.min[k] && value <= box.max[k])) return false;
+  }
+  return true;
+}
+
+bool contains(const Shell& shell, const Eigen::Vector3d& p) {
+  const double distance = (p - shell.center).norm();
+  return distance >= shell.min_radius && distance <= shell.max_radius;
+}
+
+bool contains(const HalfSpace& half_space, const Eigen::Vector3d& p) {
+  return half_space.normal.dot(p) >= half_space.offset;
+}
+
+template <typename Part>
+bool in_any(const std::vector<Part>& parts, const Eigen::Vector3d& p) {
+  return parts.empty() || std::any_of(parts.begin(), parts.end(),
+                                      [&p](const Part& part) { return contains(part, p); });
+}
+
+// Angle of the rotation between two poses [rad]. An arc cosine would lose the small angles.
+double angle_between(const Pose& a, const Pose& b) {
+  const Eigen::Matrix3d R = a.rotation().transpose() * b.rotation();
+  const Eigen::Vector3d twice_sine(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+  return std::atan2(twice_sine.norm(), R.trace() - 1.0);
+}
+
+}  // namespace
+
+bool is_among(const Pose& pose, std::span<const Pose> poses, const PoseTolerance& tolerance) {
+  return std::any_of(poses.begin(), poses.end(), [&](const Pose& other) {
+    return (pose.translation() - other.translation()).norm() <= tolerance.distance &&
+           angle_between(pose, other) <= tolerance.angle;
+  });
+}
+
+void ReachRegion::validate() const {
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double low = boxes[i].min[k], high = boxes[i].max[k];
+      if (!std::isfinite(low) || !std::isfinite(high)) fail("box", i, "is not finite");
+      if (low > high) {
+        fail("box", i, "is inside out: " + std::to_string(low) + " > " + std::to_string(high));
+      }
+    }
+  }
+  for (std::size_t i = 0; i < shells.size(); ++i) {
+    const Shell& shell = shells[i];
+    if (!shell.center.allFinite() || !std::isfinite(shell.min_radius) ||
+        !std::isfinite(shell.max_radius)) {
+      fail("shell", i, "is not finite");
+    }
+    if (shell.min_radius < 0) {
+      fail("shell", i, "has the radius " + std::to_string(shell.min_radius));
+    }
+    if (shell.min_radius > shell.max_radius) {
+      fail("shell", i,
+           "is inside out: " + std::to_string(shell.min_radius) + " > " +
+               std::to_string(shell.max_radius));
+    }
+  }
+  for (std::size_t i = 0; i < half_spaces.size(); ++i) {
+    const HalfSpace& half_space = half_spaces[i];
+    if (!half_space.normal.allFinite() || !std::isfinite(half_space.offset)) {
+      fail("half-space", i, "is not finite");
+    }
+    if (half_space.normal.isZero(0)) fail("half-space", i, "has the normal 0");
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!std::isfinite(orthonormality_error(poses[i]))) fail("pose", i, "is no rigid transform");
+  }
+  for (const auto& [name, value] :
+       {std::pair("distance", tolerance.distance), std::pair("angle", tolerance.angle)}) {
+    if (!(std::isfinite(value) && value >= 0)) {
+      throw Error(ErrorCode::invalid_argument, std::string("reach: the tolerance's ") + name +
+                                                   " must be finite and not negative, not " +
+                                                   std::to_string(value));
+    }
+  }
+}
+
+bool ReachRegion::contains(const Pose& T_world_camera) const {
+  const Eigen::Vector3d center = T_world_camera.translation();
+  return in_any(boxes, center) && in_any(shells, center) &&
+         std::all_of(half_spaces.begin(), half_spaces.end(),
+                     [&center](const HalfSpace& h) { return viewgain::contains(h, center); }) &&
+         (poses.empty() || is_among(T_world_camera, poses, tolerance)) &&
+         (!predicate || predicate(T_world_camera));
+}
+
+}  // namespace viewgain

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "block_lattice.hpp"
+#include "log_odds_code.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+
+namespace viewgain::detail {
+
+/// A voxel's belief in double precision.
+struct PlacedBelief {
+  SymmetricMatrix3 information{};  ///< Λ_v [m⁻²]
+  Eigen::Vector3d vector = Eigen::Vector3d::Zero();        ///< η_v [m⁻¹]
+  std::uint32_t hits = 0;
+};
+
+/// The beliefs and states of a map by 8³ blocks, laid out for looking at a voxel's neighbours.
+class BeliefBricks {
+ public:
+  static constexpr std::int32_t kNone = -1;
+
+  explicit BeliefBricks(const BeliefGrid& grid);
+
+  /// Voxels that are occupied and have a belief: brick and offset, in a fixed order.
+  [[nodiscard]] std::vector<std::pair<std::size_t, unsigned>> occupied_with_belief() const;
+
+  [[nodiscard]] Index3 origin(std::size_t brick) const { return bricks_[brick].origin; }
+  [[nodiscard]] const PlacedBelief* find(std::size_t brick, unsigned offset) const {
+    const std::int32_t i = bricks_[brick].belief[offset];
+    return i == kNone ? nullptr : &beliefs_[static_cast<std::size_t>(i)];
+  }
+  [[nodiscard]] bool is_free(std::size_t brick, unsigned offset) const {
+    return !test_bit(bricks_[brick].non_free, offset);
+  }
+  [[nodiscard]] bool is_unknown(std::size_t brick, unsigned offset) const {
+    return !is_free(brick, offset) && !test_bit(bricks_[brick].occupied, offset);
+  }
+
+  /// Number of the brick with this origin, kNone if there is none.
+  [[nodiscard]] std::int32_t number(Index3 origin) const;
+  /// State of a voxel in a block without a brick, which is uniform.
+  [[nodiscard]] bool is_unknown_tile(Index3 voxel) const;
+
+ private:
+  struct Brick {
+    Index3 origin;
+    LeafMask non_free{};
+    LeafMask occupied{};
+    std::array<std::int32_t, kBlockVoxels> belief{};
+  };
+  std::size_t brick_at(Index3 origin);
+
+  std::vector<Brick> bricks_;
+  std::vector<PlacedBelief> beliefs_;
+  std::unordered_map<std::uint64_t, std::int32_t> numbers_;
+  std::vector<SnapshotTile> tiles_;
+  Index3 min_, max_;
+};
+
+/// A brick and its 26 neighbours.
+class BrickNeighborhood {
+ public:
+  BrickNeighborhood(const BeliefBricks& bricks, std::size_t center);
+
+  /// f(belief, from the centre of `voxel` to that of the belief's [voxels]) for the voxels
+  /// whose centres are within `radius` [voxels]; the radius must be at most 8.
+  template <typename F>
+  void for_each_in_ball(Index3 voxel, double radius, F&& f) const {
+    const int r = static_cast<int>(radius);
+    const double limit = radius * radius;
+    for (int x = -r; x <= r; ++x) {
+      for (int y = -r; y <= r; ++y) {
+        for (int z = -r; z <= r; ++z) {
+          if (x * x + y * y + z * z > limit) continue;
+          const PlacedBelief* belief = find({voxel.x + x, voxel.y + y, voxel.z + z});
+          if (belief != nullptr) f(*belief, Eigen::Vector3d(x, y, z));
+        }
+      }
+    }
+  }
+
+  /// f(belief, from `start` to the centre of the belief's voxel [voxels]) for the voxels whose
+  /// centres are within `radius` of the line start + h n and within `half_height` of start along
+  /// it.
+  template <typename F>
+  void for_each_in_column(const Eigen::Vector3d& start, const Eigen::Vector3d& n, double radius,
+                          double half_height, F&& f) const {
+    // Layer by layer along the axis that the line follows most.
+    Eigen::Index axis = 0;
+    const double steepest = n.cwiseAbs().maxCoeff(&axis);
+    const Eigen::Index b = (axis + 1) % 3, c = (axis + 2) % 3;
+    const double reach = half_height * steepest + radius;
+    const double spread = radius / steepest;
+    Eigen::Vector3d center;
+    for (double layer = std::ceil(start[axis] - reach - 0.5); layer + 0.5 <= start[axis] + reach;
+         ++layer) {
+      center[axis] = layer + 0.5;
+      const double h = (center[axis] - start[axis]) / n[axis];
+      const double at_b = start[b] + h * n[b], at_c = start[c] + h * n[c];
+      for (double i = std::ceil(at_b - spread - 0.5); i + 0.5 <= at_b + spread; ++i) {
+        center[b] = i + 0.5;
+        for (double j = std::ceil(at_c - spread - 0.5); j + 0.5 <= at_c + spread; ++j) {
+          center[c] = j + 0.5;
+          const Eigen::Vector3d d = center - start;
+          const double along = d.dot(n);
+          if (std::abs(along) > half_height || d.squaredNorm() - along * along > radius * radius) {
+            continue;
+          }
+          const PlacedBelief* belief = find(containing(center));
+          if (belief != nullptr) f(*belief, d);
+        }
+      }
+    }
+  }
+
+  /// From where unknown voxels are around `position` [voxels] to where free ones are; zero if there
+  /// is no difference. Not normalised.
+  [[nodiscard]] Eigen::Vector3d free_side(const Eigen::Vector3d& position) const;
+
+ private:
+  [[nodiscard]] static Index3 containing(const Eigen::Vector3d& position) {
+    return {static_cast<std::int32_t>(std::floor(position.x())),
+            static_cast<std::int32_t>(std::floor(position.y())),
+            static_cast<std::int32_t>(std::floor(position.z()))};
+  }
+  /// Number of the brick of a voxel, kNone if there is none or it is not in the neighbourhood.
+  [[nodiscard]] std::int32_t brick_of(Index3 v) const {
+    const std::int32_t x = (v.x >> 3) - low_.x, y = (v.y >> 3) - low_.y, z = (v.z >> 3) - low_.z;
+    if (static_cast<std::uint32_t>(x) > 2 || static_cast<std::uint32_t>(y) > 2 ||
+        static_cast<std::uint32_t>(z) > 2) {
+      return BeliefBricks::kNone;
+    }
+    return numbers_[static_cast<std::size_t>(9 * x + 3 * y + z)];
+  }
+  [[nodiscard]] const PlacedBelief* find(Index3 v) const {
+    const std::int32_t brick = brick_of(v);
+    return brick == BeliefBricks::kNone
+               ? nullptr
+               : bricks_.find(static_cast<std::size_t>(brick), block_offset(v));
+  }
+
+  const BeliefBricks& bricks_;
+  Index3 low_;  ///< lowest block, in blocks
+  std::array<std::int32_t, 27> numbers_{};
+};
+
+}  // namespace viewgain::detail

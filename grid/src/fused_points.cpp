@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/grid/fused_points.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "belief_bricks.hpp"
+#include "point_support.hpp"
+#include "point_thinning.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/thread_pool.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace detail;
+
+constexpr double kMaxReach = 8.0;       // voxels: bricks know their direct neighbours
+constexpr double kSupportRadius = 4.0;  // voxels
+constexpr int kSteps = 3;               // of a point towards its column's mean
+
+void check(const FusedPointsConfig& config) {
+  const auto need = [](bool ok, const char* name, double value) {
+    if (!ok) {
+      throw Error(ErrorCode::invalid_argument, "fused points: " + std::string(name) + " " +
+                                                   std::to_string(value) + " is out of bounds");
+    }
+  };
+  need(config.normal_radius >= 1 && config.normal_radius <= kMaxReach, "normal_radius",
+       config.normal_radius);
+  need(config.column_radius > 0 && config.column_radius <= kMaxReach / 2, "column_radius",
+       config.column_radius);
+  need(config.column_sigmas > 0 && std::isfinite(config.column_sigmas), "column_sigmas",
+       config.column_sigmas);
+  need(config.min_distance >= 0 && std::isfinite(config.min_distance), "min_distance",
+       config.min_distance);
+  need(config.min_relative_hits >= 0 && config.min_relative_hits <= 1, "min_relative_hits",
+       config.min_relative_hits);
+  if (config.floor_sigma) {
+    need(*config.floor_sigma >= 0 && std::isfinite(*config.floor_sigma), "floor_sigma",
+         *config.floor_sigma);
+  }
+}
+
+/// One voxel's point on its way; positions in voxels of the grid.
+struct Seed {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  SymmetricMatrix3 information{};  ///< [m⁻²]
+  std::uint32_t hits = 0;
+};
+
+/// The direction in which the readings around a voxel spread least.
+Eigen::Vector3d local_normal(const BrickNeighborhood& around, Index3 voxel, double radius) {
+  double weight = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  around.for_each_in_ball(voxel, radius, [&](const PlacedBelief& belief, const Eigen::Vector3d& d) {
+    const double w = belief.hits;
+    weight += w;
+    sum += w * d;
+    squares.noalias() += w * d * d.transpose();
+  });
+  const Eigen::Vector3d mean = sum / weight;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(squares / weight - mean * mean.transpose());
+  return solver.eigenvectors().col(0);
+}
+
+/// Moves the seed along its normal to the mean of its column and pools the column's beliefs.
+void pool_column(const BrickNeighborhood& around, double voxel_size, const PlacedBelief& own,
+                 const FusedPointsConfig& config, Seed& seed) {
+  // Sigma of one reading across the surface, in voxels, from the seed voxel's own belief.
+  const Eigen::Vector3d n = seed.normal;
+  const double variance = own.hits * n.dot(own.information.inverse() * n);
+  const double sigma = std::sqrt(std::max(variance, 0.0)) / voxel_size;
+  const double half_height =
+      std::clamp(config.column_sigmas * sigma, 1.0, kMaxReach / 2);  // NaN: not for valid beliefs
+  for (int step = 0; step < kSteps; ++step) {
+    SymmetricMatrix3 information{};
+    Eigen::Vector3d vector = Eigen::Vector3d::Zero();  // Σ Λ (p - seed), lengths in voxels
+    std::uint32_t hits = 0;
+    around.for_each_in_column(seed.position, n, config.column_radius, half_height,
+                              [&](const PlacedBelief& belief, const Eigen::Vector3d& from_axis) {
+                                information += belief.information;
+                                vector +=
+                                    belief.information * from_axis + belief.vector / voxel_size;
+                                hits += belief.hits;
+                              });
+    if (hits == 0) return;
+    // Only the part along the normal: across it the column is where the seed is.
+    const Eigen::Vector3d mean = information.inverse() * vector;
+    seed.position += n.dot(mean) * n;
+    seed.information = information;
+    seed.hits = hits;
+  }
+}
+
+}  // namespace
+
+std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsConfig& config,
+                                     const ExecConfig& exec) {
+  check(config);
+  const double V = grid.voxel_size();
+  const BeliefBricks bricks(grid);
+  const std::vector<std::pair<std::size_t, unsigned>> occupied = bricks.occupied_with_belief();
+
+  ThreadPool pool(exec.num_threads);
+  std::vector<Seed> seeds(occupied.size());
+  pool.for_each_chunk(occupied.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto [brick, offset] = occupied[i];
+      const BrickNeighborhood around(bricks, brick);
+      const Index3 voxel = offset_voxel(bricks.origin(brick), offset);
+      const PlacedBelief& own = *bricks.find(brick, offset);
+      Seed& seed = seeds[i];
+      seed.normal = local_normal(around, voxel, config.normal_radius);
+      const Eigen::Vector3d center = Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5;
+      seed.position = center + own.information.inverse() * own.vector / V;
+      seed.information = own.information;
+      seed.hits = own.hits;
+      if (config.rule == PointRule::pooled) pool_column(around, V, own, config, seed);
+      const Eigen::Vector3d free = around.free_side(seed.position);
+      if (seed.normal.dot(free) < 0) seed.normal = -seed.normal;
+    }
+  });
+
+  std::vector<std::size_t> kept(seeds.size());
+  std::iota(kept.begin(), kept.end(), std::size_t{0});
+  std::erase_if(kept, [&](std::size_t i) {
+    return seeds[i].hits < config.min_hits || !seeds[i].position.allFinite();
+  });
+  if (config.rule == PointRule::pooled) {
+    std::stable_sort(kept.begin(), kept.end(),
+                     [&](std::size_t a, std::size_t b) { return seeds[a].hits > seeds[b].hits; });
+    PointThinning thinning(config.min_distance);
+    std::erase_if(kept, [&](std::size_t i) { return !thinning.accept(seeds[i].position); });
+    std::sort(kept.begin(), kept.end());
+    std::vector<SupportedPoint> support;
+    support.reserve(kept.size());
+    for (const std::size_t i : kept) support.push_back({seeds[i].position, seeds[i].hits});
+    const std::vector<bool> good =
+        well_supported(support, kSupportRadius, config.min_relative_hits);
+    std::size_t next = 0;
+    std::erase_if(kept, [&](std::size_t) { return !good[next++]; });
+  }
+
+  const double floor = config.floor_sigma.value_or(V / std::sqrt(12.0));
+  const Eigen::Matrix3d R = grid.T_world_grid().rotation();
+  std::vector<FusedPoint> points;
+  points.reserve(kept.size());
+  for (const std::size_t i : kept) {
+    const Seed& seed = seeds[i];
+    const Eigen::Vector3d p = grid.T_world_grid() * (seed.position * V);
+    const Eigen::Vector3d n = R * seed.normal;
+    const Eigen::Matrix3d covariance =
+        R * seed.information.inverse().matrix() * R.transpose() +
+        Eigen::Matrix3d(Eigen::Vector3d::Constant(floor * floor).asDiagonal());
+    points.push_back({{p.x(), p.y(), p.z()},
+                      SymmetricMatrix3::from(covariance),
+                      {n.x(), n.y(), n.z()},
+                      seed.hits});
+  }
+  return points;
+}
+
+}  // namespace viewgain

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "point_cells.hpp"
+
+namespace viewgain::detail {
+
+/// Takes points one by one and refuses those that are nearer than a distance to one it has taken.
+class PointThinning {
+ public:
+  explicit PointThinning(double min_distance)
+      : cells_(min_distance > 0 ? min_distance : 1.0), limit_(min_distance * min_distance) {}
+
+  [[nodiscard]] bool accept(const Eigen::Vector3d& point) {
+    bool crowded = false;
+    cells_.for_each_near(point, [&](const Eigen::Vector3d& other) {
+      crowded = crowded || (other - point).squaredNorm() < limit_;
+    });
+    if (!crowded) cells_.at(point).push_back(point);
+    return !crowded;
+  }
+
+ private:
+  PointCells<Eigen::Vector3d> cells_;
+  double limit_;
+};
+
+}  // namespace viewgain::detail

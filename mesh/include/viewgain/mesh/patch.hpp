@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "viewgain/mesh/surface.hpp"
+
+namespace viewgain {
+
+/// w = a u² + b uv + c v² + d u + e v + f in a local frame: u outward across the boundary, v along
+/// it, w along the normal. Lengths in metres.
+struct QuadraticPatch {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< world
+  Eigen::Matrix3d axes =
+      Eigen::Matrix3d::Identity();       ///< columns u, v, w in the world; right-handed
+  std::array<double, 6> coefficients{};  ///< a b c d e f
+  bool planar = false;                   ///< the points did not determine a quadric: a = b = c = 0
+  double rms = 0;                        ///< of the residuals along w [m]
+  double depth = 0;                      ///< how far inward the fitted points reach: -min u [m]
+
+  /// World point at (u, v).
+  [[nodiscard]] Eigen::Vector3d point(double u, double v) const;
+  /// Unit normal there, on the side of +w.
+  [[nodiscard]] Eigen::Vector3d normal(double u, double v) const;
+};
+
+/// Least squares in the frame with this origin, u and w made orthonormal to `normal` (w = normal, u
+/// = the part of `outward` across it, v = w × u). The quadric needs 6 points, a condition number,
+/// of the design matrix in units of the points' spread, under 1e3, and residuals that leave the
+/// slope dw/du at u = depth, v = 0, where an extrapolation may end, a standard deviation of at most
+/// 0.2; else a plane; with fewer than 3 points, or points on a line, the plane w = 0. Throws
+/// Error(invalid_argument) if outward is parallel to normal or a number is not finite.
+[[nodiscard]] QuadraticPatch fit_patch(std::span<const Eigen::Vector3d> points,
+                                       const Eigen::Vector3d& origin,
+                                       const Eigen::Vector3d& outward,
+                                       const Eigen::Vector3d& normal);
+
+/// Vertices of the surface within `depth` [m] of the seeds along edges (Dijkstra), that turn by
+/// less than `max_turn` [rad] from the seeds' mean normal: the region of step 4. Rising order; none
+/// if the seeds' normals cancel. Throws Error(invalid_argument) for an index out of range, a number
+/// that is not finite, or if there is not one normal a vertex.
+[[nodiscard]] std::vector<std::uint32_t> grow_region(const SurfaceMesh& surface,
+                                                     std::span<const std::uint32_t> seeds,
+                                                     double depth, double max_turn);
+
+}  // namespace viewgain

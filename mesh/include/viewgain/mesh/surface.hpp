@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace viewgain {
+
+/// The input of surface reconstruction: a point, and on which side of the surface free space lies.
+struct OrientedPoint {
+  std::array<double, 3> position{};     ///< [m]
+  std::array<double, 3> toward_free{};  ///< a hint, not a precise normal; zero where not known
+};
+
+/// An open, oriented triangle surface as plain arrays. Faces turn counter-clockwise seen from
+/// outside (free space); every edge has one face or two.
+struct SurfaceMesh {
+  std::vector<std::array<double, 3>> vertices;          ///< [m]
+  std::vector<std::array<double, 3>> normals;           ///< unit, outward, one a vertex
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< vertex indices
+  std::vector<std::uint32_t> source;                    ///< index of the input point of each vertex
+};
+
+struct SurfaceConfig {
+  double spacing = 0;  ///< typical distance of neighbouring points [m]; the voxel size
+  unsigned smoothing_neighbors = 24;  ///< of the jet fit that smooths the points; 0: no smoothing
+  double max_edge = 4;                ///< longest edge of a triangle, in units of spacing
+  double join_distance = 3;           ///< points within this, in spacings, belong to one component
+  std::size_t min_component = 40;     ///< components of fewer points are outliers and dropped
+};
+
+/// Rebuilds the surface through the points (DESIGN.md section 8): duplicates and small components
+/// dropped, jet smoothing, advancing front (CGAL), components of the mesh with fewer than
+/// min_component vertices dropped, faces turned outward by majority of the hints in each component.
+/// Neighbours whose hints are opposed are not smoothed together. A vertex is at most 1.25 spacings
+/// from its point; a point that smoothing would move further is an outlier. No hole is filled
+/// beyond max_edge: open boundaries stay. Empty input, or nothing but outliers, gives an empty
+/// mesh. The same input gives the same bits, with any number of threads. Throws
+/// Error(invalid_argument) for a position that is not finite, or a length in the configuration that
+/// is not positive.
+[[nodiscard]] SurfaceMesh reconstruct_surface(std::span<const OrientedPoint> points,
+                                              const SurfaceConfig& config);
+
+}  // namespace viewgain

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// CGAL's assertions print before they throw.
+#define CGAL_NDEBUG 1
+
+#include "advancing_front.hpp"
+
+#include <CGAL/Advancing_front_surface_reconstruction.h>
+#include <CGAL/Advancing_front_surface_reconstruction_cell_base_3.h>
+#include <CGAL/Advancing_front_surface_reconstruction_vertex_base_3.h>
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_data_structure_3.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+namespace viewgain::detail {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+
+// CGAL keeps the border's edges in a set by priority and, where priorities are equal, as for the
+// edges that want the same triangle, by address. Here equal ones are ordered by their vertices, so
+// that the result does not depend on where memory was free.
+template <typename Base = CGAL::Advancing_front_surface_reconstruction_vertex_base_3<Kernel>>
+class OrderedVertex : public Base {
+ public:
+  using Base::Base;
+  template <typename Triangulation>
+  struct Rebind_TDS {
+    using Other = OrderedVertex<typename Base::template Rebind_TDS<Triangulation>::Other>;
+  };
+
+  // Stands in for the base's pair of the same name.
+  struct Radius_ptr_type {
+    typename Base::criteria first;
+    typename Base::IO_edge_type* second;
+    std::size_t from, to;
+
+    Radius_ptr_type(typename Base::criteria priority, typename Base::IO_edge_type* edge)
+        : first(priority), second(edge) {
+      const auto& side = edge->first.first;
+      from = side.first->vertex(side.second)->id();
+      to = side.first->vertex(side.third)->id();
+    }
+    bool operator<(const Radius_ptr_type& other) const {
+      return std::tie(first, from, to, second) <
+             std::tie(other.first, other.from, other.to, other.second);
+    }
+  };
+};
+
+using Cell = CGAL::Advancing_front_surface_reconstruction_cell_base_3<Kernel>;
+using Triangulation =
+    CGAL::Delaunay_triangulation_3<Kernel,
+                                   CGAL::Triangulation_data_structure_3<OrderedVertex<>, Cell>>;
+
+// CGAL's own measure, the radius of the smallest empty sphere, but infinite, which means never, for
+// long edges.
+struct BoundedEdges {
+  double max_squared_edge;
+
+  template <typename AdvancingFront, typename CellHandle>
+  double operator()(const AdvancingFront& front, CellHandle& cell, const int& index) const {
+    const Point& a = cell->vertex((index + 1) & 3)->point();
+    const Point& b = cell->vertex((index + 2) & 3)->point();
+    const Point& c = cell->vertex((index + 3) & 3)->point();
+    if (CGAL::squared_distance(a, b) > max_squared_edge ||
+        CGAL::squared_distance(b, c) > max_squared_edge ||
+        CGAL::squared_distance(c, a) > max_squared_edge) {
+      return front.infinity();
+    }
+    return front.smallest_radius_delaunay_sphere(cell, index);
+  }
+};
+
+}  // namespace
+
+std::vector<std::array<std::uint32_t, 3>> advancing_front(std::span<const Point3> points,
+                                                          double max_edge) {
+  std::vector<std::pair<Point, std::size_t>> input;
+  input.reserve(points.size());
+  for (const Point3& p : points) input.emplace_back(Point(p[0], p[1], p[2]), input.size());
+  Triangulation triangulation(input.begin(), input.end());
+  CGAL::Advancing_front_surface_reconstruction<Triangulation, BoundedEdges> front(
+      triangulation, BoundedEdges{max_edge * max_edge});
+  front.run();
+  std::vector<std::array<std::size_t, 3>> faces;
+  CGAL::write_triple_indices(std::back_inserter(faces), front);
+  std::vector<std::array<std::uint32_t, 3>> triangles(faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (std::size_t k = 0; k < 3; ++k) triangles[f][k] = static_cast<std::uint32_t>(faces[f][k]);
+    std::rotate(triangles[f].begin(), std::min_element(triangles[f].begin(), triangles[f].end()),
+                triangles[f].end());
+  }
+  // CGAL chooses the side of a component by address too, so the order must not depend on it.
+  const auto key = [](const std::array<std::uint32_t, 3>& t) {
+    return std::array{t[0], std::min(t[1], t[2]), std::max(t[1], t[2])};
+  };
+  std::sort(triangles.begin(), triangles.end(),
+            [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  return triangles;
+}
+
+}  // namespace viewgain::detail

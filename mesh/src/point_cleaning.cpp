@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "point_cleaning.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "viewgain/core/thread_pool.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+constexpr double kMaxMove = 1.25;    // further off the fitted surface is an outlier [spacings]
+constexpr std::size_t kMinFit = 10;  // points for a quadric; it has six coefficients
+
+std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+double dot(const Point3& a, const Point3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// Of the disc that holds smoothing_neighbors points at a density of one a spacing².
+double disc_radius(const SurfaceConfig& config) {
+  return config.spacing *
+         std::sqrt(static_cast<double>(config.smoothing_neighbors) / std::numbers::pi);
+}
+
+using Neighbor = std::pair<double, std::uint32_t>;  // squared distance, index
+
+class Smoother {
+ public:
+  Smoother(std::span<const OrientedPoint> points, std::span<const Point3> positions,
+           const PointGrid& grid, const SurfaceConfig& config)
+      : points_(points), positions_(positions), grid_(grid), config_(config) {}
+
+  Point3 operator()(std::uint32_t i, std::vector<Neighbor>& buffer) const {
+    find_neighbors(i, buffer);
+    if (buffer.size() < kMinFit) return positions_[i];
+    return moved(i, buffer);
+  }
+
+ private:
+  // The disc; where the points are sparser, the nearest smoothing_neighbors as far as a triangle
+  // may reach.
+  void find_neighbors(std::uint32_t i, std::vector<Neighbor>& found) const {
+    const std::size_t wanted = config_.smoothing_neighbors;
+    const double disc = disc_radius(config_);
+    const double reach = std::max(disc, config_.max_edge * config_.spacing);
+    const auto collect = [&](double radius) {
+      found.clear();
+      grid_.for_each_within(positions_[i], radius, [&](std::uint32_t j, double d2) {
+        // Hints that are opposed tell the two sides of a thin part from each other.
+        if (dot(points_[i].toward_free, points_[j].toward_free) >= 0) found.emplace_back(d2, j);
+      });
+    };
+    collect(disc);
+    if (found.size() >= wanted || reach <= disc) return;
+    collect(reach);
+    if (found.size() <= wanted) return;
+    std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(wanted - 1),
+                     found.end());
+    found.resize(wanted);
+  }
+
+  Point3 moved(std::uint32_t i, const std::vector<Neighbor>& neighbors) const {
+    const Eigen::Map<const Eigen::Vector3d> p(positions_[i].data());
+    const auto offset = [&](const Neighbor& n) -> Eigen::Vector3d {
+      return (Eigen::Map<const Eigen::Vector3d>(positions_[n.second].data()) - p) / config_.spacing;
+    };
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+    for (const Neighbor& n : neighbors) {
+      const Eigen::Vector3d d = offset(n);
+      mean += d;
+      scatter.noalias() += d * d.transpose();
+    }
+    mean /= static_cast<double>(neighbors.size());
+    scatter -= static_cast<double>(neighbors.size()) * mean * mean.transpose();
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
+    axes.computeDirect(scatter);
+    const Eigen::Vector3d w = axes.eigenvectors().col(0);
+    const Eigen::Vector3d u = axes.eigenvectors().col(2);
+    const Eigen::Vector3d v = axes.eigenvectors().col(1);
+
+    using Vector6d = Eigen::Matrix<double, 6, 1>;
+    Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Zero();
+    Vector6d right = Vector6d::Zero();
+    for (const Neighbor& n : neighbors) {
+      const Eigen::Vector3d d = offset(n);
+      const double s = u.dot(d), t = v.dot(d);
+      const Vector6d row = (Vector6d() << 1, s, t, s * s, s * t, t * t).finished();
+      normal_matrix.noalias() += row * row.transpose();
+      right += w.dot(d) * row;
+    }
+    const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> ldlt(normal_matrix);
+    const double height = ldlt.solve(right)[0];
+    const Vector6d pivots = ldlt.vectorD();
+    // Points on a line or a conic determine no quadric.
+    if (!(pivots.minCoeff() > 1e-8 * pivots.maxCoeff())) return positions_[i];
+    if (std::abs(height) > kMaxMove) {
+      constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+      return {kNaN, kNaN, kNaN};
+    }
+    const Eigen::Vector3d moved = p + height * config_.spacing * w;
+    return {moved.x(), moved.y(), moved.z()};
+  }
+
+  std::span<const OrientedPoint> points_;
+  std::span<const Point3> positions_;
+  const PointGrid& grid_;
+  const SurfaceConfig& config_;
+};
+
+}  // namespace
+
+std::vector<Point3> positions_of(std::span<const OrientedPoint> points) {
+  std::vector<Point3> positions(points.size());
+  std::transform(points.begin(), points.end(), positions.begin(),
+                 [](const OrientedPoint& p) { return p.position; });
+  return positions;
+}
+
+std::vector<std::uint32_t> large_components(std::span<const OrientedPoint> points,
+                                            const SurfaceConfig& config) {
+  const std::vector<Point3> positions = positions_of(points);
+  const double radius = config.join_distance * config.spacing;
+  const PointGrid grid(positions, radius);
+  std::vector<std::uint32_t> parent(points.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  for (const std::uint32_t i : grid.order()) {
+    grid.for_each_within(positions[i], radius, [&](std::uint32_t j, double) {
+      if (j >= i) return;
+      const std::uint32_t a = root_of(parent, i), b = root_of(parent, j);
+      parent[std::max(a, b)] = std::min(a, b);
+    });
+  }
+  std::vector<std::uint32_t> size(points.size(), 0);
+  for (std::uint32_t i = 0; i < parent.size(); ++i) ++size[root_of(parent, i)];
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < parent.size(); ++i) {
+    if (size[root_of(parent, i)] >= config.min_component) kept.push_back(i);
+  }
+  return kept;
+}
+
+std::vector<Point3> smoothed(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
+  std::vector<Point3> positions = positions_of(points);
+  if (config.smoothing_neighbors == 0) return positions;
+  const PointGrid grid(positions, disc_radius(config));
+  const Smoother smoother(points, positions, grid, config);
+  std::vector<Point3> result(points.size());
+  ThreadPool pool;
+  pool.for_each_chunk(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbor> buffer;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t i = grid.order()[k];
+      result[i] = smoother(i, buffer);
+    }
+  });
+  return result;
+}
+
+std::vector<std::uint32_t> apart(std::span<const Point3> points, double min_distance) {
+  std::vector<std::uint32_t> finite;
+  std::vector<Point3> candidates;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (!std::isfinite(points[i][0])) continue;
+    finite.push_back(i);
+    candidates.push_back(points[i]);
+  }
+  const PointGrid grid(candidates, min_distance);
+  std::vector<bool> dropped(candidates.size(), false);
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < candidates.size(); ++i) {
+    if (dropped[i]) continue;
+    kept.push_back(finite[i]);
+    grid.for_each_within(candidates[i], min_distance, [&](std::uint32_t j, double) {
+      if (j > i) dropped[j] = true;
+    });
+  }
+  return kept;
+}
+
+}  // namespace viewgain::detail

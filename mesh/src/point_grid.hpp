@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace viewgain::detail {
+
+using Point3 = std::array<double, 3>;
+
+[[nodiscard]] inline double squared_distance(const Point3& a, const Point3& b) {
+  const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+  return x * x + y * y + z * z;
+}
+
+/// Points sorted into cubic cells, for searches within about the size of a cell. Cells that are
+/// 2^21 apart share a key, which costs time but no correctness: distances decide.
+class PointGrid {
+ public:
+  PointGrid(std::span<const Point3> points, double cell_size);
+
+  /// Calls visit(index, squared distance) for every point at most `radius` from p.
+  template <typename Visit>
+  void for_each_within(const Point3& p, double radius, const Visit& visit) const {
+    std::array<std::int64_t, 3> low{}, high{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = cell_of(p[k] - radius);
+      high[k] = cell_of(p[k] + radius);
+    }
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+          const Slot& slot = find(key_of(x, y, z));
+          for (std::uint32_t i = slot.begin; i < slot.end; ++i) {
+            const double d2 = squared_distance(sorted_[i], p);
+            if (d2 <= radius * radius) visit(order_[i], d2);
+          }
+        }
+      }
+    }
+  }
+
+  /// All points, those of a cell together.
+  [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
+
+ private:
+  struct Slot {
+    std::uint64_t key = 0;
+    std::uint32_t begin = 0, end = 0;  // into order_; equal: a free slot
+  };
+  [[nodiscard]] std::int64_t cell_of(double x) const {
+    return static_cast<std::int64_t>(std::floor(x * inverse_cell_size_));
+  }
+  [[nodiscard]] static std::uint64_t key_of(std::int64_t x, std::int64_t y, std::int64_t z) {
+    constexpr std::uint64_t kMask = (1U << 21U) - 1;
+    return (static_cast<std::uint64_t>(x) & kMask) << 42U |
+           (static_cast<std::uint64_t>(y) & kMask) << 21U | (static_cast<std::uint64_t>(z) & kMask);
+  }
+  [[nodiscard]] std::size_t home(std::uint64_t key) const {
+    return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> shift_);
+  }
+  [[nodiscard]] const Slot& find(std::uint64_t key) const {
+    std::size_t s = home(key);
+    while (slots_[s].begin != slots_[s].end && slots_[s].key != key)
+      s = (s + 1) & (slots_.size() - 1);
+    return slots_[s];
+  }
+
+  double inverse_cell_size_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Point3> sorted_;  // the points in that order: a cell's lie side by side
+  std::vector<Slot> slots_;     // open addressing, a power of two, at most half full
+  unsigned shift_ = 0;
+};
+
+}  // namespace viewgain::detail

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "viewgain/mesh/surface.hpp"
+
+namespace viewgain::detail {
+
+/// grow_region() for many seeds: the adjacency is built once. Borrows the surface, which must be
+/// valid (check_surface) and outlive it. Not thread safe: members share scratch memory.
+class RegionGrower {
+ public:
+  explicit RegionGrower(const SurfaceMesh& surface);
+
+  /// See grow_region() in patch.hpp. The seeds must be vertices of the surface.
+  [[nodiscard]] std::vector<std::uint32_t> grow(std::span<const std::uint32_t> seeds, double depth,
+                                                double max_turn);
+
+ private:
+  const SurfaceMesh& surface_;
+  std::vector<std::uint32_t> first_;      // of each vertex, into neighbors_; one more at the end
+  std::vector<std::uint32_t> neighbors_;  // an edge of two faces is there twice
+  std::vector<double> distance_;          // infinity between calls
+};
+
+}  // namespace viewgain::detail

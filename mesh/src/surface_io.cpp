@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viewgain/mesh/surface_io.hpp"
+
+#include <bit>
+#include <cstdint>
+#include <string>
+
+#include "viewgain/core/atomic_file.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+namespace {
+
+// The header says the machine's own byte order, so values go out as they are.
+template <typename Value>
+void append(std::string& bytes, Value value) {
+  const auto raw = std::bit_cast<std::array<char, sizeof(Value)>>(value);
+  bytes.append(raw.data(), raw.size());
+}
+
+void check_count(std::size_t count, std::size_t points, const char* what) {
+  if (count != 0 && count != points) {
+    throw Error(ErrorCode::invalid_argument,
+                std::to_string(points) + " points but " + std::to_string(count) + " " + what);
+  }
+}
+
+void write_ply(const std::filesystem::path& path, std::span<const std::array<double, 3>> points,
+               std::span<const std::array<double, 3>> normals, std::span<const float> sigma,
+               std::span<const std::array<std::uint32_t, 3>> triangles) {
+  check_count(normals.size(), points.size(), "normals");
+  check_count(sigma.size(), points.size(), "sigmas");
+  constexpr bool kLittle = std::endian::native == std::endian::little;
+  std::string bytes = std::string("ply\nformat binary_") + (kLittle ? "little" : "big") +
+                      "_endian 1.0\nelement vertex " + std::to_string(points.size()) +
+                      "\nproperty double x\nproperty double y\nproperty double z\n";
+  if (!normals.empty()) bytes += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (!sigma.empty()) bytes += "property float sigma\n";
+  if (!triangles.empty()) {
+    bytes += "element face " + std::to_string(triangles.size()) +
+             "\nproperty list uchar int vertex_indices\n";
+  }
+  bytes += "end_header\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (const double x : points[i]) append(bytes, x);
+    if (!normals.empty()) {
+      for (const double x : normals[i]) append(bytes, static_cast<float>(x));
+    }
+    if (!sigma.empty()) append(bytes, sigma[i]);
+  }
+  for (const auto& triangle : triangles) {
+    append(bytes, std::uint8_t{3});
+    for (const std::uint32_t v : triangle) {
+      if (v >= points.size()) {
+        throw Error(ErrorCode::invalid_argument, "a triangle has vertex " + std::to_string(v) +
+                                                     " of " + std::to_string(points.size()));
+      }
+      append(bytes, static_cast<std::int32_t>(v));
+    }
+  }
+  write_file_atomically(path, bytes);
+}
+
+}  // namespace
+
+void write_surface_ply(const std::filesystem::path& path, const SurfaceMesh& surface,
+                       std::span<const float> sigma) {
+  write_ply(path, surface.vertices, surface.normals, sigma, surface.triangles);
+}
+
+void write_points_ply(const std::filesystem::path& path,
+                      std::span<const std::array<double, 3>> points,
+                      std::span<const std::array<double, 3>> normals,
+                      std::span<const float> sigma) {
+  write_ply(path, points, normals, sigma, {});
+}
+
+}  // namespace viewgain

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viewgain/mesh/viewpoint_estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "boundary_edges.hpp"
+#include "next_view.hpp"
+#include "region_grower.hpp"
+#include "surface_access.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+namespace {
+
+using detail::BoundaryEdge;
+
+// Beyond this a quadric over the boundary's tangent plane follows a round surface badly: at the
+// border of a cylinder of 30 mm radius its normal is 2.9° off with 45°, 8.5° with 60°.
+constexpr double kMaxRegionTurn = std::numbers::pi / 4;
+
+// Round a whole loop the conormals cancel; in thirds of it they do not.
+constexpr std::size_t kMinPiecesOfClosedRun = 3;
+
+[[noreturn]] void refuse(const std::string& name, double value) {
+  throw Error(ErrorCode::invalid_argument,
+              "viewpoint estimator: " + name + " must not be " + std::to_string(value));
+}
+
+template <typename Valid>
+void check_list(const char* name, const std::vector<double>& values, Valid valid) {
+  if (values.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                std::string("viewpoint estimator: the list of ") + name + " is empty");
+  }
+  for (const double value : values) {
+    if (!valid(value)) refuse(name, value);
+  }
+}
+
+void check_config(const EstimatorConfig& config, double working_distance) {
+  const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
+  const std::initializer_list<std::pair<const char*, double>> lengths{
+      {"working_distance", working_distance},
+      {"patch_length", config.patch_length},
+      {"region_depth", config.region_depth}};
+  for (const auto& [name, value] : lengths) {
+    if (!positive(value)) refuse(name, value);
+  }
+  if (!(config.overlap > 0 && config.overlap < 1)) refuse("overlap", config.overlap);
+  if (!(config.max_turn >= 0 && config.max_turn <= std::numbers::pi)) {
+    refuse("max_turn", config.max_turn);
+  }
+  check_list("distances", config.distances, positive);
+  check_list("tilts", config.tilts, [](double x) { return std::abs(x) < std::numbers::pi / 2; });
+  check_list("rolls", config.rolls, [](double x) { return std::isfinite(x); });
+  if (!config.up.allFinite() || config.up.isZero(0)) {
+    throw Error(ErrorCode::invalid_argument, "viewpoint estimator: up is zero or not finite");
+  }
+}
+
+// A part of a run that gets one patch.
+struct Piece {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();   // [m]
+  Eigen::Vector3d outward = Eigen::Vector3d::Zero();  // mean conormal
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();   // mean at the vertices
+  std::vector<std::uint32_t> vertices;
+};
+
+// Cuts a run into equal lengths; an edge belongs to the piece that holds its middle.
+std::vector<Piece> cut_run(const SurfaceMesh& surface, const BoundaryRun& run,
+                           double patch_length) {
+  const std::vector<BoundaryEdge> edges =
+      detail::boundary_edges(surface, run.vertices, run.triangles, run.closed);
+  double length = 0;
+  for (const BoundaryEdge& edge : edges) length += edge.length;
+  // A length that is a multiple but for rounding is one; more pieces than edges would be empty.
+  std::size_t count = static_cast<std::size_t>(
+      std::clamp(std::ceil(length / patch_length - 1e-6), 1.0, static_cast<double>(edges.size())));
+  if (run.closed) count = std::max(count, kMinPiecesOfClosedRun);
+
+  std::vector<Piece> pieces;
+  std::size_t current = std::numeric_limits<std::size_t>::max();
+  double travelled = 0;
+  double piece_length = 0;
+  const auto finish = [&] {
+    if (!pieces.empty() && piece_length > 0) pieces.back().middle /= piece_length;
+    piece_length = 0;
+  };
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const double share = length > 0 ? (travelled + 0.5 * edges[i].length) / length : 0.0;
+    const std::size_t piece =
+        std::min(count - 1, static_cast<std::size_t>(share * static_cast<double>(count)));
+    if (piece != current) {
+      finish();
+      current = piece;
+      pieces.emplace_back().vertices.push_back(run.vertices[i]);
+    }
+    pieces.back().vertices.push_back(run.vertices[(i + 1) % run.vertices.size()]);
+    pieces.back().middle += edges[i].length * edges[i].middle;
+    pieces.back().outward += edges[i].length * edges[i].outward;
+    piece_length += edges[i].length;
+    travelled += edges[i].length;
+  }
+  finish();
+  for (Piece& piece : pieces) {
+    for (const std::uint32_t v : piece.vertices) piece.normal += detail::normal(surface, v);
+  }
+  return pieces;
+}
+
+// Whether a piece says which way is outward: neither its conormals nor its normals cancel.
+bool has_frame(const Piece& piece) {
+  const Eigen::Vector3d normal = piece.normal.stableNormalized();
+  const Eigen::Vector3d outward = piece.outward.stableNormalized();
+  return !normal.isZero(0) && outward.cross(normal).norm() > 1e-3;
+}
+
+}  // namespace
+
+EstimatedViews estimate_views(
+    const SurfaceMesh& surface, std::span<const Pose> views, const Sensor& sensor,
+    double working_distance, const EstimatorConfig& config,
+    const std::function<bool(std::size_t view, const Eigen::Vector3d& point)>& sees) {
+  check_config(config, working_distance);
+  EstimatedViews result;
+  const std::vector<BoundaryLoop> loops = boundary_loops(surface);
+  result.runs = boundary_runs(surface, loops, views, sensor, config.boundary, sees);
+  detail::RegionGrower grower(surface);
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t r = 0; r < result.runs.size(); ++r) {
+    const BoundaryRun& run = result.runs[r];
+    for (const Piece& piece : cut_run(surface, run, config.patch_length)) {
+      if (!has_frame(piece)) continue;
+      std::vector<std::uint32_t> region =
+          grower.grow(piece.vertices, config.region_depth, kMaxRegionTurn);
+      points.clear();
+      for (const std::uint32_t v : region) points.push_back(detail::position(surface, v));
+      const QuadraticPatch patch = fit_patch(points, piece.middle, piece.outward, piece.normal);
+
+      BoundaryCandidate prototype;
+      prototype.boundary_class = run.boundary_class;
+      prototype.run = static_cast<std::uint32_t>(r);
+      prototype.patch = static_cast<std::uint32_t>(result.patches.size());
+      detail::append_variants(detail::next_view_target(patch, sensor.camera, working_distance,
+                                                       config.overlap, config.max_turn, config.up),
+                              working_distance, config, prototype, result.candidates);
+      result.patches.push_back(patch);
+      result.regions.push_back(std::move(region));
+      result.run_of_patch.push_back(static_cast<std::uint32_t>(r));
+    }
+  }
+  return result;
+}
+
+}  // namespace viewgain

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model_scene.hpp"
+
+#include "sensing.hpp"
+
+namespace viewgain::bench {
+namespace {
+
+SimulationConfig simulation(const char* noise, std::uint64_t seed, const Sensor& sensor) {
+  app::SensingOptions options;
+  options.noise = noise;
+  options.seed = seed;
+  return app::simulation_config(options, sensor);
+}
+
+}  // namespace
+
+ModelScene::ModelScene(const std::filesystem::path& mesh, std::uint64_t seed,
+                       const ExecConfig& exec)
+    : sensor_(sensor_preset("sr4000")),
+      stage_(app::set_stage({.mesh = mesh}, exec)),
+      camera_(stage_.scene, sensor_, simulation("on", seed, sensor_), exec),
+      undisturbed_(stage_.scene, sensor_, simulation("off", seed, sensor_), exec),
+      filter_(sensor_.camera) {}
+
+DepthFrame ModelScene::acquire(const Pose& T_world_camera, std::uint64_t frame) const {
+  DepthFrame result = camera_.acquire(T_world_camera, frame);
+  filter_.apply(result);
+  return result;
+}
+
+DepthFrame ModelScene::true_frame(const Pose& T_world_camera) const {
+  return undisturbed_.acquire(T_world_camera);
+}
+
+BeliefGrid ModelScene::empty_grid(double voxel_size) const {
+  GridConfig config;
+  config.voxel_size = voxel_size;
+  config.workspace = stage_.workspace;
+  config.prior_sigma = default_prior_sigma(voxel_size, sensor_);
+  return BeliefGrid(config);
+}
+
+SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double voxel_size) {
+  std::vector<OrientedPoint> oriented;
+  oriented.reserve(points.size());
+  for (const FusedPoint& point : points) oriented.push_back({point.position, point.toward_free});
+  SurfaceConfig config;
+  config.spacing = voxel_size;
+  return reconstruct_surface(oriented, config);
+}
+
+}  // namespace viewgain::bench

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "stage.hpp"
+#include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/fused_points.hpp"
+#include "viewgain/grid/integrate.hpp"
+#include "viewgain/mesh/surface.hpp"
+#include "viewgain/raycast/simulated_sensor.hpp"
+
+namespace viewgain::bench {
+
+/// An object before a disturbed SR4000, as `viewgain reconstruct` has it by default: noise, flying
+/// pixels, background, jump-edge filter.
+class ModelScene {
+ public:
+  ModelScene(const std::filesystem::path& mesh, std::uint64_t seed, const ExecConfig& exec);
+
+  [[nodiscard]] const app::Stage& stage() const noexcept { return stage_; }
+  [[nodiscard]] const Sensor& sensor() const noexcept { return sensor_; }
+
+  /// A filtered frame.
+  [[nodiscard]] DepthFrame acquire(const Pose& T_world_camera, std::uint64_t frame) const;
+  /// Without any disturbance.
+  [[nodiscard]] DepthFrame true_frame(const Pose& T_world_camera) const;
+
+  [[nodiscard]] BeliefGrid empty_grid(double voxel_size) const;
+
+ private:
+  Sensor sensor_;
+  app::Stage stage_;
+  SimulatedSensor camera_;
+  SimulatedSensor undisturbed_;
+  JumpEdgeFilter filter_;
+};
+
+/// The surface through the points, as `viewgain reconstruct` makes it.
+[[nodiscard]] SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double voxel_size);
+
+}  // namespace viewgain::bench

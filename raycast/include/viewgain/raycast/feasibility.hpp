@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/reach.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+namespace viewgain {
+
+/// The sensor's housing, a box. In the flange's frame it is centred on the z axis and reaches from
+/// z = 0 to its depth; T_flange_camera places the camera on the flange. Without one the camera's
+/// centre is the middle of the box's front face, looking out of it.
+struct SensorBody {
+  std::array<double, 3> size{0.065, 0.065, 0.076};  ///< width, height, depth [m]
+  std::optional<Pose> T_flange_camera{};
+};
+
+/// Why a candidate is dropped; checked in this order, the first one counts.
+enum class Infeasibility : std::uint8_t {
+  none,
+  bad_pose,     ///< not finite, or off by more than 1e-3
+  unreachable,  ///< outside the reachable region
+  taken,        ///< a view was taken there already
+  plane,        ///< the body or the camera would touch the support plane or be under it
+  obstacle,     ///< the body would overlap a known obstacle
+  collision,    ///< the body would overlap voxels that are not free, or the camera be in one
+  too_near,     ///< much of the image would show what is nearer than the sensor can measure
+};
+[[nodiscard]] std::string_view infeasibility_name(Infeasibility reason);
+
+struct FeasibilityConfig {
+  SensorBody body{};
+  double clearance = 0;  ///< the body is grown by this on each side [m]
+  ReachRegion reach{};
+  PoseTolerance taken_tolerance{};
+  std::optional<double> support_plane{};  ///< its height, world z [m]
+  /// Where given: a view is too near if more than max_near_share of its rays that end in the map
+  /// end within the sensor's min_range. The expected gain lets such rays pass, so a camera in front
+  /// of a wall would seem to see what is behind it.
+  std::optional<Sensor> sensor{};
+  double max_near_share = 0.2;
+};
+
+/// Says which camera poses are possible in a scene: body against its voxels that are not free, its
+/// obstacles and the support plane; reach; views taken. Outside the workspace nothing is known to
+/// block. Obstacle boxes and closed meshes are solid, an open mesh is a sheet; overlaps of less
+/// than a nanometre are touching. Costs some microseconds a pose near the map, under one away from
+/// it. Thread safety: check() is const and may run from many threads.
+class FeasibilityChecker {
+ public:
+  /// Throws Error(invalid_argument) for a null scene, a body without extent or with a mounting that
+  /// is no rigid transform, a negative clearance, a tolerance or plane that is not finite, or a
+  /// reach region that is not valid.
+  FeasibilityChecker(std::shared_ptr<const VoxelScene> scene, const FeasibilityConfig& config);
+  ~FeasibilityChecker();
+  FeasibilityChecker(FeasibilityChecker&&) noexcept;
+  FeasibilityChecker& operator=(FeasibilityChecker&&) noexcept;
+
+  /// `taken`: T_world_camera of the views so far. Touching faces do not overlap.
+  [[nodiscard]] Infeasibility check(const Pose& T_world_camera,
+                                    std::span<const Pose> taken = {}) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace viewgain

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "obstacle_check.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+namespace viewgain::detail {
+namespace {
+
+using Triangle = std::array<Eigen::Vector3d, 3>;
+
+std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& indices : mesh.triangles) {
+    Triangle& triangle = triangles.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& v = mesh.vertices[indices[i]];
+      triangle[i] = {v[0], v[1], v[2]};
+    }
+  }
+  return triangles;
+}
+
+bool is_closed(const TriangleMesh& mesh) {
+  using Corner = std::array<double, 3>;
+  std::vector<Corner> corners(mesh.vertices.begin(), mesh.vertices.end());
+  std::sort(corners.begin(), corners.end());
+  const auto number = [&](std::uint32_t index) {
+    return std::lower_bound(corners.begin(), corners.end(), Corner(mesh.vertices[index])) -
+           corners.begin();
+  };
+  // Each edge with its ends in order, and the direction in which it is used.
+  using Edge = std::tuple<std::ptrdiff_t, std::ptrdiff_t, int>;
+  std::vector<Edge> edges;
+  for (const auto& triangle : mesh.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::ptrdiff_t from = number(triangle[i]), to = number(triangle[(i + 1) % 3]);
+      if (from != to)
+        edges.emplace_back(std::min(from, to), std::max(from, to), from < to ? 1 : -1);
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  int balance = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto& [low, high, direction] = edges[i];
+    balance += direction;
+    const bool last = i + 1 == edges.size() || std::get<0>(edges[i + 1]) != low ||
+                      std::get<1>(edges[i + 1]) != high;
+    if (last && balance != 0) return false;
+  }
+  return !edges.empty();
+}
+
+Box bounds_of(const Triangle& triangle) {
+  Box box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    const auto [low, high] = std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+    box.min[k] = low;
+    box.max[k] = high;
+  }
+  return box;
+}
+
+std::vector<Box> bounds_of(const std::vector<Triangle>& triangles) {
+  std::vector<Box> boxes;
+  boxes.reserve(triangles.size());
+  for (const Triangle& triangle : triangles) boxes.push_back(bounds_of(triangle));
+  return boxes;
+}
+
+Box around(const std::vector<Triangle>& triangles) {
+  Box box = bounds_of(triangles.front());
+  for (const Triangle& triangle : triangles) {
+    const Box other = bounds_of(triangle);
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.min[k] = std::min(box.min[k], other.min[k]);
+      box.max[k] = std::max(box.max[k], other.max[k]);
+    }
+  }
+  return box;
+}
+
+// How often a closed mesh winds round a point, from the solid angles of its triangles (Van Oosterom
+// and Strackee 1983).
+double winding_number(const std::vector<Triangle>& triangles, const Eigen::Vector3d& p) {
+  double half_angle = 0;
+  for (const Triangle& triangle : triangles) {
+    const Eigen::Vector3d a = triangle[0] - p, b = triangle[1] - p, c = triangle[2] - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    half_angle +=
+        std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return half_angle / (2.0 * std::numbers::pi);
+}
+
+std::vector<Triangle> all_triangles(const Obstacles& obstacles) {
+  std::vector<Triangle> triangles;
+  for (const TriangleMesh& mesh : obstacles.meshes) {
+    const std::vector<Triangle> more = triangles_of(mesh);
+    triangles.insert(triangles.end(), more.begin(), more.end());
+  }
+  return triangles;
+}
+
+}  // namespace
+
+ObstacleCheck::ObstacleCheck(const Obstacles& obstacles)
+    : boxes_(obstacles.boxes),
+      triangles_(all_triangles(obstacles)),
+      triangle_boxes_(bounds_of(triangles_)) {
+  for (const TriangleMesh& mesh : obstacles.meshes) {
+    if (!is_closed(mesh)) continue;
+    Solid solid{{}, triangles_of(mesh)};
+    solid.bounds = around(solid.triangles);
+    solids_.push_back(std::move(solid));
+  }
+}
+
+bool ObstacleCheck::overlaps(const OrientedBox& body, const Eigen::Vector3d& body_center) const {
+  if (std::any_of(boxes_.begin(), boxes_.end(),
+                  [&body](const Box& box) { return body.overlaps(box); })) {
+    return true;
+  }
+  if (triangle_boxes_.any(body.bounds(),
+                          [&](std::uint32_t i) { return body.overlaps(triangles_[i]); })) {
+    return true;
+  }
+  // No triangle meets the body: it is inside a solid as a whole or not at all.
+  return std::any_of(solids_.begin(), solids_.end(), [&body_center](const Solid& solid) {
+    return solid.bounds.contains(body_center.x(), body_center.y(), body_center.z()) &&
+           std::abs(winding_number(solid.triangles, body_center)) > 0.5;
+  });
+}
+
+}  // namespace viewgain::detail

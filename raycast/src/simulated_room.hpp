@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "viewgain/raycast/surface_scene.hpp"
+
+namespace viewgain::detail {
+
+/// Where a ray meets the first surface.
+struct RayReturn {
+  double range = std::numeric_limits<double>::infinity();  ///< [m]; infinity: nothing
+  double cos_incidence = 0;
+};
+
+/// The object and what stands round it.
+struct SimulatedRoom {
+  std::shared_ptr<const SurfaceScene> object;
+  double background_radius = 0;         ///< of a sphere round the origin [m]; 0: none
+  std::optional<double> support_plane;  ///< height of a table without end [m]
+
+  /// The first return of a ray along the unit direction, world frame.
+  [[nodiscard]] RayReturn first_return(const Eigen::Vector3d& origin,
+                                       const Eigen::Vector3d& direction) const;
+};
+
+}  // namespace viewgain::detail

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tof_pixel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+namespace viewgain::detail {
+namespace {
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
+double amplitude_of(const RayReturn& hit) {
+  const double range = std::max(hit.range, kMinNoiseRange);
+  return hit.cos_incidence / (range * range);
+}
+
+}  // namespace
+
+TofPixel::TofPixel(const Sensor& sensor, const SimulationConfig& config)
+    : sensor_(sensor),
+      config_(config),
+      unambiguous_range_(unambiguous_range(sensor.noise)),
+      mixes_(config.sub_rays > 1 && std::isfinite(unambiguous_range_)),
+      folds_(mixes_ || (config.ambiguity && std::isfinite(unambiguous_range_))) {
+  if (const auto* shot = std::get_if<ShotNoise>(&sensor.noise)) {
+    min_amplitude_ = shot->min_amplitude;
+  }
+}
+
+double TofPixel::folded(double range) const {
+  if (!folds_ || !std::isfinite(range)) return range;
+  return range - unambiguous_range_ * std::floor(range / unambiguous_range_);
+}
+
+PixelReading TofPixel::single(const RayReturn& hit) const {
+  if (!std::isfinite(hit.range)) return {hit.range, 0, 0};
+  return {folded(hit.range), std::min(1.0, hit.cos_incidence), amplitude_of(hit)};
+}
+
+PixelReading TofPixel::mixed(std::span<const RayReturn> hits) const {
+  const double per_metre = kTwoPi / unambiguous_range_;
+  double real = 0, imaginary = 0;
+  bool any = false;
+  for (const RayReturn& hit : hits) {
+    if (!std::isfinite(hit.range)) continue;
+    any = true;
+    const double phase = per_metre * hit.range;
+    const double amplitude = amplitude_of(hit);
+    real += amplitude * std::cos(phase);
+    imaginary += amplitude * std::sin(phase);
+  }
+  if (!any) return single(RayReturn{});
+  const double phase = std::atan2(imaginary, real);
+  const double range = folded(phase / per_metre);
+  const double amplitude = std::hypot(real, imaginary) / static_cast<double>(hits.size());
+  return {range, std::min(1.0, amplitude * range * range), amplitude};
+}
+
+PixelReading TofPixel::disturbed(PixelReading reading, const PixelRandom& random) const {
+  const double true_range = reading.range;
+  if (config_.wiggling != 0) {
+    reading.range += config_.wiggling * std::sin(4.0 * kTwoPi * true_range / unambiguous_range_);
+  }
+  if (config_.noise) {
+    const double sigma = sensor_.sigmas(true_range, reading.cos_incidence).axial;
+    reading.range += sigma * random.normal(RandomStream::axial);
+    // Phase and amplitude come from the same four samples: relative to the amplitude its noise is
+    // what the phase's is in radians.
+    reading.amplitude *= std::max(
+        0.0, 1.0 + kTwoPi * sigma / unambiguous_range_ * random.normal(RandomStream::amplitude));
+  }
+  reading.range = config_.calibration.corrected(folded(reading.range));
+  return reading;
+}
+
+}  // namespace viewgain::detail

@@ -1,0 +1,265 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The whole loop as a user would run it, on small objects: what it leaves, that it ends well on
+// degenerate ones, that a run can be repeated, that bad input is refused.
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "program_runner.hpp"
+#include "viewgain/core/pose_io.hpp"
+
+namespace viewgain {
+namespace {
+
+using nlohmann::json;
+using Strings = std::vector<std::string>;
+
+// A box [low, high] as OFF, its vertices and faces appended.
+struct Off {
+  std::ostringstream vertices, faces;
+  int vertex_count = 0, face_count = 0;
+
+  void add_box(const std::array<double, 3>& low, const std::array<double, 3>& high) {
+    for (int k = 0; k < 8; ++k) {
+      vertices << (k & 1 ? high[0] : low[0]) << ' ' << (k & 2 ? high[1] : low[1]) << ' '
+               << (k & 4 ? high[2] : low[2]) << '\n';
+    }
+    for (const char* face : {"0 2 3 1", "4 5 7 6", "0 1 5 4", "2 6 7 3", "0 4 6 2", "1 3 7 5"}) {
+      std::istringstream corners(face);
+      faces << 4;
+      for (int c = 0; corners >> c;) faces << ' ' << vertex_count + c;
+      faces << '\n';
+    }
+    vertex_count += 8, face_count += 6;
+  }
+  [[nodiscard]] std::string text() const {
+    return "OFF\n" + std::to_string(vertex_count) + ' ' + std::to_string(face_count) + " 0\n" +
+           vertices.str() + faces.str();
+  }
+};
+
+// Everything but the values under keys named `seconds`.
+json without_seconds(json value) {
+  if (value.is_object()) {
+    value.erase("seconds");
+    for (auto& [key, inner] : value.items()) inner = without_seconds(inner);
+  } else if (value.is_array()) {
+    for (json& inner : value) inner = without_seconds(inner);
+  }
+  return value;
+}
+
+class Reconstruct : public test::ProgramTest {
+ protected:
+  Reconstruct() {
+    write_cube();
+    // An SR4000 at half its resolution.
+    write("tof.toml",
+          "name = \"tof\"\nmin_range = 0.2\nmax_range = 5.0\nworking_distance = 0.4\n"
+          "[camera]\nwidth = 88\nheight = 72\nfx = 110.0\nfy = 115.6\ncx = 43.5\ncy = 35.5\n"
+          "[noise]\nmodel = \"shot\"\nreference_sigma = 0.004\nreference_range = 1.3\n"
+          "reference_integration_time = 0.0085\nintegration_time = 0.001\n");
+  }
+
+  // Coarse enough for a test: 88x72 px, 64³ voxels.
+  [[nodiscard]] static Strings arguments(const std::string& mesh, const Strings& more) {
+    Strings result{"reconstruct", mesh,    "--sensor", "tof.toml", "--voxel",
+                   "0.00625",     "--out", "run",      "--json"};
+    result.insert(result.end(), more.begin(), more.end());
+    return result;
+  }
+  [[nodiscard]] json reconstruct(const std::string& mesh, const Strings& more = {}) const {
+    const test::ProgramResult result = run(arguments(mesh, more));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.exit_code == 0 ? json::parse(result.out) : json();
+  }
+};
+
+TEST_F(Reconstruct, LeavesAConsistentFolder) {
+  const json result = reconstruct("cube.off", {"--max-views", "3", "--save-maps", "--size", "0.2"});
+  EXPECT_EQ(result["stop_reason"], "max_views");
+  EXPECT_EQ(result["views"], 3);
+  ASSERT_EQ(result["per_view"].size(), 3U);
+  EXPECT_EQ(list("run"), (Strings{"map.vdb", "maps", "points.ply", "run.json", "surface.ply",
+                                  "views", "views.txt"}));
+  EXPECT_EQ(list("run/maps"), (Strings{"00.vdb", "01.vdb", "02.vdb"}));
+  EXPECT_EQ(list("run/views"), (Strings{"00.amplitude.png", "00.png", "01.amplitude.png", "01.png",
+                                        "02.amplitude.png", "02.png"}));
+  const json run_file = json::parse(read("run/run.json"));
+  for (const auto& [key, value] : result.items()) {
+    EXPECT_EQ(run_file.at(key), value) << key;
+  }
+  EXPECT_EQ(run_file["settings"]["policy"], "gain");
+  EXPECT_FALSE(run_file["settings"].contains("threads"));
+  // The map's hash, its views and views.txt are the run's.
+  EXPECT_EQ(run_well({"info", "run/map.vdb", "--hash"}),
+            run_file["map_hash"].get<std::string>() + "\n");
+  const PoseList views = read_tum(dir / "run/views.txt");
+  ASSERT_EQ(views.poses.size(), 3U);
+  double travelled = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const json& view = result["per_view"][i];
+    for (int r = 0; r < 3; ++r) {
+      EXPECT_NEAR(view["pose"][r][3].get<double>(), views.poses[i].translation()[r], 1e-9);
+    }
+    if (i > 0) {
+      travelled += (views.poses[i].translation() - views.poses[i - 1].translation()).norm();
+      EXPECT_EQ(view["generator"], "boundary");
+      EXPECT_GT(view["candidates"].get<int>(), 0);
+      EXPECT_GT(view["predicted_gain"].get<double>(), 0);
+    }
+    EXPECT_NEAR(view["travelled"].get<double>(), travelled, 1e-9);
+  }
+  EXPECT_EQ(result["per_view"][0]["generator"], "start");
+  // What a view adds to entropy_removed is its realised gain.
+  double entropy = 0;
+  for (const json& view : result["per_view"]) {
+    entropy += view["realised_gain"].get<double>();
+    EXPECT_NEAR(entropy, view["entropy_removed"].get<double>(), 1e-6 * entropy);
+  }
+}
+
+TEST_F(Reconstruct, SameSeedSameRunForAnyNumberOfThreads) {
+  const Strings setting{"--max-views", "4", "--no-pictures", "--size", "0.2", "--seed", "3"};
+  std::map<std::string, json> runs;
+  std::map<std::string, std::string> maps;
+  for (const char* threads : {"1", "2", "3"}) {
+    Strings more = setting;
+    more.insert(more.end(), {"--threads", threads});
+    (void)reconstruct("cube.off", more);
+    runs[threads] = without_seconds(json::parse(read("run/run.json")));
+    maps[threads] = run_well({"info", "run/map.vdb", "--hash"});
+  }
+  EXPECT_EQ(runs["1"], runs["2"]);
+  EXPECT_EQ(runs["1"], runs["3"]);
+  EXPECT_EQ(maps["1"], maps["2"]);
+  EXPECT_EQ(maps["1"], maps["3"]);
+  Strings other = setting;
+  other.back() = "4";
+  (void)reconstruct("cube.off", other);
+  EXPECT_NE(run_well({"info", "run/map.vdb", "--hash"}), maps["1"]);
+}
+
+TEST_F(Reconstruct, EveryPolicyRuns) {
+  std::size_t cases = 0;
+  for (const char* policy : {"gain", "kriegel", "sequence", "random", "frontier"}) {
+    const json result =
+        reconstruct("cube.off", {"--policy", policy, "--max-views", "4", "--no-pictures", "--size",
+                                 "0.2", "--noise", "off"});
+    EXPECT_GE(result["views"].get<int>(), 2) << policy;
+    EXPECT_GT(result["coverage_visible"].get<double>(), 0.3) << policy;
+    EXPECT_LT(result["rms_error"].get<double>(), 0.005) << policy;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5U);
+}
+
+TEST_F(Reconstruct, ClosedBoxSeenFromAllSidesEnds) {
+  const json result = reconstruct(
+      "cube.off", {"--max-views", "40", "--no-pictures", "--size", "0.15", "--noise", "off"});
+  EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
+  EXPECT_GT(result["coverage_visible"].get<double>(), 0.97);
+}
+
+TEST_F(Reconstruct, FlatPlateEnds) {
+  Off plate;
+  plate.vertices << "-1 0 -1\n1 0 -1\n1 0 1\n-1 0 1\n";
+  plate.faces << "4 0 1 2 3\n";
+  plate.vertex_count = 4, plate.face_count = 1;
+  write("plate.off", plate.text());
+  const json result = reconstruct(
+      "plate.off", {"--max-views", "30", "--no-pictures", "--size", "0.2", "--noise", "off"});
+  EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
+  EXPECT_GT(result["coverage_visible"].get<double>(), 0.9);
+}
+
+TEST_F(Reconstruct, ObjectLargerThanTheWorkspaceEnds) {
+  const json result =
+      reconstruct("cube.off", {"--max-views", "30", "--no-pictures", "--size", "0.3", "--workspace",
+                               "-0.1,-0.1,0,0.1,0.1,0.17", "--distance", "0.6", "--noise", "off"});
+  EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
+  EXPECT_GT(result["coverage"].get<double>(), 0.02);
+  EXPECT_LT(result["coverage"].get<double>(), 0.6);
+}
+
+TEST_F(Reconstruct, BothPartsOfAnObjectAreModelled) {
+  Off two;
+  two.add_box({0, 0, 0}, {1, 1, 1});
+  two.add_box({2.5, 0, 0}, {3.5, 1, 1});
+  write("two.off", two.text());
+  const json result =
+      reconstruct("two.off", {"--max-views", "14", "--no-pictures", "--size", "0.3"});
+  // Either box alone is half of the surface.
+  EXPECT_GT(result["coverage_visible"].get<double>(), 0.85);
+}
+
+TEST_F(Reconstruct, SupportPlaneWithTheUpperHalfInReach) {
+  write("upper.toml", "[[half_space]]\nnormal = [0.0, 0.0, 1.0]\noffset = 0.05\n");
+  const json result =
+      reconstruct("cube.off", {"--max-views", "40", "--no-pictures", "--size", "0.15",
+                               "--support-plane", "0", "--reach", "upper.toml"});
+  EXPECT_TRUE(result["stop_reason"] == "unreachable" || result["stop_reason"] == "gain")
+      << result["stop_reason"];
+  EXPECT_GT(result["final_dropped"].value("unreachable", 0), 0);
+  EXPECT_GT(result["coverage_visible"].get<double>(), 0.8);
+  // The underside stays a hole: a sixth of the surface cannot be seen.
+  EXPECT_LT(result["coverage"].get<double>(), 0.93);
+  for (const json& view : result["per_view"]) EXPECT_GT(view["pose"][2][3].get<double>(), 0.05);
+}
+
+TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
+  write("no_reach.toml", "[[shell]]\ncenter = [0, 0, 0]\nmin_radius = 5.0\nmax_radius = 6.0\n");
+  write("bad_reach.toml", "[[sphere]]\nradius = 1.0\n");
+  const std::vector<std::pair<Strings, std::string>> inputs{
+      {arguments("missing.off", {}), "missing.off"},
+      {arguments("cube.off", {"--voxel", "-1"}), "voxel"},
+      {arguments("cube.off", {"--size", "0"}), "size"},
+      {arguments("cube.off", {"--policy", "best"}), "best"},
+      {arguments("cube.off", {"--criterion", "entropy"}), "entropy"},
+      {arguments("cube.off", {"--max-views", "0"}), "max_views"},
+      {arguments("cube.off", {"--workspace", "0,0,0,-1,1,1"}), "--workspace"},
+      {arguments("cube.off", {"--start", "1,2,3"}), "--start"},
+      {arguments("cube.off", {"--start", "1,2,3,0,0,0,0"}), "--start"},
+      // Looks away from the object.
+      {arguments("cube.off", {"--start", "0,0,1,0,0,0,1", "--background", "0"}), "start pose"},
+      {arguments("cube.off", {"--reach", "missing.toml"}), "missing.toml"},
+      {arguments("cube.off", {"--reach", "bad_reach.toml"}), "sphere"},
+      {arguments("cube.off", {"--reach", "no_reach.toml"}), "reach"},
+      {arguments("cube.off", {"--generator", "boundary,cone"}), "cone"},
+      {arguments("cube.off", {"--jump-edge-filter", "80"}), "angle"},
+      {arguments("cube.off", {"--frames-per-view", "0"}), "frames-per-view"},
+      {arguments("cube.off", {"--travel-cost", "nan"}), "travel"},
+      {arguments("cube.off", {"--stop-coverage", "2"}), "coverage"},
+      {arguments("cube.off", {"--support-plane", "nan"}), "plane"},
+  };
+  const Strings before = list();
+  std::size_t cases = 0;
+  for (const auto& [input, word] : inputs) {
+    const test::ProgramResult result = run(input);
+    EXPECT_EQ(result.exit_code, 2) << word << ": " << result.err;
+    EXPECT_NE(result.err.find(word), std::string::npos) << word << ": " << result.err;
+    EXPECT_EQ(result.out, "") << word;
+    EXPECT_EQ(list(), before) << word;
+    ++cases;
+  }
+  EXPECT_EQ(cases, inputs.size());
+}
+
+TEST_F(Reconstruct, BadInputLeavesAnEarlierRunAlone) {
+  (void)reconstruct("cube.off", {"--max-views", "1", "--no-pictures", "--size", "0.2"});
+  const Strings before = list("run");
+  const std::string run_file = read("run/run.json");
+  EXPECT_EQ(run(arguments("cube.off", {"--start", "0,0,1,0,0,0,1", "--background", "0"})).exit_code,
+            2);
+  EXPECT_EQ(list("run"), before);
+  EXPECT_EQ(read("run/run.json"), run_file);
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,338 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view_picture.hpp"
+
+#include <gtest/gtest.h>
+#include <png.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/camel_scene.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/generators.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+namespace viewgain::app {
+namespace {
+
+struct Pixel {
+  std::uint8_t r, g, b;
+};
+
+struct Image {
+  int width = 0, height = 0;
+  std::vector<Pixel> pixels;
+
+  template <typename Predicate>
+  [[nodiscard]] int count(const Predicate& predicate) const {
+    int n = 0;
+    for (const Pixel& p : pixels) n += predicate(p) ? 1 : 0;
+    return n;
+  }
+};
+
+// Grey images come back with three equal channels.
+Image read_png(const std::filesystem::path& path) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_file(&png, path.c_str()) == 0) return {};
+  png.format = PNG_FORMAT_RGB;
+  Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}};
+  image.pixels.resize(static_cast<std::size_t>(png.width) * png.height);
+  if (png_image_finish_read(&png, nullptr, image.pixels.data(), 0, nullptr) == 0) return {};
+  return image;
+}
+
+// Nearness to the four colours of boundary classes, in the order left, right, top, bottom.
+constexpr std::array<bool (*)(const Pixel&), 4> kIsOfClass{
+    [](const Pixel& p) { return p.r > 200 && p.g < 60 && p.b < 70; },
+    [](const Pixel& p) { return p.r < 80 && p.g > 160 && p.b < 90; },
+    [](const Pixel& p) { return p.r < 60 && p.g < 110 && p.b > 210; },
+    [](const Pixel& p) { return p.r > 220 && p.g > 185 && p.b < 40; }};
+// Lit cubes: the hue counts, not the brightness.
+bool is_orange(const Pixel& p) {
+  return p.r > 120 && p.g > p.r / 2 && p.g < 0.72 * p.r && 3 * p.b < p.r;
+}
+bool is_ray_blue(const Pixel& p) {
+  return p.b > 110 && p.g > 0.45 * p.b && p.g < 0.7 * p.b && 3 * p.r < p.b;
+}
+bool is_dark_green(const Pixel& p) { return p.r < 40 && p.g > 90 && p.g < 150 && p.b < 90; }
+bool is_black(const Pixel& p) { return p.r < 50 && p.g < 50 && p.b < 50; }
+bool is_surface_grey(const Pixel& p) {
+  return p.r > 40 && p.r < 225 && p.r == p.g && p.b <= p.g && p.g - p.b <= 5;
+}
+
+// A quarter of a tube round the z axis, open on all sides, that turns its outside to +x. The border
+// has 4 runs of 8 edges.
+struct Sheet {
+  SurfaceMesh surface;
+  std::array<BoundaryRun, 4> runs;
+};
+
+Sheet make_sheet(bool inside_out = false) {
+  constexpr std::uint32_t kSide = 9;
+  constexpr double kRadius = 0.1;  // [m]
+  Sheet sheet;
+  for (std::uint32_t i = 0; i < kSide; ++i) {
+    for (std::uint32_t j = 0; j < kSide; ++j) {
+      const double azimuth = (i / 8.0 - 0.5) * std::numbers::pi / 2;
+      const double z = 0.2 * (j / 8.0 - 0.5);
+      const double c = std::cos(azimuth), s = std::sin(azimuth);
+      sheet.surface.vertices.push_back({kRadius * c, kRadius * s, z});
+      const double sign = inside_out ? -1 : 1;
+      sheet.surface.normals.push_back({sign * c, sign * s, 0});
+      sheet.surface.source.push_back(i * kSide + j);
+    }
+  }
+  for (std::uint32_t i = 0; i + 1 < kSide; ++i) {
+    for (std::uint32_t j = 0; j + 1 < kSide; ++j) {
+      const std::uint32_t a = i * kSide + j, b = a + kSide;
+      for (std::array<std::uint32_t, 3> t :
+           {std::array<std::uint32_t, 3>{a, b, a + 1}, {a + 1, b, b + 1}}) {
+        if (inside_out) std::swap(t[0], t[1]);
+        sheet.surface.triangles.push_back(t);
+      }
+    }
+  }
+  for (std::uint32_t k = 0; k < kSide; ++k) {
+    sheet.runs[0].vertices.push_back(k);
+    sheet.runs[1].vertices.push_back(kSide * (kSide - 1) + k);
+    sheet.runs[2].vertices.push_back(kSide * k + kSide - 1);
+    sheet.runs[3].vertices.push_back(kSide * k);
+  }
+  for (std::size_t k = 0; k < 4; ++k) {
+    sheet.runs[k].boundary_class = static_cast<BoundaryClass>(k);
+  }
+  return sheet;
+}
+
+// In front of the sheet, a map with unknown and occupied voxels.
+class ViewPictureTest : public testing::Test {
+ protected:
+  ViewPictureTest()
+      : folder_(std::filesystem::temp_directory_path() /
+                ("viewgain_view_picture_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~ViewPictureTest() override { std::filesystem::remove_all(folder_); }
+
+  static void SetUpTestSuite() {
+    const BeliefGrid grid = test::camel_grid(48);
+    evaluator_ = std::make_unique<GainEvaluator>(VoxelScene::build(grid, {}), sensor_);
+  }
+  static void TearDownTestSuite() { evaluator_.reset(); }
+
+  static Pose taken() { return look_at({0.6, 0.1, 0.2}, {0, 0, 0}); }
+  static Pose chosen() { return look_at({0.3, 0.5, 0.25}, {0, 0, 0}); }
+
+  [[nodiscard]] static ViewPicture picture(const SurfaceMesh& surface,
+                                           const EstimatedViews& estimated,
+                                           const std::vector<Candidate>& candidates = {},
+                                           std::optional<Pose> next = {}) {
+    return {surface, estimated, candidates, taken(), next, *evaluator_, sensor_};
+  }
+
+  [[nodiscard]] Image drawn(const ViewPicture& parts, int threads = 2) const {
+    write_view_picture(folder_ / "view.png", parts, {.num_threads = threads});
+    return read_png(folder_ / "view.png");
+  }
+
+  [[nodiscard]] std::string bytes() const {
+    std::ifstream file(folder_ / "view.png", std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  std::filesystem::path folder_;
+  static inline const Sensor sensor_ = sensor_preset("sr4000");
+  static inline std::unique_ptr<GainEvaluator> evaluator_;
+};
+
+TEST_F(ViewPictureTest, EachClassHasItsColor) {
+  Sheet sheet = make_sheet();
+  sheet.surface.triangles.clear();  // only the runs
+  int cases = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    EstimatedViews estimated;
+    estimated.runs = {sheet.runs[k]};
+    const Image image = drawn(picture(sheet.surface, estimated));
+    for (std::size_t c = 0; c < 4; ++c) {
+      const int pixels = image.count(kIsOfClass[c]);
+      const std::string what = "run " + std::to_string(k) + ", color " + std::to_string(c);
+      EXPECT_EQ(pixels > 300, c == k) << what << ": " << pixels;
+      EXPECT_EQ(pixels == 0, c != k) << what << ": " << pixels;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 16);
+}
+
+TEST_F(ViewPictureTest, CandidatesHaveTheColorOfTheirClass) {
+  // Many more than are shown, the classes one after the other: an even subset shows them all.
+  const std::vector<std::string> classes{"left", "right", "top", "bottom", ""};
+  std::vector<Candidate> candidates;
+  for (const Pose& pose : sphere_poses(1500, 0.5)) {
+    candidates.push_back({pose, "test", classes[candidates.size() / 300], -1});
+  }
+  ASSERT_EQ(candidates.size(), 1500U);
+  const Image image = drawn(picture({}, {}, candidates));
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_GT(image.count(kIsOfClass[c]), 300) << classes[c];
+
+  // Those without a class bring none of the colors.
+  const Image grey = drawn(picture({}, {}, {candidates.begin() + 1200, candidates.end()}));
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(grey.count(kIsOfClass[c]), 0) << classes[c];
+}
+
+TEST_F(ViewPictureTest, TheChosenViewBringsItsRays) {
+  const std::vector<RayHit> hits = evaluator_->trace(chosen());
+  int unknown = 0, occupied = 0;
+  for (const RayHit& hit : hits) {
+    unknown += hit.kind == RayHit::Kind::unknown ? 1 : 0;
+    occupied += hit.kind == RayHit::Kind::occupied ? 1 : 0;
+  }
+  ASSERT_GT(unknown, 1000);
+  ASSERT_GT(occupied, 1000);
+
+  // The chosen one stands in the list of candidates too, and is not drawn as one of them.
+  const std::vector<Candidate> candidates{{chosen(), "test", "left", -1}};
+  const Sheet sheet = make_sheet();
+  const Image with = drawn(picture(sheet.surface, {}, candidates, chosen()));
+  EXPECT_EQ(with.width, 1280);
+  EXPECT_EQ(with.height, 960);
+  EXPECT_GT(with.count(is_orange), 300);
+  EXPECT_GT(with.count(is_ray_blue), 300);
+  EXPECT_GT(with.count(is_dark_green), 1000);
+  EXPECT_GT(with.count(is_black), 200);
+  EXPECT_EQ(with.count(kIsOfClass[0]), 0);
+
+  const Image without = drawn(picture(sheet.surface, {}));
+  EXPECT_EQ(without.width, 1280);
+  EXPECT_EQ(without.height, 960);
+  EXPECT_EQ(without.count(is_orange), 0);
+  EXPECT_EQ(without.count(is_ray_blue), 0);
+  EXPECT_EQ(without.count(is_dark_green), 0);
+  EXPECT_GT(without.count(is_black), 200);
+}
+
+TEST_F(ViewPictureTest, SamePictureForAnyNumberOfThreads) {
+  const Sheet sheet = make_sheet();
+  EstimatedViews estimated;
+  estimated.runs.assign(sheet.runs.begin(), sheet.runs.end());
+  const std::vector<Candidate> candidates{{look_at({0.5, -0.3, 0.2}, {0, 0, 0}), "test", "", -1}};
+  const ViewPicture parts = picture(sheet.surface, estimated, candidates, chosen());
+  (void)drawn(parts, 1);
+  const std::string one = bytes();
+  ASSERT_GT(one.size(), 10000U);
+  (void)drawn(parts, 2);
+  EXPECT_EQ(one, bytes());
+}
+
+TEST_F(ViewPictureTest, TheSurfaceIsShadedAndDarkerFromBehind) {
+  const auto mean_grey = [](const Image& image) {
+    double sum = 0;
+    int pixels = 0;
+    for (const Pixel& p : image.pixels) {
+      if (!is_surface_grey(p)) continue;
+      sum += p.r;
+      ++pixels;
+    }
+    EXPECT_GT(pixels, 5000);
+    return sum / pixels;
+  };
+  const Sheet front = make_sheet(), back = make_sheet(true);
+  EXPECT_GT(mean_grey(drawn(picture(front.surface, {}))),
+            1.1 * mean_grey(drawn(picture(back.surface, {}))));
+  EXPECT_LT(drawn(picture({}, {})).count(is_surface_grey), 500);
+}
+
+TEST_F(ViewPictureTest, RefusesWhatItCannotDraw) {
+  const SurfaceMesh nothing;
+  const EstimatedViews none;
+  Pose bad = chosen();
+  bad.m[0] += 0.1;
+  const auto code = [&](const std::filesystem::path& path, const ViewPicture& parts) {
+    try {
+      write_view_picture(path, parts, {.num_threads = 1});
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
+      return std::optional(error.code());
+    }
+    return std::optional<ErrorCode>();
+  };
+  EXPECT_EQ(code(folder_ / "bad.png", picture(nothing, none, {}, bad)),
+            ErrorCode::invalid_argument);
+  EXPECT_EQ(code(folder_ / "no" / "such.png", picture(nothing, none)), ErrorCode::io);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+
+  // A candidate that is no pose is left out.
+  const std::vector<Candidate> candidates{{bad, "test", "left", -1}};
+  EXPECT_EQ(drawn(picture(nothing, none, candidates)).count(kIsOfClass[0]), 0);
+}
+
+TEST_F(ViewPictureTest, AmplitudesAreDrawnByTheirSquareRoot) {
+  // 100 columns: amplitude 4 k², but for the last column, which outshines the percentile.
+  DepthFrame frame{100, 3, std::vector<float>(300, 1.0F), {}};
+  for (int i = 0; i < 300; ++i) {
+    const float k = static_cast<float>(i % 100);
+    frame.amplitude.push_back(i % 100 == 99 ? 1e9F : 4 * k * k);
+  }
+  frame.amplitude[100] = std::numeric_limits<float>::quiet_NaN();
+  frame.amplitude[200] = -1;
+  write_amplitude_picture(folder_ / "a.png", frame);
+  const Image image = read_png(folder_ / "a.png");
+  ASSERT_EQ(image.width, 500);  // 5 is the least factor that reaches 480
+  ASSERT_EQ(image.height, 15);
+  int checked = 0;
+  for (int v = 0; v < 15; ++v) {
+    for (int u = 0; u < 500; ++u, ++checked) {
+      // White is column 98: 98 % of the 297 positive values lie under it, 99 % up to it.
+      const int expected = static_cast<int>(std::lround(255 * std::min(u / 5, 98) / 98.0));
+      const Pixel& p = image.pixels[static_cast<std::size_t>(500 * v + u)];
+      ASSERT_EQ(p.r, expected) << u << ' ' << v;
+      ASSERT_EQ(p.g, p.r);
+      ASSERT_EQ(p.b, p.r);
+    }
+  }
+  EXPECT_EQ(checked, 7500);
+}
+
+TEST_F(ViewPictureTest, AmplitudePicturesOfUnusualFrames) {
+  DepthFrame frame{600, 2, std::vector<float>(1200, 1.0F), std::vector<float>(1200, 0.0F)};
+  write_amplitude_picture(folder_ / "a.png", frame);
+  const Image image = read_png(folder_ / "a.png");
+  EXPECT_EQ(image.width, 600);  // wide enough as it is
+  EXPECT_EQ(image.height, 2);
+  EXPECT_EQ(image.count([](const Pixel& p) { return p.r == 0; }), 1200);
+
+  const auto code = [this](const DepthFrame& f) {
+    try {
+      write_amplitude_picture(folder_ / "b.png", f);
+    } catch (const Error& error) {
+      return std::optional(error.code());
+    }
+    return std::optional<ErrorCode>();
+  };
+  frame.amplitude.pop_back();
+  EXPECT_EQ(code(frame), ErrorCode::invalid_argument);
+  frame.amplitude.clear();
+  EXPECT_EQ(code(frame), ErrorCode::invalid_argument);
+  EXPECT_EQ(code({}), ErrorCode::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "b.png"));
+}
+
+}  // namespace
+}  // namespace viewgain::app

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/grid/region_statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <random>
+
+namespace viewgain {
+namespace {
+
+/// A map of 21 x 18 x 25 voxels off the origin in all three states, some with beliefs.
+BeliefGrid random_map(std::mt19937_64& random) {
+  const GridConfig config{0.01, {{-0.05, 0.03, -0.11}, {0.16, 0.21, 0.14}}, {}, 0.02};
+  BeliefGrid grid(config);
+  const Index3 min = grid.min_index(), dims = grid.dims();
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int x = 0; x < dims.x; ++x) {
+    for (int y = 0; y < dims.y; ++y) {
+      for (int z = 0; z < dims.z; ++z) {
+        const Index3 voxel{min.x + x, min.y + y, min.z + z};
+        if (x < 8 || unit(random) < 0.3) continue;  // unknown, whole leaves of it too
+        const bool occupied = unit(random) < 0.3;
+        std::optional<Belief> belief;
+        if (unit(random) < 0.5) {
+          const auto diagonal = [&] { return static_cast<float>(1e4 + 1e5 * unit(random)); };
+          belief = Belief{{diagonal(), diagonal(), diagonal(), 3e3F, -2e3F, 1e3F},
+                          {},
+                          1 + static_cast<std::uint32_t>(9 * unit(random))};
+        }
+        grid.set(voxel, occupied ? 0.85F : -0.4F, belief);
+      }
+    }
+  }
+  return grid;
+}
+
+/// Voxel by voxel, by the definition.
+RegionStatistics slow_statistics(const BeliefGrid& grid, const Box& region, Criterion criterion) {
+  const Index3 min = grid.min_index(), dims = grid.dims();
+  const double V = grid.voxel_size();
+  const SymmetricMatrix3 prior = SymmetricMatrix3::identity(std::pow(grid.prior_sigma(), -2));
+  RegionStatistics result;
+  double sum = 0;
+  int believed = 0;
+  for (int x = min.x; x < min.x + dims.x; ++x) {
+    for (int y = min.y; y < min.y + dims.y; ++y) {
+      for (int z = min.z; z < min.z + dims.z; ++z) {
+        if (!region.contains((x + 0.5) * V, (y + 0.5) * V, (z + 0.5) * V)) continue;
+        const VoxelState state = grid.state({x, y, z});
+        (state == VoxelState::unknown ? result.unknown
+         : state == VoxelState::free  ? result.free
+                                      : result.occupied) += 1;
+        const auto belief = grid.belief({x, y, z});
+        if (!belief) continue;
+        result.hits += belief->hits;
+        if (state != VoxelState::occupied) continue;
+        const SymmetricMatrix3 information = belief->information_matrix();
+        result.entropy_removed +=
+            entropy(prior, criterion) - entropy(prior + information, criterion);
+        const Eigen::Matrix3d covariance =
+            information.matrix().inverse() + V * V / 12 * Eigen::Matrix3d::Identity();
+        sum += std::sqrt(covariance.trace() / 3);
+        ++believed;
+      }
+    }
+  }
+  result.mean_sigma = sum / believed;
+  return result;
+}
+
+void expect_equal(const RegionStatistics& a, const RegionStatistics& b) {
+  EXPECT_EQ(a.unknown, b.unknown);
+  EXPECT_EQ(a.free, b.free);
+  EXPECT_EQ(a.occupied, b.occupied);
+  EXPECT_EQ(a.hits, b.hits);
+  EXPECT_NEAR(a.entropy_removed, b.entropy_removed, 1e-9 * (1e-6 + b.entropy_removed));
+  if (std::isnan(b.mean_sigma)) {
+    EXPECT_TRUE(std::isnan(a.mean_sigma));
+  } else {
+    EXPECT_NEAR(a.mean_sigma, b.mean_sigma, 1e-9 * b.mean_sigma);
+  }
+}
+
+TEST(RegionStatistics, AreTheSumsOverTheVoxels) {
+  std::mt19937_64 random(4);
+  const BeliefGrid grid = random_map(random);
+  std::uniform_real_distribution<double> place(-0.13, 0.24);
+  int cases = 0, with_points = 0;
+  for (int i = 0; i < 120; ++i, ++cases) {
+    Box region;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double a = place(random), b = place(random);
+      region.min[k] = std::min(a, b);
+      region.max[k] = std::max(a, b);
+    }
+    const auto criterion = static_cast<Criterion>(i % 3);
+    const RegionStatistics expected = slow_statistics(grid, region, criterion);
+    expect_equal(region_statistics(grid, region, criterion), expected);
+    with_points += expected.entropy_removed > 0 ? 1 : 0;
+  }
+  EXPECT_EQ(cases, 120);
+  EXPECT_GT(with_points, 40);
+}
+
+TEST(RegionStatistics, OfTheWholeMapAreTheMaps) {
+  std::mt19937_64 random(5);
+  const BeliefGrid grid = random_map(random);
+  for (const Box& region : {grid.workspace(), Box{{-1e300, -9, -9}, {1e300, 9, 9}}}) {
+    const RegionStatistics part = region_statistics(grid, region);
+    const GridStatistics whole = grid.statistics();
+    EXPECT_EQ(part.unknown, whole.unknown);
+    EXPECT_EQ(part.free, whole.free);
+    EXPECT_EQ(part.occupied, whole.occupied);
+    EXPECT_GT(part.entropy_removed, 0);
+    EXPECT_NEAR(part.entropy_removed, whole.entropy_removed, 1e-9 * whole.entropy_removed);
+  }
+}
+
+TEST(RegionStatistics, NothingThere) {
+  std::mt19937_64 random(6);
+  const BeliefGrid grid = random_map(random);
+  const RegionStatistics outside = region_statistics(grid, {{1, 1, 1}, {2, 2, 2}});
+  EXPECT_EQ(outside.unknown + outside.free + outside.occupied + outside.hits, 0U);
+  EXPECT_EQ(outside.entropy_removed, 0);
+  EXPECT_TRUE(std::isnan(outside.mean_sigma));
+  const BeliefGrid unknown(GridConfig{0.01, {{0, 0, 0}, {3, 3, 3}}, {}, 0.01});
+  const RegionStatistics part = region_statistics(unknown, {{1, 1, 1}, {2, 2.1, 9}});
+  EXPECT_EQ(part.unknown, 100U * 110 * 200);
+  EXPECT_EQ(part.free + part.occupied, 0U);
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viewgain/mesh/surface_io.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/mesh/mesh_io.hpp"
+
+namespace viewgain {
+namespace {
+
+class SurfaceIo : public testing::Test {
+ protected:
+  SurfaceIo() {
+    const std::string name =
+        testing::UnitTest::GetInstance()->current_test_info()->name() + std::to_string(getpid());
+    folder_ = std::filesystem::temp_directory_path() / ("viewgain_" + name);
+    std::filesystem::create_directories(folder_);
+  }
+  ~SurfaceIo() override { std::filesystem::remove_all(folder_); }
+
+  static std::string bytes_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    return bytes.str();
+  }
+
+  std::filesystem::path folder_;
+};
+
+SurfaceMesh tetrahedron() {
+  SurfaceMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1.0 / 3, 0, 0}, {0, 0.1, 0}, {0, 0, 1e-7}};
+  mesh.normals = {{-1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.5}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  mesh.source = {0, 1, 2, 3};
+  return mesh;
+}
+
+template <typename Value>
+Value value_at(const std::string& bytes, std::size_t at) {
+  Value value;
+  std::memcpy(&value, bytes.data() + at, sizeof(value));
+  return value;
+}
+
+TEST_F(SurfaceIo, MeshComesBackExactly) {
+  const SurfaceMesh mesh = tetrahedron();
+  std::size_t cases = 0;
+  for (const std::vector<float>& sigma :
+       {std::vector<float>{}, std::vector<float>{0.5F, 0.25F, 0.125F, 0.001F}}) {
+    const auto path = folder_ / "surface.ply";
+    write_surface_ply(path, mesh, sigma);
+    const TriangleMesh read = read_mesh(path);
+    EXPECT_EQ(read.vertices, mesh.vertices);
+    EXPECT_EQ(read.triangles, mesh.triangles);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 2U);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(SurfaceIo, BytesAreAsTheHeaderSays) {
+  const SurfaceMesh mesh = tetrahedron();
+  const std::vector<float> sigma{0.5F, 0.25F, 0.125F, 0.001F};
+  const auto path = folder_ / "surface.ply";
+  write_surface_ply(path, mesh, sigma);
+  const std::string bytes = bytes_of(path);
+  const std::string end = "end_header\n";
+  const std::size_t data = bytes.find(end) + end.size();
+  const std::string header = bytes.substr(0, data);
+  EXPECT_EQ(header.find("ply\nformat binary_"), 0U);
+  EXPECT_NE(header.find("element vertex 4\nproperty double x\nproperty double y\nproperty double "
+                        "z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty "
+                        "float sigma\nelement face 4\nproperty list uchar int vertex_indices\n"),
+            std::string::npos);
+  constexpr std::size_t kVertex = 3 * 8 + 4 * 4, kFace = 1 + 3 * 4;
+  ASSERT_EQ(bytes.size(), data + 4 * kVertex + 4 * kFace);
+  EXPECT_EQ(value_at<double>(bytes, data + kVertex), 1.0 / 3);
+  EXPECT_EQ(value_at<float>(bytes, data + 3 * kVertex + 24 + 8), 0.5F);
+  EXPECT_EQ(value_at<float>(bytes, data + 3 * kVertex + 24 + 12), 0.001F);
+  EXPECT_EQ(value_at<std::uint8_t>(bytes, data + 4 * kVertex), 3);
+  EXPECT_EQ(value_at<std::int32_t>(bytes, data + 4 * kVertex + 5), 2);
+}
+
+TEST_F(SurfaceIo, PointsWithAndWithoutNormals) {
+  const SurfaceMesh mesh = tetrahedron();
+  const std::vector<float> sigma(4, 0.5F);
+  const std::string end = "end_header\n";
+  std::size_t cases = 0;
+  for (const bool normals : {false, true}) {
+    for (const bool sigmas : {false, true}) {
+      const auto path = folder_ / "points.ply";
+      write_points_ply(path, mesh.vertices,
+                       normals ? std::span(mesh.normals) : std::span<const std::array<double, 3>>(),
+                       sigmas ? std::span(sigma) : std::span<const float>());
+      const std::string bytes = bytes_of(path);
+      EXPECT_EQ(bytes.find("face"), std::string::npos);
+      const std::size_t vertex = 24U + (normals ? 12U : 0U) + (sigmas ? 4U : 0U);
+      EXPECT_EQ(bytes.size(), bytes.find(end) + end.size() + 4 * vertex);
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 4U);
+  write_points_ply(folder_ / "none.ply", {}, {}, {});
+  EXPECT_NE(bytes_of(folder_ / "none.ply").find("element vertex 0\n"), std::string::npos);
+}
+
+TEST_F(SurfaceIo, BadInputIsRefusedAndLeavesNoFile) {
+  const auto path = folder_ / "surface.ply";
+  SurfaceMesh mesh = tetrahedron();
+  const std::vector<float> three(3, 0.5F);
+  EXPECT_THROW(write_surface_ply(path, mesh, three), Error);
+  mesh.triangles[3][1] = 4;
+  EXPECT_THROW(write_surface_ply(path, mesh, {}), Error);
+  mesh = tetrahedron();
+  mesh.normals.pop_back();
+  EXPECT_THROW(write_surface_ply(path, mesh, {}), Error);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+  try {
+    write_surface_ply(folder_ / "no such folder" / "surface.ply", tetrahedron(), {});
+    ADD_FAILURE() << "wrote into a folder that is not there";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::io);
+  }
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,322 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "shapes.hpp"
+#include "surface_checks.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/mesh/surface.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::area_of;
+using test::good_normals;
+using test::Noise;
+using test::norm;
+using test::plate_points;
+using test::sphere_points;
+using test::Topology;
+using test::vec;
+
+constexpr double kSpacing = 0.003;
+constexpr double kRadius = 0.06;
+
+const SurfaceConfig kConfig{.spacing = kSpacing};
+
+Topology check_surface(const SurfaceMesh& mesh, const std::vector<OrientedPoint>& points) {
+  return test::check_surface(mesh, points, kConfig);
+}
+
+bool same(const SurfaceMesh& a, const SurfaceMesh& b) {
+  return a.vertices == b.vertices && a.normals == b.normals && a.triangles == b.triangles &&
+         a.source == b.source;
+}
+
+TEST(SurfaceReconstruction, SphereIsClosedAndOutward) {
+  const auto points = sphere_points(kRadius, kSpacing);
+  const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
+  const Topology topology = check_surface(mesh, points);
+  EXPECT_EQ(mesh.vertices.size(), points.size());
+  EXPECT_EQ(topology.components, 1U);
+  EXPECT_EQ(topology.border_edges, 0U);
+  EXPECT_EQ(topology.euler, 2);
+  EXPECT_EQ(good_normals(mesh, points), 1.0);
+  EXPECT_NEAR(area_of(mesh), 4 * std::numbers::pi * kRadius * kRadius, 0.01 * area_of(mesh));
+}
+
+TEST(SurfaceReconstruction, HalfSphereStaysOpen) {
+  const auto points = sphere_points(kRadius, kSpacing, 0, 0.0);
+  const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
+  const Topology topology = check_surface(mesh, points);
+  EXPECT_EQ(topology.components, 1U);
+  EXPECT_EQ(topology.border_loops, 1U);
+  EXPECT_EQ(topology.euler, 1) << "a disc";
+  EXPECT_EQ(good_normals(mesh, points), 1.0);
+  EXPECT_NEAR(area_of(mesh), 2 * std::numbers::pi * kRadius * kRadius, 0.04 * area_of(mesh));
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) ++uses[std::minmax({t[k], t[(k + 1) % 3]})];
+  }
+  std::size_t border_edges = 0;
+  for (const auto& [edge, count] : uses) {
+    if (count != 1) continue;
+    ++border_edges;
+    EXPECT_LT(mesh.vertices[edge.first][2], 3 * kSpacing) << "the border is at the rim";
+  }
+  EXPECT_GT(border_edges, 50U);
+}
+
+TEST(SurfaceReconstruction, TwoSpheresStayApart) {
+  auto points = sphere_points(0.03, kSpacing);
+  const auto other = sphere_points(0.03, kSpacing, 0, -2, {0.06 + 5 * kSpacing, 0, 0});
+  points.insert(points.end(), other.begin(), other.end());
+  const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
+  const Topology topology = check_surface(mesh, points);
+  EXPECT_EQ(topology.components, 2U);
+  EXPECT_EQ(topology.border_edges, 0U);
+  EXPECT_EQ(topology.euler, 4);
+  EXPECT_EQ(good_normals(mesh, points), 1.0);
+}
+
+TEST(SurfaceReconstruction, ExactLatticeBecomesAPlateWithOneBorder) {
+  constexpr int kSide = 30;
+  for (const double up : {1.0, -1.0}) {
+    const auto points = plate_points(kSide, kSpacing, 0.1, up);
+    const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
+    const Topology topology = check_surface(mesh, points);
+    EXPECT_EQ(topology.components, 1U);
+    EXPECT_EQ(topology.border_loops, 1U);
+    EXPECT_EQ(topology.euler, 1);
+    EXPECT_EQ(good_normals(mesh, points), 1.0);
+    const double side = (kSide - 1) * kSpacing;
+    EXPECT_NEAR(area_of(mesh), side * side, 0.01 * side * side);
+    for (const auto& v : mesh.vertices) EXPECT_NEAR(v[2], 0.1, 1e-9);
+  }
+}
+
+TEST(SurfaceReconstruction, LayersOfAThinPlateAreNotFused) {
+  constexpr int kSide = 30;
+  for (const double gap : {6.0, 4.5}) {  // spacings
+    Noise noise(3);
+    auto points = plate_points(kSide, kSpacing);
+    const auto below = plate_points(kSide, kSpacing, -gap * kSpacing, -1);
+    points.insert(points.end(), below.begin(), below.end());
+    for (auto& p : points) p.position[2] += 0.2 * kSpacing * noise.normal();
+    const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
+    const Topology topology = check_surface(mesh, points);
+    EXPECT_EQ(topology.components, 2U);
+    EXPECT_EQ(topology.border_loops, 2U);
+    EXPECT_EQ(topology.euler, 2);
+    EXPECT_GT(good_normals(mesh, points), 0.995);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      const double z = points[mesh.source[v]].toward_free[2] > 0 ? 0 : -gap * kSpacing;
+      EXPECT_NEAR(mesh.vertices[v][2], z, 0.4 * kSpacing);
+    }
+  }
+}
+
+TEST(SurfaceReconstruction, SmoothingTakesNoiseAway) {
+  std::size_t cases = 0;
+  for (const double sigma : {0.3, 0.5}) {  // spacings
+    const auto points = sphere_points(kRadius, kSpacing, sigma * kSpacing);
+    const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
+    SurfaceConfig rough_config = kConfig;
+    rough_config.smoothing_neighbors = 0;
+    const SurfaceMesh rough = reconstruct_surface(points, rough_config);
+    const auto rms = [](const SurfaceMesh& m) {
+      double sum = 0;
+      for (const auto& v : m.vertices) sum += std::pow(norm(v) - kRadius, 2);
+      return std::sqrt(sum / static_cast<double>(m.vertices.size()));
+    };
+    const Topology topology = check_surface(mesh, points);
+    EXPECT_EQ(topology.components, 1U);
+    EXPECT_EQ(topology.border_edges, 0U);
+    EXPECT_EQ(topology.euler, 2);
+    EXPECT_GE(mesh.vertices.size(), points.size() * 98 / 100);
+    EXPECT_GT(good_normals(mesh, points), sigma < 0.4 ? 0.99 : 0.9);
+    EXPECT_NEAR(rms(rough), sigma * kSpacing, 0.1 * sigma * kSpacing);
+    // A quadric through n points leaves about 2 σ / √n in its middle; n = 24.
+    EXPECT_LT(rms(mesh), 0.5 * sigma * kSpacing);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 2U);
+}
+
+TEST(SurfaceReconstruction, OutliersGoAndNothingElse) {
+  auto points = sphere_points(kRadius, kSpacing, 0.2 * kSpacing);
+  const std::size_t good = points.size();
+  // Single points off the surface, a clump of 30 in the middle, a lone point far away.
+  Noise noise(11);
+  for (int i = 0; i < 100; ++i) {
+    OrientedPoint p = points[static_cast<std::size_t>(noise.uniform() * static_cast<double>(good))];
+    for (double& x : p.position) x *= 1 + 2.5 * kSpacing / kRadius;
+    points.push_back(p);
+  }
+  for (int i = 0; i < 30; ++i) {
+    points.push_back({{kSpacing * (i % 6), kSpacing * (i / 6), 0}, {0, 0, 1}});
+  }
+  points.push_back({{1, 1, 1}, {0, 0, 1}});
+  const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
+  const Topology topology = check_surface(mesh, points);
+  EXPECT_EQ(topology.components, 1U);
+  EXPECT_EQ(topology.border_edges, 0U);
+  std::size_t kept_good = 0;
+  for (const std::uint32_t source : mesh.source) {
+    EXPECT_LT(source, good) << "an outlier is in the mesh";
+    if (source < good) ++kept_good;
+  }
+  EXPECT_GE(kept_good, good * 99 / 100);
+}
+
+TEST(SurfaceReconstruction, SparseRegionIsMeshedToo) {
+  // Below the equator a spacing apart, above 2.5.
+  std::vector<OrientedPoint> thinned;
+  for (const auto& p : sphere_points(kRadius, kSpacing, 0.2 * kSpacing)) {
+    if (p.position[2] < 0) thinned.push_back(p);
+  }
+  const auto sparse = sphere_points(kRadius, 2.5 * kSpacing, 0.2 * kSpacing, 0.0);
+  thinned.insert(thinned.end(), sparse.begin(), sparse.end());
+  const SurfaceMesh mesh = reconstruct_surface(thinned, kConfig);
+  const Topology topology = check_surface(mesh, thinned);
+  EXPECT_EQ(topology.components, 1U);
+  EXPECT_GE(mesh.vertices.size(), thinned.size() * 98 / 100);
+  EXPECT_NEAR(area_of(mesh), 4 * std::numbers::pi * kRadius * kRadius, 0.03 * area_of(mesh));
+}
+
+TEST(SurfaceReconstruction, HintsDecideTheSideByMajority) {
+  auto points = sphere_points(kRadius, kSpacing, 0.2 * kSpacing, 0.3);
+  const SurfaceMesh outward = reconstruct_surface(points, kConfig);
+  ASSERT_FALSE(outward.vertices.empty());
+  for (auto& p : points) {
+    for (double& x : p.toward_free) x *= -1;
+  }
+  const SurfaceMesh inward = reconstruct_surface(points, kConfig);
+  ASSERT_EQ(inward.vertices, outward.vertices);
+  ASSERT_EQ(inward.triangles.size(), outward.triangles.size());
+  for (std::size_t v = 0; v < inward.normals.size(); ++v) {
+    EXPECT_LT((vec(inward.normals[v]) + vec(outward.normals[v])).norm(), 1e-12);
+  }
+  // A quarter is wrong and a quarter is not known: the rest still decides.
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i % 4 == 0) points[i].toward_free = {points[i].position};
+    if (i % 4 == 1) points[i].toward_free = {0, 0, 0};
+  }
+  const SurfaceMesh mixed = reconstruct_surface(points, kConfig);
+  check_surface(mixed, points);
+  ASSERT_GT(mixed.vertices.size(), points.size() * 9 / 10);
+  for (std::size_t v = 0; v < mixed.vertices.size(); ++v) {
+    EXPECT_LT(vec(mixed.normals[v]).dot(vec(mixed.vertices[v])), 0);
+  }
+}
+
+TEST(SurfaceReconstruction, ComponentsAreOrientedEachByItsOwnHints) {
+  auto points = sphere_points(0.03, kSpacing);
+  const std::size_t first = points.size();
+  for (auto p : sphere_points(0.03, kSpacing, 0, -2, {0.1, 0, 0})) {
+    for (double& x : p.toward_free) x *= -1;
+    points.push_back(p);
+  }
+  const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
+  EXPECT_EQ(check_surface(mesh, points).components, 2U);
+  EXPECT_EQ(good_normals(mesh, points), 1.0);
+  EXPECT_EQ(points.size(), 2 * first);
+}
+
+TEST(SurfaceReconstruction, DuplicatedPointsChangeNothing) {
+  auto points = sphere_points(kRadius, kSpacing, 0.2 * kSpacing, -0.5);
+  const SurfaceMesh once = reconstruct_surface(points, kConfig);
+  ASSERT_FALSE(once.triangles.empty());
+  const std::vector<OrientedPoint> copy = points;
+  for (int i = 0; i < 3; ++i) points.insert(points.end(), copy.begin(), copy.end());
+  EXPECT_TRUE(same(reconstruct_surface(points, kConfig), once));
+}
+
+TEST(SurfaceReconstruction, ManyCopiesOfOnePointAreNoSurface) {
+  const std::vector<OrientedPoint> points(20000, OrientedPoint{{1, 2, 3}, {0, 0, 1}});
+  EXPECT_TRUE(reconstruct_surface(points, kConfig).vertices.empty());
+}
+
+TEST(SurfaceReconstruction, SameInputSameBits) {
+  const auto points = sphere_points(kRadius, kSpacing, 0.4 * kSpacing, -0.2);
+  const auto lattice = plate_points(40, kSpacing);
+  const SurfaceMesh first = reconstruct_surface(points, kConfig);
+  const SurfaceMesh flat = reconstruct_surface(lattice, kConfig);
+  ASSERT_FALSE(first.triangles.empty());
+  ASSERT_FALSE(flat.triangles.empty());
+  std::vector<std::vector<char>> ballast;  // moves what comes next to other addresses
+  for (std::size_t run = 0; run < 4; ++run) {
+    ballast.emplace_back(100'000 + 77'777 * run);
+    EXPECT_TRUE(same(reconstruct_surface(points, kConfig), first));
+    EXPECT_TRUE(same(reconstruct_surface(lattice, kConfig), flat));
+  }
+}
+
+TEST(SurfaceReconstruction, FarFromTheOriginAndInOtherUnits) {
+  // The same shape in millimetres, and moved by 100 m.
+  const auto points = sphere_points(kRadius, kSpacing, 0.3 * kSpacing, 0.0);
+  const Topology here = check_surface(reconstruct_surface(points, kConfig), points);
+  auto moved = points;
+  for (auto& p : moved) p.position[0] += 100;
+  EXPECT_EQ(check_surface(reconstruct_surface(moved, kConfig), moved).euler, here.euler);
+  auto scaled = points;
+  for (auto& p : scaled) {
+    for (double& x : p.position) x *= 1000;
+  }
+  SurfaceConfig config = kConfig;
+  config.spacing *= 1000;
+  const SurfaceMesh mesh = reconstruct_surface(scaled, config);
+  EXPECT_EQ(mesh.triangles.size(), reconstruct_surface(points, kConfig).triangles.size());
+}
+
+TEST(SurfaceReconstruction, TooFewPointsGiveAnEmptyMesh) {
+  const auto points = sphere_points(kRadius, kSpacing);
+  std::size_t cases = 0;
+  for (const std::size_t count : {0U, 1U, 2U, 3U, 39U}) {
+    const std::vector<OrientedPoint> few(points.begin(),
+                                         points.begin() + static_cast<std::ptrdiff_t>(count));
+    EXPECT_TRUE(reconstruct_surface(few, kConfig).triangles.empty()) << count;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5U);
+  // With no least size they are only too few for a triangle, or on a line.
+  SurfaceConfig config = kConfig;
+  config.min_component = 0;
+  std::vector<OrientedPoint> line;
+  for (int i = 0; i < 60; ++i) line.push_back({{i * kSpacing, 0, 0}, {0, 0, 1}});
+  EXPECT_TRUE(reconstruct_surface(line, config).vertices.empty());
+  line.resize(2);
+  EXPECT_TRUE(reconstruct_surface(line, config).vertices.empty());
+}
+
+TEST(SurfaceReconstruction, BadInputIsRefused) {
+  auto points = sphere_points(kRadius, kSpacing);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::size_t cases = 0;
+  for (const double bad : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(static_cast<void>(reconstruct_surface(points, {.spacing = bad})), Error);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 4U);
+  points[5].position[1] = nan;
+  try {
+    static_cast<void>(reconstruct_surface(points, kConfig));
+    ADD_FAILURE() << "a NaN was taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::invalid_argument);
+    EXPECT_NE(std::string(error.what()).find("point 5"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace viewgain
