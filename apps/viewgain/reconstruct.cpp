@@ -245,6 +245,10 @@ void reconstruct(const Options& options) {
   if (options.sensing.support_plane && !std::isfinite(*options.sensing.support_plane)) {
     throw Error(ErrorCode::invalid_argument, "--support-plane must be finite");
   }
+  if (options.stop_coverage && !(*options.stop_coverage >= 0 && *options.stop_coverage <= 1)) {
+    throw Error(ErrorCode::invalid_argument,
+                "--stop-coverage " + short_text(*options.stop_coverage) + " must be in 0..1");
+  }
   if (options.frames_per_view < 1) {
     throw Error(ErrorCode::invalid_argument, "--frames-per-view must be at least 1");
   }

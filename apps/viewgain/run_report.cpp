@@ -115,6 +115,9 @@ ordered_json RunReport::entry_json(std::size_t index) const {
   json["dropped"] = to_json(from.dropped);
   json["predicted_gain"] = e.record.predicted_gain;
   json["realised_gain"] = e.record.realised_gain;
+  // What the stopping rule looks at: the best view there is now.
+  json["next_gain_per_voxel"] =
+      e.record.decision ? ordered_json(e.record.decision->gain_per_voxel) : ordered_json();
   put_figures(json, e.quality, e.record.progress);
   json["travelled"] = e.record.travelled;
   json["seconds"] = to_json(e.seconds);
