@@ -51,9 +51,8 @@ void Model::drop_known_readings(DepthFrame& frame, const Pose& T_world_camera) c
 ModelProgress Model::update(const Measurements& measurements) {
   const Stopwatch watch;
   std::vector<DepthFrame> frames = measurements.frames;
-  jump_edges_removed_ = 0;
   for (DepthFrame& frame : frames) {
-    if (filter_) jump_edges_removed_ += filter_->apply(frame);
+    if (filter_) filter_->apply(frame);
     if (!config_.refine) drop_known_readings(frame, measurements.T_world_camera);
   }
   std::uint64_t inside = 0;
@@ -82,8 +81,7 @@ ModelProgress Model::update(const Measurements& measurements) {
 void Model::derive() {
   {
     const Stopwatch watch;
-    Obstacles obstacles;
-    scene_ = VoxelScene::build(grid_, obstacles, exec_);
+    scene_ = VoxelScene::build(grid_, {}, exec_);
     seconds_["snapshot"] += watch.seconds();
   }
   const Stopwatch watch;

@@ -56,8 +56,6 @@ class Model : public RepresentationUpdate {
   [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
   /// After each view, where there is a truth.
   [[nodiscard]] const std::vector<QualityFigures>& quality() const noexcept { return quality_; }
-  /// Of the last view: the pixels that the jump-edge filter removed.
-  [[nodiscard]] std::size_t jump_edges_removed() const noexcept { return jump_edges_removed_; }
 
  private:
   void derive();
@@ -76,7 +74,6 @@ class Model : public RepresentationUpdate {
   std::vector<FusedPoint> points_;
   SurfaceMesh surface_;
   std::vector<QualityFigures> quality_;
-  std::size_t jump_edges_removed_ = 0;
 };
 
 }  // namespace viewgain::app

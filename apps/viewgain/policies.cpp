@@ -9,17 +9,10 @@
 
 #include "terminal.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/mix64.hpp"
 
 namespace viewgain::app {
 namespace {
-
-// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): the same choice on every machine.
-std::uint64_t mix(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15ULL;
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
-  return x ^ (x >> 31U);
-}
 
 // What a gain is worth after the way to it.
 double utility(const TravelCost& cost, double gain, double distance) {
@@ -106,7 +99,7 @@ std::size_t PolicyDecision::choose(const Pose& T_world_camera,
     case Policy::frontier:
       return best_by([&](std::size_t i) { return static_cast<double>(gains[i].unknown_voxels); });
     case Policy::random:
-      return static_cast<std::size_t>(mix(mix(config_.seed) ^ model_.grid().views().size()) %
+      return static_cast<std::size_t>(mix64(mix64(config_.seed) ^ model_.grid().views().size()) %
                                       candidates.size());
     case Policy::kriegel:
       return choose_by_boundary(candidates);

@@ -329,8 +329,8 @@ void reconstruct(const Options& options) {
     print_json(json);
   } else {
     std::printf("%s", report.text(result.reason).c_str());
-    std::printf("left in %s: run.json, views.txt, map.vdb, surface.ply, points.ply, views/\n",
-                options.out.c_str());
+    std::printf("left in %s: run.json, views.txt, map.vdb, surface.ply, points.ply%s\n",
+                options.out.c_str(), options.no_pictures ? "" : ", views/");
   }
 }
 

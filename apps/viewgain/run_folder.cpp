@@ -52,8 +52,6 @@ void RunFolder::begin() {
   if (begun_) return;
   begun_ = true;
   remove_run_files();
-  std::error_code ignored;
-  fs::create_directories(dir_ / "views", ignored);  // a failure shows when a picture is written
 }
 
 RunFolder::~RunFolder() {
@@ -67,6 +65,8 @@ RunFolder::~RunFolder() {
 }
 
 fs::path RunFolder::view(std::size_t index, const char* ending) const {
+  std::error_code ignored;
+  fs::create_directories(dir_ / "views", ignored);  // a failure shows when the picture is written
   return dir_ / "views" / numbered(index, ending);
 }
 

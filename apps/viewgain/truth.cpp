@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/thread_pool.hpp"
@@ -63,8 +62,6 @@ Truth::Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
       }
     }
   });
-  const auto seen = std::accumulate(visible_.begin(), visible_.end(), std::size_t{0});
-  visible_share_ = static_cast<double>(seen) / static_cast<double>(samples.size());
 }
 
 QualityFigures Truth::figures(const SurfaceMesh& surface,

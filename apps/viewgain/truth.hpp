@@ -47,14 +47,10 @@ class Truth {
 
   [[nodiscard]] QualityFigures figures(const SurfaceMesh& surface,
                                        std::span<const FusedPoint> points) const;
-  [[nodiscard]] double visible_share() const noexcept { return visible_share_; }
-  /// Errors of the points within a part: those for which `inside` is not 0.
-  [[nodiscard]] const GroundTruth& mesh() const noexcept { return truth_; }
 
  private:
   GroundTruth truth_;
   std::vector<std::uint8_t> visible_;
-  double visible_share_ = 0;
 };
 
 }  // namespace viewgain::app

@@ -6,16 +6,9 @@
 #include <cstdint>
 #include <numbers>
 
-namespace viewgain::detail {
+#include "viewgain/core/mix64.hpp"
 
-/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a good hash of a counter, so that each pixel has
-/// noise of its own whatever the order in which pixels are made.
-[[nodiscard]] inline std::uint64_t mix64(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15ULL;
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
-  return x ^ (x >> 31U);
-}
+namespace viewgain::detail {
 
 /// What a pixel needs random numbers for.
 enum class RandomStream : std::uint64_t { axial, lateral_x, lateral_y, amplitude };

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace viewgain {
+
+/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a good hash of a counter, so that random choices
+/// are the same on every machine and do not depend on the order in which they are made.
+[[nodiscard]] inline std::uint64_t mix64(std::uint64_t x) {
+  x += 0x9E3779B97F4A7C15ULL;
+  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
+  return x ^ (x >> 31U);
+}
+
+}  // namespace viewgain
