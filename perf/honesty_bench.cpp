@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "measure.hpp"
+#include "model.hpp"
 #include "model_scene.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/thread_pool.hpp"
@@ -110,7 +111,7 @@ Json refinement(const ModelScene& scene, const GroundTruth& truth, const ExecCon
     const std::vector<FusedPoint> points = fused_points(grid, {}, exec);
     std::vector<std::array<double, 3>> positions;
     for (const FusedPoint& point : points) positions.push_back(point.position);
-    const SurfaceMesh surface = surface_of(points, kVoxel);
+    const SurfaceMesh surface = app::surface_of(points, kVoxel);
     json.push_back({{"repeats", repeat},
                     {"rms_surface", truth.error(seen_by(scene, views[0], surface.vertices)).rms},
                     {"rms_points", truth.error(seen_by(scene, views[0], positions)).rms}});

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "measure.hpp"
+#include "model.hpp"
 #include "model_scene.hpp"
 #include "planning_options.hpp"
 #include "viewgain/core/generators.hpp"
@@ -62,7 +63,7 @@ int run_iteration(const IterationOptions& options) {
     now["surface"] = seconds_of([&] {
       const std::vector<FusedPoint> fused = fused_points(grid, {}, exec);
       points = fused.size();
-      surface = surface_of(fused, voxel);
+      surface = app::surface_of(fused, voxel);
     });
     vertices = surface.vertices.size();
     now["candidates"] = seconds_of([&] {

@@ -42,13 +42,4 @@ BeliefGrid ModelScene::empty_grid(double voxel_size) const {
   return BeliefGrid(config);
 }
 
-SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double voxel_size) {
-  std::vector<OrientedPoint> oriented;
-  oriented.reserve(points.size());
-  for (const FusedPoint& point : points) oriented.push_back({point.position, point.toward_free});
-  SurfaceConfig config;
-  config.spacing = voxel_size;
-  return reconstruct_surface(oriented, config);
-}
-
 }  // namespace viewgain::bench

@@ -10,7 +10,6 @@
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/mesh/surface.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain::bench {
@@ -38,8 +37,5 @@ class ModelScene {
   SimulatedSensor undisturbed_;
   JumpEdgeFilter filter_;
 };
-
-/// The surface through the points, as `viewgain reconstruct` makes it.
-[[nodiscard]] SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double voxel_size);
 
 }  // namespace viewgain::bench

@@ -10,6 +10,15 @@
 
 namespace viewgain::app {
 
+SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double voxel_size) {
+  std::vector<OrientedPoint> oriented;
+  oriented.reserve(points.size());
+  for (const FusedPoint& point : points) oriented.push_back({point.position, point.toward_free});
+  SurfaceConfig config;
+  config.spacing = voxel_size;
+  return reconstruct_surface(oriented, config);
+}
+
 Model::Model(const Sensor& sensor, const ModelConfig& config, const ExecConfig& exec,
              std::shared_ptr<const Truth> truth, StageSeconds& seconds)
     : sensor_(sensor),
@@ -86,12 +95,7 @@ void Model::derive() {
   }
   const Stopwatch watch;
   points_ = fused_points(grid_, config_.points, exec_);
-  std::vector<OrientedPoint> oriented;
-  oriented.reserve(points_.size());
-  for (const FusedPoint& point : points_) oriented.push_back({point.position, point.toward_free});
-  SurfaceConfig surface;
-  surface.spacing = grid_.voxel_size();
-  surface_ = reconstruct_surface(oriented, surface);
+  surface_ = surface_of(points_, grid_.voxel_size());
   seconds_["surface"] += watch.seconds();
 }
 

@@ -35,6 +35,10 @@ struct ModelConfig {
   bool refine = true;  ///< false: the first reading of a voxel wins, later ones are ignored
 };
 
+/// The surface through the points of a map with this voxel size [m]; vertex i comes from point
+/// source[i].
+[[nodiscard]] SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double voxel_size);
+
 /// The two representations of the scene, the belief grid and the surface seen so far
 /// (UPDATEREPRESENTATIONS of Algorithm 1), and what is derived from them after each view.
 class Model : public RepresentationUpdate {

@@ -56,17 +56,17 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
   gain_config.criterion = config_.criterion;
   const GainEvaluator evaluator(model_.scene(), sensor_, gain_config, exec_);
   const bool by_gain = config_.policy == Policy::gain;
+  const bool scored = by_gain || config_.policy == Policy::frontier;
   std::vector<ViewGain> gains(candidates.size());
-  if (by_gain || config_.policy == Policy::frontier) {
+  if (scored) {
     std::vector<Pose> poses;
     poses.reserve(candidates.size());
     for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
     evaluator.evaluate(poses, gains);
   }
   const std::size_t chosen = choose(T_world_camera, candidates, gains);
-  const ViewGain& gain =
-      by_gain ? gains[chosen]
-              : (gains[chosen] = evaluator.evaluate(candidates[chosen].T_world_camera));
+  const ViewGain gain =
+      scored ? gains[chosen] : evaluator.evaluate(candidates[chosen].T_world_camera);
   Decision decision;
   decision.candidate = chosen;
   decision.gain = gain.gain;

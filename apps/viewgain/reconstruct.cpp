@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,7 +28,6 @@
 #include "view_picture.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
@@ -37,8 +35,6 @@
 
 namespace viewgain::app {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct Options {
   CommonOptions common;

@@ -19,8 +19,8 @@ namespace viewgain::detail {
 
 /// A voxel's belief in double precision.
 struct PlacedBelief {
-  SymmetricMatrix3 information{};  ///< Λ_v [m⁻²]
-  Eigen::Vector3d vector = Eigen::Vector3d::Zero();        ///< η_v [m⁻¹]
+  SymmetricMatrix3 information{};                    ///< Λ_v [m⁻²]
+  Eigen::Vector3d vector = Eigen::Vector3d::Zero();  ///< η_v [m⁻¹]
   std::uint32_t hits = 0;
 };
 

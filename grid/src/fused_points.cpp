@@ -124,8 +124,6 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
       seed.information = own.information;
       seed.hits = own.hits;
       if (config.rule == PointRule::pooled) pool_column(around, V, own, config, seed);
-      const Eigen::Vector3d free = around.free_side(seed.position);
-      if (seed.normal.dot(free) < 0) seed.normal = -seed.normal;
     }
   });
 
@@ -148,6 +146,14 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
     std::size_t next = 0;
     std::erase_if(kept, [&](std::size_t) { return !good[next++]; });
   }
+
+  pool.for_each_chunk(kept.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      Seed& seed = seeds[kept[k]];
+      const BrickNeighborhood around(bricks, occupied[kept[k]].first);
+      if (seed.normal.dot(around.free_side(seed.position)) < 0) seed.normal = -seed.normal;
+    }
+  });
 
   const double floor = config.floor_sigma.value_or(V / std::sqrt(12.0));
   const Eigen::Matrix3d R = grid.T_world_grid().rotation();
