@@ -25,16 +25,36 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 
-// CGAL keeps the border's edges in a set by priority and, where priorities are equal, as for the
-// edges that want the same triangle, by address. Here equal ones are ordered by their vertices, so
-// that the result does not depend on where memory was free.
-template <typename Base = CGAL::Advancing_front_surface_reconstruction_vertex_base_3<Kernel>>
-class OrderedVertex : public Base {
+// CGAL compares handles to vertices and cells by address, and so the side from which it looks at a
+// triangle, hence the rounding of its radius, would depend on where memory was free. Elements that
+// carry the order of their making are compared by that instead.
+template <typename Base>
+class Stamped : public Base {
  public:
   using Base::Base;
   template <typename Triangulation>
   struct Rebind_TDS {
-    using Other = OrderedVertex<typename Base::template Rebind_TDS<Triangulation>::Other>;
+    using Other = Stamped<typename Base::template Rebind_TDS<Triangulation>::Other>;
+  };
+
+  // CGAL's names.
+  using Has_timestamp = CGAL::Tag_true;
+  [[nodiscard]] std::size_t time_stamp() const { return stamp_; }
+  void set_time_stamp(std::size_t stamp) { stamp_ = stamp; }
+
+ private:
+  std::size_t stamp_ = static_cast<std::size_t>(-1);  // CGAL's sign for "not yet"
+};
+
+// The same for the border's edges, which CGAL keeps in a set by priority and, where priorities are
+// equal, as for the edges that want the same triangle, by address.
+template <typename Base>
+class OrderedBorder : public Base {
+ public:
+  using Base::Base;
+  template <typename Triangulation>
+  struct Rebind_TDS {
+    using Other = OrderedBorder<typename Base::template Rebind_TDS<Triangulation>::Other>;
   };
 
   // Stands in for the base's pair of the same name.
@@ -56,10 +76,11 @@ class OrderedVertex : public Base {
   };
 };
 
-using Cell = CGAL::Advancing_front_surface_reconstruction_cell_base_3<Kernel>;
+using Vertex =
+    OrderedBorder<Stamped<CGAL::Advancing_front_surface_reconstruction_vertex_base_3<Kernel>>>;
+using Cell = Stamped<CGAL::Advancing_front_surface_reconstruction_cell_base_3<Kernel>>;
 using Triangulation =
-    CGAL::Delaunay_triangulation_3<Kernel,
-                                   CGAL::Triangulation_data_structure_3<OrderedVertex<>, Cell>>;
+    CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<Vertex, Cell>>;
 
 // CGAL's own measure, the radius of the smallest empty sphere, but infinite, which means never, for
 // long edges.
