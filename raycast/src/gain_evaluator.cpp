@@ -11,11 +11,8 @@
 #include <sstream>
 #include <string>
 
-#include "gain_accumulator.hpp"
-#include "scene_data.hpp"
-#include "view_tracer.hpp"
+#include "gain_evaluator_impl.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
@@ -79,107 +76,55 @@ void check(const GainConfig& config, const Sensor& sensor, const VoxelScene& sce
 
 }  // namespace
 
-struct GainEvaluator::Impl {
-  std::shared_ptr<const VoxelScene> scene;
-  const VoxelScene::Data& data;
-  detail::GainSettings settings;
-  double prior_sigma = 0;  // [m]
-  detail::ViewTracer tracer;
-  std::uint32_t ray_count = 0;
-  mutable ThreadPool pool;
-
-  // What a thread needs to score a pose.
-  struct Workspace {
-    detail::GainAccumulator accumulator;
-    detail::TileBins bins;
-  };
-  // Those that no thread is using, so that a call need not make one.
-  mutable std::mutex idle_mutex;
-  mutable std::vector<std::unique_ptr<Workspace>> idle;
-
-  Impl(std::shared_ptr<const VoxelScene> s, const Sensor& sensor, const GainConfig& config,
-       const ExecConfig& exec)
-      : scene(std::move(s)),
-        data(scene->data()),
-        prior_sigma(config.prior_sigma.value_or(data.snapshot.prior_sigma)),
-        tracer(data, sensor.camera, config.pixel_stride,
-               config.min_range.value_or(sensor.min_range),
-               config.max_range.value_or(sensor.max_range)),
-        pool(exec.num_threads) {
-    settings = {config.criterion, 1.0 / (prior_sigma * prior_sigma), detail::frontal_sigmas(sensor),
-                config.weights};
-    for (const std::uint16_t lanes : tracer.table().valid) {
-      ray_count += static_cast<std::uint32_t>(std::popcount(lanes));
-    }
+GainEvaluator::Impl::Impl(std::shared_ptr<const VoxelScene> s, const Sensor& sensor,
+                          const GainConfig& config, const ExecConfig& exec)
+    : scene(std::move(s)),
+      data(scene->data()),
+      prior_sigma(config.prior_sigma.value_or(data.snapshot.prior_sigma)),
+      tracer(data, sensor.camera, config.pixel_stride, config.min_range.value_or(sensor.min_range),
+             config.max_range.value_or(sensor.max_range)),
+      pool(exec.num_threads) {
+  settings = {config.criterion, 1.0 / (prior_sigma * prior_sigma), detail::frontal_sigmas(sensor),
+              config.weights};
+  for (const std::uint16_t lanes : tracer.table().valid) {
+    ray_count += static_cast<std::uint32_t>(std::popcount(lanes));
   }
+}
 
-  // A workspace for as long as the lease lives.
-  class Lease {
-   public:
-    explicit Lease(const Impl& impl) : impl_(impl) {
-      const std::lock_guard lock(impl.idle_mutex);
-      if (!impl.idle.empty()) {
-        workspace_ = std::move(impl.idle.back());
-        impl.idle.pop_back();
-      }
-    }
-    ~Lease() {
-      if (!workspace_) return;
-      const std::lock_guard lock(impl_.idle_mutex);
-      impl_.idle.push_back(std::move(workspace_));
-    }
-    Lease(const Lease&) = delete;
-    Lease& operator=(const Lease&) = delete;
-
-    Workspace& get() {
-      if (!workspace_) {
-        workspace_ = std::make_unique<Workspace>(Workspace{
-            detail::GainAccumulator(impl_.data, impl_.settings, impl_.tracer.table().ray_count()),
-            {}});
-      }
-      return *workspace_;
-    }
-
-   private:
-    const Impl& impl_;
-    std::unique_ptr<Workspace> workspace_;
-  };
-
-  [[nodiscard]] bool is_in_occupied(const detail::PoseFrame& frame) const {
-    const Index3& dims = data.snapshot.dims;
-    const std::array<std::int32_t, 3> size{dims.x, dims.y, dims.z};
-    std::array<std::int32_t, 3> voxel{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const float c = std::floor(frame.origin[i]);
-      if (!(c >= 0 && c < static_cast<float>(size[i]))) return false;
-      voxel[i] = static_cast<std::int32_t>(c);
-    }
-    const std::uint64_t key = data.voxel_key(voxel[0], voxel[1], voxel[2]);
-    const auto leaf = std::lower_bound(data.leaf_by_block.begin(), data.leaf_by_block.end(),
-                                       std::pair<std::uint64_t, std::uint32_t>(key >> 9U, 0U));
-    return leaf != data.leaf_by_block.end() && leaf->first == key >> 9U &&
-           test_bit(data.snapshot.leaves[leaf->second].occupied, static_cast<unsigned>(key & 511U));
+bool GainEvaluator::Impl::is_in_occupied(const detail::PoseFrame& frame) const {
+  const Index3& dims = data.snapshot.dims;
+  const std::array<std::int32_t, 3> size{dims.x, dims.y, dims.z};
+  std::array<std::int32_t, 3> voxel{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float c = std::floor(frame.origin[i]);
+    if (!(c >= 0 && c < static_cast<float>(size[i]))) return false;
+    voxel[i] = static_cast<std::int32_t>(c);
   }
+  const std::uint64_t key = data.voxel_key(voxel[0], voxel[1], voxel[2]);
+  const auto leaf = std::lower_bound(data.leaf_by_block.begin(), data.leaf_by_block.end(),
+                                     std::pair<std::uint64_t, std::uint32_t>(key >> 9U, 0U));
+  return leaf != data.leaf_by_block.end() && leaf->first == key >> 9U &&
+         test_bit(data.snapshot.leaves[leaf->second].occupied, static_cast<unsigned>(key & 511U));
+}
 
-  [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera, Lease& lease) const {
-    ViewGain result;
-    const auto frame = tracer.frame_of(T_world_camera);
-    if (!frame) return result;
-    result.rays = ray_count;
-    if (is_in_occupied(*frame)) {
-      result.gain = result.exploration = result.refinement = result.posterior_entropy = 0;
-      result.status = ViewStatus::camera_in_occupied;
-      return result;
-    }
-    auto& [accumulator, bins] = lease.get();
-    accumulator.begin();
-    tracer.trace(*frame, bins,
-                 [&](std::size_t, const detail::RayTile& tile) { accumulator.add(tile); });
-    accumulator.finish(result);
-    result.status = ViewStatus::ok;
+ViewGain GainEvaluator::Impl::evaluate(const Pose& T_world_camera, Lease& lease) const {
+  ViewGain result;
+  const auto frame = tracer.frame_of(T_world_camera);
+  if (!frame) return result;
+  result.rays = ray_count;
+  if (is_in_occupied(*frame)) {
+    result.gain = result.exploration = result.refinement = result.posterior_entropy = 0;
+    result.status = ViewStatus::camera_in_occupied;
     return result;
   }
-};
+  auto& [accumulator, bins] = lease.get();
+  accumulator.begin();
+  tracer.trace(*frame, bins,
+               [&](std::size_t, const detail::RayTile& tile) { accumulator.add(tile); });
+  accumulator.finish(result);
+  result.status = ViewStatus::ok;
+  return result;
+}
 
 std::string_view view_status_name(ViewStatus status) {
   switch (status) {
