@@ -47,7 +47,7 @@ struct Options {
   std::optional<double> distance;
   std::string policy = "gain";
   std::string generator;
-  std::size_t sphere_poses = 500;
+  std::optional<std::size_t> sphere_poses;
   std::string criterion = "log_diagonal";
   std::size_t max_views = 20;
   std::optional<double> stop_gain;
@@ -66,8 +66,16 @@ struct Options {
   std::string out;
 };
 
+// A distance [m] from the centre at which nothing of an object of this size is.
+double outside(double size) { return 1.1 * 0.5 * std::sqrt(3.0) * size; }
+
 Pose given_start(const Options& options, const ReachRegion& reach) {
   const Pose pose = parse_pose("--start", options.start);
+  const std::optional<double>& plane = options.sensing.support_plane;
+  if (plane && pose.translation().z() <= *plane) {
+    throw Error(ErrorCode::invalid_argument,
+                "--start " + options.start + ": is not above the support plane");
+  }
   if (!reach.contains(pose)) {
     throw Error(
         ErrorCode::invalid_argument,
@@ -159,7 +167,7 @@ nlohmann::ordered_json settings_json(const Options& o, const Sensor& sensor, con
           {"distance", distance},
           {"policy", o.policy},
           {"generators", generators},
-          {"sphere_poses", o.sphere_poses},
+          {"sphere_poses", optional_json(o.sphere_poses)},
           {"criterion", o.criterion},
           {"max_views", o.max_views},
           {"stop_gain", planning.stop_gain},
@@ -262,9 +270,9 @@ void reconstruct(const Options& options) {
        options.sensing.support_plane},
       exec);
   const double distance = options.distance.value_or(filling_distance(sensor, 0.5 * options.size));
-  const Pose start = options.start.empty()
-                         ? default_start(stage, distance, options.sensing.seed, reach)
-                         : given_start(options, reach);
+  const Pose start = options.start.empty() ? default_start(stage, distance, options.sensing.seed,
+                                                           reach, options.sensing.support_plane)
+                                           : given_start(options, reach);
   const ModelConfig model_settings = model_config(options, sensor, stage);
   const GenerationConfig generation_settings =
       generation_config(options, sensor, stage, policy, distance, start, reach);
@@ -274,7 +282,8 @@ void reconstruct(const Options& options) {
   const Stopwatch truth_watch;
   const auto truth = std::make_shared<const Truth>(
       stage.scene, sensor,
-      VisibilityConfig{stage.center, sensor.working_distance, reach, options.sensing.support_plane},
+      VisibilityConfig{stage.center, std::max(sensor.working_distance, outside(options.size)),
+                       reach, options.sensing.support_plane},
       exec);
   seconds["quality"] = truth_watch.seconds();
   SimulatedAcquisition acquisition(
@@ -363,9 +372,8 @@ Command add_reconstruct(CLI::App& program) {
                   "where candidates come from: boundary, sphere, dome, rings, shell, sequence, or "
                   "several with commas; default: boundary (random: sphere, sequence: sequence)");
   app->add_option("--sphere-poses", o.sphere_poses,
-                  "poses of the sphere, dome or shell; rings: 48, "
-                  "80, 288 or 864")
-      ->capture_default_str();
+                  "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
+                  "(default 48)");
   app->add_option("--criterion", o.criterion, "log_diagonal, log_determinant [nat] or trace [m^2]")
       ->capture_default_str();
   app->add_option("--max-views", o.max_views, "view budget")->capture_default_str();
