@@ -161,9 +161,10 @@ Command add_candidates(CLI::App& program) {
       ->required();
   app->add_option("--sensor", o.sensor, kSensorHelp)->required();
   app->add_option(
-      "--count", o.count,
-      "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 (default "
-      "48)");
+         "--count", o.count,
+         "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 (default "
+         "48)")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
   app->add_option("--distance", o.distance,
                   "boundary: from the surface; else from the centre [m]; default: the sensor's "
                   "working distance; the workspace fills the view");
