@@ -73,6 +73,12 @@ HWY_INLINE VU mask_words(const TraceMask& mask, VU offset) {
   const VU word = hn::And(hn::ShiftRight<5>(offset), hn::Set(du, 15U));
 #if HWY_TARGET == HWY_AVX3
   return hn::TableLookupLanes(hn::Load(du, mask.words.data()), hn::IndicesFromVec(du, word));
+#elif HWY_TARGET == HWY_AVX2
+  // Two lookups in registers take less than a third of the time of a gather.
+  const auto in_half = hn::IndicesFromVec(du, hn::And(word, hn::Set(du, 7U)));
+  const VU low = hn::TableLookupLanes(hn::Load(du, mask.words.data()), in_half);
+  const VU high = hn::TableLookupLanes(hn::Load(du, mask.words.data() + 8), in_half);
+  return hn::IfThenElse(hn::TestBit(word, hn::Set(du, 8U)), high, low);
 #else
   return hn::GatherIndex(du, mask.words.data(), hn::BitCast(di, word));
 #endif
@@ -353,32 +359,55 @@ void trace(const VoxelScene::Data& scene, const TileTable& table, const PoseFram
   }
 }
 
-void trace_list(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
-                std::size_t tile, std::span<const std::uint32_t> primitives, RayTile& out) {
-  set_up(table, frame, tile, out);
-  for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
-    VF range = hn::Set(df, frame.max_range);
+float walk(const VoxelScene::Data& scene, const PoseFrame& frame, float cosine,
+           std::span<const TileBox> primitives, RayTile& out) {
+  constexpr int kParts = kTileRays / kWidth;
+  VF range[kParts];
+  MF active[kParts], hits[kParts];
+  for (int part = 0; part < kParts; ++part) {
+    const int lane0 = part * kWidth;
+    range[part] = hn::Load(df, out.range + lane0);
     const VU lane_bits = hn::Shl(hn::Set(du, 1U), hn::Iota(du, static_cast<std::uint32_t>(lane0)));
-    const MF active = hn::RebindMask(df, hn::TestBit(hn::Set(du, out.valid), lane_bits));
-    MF hits = hn::MaskFromVec(hn::Zero(df));
-    for (const std::uint32_t primitive : primitives) {
-      const MF more = primitive < scene.leaf_count
-                          ? walk_leaf(scene, frame, out, lane0, primitive, active, range)
-                          : enter_box(scene, frame, out, lane0, primitive, active, range);
-      hits = hn::Or(hits, more);
+    active[part] = hn::RebindMask(df, hn::TestBit(hn::Set(du, out.valid), lane_bits));
+    hits[part] = hn::MaskFromVec(hn::Zero(df));
+  }
+  // A ray of range t is at most t * cosine along the axis.
+  const auto depth = [&]() HWY_ATTR {
+    VF farthest = hn::IfThenElseZero(active[0], range[0]);
+    for (int part = 1; part < kParts; ++part) {
+      farthest = hn::Max(farthest, hn::IfThenElseZero(active[part], range[part]));
     }
-    hn::Store(range, df, out.range + lane0);
+    return cosine * hn::GetLane(hn::MaxOfLanes(df, farthest));
+  };
+  float of_interest = depth();
+  for (const TileBox& entry : primitives) {
+    if (entry.near > of_interest) break;
+    bool any = false;
+    for (int part = 0; part < kParts; ++part) {
+      const MF more =
+          entry.box < scene.leaf_count
+              ? walk_leaf(scene, frame, out, part * kWidth, entry.box, active[part], range[part])
+              : enter_box(scene, frame, out, part * kWidth, entry.box, active[part], range[part]);
+      hits[part] = hn::Or(hits[part], more);
+      any = any || !hn::AllFalse(df, more);
+    }
+    if (any) of_interest = depth();
+  }
+  for (int part = 0; part < kParts; ++part) {
+    const int lane0 = part * kWidth;
+    hn::Store(range[part], df, out.range + lane0);
     std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(df, hits, bits);
+    hn::StoreMaskBits(df, hits[part], bits);
     out.hit |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U)
                << lane0;
   }
+  return of_interest;
 }
 
 }  // namespace
 
 const TraceKernels& kernels(Isa isa) {
-  static const TraceKernels table{isa, kWidth, intersect_leaf, intersect_box, trace, trace_list};
+  static const TraceKernels table{isa, kWidth, intersect_leaf, intersect_box, trace, set_up, walk};
   return table;
 }
 
