@@ -282,7 +282,7 @@ void TileBinner::sort(Isa isa, const SceneBoxes& scene, const PoseFrame& frame,
 
   // Where each box lies in the image and how far off it is.
   bins.entries_.clear();
-  bins.starts_.assign(tile_count_ + 1, 0);
+  bins.starts_.resize(tile_count_ + 1);
   float nearest = std::numeric_limits<float>::max(), farthest = 0;
   for (std::size_t first = 0; first < scene.count; first += kBoxVector) {
     const ImageBounds bounds = kernels.bounds_of(scene.boxes, first, frame, image);
@@ -324,14 +324,30 @@ void TileBinner::sort(Isa isa, const SceneBoxes& scene, const PoseFrame& frame,
       }
     }
   };
-  std::uint32_t* const starts = bins.starts_.data();
+  // Counting by differences: a rectangle adds one where it begins and takes it back where it ends.
+  const std::size_t tile_rows = tile_count_ / tile_columns_, pitch = tile_columns_ + 1;
+  bins.differences_.assign((tile_rows + 1) * pitch, 0);
+  std::int32_t* const differences = bins.differences_.data();
   for (const TileBins::Entry& entry : bins.sorted_) {
-    for_each_tile(entry, [&](std::size_t tile) { ++starts[tile]; });
+    ++differences[entry.row0 * pitch + entry.column0];
+    --differences[entry.row0 * pitch + entry.column1 + 1U];
+    --differences[(entry.row1 + 1U) * pitch + entry.column0];
+    ++differences[(entry.row1 + 1U) * pitch + entry.column1 + 1U];
   }
+  std::uint32_t* const starts = bins.starts_.data();
   std::uint32_t total = 0;
-  for (std::size_t tile = 0; tile < tile_count_; ++tile) {
-    total += starts[tile];
-    starts[tile] = total;
+  for (std::size_t row = 0; row < tile_rows; ++row) {
+    std::int32_t* const here = differences + row * pitch;
+    std::int32_t along = 0;
+    for (std::size_t column = 0; column < tile_columns_; ++column) {
+      along += here[column];
+      const std::int32_t above =
+          row > 0 ? here[static_cast<std::ptrdiff_t>(column) - static_cast<std::ptrdiff_t>(pitch)]
+                  : 0;
+      here[column] = above + along;  // now the number of boxes over this tile
+      total += static_cast<std::uint32_t>(here[column]);
+      starts[row * tile_columns_ + column] = total;
+    }
   }
   starts[tile_count_] = total;
   bins.boxes_.resize(total);

@@ -76,6 +76,7 @@ class TileBins {
   };
   bool valid_ = false;
   std::vector<std::uint32_t> starts_;
+  std::vector<std::int32_t> differences_;
   std::vector<TileBox> boxes_;
   std::vector<Entry> entries_, sorted_;
   std::uint32_t generation_ = 0;
