@@ -386,8 +386,19 @@ float walk(const VoxelScene::Data& scene, const PoseFrame& frame, float cosine,
     return cosine * hn::GetLane(hn::MaxOfLanes(df, farthest));
   };
   float of_interest = depth();
-  for (const TileBox& entry : primitives) {
+  // In a large scene neither boxes nor masks are in the near caches: ask for them ahead.
+  constexpr std::size_t kAhead = 3;
+  const auto fetch = [&](std::size_t i) {
+    if (i >= primitives.size()) return;
+    const std::uint32_t primitive = primitives[i].box;
+    __builtin_prefetch(&scene.boxes[primitive]);
+    if (primitive < scene.leaf_count) __builtin_prefetch(&scene.masks[primitive]);
+  };
+  for (std::size_t i = 0; i < kAhead; ++i) fetch(i);
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    const TileBox entry = primitives[i];
     if (entry.near > of_interest) break;
+    fetch(i + kAhead);
     const Slabs slabs = slabs_of(scene.boxes[entry.box], frame);
     const bool is_leaf = entry.box < scene.leaf_count;
     bool any = false;
