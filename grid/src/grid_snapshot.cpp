@@ -137,9 +137,9 @@ GridSnapshot BeliefGrid::snapshot() const {
             s.lattice.key({std::max(origin.x, s.lattice.min.x), std::max(origin.y, s.lattice.min.y),
                            std::max(origin.z, s.lattice.min.z)});
         const auto beliefs = s.beliefs.find(key);
-        result.leaves.push_back(
-            {origin, non_free, intersection(non_free, code_mask(leaf.buffer().data(), is_occupied)),
-             beliefs != s.beliefs.end() ? beliefs->second : nullptr});
+        result.leaves.push_back({origin, non_free,
+                                 intersection(non_free, occupied_mask(leaf.buffer().data())),
+                                 beliefs != s.beliefs.end() ? beliefs->second : nullptr});
       },
       [&](Index3 origin, int size, std::uint8_t code) {
         if (code != kUnknownCode) return;
@@ -174,7 +174,7 @@ GridStatistics BeliefGrid::statistics(Criterion criterion) const {
         LeafMask inside;
         inside.fill(~std::uint64_t{0});
         if (!s.lattice.covers(origin, kBlockSize)) inside = s.lattice.clip(origin);
-        const LeafMask occupied = intersection(inside, code_mask(codes, is_occupied));
+        const LeafMask occupied = intersection(inside, occupied_mask(codes));
         const LeafMask non_free = intersection(inside, leaf_mask(leaf.getValueMask()));
         const std::uint64_t occupied_count = count_bits(occupied);
         result.occupied += occupied_count;

@@ -8,6 +8,7 @@
 #include <openvdb/tree/RootNode.h>
 #include <openvdb/tree/Tree.h>
 
+#include <bit>
 #include <cstring>
 #include <memory>
 #include <unordered_map>
@@ -120,6 +121,24 @@ struct IndexBox {
            std::max(origin.z, lattice.min.z)},
           {std::min(origin.x + size, lattice.max.x), std::min(origin.y + size, lattice.max.y),
            std::min(origin.z + size, lattice.max.z)}};
+}
+
+/// Bits of the occupied voxels, eight codes at a time.
+[[nodiscard]] inline LeafMask occupied_mask(const std::uint8_t* codes) {
+  static_assert(kMaxCode < 128 && std::endian::native == std::endian::little);
+  constexpr std::uint64_t kOnes = 0x0101010101010101ULL;
+  constexpr std::uint64_t kLift = kOnes * (127U - kZeroCode);  // an occupied code gets its top bit
+  constexpr std::uint64_t kGather = 0x0102040810204080ULL;     // byte i's lowest bit to bit 56 + i
+  LeafMask mask{};
+  for (std::size_t word = 0; word < 8; ++word) {
+    for (std::size_t byte = 0; byte < 8; ++byte) {
+      std::uint64_t eight;
+      std::memcpy(&eight, codes + word * 64 + byte * 8, 8);
+      const std::uint64_t top = ((eight + kLift) >> 7U) & kOnes;
+      mask[word] |= ((top * kGather) >> 56U) << (8 * byte);
+    }
+  }
+  return mask;
 }
 
 /// Bits of the voxels whose code satisfies the predicate.

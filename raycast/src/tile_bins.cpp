@@ -12,7 +12,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "scene_data.hpp"
 #include "tile_bins.hpp"
@@ -21,7 +20,6 @@
 #define VIEWGAIN_TILE_BINS_ONCE
 namespace viewgain::detail {
 
-constexpr std::size_t kBoxVector = 16;
 constexpr float kNowhere = -1e9F;  // the last column of a box behind the camera
 
 // Where sixteen boxes lie in the image, in rays; empty if max < min.
@@ -138,8 +136,6 @@ HWY_AFTER_NAMESPACE();
 namespace viewgain::detail {
 namespace {
 
-// Boxes count as larger by this much [voxels], against rounding.
-constexpr float kBoxMargin = 0.02F;
 // Below this a camera's plane is too near to divide by [voxels].
 constexpr float kLeastDepth = 1e-3F;
 
@@ -156,21 +152,6 @@ const TileBinKernels& kernels_of(Isa isa) {
     default:
       return HWY_STATIC_DISPATCH(tile_bin_kernels)();
   }
-}
-
-// Primitives by the cell, of this edge [voxels], that their centres lie in.
-using Cells = std::map<std::array<int, 3>, std::vector<std::uint32_t>>;
-Cells cells_of(const std::vector<PrimitiveBox>& primitives, float edge) {
-  Cells cells;
-  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
-    std::array<int, 3> cell{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      cell[k] =
-          static_cast<int>(std::floor((primitives[i].min[k] + primitives[i].max[k]) / (2 * edge)));
-    }
-    cells[cell].push_back(i);
-  }
-  return cells;
 }
 
 // Tiles of the rays whose numbers lie in [min, max]; false if there are none.
@@ -205,50 +186,6 @@ float safely_near(float near) { return near - 1e-5F * std::abs(near); }
 constexpr std::size_t kDistanceSteps = 256;
 
 }  // namespace
-
-void BoxArrays::append(const PrimitiveBox& box) {
-  const auto center = [&](std::size_t k) { return 0.5F * (box.min[k] + box.max[k]); };
-  const auto half = [&](std::size_t k) { return 0.5F * (box.max[k] - box.min[k]) + kBoxMargin; };
-  center_x.push_back(center(0)), center_y.push_back(center(1)), center_z.push_back(center(2));
-  half_x.push_back(half(0)), half_y.push_back(half(1)), half_z.push_back(half(2));
-}
-
-void BoxArrays::pad() {
-  const auto pad_one = [](std::vector<float>& v) {
-    while (v.size() % kBoxVector != 0) v.push_back(v.back());
-  };
-  for (auto* v : {&center_x, &center_y, &center_z, &half_x, &half_y, &half_z}) pad_one(*v);
-}
-
-SceneBoxes::SceneBoxes(const std::vector<PrimitiveBox>& all) {
-  if (all.size() <= kMaxBoxes) {
-    for (const PrimitiveBox& box : all) boxes.append(box);
-    count = all.size();
-    boxes.pad();
-    return;
-  }
-  float edge = 32.0F;
-  Cells cells = cells_of(all, edge);
-  while (cells.size() > kMaxBoxes) cells = cells_of(all, edge *= 2.0F);
-  count = cells.size();
-  for (const auto& [cell, inside] : cells) {
-    PrimitiveBox box = all[inside.front()];
-    first.push_back(static_cast<std::uint32_t>(members.size()));
-    for (const std::uint32_t i : inside) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        box.min[k] = std::min(box.min[k], all[i].min[k]);
-        box.max[k] = std::max(box.max[k], all[i].max[k]);
-      }
-      members.append(all[i]);
-      primitives.push_back(i);
-    }
-    boxes.append(box);
-    members.pad();
-    primitives.resize(members.size(), kNoPrimitive);
-  }
-  first.push_back(static_cast<std::uint32_t>(members.size()));
-  boxes.pad();
-}
 
 TileBinner::TileBinner(const PinholeCamera& camera, int pixel_stride, const TileTable& table)
     : usable_(!camera.has_distortion()),
