@@ -133,13 +133,14 @@ GridSnapshot BeliefGrid::snapshot() const {
           non_free = intersection(non_free, s.lattice.clip(origin));
           if (non_free == LeafMask{}) return;
         }
-        const std::uint64_t key =
-            s.lattice.key({std::max(origin.x, s.lattice.min.x), std::max(origin.y, s.lattice.min.y),
-                           std::max(origin.z, s.lattice.min.z)});
-        const auto beliefs = s.beliefs.find(key);
-        result.leaves.push_back({origin, non_free,
-                                 intersection(non_free, occupied_mask(leaf.buffer().data())),
-                                 beliefs != s.beliefs.end() ? beliefs->second : nullptr});
+        const LeafMask occupied = intersection(non_free, occupied_mask(leaf.buffer().data()));
+        std::shared_ptr<const BeliefBlock> beliefs;
+        if (occupied != LeafMask{}) {
+          const auto found =
+              s.beliefs.find(s.lattice.key(clipped(s.lattice, origin, kBlockSize).min));
+          if (found != s.beliefs.end()) beliefs = found->second;
+        }
+        result.leaves.push_back({origin, non_free, occupied, std::move(beliefs)});
       },
       [&](Index3 origin, int size, std::uint8_t code) {
         if (code != kUnknownCode) return;

@@ -346,7 +346,7 @@ void trace(const VoxelScene::Data& scene, const TileTable& table, const PoseFram
     hn::Store(hn::Zero(du), du, packet.ray.flags);
     hn::Store(none, du, packet.hit.geomID);
     hn::Store(none, du, packet.hit.instID[0]);
-    intersect_packet(valid, scene.scene.get(), &packet, &query);
+    intersect_packet(valid, scene.bvh(), &packet, &query);
 
     const VU geometry = hn::Load(du, packet.hit.geomID);
     const auto ended = hn::And(usable, hn::Ne(geometry, none));

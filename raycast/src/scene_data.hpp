@@ -4,14 +4,15 @@
 
 #include <array>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "device.hpp"
 #include "leaf_traversal.hpp"
 #include "tile_bins.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
+#include "voxel_bvh.hpp"
 
 namespace viewgain::detail {
 
@@ -64,11 +65,18 @@ struct VoxelScene::Data {
   bool has_obstacles = false;
   std::optional<detail::SceneBoxes> scene_boxes;  ///< for sorting into the tiles of a view
   const detail::TraceKernels* kernels = nullptr;
-  detail::DevicePtr device;
-  detail::ScenePtr scene;  ///< released before the device
+  int build_threads = 0;  ///< of the BVH
 
   /// Snapshot leaves by block, for looking up single voxels; sorted.
   std::vector<std::pair<std::uint64_t, std::uint32_t>> leaf_by_block;
+
+  /// Builds the BVH unless it is there; only some views are traced through it, see ViewTracer.
+  /// Thread safe. Throws Error(backend), Error(capacity).
+  void ensure_bvh() const {
+    std::call_once(bvh_once_, [this] { bvh_ = detail::build_bvh(*this); });
+  }
+  /// Null unless ensure_bvh() was called.
+  [[nodiscard]] RTCScene bvh() const { return bvh_.scene.get(); }
 
   /// Key of the voxel at (x, y, z), relative to the workspace's lowest voxel.
   [[nodiscard]] std::uint64_t voxel_key(std::int32_t x, std::int32_t y, std::int32_t z) const {
@@ -130,6 +138,10 @@ struct VoxelScene::Data {
     return voxel_key(voxel.x - snapshot.min_index.x, voxel.y - snapshot.min_index.y,
                      voxel.z - snapshot.min_index.z);
   }
+
+ private:
+  mutable std::once_flag bvh_once_;
+  mutable detail::VoxelBvh bvh_;
 };
 
 }  // namespace viewgain

@@ -19,7 +19,9 @@ ViewTracer::ViewTracer(const VoxelScene::Data& scene, const PinholeCamera& camer
       binner_(camera, pixel_stride, table_),
       T_grid_world_(scene.snapshot.T_world_grid.inverse()),
       min_range_(min_range),
-      max_range_(max_range) {}
+      max_range_(max_range) {
+  if (scene.has_obstacles || camera.has_distortion()) scene.ensure_bvh();
+}
 
 std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const {
   const double error = orthonormality_error(T_world_camera);

@@ -59,7 +59,7 @@ class ViewTracer {
     }
   }
 
-  /// The same through the BVH alone, every tile.
+  /// The same through the BVH alone, every tile; the scene must have it.
   template <typename Visit>
   void trace_bvh(const PoseFrame& frame, Visit&& visit) const {
     if (frame.sees_nothing) return;

@@ -10,6 +10,7 @@
 
 #include "scene_data.hpp"
 #include "viewgain/core/error.hpp"
+#include "voxel_bvh.hpp"
 
 namespace viewgain {
 namespace {
@@ -17,10 +18,6 @@ namespace {
 using detail::PrimitiveBox;
 
 constexpr std::size_t kMaxPrimitives = std::size_t{1} << 23U;
-
-// Embree's own arithmetic may put a ray on the wrong side of a box by a few ulps of the distance;
-// boxes that are larger by this much [voxels] are met all the same. The kernels decide exactly.
-constexpr float kBoundsMargin = 0.02F;
 
 void check(const Obstacles& obstacles) {
   for (const Box& box : obstacles.boxes) {
@@ -48,22 +45,6 @@ void check(const Obstacles& obstacles) {
         }
       }
     }
-  }
-}
-
-// A box's twelve triangles, added to a mesh.
-void append_box(const Box& box, TriangleMesh& mesh) {
-  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    mesh.vertices.push_back({(corner & 1U) != 0 ? box.max[0] : box.min[0],
-                             (corner & 2U) != 0 ? box.max[1] : box.min[1],
-                             (corner & 4U) != 0 ? box.max[2] : box.min[2]});
-  }
-  constexpr std::array<std::array<std::uint32_t, 4>, 6> kFaces{
-      {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}}};
-  for (const auto& f : kFaces) {
-    mesh.triangles.push_back({base + f[0], base + f[1], base + f[2]});
-    mesh.triangles.push_back({base + f[0], base + f[2], base + f[3]});
   }
 }
 
@@ -178,78 +159,6 @@ void gather(VoxelScene::Data& data) {
   }
 }
 
-void attach_boxes(const VoxelScene::Data& data, unsigned id, std::size_t first, std::size_t count,
-                  RTCIntersectFunctionN intersect) {
-  RTCGeometry geometry = rtcNewGeometry(data.device.get(), RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
-  rtcSetGeometryUserData(geometry, const_cast<PrimitiveBox*>(data.boxes.data() + first));
-  rtcSetGeometryBoundsFunction(
-      geometry,
-      [](const RTCBoundsFunctionArguments* args) {
-        const PrimitiveBox& box =
-            static_cast<const PrimitiveBox*>(args->geometryUserPtr)[args->primID];
-        RTCBounds& out = *args->bounds_o;
-        out.lower_x = box.min[0] - kBoundsMargin;
-        out.lower_y = box.min[1] - kBoundsMargin;
-        out.lower_z = box.min[2] - kBoundsMargin;
-        out.upper_x = box.max[0] + kBoundsMargin;
-        out.upper_y = box.max[1] + kBoundsMargin;
-        out.upper_z = box.max[2] + kBoundsMargin;
-      },
-      nullptr);
-  rtcSetGeometryIntersectFunction(geometry, intersect);
-  rtcSetGeometryMask(geometry, 0xFFFFFFFFU);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(data.scene.get(), geometry, id);
-  rtcReleaseGeometry(geometry);
-}
-
-// Obstacles in the scene's coordinates: voxels from the workspace's lowest corner.
-void attach_obstacles(const VoxelScene::Data& data, const Obstacles& obstacles) {
-  const Pose T_grid_world = data.snapshot.T_world_grid.inverse();
-  const Eigen::Vector3d base(data.snapshot.min_index.x, data.snapshot.min_index.y,
-                             data.snapshot.min_index.z);
-  TriangleMesh boxes;
-  for (const Box& box : obstacles.boxes) append_box(box, boxes);
-  std::vector<float> vertices;
-  std::vector<unsigned> indices;
-  const auto append = [&](const TriangleMesh& mesh) {
-    const auto first = static_cast<std::uint32_t>(vertices.size() / 3);
-    for (const auto& v : mesh.vertices) {
-      const Eigen::Vector3d p_world(v[0], v[1], v[2]);
-      const Eigen::Vector3d p = (T_grid_world * p_world) / data.snapshot.voxel_size - base;
-      for (const double c : p) vertices.push_back(static_cast<float>(c));
-    }
-    for (const auto& triangle : mesh.triangles) {
-      for (const std::uint32_t index : triangle) indices.push_back(first + index);
-    }
-  };
-  append(boxes);
-  for (const TriangleMesh& mesh : obstacles.meshes) append(mesh);
-  if (indices.empty()) return;
-  detail::attach_triangles(data.device.get(), data.scene.get(), detail::kObstacleGeometry,
-                           vertices.data(), vertices.size() / 3, indices.data(),
-                           indices.size() / 3);
-}
-
-// The best kernels for which Embree has packets of the same width.
-void choose_kernels(VoxelScene::Data& data, int num_threads) {
-  const Isa best = select_isa();
-  for (const Isa isa : supported_isas()) {
-    if (isa > best) continue;
-    data.device = detail::make_device(isa, num_threads);
-    const int width = detail::trace_kernels(isa).width;
-    const RTCDeviceProperty native = width == 16  ? RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED
-                                     : width == 8 ? RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED
-                                                  : RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED;
-    if (rtcGetDeviceProperty(data.device.get(), native) != 0) {
-      data.kernels = &detail::trace_kernels(isa);
-      return;
-    }
-  }
-  throw Error(ErrorCode::backend, "this build of Embree has no ray packets");
-}
-
 }  // namespace
 
 std::shared_ptr<const VoxelScene> VoxelScene::build(const BeliefGrid& grid,
@@ -266,20 +175,11 @@ std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
   data->snapshot = std::move(snapshot);
   gather(*data);
   data->scene_boxes.emplace(data->boxes);
-  choose_kernels(*data, exec.num_threads);
+  data->kernels = &detail::trace_kernels(detail::packet_isa());
   data->obstacles = obstacles;
   data->has_obstacles = !obstacles.boxes.empty() || !obstacles.meshes.empty();
-
-  data->scene.reset(rtcNewScene(data->device.get()));
-  rtcSetSceneBuildQuality(data->scene.get(), RTC_BUILD_QUALITY_HIGH);
-  // Without it a ray may slip between two triangles that share an edge. Voxels do not need it.
-  if (data->has_obstacles) rtcSetSceneFlags(data->scene.get(), RTC_SCENE_FLAG_ROBUST);
-  attach_boxes(*data, detail::kLeafGeometry, 0, data->leaf_count, data->kernels->intersect_leaf);
-  attach_boxes(*data, detail::kBoxGeometry, data->leaf_count, data->boxes.size() - data->leaf_count,
-               data->kernels->intersect_box);
-  attach_obstacles(*data, obstacles);
-  rtcCommitScene(data->scene.get());
-  detail::check_device(data->device.get(), "building the voxel scene");
+  data->build_threads = exec.num_threads;
+  if (data->has_obstacles) data->ensure_bvh();
   return std::shared_ptr<const VoxelScene>(new VoxelScene(std::move(data)));
 }
 

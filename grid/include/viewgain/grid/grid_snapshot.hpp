@@ -71,7 +71,8 @@ struct SnapshotLeaf {
   Index3 origin;        ///< lowest voxel, a multiple of 8
   LeafMask non_free{};  ///< unknown or occupied
   LeafMask occupied{};
-  std::shared_ptr<const BeliefBlock> beliefs;  ///< may be null; may hold free voxels' beliefs too
+  std::shared_ptr<const BeliefBlock> beliefs;  ///< null without occupied voxels; else may be null,
+                                               ///< may hold free voxels' beliefs too
 };
 
 /// A box of voxels, all unknown, clipped to the workspace: [min, max).
