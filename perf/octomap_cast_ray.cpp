@@ -30,7 +30,7 @@ class OctomapCastRay final : public TraceMethod {
       const auto segment = clip_to_workspace(map_, eye, eye + max_range_ * d);
       if (!segment) continue;
       octomap::point3d end;
-      tree_->castRay(point(segment->begin), point(d), end, false);
+      tree_->castRay(octomap_point(segment->begin), octomap_point(d), end, false);
       octomap::OcTreeKey key;
       if (!tree_->coordToKeyChecked(end, key)) continue;
       const Index3 voxel = voxel_of(key);
@@ -40,10 +40,6 @@ class OctomapCastRay final : public TraceMethod {
   }
 
  private:
-  static octomap::point3d point(const Eigen::Vector3d& p) {
-    return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
-  }
-
   const oracle::DenseMap& map_;
   double max_range_;  ///< [m]
   std::unique_ptr<octomap::OcTree> tree_;
