@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "model_scene.hpp"
+#include "support/camel_scene.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
@@ -54,7 +55,7 @@ bool visit_model(const ModelMapPlan& plan, const std::filesystem::path& mesh, st
 
 std::vector<std::filesystem::path> object_meshes() {
   const std::filesystem::path folder = VIEWGAIN_MESH_FOLDER;
-  return {folder / "camel.off", folder / "lion-head.off", folder / "mannequin-devil.off",
+  return {test::camel_mesh_path(), folder / "lion-head.off", folder / "mannequin-devil.off",
           folder / "armadillo.off", folder / "bunny00.off"};
 }
 

@@ -14,7 +14,8 @@
 namespace viewgain::bench {
 namespace {
 
-constexpr std::size_t kCheckedPoses = 4;
+/// Enough that a tie or two do not look like disagreement.
+constexpr int kCheckedRays = 4 * kFullRays;
 
 /// A case while it runs.
 struct Runner {
@@ -42,8 +43,9 @@ void add_cases(const ScalingPlan& plan, int voxels, std::vector<Runner>& runners
         static_cast<std::size_t>(static_cast<std::int64_t>(plan.poses) * kFullRays / rays);
     const std::vector<Pose> poses = sphere_poses(count, 0.6);
     std::vector<Pose> checked;
-    for (std::size_t i = 0; i < kCheckedPoses; ++i) {
-      checked.push_back(poses[i * (count - 1) / kCheckedPoses]);
+    const auto wanted = static_cast<std::size_t>(kCheckedRays / rays);
+    for (std::size_t i = 0; i < std::min(wanted, count); ++i) {
+      checked.push_back(poses[i * count / std::min(wanted, count)]);
     }
     Agreement agreement;
     for (const int threads : plan.threads) {
