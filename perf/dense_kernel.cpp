@@ -122,16 +122,17 @@ HWY_INLINE void trace_lanes(const DenseGrid& grid, const detail::PoseFrame& fram
       const VF tx = reach(x, bx), ty = reach(y, by), tz = reach(z, bz);
       const VF next = hn::Min(tx, hn::Min(ty, tz));
 
-      const VI offset = hn::Or(hn::Or(hn::ShiftLeft<6>(hn::And(real_x, seven)),
-                                      hn::ShiftLeft<3>(hn::And(real_y, seven))),
-                               hn::And(real_z, seven));
-      // Mask 0 is all free: lanes in free bricks read there.
-      const VI word = hn::Add(hn::ShiftLeft<4>(hn::ShiftRight<8>(code)), hn::ShiftRight<5>(offset));
-      const VI mask = hn::BitCast(di, hn::GatherIndex(du, grid.masks.data(), word));
-      const auto solid = hn::TestBit(mask, hn::Shl(one, hn::And(offset, hn::Set(di, 31))));
-      // A visit of no length does not count.
-      const MF found = hn::And(hn::And(active, hn::RebindMask(df, solid)), hn::Lt(t, next));
-      if (!hn::AllFalse(df, found)) {
+      if (!hn::AllTrue(df, hn::Or(hn::Not(active), hn::RebindMask(df, is_free)))) {
+        const VI offset = hn::Or(hn::Or(hn::ShiftLeft<6>(hn::And(real_x, seven)),
+                                        hn::ShiftLeft<3>(hn::And(real_y, seven))),
+                                 hn::And(real_z, seven));
+        // Mask 0 is all free: lanes in free bricks read there.
+        const VI word =
+            hn::Add(hn::ShiftLeft<4>(hn::ShiftRight<8>(code)), hn::ShiftRight<5>(offset));
+        const VI mask = hn::BitCast(di, hn::GatherIndex(du, grid.masks.data(), word));
+        const auto solid = hn::TestBit(mask, hn::Shl(one, hn::And(offset, hn::Set(di, 31))));
+        // A visit of no length does not count.
+        const MF found = hn::And(hn::And(active, hn::RebindMask(df, solid)), hn::Lt(t, next));
         const VI position =
             hn::Add(hn::Add(hn::Mul(real_x, stride_x), hn::Mul(real_y, stride_y)), real_z);
         ending = hn::IfThenElse(hn::RebindMask(di, found), position, ending);

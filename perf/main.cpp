@@ -54,6 +54,10 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
 
+  trace_app->add_option("--without", trace.without, "not compared with: dense, openvdb, octomap")
+      ->check(CLI::IsMember({"dense", "openvdb", "octomap"}))
+      ->delimiter(',');
+
   viewgain::bench::IntegrateOptions integrate;
   integrate.mesh = viewgain::test::camel_mesh_path();
   CLI::App* integrate_app = app.add_subcommand("integrate", "one depth frame into the camel's map");

@@ -5,20 +5,19 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 #include <vector>
-
-#include "octomap_tree.hpp"
 
 namespace viewgain::bench {
 namespace {
 
 class OctomapGain final : public TraceMethod {
  public:
-  explicit OctomapGain(const TraceTask& task)
+  OctomapGain(const TraceTask& task, std::shared_ptr<const octomap::OcTree> tree)
       : TraceMethod("octomap_gain", task.sensor.camera.ray_table().size()),
         map_(task.map),
         max_range_(task.sensor.max_range),
-        tree_(octree_of(task.map)) {
+        tree_(std::move(tree)) {
     for (const Eigen::Vector3d& d : task.sensor.camera.ray_table()) {
       directions_.push_back(d.normalized());
     }
@@ -68,14 +67,15 @@ class OctomapGain final : public TraceMethod {
 
   const oracle::DenseMap& map_;
   double max_range_;  ///< [m]
-  std::unique_ptr<octomap::OcTree> tree_;
+  std::shared_ptr<const octomap::OcTree> tree_;
   std::vector<Eigen::Vector3d> directions_;
 };
 
 }  // namespace
 
-std::unique_ptr<TraceMethod> make_octomap_gain(const TraceTask& task) {
-  return std::make_unique<OctomapGain>(task);
+std::unique_ptr<TraceMethod> make_octomap_gain(const TraceTask& task,
+                                               std::shared_ptr<const octomap::OcTree> tree) {
+  return std::make_unique<OctomapGain>(task, std::move(tree));
 }
 
 }  // namespace viewgain::bench

@@ -25,7 +25,11 @@ std::vector<Pose> thinned(std::span<const Pose> poses, std::size_t k, std::size_
   return some;
 }
 
-std::vector<TraceEntry> make_entries(const TraceTask& task, const ScenePointer& scene) {
+std::vector<TraceEntry> make_entries(const TraceTask& task, const ScenePointer& scene,
+                                     const std::vector<std::string>& without) {
+  const auto wants = [&](const char* name) {
+    return std::find(without.begin(), without.end(), name) == without.end();
+  };
   const std::vector<Pose> all(task.poses.begin(), task.poses.end());
   const auto least = static_cast<std::size_t>(4 * task.num_threads);
   std::vector<TraceEntry> entries;
@@ -34,10 +38,16 @@ std::vector<TraceEntry> make_entries(const TraceTask& task, const ScenePointer& 
   entries.emplace_back(make_viewgain_trace_bvh(task, scene), all);
   entries.emplace_back(make_viewgain_floor(task, scene), all);
   for (auto& method : make_embree_quads(task)) entries.emplace_back(std::move(method), all);
-  entries.emplace_back(make_dense_dda(task), all);
-  entries.emplace_back(make_openvdb_dda(task), thinned(task.poses, 8, least));
-  entries.emplace_back(make_octomap_cast_ray(task), thinned(task.poses, 25, least));
-  entries.emplace_back(make_octomap_gain(task), thinned(task.poses, 25, least));
+  if (wants("dense")) entries.emplace_back(make_dense_dda(task), all);
+  if (wants("openvdb")) {
+    entries.emplace_back(make_openvdb_dda(task), thinned(task.poses, 8, least));
+  }
+  if (wants("octomap")) {
+    const std::shared_ptr<const octomap::OcTree> tree = octree_of(task.map);
+    const std::vector<Pose> some = thinned(task.poses, 25, least);
+    entries.emplace_back(make_octomap_cast_ray(task, tree), some);
+    entries.emplace_back(make_octomap_gain(task, tree), some);
+  }
   return entries;
 }
 
@@ -111,7 +121,7 @@ TraceRun run_trace_methods(const TraceOptions& options) {
   run.rays_per_pose = sensor.camera.ray_table().size();
   run.isa = scene->isa();
   run.scene_primitives = scene->primitive_count();
-  run.entries = make_entries(task, scene);
+  run.entries = make_entries(task, scene, options.without);
   const OracleEndings expected(task, pool);
   for (TraceEntry& entry : run.entries) {
     entry.agreement = expected.compare(*entry.method, entry.poses, pool);
