@@ -15,9 +15,9 @@
 namespace viewgain::bench {
 
 /// A workspace as dense arrays for a hierarchical DDA, no tree: a code for each brick of 8³ voxels
-/// and each of the eight octants that a ray may go into, and a 512-bit mask for each brick that is
-/// not all free. The bricks form a cube whose edge is a power of two; what is added is free.
-/// Coordinates are in voxels from the workspace's lowest corner.
+/// and each of the eight octants that a ray may go into, and a bit for each voxel. The bricks form
+/// a cube whose edge is a power of two; what is added is free. Coordinates are in voxels from the
+/// workspace's lowest corner.
 struct DenseGrid {
   explicit DenseGrid(const oracle::DenseMap& map);
 
@@ -27,10 +27,11 @@ struct DenseGrid {
   std::array<std::int32_t, 3> dims;  ///< of the map [voxel]
 
   /// [octant][x][y][z] of the brick; octant bit 2, 1, 0: the ray goes down in x, y, z. Of a free
-  /// brick the edge [brick] of the largest free cube that begins there and reaches into the octant,
-  /// else 256 times the number of its mask.
-  std::vector<std::uint32_t> codes;
-  /// 16 words a mask; bit of voxel (x,y,z) of the brick: x << 6 | y << 3 | z. Mask 1: all set.
+  /// brick the edge [brick] of the largest free cube that begins there and reaches into the octant;
+  /// of another 256 times a byte that says which of its 4³ cubes are not free, bit x << 2 | y << 1
+  /// | z. One more at the end, so that pairs can be read.
+  std::vector<std::uint16_t> codes;
+  /// 16 words a brick [x][y][z]: the voxels that are not free, bit x << 6 | y << 3 | z.
   std::vector<std::uint32_t> masks;
 };
 

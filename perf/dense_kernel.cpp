@@ -3,8 +3,8 @@
 
 // A ray a lane through a DenseGrid, compiled once for each instruction set. Every lane is mirrored
 // so that its ray goes up along all three axes: then only one plane an axis can be the next. A step
-// leaves a free cube of bricks, or one voxel of a brick that is not free; lanes need not be in step
-// with one another.
+// leaves a free cube of bricks, a free cube of 4³ voxels in another brick, or one voxel; lanes need
+// not be in step with one another.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "dense_kernel.cpp"
@@ -94,7 +94,8 @@ HWY_INLINE void trace_lanes(const DenseGrid& grid, const detail::PoseFrame& fram
     y.voxel = voxel_at(y, t, y.last);
     z.voxel = voxel_at(z, t, z.last);
     const int bits = grid.brick_bits;
-    const VI one = hn::Set(di, 1), seven = hn::Set(di, 7);
+    const VI zero = hn::Zero(di), one = hn::Set(di, 1), two = hn::Set(di, 2), four = hn::Set(di, 4),
+             seven = hn::Set(di, 7);
     const VI octant =
         hn::ShiftLeftSame(hn::Or(hn::And(x.flip, hn::Set(di, 4)),
                                  hn::Or(hn::And(y.flip, hn::Set(di, 2)), hn::And(z.flip, one))),
@@ -106,14 +107,23 @@ HWY_INLINE void trace_lanes(const DenseGrid& grid, const detail::PoseFrame& fram
                real_z = hn::Xor(z.voxel, z.flip);
       const VI brick = brick_index(hn::ShiftRight<3>(real_x), hn::ShiftRight<3>(real_y),
                                    hn::ShiftRight<3>(real_z), bits);
-      const VI code =
-          hn::BitCast(di, hn::GatherIndex(du, grid.codes.data(), hn::Or(octant, brick)));
+      // Two bytes of the four that are read.
+      const VI at_code = hn::ShiftLeft<1>(hn::Or(octant, brick));
+      const VI code = hn::BitCast(
+          di,
+          hn::GatherOffset(du, reinterpret_cast<const std::uint32_t*>(grid.codes.data()), at_code));
       const VI skip = hn::And(code, hn::Set(di, 255));
-      const auto is_free = hn::Gt(skip, hn::Zero(di));
+      const auto is_free = hn::Gt(skip, zero);
+      // The 4³ cube of the brick, which may be free even if the brick is not.
+      const VI cube = hn::Or(hn::Or(hn::And(real_x, four), hn::And(hn::ShiftRight<1>(real_y), two)),
+                             hn::And(hn::ShiftRight<2>(real_z), one));
+      const auto is_solid = hn::TestBit(code, hn::Shl(hn::Set(di, 256), cube));
       // The first voxels beyond what is left next.
       const auto beyond = [&](const Axis& axis) HWY_ATTR {
-        const VI cube = hn::ShiftLeft<3>(hn::Add(hn::ShiftRight<3>(axis.voxel), skip));
-        return hn::IfThenElse(is_free, cube, hn::Add(axis.voxel, one));
+        const VI of_bricks = hn::ShiftLeft<3>(hn::Add(hn::ShiftRight<3>(axis.voxel), skip));
+        const VI of_cube = hn::AndNot(hn::Set(di, 3), hn::Add(axis.voxel, four));
+        return hn::IfThenElse(is_free, of_bricks,
+                              hn::IfThenElse(is_solid, hn::Add(axis.voxel, one), of_cube));
       };
       const VI bx = beyond(x), by = beyond(y), bz = beyond(z);
       const auto reach = [&](const Axis& axis, VI plane) HWY_ATTR {
@@ -122,17 +132,16 @@ HWY_INLINE void trace_lanes(const DenseGrid& grid, const detail::PoseFrame& fram
       const VF tx = reach(x, bx), ty = reach(y, by), tz = reach(z, bz);
       const VF next = hn::Min(tx, hn::Min(ty, tz));
 
-      if (!hn::AllTrue(df, hn::Or(hn::Not(active), hn::RebindMask(df, is_free)))) {
+      const MF looks = hn::And(active, hn::RebindMask(df, is_solid));
+      if (!hn::AllFalse(df, looks)) {
         const VI offset = hn::Or(hn::Or(hn::ShiftLeft<6>(hn::And(real_x, seven)),
                                         hn::ShiftLeft<3>(hn::And(real_y, seven))),
                                  hn::And(real_z, seven));
-        // Mask 0 is all free: lanes in free bricks read there.
-        const VI word =
-            hn::Add(hn::ShiftLeft<4>(hn::ShiftRight<8>(code)), hn::ShiftRight<5>(offset));
+        const VI word = hn::Add(hn::ShiftLeft<4>(brick), hn::ShiftRight<5>(offset));
         const VI mask = hn::BitCast(di, hn::GatherIndex(du, grid.masks.data(), word));
         const auto solid = hn::TestBit(mask, hn::Shl(one, hn::And(offset, hn::Set(di, 31))));
         // A visit of no length does not count.
-        const MF found = hn::And(hn::And(active, hn::RebindMask(df, solid)), hn::Lt(t, next));
+        const MF found = hn::And(hn::And(looks, hn::RebindMask(df, solid)), hn::Lt(t, next));
         const VI position =
             hn::Add(hn::Add(hn::Mul(real_x, stride_x), hn::Mul(real_y, stride_y)), real_z);
         ending = hn::IfThenElse(hn::RebindMask(di, found), position, ending);
