@@ -8,7 +8,7 @@ Markdown, how many views each needs to 90 % of the visible surface and what it h
 that never gets there counts as budget + 1 views, and the table says how many did not.
 
     perf/compare_policies.py [--viewgain build/release/bin/viewgain] [--meshes build/meshes]
-                             [--out build/policies] [--jobs 2] [--seeds 5] [--views 20]
+                             [--out build/policies] [--jobs 2] [--seeds 5] [--views 12]
 """
 
 import argparse
@@ -62,7 +62,7 @@ def run(arguments, mesh, policy, seed):
 
 def views_to_goal(result, budget):
     for view in result["per_view"]:
-        if view["coverage_visible"] >= GOAL:
+        if (view["coverage_visible"] or 0) >= GOAL:
             return view["index"] + 1
     return budget + 1
 

@@ -132,8 +132,9 @@ class ViewgainFloor final : public ViewgainTrace {
     for (std::size_t tile = 0; tile < tiles; ++tile) {
       const std::size_t i = static_cast<std::size_t>(pose) * tiles + tile;
       if (begins_[i] == begins_[i + 1]) continue;  // known to miss everything
-      const std::span<const std::uint32_t> way(&ways_[begins_[i]], begins_[i + 1] - begins_[i]);
-      data_.kernels->trace_list(data_, tracer_.table(), frame, tile, way, out);
+      const std::span<const detail::TileBox> way(&ways_[begins_[i]], begins_[i + 1] - begins_[i]);
+      data_.kernels->begin(tracer_.table(), frame, tile, out);
+      data_.kernels->walk(data_, frame, 1.0F, way, out);
       visit(tile, out);
     }
   }
@@ -144,14 +145,15 @@ class ViewgainFloor final : public ViewgainTrace {
     const auto begin = static_cast<std::ptrdiff_t>(ways_.size());
     for (std::size_t lane = 0; lane < detail::kTileRays; ++lane) {
       if ((tile.hit >> lane & 1U) == 0) continue;
-      if (std::find(ways_.begin() + begin, ways_.end(), tile.primitive[lane]) == ways_.end()) {
-        ways_.push_back(tile.primitive[lane]);
+      const auto is_same = [&](const detail::TileBox& b) { return b.box == tile.primitive[lane]; };
+      if (std::none_of(ways_.begin() + begin, ways_.end(), is_same)) {
+        ways_.push_back({tile.primitive[lane], 0.0F});
       }
     }
   }
 
   std::span<const Pose> poses_;
-  std::vector<std::uint32_t> ways_;
+  std::vector<detail::TileBox> ways_;
   std::vector<std::size_t> begins_;
 };
 

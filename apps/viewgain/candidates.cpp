@@ -27,7 +27,7 @@ struct Options {
   std::string map;
   std::string generator;
   std::string sensor;
-  std::size_t count = 500;
+  std::optional<std::size_t> count;
   std::optional<double> distance;
   std::string center;
   std::string reach;
@@ -160,9 +160,11 @@ Command add_candidates(CLI::App& program) {
       ->check(CLI::IsMember(generator_names()))
       ->required();
   app->add_option("--sensor", o.sensor, kSensorHelp)->required();
-  app->add_option("--count", o.count,
-                  "poses of the sphere, dome or shell; rings: 48, 80, 288 or 864")
-      ->capture_default_str();
+  app->add_option(
+         "--count", o.count,
+         "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 (default "
+         "48)")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
   app->add_option("--distance", o.distance,
                   "boundary: from the surface; else from the centre [m]; default: the sensor's "
                   "working distance; the workspace fills the view");

@@ -67,7 +67,11 @@ void info(const Options& options) {
   const Criterion criterion = parse_criterion(options.criterion);
   const BeliefGrid grid = load_vdb(options.map);
   if (options.hash) {
-    std::printf("%s\n", grid.content_hash().c_str());
+    if (options.common.json) {
+      print_json({{"hash", grid.content_hash()}});
+    } else {
+      std::printf("%s\n", grid.content_hash().c_str());
+    }
     return;
   }
   const std::optional<Region> region = region_of(options, grid, criterion);

@@ -69,8 +69,11 @@ void add_lattice_cube(PaintedMesh& scene, const Pose& T_world_grid, const Vector
 std::array<Vector3d, 4> image_corners(const Sensor& sensor, const Pose& T_world_camera,
                                       double depth) {
   const double u = sensor.camera.width - 0.5, v = sensor.camera.height - 0.5;
-  std::array<Vector3d, 4> corners{sensor.camera.ray(-0.5, -0.5), sensor.camera.ray(u, -0.5),
-                                  sensor.camera.ray(u, v), sensor.camera.ray(-0.5, v)};
+  // As drawn, without distortion, which may fold beyond the last pixel's centre.
+  PinholeCamera camera = sensor.camera;
+  camera.distortion = {};
+  std::array<Vector3d, 4> corners{camera.ray(-0.5, -0.5), camera.ray(u, -0.5), camera.ray(u, v),
+                                  camera.ray(-0.5, v)};
   for (Vector3d& p : corners) p = T_world_camera * Vector3d(depth * p);
   return corners;
 }

@@ -45,15 +45,16 @@ const std::vector<std::string>& generator_names() {
 
 PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request) {
   PoseSet set{std::string(generator), {}};
+  const std::size_t count = request.count.value_or(generator == "rings" ? 48 : 500);
   if (generator == "sphere") {
-    set.poses = sphere_poses(request.count, request.distance, request.center);
+    set.poses = sphere_poses(count, request.distance, request.center);
   } else if (generator == "dome") {
-    set.poses = dome_poses(request.count, request.distance, request.center);
+    set.poses = dome_poses(count, request.distance, request.center);
   } else if (generator == "rings") {
-    set.poses = literature_ring_poses(request.count, request.distance, request.center);
+    set.poses = literature_ring_poses(count, request.distance, request.center);
   } else if (generator == "shell") {
-    set.poses = shell_poses(request.count, 0.8 * request.distance, 1.25 * request.distance,
-                            request.seed, request.center);
+    set.poses = shell_poses(count, 0.8 * request.distance, 1.25 * request.distance, request.seed,
+                            request.center);
   } else if (generator == "sequence") {
     set.poses = sequence_poses(request);
   } else {

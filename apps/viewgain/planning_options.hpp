@@ -22,9 +22,9 @@ namespace viewgain::app {
 struct PoseSetRequest {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< what they look at [m]
   double distance = 0;                               ///< from it [m]
-  std::size_t count = 500;      ///< sphere, dome, shell; rings: 48, 80, 288, 864
-  std::uint64_t seed = 1;       ///< shell
-  std::optional<Pose> start{};  ///< sequence: first view of the turntable
+  std::optional<std::size_t> count{};  ///< 500 unless given; rings: 48, 80, 288 or 864, 48
+  std::uint64_t seed = 1;              ///< shell
+  std::optional<Pose> start{};         ///< sequence: first view of the turntable
 };
 
 /// The set of a generator other than boundary. Shell: between 0.8 and 1.25 times the distance.

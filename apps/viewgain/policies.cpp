@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <tuple>
 
 #include "terminal.hpp"
@@ -116,11 +117,12 @@ std::size_t PolicyDecision::choose_by_boundary(std::span<const Candidate> candid
     const BoundaryRun& run = estimated.runs[estimated.run_of_patch[patch]];
     return std::tuple(run.boundary_class, -run.length, candidate.source);
   };
-  std::size_t first = 0;
-  for (std::size_t i = 1; i < candidates.size(); ++i) {
-    if (order(candidates[i]) < order(candidates[first])) first = i;
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (candidates[i].boundary_class.empty()) continue;  // a pose of the reachable list
+    if (!first || order(candidates[i]) < order(candidates[*first])) first = i;
   }
-  return first;
+  return first.value_or(0);
 }
 
 }  // namespace viewgain::app

@@ -15,10 +15,10 @@
 #include "planning_options.hpp"
 #include "policies.hpp"
 #include "reach_toml.hpp"
+#include "reconstruct_options.hpp"
 #include "run_folder.hpp"
 #include "run_report.hpp"
 #include "sensing.hpp"
-#include "sensing_flags.hpp"
 #include "sensor_toml.hpp"
 #include "simulated_acquisition.hpp"
 #include "stage.hpp"
@@ -36,38 +36,16 @@
 namespace viewgain::app {
 namespace {
 
-struct Options {
-  CommonOptions common;
-  std::string mesh;
-  std::string sensor;
-  double voxel = 0;
-  double size = 0.35;
-  std::string workspace;
-  std::string start;
-  std::optional<double> distance;
-  std::string policy = "gain";
-  std::string generator;
-  std::size_t sphere_poses = 500;
-  std::string criterion = "log_diagonal";
-  std::size_t max_views = 20;
-  std::optional<double> stop_gain;
-  std::size_t stop_idle = 3;
-  std::optional<double> stop_coverage;
-  double travel_cost = 0;
-  std::optional<double> travel_speed;
-  std::string reach;
-  std::string up = "z";
-  SensingOptions sensing;
-  std::size_t frames_per_view = 1;
-  std::string jump_edge_filter = "5";
-  bool no_refine = false;
-  bool save_maps = false;
-  bool no_pictures = false;
-  std::string out;
-};
+// A distance [m] from the centre at which nothing of an object of this size is.
+double outside(double size) { return 1.1 * 0.5 * std::sqrt(3.0) * size; }
 
-Pose given_start(const Options& options, const ReachRegion& reach) {
+Pose given_start(const ReconstructOptions& options, const ReachRegion& reach) {
   const Pose pose = parse_pose("--start", options.start);
+  const std::optional<double>& plane = options.sensing.support_plane;
+  if (plane && pose.translation().z() <= *plane) {
+    throw Error(ErrorCode::invalid_argument,
+                "--start " + options.start + ": is not above the support plane");
+  }
   if (!reach.contains(pose)) {
     throw Error(
         ErrorCode::invalid_argument,
@@ -76,7 +54,8 @@ Pose given_start(const Options& options, const ReachRegion& reach) {
   return pose;
 }
 
-ModelConfig model_config(const Options& options, const Sensor& sensor, const Stage& stage) {
+ModelConfig model_config(const ReconstructOptions& options, const Sensor& sensor,
+                         const Stage& stage) {
   ModelConfig config;
   config.grid.voxel_size = options.voxel;
   config.grid.workspace = stage.workspace;
@@ -88,7 +67,7 @@ ModelConfig model_config(const Options& options, const Sensor& sensor, const Sta
   return config;
 }
 
-std::vector<std::string> generators(const Options& options, Policy policy) {
+std::vector<std::string> generators(const ReconstructOptions& options, Policy policy) {
   if (!options.generator.empty()) {
     const auto names = parse_names("--generator", options.generator, generator_names());
     if (policy == Policy::kriegel && names != std::vector<std::string>{"boundary"}) {
@@ -102,9 +81,9 @@ std::vector<std::string> generators(const Options& options, Policy policy) {
   return {"boundary"};
 }
 
-GenerationConfig generation_config(const Options& options, const Sensor& sensor, const Stage& stage,
-                                   Policy policy, double distance, const Pose& start,
-                                   const ReachRegion& reach) {
+GenerationConfig generation_config(const ReconstructOptions& options, const Sensor& sensor,
+                                   const Stage& stage, Policy policy, double distance,
+                                   const Pose& start, const ReachRegion& reach) {
   GenerationConfig config;
   config.boundary = false;
   config.estimator = default_estimator(options.voxel);
@@ -126,7 +105,7 @@ GenerationConfig generation_config(const Options& options, const Sensor& sensor,
   return config;
 }
 
-PlanningConfig planning_config(const Options& options) {
+PlanningConfig planning_config(const ReconstructOptions& options) {
   PlanningConfig config;
   config.max_views = options.max_views;
   config.idle_views = options.stop_idle;
@@ -141,8 +120,9 @@ nlohmann::ordered_json optional_json(const auto& value) {
 }
 
 // What can change the answer; not threads, not where it goes.
-nlohmann::ordered_json settings_json(const Options& o, const Sensor& sensor, const Stage& stage,
-                                     const ModelConfig& model, const PlanningConfig& planning,
+nlohmann::ordered_json settings_json(const ReconstructOptions& o, const Sensor& sensor,
+                                     const Stage& stage, const ModelConfig& model,
+                                     const PlanningConfig& planning,
                                      const GenerationConfig& generation, double distance,
                                      const Pose& start) {
   nlohmann::ordered_json generators = nlohmann::ordered_json::array();
@@ -159,7 +139,7 @@ nlohmann::ordered_json settings_json(const Options& o, const Sensor& sensor, con
           {"distance", distance},
           {"policy", o.policy},
           {"generators", generators},
-          {"sphere_poses", o.sphere_poses},
+          {"sphere_poses", optional_json(o.sphere_poses)},
           {"criterion", o.criterion},
           {"max_views", o.max_views},
           {"stop_gain", planning.stop_gain},
@@ -223,31 +203,9 @@ void draw(const RunFolder& folder, const ViewRecord& record, const DepthFrame& f
   }
 }
 
-void reconstruct(const Options& options) {
+void reconstruct(const ReconstructOptions& options) {
   const ExecConfig exec{options.common.threads};
-  if (!(options.voxel > 0) || !std::isfinite(options.voxel)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--voxel " + short_text(options.voxel) + " must be positive and finite");
-  }
-  const double travel[] = {options.travel_cost, options.travel_speed.value_or(1.0)};
-  if (!(travel[0] >= 0 && std::isfinite(travel[0]) && travel[1] > 0 && std::isfinite(travel[1]))) {
-    throw Error(ErrorCode::invalid_argument,
-                "--travel-cost must be at least 0 and --travel-speed positive, both finite");
-  }
-  if (options.distance && !(*options.distance > 0 && std::isfinite(*options.distance))) {
-    throw Error(ErrorCode::invalid_argument,
-                "--distance " + short_text(*options.distance) + " must be positive and finite");
-  }
-  if (options.sensing.support_plane && !std::isfinite(*options.sensing.support_plane)) {
-    throw Error(ErrorCode::invalid_argument, "--support-plane must be finite");
-  }
-  if (options.stop_coverage && !(*options.stop_coverage >= 0 && *options.stop_coverage <= 1)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--stop-coverage " + short_text(*options.stop_coverage) + " must be in 0..1");
-  }
-  if (options.frames_per_view < 1) {
-    throw Error(ErrorCode::invalid_argument, "--frames-per-view must be at least 1");
-  }
+  check(options);
   const Sensor sensor = load_sensor(options.sensor);
   sensor.validate();
   const Policy policy = parse_policy(options.policy);
@@ -262,9 +220,9 @@ void reconstruct(const Options& options) {
        options.sensing.support_plane},
       exec);
   const double distance = options.distance.value_or(filling_distance(sensor, 0.5 * options.size));
-  const Pose start = options.start.empty()
-                         ? default_start(stage, distance, options.sensing.seed, reach)
-                         : given_start(options, reach);
+  const Pose start = options.start.empty() ? default_start(stage, distance, options.sensing.seed,
+                                                           reach, options.sensing.support_plane)
+                                           : given_start(options, reach);
   const ModelConfig model_settings = model_config(options, sensor, stage);
   const GenerationConfig generation_settings =
       generation_config(options, sensor, stage, policy, distance, start, reach);
@@ -274,12 +232,15 @@ void reconstruct(const Options& options) {
   const Stopwatch truth_watch;
   const auto truth = std::make_shared<const Truth>(
       stage.scene, sensor,
-      VisibilityConfig{stage.center, sensor.working_distance, reach, options.sensing.support_plane},
+      VisibilityConfig{stage.center, std::max(sensor.working_distance, outside(options.size)),
+                       start, reach, options.sensing.support_plane},
       exec);
   seconds["quality"] = truth_watch.seconds();
+  const InterruptGuard interrupt;
+  planning.stop = interrupt.token();
   SimulatedAcquisition acquisition(
       SimulatedSensor(stage.scene, sensor, simulation_config(options.sensing, sensor), exec),
-      options.frames_per_view, seconds["acquire"]);
+      options.frames_per_view, planning.stop, seconds["acquire"]);
   Model model(sensor, model_settings, exec, truth, seconds);
   CandidateGeneration generation(model, sensor, generation_settings, exec, seconds);
   PolicyDecision decision(model, generation, sensor,
@@ -292,8 +253,6 @@ void reconstruct(const Options& options) {
   RunFolder folder(options.out);
   RunReport report;
   std::vector<Pose> views;
-  const InterruptGuard interrupt;
-  planning.stop = interrupt.token();
   const PlanningResult result = active_view_planning(
       start, acquisition, model, generation, decision, planning, [&](const ViewRecord& record) {
         folder.begin();
@@ -333,66 +292,12 @@ void reconstruct(const Options& options) {
 }  // namespace
 
 Command add_reconstruct(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReconstructOptions>();
   CLI::App* app = program.add_subcommand(
       "reconstruct",
       "The whole loop on a mesh: acquire with a simulated camera, update map and surface, propose "
       "views, rank them, move, until little is left to gain.");
-  Options& o = *options;
-  o.sensing.noise = "on";
-  app->add_option("MESH", o.mesh, "OFF, OBJ, STL or PLY; scaled and centred")->required();
-  app->add_option("--sensor", o.sensor, kSensorHelp)->required();
-  app->add_option("--voxel", o.voxel, "voxel size [m]")->required();
-  app->add_option("--size", o.size, "longest side of the object [m]")->capture_default_str();
-  app->add_option("--workspace", o.workspace,
-                  "x0,y0,z0,x1,y1,z1 [m]; default: a cube of size * 0.4/0.35 around the object");
-  app->add_option("--up", o.up, "axis of the mesh file that points up")
-      ->check(CLI::IsMember({"x", "y", "z"}))
-      ->capture_default_str();
-  app->add_option("--start", o.start,
-                  "first camera pose tx,ty,tz,qx,qy,qz,qw [m]; default: 27 deg "
-                  "above the object at an azimuth that depends on the seed");
-  app->add_option("--distance", o.distance,
-                  "of the start and of poses round the object from its centre [m]; default: the "
-                  "object fills the view, at least the sensor's working distance");
-  app->add_option("--policy", o.policy,
-                  "gain, kriegel (left, right, top, bottom), sequence (turntable of 8, then top), "
-                  "random, frontier (most unknown voxels in view)")
-      ->capture_default_str();
-  app->add_option("--generator", o.generator,
-                  "where candidates come from: boundary, sphere, dome, rings, shell, sequence, or "
-                  "several with commas; default: boundary (random: sphere, sequence: sequence)");
-  app->add_option("--sphere-poses", o.sphere_poses,
-                  "poses of the sphere, dome or shell; rings: 48, "
-                  "80, 288 or 864")
-      ->capture_default_str();
-  app->add_option("--criterion", o.criterion, "log_diagonal, log_determinant [nat] or trace [m^2]")
-      ->capture_default_str();
-  app->add_option("--max-views", o.max_views, "view budget")->capture_default_str();
-  app->add_option("--stop-gain", o.stop_gain,
-                  "stop when the best view gains less per touched voxel [nat, m^2]; default: 0.15 "
-                  "(trace: 0.01 of the first view's)");
-  app->add_option("--stop-idle", o.stop_idle,
-                  "stop after so many views in a row that change entropy and unknown voxels by "
-                  "less than 0.1 %; 0: never")
-      ->capture_default_str();
-  app->add_option("--stop-coverage", o.stop_coverage,
-                  "stop at this coverage of the visible surface, 0..1");
-  app->add_option("--travel-cost", o.travel_cost, "rank by gain - L * distance [nat/m]")
-      ->capture_default_str();
-  app->add_option("--travel-speed", o.travel_speed,
-                  "rank by gain / (1 s + distance / speed) instead [m/s]");
-  app->add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
-  add_sensing_options(*app, o.sensing);
-  app->add_option("--frames-per-view", o.frames_per_view, "frames from each pose")
-      ->capture_default_str();
-  app->add_option("--jump-edge-filter", o.jump_edge_filter, "angle of the filter [deg], or off")
-      ->capture_default_str();
-  app->add_flag("--no-refine", o.no_refine, "the first reading of a voxel wins");
-  app->add_flag("--save-maps", o.save_maps, "keep maps/NN.vdb after each view");
-  app->add_flag("--no-pictures", o.no_pictures, "do not draw views/NN.png");
-  app->add_option("--out", o.out, "folder to write")->required();
-  add_common_options(*app, o.common);
+  add_options(*app, *options);
   return {app, [options] { reconstruct(*options); }};
 }
 

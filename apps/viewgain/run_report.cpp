@@ -95,7 +95,7 @@ std::string RunReport::progress_line() const {
   }
   const std::size_t candidates = e.record.proposal.candidates.size();
   if (e.record.decision) {
-    text += formatted("  next: %.4g nat of %zu candidates, %zu dropped", e.record.decision->gain,
+    text += formatted("  next: gain %.4g of %zu candidates, %zu dropped", e.record.decision->gain,
                       candidates, total(e.record.proposal.dropped));
   }
   return text;
@@ -124,13 +124,22 @@ ordered_json RunReport::entry_json(std::size_t index) const {
   return json;
 }
 
+const Proposal& RunReport::last_proposal() const {
+  for (auto entry = views_.rbegin(); entry != views_.rend(); ++entry) {
+    const Proposal& proposal = entry->record.proposal;
+    if (!proposal.candidates.empty() || !proposal.dropped.empty()) return proposal;
+  }
+  return views_.back().record.proposal;
+}
+
 ordered_json RunReport::json(StopReason reason) const {
   const Entry& last = views_.back();
   ordered_json json{{"stop_reason", stop_reason_name(reason)}, {"views", views_.size()}};
   put_figures(json, last.quality, last.record.progress);
   json["travelled"] = last.record.travelled;
-  json["final_candidates"] = last.record.proposal.candidates.size();
-  json["final_dropped"] = to_json(last.record.proposal.dropped);
+  const Proposal& proposal = last_proposal();
+  json["final_candidates"] = proposal.candidates.size();
+  json["final_dropped"] = to_json(proposal.dropped);
   json["seconds"] = to_json(totals_);
   json["per_view"] = ordered_json::array();
   for (std::size_t i = 0; i < views_.size(); ++i) json["per_view"].push_back(entry_json(i));

@@ -27,6 +27,9 @@ class RunReport {
   [[nodiscard]] std::string text(StopReason reason) const;
 
  private:
+  /// The latest one that was asked for; a run that ends by its budget asks for none after its last
+  /// view.
+  [[nodiscard]] const Proposal& last_proposal() const;
   struct Entry {
     ViewRecord record;
     QualityFigures quality;

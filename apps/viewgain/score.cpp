@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -160,7 +161,14 @@ void score(const Options& options) {
   const Sensor sensor = load_sensor(options.sensor);
   const PoseSource source = make_poses(options.poses);
   for (const std::string& path : {options.out, options.picture}) {
-    if (!path.empty()) const AtomicFile writable(path);  // known now rather than after the work
+    if (path.empty()) continue;
+    for (const std::string& input : {options.map, options.poses.file}) {
+      std::error_code error;
+      if (!input.empty() && std::filesystem::equivalent(path, input, error)) {
+        throw Error(ErrorCode::invalid_argument, path + ": is an input of this command");
+      }
+    }
+    const AtomicFile writable(path);  // known now rather than after the work
   }
   const BeliefGrid grid = load_vdb(options.map);
   const GainEvaluator evaluator(VoxelScene::build(grid, {}, exec), sensor, config, exec);

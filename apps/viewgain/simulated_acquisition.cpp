@@ -11,6 +11,7 @@ Measurements SimulatedAcquisition::acquire(const Pose& T_world_camera, std::size
   Measurements measurements{T_world_camera, {}};
   for (std::size_t i = 0; i < frames_per_view_; ++i) {
     measurements.frames.push_back(camera_.acquire(T_world_camera, view * frames_per_view_ + i));
+    if (stop_.stop_requested()) break;
   }
   last_frame_ = measurements.frames.front();
   seconds_ += watch.seconds();

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <stop_token>
+#include <utility>
 
 #include "viewgain/core/planning.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
@@ -10,11 +12,16 @@
 namespace viewgain::app {
 
 /// DATAACQUISITION of Algorithm 1 by a simulated camera: `frames_per_view` frames from each pose,
-/// numbered on, so that view and frame fix the noise.
+/// numbered on, so that view and frame fix the noise. When a stop is requested a view ends after the
+/// frame that is being taken.
 class SimulatedAcquisition : public DataAcquisition {
  public:
-  SimulatedAcquisition(SimulatedSensor camera, std::size_t frames_per_view, double& seconds)
-      : camera_(std::move(camera)), frames_per_view_(frames_per_view), seconds_(seconds) {}
+  SimulatedAcquisition(SimulatedSensor camera, std::size_t frames_per_view, std::stop_token stop,
+                       double& seconds)
+      : camera_(std::move(camera)),
+        frames_per_view_(frames_per_view),
+        stop_(std::move(stop)),
+        seconds_(seconds) {}
 
   Measurements acquire(const Pose& T_world_camera, std::size_t view) override;
 
@@ -24,6 +31,7 @@ class SimulatedAcquisition : public DataAcquisition {
  private:
   SimulatedSensor camera_;
   std::size_t frames_per_view_;
+  std::stop_token stop_;
   double& seconds_;
   DepthFrame last_frame_;
 };

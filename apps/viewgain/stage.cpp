@@ -50,19 +50,22 @@ Stage set_stage(const StageConfig& config, const ExecConfig& exec) {
 }
 
 Pose default_start(const Stage& stage, double distance, std::uint64_t seed,
-                   const ReachRegion& reach) {
+                   const ReachRegion& reach, const std::optional<double>& support_plane) {
+  const auto possible = [&](const Pose& pose) {
+    return reach.contains(pose) && !(support_plane && pose.translation().z() <= *support_plane);
+  };
   // The golden angle spreads the seeds' azimuths evenly.
   const double azimuth =
       std::fmod(static_cast<double>(seed % 360'000) * 137.50776 * kDegree, 2 * std::numbers::pi);
   const Pose wanted = orbit_poses(1, distance, 27 * kDegree, azimuth, 0.0, stage.center).front();
-  if (reach.contains(wanted)) return wanted;
+  if (possible(wanted)) return wanted;
   std::vector<Pose> others = sphere_poses(2562, distance, stage.center);
   others.insert(others.end(), reach.poses.begin(), reach.poses.end());
   const Pose* nearest = nullptr;
   double least = 0;
   for (const Pose& pose : others) {
     const double d = (pose.translation() - wanted.translation()).norm();
-    if (reach.contains(pose) && (nearest == nullptr || d < least)) nearest = &pose, least = d;
+    if (possible(pose) && (nearest == nullptr || d < least)) nearest = &pose, least = d;
   }
   if (nearest == nullptr) {
     throw Error(ErrorCode::invalid_argument,

@@ -38,9 +38,11 @@ struct Stage {
 [[nodiscard]] Stage set_stage(const StageConfig& config, const ExecConfig& exec);
 
 /// A pose that looks at the object's centre from 27° above, at an azimuth that depends on the seed;
-/// where that is out of reach, the reachable pose that is nearest to it among 2,562 on the sphere
-/// and the region's list. Throws Error(invalid_argument) if there is none.
+/// where that is out of reach or not above the support plane, the possible pose that is nearest to
+/// it among 2,562 on the sphere and the region's list. Throws Error(invalid_argument) if there is
+/// none.
 [[nodiscard]] Pose default_start(const Stage& stage, double distance, std::uint64_t seed,
-                                 const ReachRegion& reach);
+                                 const ReachRegion& reach,
+                                 const std::optional<double>& support_plane);
 
 }  // namespace viewgain::app

@@ -21,6 +21,7 @@ std::vector<Pose> looking_poses(const VisibilityConfig& config) {
     return !config.reach.contains(pose) ||
            (config.support_plane && pose.translation().z() <= *config.support_plane);
   });
+  poses.push_back(config.start);
   // Reach by a list of poses: a lattice all but never meets it.
   poses.insert(poses.end(), config.reach.poses.begin(), config.reach.poses.end());
   return poses;

@@ -34,12 +34,14 @@ struct QualityFigures {
 struct VisibilityConfig {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double distance = 0;  ///< of the 2,562 poses from the centre [m]
+  Pose start;           ///< the run's first pose, wherever it is
   ReachRegion reach{};
   std::optional<double> support_plane{};  ///< nothing is seen from under it; world z [m]
 };
 
 /// A ground-truth mesh and which of its samples a camera can see: unoccluded, inside the image and
-/// the range limits, at under 80°, from one of 2,562 Fibonacci poses.
+/// the range limits, at under 80°, from one of 2,562 Fibonacci poses
+/// or the start.
 class Truth {
  public:
   Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,

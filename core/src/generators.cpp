@@ -8,6 +8,7 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/mix64.hpp"
 
 namespace viewgain {
 namespace {
@@ -91,19 +92,14 @@ void append_pattern(const RingPattern& pattern, double radius, double scale,
   }
 }
 
-/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014). Not <random>, whose distributions differ between
-/// standard libraries.
+/// Not <random>, whose distributions differ between standard libraries.
 class PortableRandom {
  public:
-  explicit PortableRandom(std::uint64_t seed) : state_(seed) {}
+  explicit PortableRandom(std::uint64_t seed) : seed_(seed) {}
 
   /// Uniform in [0, 1).
   double unit() {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    std::uint64_t x = state_;
-    x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
-    return static_cast<double>((x ^ (x >> 31U)) >> 11U) * 0x1.0p-53;
+    return static_cast<double>(mix64(counter_++ * kMixStep + seed_) >> 11U) * 0x1.0p-53;
   }
 
   /// Uniform on the unit sphere (Marsaglia 1972): no sine or cosine, whose last bits depend on the
@@ -119,7 +115,8 @@ class PortableRandom {
   }
 
  private:
-  std::uint64_t state_;
+  std::uint64_t seed_;
+  std::uint64_t counter_ = 0;
 };
 
 }  // namespace

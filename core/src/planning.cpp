@@ -64,6 +64,8 @@ class GainRule {
   // A policy without a gain per voxel (NaN) never stops for it.
   bool stops_at(double gain_per_voxel) {
     if (std::isnan(gain_per_voxel)) return false;
+    // The best view brings nothing from the start: a share of that is no limit.
+    if (relative_ && !(gain_per_voxel > 0)) return true;
     if (relative_) limit_ *= gain_per_voxel;
     relative_ = false;
     return gain_per_voxel < limit_;

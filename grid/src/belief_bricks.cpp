@@ -19,7 +19,7 @@ std::uint64_t block_number(Index3 origin) {
 BeliefBricks::BeliefBricks(const BeliefGrid& grid) : min_(grid.min_index()) {
   const Index3 dims = grid.dims();
   max_ = {min_.x + dims.x, min_.y + dims.y, min_.z + dims.z};
-  GridSnapshot snapshot = grid.snapshot();
+  const GridSnapshot snapshot = grid.snapshot();
   const std::vector<BeliefBlockAt> blocks = grid.belief_blocks();
   numbers_.reserve(snapshot.leaves.size() + blocks.size());
   for (const SnapshotLeaf& leaf : snapshot.leaves) {
@@ -39,7 +39,16 @@ BeliefBricks::BeliefBricks(const BeliefGrid& grid) : min_(grid.min_index()) {
           {belief.information_matrix(), Eigen::Vector3d(v[0], v[1], v[2]), belief.hits});
     });
   }
-  tiles_ = std::move(snapshot.tiles);
+  for (const SnapshotTile& tile : snapshot.tiles) {
+    const bool in_one_block = tile.min.x >> 3 == (tile.max.x - 1) >> 3 &&
+                              tile.min.y >> 3 == (tile.max.y - 1) >> 3 &&
+                              tile.min.z >> 3 == (tile.max.z - 1) >> 3;
+    if (in_one_block) {
+      unknown_blocks_.insert(block_number(tile.min));
+    } else {
+      larger_tiles_.push_back(tile);
+    }
+  }
 }
 
 std::size_t BeliefBricks::brick_at(Index3 origin) {
@@ -63,10 +72,11 @@ bool BeliefBricks::is_unknown_tile(Index3 v) const {
       v.z >= max_.z) {
     return false;
   }
-  return std::any_of(tiles_.begin(), tiles_.end(), [&](const SnapshotTile& t) {
-    return v.x >= t.min.x && v.x < t.max.x && v.y >= t.min.y && v.y < t.max.y && v.z >= t.min.z &&
-           v.z < t.max.z;
-  });
+  return unknown_blocks_.contains(block_number(v)) ||
+         std::any_of(larger_tiles_.begin(), larger_tiles_.end(), [&](const SnapshotTile& t) {
+           return v.x >= t.min.x && v.x < t.max.x && v.y >= t.min.y && v.y < t.max.y &&
+                  v.z >= t.min.z && v.z < t.max.z;
+         });
 }
 
 std::vector<std::pair<std::size_t, unsigned>> BeliefBricks::occupied_with_belief() const {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -63,7 +64,8 @@ class BeliefBricks {
   std::vector<Brick> bricks_;
   std::vector<PlacedBelief> beliefs_;
   std::unordered_map<std::uint64_t, std::int32_t> numbers_;
-  std::vector<SnapshotTile> tiles_;
+  std::unordered_set<std::uint64_t> unknown_blocks_;  ///< tiles that lie in one block
+  std::vector<SnapshotTile> larger_tiles_;
   Index3 min_, max_;
 };
 

@@ -68,7 +68,6 @@ Solution<N> least_squares(const Eigen::Matrix<double, Eigen::Dynamic, N>& A,
 // Standard deviation of the slope dw/du at (u, v), if the residuals are independent noise.
 double slope_sigma(const Solution<6>& solution, double residual_sum, Eigen::Index points,
                    const LayoutInPlane& layout, double u, double v) {
-  if (points <= 6) return 0.0;
   const double s = (u - layout.center.x()) / layout.spread;
   const double t = (v - layout.center.y()) / layout.spread;
   Eigen::Matrix<double, 6, 1> gradient;
@@ -79,7 +78,8 @@ double slope_sigma(const Solution<6>& solution, double residual_sum, Eigen::Inde
 
 bool fit_quadric(const LayoutInPlane& layout, QuadraticPatch& patch) {
   const Eigen::Index n = layout.local.cols();
-  if (n < 6 || !(layout.spread > 0)) return false;
+  // Six points fit exactly and leave nothing by which to judge the fit.
+  if (n < 7 || !(layout.spread > 0)) return false;
   const Eigen::ArrayXd s = (layout.local.row(0).array() - layout.center.x()) / layout.spread;
   const Eigen::ArrayXd t = (layout.local.row(1).array() - layout.center.y()) / layout.spread;
   Eigen::Matrix<double, Eigen::Dynamic, 6> A(n, 6);

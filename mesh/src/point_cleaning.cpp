@@ -151,13 +151,14 @@ std::vector<std::uint32_t> large_components(std::span<const OrientedPoint> point
   return kept;
 }
 
-std::vector<Point3> smoothed(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
+std::vector<Point3> smoothed(std::span<const OrientedPoint> points, const SurfaceConfig& config,
+                             const ExecConfig& exec) {
   std::vector<Point3> positions = positions_of(points);
   if (config.smoothing_neighbors == 0) return positions;
   const PointGrid grid(positions, disc_radius(config));
   const Smoother smoother(points, positions, grid, config);
   std::vector<Point3> result(points.size());
-  ThreadPool pool;
+  ThreadPool pool(exec.num_threads);
   pool.for_each_chunk(points.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<Neighbor> buffer;
     for (std::size_t k = begin; k < end; ++k) {

@@ -22,7 +22,7 @@ namespace viewgain::detail {
 /// smoothing). A point whose neighbours agree on a surface that is more than 1.25 spacings away is
 /// no point of the surface: it gets NaNs. Without enough neighbours for a fit a point stays.
 [[nodiscard]] std::vector<Point3> smoothed(std::span<const OrientedPoint> points,
-                                           const SurfaceConfig& config);
+                                           const SurfaceConfig& config, const ExecConfig& exec);
 
 /// Indices, rising, of points that are at least min_distance apart; of two that are nearer the
 /// earlier one stays. Points that are NaN are left out.

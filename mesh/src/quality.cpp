@@ -11,6 +11,7 @@
 
 #include "box_tree.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/mix64.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain {
@@ -25,12 +26,10 @@ constexpr std::size_t kChunk = 256;
 
 Vector3d vector_of(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
 
-// SplitMix64's output for a counter, as a number in [0, 1): the same on every machine.
+// In [0, 1): the same on every machine.
 double uniform(std::uint64_t seed, std::uint64_t counter) {
-  std::uint64_t h = seed * 0xD1B54A32D192ED03ULL + (counter + 1) * 0x9E3779B97F4A7C15ULL;
-  h = (h ^ (h >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  h = (h ^ (h >> 27U)) * 0x94D049BB133111EBULL;
-  return static_cast<double>((h ^ (h >> 31U)) >> 11U) * 0x1.0p-53;
+  const std::uint64_t h = mix64(seed * 0xD1B54A32D192ED03ULL + counter * kMixStep);
+  return static_cast<double>(h >> 11U) * 0x1.0p-53;
 }
 
 struct Triangle {

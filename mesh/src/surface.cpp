@@ -14,6 +14,7 @@
 #include "face_components.hpp"
 #include "point_cleaning.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/mix64.hpp"
 
 namespace viewgain {
 namespace {
@@ -68,17 +69,14 @@ struct Selection {
 
 Eigen::Vector3d vector_of(const Point3& p) { return {p[0], p[1], p[2]}; }
 
-// In units of the spacing from the first point. The offsets of a ten-thousandth, by SplitMix64's
-// finish, take away ties: points on a lattice leave CGAL choices that it makes by addresses in
+// In units of the spacing from the first point. The offsets of a ten-thousandth take away
+// ties: points on a lattice leave CGAL choices that it makes by addresses in
 // memory.
 std::vector<Point3> triangulation_points(std::span<const OrientedPoint> points, double spacing) {
   std::vector<Point3> scaled(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      std::uint64_t h = (3 * i + k + 1) * 0x9E3779B97F4A7C15ULL;
-      h = (h ^ (h >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-      h = (h ^ (h >> 27U)) * 0x94D049BB133111EBULL;
-      const double offset = static_cast<double>((h ^ (h >> 31U)) >> 11U) * 0x1.0p-53;
+      const double offset = static_cast<double>(mix64((3 * i + k) * kMixStep) >> 11U) * 0x1.0p-53;
       scaled[i][k] =
           (points[i].position[k] - points[0].position[k]) / spacing + 1e-4 * (offset - 0.5);
     }
@@ -141,8 +139,8 @@ SurfaceMesh assemble(const Selection& selection, const std::vector<Triangle>& tr
 
 }  // namespace
 
-SurfaceMesh reconstruct_surface(std::span<const OrientedPoint> points,
-                                const SurfaceConfig& config) {
+SurfaceMesh reconstruct_surface(std::span<const OrientedPoint> points, const SurfaceConfig& config,
+                                const ExecConfig& exec) {
   check(points, config);
   Selection selection{std::vector<std::uint32_t>(points.size()), {points.begin(), points.end()}};
   for (std::uint32_t i = 0; i < points.size(); ++i) selection.index[i] = i;
@@ -153,7 +151,7 @@ SurfaceMesh reconstruct_surface(std::span<const OrientedPoint> points,
   selection.keep(detail::large_components(selection.points, config));
   if (selection.points.size() < 3) return {};
 
-  const std::vector<Point3> positions = detail::smoothed(selection.points, config);
+  const std::vector<Point3> positions = detail::smoothed(selection.points, config, exec);
   for (std::size_t i = 0; i < positions.size(); ++i) selection.points[i].position = positions[i];
   keep_apart(positions, kMinDistance);
   if (selection.points.size() < 3) return {};

@@ -203,7 +203,10 @@ struct FeasibilityChecker::Impl {
       GainConfig from_the_lens;
       from_the_lens.min_range = 0.0;
       from_the_lens.pixel_stride = kSightStride;
-      sight.emplace(scene, *config.sensor, from_the_lens, ExecConfig{1});
+      // Only ranges are asked for, also where the sensor's noise is not defined.
+      Sensor eye = *config.sensor;
+      eye.noise = ConstantNoise{};
+      sight.emplace(scene, eye, from_the_lens, ExecConfig{1});
     }
   }
 

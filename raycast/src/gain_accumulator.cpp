@@ -13,6 +13,9 @@ namespace {
 // Vectors reach up to this many elements beyond the last voxel.
 constexpr std::size_t kOverhang = 8;
 
+// Stands for a block without occupied voxels.
+const SnapshotLeaf kNoneOccupied{};
+
 }  // namespace
 
 FrontalSigmas frontal_sigmas(const Sensor& sensor) {
@@ -52,7 +55,10 @@ GainAccumulator::GainAccumulator(const VoxelScene::Data& scene, const GainSettin
   sums_.resize(max_rays + kOverhang);
   unknown_.resize(max_rays + kOverhang);
   occupied_.resize(max_rays + kOverhang);
-  known_.resize(max_rays + kOverhang);
+  occupied_leaf_.resize(max_rays + kOverhang);
+  occupied_offset_.resize(max_rays + kOverhang);
+  known_a_.resize(max_rays + kOverhang);
+  known_b_.resize(max_rays + kOverhang);
   if (settings.criterion == Criterion::trace || !settings.weights.empty()) {
     each_.resize(max_rays + kOverhang);
   }
@@ -63,7 +69,6 @@ void GainAccumulator::begin() {
   hits_ = 0;
   for (std::size_t i = 0; i < touched_count_; ++i) places_[touched_[i]] = kNone;
   for (const std::uint32_t primitive : touched_primitives_) by_primitive_[primitive] = kNone;
-  std::fill_n(sums_.begin(), touched_count_, VoxelSum{});
   touched_primitives_.clear();
   blocks_.clear();
   touched_count_ = 0;
@@ -87,7 +92,7 @@ std::uint32_t GainAccumulator::block_in_box(std::uint64_t key) {
   while (true) {
     BlockSlot& slot = by_key_[place];
     if (slot.generation != generation_) {
-      slot = {key, generation_, start_block(key, nullptr)};
+      slot = {key, generation_, start_block(key, &kNoneOccupied)};
       return slot.block;
     }
     if (slot.key == key) return slot.block;
@@ -106,7 +111,7 @@ inline std::uint32_t GainAccumulator::code_of(std::uint32_t primitive, std::uint
     const bool may_be_occupied = primitive < scene_.leaf_count && scene_.has_occupied[primitive];
     block = start_block(
         scene_.block_keys[primitive],
-        may_be_occupied ? &scene_.snapshot.leaves[scene_.leaf_source[primitive]] : nullptr);
+        may_be_occupied ? &scene_.snapshot.leaves[scene_.leaf_source[primitive]] : &kNoneOccupied);
     by_primitive_[primitive] = block;
     touched_primitives_.push_back(primitive);
   }
@@ -124,6 +129,7 @@ void GainAccumulator::flush() {
   }
   // Whether a voxel is new cannot be predicted, so what a new one needs is done for all.
   std::uint32_t places[kBatchSize + kTileRays];
+  std::uint64_t keep[kBatchSize + kTileRays];
   auto touched_count = static_cast<std::uint32_t>(touched_count_);
   std::uint32_t* const place_of = places_.data();
   std::uint32_t* const touched = touched_.data();
@@ -136,35 +142,33 @@ void GainAccumulator::flush() {
     touched[place] = code;
     touched_count += is_new;
     places[i] = place;
+    keep[i] = std::uint64_t{is_new} - 1;
   }
   touched_count_ = touched_count;
-  VoxelSum* const sums = sums_.data();
-  for (std::size_t i = 0; i < count; ++i) {
-    double* sum = sums[places[i]].value;
-    for (std::size_t k = 0; k < 6; ++k) sum[k] += batch_.information[k][i];
-  }
+  kernels_.accumulate(batch_, places, keep, sums_.data());
   hits_ += static_cast<std::uint32_t>(count);
   batch_.count = 0;
 }
 
 // Parts the touched voxels into unknown and occupied ones and looks up what is known of the latter.
+// Which is which cannot be predicted, so both lists are written and one of them moves on.
 void GainAccumulator::classify() {
-  unknown_count_ = 0;
-  occupied_count_ = 0;
+  std::size_t unknown = 0, occupied = 0;
   for (std::uint32_t i = 0; i < touched_count_; ++i) {
     const std::uint32_t offset = touched_[i] & 511U;
     const SnapshotLeaf* leaf = blocks_[touched_[i] >> 9U].leaf;
-    if (leaf == nullptr || !test_bit(leaf->occupied, offset)) {
-      unknown_[unknown_count_++] = i;
-      continue;
-    }
-    VoxelInformation& known = known_[occupied_count_];
-    const Belief* belief = leaf->beliefs ? leaf->beliefs->find(offset) : nullptr;
-    for (std::size_t k = 0; k < 6; ++k) {
-      known.value[k] = belief != nullptr ? static_cast<double>(belief->information[k]) : 0.0;
-    }
-    occupied_[occupied_count_++] = i;
+    const std::size_t is_occupied = test_bit(leaf->occupied, offset) ? 1 : 0;
+    unknown_[unknown] = i;
+    occupied_[occupied] = i;
+    occupied_leaf_[occupied] = leaf;
+    occupied_offset_[occupied] = offset;
+    unknown += 1 - is_occupied;
+    occupied += is_occupied;
   }
+  unknown_count_ = unknown;
+  occupied_count_ = occupied;
+  kernels_.look_up(occupied_leaf_.data(), occupied_offset_.data(), occupied, known_a_.data(),
+                   known_b_.data());
 }
 
 double GainAccumulator::weight(std::uint32_t code) const {
@@ -177,13 +181,14 @@ double GainAccumulator::weight(std::uint32_t code) const {
   return 1.0;
 }
 
-double GainAccumulator::finish_class(std::span<const std::uint32_t> members,
-                                     const VoxelInformation* known, LogProduct& posterior) {
+double GainAccumulator::finish_class(std::span<const std::uint32_t> members, bool is_known,
+                                     LogProduct& posterior) {
   const bool logarithmic = settings_.criterion != Criterion::trace;
   LogProduct ratios;
   kernels_.finish(settings_.criterion, settings_.prior_information,
-                  {sums_.data(), members.data(), known, members.size()}, ratios, posterior,
-                  each_.empty() ? nullptr : each_.data());
+                  {sums_.data(), members.data(), is_known ? known_a_.data() : nullptr,
+                   known_b_.data(), members.size()},
+                  ratios, posterior, each_.empty() ? nullptr : each_.data());
   if (each_.empty()) return 0.5 * ratios.log();
   double sum = 0;
   for (std::size_t i = 0; i < members.size(); ++i) {
@@ -197,8 +202,8 @@ void GainAccumulator::finish(ViewGain& result) {
   flush();
   classify();
   LogProduct posterior;
-  result.exploration = finish_class({unknown_.data(), unknown_count_}, nullptr, posterior);
-  result.refinement = finish_class({occupied_.data(), occupied_count_}, known_.data(), posterior);
+  result.exploration = finish_class({unknown_.data(), unknown_count_}, false, posterior);
+  result.refinement = finish_class({occupied_.data(), occupied_count_}, true, posterior);
   result.gain = result.exploration + result.refinement;
   result.posterior_entropy = posterior.log();
   result.hits = hits_;

@@ -50,7 +50,7 @@ class GainAccumulator {
 
   // An 8³ block that the view has touched.
   struct Block {
-    const SnapshotLeaf* leaf;  // null: no occupied voxel
+    const SnapshotLeaf* leaf;  // never null
     std::uint64_t key;         // of the block's first voxel
   };
   // Where a block of a larger box is; void unless its generation is the view's.
@@ -65,8 +65,7 @@ class GainAccumulator {
   std::uint32_t block_in_box(std::uint64_t key);
   std::uint32_t start_block(std::uint64_t key, const SnapshotLeaf* leaf);
   void classify();
-  double finish_class(std::span<const std::uint32_t> members, const VoxelInformation* known,
-                      LogProduct& posterior);
+  double finish_class(std::span<const std::uint32_t> members, bool is_known, LogProduct& posterior);
   [[nodiscard]] double weight(std::uint32_t code) const;
 
   const VoxelScene::Data& scene_;
@@ -84,15 +83,17 @@ class GainAccumulator {
   // to the most blocks that a view has touched.
   std::vector<std::uint32_t> places_;
   std::uint32_t hits_ = 0;
-  // The touched voxels in the order in which the view first meets them, and their sums, which are
-  // zero beyond. All are sized for the most that a view can touch.
+  // The touched voxels in the order in which the view first meets them, and their sums. All are
+  // sized for the most that a view can touch.
   std::size_t touched_count_ = 0;
   std::vector<std::uint32_t> touched_;  // codes
   std::vector<VoxelSum> sums_;
   std::vector<std::uint32_t> unknown_, occupied_;  // places in touched_
+  std::vector<const SnapshotLeaf*> occupied_leaf_;
+  std::vector<std::uint32_t> occupied_offset_;
   std::size_t unknown_count_ = 0, occupied_count_ = 0;
-  std::vector<VoxelInformation> known_;  // of occupied_
-  std::vector<double> each_;             // for weights and for the trace
+  std::vector<MatrixHalf> known_a_, known_b_;  // of occupied_
+  std::vector<double> each_;                   // for weights and for the trace
 };
 
 }  // namespace viewgain::detail

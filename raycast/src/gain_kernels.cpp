@@ -88,12 +88,60 @@ void expand(const FrontalSigmas& sigmas, double voxel_size, HitBatch& batch) {
     const VD inverse = hn::Div(one, hn::Mul(both, norm));
     const VD a = hn::Mul(hn::Mul(var_axial, norm), inverse);
     const VD c = hn::Mul(hn::Sub(var_lateral, var_axial), inverse);
-    hn::StoreU(hn::Add(a, hn::Mul(c, xx)), dd, batch.information[0] + i);
-    hn::StoreU(hn::Add(a, hn::Mul(c, yy)), dd, batch.information[1] + i);
-    hn::StoreU(hn::Add(a, hn::Mul(c, zz)), dd, batch.information[2] + i);
-    hn::StoreU(hn::Mul(c, hn::Mul(x, y)), dd, batch.information[3] + i);
-    hn::StoreU(hn::Mul(c, hn::Mul(x, z)), dd, batch.information[4] + i);
-    hn::StoreU(hn::Mul(c, hn::Mul(y, z)), dd, batch.information[5] + i);
+    hn::StoreInterleaved4(hn::Add(a, hn::Mul(c, xx)), hn::Add(a, hn::Mul(c, yy)),
+                          hn::Add(a, hn::Mul(c, zz)), hn::Mul(c, hn::Mul(x, y)), dd,
+                          batch.information_a[i]);
+    hn::StoreInterleaved4(hn::Mul(c, hn::Mul(x, z)), hn::Mul(c, hn::Mul(y, z)), hn::Zero(dd),
+                          hn::Zero(dd), dd, batch.information_b[i]);
+  }
+}
+
+void accumulate(const HitBatch& batch, const std::uint32_t* places, const std::uint64_t* keep,
+                VoxelSum* sums) {
+  constexpr hn::CappedTag<double, 4> d;
+  constexpr std::size_t kWidth = hn::MaxLanes(d);
+  constexpr hn::RebindToUnsigned<decltype(d)> du;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    VoxelSum& sum = sums[places[i]];
+    const auto kept = hn::BitCast(d, hn::Set(du, keep[i]));
+    const auto add = [&](double* held, const double* information) HWY_ATTR {
+      for (std::size_t k = 0; k < 4; k += kWidth) {
+        const auto before = hn::And(kept, hn::Load(d, held + k));
+        hn::Store(hn::Add(before, hn::Load(d, information + k)), d, held + k);
+      }
+    };
+    add(sum.a, batch.information_a[i]);
+    add(sum.b, batch.information_b[i]);
+  }
+}
+
+void look_up(const SnapshotLeaf* const* leaves, const std::uint32_t* offsets, std::size_t count,
+             MatrixHalf* known_a, MatrixHalf* known_b) {
+  // Where the beliefs are is found some voxels ahead of reading them, so that memory can follow.
+  constexpr std::size_t kAhead = 32;
+  static constexpr Belief kNothing{};
+  const Belief* found[kAhead];
+  constexpr hn::CappedTag<double, 4> d;
+  constexpr hn::Rebind<float, decltype(d)> half;
+  for (std::size_t begin = 0; begin < count; begin += kAhead) {
+    const std::size_t n = count - begin < kAhead ? count - begin : kAhead;
+    for (std::size_t i = 0; i < n; ++i) {
+      const BeliefBlock* block = leaves[begin + i]->beliefs.get();
+      const Belief* belief = block != nullptr ? block->find(offsets[begin + i]) : nullptr;
+      found[i] = belief != nullptr ? belief : &kNothing;
+      __builtin_prefetch(found[i]);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const float* information = found[i]->information.data();
+      double* a = known_a[begin + i].value;
+      double* b = known_b[begin + i].value;
+      for (std::size_t k = 0; k < 4; k += hn::MaxLanes(d)) {
+        hn::Store(hn::PromoteTo(d, hn::LoadU(half, information + k)), d, a + k);
+      }
+      b[0] = static_cast<double>(information[4]);
+      b[1] = static_cast<double>(information[5]);
+      b[2] = b[3] = 0;
+    }
   }
 }
 
@@ -155,8 +203,6 @@ HWY_INLINE void multiply(LogProduct& product, std::size_t part, VD factor) {
 template <Criterion criterion>
 HWY_INLINE void finish_as(double prior_information, const VoxelClass& voxels, LogProduct& ratios,
                           LogProduct& posterior, double* each) {
-  constexpr DI di;
-  constexpr hn::Rebind<std::uint32_t, DD> half;
   const VD prior = hn::Set(dd, prior_information), zero = hn::Zero(dd), one = hn::Set(dd, 1.0);
   const Inverse unknown_before = invert(prior, prior, prior, zero, zero, zero);
   // Copies, so that the compiler may keep the strands in registers.
@@ -166,24 +212,23 @@ HWY_INLINE void finish_as(double prior_information, const VoxelClass& voxels, Lo
       const std::size_t first = i + part * kLanes;
       const std::size_t left = voxels.count > first ? voxels.count - first : 0;
       const auto live = hn::FirstN(dd, left);
-      const auto member = hn::IfThenElseZero(
-          hn::RebindMask(di, live),
-          hn::BitCast(di, hn::PromoteTo(hn::RebindToUnsigned<DD>(),
-                                        hn::LoadU(half, voxels.members + first))));
-      const auto position = hn::Add(hn::ShiftLeft<2>(member), hn::ShiftLeft<1>(member));
-      const double* sums = voxels.sums->value;
-      VD xx = hn::GatherIndex(dd, sums, position), yy = hn::GatherIndex(dd, sums + 1, position),
-         zz = hn::GatherIndex(dd, sums + 2, position), xy = hn::GatherIndex(dd, sums + 3, position),
-         xz = hn::GatherIndex(dd, sums + 4, position), yz = hn::GatherIndex(dd, sums + 5, position);
+      alignas(64) double rows_a[kLanes][4], rows_b[kLanes][4];
+      constexpr hn::CappedTag<double, 4> row;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const VoxelSum& sum = voxels.sums[lane < left ? voxels.members[first + lane] : 0];
+        for (std::size_t k = 0; k < 4; k += hn::MaxLanes(row)) {
+          hn::Store(hn::Load(row, sum.a + k), row, rows_a[lane] + k);
+          hn::Store(hn::Load(row, sum.b + k), row, rows_b[lane] + k);
+        }
+      }
+      VD xx, yy, zz, xy, xz, yz, pad;
+      hn::LoadInterleaved4(dd, rows_a[0], xx, yy, zz, xy);
+      hn::LoadInterleaved4(dd, rows_b[0], xz, yz, pad, pad);
       Inverse before = unknown_before;
-      if (voxels.known != nullptr) {
-        const double* known = voxels.known[first].value;
-        const auto line = hn::ShiftLeft<3>(hn::Iota(di, 0));
-        const VD kxx = hn::GatherIndex(dd, known, line), kyy = hn::GatherIndex(dd, known + 1, line),
-                 kzz = hn::GatherIndex(dd, known + 2, line),
-                 kxy = hn::GatherIndex(dd, known + 3, line),
-                 kxz = hn::GatherIndex(dd, known + 4, line),
-                 kyz = hn::GatherIndex(dd, known + 5, line);
+      if (voxels.known_a != nullptr) {
+        VD kxx, kyy, kzz, kxy, kxz, kyz;
+        hn::LoadInterleaved4(dd, voxels.known_a[first].value, kxx, kyy, kzz, kxy);
+        hn::LoadInterleaved4(dd, voxels.known_b[first].value, kxz, kyz, pad, pad);
         before =
             invert(hn::Add(prior, kxx), hn::Add(prior, kyy), hn::Add(prior, kzz), kxy, kxz, kyz);
         xx = hn::Add(xx, kxx), yy = hn::Add(yy, kyy), zz = hn::Add(zz, kzz);
@@ -223,7 +268,7 @@ void finish(Criterion criterion, double prior_information, const VoxelClass& vox
 }  // namespace
 
 const GainKernels& gain_kernel_table() {
-  static const GainKernels table{append, expand, finish};
+  static const GainKernels table{append, expand, accumulate, look_up, finish};
   return table;
 }
 

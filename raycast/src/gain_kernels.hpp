@@ -8,6 +8,7 @@
 #include "ray_tile.hpp"
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/core/isa.hpp"
+#include "viewgain/grid/grid_snapshot.hpp"
 
 namespace viewgain::detail {
 
@@ -18,7 +19,7 @@ struct FrontalSigmas {
   double l0 = 0, l1 = 0;
 };
 
-inline constexpr std::size_t kBatchSize = 512;
+inline constexpr std::size_t kBatchSize = 256;
 
 /// Hits on their way from the tracer to the voxels, in the order of tiles and lanes. The arrays
 /// have room for one more tile's vectors beyond kBatchSize.
@@ -27,18 +28,20 @@ struct alignas(64) HitBatch {
   float dx[kCapacity] = {}, dy[kCapacity] = {}, dz[kCapacity] = {};
   float range[kCapacity] = {};  ///< [voxels]
   std::uint32_t primitive[kCapacity], offset[kCapacity];
-  double information[6][kCapacity];  ///< Λ_r: xx yy zz xy xz yz [m⁻²], filled by expand()
+  /// Λ_r [m⁻²], filled by expand(): xx yy zz xy and xz yz 0 0.
+  alignas(64) double information_a[kCapacity][4], information_b[kCapacity][4];
   std::size_t count = 0;
 };
 
-/// What one view would add to one voxel: Σ Λ_r [m⁻²].
-struct VoxelSum {
-  double value[6];
+/// What one view would add to one voxel: Σ Λ_r [m⁻²]; one cache line.
+struct alignas(64) VoxelSum {
+  double a[4];  ///< xx yy zz xy
+  double b[4];  ///< xz yz 0 0
 };
 
-/// Λ_v of an occupied voxel [m⁻²]; one cache line.
-struct alignas(64) VoxelInformation {
-  double value[8];
+/// Half of a symmetric matrix as in VoxelSum.
+struct alignas(32) MatrixHalf {
+  double value[4];
 };
 
 /// ln of a long product of positive numbers in eight strands, one logarithm for all of it: factor i
@@ -55,8 +58,9 @@ struct alignas(64) LogProduct {
 struct VoxelClass {
   const VoxelSum* sums;  ///< of all voxels
   const std::uint32_t*
-      members;  ///< which of them belong to the class; readable up to 8 beyond count
-  const VoxelInformation* known;  ///< Λ_v of the members; null: unknown, none
+      members;                ///< which of them belong to the class; readable up to 8 beyond count
+  const MatrixHalf* known_a;  ///< Λ_v of the members: xx yy zz xy; null: unknown, none
+  const MatrixHalf* known_b;  ///< xz yz 0 0
   std::size_t count;
 };
 
@@ -66,6 +70,13 @@ struct GainKernels {
   void (*append)(const RayTile& tile, HitBatch& batch);
   /// Λ_r = a I + (b - a) d dᵀ of every hit (DESIGN.md section 4), d normalised in double.
   void (*expand)(const FrontalSigmas& sigmas, double voxel_size, HitBatch& batch);
+  /// Adds the batch's Λ_r to the sums at `places`, in order. Where keep[i] is 0 hit i is the first
+  /// of its voxel, and what stood there is forgotten; else it is all ones.
+  void (*accumulate)(const HitBatch& batch, const std::uint32_t* places, const std::uint64_t* keep,
+                     VoxelSum* sums);
+  /// Λ_v of occupied voxels: voxel i is the one at offsets[i] of leaves[i]; zero without a belief.
+  void (*look_up)(const SnapshotLeaf* const* leaves, const std::uint32_t* offsets,
+                  std::size_t count, MatrixHalf* known_a, MatrixHalf* known_b);
   /// What the members gain and what stays. Multiplies the ratios whose logarithms, halved, are
   /// H(before) - H(after) into `ratios`, or, if `each` is not null (room for 8 beyond count),
   /// writes each ratio there, for the trace each difference. Multiplies Π_k [(Λ_v + ΣΛ_r)⁻¹]_kk

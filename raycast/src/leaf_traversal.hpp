@@ -7,6 +7,7 @@
 
 #include "embree_compat.hpp"
 #include "ray_tile.hpp"
+#include "tile_bins.hpp"
 #include "viewgain/core/isa.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
@@ -25,10 +26,15 @@ struct TraceKernels {
   void (*trace)(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
                 std::size_t tile, RayTile& out);
 
-  /// The same answer, obstacles apart, from a list of primitives that holds all that the tile's
-  /// rays meet, in any order, without the BVH.
-  void (*trace_list)(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
-                     std::size_t tile, std::span<const std::uint32_t> primitives, RayTile& out);
+  /// Sets up a tile that has met nothing yet.
+  void (*begin)(const TileTable& table, const PoseFrame& frame, std::size_t tile, RayTile& out);
+
+  /// Traces the tile through a list of primitives, in any order but for their `near`, without the
+  /// BVH; lists may follow one another. When they hold all that the tile's rays meet the answer is
+  /// that of `trace`, obstacles apart. `cosine`: no ray of the tile makes a smaller angle with the
+  /// optical axis. Returns how far along the axis something must begin to be of no more interest.
+  float (*walk)(const VoxelScene::Data& scene, const PoseFrame& frame, float cosine,
+                std::span<const TileBox> primitives, RayTile& out);
 };
 
 /// Kernels of an instruction set that the CPU supports.

@@ -15,6 +15,7 @@ TileTable::TileTable(const PinholeCamera& camera, int pixel_stride)
   tile_count = static_cast<std::size_t>(tile_columns) * static_cast<std::size_t>(tile_rows);
   directions.resize(tile_count * 3 * kTileRays);
   valid.resize(tile_count);
+  cosine.resize(tile_count);
   first_lane.resize(tile_count);
 
   const std::vector<Eigen::Vector3d> table = camera.ray_table();
@@ -41,6 +42,8 @@ TileTable::TileTable(const PinholeCamera& camera, int pixel_stride)
       }
     }
     valid[tile] = static_cast<std::uint16_t>(lanes);
+    const float* z = directions.data() + tile * 3 * kTileRays + 2 * kTileRays;
+    cosine[tile] = *std::max_element(z, z + kTileRays);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -21,17 +22,28 @@
 namespace viewgain::detail {
 
 constexpr std::size_t kBoxVector = 16;
+constexpr float kNowhere = -1e9F;  // the last column of a box behind the camera
 
 // Where sixteen boxes lie in the image, in rays; empty if max < min.
 struct ImageBounds {
   alignas(64) float min_column[kBoxVector], max_column[kBoxVector];
   alignas(64) float min_row[kBoxVector], max_row[kBoxVector];
-  alignas(64) float distance[kBoxVector];  // twice the centre's, along the optical axis [voxels]
-  bool at_camera = false;                  // some box reaches the camera's plane: no bounds
+  alignas(64) float near[kBoxVector];  // where it begins along the optical axis [voxels]
 };
 
 struct ImageScale {
   float scale_x, shift_x, scale_y, shift_y;
+  float nearest;  // what is nearer than this along the optical axis no ray meets [voxels]
+  float last_column, last_row;
+};
+
+struct TileBinKernels {
+  ImageBounds (*bounds_of)(const BoxArrays&, std::size_t first, const PoseFrame&,
+                           const ImageScale&);
+  // One bit for each of sixteen members that cover the tile.
+  std::uint32_t (*covering)(const std::int16_t* column0, const std::int16_t* column1,
+                            const std::int16_t* row0, const std::int16_t* row1, std::int16_t column,
+                            std::int16_t row);
 };
 
 }  // namespace viewgain::detail
@@ -45,13 +57,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Rounding moves a bound by less than this many rays.
 constexpr float kRayMargin = 0.05F;
 
-ImageBounds bounds_of(const SceneBoxes& boxes, std::size_t first, const PoseFrame& frame,
+ImageBounds bounds_of(const BoxArrays& boxes, std::size_t first, const PoseFrame& frame,
                       const ImageScale& image) {
   constexpr hn::CappedTag<float, kBoxVector> df;
   using VF = hn::Vec<decltype(df)>;
   ImageBounds out;
   const auto& R = frame.rotation;
-  const VF zero = hn::Zero(df), nearest = hn::Set(df, 1e-3F);
+  const VF zero = hn::Zero(df), nearest = hn::Set(df, image.nearest);
   for (std::size_t i = 0; i < kBoxVector; i += hn::Lanes(df)) {
     const std::size_t at = first + i;
     const VF dx = hn::Sub(hn::LoadU(df, &boxes.center_x[at]), hn::Set(df, frame.origin[0]));
@@ -72,13 +84,14 @@ ImageBounds bounds_of(const SceneBoxes& boxes, std::size_t first, const PoseFram
     along(0, x_low, x_high);
     along(1, y_low, y_high);
     along(2, z_low, z_high);
-    hn::Store(hn::Add(z_low, z_high), df, out.distance + i);
-    const auto behind = hn::Lt(z_high, zero);
-    if (!hn::AllFalse(df, hn::AndNot(behind, hn::Lt(z_low, nearest)))) out.at_camera = true;
+    // Of a box that reaches the camera's plane only the part before it counts.
+    const auto behind = hn::Lt(z_high, nearest);
+    const VF z_near = hn::Max(z_low, nearest);
+    hn::Store(z_near, df, out.near + i);
     const VF one = hn::Set(df, 1.0F);
-    const VF by_near = hn::Div(one, hn::Max(z_low, nearest));
+    const VF by_near = hn::Div(one, z_near);
     const VF by_far = hn::Div(one, hn::Max(z_high, nearest));
-    const VF margin = hn::Set(df, kRayMargin), nowhere = hn::Set(df, -1e9F);
+    const VF margin = hn::Set(df, kRayMargin), nowhere = hn::Set(df, kNowhere);
     const auto project = [&](VF low, VF high, float scale, float shift, float* min_out,
                              float* max_out) HWY_ATTR {
       const VF least = hn::Mul(low, hn::IfThenElse(hn::Lt(low, zero), by_near, by_far));
@@ -94,11 +107,29 @@ ImageBounds bounds_of(const SceneBoxes& boxes, std::size_t first, const PoseFram
   return out;
 }
 
+std::uint32_t covering(const std::int16_t* column0, const std::int16_t* column1,
+                       const std::int16_t* row0, const std::int16_t* row1, std::int16_t column,
+                       std::int16_t row) {
+  constexpr hn::CappedTag<std::int16_t, kBoxVector> d;
+  const auto c = hn::Set(d, column), r = hn::Set(d, row);
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < kBoxVector; i += hn::Lanes(d)) {
+    const auto outside =
+        hn::Or(hn::Or(hn::Gt(hn::LoadU(d, column0 + i), c), hn::Lt(hn::LoadU(d, column1 + i), c)),
+               hn::Or(hn::Gt(hn::LoadU(d, row0 + i), r), hn::Lt(hn::LoadU(d, row1 + i), r)));
+    std::uint8_t part[8] = {};
+    hn::StoreMaskBits(d, hn::Not(outside), part);
+    bits |= (static_cast<std::uint32_t>(part[0]) | static_cast<std::uint32_t>(part[1]) << 8U) << i;
+  }
+  return bits;
+}
+
 }  // namespace
 
-using BoundsOf = ImageBounds (*)(const SceneBoxes&, std::size_t, const PoseFrame&,
-                                 const ImageScale&);
-BoundsOf bounds_kernel() { return bounds_of; }
+const TileBinKernels& tile_bin_kernels() {
+  static const TileBinKernels table{bounds_of, covering};
+  return table;
+}
 
 }  // namespace viewgain::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -109,74 +140,114 @@ namespace {
 
 // Boxes count as larger by this much [voxels], against rounding.
 constexpr float kBoxMargin = 0.02F;
+// Below this a camera's plane is too near to divide by [voxels].
+constexpr float kLeastDepth = 1e-3F;
 
-auto kernel_of(Isa isa) {
+const TileBinKernels& kernels_of(Isa isa) {
   switch (isa) {
 #if HWY_TARGETS & HWY_AVX3
     case Isa::avx512:
-      return N_AVX3::bounds_kernel();
+      return N_AVX3::tile_bin_kernels();
 #endif
 #if HWY_TARGETS & HWY_AVX2
     case Isa::avx2:
-      return N_AVX2::bounds_kernel();
+      return N_AVX2::tile_bin_kernels();
 #endif
     default:
-      return HWY_STATIC_DISPATCH(bounds_kernel)();
+      return HWY_STATIC_DISPATCH(tile_bin_kernels)();
   }
 }
 
-// One box for all primitives whose centre lies in the same cell of this edge [voxels].
-std::vector<PrimitiveBox> merged(const std::vector<PrimitiveBox>& boxes, float edge) {
-  std::map<std::array<int, 3>, PrimitiveBox> cells;
-  for (const PrimitiveBox& box : boxes) {
+// Primitives by the cell, of this edge [voxels], that their centres lie in.
+using Cells = std::map<std::array<int, 3>, std::vector<std::uint32_t>>;
+Cells cells_of(const std::vector<PrimitiveBox>& primitives, float edge) {
+  Cells cells;
+  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
     std::array<int, 3> cell{};
     for (std::size_t k = 0; k < 3; ++k) {
-      cell[k] = static_cast<int>(std::floor((box.min[k] + box.max[k]) / (2.0F * edge)));
+      cell[k] =
+          static_cast<int>(std::floor((primitives[i].min[k] + primitives[i].max[k]) / (2 * edge)));
     }
-    const auto [entry, is_new] = cells.try_emplace(cell, box);
-    if (is_new) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      entry->second.min[k] = std::min(entry->second.min[k], box.min[k]);
-      entry->second.max[k] = std::max(entry->second.max[k], box.max[k]);
-    }
+    cells[cell].push_back(i);
   }
-  std::vector<PrimitiveBox> out;
-  for (const auto& [cell, box] : cells) out.push_back(box);
-  return out;
+  return cells;
 }
 
-// Rays whose number lies in [min, max], as tiles; false if there are none.
-bool tile_range(float min, float max, float last, std::uint16_t& first_tile,
-                std::uint16_t& last_tile) {
+// Tiles of the rays whose numbers lie in [min, max]; false if there are none.
+template <typename Integer>
+bool tile_range(float min, float max, float last, Integer& first_tile, Integer& last_tile) {
   const float low = std::max(min, 0.0F), high = std::min(max, last);
   if (!(low <= high)) return false;
-  first_tile = static_cast<std::uint16_t>(static_cast<int>(low) / kTileEdge);
-  last_tile = static_cast<std::uint16_t>(static_cast<int>(high) / kTileEdge);
+  first_tile = static_cast<Integer>(static_cast<int>(low) / kTileEdge);
+  last_tile = static_cast<Integer>(static_cast<int>(high) / kTileEdge);
   return true;
 }
+
+// The tiles that box i of sixteen covers; false if none.
+template <typename Integer>
+bool outline(const ImageBounds& bounds, std::size_t i, const ImageScale& image, Integer& column0,
+             Integer& column1, Integer& row0, Integer& row1) {
+  float min_column = bounds.min_column[i], max_column = bounds.max_column[i];
+  float min_row = bounds.min_row[i], max_row = bounds.max_row[i];
+  // Rays that count from the camera on can meet what is round it in any direction.
+  if (image.nearest == kLeastDepth && bounds.near[i] == kLeastDepth && max_column > kNowhere) {
+    min_column = min_row = 0;
+    max_column = image.last_column, max_row = image.last_row;
+  }
+  return tile_range(min_column, max_column, image.last_column, column0, column1) &&
+         tile_range(min_row, max_row, image.last_row, row0, row1);
+}
+
+// Rounding moves a distance by less.
+float safely_near(float near) { return near - 1e-5F * std::abs(near); }
 
 // Distances along the optical axis in 256 steps: enough to put near boxes first.
 constexpr std::size_t kDistanceSteps = 256;
 
 }  // namespace
 
-SceneBoxes::SceneBoxes(const std::vector<PrimitiveBox>& primitives)
-    : are_primitives(primitives.size() <= kMaxBoxes) {
-  std::vector<PrimitiveBox> coarse;
-  const std::vector<PrimitiveBox>* boxes = &primitives;
-  for (float edge = 16.0F; boxes->size() > kMaxBoxes; edge *= 2.0F) {
-    coarse = merged(*boxes, edge);
-    boxes = &coarse;
-  }
-  const auto append = [this](const PrimitiveBox& box) {
-    const auto center = [&](std::size_t k) { return 0.5F * (box.min[k] + box.max[k]); };
-    const auto half = [&](std::size_t k) { return 0.5F * (box.max[k] - box.min[k]) + kBoxMargin; };
-    center_x.push_back(center(0)), center_y.push_back(center(1)), center_z.push_back(center(2));
-    half_x.push_back(half(0)), half_y.push_back(half(1)), half_z.push_back(half(2));
+void BoxArrays::append(const PrimitiveBox& box) {
+  const auto center = [&](std::size_t k) { return 0.5F * (box.min[k] + box.max[k]); };
+  const auto half = [&](std::size_t k) { return 0.5F * (box.max[k] - box.min[k]) + kBoxMargin; };
+  center_x.push_back(center(0)), center_y.push_back(center(1)), center_z.push_back(center(2));
+  half_x.push_back(half(0)), half_y.push_back(half(1)), half_z.push_back(half(2));
+}
+
+void BoxArrays::pad() {
+  const auto pad_one = [](std::vector<float>& v) {
+    while (v.size() % kBoxVector != 0) v.push_back(v.back());
   };
-  count = boxes->size();
-  for (const PrimitiveBox& box : *boxes) append(box);
-  while (center_x.size() % kBoxVector != 0) append(boxes->back());
+  for (auto* v : {&center_x, &center_y, &center_z, &half_x, &half_y, &half_z}) pad_one(*v);
+}
+
+SceneBoxes::SceneBoxes(const std::vector<PrimitiveBox>& all) {
+  if (all.size() <= kMaxBoxes) {
+    for (const PrimitiveBox& box : all) boxes.append(box);
+    count = all.size();
+    boxes.pad();
+    return;
+  }
+  float edge = 32.0F;
+  Cells cells = cells_of(all, edge);
+  while (cells.size() > kMaxBoxes) cells = cells_of(all, edge *= 2.0F);
+  count = cells.size();
+  for (const auto& [cell, inside] : cells) {
+    PrimitiveBox box = all[inside.front()];
+    first.push_back(static_cast<std::uint32_t>(members.size()));
+    for (const std::uint32_t i : inside) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        box.min[k] = std::min(box.min[k], all[i].min[k]);
+        box.max[k] = std::max(box.max[k], all[i].max[k]);
+      }
+      members.append(all[i]);
+      primitives.push_back(i);
+    }
+    boxes.append(box);
+    members.pad();
+    primitives.resize(members.size(), kNoPrimitive);
+  }
+  first.push_back(static_cast<std::uint32_t>(members.size()));
+  boxes.pad();
 }
 
 TileBinner::TileBinner(const PinholeCamera& camera, int pixel_stride, const TileTable& table)
@@ -188,48 +259,62 @@ TileBinner::TileBinner(const PinholeCamera& camera, int pixel_stride, const Tile
       last_column_(static_cast<float>(table.columns - 1)),
       last_row_(static_cast<float>(table.rows - 1)),
       tile_columns_(static_cast<std::size_t>((table.columns + kTileEdge - 1) / kTileEdge)),
-      tile_count_(table.tile_count) {}
+      tile_count_(table.tile_count) {
+  for (std::size_t tile = 0; tile < table.tile_count; ++tile) {
+    const float* z = table.directions.data() + tile * 3 * kTileRays + 2 * kTileRays;
+    least_cosine_ = std::min(least_cosine_, *std::min_element(z, z + kTileRays));
+  }
+}
 
-void TileBinner::sort(Isa isa, const SceneBoxes& boxes, const PoseFrame& frame,
+ImageScale TileBinner::image_of(const PoseFrame& frame) const {
+  // A ray that has gone min_range is at least this far along the axis.
+  const float nearest = 0.999F * frame.min_range * least_cosine_;
+  return {scale_x_,     shift_x_, scale_y_, shift_y_, std::max(nearest, kLeastDepth),
+          last_column_, last_row_};
+}
+
+void TileBinner::sort(Isa isa, const SceneBoxes& scene, const PoseFrame& frame,
                       TileBins& bins) const {
   bins.valid_ = false;
   if (!usable_) return;
-  const auto bounds_of = kernel_of(isa);
-  const ImageScale image{scale_x_, shift_x_, scale_y_, shift_y_};
+  const TileBinKernels& kernels = kernels_of(isa);
+  const ImageScale image = image_of(frame);
 
   // Where each box lies in the image and how far off it is.
   bins.entries_.clear();
-  bins.starts_.assign(tile_count_ + 1, 0);
+  bins.starts_.resize(tile_count_ + 1);
   float nearest = std::numeric_limits<float>::max(), farthest = 0;
-  for (std::size_t first = 0; first < boxes.count; first += kBoxVector) {
-    const ImageBounds bounds = bounds_of(boxes, first, frame, image);
-    if (bounds.at_camera) return;
-    const std::size_t count = std::min(kBoxVector, boxes.count - first);
+  for (std::size_t first = 0; first < scene.count; first += kBoxVector) {
+    const ImageBounds bounds = kernels.bounds_of(scene.boxes, first, frame, image);
+    const std::size_t count = std::min(kBoxVector, scene.count - first);
     for (std::size_t i = 0; i < count; ++i) {
       TileBins::Entry entry{};
-      if (!tile_range(bounds.min_column[i], bounds.max_column[i], last_column_, entry.column0,
-                      entry.column1) ||
-          !tile_range(bounds.min_row[i], bounds.max_row[i], last_row_, entry.row0, entry.row1)) {
+      if (!outline(bounds, i, image, entry.column0, entry.column1, entry.row0, entry.row1)) {
         continue;
       }
       entry.box = static_cast<std::uint32_t>(first + i);
-      entry.distance = bounds.distance[i];
-      nearest = std::min(nearest, entry.distance);
-      farthest = std::max(farthest, entry.distance);
+      entry.near = bounds.near[i];
+      nearest = std::min(nearest, entry.near);
+      farthest = std::max(farthest, entry.near);
       bins.entries_.push_back(entry);
     }
   }
 
-  // Near boxes first: a counting sort.
+  // Near boxes first: a counting sort. A list's `near` is that of the step, less the rounding.
   std::array<std::uint32_t, kDistanceSteps + 1> begins{};
-  const float scale = static_cast<float>(kDistanceSteps - 1) / std::max(farthest - nearest, 1e-6F);
+  const float step = std::max(farthest - nearest, 1e-6F) / static_cast<float>(kDistanceSteps - 1);
   const auto step_of = [&](const TileBins::Entry& entry) {
-    return static_cast<std::size_t>((entry.distance - nearest) * scale);
+    return std::min(static_cast<std::size_t>((entry.near - nearest) / step), kDistanceSteps - 1);
   };
   for (const TileBins::Entry& entry : bins.entries_) ++begins[step_of(entry) + 1];
   for (std::size_t i = 0; i < kDistanceSteps; ++i) begins[i + 1] += begins[i];
   bins.sorted_.resize(bins.entries_.size());
-  for (const TileBins::Entry& entry : bins.entries_) bins.sorted_[begins[step_of(entry)]++] = entry;
+  for (const TileBins::Entry& entry : bins.entries_) {
+    const std::size_t at = step_of(entry);
+    TileBins::Entry& sorted = bins.sorted_[begins[at]++];
+    sorted = entry;
+    sorted.near = safely_near(nearest + static_cast<float>(at) * step);
+  }
 
   // Each tile's boxes side by side: count, then fill.
   const auto for_each_tile = [&](const TileBins::Entry& entry, auto&& visit) {
@@ -239,23 +324,105 @@ void TileBinner::sort(Isa isa, const SceneBoxes& boxes, const PoseFrame& frame,
       }
     }
   };
-  std::uint32_t* const starts = bins.starts_.data();
+  // Counting by differences: a rectangle adds one where it begins and takes it back where it ends.
+  const std::size_t tile_rows = tile_count_ / tile_columns_, pitch = tile_columns_ + 1;
+  bins.differences_.assign((tile_rows + 1) * pitch, 0);
+  std::int32_t* const differences = bins.differences_.data();
   for (const TileBins::Entry& entry : bins.sorted_) {
-    for_each_tile(entry, [&](std::size_t tile) { ++starts[tile]; });
+    ++differences[entry.row0 * pitch + entry.column0];
+    --differences[entry.row0 * pitch + entry.column1 + 1U];
+    --differences[(entry.row1 + 1U) * pitch + entry.column0];
+    ++differences[(entry.row1 + 1U) * pitch + entry.column1 + 1U];
   }
+  std::uint32_t* const starts = bins.starts_.data();
   std::uint32_t total = 0;
-  for (std::size_t tile = 0; tile < tile_count_; ++tile) {
-    total += starts[tile];
-    starts[tile] = total;
+  for (std::size_t row = 0; row < tile_rows; ++row) {
+    std::int32_t* const here = differences + row * pitch;
+    std::int32_t along = 0;
+    for (std::size_t column = 0; column < tile_columns_; ++column) {
+      along += here[column];
+      const std::int32_t above =
+          row > 0 ? here[static_cast<std::ptrdiff_t>(column) - static_cast<std::ptrdiff_t>(pitch)]
+                  : 0;
+      here[column] = above + along;  // now the number of boxes over this tile
+      total += static_cast<std::uint32_t>(here[column]);
+      starts[row * tile_columns_ + column] = total;
+    }
   }
   starts[tile_count_] = total;
   bins.boxes_.resize(total);
-  std::uint32_t* const out = bins.boxes_.data();
+  TileBox* const out = bins.boxes_.data();
   // Backwards, so that each start moves down to where its tile begins.
   for (auto entry = bins.sorted_.rbegin(); entry != bins.sorted_.rend(); ++entry) {
-    for_each_tile(*entry, [&](std::size_t tile) { out[--starts[tile]] = entry->box; });
+    for_each_tile(*entry,
+                  [&](std::size_t tile) { out[--starts[tile]] = {entry->box, entry->near}; });
+  }
+
+  if (!scene.are_primitives()) {
+    if (bins.cells_.size() < scene.count) bins.cells_.resize(scene.count);
+    if (++bins.generation_ == 0) {  // after 2^32 views old stamps would look new
+      std::fill(bins.cells_.begin(), bins.cells_.end(), TileBins::Cell{});
+      bins.generation_ = 1;
+    }
+    bins.member_.clear();
+    bins.column0_.clear(), bins.column1_.clear(), bins.row0_.clear(), bins.row1_.clear();
   }
   bins.valid_ = true;
+}
+
+void TileBinner::project_cell(const TileBinKernels& kernels, const SceneBoxes& scene,
+                              const PoseFrame& frame, std::uint32_t cell, TileBins& bins) const {
+  const ImageScale image = image_of(frame);
+  TileBins::Cell& state = bins.cells_[cell];
+  state.generation = bins.generation_;
+  state.begin = static_cast<std::uint32_t>(bins.member_.size());
+  const auto append = [&](std::int16_t column0, std::int16_t column1, std::int16_t row0,
+                          std::int16_t row1, const TileBox& member) {
+    bins.column0_.push_back(column0), bins.column1_.push_back(column1);
+    bins.row0_.push_back(row0), bins.row1_.push_back(row1);
+    bins.member_.push_back(member);
+  };
+  for (std::size_t at = scene.first[cell]; at < scene.first[cell + 1]; at += kBoxVector) {
+    const ImageBounds bounds = kernels.bounds_of(scene.members, at, frame, image);
+    for (std::size_t i = 0; i < kBoxVector; ++i) {
+      const std::uint32_t primitive = scene.primitives[at + i];
+      if (primitive == kNoPrimitive) break;
+      std::int16_t column0 = 0, column1 = 0, row0 = 0, row1 = 0;
+      if (outline(bounds, i, image, column0, column1, row0, row1)) {
+        append(column0, column1, row0, row1, {primitive, safely_near(bounds.near[i])});
+      }
+    }
+  }
+  while (bins.member_.size() % kBoxVector != 0) append(1, 0, 1, 0, {kNoPrimitive, 0});
+  state.end = static_cast<std::uint32_t>(bins.member_.size());
+}
+
+std::span<const TileBox> TileBinner::select(Isa isa, const SceneBoxes& scene,
+                                            const PoseFrame& frame, std::uint32_t cell,
+                                            std::size_t tile, float of_interest,
+                                            TileBins& bins) const {
+  const TileBinKernels& kernels = kernels_of(isa);
+  const TileBins::Cell& state = bins.cells_[cell];
+  if (state.generation != bins.generation_) project_cell(kernels, scene, frame, cell, bins);
+  bins.selected_.clear();
+  const auto column = static_cast<std::int16_t>(tile % tile_columns_);
+  const auto row = static_cast<std::int16_t>(tile / tile_columns_);
+  for (std::size_t at = state.begin; at < state.end; at += kBoxVector) {
+    std::uint32_t bits = kernels.covering(&bins.column0_[at], &bins.column1_[at], &bins.row0_[at],
+                                          &bins.row1_[at], column, row);
+    for (; bits != 0; bits &= bits - 1) {
+      const TileBox member = bins.member_[at + static_cast<std::size_t>(std::countr_zero(bits))];
+      if (member.near > of_interest) continue;
+      // They are few: sorted as they come.
+      bins.selected_.push_back(member);
+      std::size_t i = bins.selected_.size() - 1;
+      for (; i > 0 && bins.selected_[i - 1].near > member.near; --i) {
+        bins.selected_[i] = bins.selected_[i - 1];
+      }
+      bins.selected_[i] = member;
+    }
+  }
+  return bins.selected_;
 }
 
 }  // namespace viewgain::detail

@@ -13,28 +13,52 @@
 
 namespace viewgain::detail {
 
+struct ImageScale;
 struct PrimitiveBox;
+struct TileBinKernels;
 
-/// Boxes that together hold everything in a scene that is not free, as centres and half edges
-/// [voxels], padded to whole vectors.
-struct SceneBoxes {
+/// Boxes as centres and half edges [voxels], padded to whole vectors.
+struct BoxArrays {
   std::vector<float> center_x, center_y, center_z, half_x, half_y, half_z;
-  std::size_t count = 0;
-  bool are_primitives = false;  ///< box i is primitive i; else each stands for many
 
-  /// One box a primitive, or, where there are more than kMaxBoxes, one for each cell of a grid that
-  /// is coarse enough.
+  void append(const PrimitiveBox& box);
+  /// Repeats the last box until a vector is full.
+  void pad();
+  [[nodiscard]] std::size_t size() const { return center_x.size(); }
+};
+
+/// The boxes of a scene, for sorting into the tiles of a view: one a primitive, or, where there are
+/// more than kMaxBoxes, one for each cell of a grid that is coarse enough, and the primitives cell
+/// by cell.
+struct SceneBoxes {
+  BoxArrays boxes;
+  std::size_t count = 0;
+  /// Empty: box i is primitive i. Else box i stands for the members [first[i], first[i + 1]), each
+  /// cell's beginning on a whole vector.
+  std::vector<std::uint32_t> first;
+  BoxArrays members;
+  std::vector<std::uint32_t> primitives;  ///< of the members; kNoPrimitive where padded
+
   explicit SceneBoxes(const std::vector<PrimitiveBox>& primitives);
+
+  [[nodiscard]] bool are_primitives() const { return first.empty(); }
 
   static constexpr std::size_t kMaxBoxes = 4096;
 };
 
-/// The tiles of a view and the boxes that each can meet, near ones first.
+/// Something that a tile's rays can meet.
+struct TileBox {
+  std::uint32_t box;  ///< or primitive
+  float near;  ///< neither this nor any later one of a list begins nearer, along the optical axis
+};
+
+/// The tiles of a view and the boxes that each can meet, near ones first. Where boxes stand for
+/// many primitives, those of a box are projected when the first tile asks for them.
 class TileBins {
  public:
   /// False if the boxes could not be projected; then nothing is known of any tile.
   [[nodiscard]] bool valid() const { return valid_; }
-  [[nodiscard]] std::span<const std::uint32_t> boxes_of(std::size_t tile) const {
+  [[nodiscard]] std::span<const TileBox> boxes_of(std::size_t tile) const {
     return {boxes_.data() + starts_[tile], boxes_.data() + starts_[tile + 1]};
   }
 
@@ -42,18 +66,30 @@ class TileBins {
   friend class TileBinner;
   struct Entry {
     std::uint32_t box;
-    float distance;
+    float near;
     std::uint16_t column0, column1, row0, row1;
   };
+  // The members of a cell, seen from the pose of this generation: tiles that each covers.
+  struct Cell {
+    std::uint32_t generation = 0;
+    std::uint32_t begin = 0, end = 0;  // in the arrays below, whole vectors
+  };
   bool valid_ = false;
-  std::vector<std::uint32_t> starts_, boxes_;
+  std::vector<std::uint32_t> starts_;
+  std::vector<std::int32_t> differences_;
+  std::vector<TileBox> boxes_;
   std::vector<Entry> entries_, sorted_;
+  std::uint32_t generation_ = 0;
+  std::vector<Cell> cells_;
+  std::vector<std::int16_t> column0_, column1_, row0_, row1_;
+  std::vector<TileBox> member_;  // primitives
+  std::vector<TileBox> selected_;
 };
 
 /// Sorts a scene's boxes into the tiles of a view by their outlines in the image. About half of a
 /// view's rays usually pass the object, and of the rest each meets few boxes; projecting all boxes
-/// once tells that for less than walking a BVH tile by tile, as long as there are not too many. For
-/// cameras without distortion. Conservative: no box that a tile's rays can meet is missing.
+/// once tells that for less than walking a BVH tile by tile. For cameras without distortion.
+/// Conservative: no box that a tile's rays can meet at or beyond the least range is missing.
 class TileBinner {
  public:
   TileBinner(const PinholeCamera& camera, int pixel_stride, const TileTable& table);
@@ -61,11 +97,24 @@ class TileBinner {
   /// Fills `bins`; allocates only while they grow. Thread safe.
   void sort(Isa isa, const SceneBoxes& boxes, const PoseFrame& frame, TileBins& bins) const;
 
+  /// The primitives of a cell (a box of sorted boxes that stands for many) that a tile's rays can
+  /// meet and that begin no farther than `of_interest` along the axis, near ones first. Valid until
+  /// the next call.
+  [[nodiscard]] std::span<const TileBox> select(Isa isa, const SceneBoxes& boxes,
+                                                const PoseFrame& frame, std::uint32_t cell,
+                                                std::size_t tile, float of_interest,
+                                                TileBins& bins) const;
+
  private:
+  void project_cell(const TileBinKernels& kernels, const SceneBoxes& scene, const PoseFrame& frame,
+                    std::uint32_t cell, TileBins& bins) const;
+  [[nodiscard]] ImageScale image_of(const PoseFrame& frame) const;
+
   bool usable_ = true;
   float scale_x_ = 0, shift_x_ = 0;  // ray column = scale * x / z + shift
   float scale_y_ = 0, shift_y_ = 0;
   float last_column_ = 0, last_row_ = 0;
+  float least_cosine_ = 1;  // of a ray with the optical axis
   std::size_t tile_columns_ = 0, tile_count_ = 0;
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "ray_tile.hpp"
@@ -11,7 +12,7 @@
 namespace viewgain::detail {
 
 /// Traces the views of one sensor in one scene. There are two ways, which give the same bits:
-/// through Embree's BVH, and, where the scene has few enough primitives and no obstacles, along
+/// through Embree's BVH, and, where the camera has no distortion and the scene no obstacles, along
 /// lists of the primitives that each tile can meet. Immutable; thread safe.
 class ViewTracer {
  public:
@@ -29,17 +30,32 @@ class ViewTracer {
     if (scene_.has_obstacles) return trace_bvh(frame, visit);
     binner_.sort(scene_.kernels->isa, *scene_.scene_boxes, frame, bins);
     if (!bins.valid()) return trace_bvh(frame, visit);
-    const bool by_list = scene_.scene_boxes->are_primitives;
     RayTile out;
     for (std::size_t tile = 0; tile < table_.tile_count; ++tile) {
-      const auto boxes = bins.boxes_of(tile);
-      if (boxes.empty()) continue;
-      if (by_list) {
-        scene_.kernels->trace_list(scene_, table_, frame, tile, boxes, out);
-      } else {
-        scene_.kernels->trace(scene_, table_, frame, tile, out);
-      }
+      if (bins.boxes_of(tile).empty()) continue;
+      trace_tile(frame, tile, bins, out);
       visit(tile, out);
+    }
+  }
+
+  /// One tile whose boxes have been sorted.
+  void trace_tile(const PoseFrame& frame, std::size_t tile, TileBins& bins, RayTile& out) const {
+    const SceneBoxes& scene = *scene_.scene_boxes;
+    const TraceKernels& kernels = *scene_.kernels;
+    kernels.begin(table_, frame, tile, out);
+    const float cosine = table_.cosine[tile];
+    if (scene.are_primitives()) {
+      kernels.walk(scene_, frame, cosine, bins.boxes_of(tile), out);
+      return;
+    }
+    float of_interest = std::numeric_limits<float>::max();
+    for (const TileBox& cell : bins.boxes_of(tile)) {
+      if (cell.near > of_interest) break;
+      const auto primitives =
+          binner_.select(kernels.isa, scene, frame, cell.box, tile, of_interest, bins);
+      if (!primitives.empty()) {
+        of_interest = kernels.walk(scene_, frame, cosine, primitives, out);
+      }
     }
   }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -146,8 +147,9 @@ TEST_F(Reconstruct, SameSeedSameRunForAnyNumberOfThreads) {
   EXPECT_NE(run_well({"info", "run/map.vdb", "--hash"}), maps["1"]);
 }
 
-TEST_F(Reconstruct, EveryPolicyRuns) {
-  std::size_t cases = 0;
+TEST_F(Reconstruct, EveryPolicyGoesItsOwnWay) {
+  std::map<std::string, std::string> views;
+  std::set<std::string> different;
   for (const char* policy : {"gain", "kriegel", "sequence", "random", "frontier"}) {
     const json result =
         reconstruct("cube.off", {"--policy", policy, "--max-views", "4", "--no-pictures", "--size",
@@ -155,9 +157,25 @@ TEST_F(Reconstruct, EveryPolicyRuns) {
     EXPECT_GE(result["views"].get<int>(), 2) << policy;
     EXPECT_GT(result["coverage_visible"].get<double>(), 0.3) << policy;
     EXPECT_LT(result["rms_error"].get<double>(), 0.005) << policy;
-    ++cases;
+    views[policy] = read("run/views.txt");
+    different.insert(views[policy]);
   }
-  EXPECT_EQ(cases, 5U);
+  EXPECT_EQ(views.size(), 5U);
+  EXPECT_EQ(different.size(), 5U);
+}
+
+TEST_F(Reconstruct, KriegelTakesReachablePosesOnlyWhenNoBoundaryIsLeft) {
+  // No boundary candidate is within the reach of a list, whose poses are candidates themselves.
+  const std::vector<Pose> poses{look_at({0.5, 0, 0}, {0, 0, 0}), look_at({-0.5, 0, 0}, {0, 0, 0}),
+                                look_at({0, 0.1, 0.5}, {0, 0, 0})};
+  write_tum(dir / "poses.txt", poses);
+  write("list.toml", "poses = \"poses.txt\"\n");
+  const json result =
+      reconstruct("cube.off", {"--policy", "kriegel", "--reach", "list.toml", "--max-views", "5",
+                               "--no-pictures", "--size", "0.2", "--noise", "off"});
+  EXPECT_GE(result["views"].get<int>(), 2);
+  EXPECT_EQ(result["per_view"][1]["generator"], "reach");
+  EXPECT_TRUE(result["per_view"][1]["class"].is_null());
 }
 
 TEST_F(Reconstruct, ClosedBoxSeenFromAllSidesEnds) {

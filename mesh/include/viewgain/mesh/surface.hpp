@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "viewgain/core/exec_config.hpp"
+
 namespace viewgain {
 
 /// The input of surface reconstruction: a point, and on which side of the surface free space lies.
@@ -42,6 +44,7 @@ struct SurfaceConfig {
 /// Error(invalid_argument) for a position that is not finite, or a length in the configuration that
 /// is not positive.
 [[nodiscard]] SurfaceMesh reconstruct_surface(std::span<const OrientedPoint> points,
-                                              const SurfaceConfig& config);
+                                              const SurfaceConfig& config,
+                                              const ExecConfig& exec = {});
 
 }  // namespace viewgain

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "commands.hpp"
+#include "sensing.hpp"
+
+namespace viewgain::app {
+
+/// Flags of `viewgain reconstruct`.
+struct ReconstructOptions {
+  CommonOptions common;
+  std::string mesh;
+  std::string sensor;
+  double voxel = 0;
+  double size = 0.35;
+  std::string workspace;
+  std::string start;
+  std::optional<double> distance;
+  std::string policy = "gain";
+  std::string generator;
+  std::optional<std::size_t> sphere_poses;
+  std::string criterion = "log_diagonal";
+  std::size_t max_views = 20;
+  std::optional<double> stop_gain;
+  std::size_t stop_idle = 3;
+  std::optional<double> stop_coverage;
+  double travel_cost = 0;
+  std::optional<double> travel_speed;
+  std::string reach;
+  std::string up = "z";
+  SensingOptions sensing;
+  std::size_t frames_per_view = 1;
+  std::string jump_edge_filter = "5";
+  bool no_refine = false;
+  bool save_maps = false;
+  bool no_pictures = false;
+  std::string out;
+};
+
+/// Declares the flags, with o's values as defaults.
+void add_options(CLI::App& app, ReconstructOptions& o);
+
+/// Throws Error(invalid_argument), naming the flag, for numbers that no run can have.
+void check(const ReconstructOptions& options);
+
+}  // namespace viewgain::app

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// `viewgain candidates` as a user would run it, on the map of a short run.
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "program_runner.hpp"
+#include "viewgain/core/pose_io.hpp"
+
+namespace viewgain {
+namespace {
+
+using nlohmann::json;
+using Strings = std::vector<std::string>;
+
+class Candidates : public test::ProgramTest {
+ protected:
+  Candidates() {
+    write_cube();
+    write("tof.toml",
+          "name = \"tof\"\nmin_range = 0.2\nmax_range = 5.0\nworking_distance = 0.4\n"
+          "[camera]\nwidth = 88\nheight = 72\nfx = 110.0\nfy = 115.6\ncx = 43.5\ncy = 35.5\n"
+          "[noise]\nmodel = \"shot\"\nreference_sigma = 0.004\nreference_range = 1.3\n"
+          "reference_integration_time = 0.0085\nintegration_time = 0.001\n");
+    const auto made =
+        run({"reconstruct", "cube.off", "--sensor", "tof.toml", "--voxel", "0.00625", "--size",
+             "0.2", "--max-views", "2", "--no-pictures", "--out", "run", "--json"});
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+  }
+
+  [[nodiscard]] json candidates(const std::string& generator, const Strings& more = {}) const {
+    Strings arguments{"candidates", "run/map.vdb", "--generator", generator, "--sensor",
+                      "tof.toml",   "--out",       "poses.txt",   "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json::parse(run_well(arguments));
+  }
+};
+
+TEST_F(Candidates, EveryGeneratorSaysWhatItMadeAndDropped) {
+  const std::map<std::string, std::size_t> sizes{
+      {"sphere", 500}, {"dome", 500}, {"rings", 48}, {"shell", 500}, {"sequence", 9}};
+  std::size_t cases = 0;
+  for (const auto& [generator, size] : sizes) {
+    const json result = candidates(generator);
+    std::size_t dropped = 0;
+    for (const auto& [reason, count] : result["dropped"].items())
+      dropped += count.get<std::size_t>();
+    EXPECT_EQ(result["candidates"].get<std::size_t>() + dropped, size) << generator;
+    EXPECT_EQ(result["per_candidate"].size(), result["candidates"].get<std::size_t>());
+    EXPECT_EQ(result["per_dropped"].size(), dropped);
+    for (const json& one : result["per_dropped"]) {
+      EXPECT_TRUE(result["dropped"].contains(one["reason"].get<std::string>())) << generator;
+    }
+    EXPECT_EQ(read_tum(dir / "poses.txt").poses.size(), result["per_candidate"].size());
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5U);
+  EXPECT_EQ(candidates("rings", {"--count", "80"})["per_candidate"].size() +
+                candidates("rings", {"--count", "80"})["per_dropped"].size(),
+            80U);
+}
+
+TEST_F(Candidates, BoundaryOnesSayWhyTheyExistAndCanBeScored) {
+  const json result = candidates("boundary");
+  ASSERT_GT(result["candidates"].get<int>(), 10);
+  std::set<std::string> classes;
+  for (const json& one : result["per_candidate"]) {
+    classes.insert(one.at("class").get<std::string>());
+    const auto run = one.at("run").get<std::size_t>();
+    ASSERT_LT(run, result["runs"].size());
+    EXPECT_EQ(result["runs"][run]["class"], one["class"]);
+    EXPECT_GT(one.at("region_vertices").get<int>(), 0);
+  }
+  EXPECT_GE(classes.size(), 2U);
+  const json scores = json::parse(
+      run_well({"score", "run/map.vdb", "--poses", "poses.txt", "--sensor", "tof.toml", "--json"}));
+  EXPECT_EQ(scores["poses"], result["candidates"]);
+}
+
+TEST_F(Candidates, RefusesWhatCannotBe) {
+  const std::vector<std::pair<Strings, std::string>> inputs{
+      {{"--generator", "rings", "--count", "50"}, "50"},
+      {{"--generator", "cone"}, "cone"},
+      {{"--generator", "sphere", "--reach", "missing.toml"}, "missing.toml"},
+  };
+  std::size_t cases = 0;
+  for (const auto& [more, word] : inputs) {
+    Strings arguments{"candidates", "run/map.vdb", "--sensor", "tof.toml", "--out", "none.txt"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const test::ProgramResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2) << word << ": " << result.err;
+    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+    ++cases;
+  }
+  EXPECT_EQ(cases, inputs.size());
+  const Strings names = list();
+  EXPECT_EQ(std::count(names.begin(), names.end(), "none.txt"), 0);
+}
+
+}  // namespace
+}  // namespace viewgain
