@@ -26,11 +26,14 @@ MicroScene::MicroScene()
     view.frame = tracer.frame_of(pose).value();
     tracer.trace_bvh(view.frame, [&](std::size_t number, const detail::RayTile& tile) {
       if (tile.hit == 0) return;
-      std::vector<std::uint32_t> leaves;
+      std::vector<detail::TileBox> leaves;
       for (std::size_t lane = 0; lane < detail::kTileRays; ++lane) {
         if ((tile.hit >> lane & 1U) == 0) continue;
-        if (std::find(leaves.begin(), leaves.end(), tile.primitive[lane]) == leaves.end()) {
-          leaves.push_back(tile.primitive[lane]);
+        const auto is_same = [&](const detail::TileBox& b) {
+          return b.box == tile.primitive[lane];
+        };
+        if (std::none_of(leaves.begin(), leaves.end(), is_same)) {
+          leaves.push_back({tile.primitive[lane], 0.0F});
         }
       }
       view.tiles.push_back(tile);

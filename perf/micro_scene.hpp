@@ -24,8 +24,8 @@ class MicroScene {
   struct View {
     detail::PoseFrame frame;
     std::vector<detail::RayTile> tiles;
-    std::vector<std::size_t> numbers;                ///< tile i's in the table
-    std::vector<std::vector<std::uint32_t>> leaves;  ///< of tile i
+    std::vector<std::size_t> numbers;                  ///< tile i's in the table
+    std::vector<std::vector<detail::TileBox>> leaves;  ///< of tile i
   };
 
   Sensor sensor;

@@ -49,14 +49,14 @@ void tile_traversal(benchmark::State& state) {
 // Only the leaves that a tile's rays end in, only tiles that hit something.
 void leaf_dda(benchmark::State& state, Isa isa) {
   const MicroScene& micro = MicroScene::get();
-  const auto trace_list = detail::trace_kernels(isa).trace_list;
+  const detail::TraceKernels& kernels = detail::trace_kernels(isa);
   detail::RayTile out;
   std::size_t rays = 0, next = 0;
   for (auto _ : state) {
     const MicroScene::View& view = micro.views[next++ % micro.views.size()];
     for (std::size_t i = 0; i < view.tiles.size(); ++i) {
-      trace_list(micro.scene->data(), micro.tracer.table(), view.frame, view.numbers[i],
-                 view.leaves[i], out);
+      kernels.begin(micro.tracer.table(), view.frame, view.numbers[i], out);
+      kernels.walk(micro.scene->data(), view.frame, 1.0F, view.leaves[i], out);
       benchmark::DoNotOptimize(out.hit);
     }
     rays += view.tiles.size() * detail::kTileRays;

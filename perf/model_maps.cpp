@@ -39,7 +39,7 @@ bool visit_model(const ModelMapPlan& plan, const std::filesystem::path& mesh, st
   }
   BeliefGrid grid = model.empty_grid(side / plan.voxels);
   FrameIntegrator integrator(model.sensor(), {}, exec);
-  Pose pose = app::default_start(stage, kModelDistance, seed, {});
+  Pose pose = app::default_start(stage, kModelDistance, seed, {}, {});
   for (int views = 1; views <= plan.views.back(); ++views) {
     integrator.integrate(grid, model.acquire(pose, static_cast<std::uint64_t>(views - 1)), pose);
     const auto scene = VoxelScene::build(grid, {}, exec);
