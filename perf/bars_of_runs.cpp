@@ -61,22 +61,24 @@ std::vector<Figure> latency_figures(const BarsOptions& options) {
   const GainEvaluator alone(scene, sensor, {}, {.num_threads = 1});
   const GainEvaluator together(scene, sensor, {}, {.num_threads = options.num_threads});
   const std::vector<Pose> poses = sphere_poses(static_cast<std::size_t>(options.poses), 0.6);
-  std::vector<double> seconds_alone, seconds_together;
+  // Of each pose the median counts, so that a pose that was interrupted does not.
+  double sum_alone = 0, sum_together = 0;
   bool same = true;
-  for (int repetition = -1; repetition < options.repetitions; ++repetition) {
-    double of_alone = 0, of_together = 0;
-    for (const Pose& pose : poses) {
+  for (const Pose& pose : poses) {
+    std::vector<double> seconds_alone, seconds_together;
+    for (int repetition = -1; repetition < options.repetitions; ++repetition) {
       ViewGain a, b;
-      of_alone += seconds_of([&] { a = alone.evaluate(pose); });
-      of_together += seconds_of([&] { b = together.evaluate(pose); });
+      const double of_alone = seconds_of([&] { a = alone.evaluate(pose); });
+      const double of_together = seconds_of([&] { b = together.evaluate(pose); });
       same = same && a.gain == b.gain;
+      if (repetition < 0) continue;  // warming up
+      seconds_alone.push_back(of_alone);
+      seconds_together.push_back(of_together);
     }
-    if (repetition < 0) continue;  // warming up
-    seconds_alone.push_back(of_alone);
-    seconds_together.push_back(of_together);
+    sum_alone += median(seconds_alone);
+    sum_together += median(seconds_together);
   }
-  return {{"latency_scaling", median(seconds_together) / median(seconds_alone), same,
-           same ? "" : "gains differ"}};
+  return {{"latency_scaling", sum_together / sum_alone, same, same ? "" : "gains differ"}};
 }
 
 std::vector<Figure> integrate_figures(const BarsOptions& options) {

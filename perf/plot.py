@@ -47,8 +47,9 @@ def plot_bars(axes, result):
         axes.annotate(f" {row['value']:.3g} ({sign} {row['bar']:g})", (share, i), va="center",
                       fontsize="small")
     axes.axvline(1, color="black", linewidth=1)
-    axes.set_xlim(0, 1.35 * max(shares + [1]))
-    axes.set_xlabel("of the bar; beyond 1 is a pass")
+    axes.set_xscale("log")
+    axes.set_xlim(0.5 * min(shares + [1]), 4 * max(shares + [1]))
+    axes.set_xlabel("share of the bar; from 1 on it is met")
     if rows:
         axes.set_title(f"{rows[0]['isa']}, {rows[0]['threads']} threads", fontsize="small")
 
