@@ -25,7 +25,7 @@ std::vector<Figure> trace_figures(const BarsOptions& options) {
   trace.mesh = options.mesh;
   const TraceRun run = run_trace_methods(trace);
   const bool agrees = run.agrees();
-  const std::string note = agrees ? "" : "answers differ";
+  const std::string note = run.disagreement();
   const double gain = run.rate("viewgain_gain"), ours = run.rate("viewgain_trace"),
                floor = run.rate("viewgain_floor"), quads = run.rate("embree_quads");
   // All methods run on the same threads, one pose a thread: a ratio per thread is that of the

@@ -97,10 +97,19 @@ double TraceRun::rate(const std::string& name) const {
   return median(row->entry->rates);
 }
 
-bool TraceRun::agrees() const {
-  return std::all_of(entries.begin(), entries.end(), [](const TraceEntry& entry) {
-    return !entry.counts() || entry.agreement.agrees();
-  });
+std::string TraceRun::disagreement() const {
+  std::string names;
+  for (const TraceEntry& entry : entries) {
+    const Agreement& a = entry.agreement;
+    if (!entry.counts() || a.agrees()) continue;
+    names += names.empty() ? "wrong rays: " : ", ";
+    names += entry.name;
+    names += ' ';
+    names += std::to_string(a.wrong());
+    names += " of ";
+    names += std::to_string(a.rays);
+  }
+  return names;
 }
 
 TraceRun run_trace_methods(const TraceOptions& options) {

@@ -49,7 +49,9 @@ struct TraceRun {
 
   /// Median rays per second of a row.
   [[nodiscard]] double rate(const std::string& name) const;
-  [[nodiscard]] bool agrees() const;
+  /// The methods that count and do not agree with the oracle, and their wrong rays; empty: none.
+  [[nodiscard]] std::string disagreement() const;
+  [[nodiscard]] bool agrees() const { return disagreement().empty(); }
 };
 
 /// Makes the map, checks every method against the oracle, times them in turns. Throws Error.
