@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "environment.hpp"
 #include "measure.hpp"
 #include "model.hpp"
 #include "model_scene.hpp"
@@ -147,6 +148,7 @@ int run_honesty(const HonestyOptions& options) {
   const ModelScene scene(options.mesh, 1, exec);
   const GroundTruth truth(scene.stage().scene->mesh());
   Json json{{"mesh", options.mesh.string()}, {"views", options.views}};
+  add_environment(json, exec.num_threads);
   json["consistency"] = consistency_rows(scene, truth, options, exec);
   json["refinement"] = refinement(scene, truth, exec);
   const auto ratio = [&](const char* key) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "environment.hpp"
 #include "measure.hpp"
 #include "octomap_integrate.hpp"
 #include "oracle/walk.hpp"
@@ -190,7 +191,7 @@ void print_table(const Json& json) {
 
 }  // namespace
 
-int run_integrate(const IntegrateOptions& options) {
+nlohmann::ordered_json measure_integrate(const IntegrateOptions& options) {
   const Sensor sensor = sensor_preset("sr4000");
   const ExecConfig exec{.num_threads = ThreadPool(options.num_threads).num_threads()};
   const std::vector<CamelView> views = test::camel_views(4, options.mesh);
@@ -244,9 +245,7 @@ int run_integrate(const IntegrateOptions& options) {
 
   Json json;
   json["scene"] = "camel-" + std::to_string(options.voxels);
-  json["threads"] = exec.num_threads;
-  json["cpu"] = cpu_name();
-  json["build_type"] = VIEWGAIN_BUILD_TYPE;
+  add_environment(json, exec.num_threads);
   json["repetitions"] = options.repetitions;
   json["milliseconds"] = {{"octomap", to_json(octomap_ms)},
                           {"viewgain_lines", to_json(lines_ms)},
@@ -255,6 +254,11 @@ int run_integrate(const IntegrateOptions& options) {
                     {"octomap/viewgain_cones", median(octomap_ms) / median(cones_ms)}};
   json["agreement"] = agreement;
   json["agree"] = agree && unexplained == 0;
+  return json;
+}
+
+int run_integrate(const IntegrateOptions& options) {
+  const Json json = measure_integrate(options);
   if (options.json) {
     std::printf("%s\n", json.dump(2).c_str());
   } else {

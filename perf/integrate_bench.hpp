@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 
 namespace viewgain::bench {
 
@@ -14,8 +15,12 @@ struct IntegrateOptions {
   bool json = false;
 };
 
-/// Times one more frame into camel-N, OctoMap against ours with lines and with cones; prints a
-/// table or JSON. Returns the exit code: 0, or 1 if the maps differ without a reason.
+/// Times one more frame into camel-N, OctoMap against ours with lines and with cones, and compares
+/// the maps; the report as JSON. Throws Error.
+[[nodiscard]] nlohmann::ordered_json measure_integrate(const IntegrateOptions& options);
+
+/// The same, printed as a table or JSON. Returns the exit code: 0, or 1 if the maps differ without
+/// a reason.
 int run_integrate(const IntegrateOptions& options);
 
 }  // namespace viewgain::bench

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "environment.hpp"
 #include "measure.hpp"
 #include "model.hpp"
 #include "model_scene.hpp"
@@ -92,13 +93,11 @@ int run_iteration(const IterationOptions& options) {
 
   nlohmann::ordered_json json{{"scene", "camel-" + std::to_string(options.voxels)},
                               {"views", kViews},
-                              {"threads", exec.num_threads},
-                              {"cpu", cpu_name()},
                               {"candidates", options.candidates},
                               {"boundary_candidates", boundary},
                               {"points", points},
-                              {"vertices", vertices},
-                              {"milliseconds", nlohmann::ordered_json::object()}};
+                              {"vertices", vertices}};
+  add_environment(json, exec.num_threads);
   const auto put = [&](const std::string& stage) {
     const std::vector<double>& s = seconds.at(stage);
     json["milliseconds"][stage] = {{"median", 1e3 * median(s)},

@@ -4,9 +4,13 @@
 #include <cstdio>
 #include <exception>
 
+#include "bars.hpp"
+#include "environment.hpp"
 #include "honesty_bench.hpp"
 #include "integrate_bench.hpp"
 #include "iteration_bench.hpp"
+#include "peak_memory.hpp"
+#include "scaling_bench.hpp"
 #include "support/camel_scene.hpp"
 #include "trace_bench.hpp"
 #include "viewgain/core/error.hpp"
@@ -16,19 +20,24 @@ namespace {
 constexpr int kInternalError = 1;
 constexpr int kBadInput = 2;
 
-void add_common(CLI::App& app, int& threads, int& voxels, int& repetitions,
-                std::filesystem::path& mesh, bool& json) {
+void add_run(CLI::App& app, int& threads, int& repetitions, std::filesystem::path& mesh,
+             bool& json) {
   app.add_option("--threads", threads, "threads, 0: all")
       ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  app.add_option("--voxels", voxels, "voxels a side of the workspace")
-      ->check(CLI::Range(8, 1024))
       ->capture_default_str();
   app.add_option("--repetitions", repetitions, "timed runs of each method")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_option("--mesh", mesh, "the camel's mesh file")->capture_default_str();
   app.add_flag("--json", json, "print JSON");
+}
+
+void add_common(CLI::App& app, int& threads, int& voxels, int& repetitions,
+                std::filesystem::path& mesh, bool& json) {
+  add_run(app, threads, repetitions, mesh, json);
+  app.add_option("--voxels", voxels, "voxels a side of the workspace")
+      ->check(CLI::Range(8, 1024))
+      ->capture_default_str();
 }
 
 int run(int argc, char** argv) {
@@ -44,6 +53,10 @@ int run(int argc, char** argv) {
   trace_app->add_option("--poses", trace.poses, "views, SR4000 at full resolution")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+
+  trace_app->add_option("--without", trace.without, "not compared with: dense, openvdb, octomap")
+      ->check(CLI::IsMember({"dense", "openvdb", "octomap"}))
+      ->delimiter(',');
 
   viewgain::bench::IntegrateOptions integrate;
   integrate.mesh = viewgain::test::camel_mesh_path();
@@ -74,6 +87,64 @@ int run(int argc, char** argv) {
   honesty_app->add_option("--mesh", honesty.mesh, "mesh file")->capture_default_str();
   honesty_app->add_flag("--json", honesty.json, "print JSON");
 
+  viewgain::bench::ScalingOptions scaling;
+  scaling.mesh = viewgain::test::camel_mesh_path();
+  CLI::App* scaling_app = app.add_subcommand(
+      "scaling", "the full gain on maps of several sizes, with few and many rays, by threads");
+  add_run(*scaling_app, scaling.num_threads, scaling.repetitions, scaling.mesh, scaling.json);
+  scaling_app->add_option("--voxels", scaling.voxels, "voxels a side of each map")
+      ->check(CLI::Range(8, 1024))
+      ->delimiter(',')
+      ->capture_default_str();
+  scaling_app->add_option("--poses", scaling.poses, "views at full resolution")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+
+  viewgain::bench::BarsOptions bars;
+  bars.mesh = viewgain::test::camel_mesh_path();
+  CLI::App* bars_app =
+      app.add_subcommand("bars", "every figure that has a bar; 1 if one is missed");
+  add_common(*bars_app, bars.num_threads, bars.voxels, bars.repetitions, bars.mesh, bars.json);
+  bars_app->add_option("--large-voxels", bars.large_voxels, "voxels a side of the large map")
+      ->check(CLI::Range(8, 1024))
+      ->capture_default_str();
+  bars_app->add_option("--poses", bars.poses, "views in the tracing comparison")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  bars_app->add_option("--maps", bars.maps, "maps on which the best of many views is searched")
+      ->check(CLI::Range(1, 200))
+      ->capture_default_str();
+  bars_app->add_option("--candidates", bars.candidates, "views searched on each")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  std::vector<std::string> groups;
+  for (const auto& group : viewgain::bench::bar_groups()) groups.emplace_back(group.name);
+  bars_app->add_option("--only", bars.only, "groups, separated by commas")
+      ->check(CLI::IsMember(groups))
+      ->delimiter(',');
+
+  viewgain::bench::MemoryOptions memory;
+  memory.mesh = viewgain::test::camel_mesh_path();
+  CLI::App* memory_app =
+      app.add_subcommand("memory", "JSON of the memory of a map and its scene in this process");
+  memory_app->add_option("--threads", memory.num_threads, "threads, 0: all")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  memory_app->add_option("--voxels", memory.voxels, "voxels a side")
+      ->check(CLI::Range(8, 1024))
+      ->capture_default_str();
+  memory_app->add_option("--views", memory.views, "views integrated")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  memory_app->add_option("--mesh", memory.mesh, "the camel's mesh file")->capture_default_str();
+
+  int environment_threads = 0;
+  CLI::App* environment_app = app.add_subcommand(
+      "environment", "JSON of what results depend on: CPU, ISA, compiler, versions, commit");
+  environment_app->add_option("--threads", environment_threads, "threads, 0: all")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -82,7 +153,11 @@ int run(int argc, char** argv) {
   if (trace_app->parsed()) return viewgain::bench::run_trace(trace);
   if (integrate_app->parsed()) return viewgain::bench::run_integrate(integrate);
   if (iteration_app->parsed()) return viewgain::bench::run_iteration(iteration);
-  return viewgain::bench::run_honesty(honesty);
+  if (honesty_app->parsed()) return viewgain::bench::run_honesty(honesty);
+  if (scaling_app->parsed()) return viewgain::bench::run_scaling(scaling);
+  if (bars_app->parsed()) return viewgain::bench::run_bars(bars);
+  if (memory_app->parsed()) return viewgain::bench::run_memory(memory);
+  return viewgain::bench::run_environment(environment_threads);
 }
 
 }  // namespace

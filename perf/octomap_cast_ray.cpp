@@ -2,20 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "octomap_cast_ray.hpp"
 
+#include <utility>
 #include <vector>
-
-#include "octomap_tree.hpp"
 
 namespace viewgain::bench {
 namespace {
 
 class OctomapCastRay final : public TraceMethod {
  public:
-  explicit OctomapCastRay(const TraceTask& task)
+  OctomapCastRay(const TraceTask& task, std::shared_ptr<const octomap::OcTree> tree)
       : TraceMethod("octomap_cast_ray", task.sensor.camera.ray_table().size()),
         map_(task.map),
         max_range_(task.sensor.max_range),
-        tree_(octree_of(task.map)) {
+        tree_(std::move(tree)) {
     for (const Eigen::Vector3d& d : task.sensor.camera.ray_table()) {
       directions_.push_back(d.normalized());
     }
@@ -30,7 +29,7 @@ class OctomapCastRay final : public TraceMethod {
       const auto segment = clip_to_workspace(map_, eye, eye + max_range_ * d);
       if (!segment) continue;
       octomap::point3d end;
-      tree_->castRay(point(segment->begin), point(d), end, false);
+      tree_->castRay(octomap_point(segment->begin), octomap_point(d), end, false);
       octomap::OcTreeKey key;
       if (!tree_->coordToKeyChecked(end, key)) continue;
       const Index3 voxel = voxel_of(key);
@@ -40,20 +39,17 @@ class OctomapCastRay final : public TraceMethod {
   }
 
  private:
-  static octomap::point3d point(const Eigen::Vector3d& p) {
-    return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
-  }
-
   const oracle::DenseMap& map_;
   double max_range_;  ///< [m]
-  std::unique_ptr<octomap::OcTree> tree_;
+  std::shared_ptr<const octomap::OcTree> tree_;
   std::vector<Eigen::Vector3d> directions_;
 };
 
 }  // namespace
 
-std::unique_ptr<TraceMethod> make_octomap_cast_ray(const TraceTask& task) {
-  return std::make_unique<OctomapCastRay>(task);
+std::unique_ptr<TraceMethod> make_octomap_cast_ray(const TraceTask& task,
+                                                   std::shared_ptr<const octomap::OcTree> tree) {
+  return std::make_unique<OctomapCastRay>(task, std::move(tree));
 }
 
 }  // namespace viewgain::bench

@@ -5,14 +5,6 @@
 #include <cmath>
 
 namespace viewgain::bench {
-namespace {
-
-octomap::point3d point(const Eigen::Vector3d& p) {
-  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
-}
-
-}  // namespace
-
 OctomapIntegrator::OctomapIntegrator(const Sensor& sensor, const oracle::DenseMap& frame_of)
     : map_(frame_of),
       min_range_(sensor.min_range),
@@ -35,8 +27,8 @@ void OctomapIntegrator::integrate(octomap::OcTree& tree, const DepthFrame& frame
     const Eigen::Vector3d end = eye + reach / per_depth * (R * directions_[i]);
     const auto segment = clip_to_workspace(map_, eye, end);
     if (!segment) continue;
-    const octomap::point3d last = point(segment->end);
-    if (!tree.computeRayKeys(point(segment->begin), last, ray_)) continue;
+    const octomap::point3d last = octomap_point(segment->end);
+    if (!tree.computeRayKeys(octomap_point(segment->begin), last, ray_)) continue;
     crossed.insert(ray_.begin(), ray_.end());
     // computeRayKeys leaves out the last cell: the reading's, or one more that was crossed.
     const octomap::OcTreeKey last_key = tree.coordToKey(last);

@@ -26,6 +26,10 @@ Index3 voxel_of(const octomap::OcTreeKey& key) {
   return {key[0] - kOctomapKeyOffset, key[1] - kOctomapKeyOffset, key[2] - kOctomapKeyOffset};
 }
 
+octomap::point3d octomap_point(const Eigen::Vector3d& p) {
+  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+}
+
 std::unique_ptr<octomap::OcTree> empty_octree(double voxel_size) {
   auto tree = std::make_unique<octomap::OcTree>(voxel_size);
   tree->setProbHit(probability(static_cast<double>(kHit)));

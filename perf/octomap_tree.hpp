@@ -18,6 +18,9 @@ inline constexpr int kOctomapKeyOffset = 1 << 15;
 [[nodiscard]] octomap::OcTreeKey key_of(Index3 voxel);
 [[nodiscard]] Index3 voxel_of(const octomap::OcTreeKey& key);
 
+/// In OctoMap's single precision.
+[[nodiscard]] octomap::point3d octomap_point(const Eigen::Vector3d& p);
+
 /// An empty tree with the update rule of DESIGN.md section 5: +0.85, -0.4, clamped to -2..3.5.
 [[nodiscard]] std::unique_ptr<octomap::OcTree> empty_octree(double voxel_size);
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace viewgain::bench {
 
@@ -11,6 +13,9 @@ struct TraceOptions {
   int voxels = 128;     ///< a side
   int poses = 200;
   int repetitions = 7;
+  /// dense, openvdb, octomap: not compared with. OctoMap takes minutes and gigabytes for a tree of
+  /// 512³.
+  std::vector<std::string> without{};
   std::filesystem::path mesh;
   bool json = false;
 };

@@ -1,15 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// viewgain-bench runs with tiny settings, keeps its JSON's keys, and the methods agree. No times.
+// viewgain-bench and viewgain-micro run with tiny settings, keep their JSON's keys, and the methods
+// agree. Nothing is timed.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <array>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace {
 
@@ -20,9 +23,9 @@ struct Result {
   std::string out;
 };
 
-Result run(const std::string& arguments) {
+Result run(const std::string& arguments, const std::string& program = VIEWGAIN_BENCH) {
   Result result;
-  const std::string command = std::string(VIEWGAIN_BENCH) + " " + arguments + " 2>/dev/null";
+  const std::string command = program + " " + arguments + " 2>/dev/null";
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return result;
   std::array<char, 4096> buffer;
@@ -34,14 +37,26 @@ Result run(const std::string& arguments) {
   return result;
 }
 
+// What every report must carry.
+void expect_environment(const Json& json, int threads) {
+  EXPECT_EQ(json["threads"], threads);
+  for (const char* key : {"cpu", "isa", "compiler", "build_type", "commit"}) {
+    ASSERT_TRUE(json[key].is_string()) << key;
+    EXPECT_FALSE(json[key].get<std::string>().empty()) << key;
+  }
+  for (const char* library : {"embree", "openvdb", "eigen", "octomap", "cgal"}) {
+    ASSERT_TRUE(json["versions"][library].is_string()) << library;
+    EXPECT_NE(json["versions"][library].get<std::string>().find('.'), std::string::npos) << library;
+  }
+}
+
 TEST(Bench, AllWaysToTraceAgree) {
   const Result result = run("trace --json --voxels 48 --poses 4 --repetitions 1 --threads 2");
   ASSERT_EQ(result.exit_code, 0) << result.out;
   const Json json = Json::parse(result.out);
   EXPECT_EQ(json["scene"], "camel-48");
-  EXPECT_EQ(json["threads"], 2);
+  expect_environment(json, 2);
   EXPECT_EQ(json["rays_per_pose"], 25344);
-  EXPECT_TRUE(json["isa"].is_string());
   EXPECT_EQ(json["agree"], true);
   std::set<std::string> names;
   for (const Json& method : json["methods"]) {
@@ -53,7 +68,7 @@ TEST(Bench, AllWaysToTraceAgree) {
     EXPECT_EQ(json["wrong"][name], 0) << name;
   }
   for (const char* name : {"viewgain_gain", "viewgain_trace", "viewgain_floor", "embree_quads",
-                           "openvdb_dda", "octomap_cast_ray"}) {
+                           "dense_dda", "openvdb_dda", "octomap_cast_ray", "octomap_gain"}) {
     EXPECT_EQ(names.count(name), 1U) << name;
   }
   for (const char* ratio : {"viewgain_gain/embree_quads", "viewgain_gain/octomap_cast_ray",
@@ -62,10 +77,133 @@ TEST(Bench, AllWaysToTraceAgree) {
   }
 }
 
+// Bricks that the workspace ends in the middle of.
+TEST(Bench, AllWaysToTraceAgreeOnAMapThatIsNoMultipleOfEight) {
+  const Result result = run("trace --json --voxels 37 --poses 2 --repetitions 1 --threads 1");
+  ASSERT_EQ(result.exit_code, 0) << result.out;
+  const Json json = Json::parse(result.out);
+  int compared = 0;
+  for (const auto& [name, wrong] : json["wrong"].items()) {
+    EXPECT_EQ(wrong, 0) << name;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 9);
+}
+
+TEST(Bench, ScalingAgreesForAllSizesRaysAndThreads) {
+  const Result result = run("scaling --json --voxels 16,24 --poses 4 --repetitions 2 --threads 2");
+  ASSERT_EQ(result.exit_code, 0) << result.out;
+  const Json json = Json::parse(result.out);
+  expect_environment(json, 2);
+  EXPECT_EQ(json["agree"], true);
+  ASSERT_EQ(json["cases"].size(), 2U * 3U * 2U);
+  std::set<std::string> cases;
+  for (const Json& c : json["cases"]) {
+    cases.insert(c["scene"].get<std::string>() + " " + c["rays_per_pose"].dump() + " " +
+                 c["threads"].dump());
+    EXPECT_EQ(c["same_bits"], true);
+    EXPECT_EQ(c["wrong"], 0);
+    EXPECT_GE(c["agreement"].get<double>(), 0.9999);
+    EXPECT_GE(c["poses"].get<int>() * c["rays_per_pose"].get<int>(), 100000);
+    for (const char* figure : {"poses_per_second", "rays_per_second", "ns_per_ray"}) {
+      EXPECT_GT(c[figure]["p05"].get<double>(), 0) << figure;
+      EXPECT_LE(c[figure]["p05"], c[figure]["median"]) << figure;
+      EXPECT_LE(c[figure]["median"], c[figure]["p95"]) << figure;
+    }
+  }
+  EXPECT_EQ(cases.size(), 12U);
+  EXPECT_EQ(cases.count("camel-24 950 2"), 1U);
+  ASSERT_EQ(json["memory"].size(), 2U);
+  EXPECT_GT(json["memory"][1]["map_bytes"], 0);
+}
+
+TEST(Bench, BarsAreListedWithTheirFields) {
+  const Result result =
+      run("bars --json --voxels 32 --large-voxels 48 --poses 8 --repetitions 1 --maps 2 "
+          "--candidates 8 --threads 2");
+  const Json json = Json::parse(result.out);
+  const std::map<std::string, std::pair<Json, std::string>> stated{
+      {"gain_over_quads", {3.0, "higher"}},      {"gain_over_trace", {0.88, "higher"}},
+      {"floor_over_quads", {6.0, "higher"}},     {"trace_over_floor", {0.45, "higher"}},
+      {"gain_over_octomap", {1000.0, "higher"}}, {"thread_scaling", {1.9, "higher"}},
+      {"cost_512_over_128", {2.5, "lower"}},     {"octomap_over_integrate", {100.0, "higher"}},
+      {"update_over_build", {0.35, "lower"}},    {"build_ms", {2.0, "lower"}},
+      {"prune_over_exhaustive", {0.6, "lower"}}, {"race_over_exhaustive", {0.15, "lower"}},
+      {"latency_scaling", {0.6, "lower"}},       {"memory_mb", {250.0, "lower"}},
+      {"decision_ms_100", {nullptr, "lower"}},   {"decision_ms_500", {nullptr, "lower"}},
+      {"decision_ms_2000", {nullptr, "lower"}}};
+  const std::set<std::string> fields{"name", "value", "bar", "better", "pass", "isa", "threads"};
+  bool all_pass = true;
+  std::set<std::string> names;
+  for (const Json& entry : json) {
+    const auto name = entry["name"].get<std::string>();
+    names.insert(name);
+    ASSERT_EQ(stated.count(name), 1U) << name;
+    std::set<std::string> keys;
+    for (const auto& [key, value] : entry.items()) keys.insert(key);
+    EXPECT_EQ(keys, fields) << name;
+    const auto& [bar, better] = stated.at(name);
+    EXPECT_EQ(entry["bar"], bar) << name;
+    EXPECT_EQ(entry["better"], better) << name;
+    EXPECT_EQ(entry["threads"], 2) << name;
+    EXPECT_GT(entry["value"].get<double>(), 0) << name;
+    if (bar.is_null()) {
+      EXPECT_TRUE(entry["pass"].is_null()) << name;
+      continue;
+    }
+    const double value = entry["value"], limit = bar;
+    // A figure whose answers are wrong fails whatever its value; here none may be.
+    if (name != "race_over_exhaustive") {
+      EXPECT_EQ(entry["pass"], better == "higher" ? value >= limit : value <= limit) << name;
+    }
+    all_pass = all_pass && entry["pass"].get<bool>();
+  }
+  EXPECT_EQ(names.size(), json.size());
+  EXPECT_GE(names.size(), 14U);
+  EXPECT_EQ(result.exit_code, all_pass ? 0 : 1);
+}
+
+TEST(Bench, EnvironmentAndMemoryAreJson) {
+  const Result environment = run("environment --threads 1");
+  ASSERT_EQ(environment.exit_code, 0);
+  expect_environment(Json::parse(environment.out), 1);
+  const Result memory = run("memory --voxels 64 --views 2 --threads 1");
+  ASSERT_EQ(memory.exit_code, 0);
+  const Json json = Json::parse(memory.out);
+  expect_environment(json, 1);
+  EXPECT_EQ(json["scene"], "camel-64");
+  EXPECT_GT(json["map_bytes"], 0);
+  EXPECT_GT(json["scene_bytes"], 0);
+  EXPECT_GT(json["peak_bytes"], 0);
+}
+
+TEST(Bench, MicrobenchmarksRunAndCount) {
+  const Result result = run("--benchmark_min_time=0.0001 --benchmark_format=json", VIEWGAIN_MICRO);
+  ASSERT_EQ(result.exit_code, 0) << result.out;
+  const Json json = Json::parse(result.out);
+  EXPECT_TRUE(json["context"]["commit"].is_string());
+  std::set<std::string> parts;
+  for (const Json& benchmark : json["benchmarks"]) {
+    const auto name = benchmark["name"].get<std::string>();
+    const std::string part = name.substr(0, name.find('/'));
+    parts.insert(part);
+    if (part == "scene_update") continue;  // an error where the library builds every scene anew
+    EXPECT_FALSE(benchmark.contains("error_occurred")) << name;
+    int rates = 0;
+    for (const char* counter : {"rays", "hits", "voxels", "primitives", "leaves", "pixels", "bytes",
+                                "points", "candidates"}) {
+      if (benchmark.contains(counter) && benchmark[counter].get<double>() > 0) ++rates;
+    }
+    EXPECT_EQ(rates, 1) << name;
+  }
+  EXPECT_EQ(parts.size(), 14U);
+}
+
 TEST(Bench, OctomapAndOursMakeTheSameMap) {
   const Result result = run("integrate --json --voxels 64 --repetitions 1 --threads 2");
   ASSERT_EQ(result.exit_code, 0) << result.out;
   const Json json = Json::parse(result.out);
+  expect_environment(json, 2);
   EXPECT_EQ(json["agree"], true);
   EXPECT_EQ(json["agreement"].size(), 2U);
   for (const Json& comparison : json["agreement"]) {
@@ -80,6 +218,8 @@ TEST(Bench, OctomapAndOursMakeTheSameMap) {
 TEST(Bench, BadInputEndsWithTwo) {
   EXPECT_EQ(run("").exit_code, 2);
   EXPECT_EQ(run("trace --poses 0").exit_code, 2);
+  EXPECT_EQ(run("bars --only nothing").exit_code, 2);
+  EXPECT_EQ(run("scaling --voxels 4").exit_code, 2);
   EXPECT_EQ(run("trace --mesh /nonexistent.off --repetitions 1").exit_code, 2);
   EXPECT_EQ(run("--help").exit_code, 0);
 }

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace viewgain::bench {
+
+/// What the bars are measured with. The bars are stated for the defaults; other sizes are for
+/// trying the program.
+struct BarsOptions {
+  int num_threads = 2;
+  int voxels = 128;        ///< a side: camel-128 and the maps for best-1
+  int large_voxels = 512;  ///< a side: camel-512
+  int poses = 200;         ///< in the tracing comparison
+  int repetitions = 7;
+  int maps = 200;         ///< for best-1
+  int candidates = 2000;  ///< for best-1
+  std::filesystem::path mesh;
+  std::vector<std::string> only{};  ///< names of groups; empty: all
+  bool json = false;
+};
+
+/// One measured figure.
+struct Figure {
+  std::string name;
+  double value = 0;
+  /// What must hold besides the bar: answers agree, the same index, little regret.
+  bool is_valid = true;
+  std::string note{};  ///< for people
+};
+
+/// Figures that are measured together. Each throws Error; groups whose calls the library does not
+/// have give no figures.
+using BarGroup = std::vector<Figure> (*)(const BarsOptions& options);
+
+/// One interleaved run of `trace`: gain_over_quads, gain_over_trace, floor_over_quads,
+/// trace_over_floor, gain_over_octomap, build_ms.
+[[nodiscard]] std::vector<Figure> trace_figures(const BarsOptions& options);
+/// thread_scaling, cost_512_over_128.
+[[nodiscard]] std::vector<Figure> scaling_figures(const BarsOptions& options);
+/// latency_scaling.
+[[nodiscard]] std::vector<Figure> latency_figures(const BarsOptions& options);
+/// octomap_over_integrate.
+[[nodiscard]] std::vector<Figure> integrate_figures(const BarsOptions& options);
+/// update_over_build.
+[[nodiscard]] std::vector<Figure> update_figures(const BarsOptions& options);
+/// prune_over_exhaustive, race_over_exhaustive.
+[[nodiscard]] std::vector<Figure> search_figures(const BarsOptions& options);
+/// memory_mb.
+[[nodiscard]] std::vector<Figure> memory_figures(const BarsOptions& options);
+/// decision_ms_100, decision_ms_500, decision_ms_2000.
+[[nodiscard]] std::vector<Figure> decision_figures(const BarsOptions& options);
+
+/// Groups by the names that BarsOptions::only takes.
+struct NamedBarGroup {
+  std::string_view name;
+  BarGroup run;
+};
+[[nodiscard]] std::span<const NamedBarGroup> bar_groups();
+
+/// Measures, prints a table or a JSON list. Returns the exit code: 0, or 1 if a bar is missed.
+int run_bars(const BarsOptions& options);
+
+}  // namespace viewgain::bench

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// The whole decision without the surface: frame in, best pose out.
+#include <array>
+
+#include "bars.hpp"
+#include "measure.hpp"
+#include "model_maps.hpp"
+#include "model_scene.hpp"
+#include "search_calls.hpp"
+#include "viewgain/core/generators.hpp"
+
+namespace viewgain::bench {
+namespace {
+
+constexpr std::size_t kViews = 8;
+constexpr std::array<std::size_t, 3> kCandidates{100, 500, 2000};
+
+}  // namespace
+
+std::vector<Figure> decision_figures(const BarsOptions& options) {
+  const ExecConfig exec{.num_threads = options.num_threads};
+  const ModelScene model(options.mesh, 1, exec);
+  const std::vector<Pose> views = sphere_poses(kViews + 1, kModelDistance);
+  BeliefGrid before = model.empty_grid(0.4 / options.voxels);
+  FrameIntegrator integrator(model.sensor(), {}, exec);
+  for (std::size_t i = 0; i < kViews; ++i) {
+    integrator.integrate(before, model.acquire(views[i], i), views[i]);
+  }
+  const DepthFrame frame = model.acquire(views[kViews], kViews);
+  const auto scene_before = VoxelScene::build(before, {}, exec);
+
+  const auto decide = [&](BeliefGrid& grid, std::span<const Pose> poses) {
+    integrator.integrate(grid, frame, views[kViews]);
+    auto scene = updated_scene(scene_before, grid, exec);
+    if (!scene) scene = VoxelScene::build(grid, {}, exec);
+    const GainEvaluator evaluator(scene, model.sensor(), {}, exec);
+    const auto best = pruned_best(evaluator, poses);
+    return best ? *best : best_indices(evaluator.evaluate(poses), 1).front();
+  };
+  std::array<std::vector<double>, kCandidates.size()> seconds;
+  for (int repetition = -1; repetition < options.repetitions; ++repetition) {
+    for (std::size_t i = 0; i < kCandidates.size(); ++i) {
+      const std::vector<Pose> poses = sphere_poses(kCandidates[i], kModelDistance);
+      BeliefGrid grid = before.clone();
+      const double value = seconds_of([&] { (void)decide(grid, poses); });
+      if (repetition >= 0) seconds[i].push_back(value);  // -1: to warm up
+    }
+  }
+  std::vector<Figure> figures;
+  for (std::size_t i = 0; i < kCandidates.size(); ++i) {
+    figures.push_back(
+        {std::string("decision_ms_") + std::to_string(kCandidates[i]), 1e3 * median(seconds[i])});
+  }
+  return figures;
+}
+
+}  // namespace viewgain::bench

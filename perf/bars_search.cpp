@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// The best of many poses: with pruning and by racing against scoring them all.
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+#include "bars.hpp"
+#include "measure.hpp"
+#include "model_maps.hpp"
+#include "search_calls.hpp"
+#include "viewgain/core/generators.hpp"
+
+namespace viewgain::bench {
+namespace {
+
+constexpr double kRightShare = 0.95;
+constexpr double kMostRegret = 0.01;
+
+/// One way to find the best pose, over all maps.
+struct Searches {
+  std::vector<double> time_ratios;  ///< to scoring all, one a map
+  std::vector<double> regrets;      ///< share of the best gain that the choice gives away
+  std::size_t right = 0;            ///< the same index
+
+  [[nodiscard]] double right_share() const {
+    return static_cast<double>(right) / static_cast<double>(time_ratios.size());
+  }
+  [[nodiscard]] double most_regret() const {
+    return *std::max_element(regrets.begin(), regrets.end());
+  }
+  void add(double time_ratio, std::size_t chosen, std::size_t best,
+           const std::vector<ViewGain>& gains) {
+    time_ratios.push_back(time_ratio);
+    right += chosen == best ? 1 : 0;
+    const double lost = gains[best].gain - gains[chosen].gain;
+    regrets.push_back(gains[best].gain > 0 ? lost / gains[best].gain : 0);
+  }
+  [[nodiscard]] std::string note() const {
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "%zu maps, the best in %zu, regret mean %.5f most %.5f, time p05 %.3f p95 %.3f",
+        time_ratios.size(), right,
+        std::accumulate(regrets.begin(), regrets.end(), 0.0) / static_cast<double>(regrets.size()),
+        most_regret(), quantile(time_ratios, 0.05), quantile(time_ratios, 0.95));
+    return text;
+  }
+};
+
+struct Search {
+  std::optional<std::size_t> chosen;
+  double seconds = 0;
+};
+
+/// Scores, prunes and races on one map, each once; odd maps in the other order.
+void search(const GainEvaluator& evaluator, std::span<const Pose> poses, bool is_odd,
+            Searches& pruned, Searches& raced) {
+  std::vector<ViewGain> gains;
+  // What each thread keeps from pose to pose is made before anything is timed.
+  (void)evaluator.evaluate(poses.first(std::min<std::size_t>(poses.size(), 16)));
+  const auto score_all = [&] {
+    gains = evaluator.evaluate(poses);
+    return std::optional(best_indices(gains, 1).front());
+  };
+  const auto prune = [&] { return pruned_best(evaluator, poses); };
+  const auto race = [&] { return raced_best(evaluator, poses); };
+  const auto timed = [](const auto& call) {
+    Search result;
+    result.seconds = seconds_of([&] { result.chosen = call(); });
+    return result;
+  };
+  Search all, with_pruning, by_racing;
+  if (is_odd) by_racing = timed(race), with_pruning = timed(prune), all = timed(score_all);
+  if (!is_odd) all = timed(score_all), with_pruning = timed(prune), by_racing = timed(race);
+  const auto add = [&](const Search& s, Searches& to) {
+    if (s.chosen) to.add(s.seconds / all.seconds, *s.chosen, *all.chosen, gains);
+  };
+  add(with_pruning, pruned);
+  add(by_racing, raced);
+}
+
+}  // namespace
+
+std::vector<Figure> search_figures(const BarsOptions& options) {
+  if (!Prunes<GainEvaluator> && !Races<GainEvaluator>) return {};
+  const ExecConfig exec{.num_threads = options.num_threads};
+  const std::vector<Pose> poses =
+      sphere_poses(static_cast<std::size_t>(options.candidates), kModelDistance);
+  const Sensor sensor = sensor_preset("sr4000");
+  ModelMapPlan plan;
+  plan.voxels = options.voxels;
+  plan.most = static_cast<std::size_t>(options.maps);
+  Searches pruned, raced;
+  bool is_odd = false;
+  for_each_model_map(plan, exec, [&](const ModelMap& map) {
+    const GainEvaluator evaluator(map.scene, sensor, {}, exec);
+    search(evaluator, poses, is_odd, pruned, raced);
+    is_odd = !is_odd;
+  });
+  std::vector<Figure> figures;
+  if (!pruned.time_ratios.empty()) {
+    figures.push_back({"prune_over_exhaustive", median(pruned.time_ratios),
+                       pruned.right == pruned.time_ratios.size(), pruned.note()});
+  }
+  if (!raced.time_ratios.empty()) {
+    const bool is_valid = raced.right_share() >= kRightShare && raced.most_regret() <= kMostRegret;
+    figures.push_back({"race_over_exhaustive", median(raced.time_ratios), is_valid, raced.note()});
+  }
+  return figures;
+}
+
+}  // namespace viewgain::bench

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "micro_scene.hpp"
+
+#include <algorithm>
+
+#include "scene_data.hpp"
+#include "viewgain/core/generators.hpp"
+
+namespace viewgain::bench {
+namespace {
+
+constexpr int kVoxels = 128;
+constexpr std::size_t kViews = 8;
+
+}  // namespace
+
+MicroScene::MicroScene()
+    : sensor(sensor_preset("sr4000")),
+      frames(test::camel_views(4)),
+      grid(test::camel_grid(kVoxels, {frames.begin(), frames.begin() + 3})),
+      scene(VoxelScene::build(grid, {}, {.num_threads = 1})),
+      tracer(scene->data(), sensor.camera, 1, sensor.min_range, sensor.max_range) {
+  for (const Pose& pose : sphere_poses(kViews, 0.6)) {
+    View view;
+    view.frame = tracer.frame_of(pose).value();
+    tracer.trace_bvh(view.frame, [&](std::size_t number, const detail::RayTile& tile) {
+      if (tile.hit == 0) return;
+      std::vector<detail::TileBox> leaves;
+      for (std::size_t lane = 0; lane < detail::kTileRays; ++lane) {
+        if ((tile.hit >> lane & 1U) == 0) continue;
+        const auto is_same = [&](const detail::TileBox& b) {
+          return b.box == tile.primitive[lane];
+        };
+        if (std::none_of(leaves.begin(), leaves.end(), is_same)) {
+          leaves.push_back({tile.primitive[lane], 0.0F});
+        }
+      }
+      view.tiles.push_back(tile);
+      view.numbers.push_back(number);
+      view.leaves.push_back(std::move(leaves));
+    });
+    views.push_back(std::move(view));
+  }
+}
+
+const MicroScene& MicroScene::get() {
+  static const MicroScene scene;
+  return scene;
+}
+
+std::vector<Isa> micro_isas() {
+  std::vector<Isa> isas;
+  for (const Isa isa : supported_isas()) {
+    if (isa <= select_isa()) isas.push_back(isa);
+  }
+  return isas;
+}
+
+}  // namespace viewgain::bench

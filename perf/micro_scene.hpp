@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "support/camel_scene.hpp"
+#include "view_tracer.hpp"
+#include "viewgain/core/isa.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+namespace viewgain::bench {
+
+/// What the microbenchmarks work on, made when first asked for and kept: camel-128 and some views
+/// of it. One thread.
+class MicroScene {
+ public:
+  [[nodiscard]] static const MicroScene& get();
+
+  /// The traced tiles of a view that hit something, and for each the primitives that its rays end
+  /// in.
+  struct View {
+    detail::PoseFrame frame;
+    std::vector<detail::RayTile> tiles;
+    std::vector<std::size_t> numbers;                  ///< tile i's in the table
+    std::vector<std::vector<detail::TileBox>> leaves;  ///< of tile i
+  };
+
+  Sensor sensor;
+  std::vector<test::CamelView> frames;  ///< three make the map, the fourth is new
+  BeliefGrid grid;
+  std::shared_ptr<const VoxelScene> scene;
+  detail::ViewTracer tracer;
+  std::vector<View> views;
+
+ private:
+  MicroScene();
+};
+
+/// The instruction sets that there are kernels for and that VIEWGAIN_ISA allows, best first.
+[[nodiscard]] std::vector<Isa> micro_isas();
+
+}  // namespace viewgain::bench

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Finding the first voxel that is not free: packets through the BVH, tiles along lists, leaves
+// known beforehand.
+#include <benchmark/benchmark.h>
+
+#include "micro_benchmarks.hpp"
+#include "micro_scene.hpp"
+#include "scene_data.hpp"
+
+namespace viewgain::bench {
+namespace {
+
+void count_rays(benchmark::State& state, std::size_t rays) {
+  state.counters["rays"] =
+      benchmark::Counter(static_cast<double>(rays), benchmark::Counter::kIsRate);
+}
+
+// All tiles of a view through Embree.
+void packet_traversal(benchmark::State& state) {
+  const MicroScene& micro = MicroScene::get();
+  std::size_t rays = 0, next = 0;
+  for (auto _ : state) {
+    std::uint32_t hits = 0;
+    micro.tracer.trace_bvh(micro.views[next++ % micro.views.size()].frame,
+                           [&](std::size_t, const detail::RayTile& tile) { hits += tile.hit; });
+    benchmark::DoNotOptimize(hits);
+    rays += micro.tracer.table().ray_count();
+  }
+  count_rays(state, rays);
+}
+
+// The way of the evaluator: boxes sorted into tiles, then lists where there are few.
+void tile_traversal(benchmark::State& state) {
+  const MicroScene& micro = MicroScene::get();
+  detail::TileBins bins;
+  std::size_t rays = 0, next = 0;
+  for (auto _ : state) {
+    std::uint32_t hits = 0;
+    micro.tracer.trace(micro.views[next++ % micro.views.size()].frame, bins,
+                       [&](std::size_t, const detail::RayTile& tile) { hits += tile.hit; });
+    benchmark::DoNotOptimize(hits);
+    rays += micro.tracer.table().ray_count();
+  }
+  count_rays(state, rays);
+}
+
+// Only the leaves that a tile's rays end in, only tiles that hit something.
+void leaf_dda(benchmark::State& state, Isa isa) {
+  const MicroScene& micro = MicroScene::get();
+  const detail::TraceKernels& kernels = detail::trace_kernels(isa);
+  detail::RayTile out;
+  std::size_t rays = 0, next = 0;
+  for (auto _ : state) {
+    const MicroScene::View& view = micro.views[next++ % micro.views.size()];
+    for (std::size_t i = 0; i < view.tiles.size(); ++i) {
+      kernels.begin(micro.tracer.table(), view.frame, view.numbers[i], out);
+      kernels.walk(micro.scene->data(), view.frame, 1.0F, view.leaves[i], out);
+      benchmark::DoNotOptimize(out.hit);
+    }
+    rays += view.tiles.size() * detail::kTileRays;
+  }
+  count_rays(state, rays);
+}
+
+}  // namespace
+
+void register_trace_benchmarks() {
+  benchmark::RegisterBenchmark("packet_traversal", packet_traversal);
+  benchmark::RegisterBenchmark("tile_traversal", tile_traversal);
+  for (const Isa isa : micro_isas()) {
+    const std::string name(isa_name(isa));
+    benchmark::RegisterBenchmark(("leaf_dda/" + name).c_str(), leaf_dda, isa);
+  }
+}
+
+}  // namespace viewgain::bench
