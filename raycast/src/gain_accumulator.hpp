@@ -45,6 +45,12 @@ class GainAccumulator {
   /// Fills gain, exploration, refinement, posterior_entropy, hits and voxel counts.
   void finish(ViewGain& result);
 
+  /// The most that the hits so far count for in an upper bound of the view's gain, to which what
+  /// the other rays bring at most may be added; for evaluators without task weights. That of unknown
+  /// voxels is subadditive under log_determinant, which log_diagonal does not exceed, and under the
+  /// trace; of occupied ones it is the gain itself. More hits may be added afterwards.
+  [[nodiscard]] double upper_bound();
+
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 

@@ -14,6 +14,7 @@
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/view_selection.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain {
@@ -99,6 +100,17 @@ class GainEvaluator {
   /// Where the rays of a pose end, in pixel order (row by row, strided); the hits that evaluate()
   /// uses. Empty for a bad pose.
   [[nodiscard]] std::vector<RayHit> trace(const Pose& T_world_camera) const;
+
+  /// The k best poses, exactly as best_indices() of evaluate()'s results: the same indices and bits,
+  /// ties to the lower index, NaN last, k clamped; nothing for k = 0 or no poses. Traces fewer rays:
+  /// poses are bounded from above first, without tracing, and taken from the highest bound on; one
+  /// is given up as soon as what it has gained and a bound of what is left fall below the k-th best
+  /// so far. With obstacles, task weights, a distorted camera or more than 4,096 primitives there is
+  /// no bound and all poses are scored. What was traced and scored is also the same for any number
+  /// of threads. control.progress counts poses that need no more work. If control.stop is requested
+  /// the result is what is best of those scored so far, and not `complete`.
+  [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
+                               const BatchControl& control = {}) const;
 
   [[nodiscard]] std::size_t rays_per_pose() const noexcept;
   [[nodiscard]] int num_threads() const noexcept;
