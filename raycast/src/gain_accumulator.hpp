@@ -46,10 +46,25 @@ class GainAccumulator {
   void finish(ViewGain& result);
 
   /// The most that the hits so far count for in an upper bound of the view's gain, to which what
-  /// the other rays bring at most may be added; for evaluators without task weights. That of unknown
-  /// voxels is subadditive under log_determinant, which log_diagonal does not exceed, and under the
-  /// trace; of occupied ones it is the gain itself. More hits may be added afterwards.
+  /// the other rays bring at most may be added; for evaluators without task weights. That of
+  /// unknown voxels is subadditive under log_determinant, which log_diagonal does not exceed, and
+  /// under the trace; of occupied ones it is the gain itself. More hits may be added afterwards.
   [[nodiscard]] double upper_bound();
+
+  /// Calls visit(key, known, sum, weight) for every voxel touched so far: its key, Λ_v of an
+  /// occupied one (null: unknown), ΣΛ_r, w_v. In the same order for the same hits.
+  template <typename Visit>
+  void visit(Visit&& visit) {
+    flush();
+    classify();
+    const auto call = [&](std::uint32_t place, const VoxelInformation* known) {
+      const std::uint32_t code = touched_[place];
+      visit(blocks_[code >> 9U].key | (code & 511U), known, sums_[place],
+            settings_.weights.empty() ? 1.0 : weight(code));
+    };
+    for (std::size_t i = 0; i < unknown_count_; ++i) call(unknown_[i], nullptr);
+    for (std::size_t i = 0; i < occupied_count_; ++i) call(occupied_[i], &known_[i]);
+  }
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;

@@ -7,6 +7,8 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "gain_accumulator.hpp"
@@ -111,6 +113,21 @@ struct GainEvaluator::Impl {
                                        Lease& lease) const;
   // Bounds a pose without tracing; false if it cannot be bounded.
   bool bound(const Pose& T_world_camera, std::span<double> from, Lease& lease) const;
+
+  // Traces those tiles of a pose alone and adds up what they gain by themselves; NaN for a bad
+  // pose.
+  [[nodiscard]] double sample(const Pose& T_world_camera, std::span<const std::uint32_t> tiles,
+                              Lease& lease) const;
+  // The first `count` tiles of a random sequence that covers the image evenly from the start.
+  [[nodiscard]] std::vector<std::uint32_t> random_tiles(std::size_t count,
+                                                        std::uint64_t seed) const;
+  // The gain of a pose after others have been chosen, by what their rays bring to each voxel.
+  [[nodiscard]] ViewGain evaluate_after(
+      const Pose& T_world_camera, const std::unordered_map<std::uint64_t, SymmetricMatrix3>& chosen,
+      Lease& lease) const;
+  // The full scores of some of the poses, in their order; entries not reached stay as they are.
+  bool evaluate_some(std::span<const Pose> T_world_camera, std::span<const std::size_t> indices,
+                     std::span<ViewGain> results, const BatchControl& control) const;
 
   // Made when first asked for.
   [[nodiscard]] const detail::ViewBounds& bounds() const;

@@ -23,9 +23,9 @@ struct BestViews {
 
 /// How GainEvaluator::race() parts the wheat from the chaff.
 struct RaceConfig {
-  double confidence = 0.999;      ///< of each interval; in (0.5, 1)
-  double first_share = 1.0 / 32;  ///< of the tiles in the first round, doubled in each; in (0, 1]
-  double last_share = 0.25;       ///< of the tiles in the last round; survivors are scored in full
+  double interval = 3.5;          ///< half width of a pose's confidence interval [standard errors]
+  double first_share = 1.0 / 32;  ///< of the tiles in the first round, then four times as many
+  double keep = 0.25;             ///< of the poses that a round leaves at most
   std::uint64_t seed = 1;         ///< which tiles
 };
 
@@ -42,7 +42,7 @@ struct ViewSet {
 struct ApproximateConfig {
   double share = 0.1;        ///< of a view's tiles that are traced; in (0, 1]
   int groups = 8;            ///< random groups that the standard error comes from; 2 to 64
-  std::size_t anchors = 16;  ///< poses scored in full that the correction of the bias rests on
+  std::size_t anchors = 32;  ///< poses scored in full that the correction of the bias rests on
   std::uint64_t seed = 1;    ///< which tiles
 };
 
