@@ -18,6 +18,8 @@ namespace {
 constexpr std::size_t kGroups = 4;
 // Each round traces this many times the tiles of the one before, up to this share of all.
 constexpr double kGrowth = 4, kLastShare = 0.25;
+// Fewer tiles a group say nothing.
+constexpr double kLeastTiles = 8;
 // So few poses are scored in full without ado.
 constexpr std::size_t kFewPoses = 32;
 
@@ -57,8 +59,8 @@ BestViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t 
   for (double share = config.first_share; share <= kLastShare && field.size() > few;
        share *= kGrowth) {
     // Bundles are nested: each round's begin with those of the round before.
-    const auto per_group = static_cast<std::size_t>(
-        std::max(1.0, std::round(share * static_cast<double>(table.tile_count) / double{kGroups})));
+    const auto per_group = static_cast<std::size_t>(std::max(
+        kLeastTiles, std::round(share * static_cast<double>(table.tile_count) / double{kGroups})));
     std::array<std::vector<std::uint32_t>, kGroups> tiles;
     std::uint64_t rays = 0;
     for (std::size_t g = 0; g < kGroups; ++g) {
