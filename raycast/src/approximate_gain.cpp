@@ -19,6 +19,12 @@ constexpr double kStepX = 0.7548776662466927, kStepY = 0.5698402909980532;
 
 double unit_number(std::uint64_t bits) { return static_cast<double>(bits >> 11U) * 0x1.0p-53; }
 
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 void check(const ApproximateConfig& config, std::size_t poses, std::size_t results) {
   const auto reject = [](const std::string& what) {
     throw Error(ErrorCode::invalid_argument, what);
@@ -140,10 +146,13 @@ std::size_t GainEvaluator::approximate(std::span<const Pose> T_world_camera,
     if (truth[j].gain > 0 && estimate > 0) ratios.push_back(truth[j].gain / estimate);
   }
   if (ratios.size() < 2) return done;
+  // Medians, for views that see next to nothing have wild ratios; 1.4826 makes the median deviation
+  // of a normal distribution its standard deviation.
   const auto n = static_cast<double>(ratios.size());
-  double ratio = 0, variance = 0;
-  for (const double r : ratios) ratio += r / n;
-  for (const double r : ratios) variance += (r - ratio) * (r - ratio) / (n - 1);
+  const double ratio = median(ratios);
+  for (double& r : ratios) r = std::abs(r - ratio);
+  const double scatter = 1.4826 * median(ratios);
+  const double variance = scatter * scatter;
   for (ApproximateGain& r : results) {
     r.standard_error = std::sqrt(ratio * ratio * r.standard_error * r.standard_error +
                                  variance * (1 + 1 / n) * r.gain * r.gain);

@@ -138,9 +138,9 @@ class GainEvaluator {
 
   /// Estimates of the gains from random sub-bundles of each view's tiles, the same for all poses,
   /// with standard errors, result i for pose i. Sums over single bundles are too large, because
-  /// rays of different tiles meet in voxels; the ratio of true gains to estimates over some poses
-  /// scored in full (`anchors`, every n/anchors-th; none below 2) corrects the mean of that, and
-  /// its scatter is part of the standard error. What is left is that the ratio depends on the
+  /// rays of different tiles meet in voxels; the median ratio of true gain to estimate over some
+  /// poses scored in full (`anchors`, every n/anchors-th; none below 2) corrects the mean of that,
+  /// and its scatter is part of the standard error. What is left is that the ratio depends on the
   /// view's distance. Bad poses: NaN. Deterministic for a seed and any number of threads. Returns
   /// how many poses were estimated: fewer than all if a stop was requested, then without the
   /// correction. Throws Error(invalid_argument) for a config out of range or if the sizes differ.
