@@ -19,7 +19,7 @@ namespace viewgain::detail {
 /// With m rays in a voxel its gain is at most a concave g_v(m), so for any price λ >= 0 of a ray
 /// the gain of M rays is at most λ M + Σ_v max_m (g_v(m) - λ m): M counts the pixels that some
 /// voxel may cover, and the sum runs over the voxels in view with a face that is open towards the
-/// camera. The best of several prices counts. Of occlusion only that by large solid boxes is seen.
+/// camera. The best of several prices counts. Occlusion is left out.
 ///
 /// Λ_r counts as diag(a, a, b) in the frame of the voxel's central ray, widened by how far rays
 /// turn within a voxel: the sum of the concave function of the diagonal is the most that the
