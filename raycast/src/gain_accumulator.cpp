@@ -211,4 +211,19 @@ void GainAccumulator::finish(ViewGain& result) {
   result.occupied_voxels = static_cast<std::uint32_t>(occupied_count_);
 }
 
+double GainAccumulator::upper_bound() {
+  flush();
+  classify();
+  LogProduct posterior;
+  const double refinement = finish_class({occupied_.data(), occupied_count_}, true, posterior);
+  if (settings_.criterion != Criterion::log_diagonal) {
+    return refinement + finish_class({unknown_.data(), unknown_count_}, false, posterior);
+  }
+  LogProduct ratios;
+  kernels_.finish(Criterion::log_determinant, settings_.prior_information,
+                  {sums_.data(), unknown_.data(), nullptr, nullptr, unknown_count_}, ratios,
+                  posterior, nullptr);
+  return refinement + 0.5 * ratios.log();
+}
+
 }  // namespace viewgain::detail

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,31 @@ class GainAccumulator {
   }
   /// Fills gain, exploration, refinement, posterior_entropy, hits and voxel counts.
   void finish(ViewGain& result);
+
+  /// The most that the hits so far count for in an upper bound of the view's gain, to which what
+  /// the other rays bring at most may be added; for evaluators without task weights. That of
+  /// unknown voxels is subadditive under log_determinant, which log_diagonal does not exceed, and
+  /// under the trace; of occupied ones it is the gain itself. More hits may be added afterwards.
+  [[nodiscard]] double upper_bound();
+
+  /// Calls visit(key, known, sum, weight) for every voxel touched so far: its key, Λ_v of an
+  /// occupied one (nothing: unknown), ΣΛ_r, w_v. In the same order for the same hits.
+  template <typename Visit>
+  void visit(Visit&& visit) {
+    flush();
+    classify();
+    const auto call = [&](std::uint32_t place, const std::optional<VoxelSum>& known) {
+      const std::uint32_t code = touched_[place];
+      visit(blocks_[code >> 9U].key | (code & 511U), known, sums_[place],
+            settings_.weights.empty() ? 1.0 : weight(code));
+    };
+    for (std::size_t i = 0; i < unknown_count_; ++i) call(unknown_[i], std::nullopt);
+    for (std::size_t i = 0; i < occupied_count_; ++i) {
+      const auto& a = known_a_[i].value;
+      const auto& b = known_b_[i].value;
+      call(occupied_[i], VoxelSum{{a[0], a[1], a[2], a[3]}, {b[0], b[1], b[2], b[3]}});
+    }
+  }
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;

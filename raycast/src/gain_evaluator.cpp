@@ -81,8 +81,11 @@ GainEvaluator::Impl::Impl(std::shared_ptr<const VoxelScene> s, const Sensor& sen
     : scene(std::move(s)),
       data(scene->data()),
       prior_sigma(config.prior_sigma.value_or(data.snapshot.prior_sigma)),
-      tracer(data, sensor.camera, config.pixel_stride, config.min_range.value_or(sensor.min_range),
-             config.max_range.value_or(sensor.max_range)),
+      min_range(config.min_range.value_or(sensor.min_range)),
+      max_range(config.max_range.value_or(sensor.max_range)),
+      tracer(data, sensor.camera, config.pixel_stride, min_range, max_range),
+      camera(sensor.camera),
+      pixel_stride(config.pixel_stride),
       pool(exec.num_threads) {
   settings = {config.criterion, 1.0 / (prior_sigma * prior_sigma), detail::frontal_sigmas(sensor),
               config.weights};
@@ -117,7 +120,7 @@ ViewGain GainEvaluator::Impl::evaluate(const Pose& T_world_camera, Lease& lease)
     result.status = ViewStatus::camera_in_occupied;
     return result;
   }
-  auto& [accumulator, bins] = lease.get();
+  auto& [accumulator, bins, bounding] = lease.get();
   accumulator.begin();
   tracer.trace(*frame, bins,
                [&](std::size_t, const detail::RayTile& tile) { accumulator.add(tile); });

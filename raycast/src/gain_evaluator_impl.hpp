@@ -2,13 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "gain_accumulator.hpp"
 #include "scene_data.hpp"
+#include "view_bounds.hpp"
 #include "view_tracer.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -19,8 +24,11 @@ struct GainEvaluator::Impl {
   std::shared_ptr<const VoxelScene> scene;
   const VoxelScene::Data& data;
   detail::GainSettings settings;
-  double prior_sigma = 0;  // [m]
+  double prior_sigma = 0;               // [m]
+  double min_range = 0, max_range = 0;  // along the ray [m]
   detail::ViewTracer tracer;
+  PinholeCamera camera;
+  int pixel_stride = 1;
   std::uint32_t ray_count = 0;
   mutable ThreadPool pool;
 
@@ -28,6 +36,7 @@ struct GainEvaluator::Impl {
   struct Workspace {
     detail::GainAccumulator accumulator;
     detail::TileBins bins;
+    detail::ViewBounds::Workspace bounding{};
   };
   // Those that no thread is using, so that a call need not make one.
   mutable std::mutex idle_mutex;
@@ -58,6 +67,7 @@ struct GainEvaluator::Impl {
       if (!workspace_) {
         workspace_ = std::make_unique<Workspace>(Workspace{
             detail::GainAccumulator(impl_.data, impl_.settings, impl_.tracer.table().ray_count()),
+            {},
             {}});
       }
       return *workspace_;
@@ -70,6 +80,58 @@ struct GainEvaluator::Impl {
 
   [[nodiscard]] bool is_in_occupied(const detail::PoseFrame& frame) const;
   [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera, Lease& lease) const;
+  // Calls work(i, lease) for every i below count on all threads, and says how far it is; ends early
+  // if a stop is requested. Returns whether all was done.
+  template <typename Work>
+  bool for_each(std::size_t count, std::size_t chunk, const BatchControl& control,
+                const Work& work) const {
+    std::atomic<bool> complete{true};
+    pool.for_each_chunk(count, chunk, [&](std::size_t begin, std::size_t end) {
+      Lease lease(*this);
+      for (std::size_t i = begin; i < end; ++i) {
+        if (control.stop.stop_requested()) {
+          complete = false;
+          return;
+        }
+        work(i, lease);
+      }
+    });
+    return complete;
+  }
+
+  // A pose's score, unless its gain is found not to reach `gain_to_beat` before it is traced whole.
+  struct Attempt {
+    ViewGain result;
+    std::uint64_t rays = 0;
+    bool abandoned = false;
+  };
+  // `from` are the bounds of its rows of tiles, none if it is empty; gain_per_bound, what gains
+  // come to as a share of their bounds, says when to look.
+  [[nodiscard]] Attempt evaluate_above(const Pose& T_world_camera, std::span<const double> from,
+                                       double gain_to_beat, double gain_per_bound,
+                                       Lease& lease) const;
+  // Bounds a pose without tracing; false if it cannot be bounded.
+  bool bound(const Pose& T_world_camera, std::span<double> from, Lease& lease) const;
+
+  // Traces those tiles of a pose alone and adds up what they gain by themselves; NaN for a bad
+  // pose.
+  [[nodiscard]] double sample(const Pose& T_world_camera, std::span<const std::uint32_t> tiles,
+                              Lease& lease) const;
+  // The first `count` tiles of a random sequence that covers the image evenly from the start.
+  [[nodiscard]] std::vector<std::uint32_t> random_tiles(std::size_t count,
+                                                        std::uint64_t seed) const;
+  // The gain of a pose after others have been chosen, by what their rays bring to each voxel.
+  [[nodiscard]] ViewGain evaluate_after(
+      const Pose& T_world_camera, const std::unordered_map<std::uint64_t, SymmetricMatrix3>& chosen,
+      Lease& lease) const;
+  // The full scores of some of the poses, in their order; entries not reached stay as they are.
+  bool evaluate_some(std::span<const Pose> T_world_camera, std::span<const std::size_t> indices,
+                     std::span<ViewGain> results, const BatchControl& control) const;
+
+  // Made when first asked for.
+  [[nodiscard]] const detail::ViewBounds& bounds() const;
+  mutable std::once_flag bounds_once;
+  mutable std::optional<detail::ViewBounds> bounds_made;
 };
 
 }  // namespace viewgain

@@ -28,7 +28,7 @@ class ViewTracer {
   void trace(const PoseFrame& frame, TileBins& bins, Visit&& visit) const {
     if (frame.sees_nothing) return;
     if (scene_.has_obstacles) return trace_bvh(frame, visit);
-    binner_.sort(scene_.kernels->isa, *scene_.scene_boxes, frame, bins);
+    sort(frame, bins);
     if (!bins.valid()) return trace_bvh(frame, visit);
     RayTile out;
     for (std::size_t tile = 0; tile < table_.tile_count; ++tile) {
@@ -36,6 +36,12 @@ class ViewTracer {
       trace_tile(frame, tile, bins, out);
       visit(tile, out);
     }
+  }
+
+  /// Sorts the scene's boxes into the tiles; only if bins.valid() is then true may trace_tile() be
+  /// called.
+  void sort(const PoseFrame& frame, TileBins& bins) const {
+    binner_.sort(scene_.kernels->isa, *scene_.scene_boxes, frame, bins);
   }
 
   /// One tile whose boxes have been sorted.

@@ -14,6 +14,7 @@
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/view_selection.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain {
@@ -99,6 +100,53 @@ class GainEvaluator {
   /// Where the rays of a pose end, in pixel order (row by row, strided); the hits that evaluate()
   /// uses. Empty for a bad pose.
   [[nodiscard]] std::vector<RayHit> trace(const Pose& T_world_camera) const;
+
+  /// The k best poses, exactly as best_indices() of evaluate()'s results: the same indices and
+  /// bits, ties to the lower index, NaN last, k clamped; nothing for k = 0 or no poses. Traces
+  /// fewer rays: poses are bounded from above first, without tracing, and taken from the highest
+  /// bound on; one is given up as soon as what it has gained and a bound of what is left fall below
+  /// the k-th best so far. With obstacles, task weights, a distorted camera or more than 4,096
+  /// primitives there is no bound and all poses are scored. What was traced and scored is also the
+  /// same for any number of threads. control.progress counts poses that need no more work. If
+  /// control.stop is requested the result is what is best of those scored so far, and not
+  /// `complete`.
+  [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
+                               const BatchControl& control = {}) const;
+
+  /// The k best poses, very probably: successive halving. Poses are compared by random sub-bundles
+  /// of their tiles, nested and the same for all; each round drops those whose confidence interval
+  /// lies below those of k others, and all but a share, and traces four times as many tiles of the
+  /// rest. The survivors (32 or 4 k at least) are scored in full, so gains reported are exact.
+  /// Small bundles count rays of different tiles as if they never met in a voxel, which favours
+  /// views from near by a little. Works with obstacles, weights and distortion. Deterministic for a
+  /// seed and any number of threads. Throws Error(invalid_argument), naming the value, for a config
+  /// out of range. Stopped in a round, it returns nothing and is not `complete`.
+  [[nodiscard]] BestViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
+                               const RaceConfig& config = {},
+                               const BatchControl& control = {}) const;
+
+  /// Up to k different poses that are good together on the map as it stands, greedily: each is the
+  /// one that adds most once the expected information ΣΛ_r of those before it is part of the
+  /// voxels' (an unknown voxel goes on blocking rays as unknown). Ties go to the lower index, bad
+  /// poses are never chosen, k is clamped. For log_determinant, which is submodular, poses whose
+  /// earlier gain cannot win are not scored anew, which gives the same choice; for log_diagonal and
+  /// trace a pose may gain more after another, so that all are scored in every round. A stop
+  /// returns those chosen so far. Costs up to k batches, about twice the time of evaluate() each,
+  /// and memory for the voxels touched.
+  [[nodiscard]] ViewSet best_set(std::span<const Pose> T_world_camera, std::size_t k,
+                                 const BatchControl& control = {}) const;
+
+  /// Estimates of the gains from random sub-bundles of each view's tiles, the same for all poses,
+  /// with standard errors, result i for pose i. Sums over single bundles are too large, because
+  /// rays of different tiles meet in voxels; the median ratio of true gain to estimate over some
+  /// poses scored in full (`anchors`, every n/anchors-th; none below 2) corrects the mean of that,
+  /// and its scatter is part of the standard error. What is left is that the ratio depends on the
+  /// view's distance. Bad poses: NaN. Deterministic for a seed and any number of threads. Returns
+  /// how many poses were estimated: fewer than all if a stop was requested, then without the
+  /// correction. Throws Error(invalid_argument) for a config out of range or if the sizes differ.
+  std::size_t approximate(std::span<const Pose> T_world_camera, std::span<ApproximateGain> results,
+                          const ApproximateConfig& config = {},
+                          const BatchControl& control = {}) const;
 
   [[nodiscard]] std::size_t rays_per_pose() const noexcept;
   [[nodiscard]] int num_threads() const noexcept;

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace viewgain {
+
+struct ViewGain;
+
+/// Views chosen from a batch of poses; see GainEvaluator::best() and race().
+struct BestViews {
+  std::vector<std::size_t> indices;         ///< into the poses, best first
+  std::vector<ViewGain> gains;              ///< of those, as evaluate() has them
+  std::vector<std::size_t> scored_indices;  ///< poses that were scored in full, ascending
+  std::vector<ViewGain> scored_gains;       ///< of those
+  std::uint64_t rays_traced = 0;  ///< in tiles that can meet anything; evaluate() counts likewise
+  bool complete = true;           ///< false: a stop was requested, and this is the best so far
+};
+
+/// How GainEvaluator::race() parts the wheat from the chaff.
+struct RaceConfig {
+  double interval = 3.5;          ///< half width of a pose's confidence interval [standard errors]
+  double first_share = 1.0 / 32;  ///< of the tiles in the first round, then four times as many
+  double keep = 0.25;             ///< of the poses that a round leaves at most
+  std::uint64_t seed = 1;         ///< which tiles
+};
+
+/// Views that are good together, in the order of their choice; see GainEvaluator::best_set().
+struct ViewSet {
+  std::vector<std::size_t> indices;  ///< into the poses
+  std::vector<ViewGain> marginal;    ///< what each adds to those before it
+  double gain = 0;                   ///< of all together
+  std::size_t evaluations = 0;       ///< of single poses
+  bool complete = true;              ///< false: a stop was requested before the last choice
+};
+
+/// How GainEvaluator::approximate() samples a view.
+struct ApproximateConfig {
+  double share = 0.1;        ///< of a view's tiles that are traced; in (0, 1]
+  int groups = 8;            ///< random groups that the standard error comes from; 2 to 64
+  std::size_t anchors = 32;  ///< poses scored in full that the correction of the bias rests on
+  std::uint64_t seed = 1;    ///< which tiles
+};
+
+/// An estimate of a gain, in the unit of the gain.
+struct ApproximateGain {
+  double gain = std::numeric_limits<double>::quiet_NaN();
+  double standard_error = std::numeric_limits<double>::quiet_NaN();
+};
+
+}  // namespace viewgain
