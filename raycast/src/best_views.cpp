@@ -22,6 +22,10 @@ constexpr double kBoundSlack = 1 + 1e-5;
 constexpr std::size_t kFirstRound = 8, kLastRound = 64;
 // A look at the bound of a view that is being traced costs a sum over the voxels touched.
 constexpr std::size_t kRowsBetweenLooks = 2;
+// Poses of a sample, the size of a batch, in samples, that makes one worth while, and about what a
+// pose's bound costs as a share of its score.
+constexpr std::size_t kSample = 16, kWorthASample = 8;
+constexpr double kBoundCost = 0.35;
 
 }  // namespace
 
@@ -91,16 +95,43 @@ BestViews GainEvaluator::best(std::span<const Pose> T_world_camera, std::size_t 
   BestViews best;
   if (k == 0) return best;
 
-  // The bounds of each pose's rows of tiles, and of the whole pose.
+  // The bounds of each pose's rows of tiles, and of the whole pose; where a sample of the poses
+  // says that bounding all would cost more than it saves, of none.
   const std::size_t rows = impl_->bounds().row_count() + 1;
   std::vector<double> from;
   std::vector<double> bounds(count, kInfinity);
   if (impl_->bounds().usable() && k < count) {
     from.resize(rows * count);
-    best.complete = impl_->for_each(count, 8, control, [&](std::size_t i, Impl::Lease& lease) {
+    const auto bound = [&](std::size_t i, Impl::Lease& lease) {
       const std::span own(&from[i * rows], rows);
       if (impl_->bound(T_world_camera[i], own, lease)) bounds[i] = own[0];
-    });
+    };
+    bool pays = true;
+    if (count >= kWorthASample * kSample) {
+      std::vector<double> gains(kSample);
+      best.complete = impl_->for_each(kSample, 1, control, [&](std::size_t j, Impl::Lease& lease) {
+        const std::size_t i = j * count / kSample;
+        bound(i, lease);
+        gains[j] = impl_->evaluate(T_world_camera[i], lease).gain;
+        if (std::isnan(gains[j])) gains[j] = 0;
+      });
+      best.rays_traced += kSample * std::uint64_t{impl_->ray_count};
+      const double largest = *std::max_element(gains.begin(), gains.end());
+      double share = 0;
+      for (std::size_t j = 0; j < kSample; ++j) {
+        const double b = bounds[j * count / kSample];
+        // What is traced before the bound, which falls as it is replaced by gains, is too low.
+        if (!(b > largest)) continue;
+        share +=
+            b < kInfinity ? std::min(1.0, (b - largest) / std::max(b - gains[j], 1e-9 * b)) : 1.0;
+      }
+      pays = share / static_cast<double>(kSample) + kBoundCost < 1;
+    }
+    if (pays) {
+      best.complete = best.complete && impl_->for_each(count, 8, control, bound);
+    } else {
+      std::fill(bounds.begin(), bounds.end(), kInfinity);
+    }
   }
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -150,6 +150,18 @@ void GainAccumulator::flush() {
   batch_.count = 0;
 }
 
+void GainAccumulator::add(const HitList& hits) {
+  if (batch_.count > 0) flush();
+  batch_.count = hits.count;
+  std::copy_n(hits.dx, hits.count, batch_.dx);
+  std::copy_n(hits.dy, hits.count, batch_.dy);
+  std::copy_n(hits.dz, hits.count, batch_.dz);
+  std::copy_n(hits.range, hits.count, batch_.range);
+  std::copy_n(hits.primitive, hits.count, batch_.primitive);
+  std::copy_n(hits.offset, hits.count, batch_.offset);
+  flush();
+}
+
 // Parts the touched voxels into unknown and occupied ones and looks up what is known of the latter.
 // Which is which cannot be predicted, so both lists are written and one of them moves on.
 void GainAccumulator::classify() {

@@ -43,6 +43,8 @@ class GainAccumulator {
     kernels_.append(tile, batch_);
     if (batch_.count >= kBatchSize) flush();
   }
+  /// Takes hits that another thread has listed; at most kBatchSize.
+  void add(const HitList& hits);
   /// Fills gain, exploration, refinement, posterior_entropy, hits and voxel counts.
   void finish(ViewGain& result);
 

@@ -86,6 +86,7 @@ GainEvaluator::Impl::Impl(std::shared_ptr<const VoxelScene> s, const Sensor& sen
       tracer(data, sensor.camera, config.pixel_stride, min_range, max_range),
       camera(sensor.camera),
       pixel_stride(config.pixel_stride),
+      kernels(&detail::gain_kernels(data.kernels->isa)),
       pool(exec.num_threads) {
   settings = {config.criterion, 1.0 / (prior_sigma * prior_sigma), detail::frontal_sigmas(sensor),
               config.weights};
@@ -110,16 +111,23 @@ bool GainEvaluator::Impl::is_in_occupied(const detail::PoseFrame& frame) const {
          test_bit(data.snapshot.leaves[leaf->second].occupied, static_cast<unsigned>(key & 511U));
 }
 
-ViewGain GainEvaluator::Impl::evaluate(const Pose& T_world_camera, Lease& lease) const {
-  ViewGain result;
+std::optional<detail::PoseFrame> GainEvaluator::Impl::open_view(const Pose& T_world_camera,
+                                                                ViewGain& result) const {
   const auto frame = tracer.frame_of(T_world_camera);
-  if (!frame) return result;
+  if (!frame) return std::nullopt;
   result.rays = ray_count;
   if (is_in_occupied(*frame)) {
     result.gain = result.exploration = result.refinement = result.posterior_entropy = 0;
     result.status = ViewStatus::camera_in_occupied;
-    return result;
+    return std::nullopt;
   }
+  return frame;
+}
+
+ViewGain GainEvaluator::Impl::evaluate(const Pose& T_world_camera, Lease& lease) const {
+  ViewGain result;
+  const auto frame = open_view(T_world_camera, result);
+  if (!frame) return result;
   auto& [accumulator, bins, bounding] = lease.get();
   accumulator.begin();
   tracer.trace(*frame, bins,
@@ -154,6 +162,7 @@ GainEvaluator::GainEvaluator(GainEvaluator&&) noexcept = default;
 GainEvaluator& GainEvaluator::operator=(GainEvaluator&&) noexcept = default;
 
 ViewGain GainEvaluator::evaluate(const Pose& T_world_camera) const {
+  if (impl_->pool.num_threads() > 1) return impl_->evaluate_together(T_world_camera);
   Impl::Lease lease(*impl_);
   return impl_->evaluate(T_world_camera, lease);
 }

@@ -30,6 +30,7 @@ struct GainEvaluator::Impl {
   PinholeCamera camera;
   int pixel_stride = 1;
   std::uint32_t ray_count = 0;
+  const detail::GainKernels* kernels = nullptr;
   mutable ThreadPool pool;
 
   // What a thread needs to score a pose.
@@ -79,7 +80,21 @@ struct GainEvaluator::Impl {
   };
 
   [[nodiscard]] bool is_in_occupied(const detail::PoseFrame& frame) const;
+  // The pose in the scene; nothing if there is nothing to trace, which `result` then says.
+  [[nodiscard]] std::optional<detail::PoseFrame> open_view(const Pose& T_world_camera,
+                                                           ViewGain& result) const;
   [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera, Lease& lease) const;
+
+  // A view's tiles in groups, which any thread may trace; their hits are added up in order.
+  struct TileGroups {
+    explicit TileGroups(std::size_t count) : hits(count), is_traced(count) {}
+    std::vector<detail::HitList> hits;
+    std::vector<std::atomic<bool>> is_traced;
+    std::atomic<std::size_t> next{0};  // to be traced
+  };
+  mutable std::vector<std::unique_ptr<TileGroups>> idle_groups;
+  // As evaluate(), the same bits, on all threads (one_view.cpp).
+  [[nodiscard]] ViewGain evaluate_together(const Pose& T_world_camera) const;
   // Calls work(i, lease) for every i below count on all threads, and says how far it is; ends early
   // if a stop is requested. Returns whether all was done.
   template <typename Work>

@@ -30,7 +30,7 @@ constexpr DD dd;
 using VD = hn::Vec<DD>;
 constexpr std::size_t kLanes = hn::MaxLanes(dd);
 
-void append(const RayTile& tile, HitBatch& batch) {
+void append(const RayTile& tile, HitList& hits) {
 #if HWY_TARGET == HWY_AVX3
   constexpr hn::CappedTag<float, kTileRays> df;
   constexpr hn::RebindToUnsigned<decltype(df)> du;
@@ -39,27 +39,27 @@ void append(const RayTile& tile, HitBatch& batch) {
     const auto bit = hn::Shl(hn::Set(du, 1U), hn::Iota(du, static_cast<std::uint32_t>(lane0)));
     const auto hit = hn::TestBit(hn::Set(du, tile.hit), bit);
     const auto hit_f = hn::RebindMask(df, hit);
-    const std::size_t n = batch.count;
-    hn::CompressStore(hn::Load(df, tile.dx + lane0), hit_f, df, batch.dx + n);
-    hn::CompressStore(hn::Load(df, tile.dy + lane0), hit_f, df, batch.dy + n);
-    hn::CompressStore(hn::Load(df, tile.dz + lane0), hit_f, df, batch.dz + n);
-    hn::CompressStore(hn::Load(df, tile.range + lane0), hit_f, df, batch.range + n);
-    hn::CompressStore(hn::Load(du, tile.offset + lane0), hit, du, batch.offset + n);
-    batch.count +=
-        hn::CompressStore(hn::Load(du, tile.primitive + lane0), hit, du, batch.primitive + n);
+    const std::size_t n = hits.count;
+    hn::CompressStore(hn::Load(df, tile.dx + lane0), hit_f, df, hits.dx + n);
+    hn::CompressStore(hn::Load(df, tile.dy + lane0), hit_f, df, hits.dy + n);
+    hn::CompressStore(hn::Load(df, tile.dz + lane0), hit_f, df, hits.dz + n);
+    hn::CompressStore(hn::Load(df, tile.range + lane0), hit_f, df, hits.range + n);
+    hn::CompressStore(hn::Load(du, tile.offset + lane0), hit, du, hits.offset + n);
+    hits.count +=
+        hn::CompressStore(hn::Load(du, tile.primitive + lane0), hit, du, hits.primitive + n);
   }
 #else
   // Compressing stores are slower than a loop over the hits where the CPU has no instruction for
   // them.
   for (std::uint32_t left = tile.hit; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-    const std::size_t n = batch.count++;
-    batch.dx[n] = tile.dx[lane];
-    batch.dy[n] = tile.dy[lane];
-    batch.dz[n] = tile.dz[lane];
-    batch.range[n] = tile.range[lane];
-    batch.offset[n] = tile.offset[lane];
-    batch.primitive[n] = tile.primitive[lane];
+    const std::size_t n = hits.count++;
+    hits.dx[n] = tile.dx[lane];
+    hits.dy[n] = tile.dy[lane];
+    hits.dz[n] = tile.dz[lane];
+    hits.range[n] = tile.range[lane];
+    hits.offset[n] = tile.offset[lane];
+    hits.primitive[n] = tile.primitive[lane];
   }
 #endif
 }

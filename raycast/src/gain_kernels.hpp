@@ -23,14 +23,17 @@ inline constexpr std::size_t kBatchSize = 256;
 
 /// Hits on their way from the tracer to the voxels, in the order of tiles and lanes. The arrays
 /// have room for one more tile's vectors beyond kBatchSize.
-struct alignas(64) HitBatch {
+struct alignas(64) HitList {
   static constexpr std::size_t kCapacity = kBatchSize + 2 * kTileRays;
   float dx[kCapacity] = {}, dy[kCapacity] = {}, dz[kCapacity] = {};
   float range[kCapacity] = {};  ///< [voxels]
   std::uint32_t primitive[kCapacity], offset[kCapacity];
+  std::size_t count = 0;
+};
+
+struct HitBatch : HitList {
   /// Λ_r [m⁻²], filled by expand(): xx yy zz xy and xz yz 0 0.
   alignas(64) double information_a[kCapacity][4], information_b[kCapacity][4];
-  std::size_t count = 0;
 };
 
 /// What one view would add to one voxel: Σ Λ_r [m⁻²]; one cache line.
@@ -66,8 +69,8 @@ struct VoxelClass {
 
 /// The arithmetic of the gain for one instruction set.
 struct GainKernels {
-  /// Appends the hits of a tile to the batch.
-  void (*append)(const RayTile& tile, HitBatch& batch);
+  /// Appends the hits of a tile.
+  void (*append)(const RayTile& tile, HitList& hits);
   /// Λ_r = a I + (b - a) d dᵀ of every hit (DESIGN.md section 4), d normalised in double.
   void (*expand)(const FrontalSigmas& sigmas, double voxel_size, HitBatch& batch);
   /// Adds the batch's Λ_r to the sums at `places`, in order. Where keep[i] is 0 hit i is the first

@@ -29,6 +29,7 @@ class TileBins {
  public:
   /// False if the boxes could not be projected; then nothing is known of any tile.
   [[nodiscard]] bool valid() const { return valid_; }
+  void invalidate() { valid_ = false; }
   [[nodiscard]] std::span<const TileBox> boxes_of(std::size_t tile) const {
     return {boxes_.data() + starts_[tile], boxes_.data() + starts_[tile + 1]};
   }

@@ -26,14 +26,33 @@ class ViewTracer {
   /// Calls visit(tile number, RayTile) for the tiles that can meet anything, in order.
   template <typename Visit>
   void trace(const PoseFrame& frame, TileBins& bins, Visit&& visit) const {
+    prepare(frame, bins);
+    trace_some(frame, 0, table_.tile_count, bins, visit);
+  }
+
+  /// Makes `bins` ready for trace_some().
+  void prepare(const PoseFrame& frame, TileBins& bins) const {
+    if (frame.sees_nothing || scene_.has_obstacles) {
+      bins.invalidate();
+    } else {
+      sort(frame, bins);
+    }
+  }
+
+  /// As trace(), of the tiles [begin, end).
+  template <typename Visit>
+  void trace_some(const PoseFrame& frame, std::size_t begin, std::size_t end, TileBins& bins,
+                  Visit&& visit) const {
     if (frame.sees_nothing) return;
-    if (scene_.has_obstacles) return trace_bvh(frame, visit);
-    sort(frame, bins);
-    if (!bins.valid()) return trace_bvh(frame, visit);
     RayTile out;
-    for (std::size_t tile = 0; tile < table_.tile_count; ++tile) {
-      if (bins.boxes_of(tile).empty()) continue;
-      trace_tile(frame, tile, bins, out);
+    for (std::size_t tile = begin; tile < end; ++tile) {
+      if (!bins.valid()) {
+        scene_.kernels->trace(scene_, table_, frame, tile, out);
+      } else if (bins.boxes_of(tile).empty()) {
+        continue;
+      } else {
+        trace_tile(frame, tile, bins, out);
+      }
       visit(tile, out);
     }
   }

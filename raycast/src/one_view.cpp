@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// One view on all threads.
+#include <algorithm>
+#include <thread>
+
+#include "gain_evaluator_impl.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr std::size_t kTilesPerGroup = detail::kBatchSize / detail::kTileRays;
+
+}  // namespace
+
+ViewGain GainEvaluator::Impl::evaluate_together(const Pose& T_world_camera) const {
+  ViewGain result;
+  const auto frame = open_view(T_world_camera, result);
+  if (!frame) return result;
+  const detail::TileTable& table = tracer.table();
+  const std::size_t group_count = (table.tile_count + kTilesPerGroup - 1) / kTilesPerGroup;
+
+  std::unique_ptr<TileGroups> groups;
+  {
+    const std::lock_guard lock(idle_mutex);
+    if (!idle_groups.empty()) {
+      groups = std::move(idle_groups.back());
+      idle_groups.pop_back();
+    }
+  }
+  if (!groups) groups = std::make_unique<TileGroups>(group_count);
+  for (auto& is_traced : groups->is_traced) is_traced.store(false, std::memory_order_relaxed);
+  groups->next = 0;
+
+  const auto trace = [&](std::size_t group, detail::TileBins& bins) {
+    detail::HitList& hits = groups->hits[group];
+    hits.count = 0;
+    const std::size_t end = std::min((group + 1) * kTilesPerGroup, table.tile_count);
+    tracer.trace_some(*frame, group * kTilesPerGroup, end, bins,
+                      [&](std::size_t, const detail::RayTile& tile) {
+                        if (tile.hit != 0) kernels->append(tile, hits);
+                      });
+    groups->is_traced[group].store(true, std::memory_order_release);
+  };
+  // Number 0 sorts the boxes, adds up, and traces while the next group is not there yet; it waits
+  // only for groups that others are tracing. Lists of primitives are the same for all; those of
+  // cells grow as they are read, so each thread has its own.
+  const bool one_sort = data.scene_boxes->are_primitives();
+  std::atomic<detail::TileBins*> sorted{nullptr};
+  std::atomic<bool> has_failed{false};  // out of memory: nobody waits for what will not come
+  const auto work = [&](std::size_t number) {
+    std::size_t group;
+    if (number == 0) {
+      Lease lease(*this);
+      auto& [accumulator, bins, bounding] = lease.get();
+      tracer.prepare(*frame, bins);
+      sorted.store(&bins, std::memory_order_release);
+      accumulator.begin();
+      for (std::size_t added = 0; added < group_count && !has_failed;) {
+        if (groups->is_traced[added].load(std::memory_order_acquire)) {
+          if (groups->hits[added].count > 0) accumulator.add(groups->hits[added]);
+          ++added;
+        } else if ((group = groups->next.fetch_add(1)) < group_count) {
+          trace(group, bins);
+        } else {
+          std::this_thread::yield();
+        }
+      }
+      accumulator.finish(result);
+      // The others look at the bins no more: all groups have been handed out
+      // and traced.
+      return;
+    }
+    if (groups->next.load(std::memory_order_relaxed) >= group_count) return;
+    if (one_sort) {
+      detail::TileBins* bins;
+      while ((bins = sorted.load(std::memory_order_acquire)) == nullptr) {
+        if (has_failed) return;
+        std::this_thread::yield();
+      }
+      while ((group = groups->next.fetch_add(1)) < group_count) trace(group, *bins);
+      return;
+    }
+    Lease lease(*this);
+    detail::TileBins& bins = lease.get().bins;
+    tracer.prepare(*frame, bins);
+    while ((group = groups->next.fetch_add(1)) < group_count) trace(group, bins);
+  };
+  pool.for_each_chunk(static_cast<std::size_t>(pool.num_threads()), 1,
+                      [&](std::size_t number, std::size_t) {
+                        try {
+                          work(number);
+                        } catch (...) {
+                          has_failed = true;
+                          throw;
+                        }
+                      });
+  result.status = ViewStatus::ok;
+  const std::lock_guard lock(idle_mutex);
+  idle_groups.push_back(std::move(groups));
+  return result;
+}
+
+}  // namespace viewgain
