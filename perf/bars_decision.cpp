@@ -8,8 +8,8 @@
 #include "measure.hpp"
 #include "model_maps.hpp"
 #include "model_scene.hpp"
-#include "search_calls.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::bench {
 namespace {
@@ -33,11 +33,9 @@ std::vector<Figure> decision_figures(const BarsOptions& options) {
 
   const auto decide = [&](BeliefGrid& grid, std::span<const Pose> poses) {
     integrator.integrate(grid, frame, views[kViews]);
-    auto scene = updated_scene(scene_before, grid, exec);
-    if (!scene) scene = VoxelScene::build(grid, {}, exec);
+    const auto scene = VoxelScene::update(scene_before, grid, exec);
     const GainEvaluator evaluator(scene, model.sensor(), {}, exec);
-    const auto best = pruned_best(evaluator, poses);
-    return best ? *best : best_indices(evaluator.evaluate(poses), 1).front();
+    return evaluator.best(poses, 1).indices.front();
   };
   std::array<std::vector<double>, kCandidates.size()> seconds;
   for (int repetition = -1; repetition < options.repetitions; ++repetition) {

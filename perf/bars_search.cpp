@@ -9,8 +9,8 @@
 #include "bars.hpp"
 #include "measure.hpp"
 #include "model_maps.hpp"
-#include "search_calls.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::bench {
 namespace {
@@ -64,8 +64,8 @@ void search(const GainEvaluator& evaluator, std::span<const Pose> poses, bool is
     gains = evaluator.evaluate(poses);
     return std::optional(best_indices(gains, 1).front());
   };
-  const auto prune = [&] { return pruned_best(evaluator, poses); };
-  const auto race = [&] { return raced_best(evaluator, poses); };
+  const auto prune = [&] { return std::optional(evaluator.best(poses, 1).indices.at(0)); };
+  const auto race = [&] { return std::optional(evaluator.race(poses, 1).indices.at(0)); };
   const auto timed = [](const auto& call) {
     Search result;
     result.seconds = seconds_of([&] { result.chosen = call(); });
@@ -84,7 +84,6 @@ void search(const GainEvaluator& evaluator, std::span<const Pose> poses, bool is
 }  // namespace
 
 std::vector<Figure> search_figures(const BarsOptions& options) {
-  if (!Prunes<GainEvaluator> && !Races<GainEvaluator>) return {};
   const ExecConfig exec{.num_threads = options.num_threads};
   const std::vector<Pose> poses =
       sphere_poses(static_cast<std::size_t>(options.candidates), kModelDistance);

@@ -7,8 +7,8 @@
 
 #include "bars.hpp"
 #include "measure.hpp"
-#include "search_calls.hpp"
 #include "support/camel_scene.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::bench {
 namespace {
@@ -74,12 +74,9 @@ std::vector<Figure> update_figures(const BarsOptions& options) {
   for (std::size_t i = kViewsBefore; i < views.size(); ++i) {
     const DepthFrame frame = eighth_of(views[i], sensor, grid.workspace());
     integrator.integrate(grid, frame, views[i].T_world_camera);
-    // A copy has no snapshot to go on from, so all of it is gathered.
-    const BeliefGrid copy = grid.clone();
     std::shared_ptr<const VoxelScene> updated, built;
-    const double of_update = seconds_of([&] { updated = updated_scene(scene, grid, exec); });
-    if (!updated) return {};
-    const double of_build = seconds_of([&] { built = VoxelScene::build(copy, {}, exec); });
+    const double of_update = seconds_of([&] { updated = VoxelScene::update(scene, grid, exec); });
+    const double of_build = seconds_of([&] { built = VoxelScene::build(grid, {}, exec); });
     agree = agree && updated->primitive_count() == built->primitive_count();
     scene = updated;
     if (i == kViewsBefore) continue;  // warming up

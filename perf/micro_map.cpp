@@ -10,9 +10,9 @@
 #include "measure.hpp"
 #include "micro_benchmarks.hpp"
 #include "micro_scene.hpp"
-#include "search_calls.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::bench {
 namespace {
@@ -68,11 +68,7 @@ void scene_update(benchmark::State& state) {
   const BeliefGrid grid = one_more(micro, integrator, seconds);
   std::size_t primitives = 0;
   for (auto _ : state) {
-    const auto scene = updated_scene(micro.scene, grid, kOneThread);
-    if (!scene) {
-      state.SkipWithError("the library builds every scene anew");
-      return;
-    }
+    const auto scene = VoxelScene::update(micro.scene, grid, kOneThread);
     primitives = scene->primitive_count();
   }
   count(state, "primitives", static_cast<double>(primitives));

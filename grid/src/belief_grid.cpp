@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -101,6 +102,19 @@ void check_belief(const Belief& belief) {
 
 }  // namespace
 
+std::uint64_t BeliefGrid::Storage::next_number() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
+std::unique_ptr<BeliefGrid::Storage> BeliefGrid::Storage::copy() const {
+  auto result = std::make_unique<Storage>(*this);
+  result->copy_of = number;
+  result->copied_at = time;
+  result->number = next_number();
+  return result;
+}
+
 BeliefGrid::Storage::Storage(double voxel_size_in, const Pose& T_world_grid_in,
                              double prior_sigma_in, Index3 min_index_in, Index3 dims_in)
     : voxel_size(voxel_size_in),
@@ -162,7 +176,7 @@ BeliefGrid& BeliefGrid::operator=(BeliefGrid&&) noexcept = default;
 
 BeliefGrid BeliefGrid::clone() const {
   // Belief blocks are immutable, so sharing them is as good as copying.
-  return BeliefGrid(std::make_unique<Storage>(*storage_));
+  return BeliefGrid(storage_->copy());
 }
 
 double BeliefGrid::voxel_size() const noexcept { return storage_->voxel_size; }
@@ -224,6 +238,8 @@ void BeliefGrid::set(Index3 voxel, float log_odds, const std::optional<Belief>& 
     s.tree.setValueOff(to_coord(voxel), code);
   }
   const std::uint64_t key = s.lattice.key(voxel);
+  s.mark_changed(key);
+  ++s.time;
   const BeliefBlock* block = s.find_beliefs(key);
   if (!belief && block == nullptr) return;
   auto changed = with_belief(block, block_offset(voxel), belief ? &*belief : nullptr);

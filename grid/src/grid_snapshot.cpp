@@ -34,6 +34,15 @@ std::uint64_t tree_bytes(const CodeTree& tree) {
   return bytes;
 }
 
+// Where visit_blocks() comes to a leaf: upper node, node, leaf, each by x, y, z.
+std::array<std::int32_t, 9> tree_order(Index3 origin) {
+  const auto part = [&](int shift, std::int32_t mask) {
+    return std::array{origin.x >> shift & mask, origin.y >> shift & mask, origin.z >> shift & mask};
+  };
+  const auto upper = part(11, -1), node = part(7, 15), leaf = part(3, 15);
+  return {upper[0], upper[1], upper[2], node[0], node[1], node[2], leaf[0], leaf[1], leaf[2]};
+}
+
 std::uint64_t hash_origin(Index3 origin, std::uint64_t contents) {
   Hash64 hash;
   hash.add(static_cast<std::uint64_t>(static_cast<std::uint32_t>(origin.x)) << 32U |
@@ -120,14 +129,38 @@ class BlockHashes {
 
 }  // namespace
 
-GridSnapshot BeliefGrid::snapshot() const {
+GridSnapshot BeliefGrid::snapshot() const { return snapshot(GridSnapshot{}); }
+
+GridSnapshot BeliefGrid::snapshot(const GridSnapshot& before) const {
   const Storage& s = *storage_;
-  GridSnapshot result{s.voxel_size, s.prior_sigma, s.T_world_grid, s.min_index, s.dims, {}, {}};
+  GridSnapshot result{s.voxel_size, s.prior_sigma, s.T_world_grid, s.min_index, s.dims, {},
+                      {},           s.number,      s.time};
+  const bool is_related = s.is_earlier(before);
+  if (is_related) {
+    result.leaves.reserve(before.leaves.size() + before.leaves.size() / 8);
+    result.tiles.reserve(before.tiles.size() + before.tiles.size() / 8);
+  }
+  auto earlier = before.leaves.begin();
+  // The leaf as it was, if nothing near it has changed. Both lists are in the tree's order.
+  const auto unchanged = [&](Index3 origin, std::uint64_t key) -> const SnapshotLeaf* {
+    if (!is_related) return nullptr;
+    const auto place = tree_order(origin);
+    while (earlier != before.leaves.end() && tree_order(earlier->origin) < place) ++earlier;
+    if (earlier == before.leaves.end() || !(earlier->origin == origin)) return nullptr;
+    const auto change = s.changed.find(key >> 6U);
+    if (change != s.changed.end() && change->second > before.time) return nullptr;
+    return &*earlier;
+  };
   visit_blocks(
       s,
       [&](const CodeLeaf& leaf) {
         if (leaf.getValueMask().isOff()) return;
         const Index3 origin = to_index(leaf.origin());
+        const std::uint64_t key = s.lattice.key(clipped(s.lattice, origin, kBlockSize).min);
+        if (const SnapshotLeaf* same = unchanged(origin, key)) {
+          result.leaves.push_back(*same);
+          return;
+        }
         LeafMask non_free = leaf_mask(leaf.getValueMask());
         if (!s.lattice.covers(origin, kBlockSize)) {
           non_free = intersection(non_free, s.lattice.clip(origin));
@@ -136,8 +169,7 @@ GridSnapshot BeliefGrid::snapshot() const {
         const LeafMask occupied = intersection(non_free, occupied_mask(leaf.buffer().data()));
         std::shared_ptr<const BeliefBlock> beliefs;
         if (occupied != LeafMask{}) {
-          const auto found =
-              s.beliefs.find(s.lattice.key(clipped(s.lattice, origin, kBlockSize).min));
+          const auto found = s.beliefs.find(key);
           if (found != s.beliefs.end()) beliefs = found->second;
         }
         result.leaves.push_back({origin, non_free, occupied, std::move(beliefs)});

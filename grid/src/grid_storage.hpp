@@ -63,10 +63,25 @@ struct BeliefGrid::Storage {
   /// By BlockLattice::key. Blocks are never changed in place: snapshots and clones share them.
   std::unordered_map<std::uint64_t, std::shared_ptr<const BeliefBlock>> beliefs;
 
+  /// What has changed when: a time, and that of each region's last change (by key >> 6).
+  std::uint64_t time = 1;
+  std::unordered_map<std::uint64_t, std::uint64_t> changed;
+  void mark_changed(std::uint64_t block_key) { changed[block_key >> 6U] = time + 1; }
+
+  /// Tells grids apart. A copy goes its own way from `copied_at` on.
+  std::uint64_t number = next_number(), copy_of = 0, copied_at = 0;
+  [[nodiscard]] static std::uint64_t next_number();
+
+  [[nodiscard]] bool is_earlier(const GridSnapshot& snapshot) const {
+    return snapshot.grid_number == number ||
+           (snapshot.grid_number == copy_of && copy_of != 0 && snapshot.time <= copied_at);
+  }
+
   /// Checks everything, as BeliefGrid's constructor says.
   Storage(double voxel_size, const Pose& T_world_grid, double prior_sigma, Index3 min_index,
           Index3 dims);
   Storage(const Storage&) = default;
+  [[nodiscard]] std::unique_ptr<Storage> copy() const;
 
   [[nodiscard]] static BeliefGrid wrap(std::unique_ptr<Storage> storage) {
     return BeliefGrid(std::move(storage));

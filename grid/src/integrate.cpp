@@ -274,6 +274,10 @@ IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame&
     m.update_region(s, cull, camera, T_grid_camera, m.regions[i], m.results[i]);
   });
   m.put_results(s);
+  for (std::size_t i = 0; i < m.regions.size(); ++i) {
+    if (m.results[i].crossed + m.results[i].hit > 0) s.mark_changed(m.regions[i] << 6U);
+  }
+  ++s.time;
   s.views.push_back(T_world_camera);
 
   IntegrationReport report;

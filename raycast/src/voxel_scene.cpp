@@ -183,6 +183,13 @@ std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
   return std::shared_ptr<const VoxelScene>(new VoxelScene(std::move(data)));
 }
 
+std::shared_ptr<const VoxelScene> VoxelScene::update(
+    const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
+    const ExecConfig& exec) {
+  if (!before) throw Error(ErrorCode::invalid_argument, "there is no scene to update");
+  return build(grid.snapshot(before->snapshot()), before->data().obstacles, exec);
+}
+
 VoxelScene::VoxelScene(std::unique_ptr<const Data> data) : data_(std::move(data)) {}
 VoxelScene::~VoxelScene() = default;
 

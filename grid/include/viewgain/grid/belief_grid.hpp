@@ -101,6 +101,10 @@ class BeliefGrid {
   /// What a scene needs, immutable and independent of later changes to the grid; beliefs are shared
   /// and copied only when written. Costs one pass over the non-free leaves.
   [[nodiscard]] GridSnapshot snapshot() const;
+  /// The same result; leaves of regions of 32³ voxels that have not changed since `before` was
+  /// taken of this grid, or of the one that it is a clone of, are copied from there. Any other
+  /// snapshot is as good as none.
+  [[nodiscard]] GridSnapshot snapshot(const GridSnapshot& before) const;
 
   /// All beliefs, those of free voxels too, by block in a fixed order; shared, not copied.
   [[nodiscard]] std::vector<BeliefBlockAt> belief_blocks() const;

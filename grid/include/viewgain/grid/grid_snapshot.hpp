@@ -90,6 +90,9 @@ struct GridSnapshot {
   Index3 dims;       ///< voxels along x, y, z
   std::vector<SnapshotLeaf> leaves;
   std::vector<SnapshotTile> tiles;
+  /// Which grid it is of and when, for BeliefGrid::snapshot(before); 0: none.
+  std::uint64_t grid_number = 0;
+  std::uint64_t time = 0;
 };
 
 }  // namespace viewgain

@@ -39,6 +39,12 @@ class VoxelScene {
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(GridSnapshot snapshot,
                                                                const Obstacles& obstacles = {},
                                                                const ExecConfig& exec = {});
+  /// The scene of what `grid` is now, with the obstacles of `before`, which stays as it is: as
+  /// build(), but what has not changed since a scene of the same grid is taken over from its
+  /// snapshot. Throws Error(invalid_argument) for a null scene, and as build().
+  [[nodiscard]] static std::shared_ptr<const VoxelScene> update(
+      const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
+      const ExecConfig& exec = {});
   ~VoxelScene();
   VoxelScene(const VoxelScene&) = delete;
   VoxelScene& operator=(const VoxelScene&) = delete;
