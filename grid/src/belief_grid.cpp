@@ -319,9 +319,9 @@ void BeliefGrid::copy_states(std::span<std::uint8_t> states) const {
   };
   visit_blocks(
       s,
-      [&](const CodeLeaf& leaf) {
+      [&](const CodeLeaf& leaf, Index3 origin) {
         const std::uint8_t* codes = leaf.buffer().data();
-        const IndexBox box = clipped(s.lattice, to_index(leaf.origin()), kBlockSize);
+        const IndexBox box = clipped(s.lattice, origin, kBlockSize);
         each_row(box, [&](std::int32_t x, std::int32_t y, std::span<std::uint8_t> row) {
           const std::uint8_t* from = codes + block_offset({x, y, box.min.z});
           for (std::size_t k = 0; k < row.size(); ++k) row[k] = state_of(from[k]);

@@ -34,13 +34,24 @@ std::uint64_t tree_bytes(const CodeTree& tree) {
   return bytes;
 }
 
-// Where visit_blocks() comes to a leaf: upper node, node, leaf, each by x, y, z.
-std::array<std::int32_t, 9> tree_order(Index3 origin) {
-  const auto part = [&](int shift, std::int32_t mask) {
-    return std::array{origin.x >> shift & mask, origin.y >> shift & mask, origin.z >> shift & mask};
+// Where visit_blocks() comes to a leaf of the workspace: upper node, node, leaf, each by x, y, z.
+std::uint64_t tree_order(const BlockLattice& lattice, Index3 origin) {
+  // A workspace of 65,536 voxels touches at most 33 upper nodes along an axis.
+  const auto upper = [](std::int32_t at, std::int32_t low) {
+    return static_cast<std::uint64_t>((at >> 11) - (low >> 11));
   };
-  const auto upper = part(11, -1), node = part(7, 15), leaf = part(3, 15);
-  return {upper[0], upper[1], upper[2], node[0], node[1], node[2], leaf[0], leaf[1], leaf[2]};
+  const auto part = [](std::int32_t at, int shift) {
+    return static_cast<std::uint64_t>(at >> shift & 15);
+  };
+  std::uint64_t order = upper(origin.x, lattice.min.x);
+  order = order << 6U | upper(origin.y, lattice.min.y);
+  order = order << 6U | upper(origin.z, lattice.min.z);
+  for (const int shift : {7, 3}) {
+    order = order << 4U | part(origin.x, shift);
+    order = order << 4U | part(origin.y, shift);
+    order = order << 4U | part(origin.z, shift);
+  }
+  return order;
 }
 
 std::uint64_t hash_origin(Index3 origin, std::uint64_t contents) {
@@ -144,8 +155,10 @@ GridSnapshot BeliefGrid::snapshot(const GridSnapshot& before) const {
   // The leaf as it was, if nothing near it has changed. Both lists are in the tree's order.
   const auto unchanged = [&](Index3 origin, std::uint64_t key) -> const SnapshotLeaf* {
     if (!is_related) return nullptr;
-    const auto place = tree_order(origin);
-    while (earlier != before.leaves.end() && tree_order(earlier->origin) < place) ++earlier;
+    const std::uint64_t place = tree_order(s.lattice, origin);
+    while (earlier != before.leaves.end() && tree_order(s.lattice, earlier->origin) < place) {
+      ++earlier;
+    }
     if (earlier == before.leaves.end() || !(earlier->origin == origin)) return nullptr;
     const auto change = s.changed.find(key >> 6U);
     if (change != s.changed.end() && change->second > before.time) return nullptr;
@@ -153,14 +166,13 @@ GridSnapshot BeliefGrid::snapshot(const GridSnapshot& before) const {
   };
   visit_blocks(
       s,
-      [&](const CodeLeaf& leaf) {
-        if (leaf.getValueMask().isOff()) return;
-        const Index3 origin = to_index(leaf.origin());
+      [&](const CodeLeaf& leaf, Index3 origin) {
         const std::uint64_t key = s.lattice.key(clipped(s.lattice, origin, kBlockSize).min);
         if (const SnapshotLeaf* same = unchanged(origin, key)) {
           result.leaves.push_back(*same);
           return;
         }
+        if (leaf.getValueMask().isOff()) return;
         LeafMask non_free = leaf_mask(leaf.getValueMask());
         if (!s.lattice.covers(origin, kBlockSize)) {
           non_free = intersection(non_free, s.lattice.clip(origin));
@@ -201,8 +213,7 @@ GridStatistics BeliefGrid::statistics(Criterion criterion) const {
   const auto prior = SymmetricMatrix3::identity(1.0 / (s.prior_sigma * s.prior_sigma));
   visit_blocks(
       s,
-      [&](const CodeLeaf& leaf) {
-        const Index3 origin = to_index(leaf.origin());
+      [&](const CodeLeaf& leaf, Index3 origin) {
         const std::uint8_t* codes = leaf.buffer().data();
         LeafMask inside;
         inside.fill(~std::uint64_t{0});
@@ -242,7 +253,7 @@ std::string BeliefGrid::content_hash() const {
   const Storage& s = *storage_;
   BlockHashes blocks(s.lattice);
   visit_blocks(
-      s, [&](const CodeLeaf& leaf) { blocks.add_leaf(leaf); },
+      s, [&](const CodeLeaf& leaf, Index3) { blocks.add_leaf(leaf); },
       [&](Index3 origin, int size, std::uint8_t code) { blocks.add_tile(origin, size, code); });
   for (const auto& [key, block] : s.beliefs) blocks.add_beliefs(s.lattice.origin(key), *block);
 

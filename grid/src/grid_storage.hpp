@@ -98,8 +98,8 @@ struct BeliefGrid::Storage {
 
 namespace detail {
 
-/// Calls leaf(const CodeLeaf&) and tile(Index3 origin, int size, std::uint8_t code) for all leaves
-/// and tiles that overlap the workspace.
+/// Calls leaf(const CodeLeaf&, Index3 origin), without having looked into the leaf, and tile(Index3
+/// origin, int size, std::uint8_t code) for all leaves and tiles that overlap the workspace.
 template <typename LeafFn, typename TileFn>
 void visit_blocks(const BeliefGrid::Storage& storage, LeafFn&& leaf, TileFn&& tile) {
   const BlockLattice& lattice = storage.lattice;
@@ -117,7 +117,8 @@ void visit_blocks(const BeliefGrid::Storage& storage, LeafFn&& leaf, TileFn&& ti
     for (auto node = upper->cbeginChildOn(); node; ++node) {
       for (auto it = node->cbeginValueAll(); it; ++it) visit_tile(it.getCoord(), kBlockSize, *it);
       for (auto it = node->cbeginChildOn(); it; ++it) {
-        if (lattice.overlaps(to_index(it->origin()), kBlockSize)) leaf(*it);
+        const Index3 origin = to_index(it.getCoord());
+        if (lattice.overlaps(origin, kBlockSize)) leaf(*it, origin);
       }
     }
   }

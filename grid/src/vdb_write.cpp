@@ -85,8 +85,7 @@ void put_states(const BeliefGrid::Storage& s, GridSet& set) {
   };
   visit_blocks(
       s,
-      [&](const CodeLeaf& leaf) {
-        const Index3 origin = to_index(leaf.origin());
+      [&](const CodeLeaf& leaf, Index3 origin) {
         const std::uint8_t* codes = leaf.buffer().data();
         LeafMask known = code_mask(codes, [](std::uint8_t code) { return code != kUnknownCode; });
         const LeafMask inside = s.lattice.clip(origin);

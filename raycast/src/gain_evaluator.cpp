@@ -105,9 +105,9 @@ bool GainEvaluator::Impl::is_in_occupied(const detail::PoseFrame& frame) const {
     voxel[i] = static_cast<std::int32_t>(c);
   }
   const std::uint64_t key = data.voxel_key(voxel[0], voxel[1], voxel[2]);
-  const auto leaf = std::lower_bound(data.leaf_by_block.begin(), data.leaf_by_block.end(),
+  const auto leaf = std::lower_bound(data.occupied_leaves.begin(), data.occupied_leaves.end(),
                                      std::pair<std::uint64_t, std::uint32_t>(key >> 9U, 0U));
-  return leaf != data.leaf_by_block.end() && leaf->first == key >> 9U &&
+  return leaf != data.occupied_leaves.end() && leaf->first == key >> 9U &&
          test_bit(data.snapshot.leaves[leaf->second].occupied, static_cast<unsigned>(key & 511U));
 }
 

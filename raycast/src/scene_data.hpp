@@ -67,8 +67,8 @@ struct VoxelScene::Data {
   const detail::TraceKernels* kernels = nullptr;
   int build_threads = 0;  ///< of the BVH
 
-  /// Snapshot leaves by block, for looking up single voxels; sorted.
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> leaf_by_block;
+  /// Snapshot leaves that have occupied voxels, by block, for looking up single voxels; sorted.
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> occupied_leaves;
 
   /// Builds the BVH unless it is there; only some views are traced through it, see ViewTracer.
   /// Thread safe. Throws Error(backend), Error(capacity).

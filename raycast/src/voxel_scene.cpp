@@ -114,6 +114,12 @@ void gather(VoxelScene::Data& data) {
   const GridSnapshot& snapshot = data.snapshot;
   const Index3& base = snapshot.min_index;
   std::vector<Index3> blocks;
+  const std::size_t leaves = snapshot.leaves.size(), most = leaves + snapshot.tiles.size();
+  data.masks.reserve(leaves);
+  data.leaf_source.reserve(leaves);
+  data.has_occupied.reserve(leaves);
+  data.boxes.reserve(most);
+  data.block_keys.reserve(most);
   for (std::size_t i = 0; i < snapshot.leaves.size(); ++i) {
     const SnapshotLeaf& leaf = snapshot.leaves[i];
     const Index3& origin = leaf.origin;
@@ -131,9 +137,11 @@ void gather(VoxelScene::Data& data) {
     data.block_keys.push_back(block << 9U);
     data.leaf_source.push_back(static_cast<std::uint32_t>(i));
     data.has_occupied.push_back(leaf.occupied != LeafMask{} ? 1 : 0);
-    data.leaf_by_block.emplace_back(block, static_cast<std::uint32_t>(i));
+    if (data.has_occupied.back() != 0) {
+      data.occupied_leaves.emplace_back(block, static_cast<std::uint32_t>(i));
+    }
   }
-  std::sort(data.leaf_by_block.begin(), data.leaf_by_block.end());
+  std::sort(data.occupied_leaves.begin(), data.occupied_leaves.end());
   data.leaf_count = data.masks.size();
 
   std::vector<PrimitiveBox> larger;
@@ -202,7 +210,7 @@ std::uint64_t VoxelScene::bytes() const noexcept {
          data_->boxes.size() * sizeof(PrimitiveBox) +
          data_->block_keys.size() * sizeof(std::uint64_t) +
          data_->leaf_source.size() * (sizeof(std::uint32_t) + sizeof(std::uint8_t)) +
-         data_->leaf_by_block.size() * sizeof(data_->leaf_by_block.front());
+         data_->occupied_leaves.size() * sizeof(data_->occupied_leaves.front());
 }
 
 std::vector<std::string> available_isas() {

@@ -160,6 +160,52 @@ TEST(Snapshot, StaysAsItWasAndSharesWhatDidNotChange) {
   EXPECT_GT(changed, 20U);  // blocks that it did
 }
 
+// Leaves taken over from an earlier snapshot are what they would be anew, whatever has happened
+// since, in clones too; a snapshot of another grid is of no use and does no harm.
+TEST(Snapshot, FromTheOneBeforeIsTheSame) {
+  const Sensor sensor = small_sensor(48, 36);
+  FrameIntegrator integrator(sensor);
+  BeliefGrid grid(object_grid(32));
+  const auto frame = [&](int i) {
+    return see_spheres(sensor, ring_view(i), three_spheres_in_a_room());
+  };
+  GridSnapshot before = grid.snapshot();
+  std::size_t cases = 0, shared = 0;
+  const auto compare = [&](const BeliefGrid& now) {
+    const GridSnapshot anew = now.snapshot(), updated = now.snapshot(before);
+    expect_equal(updated, now);
+    ASSERT_EQ(updated.leaves.size(), anew.leaves.size());
+    for (std::size_t i = 0; i < anew.leaves.size(); ++i) {
+      EXPECT_EQ(updated.leaves[i].origin, anew.leaves[i].origin);
+      EXPECT_EQ(updated.leaves[i].non_free, anew.leaves[i].non_free);
+      EXPECT_EQ(updated.leaves[i].occupied, anew.leaves[i].occupied);
+      EXPECT_EQ(updated.leaves[i].beliefs, anew.leaves[i].beliefs);
+      if (updated.leaves[i].beliefs != nullptr) ++shared;
+    }
+    ASSERT_EQ(updated.tiles.size(), anew.tiles.size());
+    ++cases;
+  };
+  for (int i = 0; i < 5; ++i) {
+    integrator.integrate(grid, frame(i), ring_view(i));
+    compare(grid);
+    grid.set({i, 0, -i}, i % 2 == 0 ? 1.0F : -1.0F);
+    compare(grid);
+    BeliefGrid clone = grid.clone();
+    integrator.integrate(clone, frame(i + 1), ring_view(i + 1));
+    compare(clone);
+    if (i % 2 == 0) before = grid.snapshot();
+    clone.set({2, 2, 2}, 1.0F);
+    compare(clone);
+    // Now of a grid that the clone is not a clone of any more.
+    const GridSnapshot kept = before;
+    before = clone.snapshot();
+    compare(grid);
+    before = kept;
+  }
+  EXPECT_EQ(cases, 25U);
+  EXPECT_GT(shared, 300U);
+}
+
 TEST(Snapshot, OutlivesTheGrid) {
   GridSnapshot snapshot;
   {
