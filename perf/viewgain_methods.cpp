@@ -56,9 +56,7 @@ class ViewgainTrace : public TraceMethod {
         scene_(std::move(scene)),
         data_(scene_->data()),
         tracer_(data_, task.sensor.camera, 1, task.sensor.min_range, task.sensor.max_range),
-        way_(way) {
-    if (way == Way::bvh) data_.ensure_bvh();
-  }
+        way_(way) {}
 
   void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
     std::fill(endings.begin(), endings.end(), kMiss);

@@ -84,9 +84,10 @@ class ViewTracer {
     }
   }
 
-  /// The same through the BVH alone, every tile; the scene must have it.
+  /// The same through the BVH alone, every tile, which the evaluator does not do where it need not.
   template <typename Visit>
   void trace_bvh(const PoseFrame& frame, Visit&& visit) const {
+    scene_.ensure_bvh();
     if (frame.sees_nothing) return;
     RayTile out;
     for (std::size_t tile = 0; tile < table_.tile_count; ++tile) {

@@ -240,7 +240,7 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       {arguments("cube.off", {"--size", "0"}), "size"},
       {arguments("cube.off", {"--policy", "best"}), "best"},
       {arguments("cube.off", {"--criterion", "entropy"}), "entropy"},
-      {arguments("cube.off", {"--max-views", "0"}), "max_views"},
+      {arguments("cube.off", {"--max-views", "0"}), "max-views"},
       {arguments("cube.off", {"--workspace", "0,0,0,-1,1,1"}), "--workspace"},
       {arguments("cube.off", {"--start", "1,2,3"}), "--start"},
       {arguments("cube.off", {"--start", "1,2,3,0,0,0,0"}), "--start"},
