@@ -196,7 +196,7 @@ TEST(Bench, MicrobenchmarksRunAndCount) {
     }
     EXPECT_EQ(rates, 1) << name;
   }
-  EXPECT_EQ(parts.size(), 17U);
+  EXPECT_EQ(parts.size(), 14U);
 }
 
 TEST(Bench, OctomapAndOursMakeTheSameMap) {
