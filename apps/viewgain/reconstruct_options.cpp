@@ -49,7 +49,7 @@ void add_options(CLI::App& app, ReconstructOptions& o) {
       ->capture_default_str();
   app.add_option("--max-views", o.max_views, "view budget")->check(count)->capture_default_str();
   app.add_option("--stop-gain", o.stop_gain,
-                 "stop when the best view gains less per touched voxel [nat, m^2]; default: 0.15 "
+                 "stop when the best view gains less per touched voxel [nat, m^2]; default: 1.2 "
                  "(trace: 0.01 of the first view's)");
   app.add_option("--stop-idle", o.stop_idle,
                  "stop after so many views in a row that change entropy and unknown voxels by "

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,6 +13,12 @@
 #include "view_tracer.hpp"
 
 namespace viewgain::detail {
+
+/// Steps of a range [voxels]: the leading bits of its square, 16 an octave of the range.
+inline constexpr unsigned kRangeStepShift = 20;
+[[nodiscard]] inline std::uint32_t step_of(float squared) {
+  return std::bit_cast<std::uint32_t>(squared) >> kRangeStepShift;
+}
 
 /// Upper bounds of what the rows of tiles of a view can gain, from where the scene's voxels lie in
 /// its image and without tracing a ray.

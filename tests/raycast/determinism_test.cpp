@@ -47,10 +47,12 @@ TEST(Determinism, SameBitsForAnyNumberOfThreadsAndRunAfterRun) {
         ++cases;
       }
     }
-    // One by one as in a batch.
-    const GainEvaluator evaluator(scene, made.sensor);
-    for (std::size_t i = 0; i < made.poses.size(); ++i) {
-      EXPECT_TRUE(test::same_bits(expected[i], evaluator.evaluate(made.poses[i])));
+    // One by one as in a batch: the threads share each view.
+    for (const int threads : {1, 2, 5}) {
+      const GainEvaluator evaluator(scene, made.sensor, {}, {.num_threads = threads});
+      for (std::size_t i = 0; i < made.poses.size(); ++i) {
+        EXPECT_TRUE(test::same_bits(expected[i], evaluator.evaluate(made.poses[i])));
+      }
     }
   }
   EXPECT_EQ(cases, 36);

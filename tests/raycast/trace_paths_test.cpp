@@ -51,7 +51,7 @@ TEST(TracePaths, ListsAndBvhGiveTheSameBits) {
   EXPECT_GT(rays, 50'000U);
 }
 
-// More primitives than are listed one by one: boxes stand for many, the BVH decides.
+// More primitives than are listed one by one: boxes stand for cells of many.
 TEST(TracePaths, ManyPrimitivesUnderCoarseBoxesGiveTheSameBits) {
   constexpr int kEdge = 144;
   std::vector<Index3> unknown;
