@@ -37,8 +37,8 @@ namespace viewgain::app {
 namespace {
 
 // About what is left when the information of a touched voxel cannot be doubled any more
-// (3/2 ln 2 = 1.04 nat). DESIGN.md's 0.15 nat never came on the camel: each view meets voxels of the
-// noise shell, and unknown ones behind it, for the first time.
+// (3/2 ln 2 = 1.04 nat). DESIGN.md's 0.15 nat never came on the camel: each view meets voxels of
+// the noise shell, and unknown ones behind it, for the first time.
 constexpr double kStopGain = 1.2;  // [nat]
 
 // A distance [m] from the centre at which nothing of an object of this size is.

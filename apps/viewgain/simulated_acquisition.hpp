@@ -12,8 +12,8 @@
 namespace viewgain::app {
 
 /// DATAACQUISITION of Algorithm 1 by a simulated camera: `frames_per_view` frames from each pose,
-/// numbered on, so that view and frame fix the noise. When a stop is requested a view ends after the
-/// frame that is being taken.
+/// numbered on, so that view and frame fix the noise. When a stop is requested a view ends after
+/// the frame that is being taken.
 class SimulatedAcquisition : public DataAcquisition {
  public:
   SimulatedAcquisition(SimulatedSensor camera, std::size_t frames_per_view, std::stop_token stop,

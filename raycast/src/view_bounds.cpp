@@ -9,7 +9,6 @@
 #include <limits>
 #include <unordered_map>
 
-
 namespace viewgain::detail {
 namespace {
 

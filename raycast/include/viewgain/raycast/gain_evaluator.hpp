@@ -107,10 +107,10 @@ class GainEvaluator {
   /// bound on; one is given up as soon as what it has gained and a bound of what is left fall below
   /// the k-th best so far. With obstacles, task weights, a distorted camera or more than 4,096
   /// primitives there is no bound and all poses are scored. What was traced and scored is also the
-  /// same for any number of threads. The bound grants 1/512 of the rays the most that a ray can gain,
-  /// for those that slip over an edge between two voxels; a camera placed so that more of them do
-  /// is outside of what is promised. control.progress counts poses that need no more work. If
-  /// control.stop is requested the result is what is best of those scored so far, and not
+  /// same for any number of threads. The bound grants 1/512 of the rays the most that a ray can
+  /// gain, for those that slip over an edge between two voxels; a camera placed so that more of
+  /// them do is outside of what is promised. control.progress counts poses that need no more work.
+  /// If control.stop is requested the result is what is best of those scored so far, and not
   /// `complete`.
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BatchControl& control = {}) const;
