@@ -95,7 +95,7 @@ class DecisionMaking {
 struct PlanningConfig {
   std::size_t max_views = 20;
   /// Stop when the best candidate's gain per touched voxel is under this [nat, m² for trace].
-  double stop_gain = 1.2;
+  double stop_gain = 0.15;
   /// stop_gain is a share of the first decision's gain per voxel instead (for trace: 0.01).
   bool stop_gain_is_relative = false;
   std::size_t idle_views = 3;  ///< stop after so many views in a row that brought nothing; 0: never
