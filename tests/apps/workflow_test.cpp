@@ -127,6 +127,35 @@ TEST_F(Workflow, JsonHasTheDocumentedKeys) {
   EXPECT_GT(last, 0);
 }
 
+TEST_F(Workflow, WaysOfChoosingViews) {
+  simulate("frames");
+  integrate("frames", "map.vdb");
+  const auto score = [&](const Strings& more) {
+    Strings arguments{"score",      "map.vdb",   "--sphere", "60,0.6", "--sensor",
+                      "small.toml", "--threads", "2",        "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json::parse(run_well(arguments));
+  };
+  const json all = score({"--top", "3"});
+  const json pruned = score({"--top", "3", "--prune"});
+  EXPECT_EQ(pruned["best"], all["best"]);
+  EXPECT_LE(pruned["poses_scored"].get<int>(), 60);
+  const json raced = score({"--top", "1", "--race"});
+  EXPECT_GE(raced["best"][0]["gain"].get<double>(), 0.9 * all["best"][0]["gain"].get<double>());
+  const json set = score({"--set", "3"});
+  ASSERT_EQ(set["best"].size(), 3U);
+  EXPECT_EQ(set["best"][0], all["best"][0]);
+  double sum = 0;
+  for (const json& view : set["best"]) sum += view["gain"].get<double>();
+  EXPECT_NEAR(set["set_gain"].get<double>(), sum, 1e-9 * sum);
+  const json estimated = score({"--top", "3", "--approximate", "0.5"});
+  EXPECT_GT(estimated["best"][0]["standard_error"].get<double>(), 0);
+  EXPECT_EQ(
+      run({"score", "map.vdb", "--sphere", "60,0.6", "--sensor", "small.toml", "--prune", "--race"})
+          .exit_code,
+      2);
+}
+
 TEST_F(Workflow, CsvReadsBackTheSameDoubles) {
   simulate("frames");
   integrate("frames", "map.vdb");
