@@ -94,4 +94,12 @@ void ProgramTest::write_small_sensor() const {
         "[noise]\nmodel = \"quadratic\"\noffset = 0.001\nquadratic = 0.001\n");
 }
 
+void ProgramTest::write_half_sensor() const {
+  write("tof.toml",
+        "name = \"tof\"\nmin_range = 0.2\nmax_range = 5.0\nworking_distance = 0.4\n"
+        "[camera]\nwidth = 88\nheight = 72\nfx = 110.0\nfy = 115.6\ncx = 43.5\ncy = 35.5\n"
+        "[noise]\nmodel = \"shot\"\nreference_sigma = 0.004\nreference_range = 1.3\n"
+        "reference_integration_time = 0.0085\nintegration_time = 0.001\n");
+}
+
 }  // namespace viewgain::test

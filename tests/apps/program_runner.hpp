@@ -41,6 +41,9 @@ class ProgramTest : public testing::Test {
   /// A sensor of 48x36 px: small.toml.
   void write_small_sensor() const;
 
+  /// An SR4000 at half its resolution: tof.toml.
+  void write_half_sensor() const;
+
   std::filesystem::path dir;
 };
 

@@ -60,12 +60,7 @@ class Reconstruct : public test::ProgramTest {
  protected:
   Reconstruct() {
     write_cube();
-    // An SR4000 at half its resolution.
-    write("tof.toml",
-          "name = \"tof\"\nmin_range = 0.2\nmax_range = 5.0\nworking_distance = 0.4\n"
-          "[camera]\nwidth = 88\nheight = 72\nfx = 110.0\nfy = 115.6\ncx = 43.5\ncy = 35.5\n"
-          "[noise]\nmodel = \"shot\"\nreference_sigma = 0.004\nreference_range = 1.3\n"
-          "reference_integration_time = 0.0085\nintegration_time = 0.001\n");
+    write_half_sensor();
   }
 
   // Coarse enough for a test: 88x72 px, 64³ voxels.
