@@ -57,6 +57,7 @@ struct RegionResult {
   std::vector<std::pair<Index3, std::uint8_t>> tiles;
   std::uint64_t crossed = 0;
   std::uint64_t hit = 0;
+  bool changed = false;  ///< in what a snapshot tells
 };
 
 }  // namespace
@@ -151,6 +152,7 @@ void FrameIntegrator::Impl::update_region(BeliefGrid::Storage& s, const ConeCull
         may_be_tile(tile_code)) {
       const std::uint8_t code = updated_code(tile_code, kMissDelta, literal());
       if (code != tile_code) result.tiles.emplace_back(origin, code);
+      result.changed = result.changed || is_non_free(tile_code);
       result.crossed += whole ? kBlockVoxels : count_bits(s.lattice.clip(origin));
       continue;
     }
@@ -178,6 +180,9 @@ void FrameIntegrator::Impl::update_region(BeliefGrid::Storage& s, const ConeCull
 
     std::uint8_t* codes = leaf != nullptr ? leaf->buffer().data() : fresh.data();
     if (leaf == nullptr) fresh.fill(tile_code);
+    LeafMask non_free;
+    non_free.fill(is_non_free(tile_code) ? ~std::uint64_t{0} : 0);
+    if (leaf != nullptr) non_free = leaf_mask(leaf->getValueMask());
     BlockUpdate update;
     kernels.update(deltas.data(), literal(), codes, update);
     if (!whole) {
@@ -185,6 +190,9 @@ void FrameIntegrator::Impl::update_region(BeliefGrid::Storage& s, const ConeCull
       for (std::size_t i = 0; i < 8; ++i) update.crossed[i] &= inside[i];
     }
     result.crossed += count_bits(update.crossed);
+    // What is free stays free when it is crossed.
+    result.changed = result.changed || hit_block != nullptr ||
+                     intersection(update.crossed, non_free) != LeafMask{};
 
     if (update.uniform && may_be_tile(codes[0])) {
       if (leaf != nullptr || codes[0] != tile_code) result.tiles.emplace_back(origin, codes[0]);
@@ -269,13 +277,16 @@ IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame&
     block.beliefs = &s.beliefs.try_emplace(block.key, empty).first->second;
   }
   if (m.results.size() < m.regions.size()) m.results.resize(m.regions.size());
-  for (std::size_t i = 0; i < m.regions.size(); ++i) m.results[i].crossed = m.results[i].hit = 0;
+  for (std::size_t i = 0; i < m.regions.size(); ++i) {
+    m.results[i].crossed = m.results[i].hit = 0;
+    m.results[i].changed = false;
+  }
   m.pool.for_each_chunk(m.regions.size(), 1, [&](std::size_t i, std::size_t) {
     m.update_region(s, cull, camera, T_grid_camera, m.regions[i], m.results[i]);
   });
   m.put_results(s);
   for (std::size_t i = 0; i < m.regions.size(); ++i) {
-    if (m.results[i].crossed + m.results[i].hit > 0) s.mark_changed(m.regions[i] << 6U);
+    if (m.results[i].changed) s.mark_changed(m.regions[i] << 6U);
   }
   ++s.time;
   s.views.push_back(T_world_camera);
