@@ -33,8 +33,8 @@ struct CloudIntegrationConfig {
 /// for bit for any number of threads, and for the points in any order but for the rounding of the
 /// beliefs' sums.
 ///
-/// Thread safety: one call at a time on one integrator and on one grid. Costs about 0.1 µs a voxel
-/// crossed.
+/// Thread safety: one call at a time on one integrator and on one grid. Cost: grows with
+/// the voxels crossed.
 class CloudIntegrator {
  public:
   /// Throws Error(invalid_argument) if the sensor is not valid or the support plane is not finite.

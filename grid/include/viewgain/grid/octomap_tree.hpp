@@ -18,7 +18,7 @@ namespace viewgain {
 
 /// A belief grid of the tree, by the rules of load_octomap; a voxel is occupied where the tree says
 /// so (its own occupancy threshold, instead of config.occupied_from). Passes through the tree's
-/// file form in memory: about 6 bytes a node. Thread safety: reads the tree only.
+/// file form in memory: 5 bytes a node. Thread safety: reads the tree only.
 [[nodiscard]] inline BeliefGrid grid_from_octree(const octomap::OcTree& tree,
                                                  OctomapConfig config = {}) {
   config.occupied_from = tree.getOccupancyThresLog();
