@@ -1,12 +1,9 @@
 # How the project's targets are made.
 
-# Warnings, sanitizers, visibility and floating-point rules that every target of ours is built with.
+# Warnings, sanitizers and floating-point rules that every target of ours is built with.
 function(viewgain_compile_rules target)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  # Only what says VIEWGAIN_EXPORT leaves a library. Inline functions never do: those of a client that is
-  # compiled for another instruction set must not take the place of ours.
-  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON
-                        CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow
                                            $<$<BOOL:${VIEWGAIN_WERROR}>:-Werror>)
   # No fused multiply-add behind our back: every instruction set must take the same steps.
@@ -36,6 +33,9 @@ function(viewgain_add_module name)
   target_include_directories(${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/include
                                      PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   viewgain_compile_rules(${name})
+  # Only what says VIEWGAIN_EXPORT leaves a library. Inline functions never do: those of a client that is
+  # compiled for another instruction set must not take the place of ours.
+  set_target_properties(${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endfunction()
 
 # Puts modules into a library.
