@@ -44,13 +44,13 @@ case $kind in
     cmake --install "$build" --prefix "$work/prefix" >/dev/null
     ;;
   install_static)
-    rm -rf "$work/static_build" "$work/static"
+    rm -rf "$work/static_build" "$work/static_prefix"
     cmake -S "$source" -B "$work/static_build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
       -DBUILD_SHARED_LIBS=OFF -DVIEWGAIN_BUILD_APPS=OFF -DVIEWGAIN_BUILD_TESTS=OFF \
       -DVIEWGAIN_BUILD_PERF=OFF "-DCMAKE_CXX_COMPILER_LAUNCHER=$here/reuse_objects.sh" >/dev/null
     quiet_build "$work/static_build"
     grep -q '^reuse_objects.sh: no' "$work/static_build/build.log" && fail "compiled anew"
-    cmake --install "$work/static_build" --prefix "$work/static" >/dev/null
+    cmake --install "$work/static_build" --prefix "$work/static_prefix" >/dev/null
     ;;
   find_package) check_project "$work/prefix" ;;
   native) check_project "$work/prefix" -DCMAKE_CXX_FLAGS=-march=native ;;
@@ -62,10 +62,16 @@ case $kind in
     ! ldd "$work/moved/gain" | grep -F "$work/prefix/" || fail "still uses the old prefix"
     ;;
   static)
-    check_project "$work/static"
-    ! ldd "$work/static/../$kind/gain" | grep viewgain || fail "not linked statically"
+    check_project "$work/static_prefix"
+    ! ldd "$work/static/gain" | grep viewgain || fail "not linked statically"
+    pc=$(dirname "$(find "$work/static_prefix" -name viewgain.pc)")
+    # Split on purpose.
+    # shellcheck disable=SC2046
+    c++ -std=c++20 "$here/gain.cpp" -o "$work/$kind/by_pkg_config" \
+      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain)
+    check_gain "$work/$kind/by_pkg_config"
     ;;
-  static_native) check_project "$work/static" -DCMAKE_CXX_FLAGS=-march=native ;;
+  static_native) check_project "$work/static_prefix" -DCMAKE_CXX_FLAGS=-march=native ;;
   pkg_config)
     mkdir -p "$work/$kind"
     pc=$(dirname "$(find "$work/prefix" -name viewgain.pc)")
@@ -90,7 +96,7 @@ case $kind in
     check_gain "$folder/gain"
     ;;
   headers)
-    # Every public header compiles by itself and brings in nothing but Eigen and the standard library.
+    # All public headers together bring in nothing but Eigen and the standard library.
     count=0
     while read -r header; do
       echo "#include <${header#"$work/prefix/include/"}>"
