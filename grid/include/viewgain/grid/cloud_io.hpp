@@ -7,12 +7,13 @@
 #include <optional>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 
 namespace viewgain {
 
 /// The points of a file.
-struct PointCloud {
+struct VIEWGAIN_EXPORT PointCloud {
   /// In file order, as they stand there; an organised cloud's pixels without a reading are NaN.
   std::vector<std::array<double, 3>> points;
   std::optional<Pose> viewpoint;  ///< a PCD's VIEWPOINT: the sensor's pose in the points' frame
@@ -24,6 +25,6 @@ struct PointCloud {
 /// and, in text, the line, if a field is missing, a count contradicts the file's length, a word is
 /// no number, the viewpoint's quaternion is off by more than 1e-2, or the name ends otherwise.
 /// Points need not be finite.
-[[nodiscard]] PointCloud load_cloud(const std::filesystem::path& path);
+[[nodiscard]] VIEWGAIN_EXPORT PointCloud load_cloud(const std::filesystem::path& path);
 
 }  // namespace viewgain

@@ -83,7 +83,7 @@ struct VIEWGAIN_EXPORT SnapshotTile {
 };
 
 /// A cube of 32³ voxels of the lattice; its leaves and tiles follow one another in the lists.
-struct SnapshotRegion {
+struct VIEWGAIN_EXPORT SnapshotRegion {
   std::uint64_t number = 0;   ///< lists of regions rise in it; the same in all snapshots of a grid
   std::uint64_t changed = 0;  ///< when its voxels changed last
   std::uint32_t first_leaf = 0;

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"
@@ -15,7 +16,7 @@
 namespace viewgain {
 
 /// What changes the map.
-struct CloudIntegrationConfig {
+struct VIEWGAIN_EXPORT CloudIntegrationConfig {
   Occupancy occupancy = Occupancy::probabilistic;
   std::optional<double> support_plane{};  ///< as in IntegrationConfig, world z [m]
 };
@@ -35,7 +36,7 @@ struct CloudIntegrationConfig {
 ///
 /// Thread safety: one call at a time on one integrator and on one grid. Cost: grows with
 /// the voxels crossed.
-class CloudIntegrator {
+class VIEWGAIN_EXPORT CloudIntegrator {
  public:
   /// Throws Error(invalid_argument) if the sensor is not valid or the support plane is not finite.
   explicit CloudIntegrator(const Sensor& sensor, const CloudIntegrationConfig& config = {},
@@ -58,7 +59,7 @@ class CloudIntegrator {
 
 /// The box, in the frame of T_world_grid, that holds every reading of the cloud [m], those of the
 /// support plane left out; nothing if it has none. For choosing a workspace.
-[[nodiscard]] std::optional<Box> reading_bounds(const Sensor& sensor,
+[[nodiscard]] VIEWGAIN_EXPORT std::optional<Box> reading_bounds(const Sensor& sensor,
                                                 std::span<const std::array<double, 3>> points,
                                                 const Pose& T_world_sensor,
                                                 const Pose& T_world_grid = {},

@@ -8,12 +8,13 @@
 #include <string_view>
 
 #include "viewgain/core/box.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain {
 
 /// What an octree does not say about a map.
-struct OctomapConfig {
+struct VIEWGAIN_EXPORT OctomapConfig {
   /// Part of the tree to take, in its frame [m], grown to whole voxels; default: the box of its
   /// known voxels. What the tree does not cover is unknown.
   std::optional<Box> workspace{};
@@ -36,23 +37,23 @@ struct OctomapConfig {
 /// byte, if it is cut, has another count of nodes than it says, a value that is no number, or no
 /// known voxel and no workspace is given; Error(capacity) and Error(invalid_argument) as
 /// BeliefGrid.
-[[nodiscard]] BeliefGrid load_octomap(const std::filesystem::path& path,
-                                      const OctomapConfig& config = {});
+[[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_octomap(const std::filesystem::path& path,
+                                                      const OctomapConfig& config = {});
 /// The same of a file's contents; `name` stands for the file in messages.
-[[nodiscard]] BeliefGrid grid_from_octomap_bytes(std::string_view bytes,
+[[nodiscard]] VIEWGAIN_EXPORT BeliefGrid grid_from_octomap_bytes(std::string_view bytes,
                                                  const OctomapConfig& config = {},
                                                  const std::string& name = "octree");
 
 /// The resolution of an OctoMap file [m], from its header alone. Throws as load_octomap.
-[[nodiscard]] double octomap_resolution(const std::filesystem::path& path);
+[[nodiscard]] VIEWGAIN_EXPORT double octomap_resolution(const std::filesystem::path& path);
 
 /// Writes a `.ot` that OctoMap and load_octomap read, pruned: states and log-odds, in the grid's
 /// frame. A tree has no place for beliefs, prior, T_world_grid and views. A free voxel's log-odds
 /// of 0 is written as -0.001, since OctoMap calls 0 occupied; read back it is 0 again. Atomic: a
 /// temporary file is renamed. Throws Error(io), and Error(capacity) if a known voxel's index is not
 /// in [-32768, 32768).
-void save_octomap(const BeliefGrid& grid, const std::filesystem::path& path);
+VIEWGAIN_EXPORT void save_octomap(const BeliefGrid& grid, const std::filesystem::path& path);
 /// The contents of that file.
-[[nodiscard]] std::string octomap_bytes(const BeliefGrid& grid);
+[[nodiscard]] VIEWGAIN_EXPORT std::string octomap_bytes(const BeliefGrid& grid);
 
 }  // namespace viewgain
