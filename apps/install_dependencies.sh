@@ -7,6 +7,7 @@ packages=(
   g++ cmake ninja-build
   libeigen3-dev libembree-dev libopenvdb-dev libtbb-dev libcgal-dev libhwy-dev
   libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev
+  pkg-config
   libgtest-dev liboctomap-dev libbenchmark-dev libcgal-demo libopenvdb-tools python3
 )
 

@@ -1,5 +1,8 @@
 # The libraries that viewgain stands on. Everything is found, nothing is downloaded.
 
+# Where viewgain is static and taken in by add_subdirectory, its user's directory links these too.
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
+
 find_package(Threads REQUIRED)
 
 # Ranges over major versions are refused by Eigen's version file, hence the check by hand.
@@ -15,17 +18,7 @@ if(NOT embree_FOUND)
 endif()
 string(REGEX MATCH "^[0-9]+" VIEWGAIN_EMBREE_MAJOR "${embree_VERSION}")
 
-# OpenVDB's own find module asks for Boost.Iostreams and PyImath, which a user of the library does not
-# need; Imath carries the half-float tables that its headers refer to.
-find_package(TBB CONFIG REQUIRED)
-find_path(OpenVDB_INCLUDE_DIR openvdb/openvdb.h REQUIRED)
-find_library(OpenVDB_LIBRARY openvdb REQUIRED)
-find_library(Imath_LIBRARY NAMES Imath Imath-3_1 Imath-3_2 REQUIRED)
-if(NOT TARGET viewgain_openvdb)
-  add_library(viewgain_openvdb INTERFACE)
-  target_include_directories(viewgain_openvdb SYSTEM INTERFACE ${OpenVDB_INCLUDE_DIR})
-  target_link_libraries(viewgain_openvdb INTERFACE ${OpenVDB_LIBRARY} TBB::tbb ${Imath_LIBRARY})
-endif()
+find_package(ViewgainOpenVDB REQUIRED)
 
 # Highway: one SIMD source, the instruction set chosen at run time.
 find_package(hwy CONFIG REQUIRED)

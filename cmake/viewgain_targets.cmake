@@ -7,7 +7,7 @@ function(viewgain_compile_rules target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow
                                            $<$<BOOL:${VIEWGAIN_WERROR}>:-Werror>)
   # No fused multiply-add behind our back: every instruction set must take the same steps.
-  target_compile_options(${target} PRIVATE -ffp-contract=off)
+  target_compile_options(${target} PRIVATE -ffp-contract=off -fno-semantic-interposition)
   if(VIEWGAIN_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${VIEWGAIN_SANITIZE} -fno-omit-frame-pointer
                                              -fno-sanitize-recover=all)
@@ -33,21 +33,68 @@ function(viewgain_add_module name)
   target_include_directories(${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/include
                                      PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   viewgain_compile_rules(${name})
+  # Only what says VIEWGAIN_EXPORT leaves a library. Inline functions never do: those of a client that is
+  # compiled for another instruction set must not take the place of ours.
+  set_target_properties(${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endfunction()
 
-# A library that users link, made of modules.
-function(viewgain_add_library name)
-  add_library(${name})
-  add_library(viewgain::${name} ALIAS ${name})
+# Puts modules into a library.
+function(viewgain_assemble name)
   set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)
   target_compile_features(${name} PUBLIC cxx_std_20)
   foreach(module IN LISTS ARGN)
     target_sources(${name} PRIVATE $<TARGET_OBJECTS:${module}>)
-    target_include_directories(${name} PUBLIC $<TARGET_PROPERTY:${module},INTERFACE_INCLUDE_DIRECTORIES>)
+    target_include_directories(${name} PUBLIC
+      $<BUILD_INTERFACE:$<TARGET_PROPERTY:${module},INTERFACE_INCLUDE_DIRECTORIES>>)
   endforeach()
-  target_link_libraries(${name} PUBLIC Eigen3::Eigen Threads::Threads
-                                PRIVATE viewgain_openvdb embree hwy::hwy)
+  target_include_directories(${name} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   if(VIEWGAIN_SANITIZE)
-    target_link_options(${name} PUBLIC -fsanitize=${VIEWGAIN_SANITIZE})
+    # For in-tree users alone: an installed library does not ask its clients for sanitizers.
+    target_link_options(${name} PUBLIC $<BUILD_INTERFACE:-fsanitize=${VIEWGAIN_SANITIZE}>)
   endif()
+endfunction()
+
+# An installed program or library finds our libraries in `folder`, relative to itself, wherever the prefix
+# is moved to. The loader looks into /usr by itself.
+function(viewgain_find_beside target folder)
+  if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+    set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN/${folder}")
+  endif()
+endfunction()
+
+# viewgain_add_library(name modules... [PUBLIC libraries...] [PRIVATE libraries...]): a library that users
+# link, made of modules; shared if BUILD_SHARED_LIBS is on.
+#
+# A shared library hides what benchmarks of private parts need. For them the same objects are also the
+# archive <name>_whole, and what may end up in either kind of program links <name>_in_tree, which stands
+# for the archive in executables with the property VIEWGAIN_WHOLE and for the library elsewhere: no
+# program holds both.
+function(viewgain_add_library name)
+  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+  string(REGEX REPLACE "^viewgain_" "" short_name ${name})
+  add_library(${name})
+  add_library(viewgain::${short_name} ALIAS ${name})
+  viewgain_assemble(${name} ${ARG_UNPARSED_ARGUMENTS})
+  # What SOVERSION promises is said in core/README.md.
+  set_target_properties(${name} PROPERTIES EXPORT_NAME ${short_name} VERSION ${PROJECT_VERSION}
+                        SOVERSION ${PROJECT_VERSION_MAJOR})
+  viewgain_find_beside(${name} ".")
+  target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+
+  add_library(${name}_in_tree INTERFACE)
+  if(NOT BUILD_SHARED_LIBS)
+    target_link_libraries(${name}_in_tree INTERFACE ${name})
+    return()
+  endif()
+  add_library(${name}_whole STATIC EXCLUDE_FROM_ALL)
+  viewgain_assemble(${name}_whole ${ARG_UNPARSED_ARGUMENTS})
+  foreach(library IN LISTS ARG_PUBLIC)
+    if(TARGET ${library}_whole)
+      string(APPEND library _whole)
+    endif()
+    target_link_libraries(${name}_whole PUBLIC ${library})
+  endforeach()
+  target_link_libraries(${name}_whole PRIVATE ${ARG_PRIVATE})
+  target_link_libraries(${name}_in_tree INTERFACE
+    $<IF:$<BOOL:$<TARGET_PROPERTY:VIEWGAIN_WHOLE>>,${name}_whole,${name}>)
 endfunction()

@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/version.hpp"
 
 namespace {
 

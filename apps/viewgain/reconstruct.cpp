@@ -32,6 +32,7 @@
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/mesh/surface_io.hpp"
+#include "viewgain/version.hpp"
 
 namespace viewgain::app {
 namespace {

@@ -117,13 +117,15 @@ Eigen::Vector3d PinholeCamera::ray(double u, double v) const {
   return {p.x(), p.y(), 1.0};
 }
 
-Eigen::Vector2d PinholeCamera::project(const Eigen::Vector3d& p_camera) const {
+void PinholeCamera::project(const Eigen::Vector3d& p_camera, double& u, double& v) const {
   if (!(p_camera.z() > 0)) {
-    return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+    u = v = std::numeric_limits<double>::quiet_NaN();
+    return;
   }
   Eigen::Vector2d p(p_camera.x() / p_camera.z(), p_camera.y() / p_camera.z());
   if (has_distortion()) p = distort(distortion, p).point;
-  return {fx * p.x() + cx, fy * p.y() + cy};
+  u = fx * p.x() + cx;
+  v = fy * p.y() + cy;
 }
 
 std::vector<Eigen::Vector3d> PinholeCamera::ray_table() const {

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+// OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
+#pragma GCC visibility push(default)
 #include <openvdb/Exceptions.h>
 #include <openvdb/tree/InternalNode.h>
 #include <openvdb/tree/LeafNode.h>
 #include <openvdb/tree/RootNode.h>
 #include <openvdb/tree/Tree.h>
+#pragma GCC visibility pop
 
 #include <bit>
 #include <cstring>

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+// OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
+#pragma GCC visibility push(default)
 #include <openvdb/openvdb.h>
+#pragma GCC visibility pop
 
 #include <mutex>
 

@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+// OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
+#pragma GCC visibility push(default)
 #include <openvdb/io/Stream.h>
 #include <openvdb/tree/ValueAccessor.h>
+#pragma GCC visibility pop
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+// OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
+#pragma GCC visibility push(default)
 #include <openvdb/io/Archive.h>
+#pragma GCC visibility pop
 
 #include <cmath>
 #include <sstream>

@@ -34,3 +34,4 @@
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
+#include "viewgain/version.hpp"

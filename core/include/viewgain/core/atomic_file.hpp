@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 /// A file that appears whole or not at all. What is written goes to temporary_path(), in the
@@ -15,7 +17,7 @@ namespace viewgain {
 /// written in place, without a rename; a symbolic link stays and the file behind it is replaced.
 /// Every failure throws Error(io) that names the target. Thread safety: distinct objects may be
 /// used from distinct threads.
-class AtomicFile {
+class VIEWGAIN_EXPORT AtomicFile {
  public:
   /// Creates the empty temporary file, so that a target that cannot be written is known at once.
   explicit AtomicFile(const std::filesystem::path& target);
@@ -41,6 +43,7 @@ class AtomicFile {
 };
 
 /// The common case: the whole contents at once.
-void write_file_atomically(const std::filesystem::path& target, std::string_view contents);
+VIEWGAIN_EXPORT void write_file_atomically(const std::filesystem::path& target,
+                                           std::string_view contents);
 
 }  // namespace viewgain

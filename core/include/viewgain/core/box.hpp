@@ -4,10 +4,12 @@
 
 #include <array>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 /// Axis-aligned box [m], in the frame that its use names.
-struct Box {
+struct VIEWGAIN_EXPORT Box {
   std::array<double, 3> min{};
   std::array<double, 3> max{};
 

@@ -6,11 +6,13 @@
 #include <array>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 /// Pinhole camera with OpenCV's distortion model, optical frame: x right, y down, z forward. Pixel
 /// (0,0) has its centre at (0,0), as in OpenCV. A value type.
-struct PinholeCamera {
+struct VIEWGAIN_EXPORT PinholeCamera {
   int width = 0;                       ///< [px]
   int height = 0;                      ///< [px]
   double fx = 0, fy = 0;               ///< focal lengths [px]
@@ -30,7 +32,14 @@ struct PinholeCamera {
 
   /// Pixel coordinates (u, v) [px] of the camera-frame point p [m], distortion applied; NaN unless
   /// p.z > 0. As in OpenCV a strong distortion may fold a point far outside the view back into it.
-  [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& p_camera) const;
+  /// Inline on purpose: Eigen aligns a Vector2d or not by the caller's compiler flags.
+  [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& p_camera) const {
+    Eigen::Vector2d pixel;
+    project(p_camera, pixel.x(), pixel.y());
+    return pixel;
+  }
+  /// The same into u and v.
+  void project(const Eigen::Vector3d& p_camera, double& u, double& v) const;
 
   /// ray() of every pixel centre, row by row: directions (x, y, 1), width * height of them.
   [[nodiscard]] std::vector<Eigen::Vector3d> ray_table() const;

@@ -4,13 +4,14 @@
 
 #include <Eigen/Core>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/noise.hpp"
 
 namespace viewgain {
 
 /// Symmetric 3x3 matrix, six numbers in the order of the map files: diagonal, then xy, xz, yz. Used
 /// for information matrices Λ = Σ⁻¹ [m⁻²] and covariances Σ [m²]. A value type.
-struct SymmetricMatrix3 {
+struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 
   [[nodiscard]] static SymmetricMatrix3 identity(double scale = 1.0) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "viewgain/core/covariance.hpp"
+#include "viewgain/core/export.hpp"
 
 namespace viewgain {
 
@@ -18,18 +19,20 @@ enum class Criterion : std::uint8_t {
   trace,            ///< tr Σ [m²]: A-optimality; the same in every frame
 };
 
-[[nodiscard]] const std::vector<std::string>& criterion_names();
-[[nodiscard]] std::string_view criterion_name(Criterion criterion);
+[[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& criterion_names();
+[[nodiscard]] VIEWGAIN_EXPORT std::string_view criterion_name(Criterion criterion);
 
 /// Throws Error(invalid_argument) that lists the valid names.
-[[nodiscard]] Criterion parse_criterion(std::string_view name);
+[[nodiscard]] VIEWGAIN_EXPORT Criterion parse_criterion(std::string_view name);
 
 /// H(Λ) by the criterion [nat, or m² for trace]; Λ [m⁻²] must be positive definite.
-[[nodiscard]] double entropy(const SymmetricMatrix3& information, Criterion criterion);
+[[nodiscard]] VIEWGAIN_EXPORT double entropy(const SymmetricMatrix3& information,
+                                             Criterion criterion);
 
 /// H(before) - H(before + added) >= 0 for a positive semidefinite `added`. One logarithm of a
 /// ratio, so small gains keep their digits.
-[[nodiscard]] double entropy_reduction(const SymmetricMatrix3& before,
-                                       const SymmetricMatrix3& added, Criterion criterion);
+[[nodiscard]] VIEWGAIN_EXPORT double entropy_reduction(const SymmetricMatrix3& before,
+                                                       const SymmetricMatrix3& added,
+                                                       Criterion criterion);
 
 }  // namespace viewgain

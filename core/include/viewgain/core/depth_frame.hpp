@@ -5,11 +5,13 @@
 #include <limits>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 /// Depth image along the optical axis (z, not range) [m], row by row. Three kinds of pixel
 /// (DESIGN.md section 5): a reading (0 < z < infinity), kInvalid, kOutOfRange. A value type.
-struct DepthFrame {
+struct VIEWGAIN_EXPORT DepthFrame {
   static constexpr float kInvalid = 0.0F;  ///< says nothing
   static constexpr float kOutOfRange =
       std::numeric_limits<float>::infinity();  ///< nothing up to max_range

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 /// What kind of thing went wrong; the message says which value, line or file.
@@ -18,7 +20,7 @@ enum class ErrorCode {
 
 /// The one exception type of the library. Thrown at set-up and by file readers and writers, never
 /// from the scoring of a pose. Thread safety: a value type.
-class Error : public std::runtime_error {
+class VIEWGAIN_EXPORT Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }

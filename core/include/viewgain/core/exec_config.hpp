@@ -6,15 +6,17 @@
 #include <functional>
 #include <stop_token>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 /// What changes only speed, never an answer.
-struct ExecConfig {
+struct VIEWGAIN_EXPORT ExecConfig {
   int num_threads = 0;  ///< 0: all hardware threads; 1: the caller alone; n: caller and n - 1 more
 };
 
 /// Watches or ends one long call.
-struct BatchControl {
+struct VIEWGAIN_EXPORT BatchControl {
   std::stop_token stop{};  ///< when a stop is requested the call returns early, see the call
   std::function<void(std::size_t done, std::size_t total)>
       progress{};  ///< from any worker, one at a time

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 /// Instruction sets that the SIMD kernels are built for, in rising order.
@@ -16,15 +18,15 @@ enum class Isa : std::uint8_t {
   avx512,
 };
 
-[[nodiscard]] std::string_view isa_name(Isa isa);
+[[nodiscard]] VIEWGAIN_EXPORT std::string_view isa_name(Isa isa);
 
 /// What this CPU and operating system can run, best first. Empty on an x86-64 without SSE4.2.
-[[nodiscard]] std::vector<Isa> supported_isas();
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<Isa> supported_isas();
 
 /// The best supported set, lowered by the environment variable VIEWGAIN_ISA (avx512, avx2 or
 /// sse4; a set that the CPU lacks gives the best it has). Throws Error(invalid_argument) that lists
 /// the names for any other value, Error(backend) if the CPU has none. Reads the environment at each
 /// call; keeps no state.
-[[nodiscard]] Isa select_isa();
+[[nodiscard]] VIEWGAIN_EXPORT Isa select_isa();
 
 }  // namespace viewgain

@@ -9,11 +9,12 @@
 
 #include "viewgain/core/camera.hpp"
 #include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/export.hpp"
 
 namespace viewgain {
 
 /// Which pixels count as flying.
-struct JumpEdgeConfig {
+struct VIEWGAIN_EXPORT JumpEdgeConfig {
   double angle = 5.0 * std::numbers::pi / 180;  ///< threshold, in 1°..10° [rad]
   bool two_sided = false;  ///< the literal form: nearer and farther neighbours alike
 };
@@ -23,7 +24,7 @@ struct JumpEdgeConfig {
 /// p goes when, for one of its 8 neighbours q that is a reading nearer to the camera, the angle
 /// between p's viewing ray and the edge from p to q is under the threshold. All pixels are judged
 /// by the frame as it came. Thread safety: const members may run from many threads.
-class JumpEdgeFilter {
+class VIEWGAIN_EXPORT JumpEdgeFilter {
  public:
   /// Undoes the lens distortion once. Throws Error(invalid_argument) for a camera that is not valid
   /// or an angle outside its bounds.

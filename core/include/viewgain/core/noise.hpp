@@ -4,6 +4,8 @@
 
 #include <variant>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 /// Smallest cosine of incidence that the noise models accept; below it they stay at this value.
@@ -17,7 +19,7 @@ inline constexpr double kMinNoiseRange = 1e-3;
 /// * sqrt(reference_integration_time / integration_time) / sqrt(max(cos, 0.1)); the amplitude falls
 /// with cos / t². sigma_lat is the pixel footprint t / fx.
 /// The last two fields do not change the sigmas.
-struct ShotNoise {
+struct VIEWGAIN_EXPORT ShotNoise {
   double reference_sigma = 4.0e-3;             ///< [m]
   double reference_range = 1.30;               ///< [m]
   double reference_integration_time = 8.5e-3;  ///< [s]
@@ -31,7 +33,7 @@ struct ShotNoise {
 /// sigma_ax = offset + quadratic (z - vertex)² + grazing / sqrt(z) * theta² / (pi/2 - theta)², the
 /// last term beyond 60°; sigma_lat = (lateral_px + lateral_grazing_px * theta / (pi/2 - theta)) * z
 /// / fx.
-struct StructuredLightNoise {
+struct VIEWGAIN_EXPORT StructuredLightNoise {
   double offset = 1.2e-3;             ///< [m]
   double quadratic = 1.9e-3;          ///< [1/m]
   double vertex = 0.4;                ///< [m]
@@ -42,7 +44,7 @@ struct StructuredLightNoise {
 };
 
 /// Stereo: sigma_ax = t² * subpixel / (focal * baseline); sigma_lat = t / fx.
-struct StereoNoise {
+struct VIEWGAIN_EXPORT StereoNoise {
   double subpixel = 0.08;  ///< matching error [px]
   double focal = 447.0;    ///< [px]
   double baseline = 0.05;  ///< [m]
@@ -50,14 +52,14 @@ struct StereoNoise {
 };
 
 /// sigma_ax = offset + quadratic * t²; sigma_lat = t / fx.
-struct QuadraticNoise {
+struct VIEWGAIN_EXPORT QuadraticNoise {
   double offset = 1.0e-3;       ///< [m]
   double quadratic = 1.074e-3;  ///< [1/m]
   bool operator==(const QuadraticNoise&) const = default;
 };
 
 /// The same everywhere; equal sigmas make an isotropic sensor.
-struct ConstantNoise {
+struct VIEWGAIN_EXPORT ConstantNoise {
   double sigma_axial = 1.0e-3;    ///< [m]
   double sigma_lateral = 1.0e-3;  ///< [m]
   bool operator==(const ConstantNoise&) const = default;
@@ -66,7 +68,7 @@ struct ConstantNoise {
 inline constexpr double kSpeedOfLight = 299'792'458.0;  ///< [m/s]
 
 /// Standard deviations of one measurement, along the ray and across it [m].
-struct MeasurementSigmas {
+struct VIEWGAIN_EXPORT MeasurementSigmas {
   double axial = 0;
   double lateral = 0;
 };
@@ -77,20 +79,21 @@ using NoiseModel =
 /// Sigmas of a reading at range t >= 0 [m] along the ray, for a camera with focal length fx [px]
 /// and a surface whose normal makes an angle with the cosine cos_incidence (1: frontal) with the
 /// ray. One overload a model and one for the variant. Thread safe; costs a few flops.
-[[nodiscard]] MeasurementSigmas sigmas(const ShotNoise&, double t, double fx, double cos_incidence);
-[[nodiscard]] MeasurementSigmas sigmas(const StructuredLightNoise&, double t, double fx,
-                                       double cos_incidence);
-[[nodiscard]] MeasurementSigmas sigmas(const StereoNoise&, double t, double fx,
-                                       double cos_incidence);
-[[nodiscard]] MeasurementSigmas sigmas(const QuadraticNoise&, double t, double fx,
-                                       double cos_incidence);
-[[nodiscard]] MeasurementSigmas sigmas(const ConstantNoise&, double t, double fx,
-                                       double cos_incidence);
-[[nodiscard]] MeasurementSigmas sigmas(const NoiseModel&, double t, double fx,
-                                       double cos_incidence = 1.0);
+[[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const ShotNoise&, double t, double fx,
+                                                       double cos_incidence);
+[[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const StructuredLightNoise&, double t,
+                                                       double fx, double cos_incidence);
+[[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const StereoNoise&, double t, double fx,
+                                                       double cos_incidence);
+[[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const QuadraticNoise&, double t, double fx,
+                                                       double cos_incidence);
+[[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const ConstantNoise&, double t, double fx,
+                                                       double cos_incidence);
+[[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const NoiseModel&, double t, double fx,
+                                                       double cos_incidence = 1.0);
 
 /// c / (2 modulation_frequency) [m]: the phase of the light repeats after it. Infinity for models
 /// without a modulation frequency.
-[[nodiscard]] double unambiguous_range(const NoiseModel&);
+[[nodiscard]] VIEWGAIN_EXPORT double unambiguous_range(const NoiseModel&);
 
 }  // namespace viewgain

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 
 namespace viewgain {
@@ -22,13 +23,13 @@ namespace viewgain {
 // The paper's Algorithm 1, stated once over four interfaces in its words. Replace any of them.
 
 /// S_i: what the sensor delivered from x_i.
-struct Measurements {
+struct VIEWGAIN_EXPORT Measurements {
   Pose T_world_camera;
   std::vector<DepthFrame> frames;
 };
 
 /// DATAACQUISITION: moves the sensor to x_i and measures.
-class DataAcquisition {
+class VIEWGAIN_EXPORT DataAcquisition {
  public:
   virtual ~DataAcquisition() = default;
   /// `view` counts from 0.
@@ -36,21 +37,21 @@ class DataAcquisition {
 };
 
 /// How far the representations are, for the stopping rules.
-struct ModelProgress {
+struct VIEWGAIN_EXPORT ModelProgress {
   double entropy_removed = 0;  ///< of the whole map [nat, or m² for trace]
   std::uint64_t unknown_voxels = 0;
   std::optional<double> coverage{};  ///< in [0, 1], where a ground truth is known
 };
 
 /// UPDATEREPRESENTATIONS: the model and the occupancy grid (the paper's M and O).
-class RepresentationUpdate {
+class VIEWGAIN_EXPORT RepresentationUpdate {
  public:
   virtual ~RepresentationUpdate() = default;
   virtual ModelProgress update(const Measurements& measurements) = 0;
 };
 
 /// A pose that could be the next view.
-struct Candidate {
+struct VIEWGAIN_EXPORT Candidate {
   Pose T_world_camera;
   std::string generator;       ///< who proposed it
   std::string boundary_class;  ///< left, right, top, bottom; empty where there is no boundary
@@ -58,7 +59,7 @@ struct Candidate {
 };
 
 /// c_m: the feasible candidates, and how many were dropped and why.
-struct Proposal {
+struct VIEWGAIN_EXPORT Proposal {
   std::vector<Candidate> candidates;
   std::map<std::string, std::size_t> dropped;  ///< reason -> count
 };
@@ -67,14 +68,14 @@ struct Proposal {
 inline constexpr std::string_view kUnreachable = "unreachable";
 
 /// VIEWPOINTSGENERATION.
-class ViewpointGeneration {
+class VIEWGAIN_EXPORT ViewpointGeneration {
  public:
   virtual ~ViewpointGeneration() = default;
   virtual Proposal generate(const Pose& T_world_camera) = 0;
 };
 
 /// The choice among the candidates.
-struct Decision {
+struct VIEWGAIN_EXPORT Decision {
   std::size_t candidate = 0;  ///< index of the chosen one
   double gain =
       std::numeric_limits<double>::quiet_NaN();  ///< its expected gain [nat, m² for trace]
@@ -84,7 +85,7 @@ struct Decision {
 };
 
 /// DECISIONMAKER: picks x_{i+1}. Returns nothing if none of the candidates will do.
-class DecisionMaking {
+class VIEWGAIN_EXPORT DecisionMaking {
  public:
   virtual ~DecisionMaking() = default;
   virtual std::optional<Decision> decide(const Pose& T_world_camera,
@@ -92,7 +93,7 @@ class DecisionMaking {
 };
 
 /// When to stop (DESIGN.md section 9).
-struct PlanningConfig {
+struct VIEWGAIN_EXPORT PlanningConfig {
   std::size_t max_views = 20;
   /// Stop when the best candidate's gain per touched voxel is under this [nat, m² for trace].
   double stop_gain = 0.15;
@@ -117,10 +118,10 @@ enum class StopReason : std::uint8_t {
   coverage,
   interrupted,
 };
-[[nodiscard]] std::string_view stop_reason_name(StopReason reason);
+[[nodiscard]] VIEWGAIN_EXPORT std::string_view stop_reason_name(StopReason reason);
 
 /// One turn of the loop: the view taken, and the choice of the one after it.
-struct ViewRecord {
+struct VIEWGAIN_EXPORT ViewRecord {
   std::size_t index = 0;
   Pose T_world_camera;                   ///< where the measurements say it was taken
   std::optional<Candidate> chosen_as{};  ///< what this view was as a candidate; none for x_0
@@ -134,7 +135,7 @@ struct ViewRecord {
   std::optional<Decision> decision{};
 };
 
-struct PlanningResult {
+struct VIEWGAIN_EXPORT PlanningResult {
   StopReason reason = StopReason::max_views;
   std::vector<ViewRecord> views;
 };
@@ -147,7 +148,7 @@ struct PlanningResult {
 /// Order of the rules after each view: interrupted; coverage; max_views; idle; then, with the
 /// candidates, no_candidates or unreachable (none left, or the decision maker took none, and some
 /// were dropped as unreachable); gain.
-[[nodiscard]] PlanningResult active_view_planning(
+[[nodiscard]] VIEWGAIN_EXPORT PlanningResult active_view_planning(
     const Pose& x_0, DataAcquisition& acquisition, RepresentationUpdate& representation,
     ViewpointGeneration& generation, DecisionMaking& decision, const PlanningConfig& config = {},
     const std::function<void(const ViewRecord&)>& observer = {});

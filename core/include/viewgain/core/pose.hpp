@@ -5,13 +5,15 @@
 #include <Eigen/Geometry>
 #include <array>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 /// Rigid transform, for a camera T_world_camera: maps points of the camera's optical frame (x
 /// right, y down, z forward) to the world. Twelve doubles, the rows of [R | t] with t in [m]. Size
 /// and alignment do not depend on compiler flags, so it may cross a library boundary, which
 /// Eigen::Isometry3d may not (its alignment follows -march). A value type.
-struct Pose {
+struct VIEWGAIN_EXPORT Pose {
   std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
   Pose() = default;
@@ -65,17 +67,18 @@ static_assert(sizeof(Pose) == 96 && alignof(Pose) == 8);
 
 /// How far the rotation is from orthonormal and right-handed: the largest absolute entry of
 /// RᵀR - I, infinity if any of the twelve numbers is not finite or det R <= 0.
-[[nodiscard]] double orthonormality_error(const Pose& pose);
+[[nodiscard]] VIEWGAIN_EXPORT double orthonormality_error(const Pose& pose);
 
 /// The nearest rotation (polar decomposition by SVD) with the same translation. Deterministic. A
 /// pose with a number that is not finite comes back as it is.
-[[nodiscard]] Pose orthonormalized(const Pose& pose);
+[[nodiscard]] VIEWGAIN_EXPORT Pose orthonormalized(const Pose& pose);
 
 /// T_world_camera of a camera at `eye` [m] whose optical axis passes through `target` [m] and whose
 /// image-up direction (minus y) is as near to `up` as it can be. Where the view direction is
 /// parallel to `up`, +x of the world (then +y) takes its place. Throws Error(invalid_argument) if
 /// eye equals target, if up is zero, or if a number is not finite. Orthonormal to 1e-15.
-[[nodiscard]] Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
-                           const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());
+[[nodiscard]] VIEWGAIN_EXPORT Pose look_at(const Eigen::Vector3d& eye,
+                                           const Eigen::Vector3d& target,
+                                           const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());
 
 }  // namespace viewgain

@@ -7,12 +7,13 @@
 #include <span>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 
 namespace viewgain {
 
 /// Poses of a file and what the reader had to mend.
-struct PoseList {
+struct VIEWGAIN_EXPORT PoseList {
   std::vector<Pose> poses;         ///< T_world_camera, in file order
   std::vector<double> timestamps;  ///< [s], one a pose
   /// Poses whose rotation (quaternion's norm) was off by more than 1e-9 and was mended.
@@ -23,19 +24,19 @@ struct PoseList {
 /// T_world_camera); empty lines and lines that begin with # are skipped. A quaternion whose norm is
 /// within 1e-2 of 1 is normalised. Throws Error(io) if the file cannot be read and Error(format),
 /// naming the file and the line, for anything else that is wrong, also for a file without a pose.
-[[nodiscard]] PoseList read_tum(const std::filesystem::path& path);
+[[nodiscard]] VIEWGAIN_EXPORT PoseList read_tum(const std::filesystem::path& path);
 
 /// Writes the TUM format with 17 significant digits, so that reading it back gives the same
 /// rotation to 2e-15 and the same translation exactly. Timestamps are 0, 1, 2, ... Atomic: a
 /// temporary file is renamed. Throws Error(io), and Error(invalid_argument) naming the index of a
 /// pose whose rotation is off by more than 1e-2 or not finite.
-void write_tum(const std::filesystem::path& path, std::span<const Pose> poses);
+VIEWGAIN_EXPORT void write_tum(const std::filesystem::path& path, std::span<const Pose> poses);
 
 /// Reads one 4x4 row-major matrix of T_world_camera [m] (16 numbers, as RGB-D data sets have it). A
 /// rotation that is off by 1e-9 to 1e-2 is orthonormalised; *orthonormalized says whether. A larger
 /// error, a last row that is not 0 0 0 1 (1e-6), another count of numbers or a word that is no
 /// finite number throws Error(format), naming the file. Throws Error(io) if it cannot be read.
-[[nodiscard]] Pose read_pose_matrix(const std::filesystem::path& path,
-                                    bool* orthonormalized = nullptr);
+[[nodiscard]] VIEWGAIN_EXPORT Pose read_pose_matrix(const std::filesystem::path& path,
+                                                    bool* orthonormalized = nullptr);
 
 }  // namespace viewgain

@@ -5,11 +5,13 @@
 #include <array>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 /// Table of a camera's systematic, distance-dependent error: what the paper's ref. [7] (Fuchs and
 /// Hirzinger, CVPR 2008) measures against known distances and subtracts. A value type.
-struct RangeCalibration {
+struct VIEWGAIN_EXPORT RangeCalibration {
   /// (measured range, measured minus true range) [m], measured ranges rising. Empty: no correction.
   std::vector<std::array<double, 2>> table{};
 

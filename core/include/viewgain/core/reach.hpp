@@ -9,38 +9,39 @@
 #include <vector>
 
 #include "viewgain/core/box.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 
 namespace viewgain {
 
 /// Between two spheres round a centre [m].
-struct Shell {
+struct VIEWGAIN_EXPORT Shell {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double min_radius = 0;
   double max_radius = 0;
 };
 
 /// The points p with normal · p >= offset [m].
-struct HalfSpace {
+struct VIEWGAIN_EXPORT HalfSpace {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   double offset = 0;
 };
 
 /// When two camera poses count as the same view.
-struct PoseTolerance {
+struct VIEWGAIN_EXPORT PoseTolerance {
   double distance = 0.010;                      ///< between the camera centres [m]
   double angle = 2.0 * std::numbers::pi / 180;  ///< of the rotation between them [rad]
 };
 
 /// True if `pose` is within the tolerance of one of `poses`.
-[[nodiscard]] bool is_among(const Pose& pose, std::span<const Pose> poses,
-                            const PoseTolerance& tolerance = {});
+[[nodiscard]] VIEWGAIN_EXPORT bool is_among(const Pose& pose, std::span<const Pose> poses,
+                                            const PoseTolerance& tolerance = {});
 
 /// Where a robot can put the camera. World frame. A camera pose is reachable if its centre lies in
 /// at least one of the boxes (where there are any), in at least one of the shells (where there are
 /// any) and in every half-space, limits included; if it is among the poses (where there are any);
 /// and if the predicate, where there is one, says so. Empty: everything is reachable.
-struct ReachRegion {
+struct VIEWGAIN_EXPORT ReachRegion {
   std::vector<Box> boxes{};
   std::vector<Shell> shells{};
   std::vector<HalfSpace> half_spaces{};

@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "viewgain/core/camera.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/noise.hpp"
 #include "viewgain/core/pose.hpp"
 
 namespace viewgain {
 
 /// A depth camera: intrinsics, range limits along the ray, noise. A value type.
-struct Sensor {
+struct VIEWGAIN_EXPORT Sensor {
   std::string name;  ///< preset's or file's name, for reports
   PinholeCamera camera;
   double min_range = 0;         ///< along the ray [m]
@@ -37,13 +38,13 @@ struct Sensor {
 
 /// The presets of DESIGN.md section 4: sr4000, azure_kinect_nfov, kinect_v1, d435; and laser_line,
 /// a scanner of one line a pose (640x1 px, 0.2 mm in each direction, 0.1-1.0 m).
-[[nodiscard]] const std::vector<std::string>& sensor_preset_names();
+[[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& sensor_preset_names();
 
 /// Throws Error(invalid_argument) that lists the valid names.
-[[nodiscard]] Sensor sensor_preset(std::string_view name);
+[[nodiscard]] VIEWGAIN_EXPORT Sensor sensor_preset(std::string_view name);
 
 /// sigma_0 [m] of an unknown voxel when the map does not say: max(voxel / 2, 2 sigma_ax at the
 /// working distance, frontal), so that unknown is never surer than one reading.
-[[nodiscard]] double default_prior_sigma(double voxel_size, const Sensor& sensor);
+[[nodiscard]] VIEWGAIN_EXPORT double default_prior_sigma(double voxel_size, const Sensor& sensor);
 
 }  // namespace viewgain

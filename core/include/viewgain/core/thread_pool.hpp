@@ -6,13 +6,15 @@
 #include <memory>
 #include <type_traits>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 /// Reusable threads for data-parallel loops. The caller takes part. A call that finds the pool
 /// busy, from another thread or from inside a loop body, runs its whole loop on its caller, so
 /// nested and concurrent use cannot deadlock. Thread safety: every member may be called from any
 /// thread; the destructor only when no call is running.
-class ThreadPool {
+class VIEWGAIN_EXPORT ThreadPool {
  public:
   /// num_threads counts the caller; 0 means all hardware threads. Throws Error(invalid_argument) if
   /// negative or over 1024.

@@ -14,13 +14,14 @@
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/covariance.hpp"
 #include "viewgain/core/criterion.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
 
 namespace viewgain {
 
 /// How a map is laid out. A value type.
-struct GridConfig {
+struct VIEWGAIN_EXPORT GridConfig {
   double voxel_size = 0;  ///< V [m]
   Box workspace{};      ///< in the grid's frame [m]; grown outward to whole voxels, see BeliefGrid
   Pose T_world_grid{};  ///< places the grid's frame
@@ -29,7 +30,7 @@ struct GridConfig {
 };
 
 /// Voxel counts and the paper's measure of progress.
-struct GridStatistics {
+struct VIEWGAIN_EXPORT GridStatistics {
   std::uint64_t unknown = 0;  ///< voxels of the workspace never observed
   std::uint64_t free = 0;
   std::uint64_t occupied = 0;
@@ -48,7 +49,7 @@ struct GridStatistics {
 ///
 /// Thread safety: const members may run from many threads at once; nothing may run beside a
 /// non-const member. Snapshots are independent of the grid once taken.
-class BeliefGrid {
+class VIEWGAIN_EXPORT BeliefGrid {
  public:
   /// Throws Error(invalid_argument) naming the value unless voxel_size and prior_sigma are positive
   /// and finite, the workspace is finite and not inside out, T_world_grid is a rigid transform

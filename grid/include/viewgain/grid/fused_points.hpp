@@ -9,12 +9,13 @@
 
 #include "viewgain/core/covariance.hpp"
 #include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain {
 
 /// A point of the surface as the map knows it, world frame.
-struct FusedPoint {
+struct VIEWGAIN_EXPORT FusedPoint {
   std::array<double, 3> position{};     ///< [m]
   SymmetricMatrix3 covariance{};        ///< (ΣΛ_v)⁻¹ + F [m²]
   std::array<double, 3> toward_free{};  ///< unit surface normal on the side of free space
@@ -30,7 +31,7 @@ enum class PointRule : std::uint8_t {
 };
 
 /// Lengths are in voxels unless said otherwise.
-struct FusedPointsConfig {
+struct VIEWGAIN_EXPORT FusedPointsConfig {
   PointRule rule = PointRule::pooled;
   std::uint32_t min_hits = 3;  ///< points with less support are left out
   /// Pooled points with less than this share of the upper quartile of the support within 4 voxels
@@ -51,8 +52,7 @@ struct FusedPointsConfig {
 /// bias the mean away from the camera), and survives if no point with more support is within
 /// min_distance. Deterministic for any number of threads. Costs about 1 µs a voxel that was ever
 /// hit. Throws Error(invalid_argument) naming a setting that is negative, not finite or too large.
-[[nodiscard]] std::vector<FusedPoint> fused_points(const BeliefGrid& grid,
-                                                   const FusedPointsConfig& config = {},
-                                                   const ExecConfig& exec = {});
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<FusedPoint> fused_points(
+    const BeliefGrid& grid, const FusedPointsConfig& config = {}, const ExecConfig& exec = {});
 
 }  // namespace viewgain

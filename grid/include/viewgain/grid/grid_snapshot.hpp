@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "viewgain/core/covariance.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 
 namespace viewgain {
@@ -17,13 +18,13 @@ namespace viewgain {
 enum class VoxelState : std::uint8_t { unknown = 0, free = 1, occupied = 2 };
 
 /// Index of a voxel on the grid's lattice (through the origin of the grid's frame).
-struct Index3 {
+struct VIEWGAIN_EXPORT Index3 {
   std::int32_t x = 0, y = 0, z = 0;
   bool operator==(const Index3&) const = default;
 };
 
 /// What readings have said about one voxel, in single precision as in the map files, grid frame.
-struct Belief {
+struct VIEWGAIN_EXPORT Belief {
   std::array<float, 6> information{};         ///< Λ_v: xx yy zz xy xz yz [m⁻²]
   std::array<float, 3> information_vector{};  ///< η_v = Σ Λ_r (p_r - voxel centre) [m⁻¹]
   std::uint32_t hits = 0;                     ///< readings that ended here
@@ -43,7 +44,7 @@ using LeafMask = std::array<std::uint64_t, 8>;
 }
 
 /// The beliefs of one leaf: those of the voxels in `mask`, in order of their offsets.
-struct BeliefBlock {
+struct VIEWGAIN_EXPORT BeliefBlock {
   LeafMask mask{};
   std::vector<Belief> beliefs;
 
@@ -61,13 +62,13 @@ struct BeliefBlock {
 };
 
 /// A block of beliefs and its lowest voxel, a multiple of 8.
-struct BeliefBlockAt {
+struct VIEWGAIN_EXPORT BeliefBlockAt {
   Index3 origin;
   std::shared_ptr<const BeliefBlock> beliefs;
 };
 
 /// A leaf with at least one voxel that is not free, clipped to the workspace.
-struct SnapshotLeaf {
+struct VIEWGAIN_EXPORT SnapshotLeaf {
   Index3 origin;        ///< lowest voxel, a multiple of 8
   LeafMask non_free{};  ///< unknown or occupied
   LeafMask occupied{};
@@ -76,13 +77,13 @@ struct SnapshotLeaf {
 };
 
 /// A box of voxels, all unknown, clipped to the workspace: [min, max).
-struct SnapshotTile {
+struct VIEWGAIN_EXPORT SnapshotTile {
   Index3 min;
   Index3 max;
 };
 
 /// Everything a scene reads of a grid: an immutable value, safe to share between threads.
-struct GridSnapshot {
+struct VIEWGAIN_EXPORT GridSnapshot {
   double voxel_size = 0;   ///< [m]
   double prior_sigma = 0;  ///< [m]
   Pose T_world_grid;

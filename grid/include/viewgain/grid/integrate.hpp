@@ -8,6 +8,7 @@
 
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
@@ -28,7 +29,7 @@ enum class Occupancy : std::uint8_t {
 };
 
 /// What changes the map.
-struct IntegrationConfig {
+struct VIEWGAIN_EXPORT IntegrationConfig {
   Carve carve = Carve::cones;
   Occupancy occupancy = Occupancy::probabilistic;
   /// Height z [m] of the table that the object stands on, world. Readings whose point is below it,
@@ -38,7 +39,7 @@ struct IntegrationConfig {
 };
 
 /// Counts of one integrated frame.
-struct IntegrationReport {
+struct VIEWGAIN_EXPORT IntegrationReport {
   std::uint64_t readings = 0;  ///< pixels with a depth whose range is in [min_range, max_range]
   std::uint64_t plane_readings = 0;   ///< such pixels that see the support plane, not in `readings`
   std::uint64_t out_of_range = 0;     ///< pixels that carve up to max_range
@@ -57,7 +58,7 @@ struct IntegrationReport {
 /// number of threads and under each instruction set.
 ///
 /// Thread safety: one call at a time on one integrator and on one grid.
-class FrameIntegrator {
+class VIEWGAIN_EXPORT FrameIntegrator {
  public:
   /// Undoes the lens distortion once and chooses the instruction set (select_isa()). Throws
   /// Error(invalid_argument) if the sensor is not valid or the support plane is not finite.
@@ -80,9 +81,8 @@ class FrameIntegrator {
 
 /// The box, in the frame of T_world_grid, that holds every reading of the frame [m], those of the
 /// support plane left out; nothing if the frame has none. For choosing a workspace.
-[[nodiscard]] std::optional<Box> reading_bounds(const Sensor& sensor, const DepthFrame& frame,
-                                                const Pose& T_world_camera,
-                                                const Pose& T_world_grid = {},
-                                                std::optional<double> support_plane = {});
+[[nodiscard]] VIEWGAIN_EXPORT std::optional<Box> reading_bounds(
+    const Sensor& sensor, const DepthFrame& frame, const Pose& T_world_camera,
+    const Pose& T_world_grid = {}, std::optional<double> support_plane = {});
 
 }  // namespace viewgain

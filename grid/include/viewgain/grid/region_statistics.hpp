@@ -6,12 +6,13 @@
 
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/criterion.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain {
 
 /// How well a part of the workspace is known (the paper's "selected parts").
-struct RegionStatistics {
+struct VIEWGAIN_EXPORT RegionStatistics {
   std::uint64_t unknown = 0;  ///< voxels
   std::uint64_t free = 0;
   std::uint64_t occupied = 0;
@@ -24,7 +25,7 @@ struct RegionStatistics {
 
 /// Of the voxels whose centres lie in `region` (grid frame [m], half-open); what lies outside the
 /// workspace is not counted. One pass over the leaves that are not free. Deterministic.
-[[nodiscard]] RegionStatistics region_statistics(const BeliefGrid& grid, const Box& region,
-                                                 Criterion criterion = Criterion::log_diagonal);
+[[nodiscard]] VIEWGAIN_EXPORT RegionStatistics region_statistics(
+    const BeliefGrid& grid, const Box& region, Criterion criterion = Criterion::log_diagonal);
 
 }  // namespace viewgain

@@ -4,23 +4,24 @@
 
 #include <filesystem>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain {
 
-struct VdbWriteConfig {
+struct VIEWGAIN_EXPORT VdbWriteConfig {
   /// Adds covariance_diagonal, covariance_offdiagonal and position, for viewers.
   bool with_covariance = false;
 };
 
 /// Writes the map as a plain OpenVDB file in the layout of DESIGN.md section 7 (active = known).
 /// Atomic: a temporary file beside it is renamed. Throws Error(io).
-void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
-              const VdbWriteConfig& config = {});
+VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
+                              const VdbWriteConfig& config = {});
 
 /// Reads a file that save_vdb wrote, or another program in the same layout; exact: the loaded map
 /// has the saved one's content_hash(). Throws Error(io) if it cannot be opened and Error(format),
 /// naming the file and what is missing or out of bounds, if it is truncated or no viewgain map.
-[[nodiscard]] BeliefGrid load_vdb(const std::filesystem::path& path);
+[[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_vdb(const std::filesystem::path& path);
 
 }  // namespace viewgain

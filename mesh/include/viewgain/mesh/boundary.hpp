@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/mesh/surface.hpp"
@@ -18,18 +19,18 @@ namespace viewgain {
 
 /// Towards which side of the image the surface ends, in the axes of the view that saw it last.
 enum class BoundaryClass : std::uint8_t { left, right, top, bottom };
-[[nodiscard]] std::string_view boundary_class_name(BoundaryClass boundary_class);
+[[nodiscard]] VIEWGAIN_EXPORT std::string_view boundary_class_name(BoundaryClass boundary_class);
 
 /// A closed chain of border edges. Consecutive vertices follow the *face's* halfedges, so that the
 /// surface lies to the left of the direction of travel seen from outside and t × n points out of
 /// it.
-struct BoundaryLoop {
+struct VIEWGAIN_EXPORT BoundaryLoop {
   std::vector<std::uint32_t> vertices;   ///< edge i goes from vertex i to vertex i + 1 (cyclic)
   std::vector<std::uint32_t> triangles;  ///< the face of edge i
 };
 
 /// A piece of a loop whose edges have one class.
-struct BoundaryRun {
+struct VIEWGAIN_EXPORT BoundaryRun {
   BoundaryClass boundary_class = BoundaryClass::left;
   std::uint32_t loop = 0;
   std::vector<std::uint32_t> vertices;  ///< in the loop's order: one more than edges, unless closed
@@ -39,7 +40,7 @@ struct BoundaryRun {
   std::uint32_t view = 0;  ///< the view in whose axes it is classified (the most common)
 };
 
-struct BoundaryConfig {
+struct VIEWGAIN_EXPORT BoundaryConfig {
   double max_view_angle = 80.0 * std::numbers::pi / 180;  ///< between face normal and line of sight
   double min_run_length = 0;   ///< shorter runs join the longer neighbour in their loop [m]; some
                                ///< spacings, or each tooth of a jagged border is a run
@@ -51,7 +52,7 @@ struct BoundaryConfig {
 /// triangle and are in that order. Throws Error(invalid_argument) for an index out of range, a
 /// number that is not finite, not one normal a vertex, or an edge with one vertex at both ends,
 /// more than two faces, or two that turn differently. O(n log n).
-[[nodiscard]] std::vector<BoundaryLoop> boundary_loops(const SurfaceMesh& surface);
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<BoundaryLoop> boundary_loops(const SurfaceMesh& surface);
 
 /// Cuts loops into runs (DESIGN.md section 8, step 3). The class of an edge is that of its outward
 /// conormal t × n (t along the face's halfedge, n the face's normal) in the image axes of the last
@@ -64,7 +65,7 @@ struct BoundaryConfig {
 /// loop (at most a quarter of it). Each loop that is not left out has each of its edges in one run.
 /// Runs are in the order of the loops and along them. Throws Error(invalid_argument) if there are
 /// no views, or a view, the sensor, a loop or the config is not valid.
-[[nodiscard]] std::vector<BoundaryRun> boundary_runs(
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<BoundaryRun> boundary_runs(
     const SurfaceMesh& surface, std::span<const BoundaryLoop> loops, std::span<const Pose> views,
     const Sensor& sensor, const BoundaryConfig& config = {},
     const std::function<bool(std::size_t view, const Eigen::Vector3d& point)>& sees = {});

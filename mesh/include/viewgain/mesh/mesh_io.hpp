@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 
 namespace viewgain {
@@ -14,13 +15,13 @@ namespace viewgain {
 /// naming the file, if it cannot be parsed, has no faces, a coordinate that is not finite, an index
 /// out of range, or a header that promises more than the file can hold. Reads through CGAL's
 /// polygon soup reader.
-[[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& path);
+[[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path);
 
 /// Which axis of the mesh file points up.
 enum class UpAxis : std::uint8_t { x, y, z };
 
 /// How a file's mesh is placed in the world.
-struct MeshPlacement {
+struct VIEWGAIN_EXPORT MeshPlacement {
   UpAxis up = UpAxis::z;  ///< this axis is turned to +z by a cyclic permutation of the axes
   bool center = false;    ///< moves the bounding box's centre to the origin
   double longest_side =
@@ -29,6 +30,7 @@ struct MeshPlacement {
 
 /// Applies turn, then scale about the origin, then centring. Throws Error(invalid_argument) if
 /// longest_side is negative or not finite, or the mesh has no extent to scale.
-[[nodiscard]] TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement);
+[[nodiscard]] VIEWGAIN_EXPORT TriangleMesh placed(TriangleMesh mesh,
+                                                  const MeshPlacement& placement);
 
 }  // namespace viewgain

@@ -8,13 +8,14 @@
 #include <span>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/mesh/surface.hpp"
 
 namespace viewgain {
 
 /// w = a u² + b uv + c v² + d u + e v + f in a local frame: u outward across the boundary, v along
 /// it, w along the normal. Lengths in metres.
-struct QuadraticPatch {
+struct VIEWGAIN_EXPORT QuadraticPatch {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< world
   Eigen::Matrix3d axes =
       Eigen::Matrix3d::Identity();       ///< columns u, v, w in the world; right-handed
@@ -35,17 +36,17 @@ struct QuadraticPatch {
 /// slope dw/du at u = depth, v = 0, where an extrapolation may end, a standard deviation of at most
 /// 0.2; else a plane; with fewer than 3 points, or points on a line, the plane w = 0. Throws
 /// Error(invalid_argument) if outward is parallel to normal or a number is not finite.
-[[nodiscard]] QuadraticPatch fit_patch(std::span<const Eigen::Vector3d> points,
-                                       const Eigen::Vector3d& origin,
-                                       const Eigen::Vector3d& outward,
-                                       const Eigen::Vector3d& normal);
+[[nodiscard]] VIEWGAIN_EXPORT QuadraticPatch fit_patch(std::span<const Eigen::Vector3d> points,
+                                                       const Eigen::Vector3d& origin,
+                                                       const Eigen::Vector3d& outward,
+                                                       const Eigen::Vector3d& normal);
 
 /// Vertices of the surface within `depth` [m] of the seeds along edges (Dijkstra), that turn by
 /// less than `max_turn` [rad] from the seeds' mean normal: the region of step 4. Rising order; none
 /// if the seeds' normals cancel. Throws Error(invalid_argument) for an index out of range, a number
 /// that is not finite, or if there is not one normal a vertex.
-[[nodiscard]] std::vector<std::uint32_t> grow_region(const SurfaceMesh& surface,
-                                                     std::span<const std::uint32_t> seeds,
-                                                     double depth, double max_turn);
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<std::uint32_t> grow_region(
+    const SurfaceMesh& surface, std::span<const std::uint32_t> seeds, double depth,
+    double max_turn);
 
 }  // namespace viewgain

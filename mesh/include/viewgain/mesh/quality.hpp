@@ -10,18 +10,19 @@
 #include <vector>
 
 #include "viewgain/core/covariance.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 
 namespace viewgain {
 
 /// A sample of the true surface.
-struct SurfaceSample {
+struct VIEWGAIN_EXPORT SurfaceSample {
   Eigen::Vector3d position;  ///< [m]
   Eigen::Vector3d normal;    ///< unit, by the right-hand rule of its triangle
 };
 
 /// Distances of points to the true surface [m].
-struct ErrorStatistics {
+struct VIEWGAIN_EXPORT ErrorStatistics {
   double rms = 0;
   double p95 = 0;          ///< 95th percentile of the distance
   std::size_t points = 0;  ///< 0: the others are NaN
@@ -29,7 +30,7 @@ struct ErrorStatistics {
 
 /// DESIGN.md section 10: with z² = e² / (nᵀ Σ n), e the distance to the surface and n the direction
 /// to its nearest point (the surface normal where the distance is 0).
-struct Consistency {
+struct VIEWGAIN_EXPORT Consistency {
   double mean_clipped = 0;   ///< mean of min(z², 25): 1 if honest
   double median = 0;         ///< of z²: 0.455 if honest
   double above_9 = 0;        ///< share of z² > 9: 0.003 if honest
@@ -39,7 +40,7 @@ struct Consistency {
 
 /// A ground-truth mesh to hold results against. Immutable. Thread safety: const members may run
 /// from many threads.
-class GroundTruth {
+class VIEWGAIN_EXPORT GroundTruth {
  public:
   /// Area-weighted samples, the same for the same seed. Throws Error(invalid_argument) for a mesh
   /// without area, an index out of range, or a vertex that is not finite.
@@ -72,7 +73,7 @@ class GroundTruth {
 
 /// Share of the distances that are at most `radius` [m], among those whose `mask` is not 0 (an
 /// empty mask: all). NaN if none. Throws Error(invalid_argument) if the mask has another size.
-[[nodiscard]] double coverage(std::span<const double> distances, double radius,
-                              std::span<const std::uint8_t> mask = {});
+[[nodiscard]] VIEWGAIN_EXPORT double coverage(std::span<const double> distances, double radius,
+                                              std::span<const std::uint8_t> mask = {});
 
 }  // namespace viewgain

@@ -8,25 +8,26 @@
 #include <vector>
 
 #include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
 
 namespace viewgain {
 
 /// The input of surface reconstruction: a point, and on which side of the surface free space lies.
-struct OrientedPoint {
+struct VIEWGAIN_EXPORT OrientedPoint {
   std::array<double, 3> position{};     ///< [m]
   std::array<double, 3> toward_free{};  ///< a hint, not a precise normal; zero where not known
 };
 
 /// An open, oriented triangle surface as plain arrays. Faces turn counter-clockwise seen from
 /// outside (free space); every edge has one face or two.
-struct SurfaceMesh {
+struct VIEWGAIN_EXPORT SurfaceMesh {
   std::vector<std::array<double, 3>> vertices;          ///< [m]
   std::vector<std::array<double, 3>> normals;           ///< unit, outward, one a vertex
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< vertex indices
   std::vector<std::uint32_t> source;                    ///< index of the input point of each vertex
 };
 
-struct SurfaceConfig {
+struct VIEWGAIN_EXPORT SurfaceConfig {
   double spacing = 0;  ///< typical distance of neighbouring points [m]; the voxel size
   unsigned smoothing_neighbors = 24;  ///< of the jet fit that smooths the points; 0: no smoothing
   double max_edge = 4;                ///< longest edge of a triangle, in units of spacing
@@ -43,8 +44,8 @@ struct SurfaceConfig {
 /// mesh. The same input gives the same bits, with any number of threads. Throws
 /// Error(invalid_argument) for a position that is not finite, or a length in the configuration that
 /// is not positive.
-[[nodiscard]] SurfaceMesh reconstruct_surface(std::span<const OrientedPoint> points,
-                                              const SurfaceConfig& config,
-                                              const ExecConfig& exec = {});
+[[nodiscard]] VIEWGAIN_EXPORT SurfaceMesh reconstruct_surface(std::span<const OrientedPoint> points,
+                                                              const SurfaceConfig& config,
+                                                              const ExecConfig& exec = {});
 
 }  // namespace viewgain

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/mesh/boundary.hpp"
@@ -16,7 +17,7 @@
 namespace viewgain {
 
 /// How boundaries become candidate views (DESIGN.md section 8, steps 3 to 5).
-struct EstimatorConfig {
+struct VIEWGAIN_EXPORT EstimatorConfig {
   BoundaryConfig boundary{};
   double patch_length = 0.06;  ///< longer runs are cut into pieces of about this length [m]
   double region_depth = 0.05;  ///< how far the region grows inward [m]
@@ -34,7 +35,7 @@ struct EstimatorConfig {
 };
 
 /// A candidate and why it exists.
-struct BoundaryCandidate {
+struct VIEWGAIN_EXPORT BoundaryCandidate {
   Pose T_world_camera;
   BoundaryClass boundary_class = BoundaryClass::left;
   std::uint32_t run = 0;                             ///< index into EstimatedViews::runs
@@ -45,7 +46,7 @@ struct BoundaryCandidate {
   bool nominal = false;  ///< the untilted, unrolled variant at the first distance
 };
 
-struct EstimatedViews {
+struct VIEWGAIN_EXPORT EstimatedViews {
   std::vector<BoundaryRun> runs;                    ///< loops cut by class
   std::vector<QuadraticPatch> patches;              ///< one a piece of a run
   std::vector<std::vector<std::uint32_t>> regions;  ///< vertices that each patch was fitted to
@@ -71,7 +72,7 @@ struct EstimatedViews {
 /// (0, 1), an empty list of variants, lengths that are not positive, no views, and what
 /// boundary_loops and boundary_runs refuse. An empty or closed surface gives no candidates; pieces
 /// without a direction (no area, or conormals that cancel) have no patch. Deterministic.
-[[nodiscard]] EstimatedViews estimate_views(
+[[nodiscard]] VIEWGAIN_EXPORT EstimatedViews estimate_views(
     const SurfaceMesh& surface, std::span<const Pose> views, const Sensor& sensor,
     double working_distance, const EstimatorConfig& config = {},
     const std::function<bool(std::size_t view, const Eigen::Vector3d& point)>& sees = {});

@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/reach.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -19,7 +20,7 @@ namespace viewgain {
 /// The sensor's housing, a box. In the flange's frame it is centred on the z axis and reaches from
 /// z = 0 to its depth; T_flange_camera places the camera on the flange. Without one the camera's
 /// centre is the middle of the box's front face, looking out of it.
-struct SensorBody {
+struct VIEWGAIN_EXPORT SensorBody {
   std::array<double, 3> size{0.065, 0.065, 0.076};  ///< width, height, depth [m]
   std::optional<Pose> T_flange_camera{};
 };
@@ -35,9 +36,9 @@ enum class Infeasibility : std::uint8_t {
   collision,    ///< the body would overlap voxels that are not free, or the camera be in one
   too_near,     ///< much of the image would show what is nearer than the sensor can measure
 };
-[[nodiscard]] std::string_view infeasibility_name(Infeasibility reason);
+[[nodiscard]] VIEWGAIN_EXPORT std::string_view infeasibility_name(Infeasibility reason);
 
-struct FeasibilityConfig {
+struct VIEWGAIN_EXPORT FeasibilityConfig {
   SensorBody body{};
   double clearance = 0;  ///< the body is grown by this on each side [m]
   ReachRegion reach{};
@@ -55,7 +56,7 @@ struct FeasibilityConfig {
 /// block. Obstacle boxes and closed meshes are solid, an open mesh is a sheet; overlaps of less
 /// than a nanometre are touching. Costs some microseconds a pose near the map, under one away from
 /// it. Thread safety: check() is const and may run from many threads.
-class FeasibilityChecker {
+class VIEWGAIN_EXPORT FeasibilityChecker {
  public:
   /// Throws Error(invalid_argument) for a null scene, a body without extent or with a mounting that
   /// is no rigid transform, a negative clearance, a tolerance or plane that is not finite, or a

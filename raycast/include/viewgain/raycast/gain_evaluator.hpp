@@ -14,6 +14,7 @@
 #include "viewgain/core/camera.hpp"
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/view_contributions.hpp"
 #include "viewgain/raycast/view_measure.hpp"
@@ -23,13 +24,13 @@
 namespace viewgain {
 
 /// A task weight for a part of the workspace: the paper's "selected parts".
-struct WeightRegion {
+struct VIEWGAIN_EXPORT WeightRegion {
   Box box;            ///< grid frame [m]; a voxel belongs to it if its centre does
   double weight = 1;  ///< w_v >= 0; the last region that holds a voxel counts, 1 outside all
 };
 
 /// What changes the answer.
-struct GainConfig {
+struct VIEWGAIN_EXPORT GainConfig {
   Criterion criterion = Criterion::log_diagonal;
   int pixel_stride = 1;                 ///< every s-th pixel of every s-th row, from pixel (0,0)
   std::optional<double> prior_sigma{};  ///< sigma_0 [m]; the map's unless given
@@ -43,10 +44,10 @@ enum class ViewStatus : std::uint8_t {
   bad_pose,  ///< a number that is not finite, or a rotation off by more than 1e-3: gain NaN
   camera_in_occupied,  ///< the camera's centre lies in an occupied voxel: gain 0
 };
-[[nodiscard]] std::string_view view_status_name(ViewStatus status);
+[[nodiscard]] VIEWGAIN_EXPORT std::string_view view_status_name(ViewStatus status);
 
 /// What a view is expected to bring. Gains in nats, in m² for the criterion trace.
-struct ViewGain {
+struct VIEWGAIN_EXPORT ViewGain {
   /// Exploration + refinement. NaN: a bad pose, or sensor sigmas beyond what double precision can
   /// weigh.
   double gain = std::numeric_limits<double>::quiet_NaN();
@@ -62,7 +63,7 @@ struct ViewGain {
 };
 
 /// Where one ray of a view ends.
-struct RayHit {
+struct VIEWGAIN_EXPORT RayHit {
   enum class Kind : std::uint8_t { none, unknown, occupied, obstacle };
   Kind kind = Kind::none;
   Index3 voxel{};  ///< the voxel it ends in (unknown, occupied)
@@ -77,7 +78,7 @@ struct RayHit {
 /// Thread safety: all const members may run from many threads at once on one evaluator. Allocation:
 /// none per pose in the steady state: each thread's buffers grow to the largest view that it has
 /// scored and are kept. Determinism: the same bits for any number of threads, run after run.
-class GainEvaluator {
+class VIEWGAIN_EXPORT GainEvaluator {
  public:
   /// Undoes the lens distortion once. Throws Error(invalid_argument), naming the value, for a null
   /// scene, a sensor that is not valid or whose sigmas differ by a factor over 1e4, a stride below
@@ -181,7 +182,7 @@ class GainEvaluator {
 
 /// Indices of the k best results: larger gain first, ties to the lower index, NaN last. k is
 /// clamped.
-[[nodiscard]] std::vector<std::size_t> best_indices(std::span<const ViewGain> results,
-                                                    std::size_t k);
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<std::size_t> best_indices(
+    std::span<const ViewGain> results, std::size_t k);
 
 }  // namespace viewgain

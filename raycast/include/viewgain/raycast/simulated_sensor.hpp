@@ -10,6 +10,7 @@
 
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/range_calibration.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
@@ -18,7 +19,7 @@ namespace viewgain {
 
 /// What surrounds the object and what disturbs the reading. Everything beyond the mesh is off by
 /// default.
-struct SimulationConfig {
+struct VIEWGAIN_EXPORT SimulationConfig {
   double background_radius =
       0;  ///< diffuse sphere round the world's origin that stands for the room [m]; 0: none
   bool noise = false;  ///< Gaussian noise along the ray by the sensor's model, and of the amplitude
@@ -43,7 +44,7 @@ struct SimulationConfig {
 };
 
 /// What the rays of one pixel met, without noise.
-struct PixelTruth {
+struct VIEWGAIN_EXPORT PixelTruth {
   float min_range = 0;      ///< of all returns [m]; 0 if there is none
   float max_range = 0;      ///< [m]
   float nearest_range = 0;  ///< the return nearest to the reading [m]; 0 if there is no reading
@@ -52,7 +53,7 @@ struct PixelTruth {
 
 /// A depth camera in front of a triangle mesh.
 /// Thread safety: acquire() is const and may run from many threads; results do not depend on them.
-class SimulatedSensor {
+class VIEWGAIN_EXPORT SimulatedSensor {
  public:
   /// Throws Error(invalid_argument) for a sensor that is not valid or a value of the configuration
   /// out of its bounds.
@@ -82,8 +83,10 @@ class SimulatedSensor {
 /// >= 2 distances to a frontal plane, evenly from min_range to max_range [m], read on the optical
 /// axis with the error on and noise off. Throws Error(invalid_argument) for bounds that are no
 /// range of the sensor or not unambiguous.
-[[nodiscard]] RangeCalibration measure_calibration(const Sensor& sensor,
-                                                   const SimulationConfig& config, double min_range,
-                                                   double max_range, std::size_t count);
+[[nodiscard]] VIEWGAIN_EXPORT RangeCalibration measure_calibration(const Sensor& sensor,
+                                                                   const SimulationConfig& config,
+                                                                   double min_range,
+                                                                   double max_range,
+                                                                   std::size_t count);
 
 }  // namespace viewgain

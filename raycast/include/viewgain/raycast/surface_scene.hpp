@@ -8,12 +8,13 @@
 #include <memory>
 
 #include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 
 namespace viewgain {
 
 /// Where a ray meets a triangle mesh.
-struct SurfaceHit {
+struct VIEWGAIN_EXPORT SurfaceHit {
   double range =
       std::numeric_limits<double>::infinity();  ///< along the unit direction [m]; infinity: miss
   std::uint32_t triangle = 0;
@@ -23,7 +24,7 @@ struct SurfaceHit {
 
 /// Triangles to trace, for simulated depth and for pictures. Immutable; owns its copy of the mesh.
 /// Thread safety: const members may run from many threads.
-class SurfaceScene {
+class VIEWGAIN_EXPORT SurfaceScene {
  public:
   /// Throws Error(invalid_argument) for an empty mesh, a vertex that is not finite or an index out
   /// of range; Error(backend) if Embree fails.

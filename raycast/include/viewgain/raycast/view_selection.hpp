@@ -7,12 +7,14 @@
 #include <limits>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 struct ViewGain;
 
 /// Views chosen from a batch of poses; see GainEvaluator::best() and race().
-struct BestViews {
+struct VIEWGAIN_EXPORT BestViews {
   std::vector<std::size_t> indices;         ///< into the poses, best first
   std::vector<ViewGain> gains;              ///< of those, as evaluate() has them
   std::vector<std::size_t> scored_indices;  ///< poses that were scored in full, ascending
@@ -22,7 +24,7 @@ struct BestViews {
 };
 
 /// How GainEvaluator::race() parts the wheat from the chaff.
-struct RaceConfig {
+struct VIEWGAIN_EXPORT RaceConfig {
   double interval = 3.5;          ///< half width of a pose's confidence interval [standard errors]
   double first_share = 1.0 / 32;  ///< of the tiles in the first round, then four times as many
   double keep = 0.25;             ///< of the poses that a round leaves at most
@@ -30,7 +32,7 @@ struct RaceConfig {
 };
 
 /// Views that are good together, in the order of their choice; see GainEvaluator::best_set().
-struct ViewSet {
+struct VIEWGAIN_EXPORT ViewSet {
   std::vector<std::size_t> indices;  ///< into the poses
   std::vector<ViewGain> marginal;    ///< what each adds to those before it
   double gain = 0;                   ///< of all together
@@ -39,7 +41,7 @@ struct ViewSet {
 };
 
 /// How GainEvaluator::approximate() samples a view.
-struct ApproximateConfig {
+struct VIEWGAIN_EXPORT ApproximateConfig {
   double share = 0.1;        ///< of a view's tiles that are traced; in (0, 1]
   int groups = 8;            ///< random groups that the standard error comes from; 2 to 64
   std::size_t anchors = 32;  ///< poses scored in full that the correction of the bias rests on
@@ -47,7 +49,7 @@ struct ApproximateConfig {
 };
 
 /// An estimate of a gain, in the unit of the gain.
-struct ApproximateGain {
+struct VIEWGAIN_EXPORT ApproximateGain {
   double gain = std::numeric_limits<double>::quiet_NaN();
   double standard_error = std::numeric_limits<double>::quiet_NaN();
 };

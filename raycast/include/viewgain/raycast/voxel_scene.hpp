@@ -10,6 +10,7 @@
 
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
@@ -17,7 +18,7 @@ namespace viewgain {
 
 /// Known things that are not part of the map: they block rays at any range and gain nothing. World
 /// frame.
-struct Obstacles {
+struct VIEWGAIN_EXPORT Obstacles {
   std::vector<Box> boxes;
   std::vector<TriangleMesh> meshes;
 };
@@ -27,7 +28,7 @@ struct Obstacles {
 /// are obstacles, else with the first evaluator whose camera has lens distortion. Owns all that it
 /// reads; the grid may change or go. Copying a shared_ptr of it is how to share it. Thread safety:
 /// all members are const and may run from many threads.
-class VoxelScene {
+class VIEWGAIN_EXPORT VoxelScene {
  public:
   /// Takes a snapshot of the grid and sorts it (about 0.2 ms per 1,000 leaves; with a BVH 0.5 ms).
   /// Throws Error(backend) if Embree fails, Error(capacity) beyond 2^23 leaves and tiles,
@@ -71,6 +72,6 @@ class VoxelScene {
 };
 
 /// Names of the instruction sets that this machine and this build have, best first.
-[[nodiscard]] std::vector<std::string> available_isas();
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<std::string> available_isas();
 
 }  // namespace viewgain

@@ -1,0 +1,105 @@
+#!/usr/bin/env bash
+# Builds the Debian packages, installs them in a clean Debian of this machine's release, runs the program
+# there and builds a client. Needs root (chroot) and the network that apt uses; not part of ctest.
+#   tests/packages.sh [WORK_FOLDER]   (default build/packages_test; the bare system in it is kept)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+work=$(realpath -m "${1:-build/packages_test}")
+jobs=${VIEWGAIN_JOBS:-$(nproc)}
+. /etc/os-release
+
+fail() { echo "packages.sh: $*" >&2; exit 1; }
+[ "$(id -u)" -eq 0 ] || fail "needs root, for chroot"
+
+./apps/install_dependencies.sh
+command -v debootstrap >/dev/null || apt-get install -y -qq --no-install-recommends debootstrap >/dev/null
+mkdir -p "$work"
+
+# Packages.
+cmake --preset packages >"$work/configure.log" 2>&1 || { cat "$work/configure.log" >&2; exit 1; }
+cmake --build --preset packages -j "$jobs"
+rm -rf build/packages/packages
+(cd build/packages && cpack >"$work/cpack.log" 2>&1) || { cat "$work/cpack.log" >&2; exit 1; }
+ls build/packages/packages
+for name in libviewgain0 libviewgain-mesh0 libviewgain-dev viewgain; do
+  test -f build/packages/packages/"$name"_*.deb || fail "no $name"
+done
+
+# Only the surfaces and what links them need CGAL's libraries.
+for deb in build/packages/packages/libviewgain0_*.deb; do
+  rm -rf "$work/content" && dpkg-deb -x "$deb" "$work/content"
+  dpkg-deb -f "$deb" Depends | tee "$work/depends"
+  ! grep -E 'gmp|mpfr|cgal|mesh' "$work/depends" || fail "$deb depends on CGAL's libraries"
+  ! nm -DC "$work"/content/usr/lib/*/libviewgain.so.0 | grep CGAL || fail "$deb holds CGAL"
+done
+
+# A clean system, made once and copied.
+if [ ! -d "$work/bare" ]; then
+  rm -rf "$work/bare.new"
+  debootstrap --variant=minbase "$VERSION_CODENAME" "$work/bare.new" http://deb.debian.org/debian \
+    >"$work/debootstrap.log" 2>&1 || { tail "$work/debootstrap.log" >&2; exit 1; }
+  mv "$work/bare.new" "$work/bare"
+fi
+root=$work/root
+rm -rf --one-file-system "$root"
+cp -a "$work/bare" "$root"
+mkdir "$root/debs" "$root/client"
+cp build/packages/packages/*.deb "$root/debs"
+cp tests/consumer/gain.cpp "$root/client"
+cp /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
+
+cat >"$root/program.sh" <<'INSIDE'
+set -euo pipefail
+export DEBIAN_FRONTEND=noninteractive LC_ALL=C
+apt-get update -qq
+apt-get install -y -qq --no-install-recommends /debs/libviewgain0_*.deb /debs/libviewgain-mesh0_*.deb \
+  /debs/viewgain_*.deb >/dev/null
+dpkg -l | awk '$2 ~ /viewgain/ {print $1, $2, $3}'
+if dpkg -l | grep -E '^ii +lib[a-z0-9]+-dev '; then exit 1; fi # nothing to develop with
+grep -q 'Apache License' /usr/share/doc/libviewgain0/copyright
+grep -q 'GNU GENERAL PUBLIC LICENSE' /usr/share/doc/viewgain/copyright
+viewgain --version
+viewgain --help >/dev/null
+cat >/box.off <<'MESH'
+OFF
+8 6 0
+-1 -1 -1
+1 -1 -1
+1 1 -1
+-1 1 -1
+-1 -1 1
+1 -1 1
+1 1 1
+-1 1 1
+4 0 3 2 1
+4 4 5 6 7
+4 0 1 5 4
+4 2 3 7 6
+4 1 2 6 5
+4 0 4 7 3
+MESH
+viewgain simulate /box.off --orbit 1,0.6,20 --sensor sr4000 --size 0.2 --out /frames >/dev/null
+viewgain integrate /frames --voxel 0.01 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out /map.vdb >/dev/null
+viewgain score /map.vdb --sphere 50,0.6 --sensor sr4000 --top 3 --threads 1 | tee /score.txt
+INSIDE
+cat >"$root/client.sh" <<'INSIDE'
+set -euo pipefail
+export DEBIAN_FRONTEND=noninteractive LC_ALL=C
+apt-get install -y -qq --no-install-recommends /debs/libviewgain-dev_*.deb g++ cmake make pkg-config >/dev/null
+if dpkg -l | grep -E '^ii +(libcgal|libembree|libopenvdb|libtbb|libhwy)[a-z0-9]*-dev '; then exit 1; fi
+cd /client
+g++ -std=c++20 gain.cpp -o by_pkg_config $(pkg-config --cflags --libs viewgain)
+printf 'cmake_minimum_required(VERSION 3.22)\nproject(client LANGUAGES CXX)\nfind_package(viewgain 0.1 REQUIRED)\nadd_executable(gain gain.cpp)\ntarget_link_libraries(gain PRIVATE viewgain::viewgain)\n' >CMakeLists.txt
+cmake -B build >/dev/null
+cmake --build build >/dev/null
+./by_pkg_config | tee first.txt
+./build/gain | cmp - first.txt
+grep -qE '^[1-9][0-9]*\.[0-9]+$' first.txt
+apt-get remove -y -qq libviewgain0 >/dev/null # takes all that depends on it along
+if dpkg -l | grep -E '^ii +(libviewgain|viewgain)'; then exit 1; fi
+INSIDE
+trap 'umount "$root/proc" 2>/dev/null || true' EXIT
+mount -t proc proc "$root/proc" 2>/dev/null || echo "packages.sh: no /proc in the chroot" >&2
+chroot "$root" bash /program.sh
+chroot "$root" bash /client.sh
+echo "packages.sh: all well"
