@@ -18,14 +18,14 @@ quiet_build() { # FOLDER
   cmake --build "$1" -j 1 >"$1/build.log" 2>&1 || { cat "$1/build.log" >&2; fail "did not build"; }
 }
 
-check_gain() { # PROGRAM
+check_gain() { # PROGRAM [c]
   local gain
   gain=$("$1")
-  [ "$gain" = "$("$expected")" ] || fail "the gain is $gain, expected $("$expected")"
+  [ "$gain" = "$("$expected" "${@:2}")" ] || fail "the gain is $gain, expected $("$expected" "${@:2}")"
   echo "$kind: gain $gain"
 }
 
-# A project that finds viewgain under a prefix, built, and its two programs run.
+# A project that finds viewgain under a prefix, built, and its three programs run.
 check_project() { # PREFIX [cmake arguments]
   local folder=$work/$kind
   rm -rf "$folder"
@@ -33,6 +33,7 @@ check_project() { # PREFIX [cmake arguments]
     "-DCMAKE_PREFIX_PATH=$1" "${@:2}" >/dev/null
   quiet_build "$folder"
   check_gain "$folder/gain"
+  check_gain "$folder/gain_c" c
   local answers
   answers=$("$folder/boundary" "$folder/map.vdb")
   [ "$answers" = 11111111 ] || fail "boundary.cpp says $answers"
@@ -81,6 +82,11 @@ case $kind in
     c++ -std=c++20 "$here/gain.cpp" -o "$work/$kind/gain" "-Wl,-rpath,$libraries" \
       $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs "viewgain >= 0.1")
     check_gain "$work/$kind/gain"
+    # C99 with the one header.
+    # shellcheck disable=SC2046
+    cc -std=c99 -pedantic -Wall -Wextra -Werror "$here/gain.c" -o "$work/$kind/gain_c" \
+      "-Wl,-rpath,$libraries" $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain)
+    check_gain "$work/$kind/gain_c" c
     # shellcheck disable=SC2046
     c++ -std=c++20 "$here/boundary.cpp" -o "$work/$kind/boundary" "-Wl,-rpath,$libraries" \
       $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-mesh)
