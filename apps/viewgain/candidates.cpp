@@ -9,6 +9,7 @@
 
 #include "candidate_generation.hpp"
 #include "commands.hpp"
+#include "map_file.hpp"
 #include "model.hpp"
 #include "planning_options.hpp"
 #include "reach_toml.hpp"
@@ -17,7 +18,6 @@
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -77,7 +77,7 @@ void candidates(const Options& options) {
   {
     const AtomicFile writable(options.out);
   }  // known now rather than after the work
-  BeliefGrid grid = load_vdb(options.map);
+  BeliefGrid grid = load_map(options.map, &sensor);
   GenerationConfig config;
   config.boundary = options.generator == "boundary";
   config.estimator = default_estimator(grid.voxel_size());
@@ -152,7 +152,7 @@ Command add_candidates(CLI::App& program) {
       "Candidate views for a map, as a poses file for score; --json says for each why it exists or "
       "why it was dropped.");
   Options& o = *options;
-  app->add_option("MAP", o.map, "map (.vdb)")->required();
+  app->add_option("MAP", o.map, kMapHelp)->required();
   app->add_option(
          "--generator", o.generator,
          "boundary (open boundaries of the surface in the map), sphere, dome, rings, shell "

@@ -6,12 +6,12 @@
 #include <string>
 
 #include "commands.hpp"
+#include "map_file.hpp"
 #include "terminal.hpp"
 #include "values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/region_statistics.hpp"
-#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -65,7 +65,7 @@ void print(const Region& region, const char* unit) {
 
 void info(const Options& options) {
   const Criterion criterion = parse_criterion(options.criterion);
-  const BeliefGrid grid = load_vdb(options.map);
+  const BeliefGrid grid = load_map(options.map);
   if (options.hash) {
     if (options.common.json) {
       print_json({{"hash", grid.content_hash()}});
@@ -124,7 +124,7 @@ Command add_info(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* app = program.add_subcommand(
       "info", "What a map holds: dimensions, voxel states, memory, entropy removed, views.");
-  app->add_option("MAP", options->map, "map (.vdb)")->required();
+  app->add_option("MAP", options->map, kMapHelp)->required();
   app->add_flag("--hash", options->hash,
                 "print only the hash of grids and metadata: equal maps have equal ones");
   app->add_option("--criterion", options->criterion,

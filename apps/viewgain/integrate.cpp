@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -12,41 +13,20 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "frames_dir.hpp"
-#include "sensing.hpp"
+#include "map_file.hpp"
+#include "reading_source.hpp"
 #include "terminal.hpp"
 #include "values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/grid/belief_grid.hpp"
-#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain::app {
 namespace {
 
-struct Options {
-  CommonOptions common;
-  std::string frames;
-  std::optional<double> voxel;
-  std::string workspace;
-  std::string sensor;
-  std::optional<double> depth_scale;
-  std::string out_of_range = "carve";
-  std::string carve = "cones";
-  std::string occupancy = "probabilistic";
-  std::string jump_edge_filter = "off";
-  bool jump_edge_two_sided = false;
-  std::optional<double> support_plane;
-  std::optional<double> prior_sigma;
-  bool with_covariance = false;
-  std::string out;
-  std::string map;
+using Options = IntegrateOptions;
 
-  [[nodiscard]] OutOfRangeMeaning meaning() const {
-    return out_of_range == "carve" ? OutOfRangeMeaning::carve : OutOfRangeMeaning::invalid;
-  }
-};
+const char* part_name(const Options& options) { return options.clouds.empty() ? "frame" : "cloud"; }
 
 void check_voxel(double voxel) {
   if (!(voxel > 0) || !std::isfinite(voxel)) {
@@ -55,26 +35,17 @@ void check_voxel(double voxel) {
   }
 }
 
-std::optional<JumpEdgeFilter> make_filter(const FrameSequence& frames, const Options& options) {
-  const auto config = parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided);
-  if (!config) return std::nullopt;
-  return JumpEdgeFilter(frames.sensor.camera, *config);
-}
-
 // What the frames see, half a voxel more on each side: a reading on the face of the box would lie
 // outside of it.
-Box seen_workspace(const FrameSequence& frames, const std::optional<JumpEdgeFilter>& filter,
-                   const Options& options, double voxel) {
+Box seen_workspace(ReadingSource& source, const Options& options, double voxel) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Box seen{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
   bool any = false;
-  Progress progress("bounds of frame");
-  for (std::size_t i = 0; i < frames.images.size(); ++i) {
-    DepthFrame frame = load_frame(frames, i, options.meaning());
-    if (filter) filter->apply(frame);
-    const auto bounds =
-        reading_bounds(frames.sensor, frame, frames.poses[i], {}, options.support_plane);
-    progress.update(i + 1, frames.images.size());
+  Progress progress(std::string("bounds of ") + part_name(options));
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    source.load(i);
+    const auto bounds = source.bounds();
+    progress.update(i + 1, source.size());
     if (!bounds) continue;
     any = true;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -84,13 +55,13 @@ Box seen_workspace(const FrameSequence& frames, const std::optional<JumpEdgeFilt
   }
   if (!any) {
     throw Error(ErrorCode::invalid_argument,
-                options.frames + ": no frame has a reading, so --workspace is needed");
+                (options.clouds.empty() ? options.frames + ": no frame" : std::string("no cloud")) +
+                    " has a reading, so --workspace is needed");
   }
   return seen;
 }
 
-BeliefGrid new_map(const FrameSequence& frames, const std::optional<JumpEdgeFilter>& filter,
-                   const Options& options) {
+BeliefGrid new_map(ReadingSource& source, const Options& options) {
   if (!options.voxel) {
     throw Error(ErrorCode::invalid_argument, "--voxel is needed unless --map is given");
   }
@@ -98,16 +69,18 @@ BeliefGrid new_map(const FrameSequence& frames, const std::optional<JumpEdgeFilt
   GridConfig config;
   config.voxel_size = *options.voxel;
   config.prior_sigma =
-      options.prior_sigma.value_or(default_prior_sigma(config.voxel_size, frames.sensor));
-  config.workspace = options.workspace.empty()
-                         ? seen_workspace(frames, filter, options, config.voxel_size)
-                         : parse_box("--workspace", options.workspace);
+      options.prior_sigma.value_or(default_prior_sigma(config.voxel_size, source.sensor()));
+  config.workspace = options.workspace.empty() ? seen_workspace(source, options, config.voxel_size)
+                                               : parse_box("--workspace", options.workspace);
   return BeliefGrid(config);
 }
 
 // An existing map keeps its layout and prior; flags that say something else are an error.
-BeliefGrid continued_map(const Options& options) {
-  BeliefGrid grid = load_vdb(options.map);
+BeliefGrid continued_map(const Sensor& sensor, const Options& options) {
+  OctomapConfig tree;  // which has no prior or workspace of its own
+  tree.prior_sigma = options.prior_sigma;
+  if (!options.workspace.empty()) tree.workspace = parse_box("--workspace", options.workspace);
+  BeliefGrid grid = load_map(options.map, &sensor, tree);
   const auto conflict = [&options](const std::string& flag, const std::string& given,
                                    const std::string& stored) {
     throw Error(ErrorCode::invalid_argument,
@@ -142,39 +115,33 @@ struct Totals {
   std::vector<double> seconds;  // of each frame's integration, reading the image not counted
 };
 
-Totals integrate_frames(const FrameSequence& frames, const std::optional<JumpEdgeFilter>& filter,
-                        const Options& options, BeliefGrid& grid) {
-  IntegrationConfig config;
-  config.carve = options.carve == "cones" ? Carve::cones : Carve::lines;
-  config.occupancy =
-      options.occupancy == "probabilistic" ? Occupancy::probabilistic : Occupancy::literal;
-  config.support_plane = options.support_plane;
-  FrameIntegrator integrator(frames.sensor, config, {options.common.threads});
+Totals integrate_all(ReadingSource& source, const Options& options, BeliefGrid& grid) {
   Totals totals;
-  Progress progress("frame");
-  for (std::size_t i = 0; i < frames.images.size(); ++i) {
-    DepthFrame frame = load_frame(frames, i, options.meaning());
-    if (filter) totals.jump_edge_removed += filter->apply(frame);
+  Progress progress(part_name(options));
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    source.load(i);
+    totals.jump_edge_removed += source.jump_edge_removed();
     const Stopwatch watch;
-    const IntegrationReport report = integrator.integrate(grid, frame, frames.poses[i]);
+    const IntegrationReport report = source.integrate(grid);
     totals.seconds.push_back(watch.seconds());
     totals.sum.readings += report.readings;
     totals.sum.readings_inside += report.readings_inside;
     totals.sum.plane_readings += report.plane_readings;
     totals.sum.out_of_range += report.out_of_range;
     totals.sum.invalid += report.invalid;
-    progress.update(i + 1, frames.images.size());
+    progress.update(i + 1, source.size());
   }
   return totals;
 }
 
-void print_summary(const Options& options, const FrameSequence& frames, const BeliefGrid& grid,
+void print_summary(const Options& options, const ReadingSource& source, const BeliefGrid& grid,
                    const Totals& totals, double seconds) {
   const GridStatistics statistics = grid.statistics();
   const Index3 dims = grid.dims();
   const double frame_seconds = median(totals.seconds);
   if (options.common.json) {
-    print_json({{"frames", frames.images.size()},
+    const std::optional<double> scale = source.depth_scale();
+    print_json({{part_name(options) + std::string("s"), source.size()},
                 {"views", grid.views().size()},
                 {"readings", totals.sum.readings},
                 {"readings_inside", totals.sum.readings_inside},
@@ -182,9 +149,9 @@ void print_summary(const Options& options, const FrameSequence& frames, const Be
                 {"jump_edge_removed", totals.jump_edge_removed},
                 {"out_of_range", totals.sum.out_of_range},
                 {"invalid", totals.sum.invalid},
-                {"orthonormalized_poses", frames.orthonormalized},
-                {"sensor", frames.sensor.name},
-                {"depth_scale", frames.depth_scale},
+                {"orthonormalized_poses", source.orthonormalized()},
+                {"sensor", source.sensor().name},
+                {"depth_scale", scale ? nlohmann::ordered_json(*scale) : nullptr},
                 {"voxel_size", grid.voxel_size()},
                 {"workspace", to_json(grid.workspace())},
                 {"dims", {dims.x, dims.y, dims.z}},
@@ -202,10 +169,10 @@ void print_summary(const Options& options, const FrameSequence& frames, const Be
               describe(grid.workspace()).c_str(), dims.x, dims.y, dims.z, grid.voxel_size(),
               grid.prior_sigma());
   std::printf(
-      "%zu frames (%s), %s readings, %s of them in the workspace; %s out of range, %s invalid\n",
-      frames.images.size(), frames.sensor.name.c_str(), with_commas(totals.sum.readings).c_str(),
-      with_commas(totals.sum.readings_inside).c_str(), with_commas(totals.sum.out_of_range).c_str(),
-      with_commas(totals.sum.invalid).c_str());
+      "%zu %ss (%s), %s readings, %s of them in the workspace; %s out of range, %s invalid\n",
+      source.size(), part_name(options), source.sensor().name.c_str(),
+      with_commas(totals.sum.readings).c_str(), with_commas(totals.sum.readings_inside).c_str(),
+      with_commas(totals.sum.out_of_range).c_str(), with_commas(totals.sum.invalid).c_str());
   if (options.jump_edge_filter != "off") {
     std::printf("flying pixels removed: %s\n", with_commas(totals.jump_edge_removed).c_str());
   }
@@ -213,31 +180,60 @@ void print_summary(const Options& options, const FrameSequence& frames, const Be
     std::printf("readings of the support plane: %s\n",
                 with_commas(totals.sum.plane_readings).c_str());
   }
-  if (frames.orthonormalized > 0) {
+  if (source.orthonormalized() > 0) {
     std::printf("rotations that were off and were orthonormalised: %zu of %zu\n",
-                frames.orthonormalized, frames.poses.size());
+                source.orthonormalized(), source.size());
   }
   const double voxels = static_cast<double>(grid.voxel_count());
   std::printf("voxels: %s unknown (%.1f %%), %s free, %s occupied\n",
               with_commas(statistics.unknown).c_str(),
               100 * static_cast<double>(statistics.unknown) / voxels,
               with_commas(statistics.free).c_str(), with_commas(statistics.occupied).c_str());
-  std::printf("%.2f s in all; into the map: %.1f ms a frame (median)\n", seconds,
-              1e3 * frame_seconds);
+  std::printf("%.2f s in all; into the map: %.1f ms a %s (median)\n", seconds, 1e3 * frame_seconds,
+              part_name(options));
   std::printf("%s: hash %s\n", options.out.c_str(), grid.content_hash().c_str());
 }
 
-void integrate(const Options& options) {
+// Flags of depth frames with clouds and the other way round say what cannot be had.
+void check_flags(const Options& options, const CLI::App& app) {
+  const auto refuse = [&app](std::initializer_list<const char*> flags, const char* why) {
+    for (const char* flag : flags) {
+      if (app.count(flag) > 0) {
+        throw Error(ErrorCode::invalid_argument, std::string(flag) + " " + why);
+      }
+    }
+  };
+  if (options.frames.empty() == options.clouds.empty()) {
+    throw Error(ErrorCode::invalid_argument, "needs either FRAMES_DIR or --cloud");
+  }
+  if (options.clouds.empty()) {
+    refuse({"--origin", "--poses"}, "is for clouds (--cloud)");
+  } else {
+    refuse({"--depth-scale", "--out-of-range", "--carve", "--jump-edge-filter",
+            "--jump-edge-two-sided"},
+           "is for depth frames; clouds carve along lines");
+    if (!options.poses.empty()) refuse({"--origin"}, "and --poses exclude each other");
+  }
+}
+
+void integrate(const Options& options, const CLI::App& app) {
   const Stopwatch watch;
-  const FrameSequence frames = open_frames(options.frames, options.sensor, options.depth_scale);
+  check_flags(options, app);
+  check_map_name(options.out);
+  if (options.with_covariance && is_octomap(options.out)) {
+    throw Error(ErrorCode::invalid_argument,
+                "--with-covariance with " + options.out + ": a tree has no place for covariances");
+  }
+  const std::unique_ptr<ReadingSource> source =
+      options.clouds.empty() ? open_frame_source(options) : open_cloud_source(options);
   {
     const AtomicFile writable(options.out);
   }  // known now rather than after the work
-  const std::optional<JumpEdgeFilter> filter = make_filter(frames, options);
-  BeliefGrid grid = options.map.empty() ? new_map(frames, filter, options) : continued_map(options);
-  const Totals totals = integrate_frames(frames, filter, options, grid);
-  save_vdb(grid, options.out, {options.with_covariance});
-  print_summary(options, frames, grid, totals, watch.seconds());
+  BeliefGrid grid =
+      options.map.empty() ? new_map(*source, options) : continued_map(source->sensor(), options);
+  const Totals totals = integrate_all(*source, options, grid);
+  save_map(grid, options.out, {options.with_covariance});
+  print_summary(options, *source, grid, totals, watch.seconds());
 }
 
 }  // namespace
@@ -246,16 +242,31 @@ Command add_integrate(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* app = program.add_subcommand(
       "integrate",
-      "Depth frames into a voxel map. FRAMES_DIR holds what simulate writes, or recorded frames: "
+      "Depth frames or point clouds into a voxel map. FRAMES_DIR holds what simulate writes, or "
+      "recorded frames: "
       "frame-NNNNNN.depth.png + frame-NNNNNN.pose.txt (4x4, camera to world, m) + "
       "camera-intrinsics.txt (3x3, overrides the sensor's). Incidence comes from "
-      "frame-NNNNNN.amplitude.png (16 bit, cos/range^2 in 1e-3 m^-2) where there is one.");
-  app->add_option("FRAMES_DIR", options->frames, "folder of frames")->required();
+      "frame-NNNNNN.amplitude.png (16 bit, cos/range^2 in 1e-3 m^-2) where there is one. Clouds "
+      "are .pcd or .ply files with x, y, z [m]; "
+      "each carves the lines from its sensor's origin to its points.");
+  app->add_option("FRAMES_DIR", options->frames, "folder of frames");
+  app->add_option("--cloud", options->clouds, "a point cloud instead; may be repeated")
+      ->allow_extra_args(false);
+  app->add_option("--origin", options->origin,
+                  "x,y,z of the clouds' sensor [m], their points being in the world; or viewpoint: "
+                  "what each .pcd's VIEWPOINT says")
+      ->capture_default_str();
+  app->add_option("--poses", options->poses,
+                  "TUM file, line i for the i-th cloud, sensor to world; the clouds' points are "
+                  "then in the sensor's frame, a VIEWPOINT does not count");
   app->add_option("--voxel", options->voxel, "voxel size [m]; needed unless --map is given");
-  app->add_option("--workspace", options->workspace,
-                  "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: what the frames see");
+  app->add_option(
+      "--workspace", options->workspace,
+      "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: what frames or clouds see");
   app->add_option("--sensor", options->sensor,
-                  std::string(kSensorHelp) + "; default: FRAMES_DIR/sensor.toml");
+                  std::string(kSensorHelp) +
+                      "; default: FRAMES_DIR/sensor.toml; needed for clouds, of which noise and "
+                      "ranges hold");
   app->add_option(
       "--depth-scale", options->depth_scale,
       "metres a unit of the images; default: 1e-4 where there is a sensor.toml, else 1e-3");
@@ -284,11 +295,11 @@ Command add_integrate(CLI::App& program) {
                   "sigma at its working distance)");
   app->add_flag("--with-covariance", options->with_covariance,
                 "add covariances and positions to the file, for viewers");
-  app->add_option("--out", options->out, "map to write (.vdb)")->required();
+  app->add_option("--out", options->out, "map to write (.vdb, or OctoMap's .ot)")->required();
   app->add_option("--map", options->map,
-                  "map to continue; its voxel size, workspace and prior hold");
+                  "map to continue (.vdb, .ot, .bt); its voxel size, workspace and prior hold");
   add_common_options(*app, options->common);
-  return {app, [options] { integrate(*options); }};
+  return {app, [options, app] { integrate(*options, *app); }};
 }
 
 }  // namespace viewgain::app

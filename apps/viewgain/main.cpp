@@ -35,7 +35,8 @@ int run(int argc, char** argv) {
   const std::vector<viewgain::app::Command> commands{
       viewgain::app::add_simulate(program),    viewgain::app::add_integrate(program),
       viewgain::app::add_score(program),       viewgain::app::add_candidates(program),
-      viewgain::app::add_reconstruct(program), viewgain::app::add_info(program)};
+      viewgain::app::add_reconstruct(program), viewgain::app::add_info(program),
+      viewgain::app::add_convert(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

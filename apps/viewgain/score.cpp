@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "map_file.hpp"
 #include "picture.hpp"
 #include "pose_source.hpp"
 #include "sensor_toml.hpp"
@@ -17,7 +18,6 @@
 #include "values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
@@ -289,7 +289,7 @@ void score(const Options& options) {
     }
     const AtomicFile writable(path);  // known now rather than after the work
   }
-  const BeliefGrid grid = load_vdb(options.map);
+  const BeliefGrid grid = load_map(options.map, &sensor);
   const GainEvaluator evaluator(VoxelScene::build(grid, {}, exec), sensor, config, exec);
 
   Scores scores;
@@ -326,7 +326,7 @@ Command add_score(CLI::App& program) {
       "score",
       "Candidate poses by expected information gain against a map: the best ones, and how "
       "fast it went.");
-  app->add_option("MAP", options->map, "map (.vdb)")->required();
+  app->add_option("MAP", options->map, kMapHelp)->required();
   auto* poses = app->add_option_group("candidates", "exactly one of");
   poses->add_option("--poses", options->poses.file,
                     "TUM file of camera-to-world poses: time tx ty tz qx qy qz qw [s, m]");

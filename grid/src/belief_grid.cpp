@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "belief_merge.hpp"
+#include "grid_blocks.hpp"
 #include "grid_storage.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -334,5 +335,45 @@ void BeliefGrid::copy_states(std::span<std::uint8_t> states) const {
                  });
       });
 }
+
+namespace detail {
+
+void put_block(BeliefGrid& grid, Index3 origin, const std::uint8_t* codes) {
+  grid.storage().put_block(origin, codes);
+}
+
+void fill_cube(BeliefGrid& grid, Index3 origin, std::int32_t size, std::uint8_t code) {
+  BeliefGrid::Storage& s = grid.storage();
+  if (!s.lattice.overlaps(origin, size)) return;
+  // Whole blocks, of large cubes whole nodes, round the part in the workspace.
+  const std::int32_t unit = may_be_tile(code) && size > kNodeSize ? kNodeSize : kBlockSize;
+  const IndexBox part = clipped(s.lattice, origin, size);
+  const auto down = [&](std::int32_t v) { return v & ~(unit - 1); };
+  const auto up = [&](std::int32_t v) { return down(v - 1) + unit; };
+  const Index3 from{down(part.min.x), down(part.min.y), down(part.min.z)};
+  const Index3 to{up(part.max.x), up(part.max.y), up(part.max.z)};
+  if (may_be_tile(code)) {
+    s.tree.sparseFill({to_coord(from), {to.x - 1, to.y - 1, to.z - 1}}, code, is_non_free(code));
+    return;
+  }
+  std::array<std::uint8_t, kBlockVoxels> codes;
+  codes.fill(code);
+  for (std::int32_t x = from.x; x < to.x; x += kBlockSize) {
+    for (std::int32_t y = from.y; y < to.y; y += kBlockSize) {
+      for (std::int32_t z = from.z; z < to.z; z += kBlockSize) s.put_block({x, y, z}, codes.data());
+    }
+  }
+}
+
+void visit_grid(const BeliefGrid& grid,
+                const std::function<void(Index3, const std::uint8_t*)>& block,
+                const std::function<void(Index3, std::int32_t, std::uint8_t)>& cube) {
+  visit_blocks(
+      grid.storage(),
+      [&](const CodeLeaf& leaf, Index3 origin) { block(origin, leaf.buffer().data()); },
+      [&](Index3 origin, int size, std::uint8_t code) { cube(origin, size, code); });
+}
+
+}  // namespace detail
 
 }  // namespace viewgain

@@ -69,20 +69,20 @@ std::shared_ptr<const BeliefBlock> with_belief(const BeliefBlock* block, unsigne
 }
 
 std::shared_ptr<const BeliefBlock> with_hits(const BeliefBlock* block, std::span<const Hit> hits,
-                                             const FramePixels& pixels, const Pose& T_grid_camera,
+                                             const Readings& pixels, const Pose& T_grid_readings,
                                              Index3 origin, double voxel_size) {
   LeafMask mask = block != nullptr ? block->mask : LeafMask{};
   for (const Hit& hit : hits) mask[hit.offset >> 6U] |= std::uint64_t{1} << (hit.offset & 63U);
   auto result = reshaped(block, mask);
 
-  const Eigen::Matrix3d R_grid_camera = T_grid_camera.rotation();
+  const Eigen::Matrix3d R_grid_readings = T_grid_readings.rotation();
   for (const Hit& hit : hits) {
     const Index3 voxel = offset_voxel(origin, hit.offset);
     const Eigen::Vector3d center =
         (Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5) * voxel_size;
-    const Eigen::Vector3d offset = T_grid_camera * pixels.point(hit.pixel) - center;
+    const Eigen::Vector3d offset = T_grid_readings * pixels.point(hit.pixel) - center;
     const SymmetricMatrix3 information = measurement_information(
-        R_grid_camera * pixels.direction(hit.pixel), pixels.sigmas(hit.pixel));
+        R_grid_readings * pixels.direction(hit.pixel), pixels.sigmas(hit.pixel));
     const Eigen::Vector3d vector = information * offset;
 
     Belief& belief = result->beliefs[result->rank(hit.offset)];

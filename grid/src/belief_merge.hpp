@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "frame_pixels.hpp"
+#include "readings.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
 
 namespace viewgain::detail {
@@ -32,8 +32,8 @@ void sort_by_block(std::vector<Hit>& hits, std::vector<Hit>& scratch);
 /// hold the old one.
 [[nodiscard]] std::shared_ptr<const BeliefBlock> with_hits(const BeliefBlock* block,
                                                            std::span<const Hit> hits,
-                                                           const FramePixels& pixels,
-                                                           const Pose& T_grid_camera, Index3 origin,
-                                                           double voxel_size);
+                                                           const Readings& pixels,
+                                                           const Pose& T_grid_readings,
+                                                           Index3 origin, double voxel_size);
 
 }  // namespace viewgain::detail

@@ -114,6 +114,12 @@ struct BlockLattice {
   return static_cast<std::uint64_t>(n);
 }
 
+[[nodiscard]] inline LeafMask intersection(const LeafMask& a, const LeafMask& b) {
+  LeafMask result;
+  for (std::size_t i = 0; i < 8; ++i) result[i] = a[i] & b[i];
+  return result;
+}
+
 /// Calls f(offset) for every set bit, in rising order.
 template <typename F>
 void for_each_bit(const LeafMask& mask, F&& f) {

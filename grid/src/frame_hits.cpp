@@ -13,14 +13,14 @@ constexpr std::size_t kPixelChunk = 1024;
 
 }  // namespace
 
-void FrameHits::find(const FramePixels& pixels, const BlockLattice& lattice, double voxel_size,
-                     const Pose& T_grid_camera, ThreadPool& pool) {
+void FrameHits::find(const Readings& pixels, const BlockLattice& lattice, double voxel_size,
+                     const Pose& T_grid_readings, ThreadPool& pool) {
   by_pixel_.resize(pixels.size());
   pool.for_each_chunk(pixels.size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       by_pixel_[i].offset = kBlockVoxels;
       if (pixels.kind(i) != PixelKind::reading) continue;
-      const Eigen::Vector3d p = T_grid_camera * pixels.point(i) / voxel_size;
+      const Eigen::Vector3d p = T_grid_readings * pixels.point(i) / voxel_size;
       const double x = std::floor(p.x()), y = std::floor(p.y()), z = std::floor(p.z());
       if (!(x >= lattice.min.x && x < lattice.max.x && y >= lattice.min.y && y < lattice.max.y &&
             z >= lattice.min.z && z < lattice.max.z)) {
@@ -54,10 +54,10 @@ std::span<const HitBlock> FrameHits::in_region(std::uint64_t region) const {
   return {first, last};
 }
 
-void FrameLines::walk(const FramePixels& pixels, const BlockLattice& lattice, double voxel_size,
-                      const Pose& T_grid_camera, ThreadPool& pool) {
-  const Eigen::Matrix3d R = T_grid_camera.rotation();
-  const Eigen::Vector3d origin = T_grid_camera.translation();
+void FrameLines::walk(const Readings& pixels, const BlockLattice& lattice, double voxel_size,
+                      const Pose& T_grid_readings, ThreadPool& pool) {
+  const Eigen::Matrix3d R = T_grid_readings.rotation();
+  const Eigen::Vector3d origin = T_grid_readings * pixels.origin();
   const std::vector<double>& reach_taper = pixels.reach_taper();
   marks_.resize(static_cast<std::size_t>(pool.num_threads()));
   for (LineMarks& marks : marks_) marks.clear();

@@ -9,8 +9,8 @@
 
 #include "belief_merge.hpp"
 #include "block_lattice.hpp"
-#include "frame_pixels.hpp"
 #include "line_marks.hpp"
+#include "readings.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain::detail {
@@ -25,8 +25,8 @@ struct HitBlock {
 /// Readings of a frame that lie in the workspace, by block and within a block in pixel order.
 class FrameHits {
  public:
-  void find(const FramePixels& pixels, const BlockLattice& lattice, double voxel_size,
-            const Pose& T_grid_camera, ThreadPool& pool);
+  void find(const Readings& pixels, const BlockLattice& lattice, double voxel_size,
+            const Pose& T_grid_readings, ThreadPool& pool);
 
   [[nodiscard]] std::size_t size() const { return hits_.size(); }
   [[nodiscard]] std::span<const Hit> of(const HitBlock& block) const {
@@ -46,8 +46,8 @@ class FrameHits {
 /// not depend on who made it.
 class FrameLines {
  public:
-  void walk(const FramePixels& pixels, const BlockLattice& lattice, double voxel_size,
-            const Pose& T_grid_camera, ThreadPool& pool);
+  void walk(const Readings& pixels, const BlockLattice& lattice, double voxel_size,
+            const Pose& T_grid_readings, ThreadPool& pool);
 
   /// Regions with a mark, in rising order.
   [[nodiscard]] std::vector<std::uint64_t> regions() const;

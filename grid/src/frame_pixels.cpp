@@ -15,21 +15,11 @@ namespace viewgain::detail {
 namespace {
 
 constexpr std::size_t kRowChunk = 8;
-constexpr double kTaperSigmas = 3.0;
 constexpr double kNoDepth = std::numeric_limits<double>::quiet_NaN();
 
 /// An amplitude that is no number, or negative, counts as the darkest: least information.
 double cos_from_amplitude(double amplitude, double range) {
   return amplitude > 0 ? std::min(1.0, amplitude * range * range) : 0.0;
-}
-
-bool is_on_plane(const CameraPlane& plane, const Eigen::Vector3d& point, double range,
-                 double sigma_axial) {
-  const double height = plane.normal.dot(point) - plane.offset;  // [m] above the plane
-  if (height < 0) return true;
-  const double rise = plane.normal.dot(point) / range;  // of the ray, metres a metre
-  // How much farther the ray meets the plane; it must come down to do so.
-  return rise < 0 && height / -rise < kTaperSigmas * sigma_axial;
 }
 
 }  // namespace
@@ -38,15 +28,11 @@ CameraPlane::CameraPlane(double height, const Pose& T_world_camera)
     : normal(T_world_camera.rotation().row(2).transpose()),
       offset(height - T_world_camera.translation().z()) {}
 
-FramePixels::FramePixels(const Sensor& sensor) : sensor_(sensor) {
-  sensor_.validate();
+FramePixels::FramePixels(const Sensor& sensor) : Readings(sensor) {
   rays_ = sensor_.camera.ray_table();
   norms_.reserve(rays_.size());
   for (const Eigen::Vector3d& ray : rays_) norms_.push_back(ray.norm());
-  kinds_.resize(rays_.size());
-  points_.resize(rays_.size());
-  sigmas_.resize(rays_.size());
-  reach_taper_.resize(2 * rays_.size());
+  resize(rays_.size());
   depths_.assign((static_cast<std::size_t>(sensor_.camera.width) + 2) *
                      (static_cast<std::size_t>(sensor_.camera.height) + 2),
                  kNoDepth);
@@ -73,25 +59,14 @@ void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
                        const std::optional<CameraPlane>& plane) {
   const auto width = static_cast<std::size_t>(sensor_.camera.width);
   const auto height = static_cast<std::size_t>(sensor_.camera.height);
-  // A centre at max_range itself is still crossed.
-  const double out_of_range_reach =
-      std::nextafter(sensor_.max_range, std::numeric_limits<double>::infinity());
 
   pool.for_each_chunk(height, kRowChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin * width; i < end * width; ++i) {
       const double depth = frame.depth[i];
-      const double range = depth * norms_[i];  // NaN where the lens model has no ray
-      PixelKind kind = PixelKind::invalid;
-      if (depth > 0 && range >= sensor_.min_range) {
-        kind = range <= sensor_.max_range ? PixelKind::reading : PixelKind::out_of_range;
-      }
-      kinds_[i] = kind;
+      // The range is NaN where the lens model has no ray.
+      const PixelKind kind = sort_by_range(i, depth > 0 ? depth * norms_[i] : kNoDepth);
       points_[i] = kind == PixelKind::reading ? Eigen::Vector3d(rays_[i] * depth)
                                               : Eigen::Vector3d(Eigen::Vector3d::Zero());
-      reach_taper_[2 * i] = kind == PixelKind::reading        ? range
-                            : kind == PixelKind::out_of_range ? out_of_range_reach
-                                                              : 0.0;
-      reach_taper_[2 * i + 1] = 0.0;
       depths_[(i / width + 1) * (width + 2) + i % width + 1] =
           kind == PixelKind::reading ? depth : kNoDepth;
     }
@@ -108,7 +83,9 @@ void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
                                   : cos_from_amplitude(frame.amplitude[i], range);
         sigmas_[i] = sensor_.sigmas(range, cosine);
         if (tapered) reach_taper_[2 * i + 1] = kTaperSigmas * sigmas_[i].axial;
-        if (plane && is_on_plane(*plane, points_[i], range, sigmas_[i].axial)) {
+        if (!plane) continue;
+        const double up = plane->normal.dot(points_[i]);
+        if (sees_plane(up - plane->offset, up / range, sigmas_[i].axial)) {
           kinds_[i] = PixelKind::on_plane;
         }
       }

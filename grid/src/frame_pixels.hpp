@@ -7,15 +7,12 @@
 #include <optional>
 #include <vector>
 
+#include "readings.hpp"
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/pose.hpp"
-#include "viewgain/core/sensor.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain::detail {
-
-/// on_plane: a reading of the support plane, which carves as far as it reaches but is no hit.
-enum class PixelKind : std::uint8_t { invalid, reading, out_of_range, on_plane };
 
 /// The support plane in a camera's frame: points p with normal · p = offset.
 struct CameraPlane {
@@ -26,8 +23,9 @@ struct CameraPlane {
   CameraPlane(double height, const Pose& T_world_camera);
 };
 
-/// One sensor's pixels: where they look and what the current frame says there.
-class FramePixels {
+/// One sensor's pixels: where they look and what the current frame says there, in the camera's
+/// frame.
+class FramePixels : public Readings {
  public:
   /// Undoes the lens distortion of every pixel once.
   explicit FramePixels(const Sensor& sensor);
@@ -43,23 +41,6 @@ class FramePixels {
   void load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
             const std::optional<CameraPlane>& plane = {});
 
-  [[nodiscard]] const Sensor& sensor() const { return sensor_; }
-  [[nodiscard]] std::size_t size() const { return rays_.size(); }
-  [[nodiscard]] PixelKind kind(std::size_t pixel) const { return kinds_[pixel]; }
-  [[nodiscard]] const std::vector<PixelKind>& kinds() const { return kinds_; }
-
-  /// A reading's point in the camera frame [m]; on the support plane too.
-  [[nodiscard]] Eigen::Vector3d point(std::size_t pixel) const { return points_[pixel]; }
-  /// Unit vector along the pixel's ray, camera frame.
-  [[nodiscard]] Eigen::Vector3d direction(std::size_t pixel) const {
-    return rays_[pixel] / norms_[pixel];
-  }
-  [[nodiscard]] MeasurementSigmas sigmas(std::size_t pixel) const { return sigmas_[pixel]; }
-
-  /// Two numbers a pixel: a voxel is crossed if its range is below the first, with less than the
-  /// full weight over the last stretch of the length of the second; 0, 0 for invalid pixels.
-  [[nodiscard]] const std::vector<double>& reach_taper() const { return reach_taper_; }
-
   /// Cosine of the angle between a reading's ray and the normal of its 3×3 neighbourhood: the cross
   /// product of the sums, over rows and over columns, of differences across the pixel (one-sided at
   /// the pixel itself if there is no such pair). Neighbours that are no readings, or whose depth
@@ -68,13 +49,6 @@ class FramePixels {
   [[nodiscard]] double cos_incidence(int u, int v) const;
 
  private:
-  Sensor sensor_;
-  std::vector<Eigen::Vector3d> rays_;  ///< (x, y, 1)
-  std::vector<double> norms_;
-  std::vector<PixelKind> kinds_;
-  std::vector<Eigen::Vector3d> points_;
-  std::vector<MeasurementSigmas> sigmas_;
-  std::vector<double> reach_taper_;
   std::vector<double> depths_;  ///< of readings, else NaN; with a border of one pixel
 };
 

@@ -13,12 +13,6 @@ namespace {
 
 using namespace detail;
 
-LeafMask intersection(const LeafMask& a, const LeafMask& b) {
-  LeafMask result;
-  for (std::size_t i = 0; i < 8; ++i) result[i] = a[i] & b[i];
-  return result;
-}
-
 std::uint64_t tree_bytes(const CodeTree& tree) {
   std::uint64_t bytes = sizeof(CodeTree);
   const auto& root = tree.root();
@@ -34,25 +28,143 @@ std::uint64_t tree_bytes(const CodeTree& tree) {
   return bytes;
 }
 
-// Where visit_blocks() comes to a leaf of the workspace: upper node, node, leaf, each by x, y, z.
-std::uint64_t tree_order(const BlockLattice& lattice, Index3 origin) {
-  // A workspace of 65,536 voxels touches at most 33 upper nodes along an axis.
-  const auto upper = [](std::int32_t at, std::int32_t low) {
-    return static_cast<std::uint64_t>((at >> 11) - (low >> 11));
-  };
-  const auto part = [](std::int32_t at, int shift) {
-    return static_cast<std::uint64_t>(at >> shift & 15);
-  };
-  std::uint64_t order = upper(origin.x, lattice.min.x);
-  order = order << 6U | upper(origin.y, lattice.min.y);
-  order = order << 6U | upper(origin.z, lattice.min.z);
-  for (const int shift : {7, 3}) {
-    order = order << 4U | part(origin.x, shift);
-    order = order << 4U | part(origin.y, shift);
-    order = order << 4U | part(origin.z, shift);
+/// Makes a snapshot's lists of leaves and tiles, node by node and region by region. A map has many
+/// times more free leaves than others, spread over the heap: those of a node are read some time
+/// after they are asked for, so that they can be on their way into the cache.
+class SnapshotMaker {
+ public:
+  SnapshotMaker(const BeliefGrid::Storage& storage, const GridSnapshot& before, GridSnapshot& out)
+      : storage_(storage), before_(before), out_(out), earlier_(before.regions.begin()) {
+    out.shared_until = storage.is_earlier(before) ? before.time : 0;
+    if (out.shared_until != 0) {
+      out.leaves.reserve(before.leaves.size() + before.leaves.size() / 8);
+      out.tiles.reserve(before.tiles.size() + before.tiles.size() / 8);
+      out.regions.reserve(before.regions.size() + before.regions.size() / 8);
+    }
   }
-  return order;
-}
+
+  void run() {
+    const auto& root = storage_.tree.root();
+    for (auto it = root.cbeginValueAll(); it; ++it) {
+      add_tile(to_index(it.getCoord()), static_cast<int>(CodeUpper::DIM), *it);
+    }
+    std::vector<std::pair<std::uint64_t, const CodeNode*>> nodes;
+    for (auto upper = root.cbeginChildOn(); upper; ++upper) {
+      for (auto it = upper->cbeginValueAll(); it; ++it) {
+        add_tile(to_index(it.getCoord()), kNodeSize, *it);
+      }
+      for (auto node = upper->cbeginChildOn(); node; ++node) {
+        const Index3 origin = to_index(node.getCoord());
+        if (storage_.lattice.overlaps(origin, kNodeSize)) {
+          nodes.emplace_back(storage_.lattice.key(origin) >> 12U, &*node);
+        }
+      }
+    }
+    std::sort(nodes.begin(), nodes.end());
+    for (const auto& [number, node] : nodes) {
+      for (std::uint64_t part = 0; part < 64; ++part) add_region(number << 6U | part, *node);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMasksAhead = 12, kCodesAhead = 4;
+  struct Waiting {
+    const CodeLeaf* leaf;
+    Index3 origin;
+    std::uint64_t key;
+  };
+
+  void add_tile(Index3 origin, int size, std::uint8_t code) {
+    if (code != kUnknownCode || !storage_.lattice.overlaps(origin, size)) return;
+    const IndexBox box = clipped(storage_.lattice, origin, size);
+    out_.tiles.push_back({box.min, box.max});
+  }
+
+  void add_region(std::uint64_t number, const CodeNode& node) {
+    const Index3 origin = storage_.lattice.origin(number << 6U);
+    if (!storage_.lattice.overlaps(origin, kRegionSize)) return;
+    const auto change = storage_.changed.find(number);
+    const std::uint64_t changed = change == storage_.changed.end() ? 0 : change->second;
+    out_.regions.push_back({number, changed, static_cast<std::uint32_t>(out_.leaves.size()),
+                            static_cast<std::uint32_t>(out_.tiles.size())});
+    if (out_.is_shared(out_.regions.back())) {
+      while (earlier_ != before_.regions.end() && earlier_->number < number) ++earlier_;
+      if (earlier_ != before_.regions.end() && earlier_->number == number) {
+        copy_region(static_cast<std::size_t>(earlier_ - before_.regions.begin()));
+        return;
+      }
+    }
+    for (std::uint64_t block = number << 6U; block < (number + 1) << 6U; ++block) {
+      const Index3 at = storage_.lattice.origin(block);
+      if (!storage_.lattice.overlaps(at, kBlockSize)) continue;
+      const openvdb::Index place = CodeNode::coordToOffset(to_coord(at));
+      if (!node.isChildMaskOn(place)) {
+        add_tile(at, kBlockSize, node.getTable()[place].getValue());
+      } else {
+        const CodeLeaf* leaf = node.getTable()[place].getChild();
+        waiting_.push_back({leaf, at, block});
+      }
+    }
+    read_waiting();
+  }
+
+  void copy_region(std::size_t region) {
+    const auto [leaves, leaves_end] = before_.leaves_of(region);
+    const auto [tiles, tiles_end] = before_.tiles_of(region);
+    out_.leaves.insert(out_.leaves.end(), before_.leaves.begin() + leaves,
+                       before_.leaves.begin() + leaves_end);
+    out_.tiles.insert(out_.tiles.end(), before_.tiles.begin() + tiles,
+                      before_.tiles.begin() + tiles_end);
+  }
+
+  void read_waiting() {
+    const auto leaf_at = [&](std::size_t i) {
+      return i < waiting_.size() ? waiting_[i].leaf : nullptr;
+    };
+    const auto fetch_mask = [&](std::size_t i) {
+      if (const CodeLeaf* leaf = leaf_at(i)) {
+        __builtin_prefetch(leaf);
+        __builtin_prefetch(reinterpret_cast<const char*>(leaf) + 64);
+      }
+    };
+    const auto fetch_codes = [&](std::size_t i) {
+      const CodeLeaf* leaf = leaf_at(i);
+      if (leaf == nullptr || leaf->getValueMask().isOff()) return;
+      const std::uint8_t* codes = leaf->buffer().data();
+      for (int line = 0; line < kBlockVoxels; line += 64) __builtin_prefetch(codes + line);
+    };
+    for (std::size_t i = 0; i < kMasksAhead; ++i) fetch_mask(i);
+    for (std::size_t i = 0; i < waiting_.size(); ++i) {
+      fetch_mask(i + kMasksAhead);
+      fetch_codes(i + kCodesAhead);
+      read(waiting_[i]);
+    }
+    waiting_.clear();
+  }
+
+  void read(const Waiting& entry) {
+    const CodeLeaf& leaf = *entry.leaf;
+    if (leaf.getValueMask().isOff()) return;
+    LeafMask non_free = leaf_mask(leaf.getValueMask());
+    if (!storage_.lattice.covers(entry.origin, kBlockSize)) {
+      non_free = intersection(non_free, storage_.lattice.clip(entry.origin));
+      if (non_free == LeafMask{}) return;
+    }
+    const LeafMask occupied = intersection(non_free, occupied_mask(leaf.buffer().data()));
+    std::shared_ptr<const BeliefBlock> beliefs;
+    if (occupied != LeafMask{}) {
+      const auto found = storage_.beliefs.find(entry.key);
+      if (found != storage_.beliefs.end()) beliefs = found->second;
+    }
+    out_.leaves.push_back({entry.origin, non_free, occupied, std::move(beliefs)});
+  }
+
+  const BeliefGrid::Storage& storage_;
+  const GridSnapshot& before_;
+  GridSnapshot& out_;
+  std::vector<SnapshotRegion>::const_iterator earlier_;
+  std::vector<Waiting> waiting_;
+};
 
 std::uint64_t hash_origin(Index3 origin, std::uint64_t contents) {
   Hash64 hash;
@@ -140,57 +252,35 @@ class BlockHashes {
 
 }  // namespace
 
+const SnapshotLeaf* GridSnapshot::find_leaf(Index3 voxel) const {
+  const BlockLattice lattice(min_index, dims);
+  if (!lattice.contains(voxel)) return nullptr;
+  const std::uint64_t number = lattice.key(voxel) >> 6U;
+  const auto region =
+      std::lower_bound(regions.begin(), regions.end(), number,
+                       [](const SnapshotRegion& r, std::uint64_t n) { return r.number < n; });
+  if (region == regions.end() || region->number != number) return nullptr;
+  const Index3 origin = block_origin(voxel);
+  const auto [first, last] = leaves_of(static_cast<std::size_t>(region - regions.begin()));
+  for (std::uint32_t i = first; i < last; ++i) {
+    if (leaves[i].origin == origin) return &leaves[i];
+  }
+  return nullptr;
+}
+
 GridSnapshot BeliefGrid::snapshot() const { return snapshot(GridSnapshot{}); }
 
 GridSnapshot BeliefGrid::snapshot(const GridSnapshot& before) const {
   const Storage& s = *storage_;
-  GridSnapshot result{s.voxel_size, s.prior_sigma, s.T_world_grid, s.min_index, s.dims, {},
-                      {},           s.number,      s.time};
-  const bool is_related = s.is_earlier(before);
-  if (is_related) {
-    result.leaves.reserve(before.leaves.size() + before.leaves.size() / 8);
-    result.tiles.reserve(before.tiles.size() + before.tiles.size() / 8);
-  }
-  auto earlier = before.leaves.begin();
-  // The leaf as it was, if nothing near it has changed. Both lists are in the tree's order.
-  const auto unchanged = [&](Index3 origin, std::uint64_t key) -> const SnapshotLeaf* {
-    if (!is_related) return nullptr;
-    const std::uint64_t place = tree_order(s.lattice, origin);
-    while (earlier != before.leaves.end() && tree_order(s.lattice, earlier->origin) < place) {
-      ++earlier;
-    }
-    if (earlier == before.leaves.end() || !(earlier->origin == origin)) return nullptr;
-    const auto change = s.changed.find(key >> 6U);
-    if (change != s.changed.end() && change->second > before.time) return nullptr;
-    return &*earlier;
-  };
-  visit_blocks(
-      s,
-      [&](const CodeLeaf& leaf, Index3 origin) {
-        const std::uint64_t key = s.lattice.key(clipped(s.lattice, origin, kBlockSize).min);
-        if (const SnapshotLeaf* same = unchanged(origin, key)) {
-          result.leaves.push_back(*same);
-          return;
-        }
-        if (leaf.getValueMask().isOff()) return;
-        LeafMask non_free = leaf_mask(leaf.getValueMask());
-        if (!s.lattice.covers(origin, kBlockSize)) {
-          non_free = intersection(non_free, s.lattice.clip(origin));
-          if (non_free == LeafMask{}) return;
-        }
-        const LeafMask occupied = intersection(non_free, occupied_mask(leaf.buffer().data()));
-        std::shared_ptr<const BeliefBlock> beliefs;
-        if (occupied != LeafMask{}) {
-          const auto found = s.beliefs.find(key);
-          if (found != s.beliefs.end()) beliefs = found->second;
-        }
-        result.leaves.push_back({origin, non_free, occupied, std::move(beliefs)});
-      },
-      [&](Index3 origin, int size, std::uint8_t code) {
-        if (code != kUnknownCode) return;
-        const IndexBox box = clipped(s.lattice, origin, size);
-        result.tiles.push_back({box.min, box.max});
-      });
+  GridSnapshot result;
+  result.voxel_size = s.voxel_size;
+  result.prior_sigma = s.prior_sigma;
+  result.T_world_grid = s.T_world_grid;
+  result.min_index = s.min_index;
+  result.dims = s.dims;
+  result.grid_number = s.number;
+  result.time = s.time;
+  SnapshotMaker(s, before, result).run();
   return result;
 }
 

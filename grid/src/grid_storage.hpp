@@ -66,7 +66,8 @@ struct BeliefGrid::Storage {
   /// By BlockLattice::key. Blocks are never changed in place: snapshots and clones share them.
   std::unordered_map<std::uint64_t, std::shared_ptr<const BeliefBlock>> beliefs;
 
-  /// What has changed when: a time, and that of each region's last change (by key >> 6).
+  /// When what a snapshot tells has changed: a time, and that of each region's last change (by key
+  /// >> 6).
   std::uint64_t time = 1;
   std::unordered_map<std::uint64_t, std::uint64_t> changed;
   void mark_changed(std::uint64_t block_key) { changed[block_key >> 6U] = time + 1; }

@@ -2,41 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/grid/integrate.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <iterator>
-#include <limits>
 #include <optional>
-#include <sstream>
-#include <string>
 #include <utility>
 
-#include "block_kernels.hpp"
-#include "cone_cull.hpp"
-#include "frame_hits.hpp"
 #include "frame_pixels.hpp"
-#include "grid_storage.hpp"
-#include "viewgain/core/error.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "map_update.hpp"
 
 namespace viewgain {
 namespace {
 
 using namespace detail;
-
-constexpr double kPoseTolerance = 1e-3;
-constexpr double kOrthonormal = 1e-12;  // rotations nearer to orthonormal are taken as they are
-
-Pose rigid(const Pose& pose) {
-  const double error = orthonormality_error(pose);
-  if (!(error <= kPoseTolerance)) {
-    std::ostringstream text;
-    text << "camera pose is not rigid: its rotation is off by " << error;
-    throw Error(ErrorCode::invalid_argument, text.str());
-  }
-  return error <= kOrthonormal ? pose : orthonormalized(pose);
-}
 
 std::optional<CameraPlane> plane_seen_from(const Pose& T_world_camera,
                                            std::optional<double> height) {
@@ -44,198 +19,18 @@ std::optional<CameraPlane> plane_seen_from(const Pose& T_world_camera,
   return CameraPlane(*height, T_world_camera);
 }
 
-void check_plane(std::optional<double> height) {
-  if (height && !std::isfinite(*height)) {
-    throw Error(ErrorCode::invalid_argument,
-                "support plane " + std::to_string(*height) + " m is not finite");
-  }
-}
-
-// What a thread found in a region and may not put into the tree itself.
-struct RegionResult {
-  std::vector<std::unique_ptr<CodeLeaf>> leaves;
-  std::vector<std::pair<Index3, std::uint8_t>> tiles;
-  std::uint64_t crossed = 0;
-  std::uint64_t hit = 0;
-};
-
 }  // namespace
 
 struct FrameIntegrator::Impl {
   IntegrationConfig config;
-  const BlockKernels& kernels;
-  ThreadPool pool;
+  MapUpdate update;
   FramePixels pixels;
-  RangePyramid pyramid;
-  FrameHits hits;
-  FrameLines lines;
-  std::vector<std::uint64_t> regions;
-  std::vector<RegionResult> results;
-
-  Impl(const Sensor& sensor, const IntegrationConfig& config_in, const ExecConfig& exec)
-      : config(config_in),
-        kernels(block_kernels(select_isa())),
-        pool(exec.num_threads),
-        pixels(sensor) {}
-
-  [[nodiscard]] bool literal() const { return config.occupancy == Occupancy::literal; }
-  [[nodiscard]] bool cones() const { return config.carve == Carve::cones; }
-
-  void list_regions(const BeliefGrid::Storage& s, const ConeCull& cull);
-  void update_region(BeliefGrid::Storage& s, const ConeCull& cull, const ConeCamera& camera,
-                     const Pose& T_grid_camera, std::uint64_t region, RegionResult& result);
-  void put_results(BeliefGrid::Storage& s);
 };
-
-// The regions that the frame may change, in rising order.
-void FrameIntegrator::Impl::list_regions(const BeliefGrid::Storage& s, const ConeCull& cull) {
-  std::vector<std::uint64_t> crossed;
-  if (cones()) {
-    for (std::uint64_t node = 0; node < s.lattice.node_count(); ++node) {
-      if (cull.classify(s.lattice.origin(node << 12U), kNodeSize) == CubeClass::untouched) continue;
-      for (std::uint64_t region = node << 6U; region < (node + 1) << 6U; ++region) {
-        if (s.lattice.overlaps(s.lattice.origin(region << 6U), kRegionSize))
-          crossed.push_back(region);
-      }
-    }
-  } else {
-    crossed = lines.regions();
-  }
-  std::vector<std::uint64_t> hit;
-  for (const HitBlock& block : hits.blocks()) {
-    if (hit.empty() || hit.back() != block.key >> 6U) hit.push_back(block.key >> 6U);
-  }
-  regions.clear();
-  std::set_union(crossed.begin(), crossed.end(), hit.begin(), hit.end(),
-                 std::back_inserter(regions));
-}
-
-// Runs on many threads at once: writes leaves and belief blocks of this region only, and reads the
-// rest of the tree, whose shape stays as it is.
-void FrameIntegrator::Impl::update_region(BeliefGrid::Storage& s, const ConeCull& cull,
-                                          const ConeCamera& camera, const Pose& T_grid_camera,
-                                          std::uint64_t region, RegionResult& result) {
-  const Index3 region_origin = s.lattice.origin(region << 6U);
-  std::span<const HitBlock> hit_blocks = hits.in_region(region);
-  const CubeClass region_class =
-      cones() ? cull.classify(region_origin, kRegionSize) : CubeClass::mixed;
-  if (region_class == CubeClass::untouched && hit_blocks.empty()) return;
-
-  auto* node = s.tree.probeNode<CodeNode>(to_coord(region_origin));
-  const std::uint8_t node_code =
-      node != nullptr ? kUnknownCode : s.tree.getValue(to_coord(region_origin));
-  alignas(64) std::array<std::int8_t, kBlockVoxels> deltas;
-  alignas(64) std::array<std::uint8_t, kBlockVoxels> fresh;
-
-  for (std::uint64_t key = region << 6U; key < (region + 1) << 6U; ++key) {
-    const Index3 origin = s.lattice.origin(key);
-    const HitBlock* hit_block = nullptr;
-    if (!hit_blocks.empty() && hit_blocks.front().key == key) {
-      hit_block = &hit_blocks.front();
-      hit_blocks = hit_blocks.subspan(1);
-    }
-    const bool whole = s.lattice.covers(origin, kBlockSize);
-    if (!whole && !s.lattice.overlaps(origin, kBlockSize)) continue;
-
-    CubeClass block_class = region_class;
-    if (cones() && region_class == CubeClass::mixed)
-      block_class = cull.classify(origin, kBlockSize);
-    if (block_class == CubeClass::untouched && hit_block == nullptr) continue;
-
-    CodeLeaf* leaf = node != nullptr ? node->probeLeaf(to_coord(origin)) : nullptr;
-    std::uint8_t tile_code = node_code;
-    if (node != nullptr && leaf == nullptr) {
-      tile_code = node->getTable()[CodeNode::coordToOffset(to_coord(origin))].getValue();
-    }
-    if (block_class == CubeClass::crossed && hit_block == nullptr && leaf == nullptr &&
-        may_be_tile(tile_code)) {
-      const std::uint8_t code = updated_code(tile_code, kMissDelta, literal());
-      if (code != tile_code) result.tiles.emplace_back(origin, code);
-      result.crossed += whole ? kBlockVoxels : count_bits(s.lattice.clip(origin));
-      continue;
-    }
-
-    bool any = block_class == CubeClass::crossed;
-    if (block_class == CubeClass::mixed) {
-      any = cones() ? kernels.project(camera, pixels.reach_taper().data(), s.voxel_size, origin,
-                                      deltas.data())
-                    : lines.deltas(key, deltas.data());
-    } else {
-      deltas.fill(any ? kMissDelta : kNoDelta);
-    }
-    if (!any && hit_block == nullptr) continue;
-
-    if (hit_block != nullptr) {
-      LeafMask mask{};
-      for (const Hit& hit : hits.of(*hit_block)) {
-        deltas[hit.offset] = kHitDelta;  // beats a crossing
-        mask[hit.offset >> 6U] |= std::uint64_t{1} << (hit.offset & 63U);
-      }
-      result.hit += count_bits(mask);
-      *hit_block->beliefs = with_hits(hit_block->beliefs->get(), hits.of(*hit_block), pixels,
-                                      T_grid_camera, origin, s.voxel_size);
-    }
-
-    std::uint8_t* codes = leaf != nullptr ? leaf->buffer().data() : fresh.data();
-    if (leaf == nullptr) fresh.fill(tile_code);
-    BlockUpdate update;
-    kernels.update(deltas.data(), literal(), codes, update);
-    if (!whole) {
-      const LeafMask inside = s.lattice.clip(origin);
-      for (std::size_t i = 0; i < 8; ++i) update.crossed[i] &= inside[i];
-    }
-    result.crossed += count_bits(update.crossed);
-
-    if (update.uniform && may_be_tile(codes[0])) {
-      if (leaf != nullptr || codes[0] != tile_code) result.tiles.emplace_back(origin, codes[0]);
-      continue;
-    }
-    if (leaf == nullptr) {
-      result.leaves.push_back(std::make_unique<CodeLeaf>(to_coord(origin), kUnknownCode, true));
-      leaf = result.leaves.back().get();
-      std::copy(fresh.begin(), fresh.end(), leaf->buffer().data());
-    }
-    for (openvdb::Index i = 0; i < 8; ++i) {
-      leaf->getValueMask().getWord<std::uint64_t>(i) = update.non_free[i];
-    }
-  }
-}
-
-// Blocks that changed between leaf and tile, and nodes that became uniform.
-void FrameIntegrator::Impl::put_results(BeliefGrid::Storage& s) {
-  for (std::size_t i = 0; i < regions.size(); ++i) {
-    RegionResult& result = results[i];
-    if (result.leaves.empty() && result.tiles.empty()) continue;
-    const Index3 origin = s.lattice.origin(regions[i] << 6U);
-    auto* node = s.tree.probeNode<CodeNode>(to_coord(origin));
-    if (node == nullptr) {
-      // A tile of the same value one level down makes the nodes above it.
-      const std::uint8_t code = s.tree.getValue(to_coord(origin));
-      s.tree.addTile(kBlockTileLevel, to_coord(origin), code, is_non_free(code));
-      node = s.tree.probeNode<CodeNode>(to_coord(origin));
-    }
-    for (auto& leaf : result.leaves) node->addLeaf(leaf.release());
-    for (const auto& [at, code] : result.tiles) {
-      node->addTile(kBlockTileLevel, to_coord(at), code, is_non_free(code));
-    }
-    result.leaves.clear();
-    result.tiles.clear();
-  }
-  for (std::size_t i = 0; i < regions.size(); ++i) {
-    if (i + 1 < regions.size() && regions[i] >> 6U == regions[i + 1] >> 6U) continue;
-    const openvdb::Coord origin = to_coord(s.lattice.origin(regions[i] << 6U));
-    const auto* node = s.tree.probeConstNode<CodeNode>(origin);
-    std::uint8_t code = 0;
-    bool active = false;
-    if (node != nullptr && node->isConstant(code, active)) {
-      s.tree.addTile(kNodeTileLevel, origin, code, active);
-    }
-  }
-}
 
 FrameIntegrator::FrameIntegrator(const Sensor& sensor, const IntegrationConfig& config,
                                  const ExecConfig& exec)
-    : impl_(std::make_unique<Impl>(sensor, config, exec)) {
+    : impl_(std::make_unique<Impl>(
+          Impl{config, MapUpdate(config.occupancy, exec), FramePixels(sensor)})) {
   check_plane(config.support_plane);
 }
 FrameIntegrator::~FrameIntegrator() = default;
@@ -245,54 +40,15 @@ FrameIntegrator& FrameIntegrator::operator=(FrameIntegrator&&) noexcept = defaul
 IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame& frame,
                                              const Pose& T_world_camera_in) {
   Impl& m = *impl_;
-  BeliefGrid::Storage& s = grid.storage();
   m.pixels.check(frame);
   const Pose T_world_camera = rigid(T_world_camera_in);
-  const Pose T_camera_grid = T_world_camera.inverse() * s.T_world_grid;
-  const Pose T_grid_camera = s.T_world_grid.inverse() * T_world_camera;
+  const Pose T_camera_grid = T_world_camera.inverse() * grid.T_world_grid();
+  const Pose T_grid_camera = grid.T_world_grid().inverse() * T_world_camera;
   const ConeCamera camera(m.pixels.sensor().camera, T_camera_grid);
-  const ConeCull cull(camera, m.pyramid, s.voxel_size);
-
-  m.pixels.load(frame, !m.literal(), m.pool,
+  m.pixels.load(frame, m.config.occupancy != Occupancy::literal, m.update.pool(),
                 plane_seen_from(T_world_camera, m.config.support_plane));
-  m.hits.find(m.pixels, s.lattice, s.voxel_size, T_grid_camera, m.pool);
-  if (m.cones()) {
-    m.pyramid.build(m.pixels.reach_taper(), camera.width, camera.height);
-  } else {
-    m.lines.walk(m.pixels, s.lattice, s.voxel_size, T_grid_camera, m.pool);
-  }
-  m.list_regions(s, cull);
-
-  // Entries are made here, alone; the map's values do not move when it grows.
-  const auto empty = std::make_shared<const BeliefBlock>();
-  for (HitBlock& block : m.hits.blocks()) {
-    block.beliefs = &s.beliefs.try_emplace(block.key, empty).first->second;
-  }
-  if (m.results.size() < m.regions.size()) m.results.resize(m.regions.size());
-  for (std::size_t i = 0; i < m.regions.size(); ++i) m.results[i].crossed = m.results[i].hit = 0;
-  m.pool.for_each_chunk(m.regions.size(), 1, [&](std::size_t i, std::size_t) {
-    m.update_region(s, cull, camera, T_grid_camera, m.regions[i], m.results[i]);
-  });
-  m.put_results(s);
-  for (std::size_t i = 0; i < m.regions.size(); ++i) {
-    if (m.results[i].crossed + m.results[i].hit > 0) s.mark_changed(m.regions[i] << 6U);
-  }
-  ++s.time;
-  s.views.push_back(T_world_camera);
-
-  IntegrationReport report;
-  for (const PixelKind kind : m.pixels.kinds()) {
-    ++(kind == PixelKind::reading        ? report.readings
-       : kind == PixelKind::on_plane     ? report.plane_readings
-       : kind == PixelKind::out_of_range ? report.out_of_range
-                                         : report.invalid);
-  }
-  report.readings_inside = m.hits.size();
-  for (std::size_t i = 0; i < m.regions.size(); ++i) {
-    report.voxels_hit += m.results[i].hit;
-    report.voxels_crossed += m.results[i].crossed;
-  }
-  return report;
+  return m.update.run(grid, m.pixels, T_grid_camera, T_world_camera,
+                      m.config.carve == Carve::cones ? &camera : nullptr);
 }
 
 std::optional<Box> reading_bounds(const Sensor& sensor, const DepthFrame& frame,
@@ -304,17 +60,7 @@ std::optional<Box> reading_bounds(const Sensor& sensor, const DepthFrame& frame,
   const Pose T_grid_camera = T_world_grid.inverse() * rigid(T_world_camera);
   ThreadPool caller_alone(1);
   pixels.load(frame, false, caller_alone, plane_seen_from(rigid(T_world_camera), support_plane));
-  std::optional<Box> box;
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    if (pixels.kind(i) != PixelKind::reading) continue;
-    const Eigen::Vector3d p = T_grid_camera * pixels.point(i);
-    if (!box) box = Box{{p.x(), p.y(), p.z()}, {p.x(), p.y(), p.z()}};
-    for (std::size_t a = 0; a < 3; ++a) {
-      box->min[a] = std::min(box->min[a], p[static_cast<Eigen::Index>(a)]);
-      box->max[a] = std::max(box->max[a], p[static_cast<Eigen::Index>(a)]);
-    }
-  }
-  return box;
+  return bounds_of(pixels, T_grid_camera);
 }
 
 }  // namespace viewgain

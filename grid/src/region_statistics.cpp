@@ -8,9 +8,12 @@
 #include <cmath>
 #include <limits>
 
+#include "block_lattice.hpp"
+
 namespace viewgain {
 namespace {
 
+using detail::intersection;
 using Corner = std::array<std::int64_t, 3>;
 
 Corner corner(const Index3& index) { return {index.x, index.y, index.z}; }
@@ -86,11 +89,6 @@ std::uint64_t count(const LeafMask& mask) {
   return bits;
 }
 
-LeafMask both(LeafMask a, const LeafMask& b) {
-  for (std::size_t word = 0; word < a.size(); ++word) a[word] &= b[word];
-  return a;
-}
-
 }  // namespace
 
 RegionStatistics region_statistics(const BeliefGrid& grid, const Box& region, Criterion criterion) {
@@ -112,10 +110,10 @@ RegionStatistics region_statistics(const BeliefGrid& grid, const Box& region, Cr
   }
   for (const SnapshotLeaf& leaf : snapshot.leaves) {
     const LeafMask part = mask_of(range, leaf.origin);
-    const LeafMask occupied = both(part, leaf.occupied);
+    const LeafMask occupied = intersection(part, leaf.occupied);
     const std::uint64_t occupied_count = count(occupied);
     result.occupied += occupied_count;
-    result.unknown += count(both(part, leaf.non_free)) - occupied_count;
+    result.unknown += count(intersection(part, leaf.non_free)) - occupied_count;
     if (leaf.beliefs == nullptr) continue;
     visit_beliefs(*leaf.beliefs, occupied, [&](const Belief& belief) {
       const SymmetricMatrix3 information = belief.information_matrix();

@@ -17,6 +17,9 @@ namespace {
 // Irrational steps of a two-dimensional sequence whose points keep apart: 1/g and 1/g², g³ = g + 1.
 constexpr double kStepX = 0.7548776662466927, kStepY = 0.5698402909980532;
 
+// For fewer of a view's tiles than this share the BVH is quicker than lists for all tiles.
+constexpr double kLeastListedShare = 0.08;
+
 double unit_number(std::uint64_t bits) { return static_cast<double>(bits >> 11U) * 0x1.0p-53; }
 
 double median(std::vector<double>& values) {
@@ -70,21 +73,32 @@ std::vector<std::uint32_t> GainEvaluator::Impl::random_tiles(std::size_t count,
   return tiles;
 }
 
-double GainEvaluator::Impl::sample(const Pose& T_world_camera, std::span<const std::uint32_t> tiles,
-                                   Lease& lease) const {
+void GainEvaluator::Impl::sample(const Pose& T_world_camera,
+                                 std::span<const std::vector<std::uint32_t>> groups,
+                                 std::span<double> gains, Lease& lease) const {
   const auto frame = tracer.frame_of(T_world_camera);
-  if (!frame) return std::numeric_limits<double>::quiet_NaN();
-  if (frame->sees_nothing || is_in_occupied(*frame)) return 0;
-  detail::GainAccumulator& accumulator = lease.get().accumulator;
-  accumulator.begin();
-  detail::RayTile out;
-  for (const std::uint32_t tile : tiles) {
-    data.kernels->trace(data, tracer.table(), *frame, tile, out);
-    accumulator.add(out);
+  const bool sees = frame && !frame->sees_nothing && !is_in_occupied(*frame);
+  std::fill(gains.begin(), gains.end(), frame ? 0.0 : std::numeric_limits<double>::quiet_NaN());
+  if (!sees) return;
+  auto& [accumulator, bins, bounding] = lease.get();
+  std::size_t tile_count = 0;
+  for (const auto& group : groups) tile_count += group.size();
+  if (static_cast<double>(tile_count) >=
+      kLeastListedShare * static_cast<double>(tracer.table().tile_count)) {
+    tracer.prepare(*frame, bins);
+  } else {
+    bins.invalidate();
   }
-  ViewGain result;
-  accumulator.finish(result);
-  return result.gain;
+  if (!bins.valid()) data.ensure_bvh();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    accumulator.begin();
+    tracer.trace_listed(*frame, groups[g], bins, [&](std::size_t, const detail::RayTile& tile) {
+      accumulator.add(tile);
+    });
+    ViewGain result;
+    accumulator.finish(result);
+    gains[g] = result.gain;
+  }
 }
 
 bool GainEvaluator::Impl::evaluate_some(std::span<const Pose> T_world_camera,
@@ -101,7 +115,6 @@ std::size_t GainEvaluator::approximate(std::span<const Pose> T_world_camera,
                                        const ApproximateConfig& config,
                                        const BatchControl& control) const {
   check(config, T_world_camera.size(), results.size());
-  impl_->data.ensure_bvh();
   std::fill(results.begin(), results.end(), ApproximateGain{});
   const auto groups = static_cast<std::size_t>(config.groups);
   const auto all = static_cast<double>(impl_->tracer.table().tile_count);
@@ -121,9 +134,11 @@ std::size_t GainEvaluator::approximate(std::span<const Pose> T_world_camera,
 
   std::atomic<std::size_t> done{0};
   impl_->for_each(results.size(), 4, control, [&](std::size_t i, Impl::Lease& lease) {
+    std::vector<double> gains(groups);
+    impl_->sample(T_world_camera[i], tiles, gains, lease);
     double sum = 0, squares = 0;
     for (std::size_t g = 0; g < groups; ++g) {
-      const double gain = scale[g] * impl_->sample(T_world_camera[i], tiles[g], lease);
+      const double gain = scale[g] * gains[g];
       sum += gain;
       squares += gain * gain;
     }

@@ -96,19 +96,20 @@ GainEvaluator::Impl::Impl(std::shared_ptr<const VoxelScene> s, const Sensor& sen
 }
 
 bool GainEvaluator::Impl::is_in_occupied(const detail::PoseFrame& frame) const {
-  const Index3& dims = data.snapshot.dims;
-  const std::array<std::int32_t, 3> size{dims.x, dims.y, dims.z};
+  const GridSnapshot& snapshot = data.snapshot;
+  const std::array<std::int32_t, 3> size{snapshot.dims.x, snapshot.dims.y, snapshot.dims.z};
   std::array<std::int32_t, 3> voxel{};
   for (std::size_t i = 0; i < 3; ++i) {
     const float c = std::floor(frame.origin[i]);
     if (!(c >= 0 && c < static_cast<float>(size[i]))) return false;
     voxel[i] = static_cast<std::int32_t>(c);
   }
-  const std::uint64_t key = data.voxel_key(voxel[0], voxel[1], voxel[2]);
-  const auto leaf = std::lower_bound(data.occupied_leaves.begin(), data.occupied_leaves.end(),
-                                     std::pair<std::uint64_t, std::uint32_t>(key >> 9U, 0U));
-  return leaf != data.occupied_leaves.end() && leaf->first == key >> 9U &&
-         test_bit(data.snapshot.leaves[leaf->second].occupied, static_cast<unsigned>(key & 511U));
+  const Index3& base = snapshot.min_index;
+  const Index3 at{base.x + voxel[0], base.y + voxel[1], base.z + voxel[2]};
+  const SnapshotLeaf* leaf = snapshot.find_leaf(at);
+  return leaf != nullptr &&
+         test_bit(leaf->occupied,
+                  static_cast<unsigned>((at.x & 7) << 6 | (at.y & 7) << 3 | (at.z & 7)));
 }
 
 std::optional<detail::PoseFrame> GainEvaluator::Impl::open_view(const Pose& T_world_camera,

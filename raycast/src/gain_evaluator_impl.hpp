@@ -168,10 +168,10 @@ struct GainEvaluator::Impl {
   // Bounds a pose without tracing; false if it cannot be bounded.
   bool bound(const Pose& T_world_camera, std::span<double> from, Lease& lease) const;
 
-  // Traces those tiles of a pose alone and adds up what they gain by themselves; NaN for a bad
-  // pose.
-  [[nodiscard]] double sample(const Pose& T_world_camera, std::span<const std::uint32_t> tiles,
-                              Lease& lease) const;
+  // Traces groups of a pose's tiles and adds up what each gains by itself, into gains, one a group;
+  // NaN for a bad pose.
+  void sample(const Pose& T_world_camera, std::span<const std::vector<std::uint32_t>> groups,
+              std::span<double> gains, Lease& lease) const;
   // The first `count` tiles of a random sequence that covers the image evenly from the start.
   [[nodiscard]] std::vector<std::uint32_t> random_tiles(std::size_t count,
                                                         std::uint64_t seed) const;

@@ -3,6 +3,7 @@
 
 // The best views of a batch, very probably, by successive halving.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -52,7 +53,6 @@ BestViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t 
   BestViews best;
   if (k == 0) return best;
   const std::size_t few = std::max(kFewPoses, 4 * k);
-  impl_->data.ensure_bvh();
 
   std::vector<Estimate> field(count);
   for (std::size_t i = 0; i < count; ++i) field[i].index = i;
@@ -72,11 +72,10 @@ BestViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t 
     }
     best.complete =
         impl_->for_each(field.size(), 4, control, [&](std::size_t j, Impl::Lease& lease) {
+          std::array<double, kGroups> gains;
+          impl_->sample(T_world_camera[field[j].index], tiles, gains, lease);
           double sum = 0, squares = 0;
-          for (const auto& group : tiles) {
-            const double gain = impl_->sample(T_world_camera[field[j].index], group, lease);
-            sum += gain, squares += gain * gain;
-          }
+          for (const double gain : gains) sum += gain, squares += gain * gain;
           constexpr auto n = static_cast<double>(kGroups);
           field[j].gain = sum;
           field[j].standard_error = std::sqrt(std::max(0.0, squares - sum * sum / n) * n / (n - 1));

@@ -4,8 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
+#include <utility>
 
 #include "ray_tile.hpp"
 #include "scene_data.hpp"
@@ -15,107 +14,138 @@ namespace {
 
 // Boxes count as larger by this much [voxels], against rounding.
 constexpr float kBoxMargin = 0.02F;
-constexpr float kLeastCellEdge = 32.0F;  // [voxels]
-constexpr std::size_t kMaxLattice = std::size_t{1} << 18U;
 
-// Which primitives' centres lie in which cell of a lattice: members[begins[c], begins[c + 1]) are
-// those of cell c, in order.
-struct Cells {
-  std::vector<std::uint32_t> begins, members;
-  std::size_t filled = 0;
+std::size_t whole_vectors(std::size_t size) {
+  return (size + kBoxVector - 1) / kBoxVector * kBoxVector;
+}
 
-  // False if the lattice has too many cells.
-  bool sort(const std::vector<PrimitiveBox>& primitives, const std::array<float, 3>& low,
-            const std::array<float, 3>& high, float edge) {
-    std::array<std::size_t, 3> size{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      size[k] = static_cast<std::size_t>((high[k] - low[k]) / edge) + 1;
-    }
-    if (size[0] * size[1] * size[2] > kMaxLattice) return false;
-    std::vector<std::uint32_t> cell_of(primitives.size());
-    begins.assign(size[0] * size[1] * size[2] + 1, 0);
-    for (std::size_t i = 0; i < primitives.size(); ++i) {
-      std::size_t cell = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const float center = 0.5F * (primitives[i].min[k] + primitives[i].max[k]);
-        cell = cell * size[k] + static_cast<std::size_t>((center - low[k]) / edge);
-      }
-      cell_of[i] = static_cast<std::uint32_t>(cell);
-      ++begins[cell + 1];
-    }
-    filled = begins.size() - static_cast<std::size_t>(std::count(begins.begin(), begins.end(), 0U));
-    for (std::size_t c = 1; c < begins.size(); ++c) begins[c] += begins[c - 1];
-    members.resize(primitives.size());
-    std::vector<std::uint32_t> next(begins.begin(), begins.end() - 1);
-    for (std::uint32_t i = 0; i < primitives.size(); ++i) members[next[cell_of[i]]++] = i;
-    return true;
-  }
+/// Primitives [first, last) of one kind.
+struct Run {
+  std::uint32_t first, last;
 };
+
+/// Which cell a region of 32³ voxels is in, where cells have an edge of 32 << level.
+std::uint64_t cell_of(std::uint64_t region, int level) {
+  if (level == 0) return region;
+  const std::uint64_t node = region >> 6U;
+  return level == 1 ? node << 6U | (region & 0b101010U) : node;
+}
+
+struct Cell {
+  std::uint64_t number;
+  std::uint32_t region;  // one of those in the cell
+};
+
+/// The regions that have primitives, cell by cell.
+std::vector<Cell> regions_by_cell(const VoxelScene::Data& data) {
+  std::vector<Cell> regions;
+  for (std::uint32_t i = 0; i + 1 < data.regions.size(); ++i) {
+    const SceneRegion &begin = data.regions[i], &end = data.regions[i + 1];
+    if (begin.leaf == end.leaf && begin.block == end.block && begin.box == end.box) continue;
+    regions.push_back({data.snapshot.regions[i].number, i});
+  }
+  if (regions.size() <= SceneBoxes::kMaxBoxes) return regions;
+  for (const int level : {1, 2}) {
+    std::vector<Cell> cells = regions;
+    for (Cell& cell : cells) cell.number = cell_of(cell.number, level);
+    std::sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) {
+      return std::pair(a.number, a.region) < std::pair(b.number, b.region);
+    });
+    std::size_t count = 1;
+    for (std::size_t i = 1; i < cells.size(); ++i) {
+      count += cells[i].number != cells[i - 1].number ? 1U : 0U;
+    }
+    if (count <= SceneBoxes::kMaxBoxes || level == 2) return cells;
+  }
+  return regions;
+}
+
+std::array<Run, 3> runs_of(const VoxelScene::Data& data, std::uint32_t region) {
+  const SceneRegion &begin = data.regions[region], &end = data.regions[region + 1];
+  const auto leaves = static_cast<std::uint32_t>(data.leaf_count);
+  const auto blocks = static_cast<std::uint32_t>(data.block_count);
+  return {{{begin.leaf, end.leaf},
+           {leaves + begin.block, leaves + end.block},
+           {blocks + begin.box, blocks + end.box}}};
+}
 
 }  // namespace
 
-void BoxArrays::append(const PrimitiveBox& box) {
+void BoxArrays::resize(std::size_t size) {
+  for (auto* v : {&center_x, &center_y, &center_z, &half_x, &half_y, &half_z}) v->resize(size);
+}
+
+void BoxArrays::set(std::size_t at, const PrimitiveBox& box) {
   const auto center = [&](std::size_t k) { return 0.5F * (box.min[k] + box.max[k]); };
   const auto half = [&](std::size_t k) { return 0.5F * (box.max[k] - box.min[k]) + kBoxMargin; };
-  center_x.push_back(center(0)), center_y.push_back(center(1)), center_z.push_back(center(2));
-  half_x.push_back(half(0)), half_y.push_back(half(1)), half_z.push_back(half(2));
+  center_x[at] = center(0), center_y[at] = center(1), center_z[at] = center(2);
+  half_x[at] = half(0), half_y[at] = half(1), half_z[at] = half(2);
 }
 
-void BoxArrays::reserve(std::size_t size) {
-  for (auto* v : {&center_x, &center_y, &center_z, &half_x, &half_y, &half_z}) v->reserve(size);
-}
-
-void BoxArrays::pad() {
-  for (auto* v : {&center_x, &center_y, &center_z, &half_x, &half_y, &half_z}) {
-    while (v->size() % kBoxVector != 0) v->push_back(v->back());
-  }
-}
-
-SceneBoxes::SceneBoxes(const std::vector<PrimitiveBox>& all) {
+SceneBoxes::SceneBoxes(const VoxelScene::Data& data) {
+  const std::vector<PrimitiveBox>& all = data.boxes;
   if (all.size() <= kMaxBoxes) {
-    boxes.reserve(all.size() + kBoxVector);
-    for (const PrimitiveBox& box : all) boxes.append(box);
     count = all.size();
-    boxes.pad();
+    boxes.resize(whole_vectors(count));
+    for (std::size_t i = 0; i < boxes.size(); ++i) boxes.set(i, all[std::min(i, count - 1)]);
     return;
   }
-  std::array<float, 3> low{}, high{};
-  low.fill(std::numeric_limits<float>::max());
-  high.fill(std::numeric_limits<float>::lowest());
-  for (const PrimitiveBox& box : all) {
+  const std::vector<Cell> regions = regions_by_cell(data);
+  const std::size_t large = data.regions.empty() ? 0 : data.regions.front().box;
+  std::vector<PrimitiveBox> cells;
+  cells.reserve(regions.size() + large);
+  const std::size_t most = all.size() + (regions.size() + large) * kBoxVector;
+  members.resize(most);
+  primitives.resize(most);
+  std::size_t size = 0;
+  const auto begin_cell = [&](std::uint32_t primitive) {
+    first.push_back(static_cast<std::uint32_t>(size));
+    cells.push_back(all[primitive]);
+  };
+  const auto add = [&](std::uint32_t primitive) {
+    const PrimitiveBox& box = all[primitive];
     for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], box.min[k]);
-      high[k] = std::max(high[k], box.max[k]);
+      cells.back().min[k] = std::min(cells.back().min[k], box.min[k]);
+      cells.back().max[k] = std::max(cells.back().max[k], box.max[k]);
     }
+    members.set(size, box);
+    primitives[size++] = primitive;
+  };
+  const auto end_cell = [&] {
+    const std::uint32_t last = primitives[size - 1];
+    for (; size % kBoxVector != 0; ++size) {
+      members.set(size, all[last]);
+      primitives[size] = kNoPrimitive;
+    }
+  };
+
+  for (std::size_t i = 0; i < large; ++i) {
+    const auto primitive = static_cast<std::uint32_t>(data.block_count + i);
+    begin_cell(primitive);
+    add(primitive);
+    end_cell();
   }
-  Cells cells;
-  for (float edge = kLeastCellEdge;
-       !cells.sort(all, low, high, edge) || cells.filled > kMaxBoxes;) {
-    edge *= 2.0F;
-  }
-  count = 0;
-  boxes.reserve(cells.filled + kBoxVector);
-  members.reserve(all.size() + cells.filled * kBoxVector);
-  for (std::size_t c = 0; c + 1 < cells.begins.size(); ++c) {
-    if (cells.begins[c] == cells.begins[c + 1]) continue;
-    PrimitiveBox box = all[cells.members[cells.begins[c]]];
-    first.push_back(static_cast<std::uint32_t>(members.size()));
-    for (std::uint32_t m = cells.begins[c]; m < cells.begins[c + 1]; ++m) {
-      const std::uint32_t i = cells.members[m];
-      for (std::size_t k = 0; k < 3; ++k) {
-        box.min[k] = std::min(box.min[k], all[i].min[k]);
-        box.max[k] = std::max(box.max[k], all[i].max[k]);
+  for (std::size_t i = 0; i < regions.size();) {
+    const std::uint64_t cell = regions[i].number;
+    bool is_begun = false;
+    for (; i < regions.size() && regions[i].number == cell; ++i) {
+      for (const Run& run : runs_of(data, regions[i].region)) {
+        for (std::uint32_t p = run.first; p < run.last; ++p) {
+          if (!is_begun) begin_cell(p);
+          is_begun = true;
+          add(p);
+        }
       }
-      members.append(all[i]);
-      primitives.push_back(i);
     }
-    boxes.append(box);
-    members.pad();
-    primitives.resize(members.size(), kNoPrimitive);
-    ++count;
+    end_cell();
   }
-  first.push_back(static_cast<std::uint32_t>(members.size()));
-  boxes.pad();
+  first.push_back(static_cast<std::uint32_t>(size));
+  members.resize(size);
+  primitives.resize(size);
+
+  count = cells.size();
+  boxes.resize(whole_vectors(count));
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes.set(i, cells[std::min(i, count - 1)]);
 }
 
 }  // namespace viewgain::detail

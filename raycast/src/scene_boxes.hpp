@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "viewgain/raycast/voxel_scene.hpp"
+
 namespace viewgain::detail {
 
 struct PrimitiveBox;
@@ -17,16 +19,14 @@ inline constexpr std::size_t kBoxVector = 16;
 struct BoxArrays {
   std::vector<float> center_x, center_y, center_z, half_x, half_y, half_z;
 
-  void append(const PrimitiveBox& box);
-  void reserve(std::size_t size);
-  /// Repeats the last box until a vector is full.
-  void pad();
+  void resize(std::size_t size);
+  void set(std::size_t at, const PrimitiveBox& box);
   [[nodiscard]] std::size_t size() const { return center_x.size(); }
 };
 
 /// The boxes of a scene, for sorting into the tiles of a view: one a primitive, or, where there are
-/// more than kMaxBoxes, one for each cell of a grid that is coarse enough, and the primitives cell
-/// by cell.
+/// more than kMaxBoxes, one for each cell of a grid that is coarse enough (32³ voxels, 64³ or 128³),
+/// and the primitives cell by cell. Boxes larger than a region are cells by themselves.
 struct SceneBoxes {
   BoxArrays boxes;
   std::size_t count = 0;
@@ -36,7 +36,8 @@ struct SceneBoxes {
   BoxArrays members;
   std::vector<std::uint32_t> primitives;  ///< of the members; kNoPrimitive where padded
 
-  explicit SceneBoxes(const std::vector<PrimitiveBox>& primitives);
+  /// Of a scene whose primitives are gathered.
+  explicit SceneBoxes(const VoxelScene::Data& data);
 
   [[nodiscard]] bool are_primitives() const { return first.empty(); }
 

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "leaf_traversal.hpp"
@@ -35,6 +34,12 @@ struct alignas(32) PrimitiveBox {
 inline constexpr int kBlockBits = 3;
 inline constexpr int kBoxBits = 10;
 inline constexpr int kMaxBoxEdge = 1 << kBoxBits;
+
+/// Where a region's primitives begin, each kind counted by itself: leaves, whole blocks, boxes.
+/// Boxes larger than a region come before all regions' boxes.
+struct SceneRegion {
+  std::uint32_t leaf, block, box;
+};
 
 /// Geometry numbers in the Embree scene.
 inline constexpr unsigned kLeafGeometry = 0;
@@ -67,8 +72,8 @@ struct VoxelScene::Data {
   const detail::TraceKernels* kernels = nullptr;
   int build_threads = 0;  ///< of the BVH
 
-  /// Snapshot leaves that have occupied voxels, by block, for looking up single voxels; sorted.
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> occupied_leaves;
+  /// Where the primitives of each of the snapshot's regions begin, and behind the last.
+  std::vector<detail::SceneRegion> regions;
 
   /// Builds the BVH unless it is there; only some views are traced through it, see ViewTracer.
   /// Thread safe. Throws Error(backend), Error(capacity).

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <optional>
+#include <ranges>
 
 #include "ray_tile.hpp"
 #include "scene_data.hpp"
@@ -43,9 +44,16 @@ class ViewTracer {
   template <typename Visit>
   void trace_some(const PoseFrame& frame, std::size_t begin, std::size_t end, TileBins& bins,
                   Visit&& visit) const {
+    trace_listed(frame, std::views::iota(begin, end), bins, visit);
+  }
+
+  /// As trace(), of the tiles with these numbers.
+  template <typename Tiles, typename Visit>
+  void trace_listed(const PoseFrame& frame, const Tiles& tiles, TileBins& bins,
+                    Visit&& visit) const {
     if (frame.sees_nothing) return;
     RayTile out;
-    for (std::size_t tile = begin; tile < end; ++tile) {
+    for (const std::size_t tile : tiles) {
       if (!bins.valid()) {
         scene_.kernels->trace(scene_, table_, frame, tile, out);
       } else if (bins.boxes_of(tile).empty()) {

@@ -397,7 +397,14 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
         "[m]",
         "--jump-edge-filter",
         "--jump-edge-two-sided",
-        "--support-plane"}},
+        "--support-plane",
+        "--cloud",
+        "--origin",
+        "--poses",
+        "=viewpoint"}},
+      {"convert",
+       {"IN", "OUT", "--workspace", "--prior-sigma", "--with-covariance", "--json", "--threads",
+        ".ot", "[m]"}},
       {"score",
        {"MAP",      "--poses",   "--sphere",      "--dome",      "--sensor",      "--criterion",
         "--stride", "--weight",  "--prior-sigma", "--min-range", "--max-range",   "--top",
@@ -415,7 +422,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
       ++flags;
     }
   }
-  EXPECT_EQ(flags, 22 + 22 + 21 + 7);
+  EXPECT_EQ(flags, 22 + 26 + 9 + 21 + 7);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

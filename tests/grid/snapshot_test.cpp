@@ -5,6 +5,7 @@
 
 #include <map>
 #include <random>
+#include <set>
 #include <tuple>
 
 #include "analytic_frames.hpp"
@@ -62,6 +63,12 @@ std::vector<std::uint8_t> states_of(const BeliefGrid& grid) {
   return states;
 }
 
+bool is_inside(const GridSnapshot& s, const Index3& v) {
+  const Index3 &low = s.min_index, &dims = s.dims;
+  return v.x >= low.x && v.y >= low.y && v.z >= low.z && v.x < low.x + dims.x &&
+         v.y < low.y + dims.y && v.z < low.z + dims.z;
+}
+
 void expect_equal(const GridSnapshot& snapshot, const BeliefGrid& grid) {
   std::uint64_t faults = 0;
   EXPECT_EQ(states_of(snapshot, faults), states_of(grid));
@@ -82,6 +89,28 @@ void expect_equal(const GridSnapshot& snapshot, const BeliefGrid& grid) {
     }
   }
   EXPECT_LE(beliefs, grid.statistics().occupied);
+
+  // Regions are cubes of 32³ in rising order whose leaves and tiles follow one another.
+  const auto cube_of = [](const Index3& v) { return std::tuple(v.x >> 5, v.y >> 5, v.z >> 5); };
+  std::uint32_t leaf = 0, tile = snapshot.regions.empty() ? 0 : snapshot.tiles_of(0)[0];
+  for (std::size_t r = 0; r < snapshot.regions.size(); ++r) {
+    if (r > 0) {
+      ASSERT_LT(snapshot.regions[r - 1].number, snapshot.regions[r].number);
+    }
+    ASSERT_EQ(snapshot.leaves_of(r)[0], leaf);
+    ASSERT_EQ(snapshot.tiles_of(r)[0], tile);
+    std::set<std::tuple<int, int, int>> cubes;
+    for (; leaf < snapshot.leaves_of(r)[1]; ++leaf) {
+      cubes.insert(cube_of(snapshot.leaves[leaf].origin));
+      ASSERT_EQ(snapshot.find_leaf(snapshot.leaves[leaf].origin),
+                is_inside(snapshot, snapshot.leaves[leaf].origin) ? &snapshot.leaves[leaf]
+                                                                  : nullptr);
+    }
+    for (; tile < snapshot.tiles_of(r)[1]; ++tile) cubes.insert(cube_of(snapshot.tiles[tile].min));
+    ASSERT_LE(cubes.size(), 1U);
+  }
+  EXPECT_EQ(leaf, snapshot.leaves.size());
+  EXPECT_EQ(tile, snapshot.tiles.size());
 }
 
 TEST(Snapshot, TellsTheStatesOfTheGrid) {

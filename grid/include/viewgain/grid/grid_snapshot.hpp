@@ -82,6 +82,14 @@ struct VIEWGAIN_EXPORT SnapshotTile {
   Index3 max;
 };
 
+/// A cube of 32³ voxels of the lattice; its leaves and tiles follow one another in the lists.
+struct VIEWGAIN_EXPORT SnapshotRegion {
+  std::uint64_t number = 0;   ///< lists of regions rise in it; the same in all snapshots of a grid
+  std::uint64_t changed = 0;  ///< when its voxels changed last
+  std::uint32_t first_leaf = 0;
+  std::uint32_t first_tile = 0;
+};
+
 /// Everything a scene reads of a grid: an immutable value, safe to share between threads.
 struct VIEWGAIN_EXPORT GridSnapshot {
   double voxel_size = 0;   ///< [m]
@@ -90,10 +98,33 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   Index3 min_index;  ///< lowest voxel of the workspace
   Index3 dims;       ///< voxels along x, y, z
   std::vector<SnapshotLeaf> leaves;
-  std::vector<SnapshotTile> tiles;
+  std::vector<SnapshotTile> tiles;  ///< those larger than a region first
+  std::vector<SnapshotRegion> regions;
   /// Which grid it is of and when, for BeliefGrid::snapshot(before); 0: none.
   std::uint64_t grid_number = 0;
   std::uint64_t time = 0;
+  /// For a snapshot made from an earlier one: when that was; else 0.
+  std::uint64_t shared_until = 0;
+
+  /// Is the region as it was in that earlier snapshot, provided that it is listed there?
+  [[nodiscard]] bool is_shared(const SnapshotRegion& region) const {
+    return shared_until != 0 && region.changed <= shared_until;
+  }
+
+  /// The leaf that holds a voxel, null if there is none. O(log regions).
+  [[nodiscard]] const SnapshotLeaf* find_leaf(Index3 voxel) const;
+
+  /// The [first, last) leaves and tiles of a region, by its place in the list.
+  [[nodiscard]] std::array<std::uint32_t, 2> leaves_of(std::size_t region) const {
+    return {regions[region].first_leaf, region + 1 < regions.size()
+                                            ? regions[region + 1].first_leaf
+                                            : static_cast<std::uint32_t>(leaves.size())};
+  }
+  [[nodiscard]] std::array<std::uint32_t, 2> tiles_of(std::size_t region) const {
+    return {regions[region].first_tile, region + 1 < regions.size()
+                                            ? regions[region + 1].first_tile
+                                            : static_cast<std::uint32_t>(tiles.size())};
+  }
 };
 
 }  // namespace viewgain

@@ -41,8 +41,7 @@ class VIEWGAIN_EXPORT VoxelScene {
                                                                const Obstacles& obstacles = {},
                                                                const ExecConfig& exec = {});
   /// The scene of what `grid` is now, with the obstacles of `before`, which stays as it is: as
-  /// build(), but what has not changed since a scene of the same grid is taken over from its
-  /// snapshot. Throws Error(invalid_argument) for a null scene, and as build().
+  /// build(), but regions that have not changed since a scene of the same grid are copied from it. Throws Error(invalid_argument) for a null scene, and as build().
   [[nodiscard]] static std::shared_ptr<const VoxelScene> update(
       const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
       const ExecConfig& exec = {});
@@ -67,6 +66,10 @@ class VIEWGAIN_EXPORT VoxelScene {
   [[nodiscard]] const Data& data() const noexcept { return *data_; }
 
  private:
+  [[nodiscard]] static std::shared_ptr<const VoxelScene> make(GridSnapshot snapshot,
+                                                              const Obstacles& obstacles,
+                                                              const ExecConfig& exec,
+                                                              const Data* before);
   explicit VoxelScene(std::unique_ptr<const Data> data);
   std::unique_ptr<const Data> data_;
 };

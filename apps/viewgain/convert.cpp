@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "commands.hpp"
+#include "map_file.hpp"
+#include "terminal.hpp"
+#include "values.hpp"
+#include "viewgain/core/atomic_file.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::app {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string in;
+  std::string out;
+  std::string workspace;
+  std::optional<double> prior_sigma;
+  bool with_covariance = false;
+};
+
+void check(const Options& options) {
+  const auto refuse = [](const std::string& flag, const std::string& file, const char* why) {
+    throw Error(ErrorCode::invalid_argument, flag + " with " + file + ": " + why);
+  };
+  if (!is_octomap(options.in)) {
+    constexpr const char* kWhy = "the map has its own; the flag is for .ot and .bt";
+    if (!options.workspace.empty()) refuse("--workspace", options.in, kWhy);
+    if (options.prior_sigma) refuse("--prior-sigma", options.in, kWhy);
+  }
+  check_map_name(options.out);
+  if (options.with_covariance && is_octomap(options.out)) {
+    refuse("--with-covariance", options.out, "a tree has no place for covariances");
+  }
+}
+
+void convert(const Options& options) {
+  const Stopwatch watch;
+  check(options);
+  {
+    const AtomicFile writable(options.out);
+  }  // known now rather than after the work
+  OctomapConfig config;
+  if (!options.workspace.empty()) config.workspace = parse_box("--workspace", options.workspace);
+  config.prior_sigma = options.prior_sigma;
+  const BeliefGrid grid = load_map(options.in, nullptr, config);
+  save_map(grid, options.out, {options.with_covariance});
+
+  std::size_t lost_beliefs = 0, lost_views = 0;
+  if (is_octomap(options.out)) {
+    for (const BeliefBlockAt& block : grid.belief_blocks()) {
+      lost_beliefs += block.beliefs->beliefs.size();
+    }
+    lost_views = grid.views().size();
+  }
+  const GridStatistics statistics = grid.statistics();
+  const Index3 dims = grid.dims();
+  if (options.common.json) {
+    print_json({{"in", options.in},
+                {"out", options.out},
+                {"voxel_size", grid.voxel_size()},
+                {"workspace", to_json(grid.workspace())},
+                {"dims", {dims.x, dims.y, dims.z}},
+                {"prior_sigma", grid.prior_sigma()},
+                {"unknown", statistics.unknown},
+                {"free", statistics.free},
+                {"occupied", statistics.occupied},
+                {"lost_beliefs", lost_beliefs},
+                {"lost_views", lost_views},
+                {"hash", grid.content_hash()},
+                {"seconds", watch.seconds()}});
+    return;
+  }
+  std::printf("workspace %s m: %d x %d x %d voxels of %g m\n", describe(grid.workspace()).c_str(),
+              dims.x, dims.y, dims.z, grid.voxel_size());
+  std::printf("voxels: %s unknown, %s free, %s occupied\n", with_commas(statistics.unknown).c_str(),
+              with_commas(statistics.free).c_str(), with_commas(statistics.occupied).c_str());
+  if (lost_beliefs > 0 || lost_views > 0) {
+    std::printf("not in a tree: the beliefs of %s voxels, %s views\n",
+                with_commas(lost_beliefs).c_str(), with_commas(lost_views).c_str());
+  }
+  std::printf("%s\n", options.out.c_str());
+}
+
+}  // namespace
+
+Command add_convert(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* app = program.add_subcommand(
+      "convert",
+      "A map from one format into another: .vdb, OctoMap's .ot and (read only) .bt. OctoMap trees "
+      "keep states and log-odds, a .bt only states; they have no beliefs, prior, views or frame.");
+  app->add_option("IN", options->in, kMapHelp)->required();
+  app->add_option("OUT", options->out, "map to write (.vdb or .ot)")->required();
+  app->add_option("--workspace", options->workspace,
+                  "x0,y0,z0,x1,y1,z1: the part of a tree to take [m], grown to whole voxels; "
+                  "default: its known voxels");
+  app->add_option("--prior-sigma", options->prior_sigma,
+                  "sigma of an unknown voxel of a tree [m]; default: voxel/2");
+  app->add_flag("--with-covariance", options->with_covariance,
+                "add covariances and positions to the .vdb, for viewers");
+  add_common_options(*app, options->common);
+  return {app, [options] { convert(*options); }};
+}
+
+}  // namespace viewgain::app

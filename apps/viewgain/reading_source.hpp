@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/integrate.hpp"
+
+namespace viewgain::app {
+
+/// The flags of `integrate`; see its help.
+struct IntegrateOptions {
+  CommonOptions common;
+  std::string frames;               ///< FRAMES_DIR; empty: clouds
+  std::vector<std::string> clouds;  ///< --cloud
+  std::string origin = "viewpoint";
+  std::string poses;
+  std::optional<double> voxel;
+  std::string workspace;
+  std::string sensor;
+  std::optional<double> depth_scale;
+  std::string out_of_range = "carve";
+  std::string carve = "cones";
+  std::string occupancy = "probabilistic";
+  std::string jump_edge_filter = "off";
+  bool jump_edge_two_sided = false;
+  std::optional<double> support_plane;
+  std::optional<double> prior_sigma;
+  bool with_covariance = false;
+  std::string out;
+  std::string map;
+
+  [[nodiscard]] Occupancy occupancy_rule() const {
+    return occupancy == "probabilistic" ? Occupancy::probabilistic : Occupancy::literal;
+  }
+};
+
+/// What `integrate` puts into a map, one part after the other: depth frames or clouds. The order of
+/// calls is load, then bounds or integrate, of any part any number of times.
+class ReadingSource {
+ public:
+  virtual ~ReadingSource() = default;
+
+  [[nodiscard]] virtual const Sensor& sensor() const = 0;
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  /// Poses that were off and were mended.
+  [[nodiscard]] virtual std::size_t orthonormalized() const = 0;
+
+  virtual void load(std::size_t index) = 0;
+  /// Of the part's readings, world frame [m].
+  [[nodiscard]] virtual std::optional<Box> bounds() const = 0;
+  virtual IntegrationReport integrate(BeliefGrid& grid) = 0;
+  /// Readings of the loaded part that the jump-edge filter took.
+  [[nodiscard]] virtual std::uint64_t jump_edge_removed() const { return 0; }
+  /// Metres a unit of depth images; nothing for clouds.
+  [[nodiscard]] virtual std::optional<double> depth_scale() const { return std::nullopt; }
+};
+
+/// Throw Error for what is wrong with flags or files.
+[[nodiscard]] std::unique_ptr<ReadingSource> open_frame_source(const IntegrateOptions& options);
+[[nodiscard]] std::unique_ptr<ReadingSource> open_cloud_source(const IntegrateOptions& options);
+
+}  // namespace viewgain::app
