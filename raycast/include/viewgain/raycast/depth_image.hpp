@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
@@ -11,7 +12,7 @@ namespace viewgain {
 
 /// What an evaluator's rays meet, as images, row by row; every s-th pixel of every s-th row for a
 /// pixel stride s.
-struct DepthImage {
+struct VIEWGAIN_EXPORT DepthImage {
   int width = 0;             ///< [px]
   int height = 0;            ///< [px]
   std::vector<float> depth;  ///< along the optical axis [m]; +infinity: the ray meets nothing
@@ -22,6 +23,7 @@ struct DepthImage {
 /// what a gain comes from. A camera in an occupied voxel sees from there. Costs a trace of the pose
 /// and, with lens distortion, its undoing for every pixel. Thread safe. Throws
 /// Error(invalid_argument) for a pose that is not finite or off by more than 1e-3.
-[[nodiscard]] DepthImage depth_image(const GainEvaluator& evaluator, const Pose& T_world_camera);
+[[nodiscard]] VIEWGAIN_EXPORT DepthImage depth_image(const GainEvaluator& evaluator,
+                                                     const Pose& T_world_camera);
 
 }  // namespace viewgain

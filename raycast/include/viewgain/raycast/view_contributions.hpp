@@ -4,12 +4,13 @@
 
 #include <cstdint>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
 
 namespace viewgain {
 
 /// What one voxel adds to the gain of a view; see GainEvaluator::contributions().
-struct VoxelContribution {
+struct VIEWGAIN_EXPORT VoxelContribution {
   Index3 voxel{};
   VoxelState state = VoxelState::unknown;  ///< unknown or occupied
   std::uint32_t rays = 0;                  ///< that end in it

@@ -6,13 +6,14 @@
 #include <cstddef>
 #include <span>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
 
 namespace viewgain {
 
 /// A ray of a view that ends in a voxel.
-struct ViewHit {
+struct VIEWGAIN_EXPORT ViewHit {
   Index3 voxel{};
   VoxelState state = VoxelState::unknown;  ///< unknown or occupied
   const Belief* belief = nullptr;     ///< what is known of the voxel; null: nothing; lives with the
@@ -26,7 +27,7 @@ struct ViewHit {
 /// the views and hands over their hits. apps/examples/own_gain.cpp is one in thirty lines.
 ///
 /// Thread safety: measure() is called from many threads at once.
-class ViewMeasure {
+class VIEWGAIN_EXPORT ViewMeasure {
  public:
   virtual ~ViewMeasure();
 
