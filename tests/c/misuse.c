@@ -78,7 +78,7 @@ static void of_grids(const char* folder) {
   config.box_max[2] = -1;
   CHECK_FAILS(vg_grid_create(&config, &grid), VG_INVALID_ARGUMENT, "workspace");
   config.box_max[2] = 1e5;
-  CHECK_FAILS(vg_grid_create(&config, &grid), VG_CAPACITY, "1000000");
+  CHECK_FAILS(vg_grid_create(&config, &grid), VG_CAPACITY, "1e+06 voxels along z");
   config.box_max[2] = 1;
   config.T_world_grid[12] = 4;
   CHECK_FAILS(vg_grid_create(&config, &grid), VG_INVALID_ARGUMENT, "4 0 0 1");
