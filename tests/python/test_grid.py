@@ -150,7 +150,7 @@ def test_obstacles_block(grid, sensor, poses):
 
 def test_reach_and_collisions(grid, sensor):
     scene = viewgain.VoxelScene(grid)
-    poses = viewgain.look_at([[0.6, 0, 0], [-0.6, 0, 0], [0.1, 0, 0], [0, 0, 0.6]], (0, 0, 0.01))
+    poses = viewgain.look_at([[0.6, 0, 0], [-0.6, 0, 0], [0.075, 0, 0], [0, 0, 0.6]], (0, 0, 0.01))
     checker = viewgain.FeasibilityChecker(scene)
     assert np.array_equal(checker.feasible(poses), [True, True, False, True])
     assert checker.feasible(poses[0]) == True  # noqa: E712: numpy's

@@ -87,7 +87,7 @@ def test_what_the_camera_returns_is_checked(camera, sensor, start):
 
 
 def test_wrong_settings_are_named(camera, sensor, start):
-    for settings, text in [({"policy": "best"}, "best"), ({"criterion": "x"}, '"x"'),
+    for settings, text in [({"policy": "best"}, "best"), ({"criterion": "x"}, "'x'"),
                            ({"voxel_size": 0.0}, "voxel"), ({"workspace": [0, 1]}, r"\(2,\)"),
                            ({"max_views": 0}, "max_views"), ({"candidates": start}, r"\(4, 4\)")]:
         with pytest.raises(ValueError, match=text):

@@ -159,7 +159,9 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
 }  // namespace
 
 void bind_reconstruct(py::module_& module) {
-  py::class_<Reconstruction>(module, "Reconstruction", "What ``reconstruct`` came to.")
+  py::class_<Reconstruction>(
+      module, "Reconstruction",
+      "What ``reconstruct`` came to: its views, why it ended, the surface and the map.")
       .def_readonly("reason", &Reconstruction::reason,
                     "str: why it ended: gain, no_candidates, unreachable, idle, max_views, "
                     "interrupted")
