@@ -55,6 +55,14 @@ static void sensors_and_grids(const char* folder) {
   CHECK_OK(vg_grid_hash(loaded, loaded_hash));
   CHECK(strcmp(hash, loaded_hash) == 0);
 
+  sprintf(path, "%.1000s/map.ot", folder);
+  CHECK_OK(vg_grid_save_octomap(loaded, path));
+  CHECK_OK(vg_grid_load_octomap(path, 0, &copy));
+  CHECK_OK(vg_grid_get_info(copy, &info));
+  CHECK(info.voxel_size == 0.025 && info.prior_sigma == 0.0125);
+  CHECK(info.free + info.occupied == MAP_VOXELS - 4 * MAP_EDGE * MAP_EDGE);
+  vg_grid_release(copy);
+
   vg_grid_config_init(&config, sizeof config);
   CHECK(config.T_world_grid[0] == 1 && config.T_world_grid[1] == 0);
   config.voxel_size = 0.1;

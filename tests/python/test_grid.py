@@ -31,6 +31,24 @@ def test_any_extent_and_origin_keeps_every_label():
     assert cases == 50
 
 
+def test_octomap_files(tmp_path, grid, sensor):
+    path = tmp_path / "map.ot"
+    grid.save_octomap(path)
+    again = viewgain.BeliefGrid.load_octomap(path, workspace=[[0, 0, 0], [0.32, 0.32, 0.32]])
+    assert again.prior_sigma == 0.005 and again.voxel_size == 0.01
+    assert np.array_equal(again.states(), grid.states())
+    of_sensor = viewgain.BeliefGrid.load_octomap(str(path), sensor=sensor)
+    assert of_sensor.prior_sigma == grid.prior_sigma
+    assert np.count_nonzero(of_sensor.states() == 2) == np.count_nonzero(grid.states() == 2)
+    path.write_bytes(path.read_bytes()[:200])
+    with pytest.raises(viewgain.Error, match="map.ot"):
+        viewgain.BeliefGrid.load_octomap(path)
+    with pytest.raises(FileNotFoundError):
+        viewgain.BeliefGrid.load_octomap(tmp_path / "none.ot")
+    with pytest.raises(ValueError, match=r"\(2,\)"):
+        viewgain.BeliefGrid.load_octomap(path, workspace=[0, 1])
+
+
 def test_files(tmp_path, grid):
     path = tmp_path / "map.vdb"
     grid.save(path)

@@ -7,6 +7,7 @@
 
 #include "convert.hpp"
 #include "handles.hpp"
+#include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 using namespace viewgain;
@@ -65,6 +66,23 @@ vg_status vg_grid_save(const vg_grid* grid, const char* path) {
     require(grid, "grid");
     require(path, "path");
     save_vdb(grid->grid, path);
+  });
+}
+
+vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** grid) {
+  return make_handle(grid, "grid", [&] {
+    require(path, "path");
+    OctomapConfig config;
+    if (prior_sigma != 0) config.prior_sigma = prior_sigma;
+    return load_octomap(path, config);
+  });
+}
+
+vg_status vg_grid_save_octomap(const vg_grid* grid, const char* path) {
+  return guarded([&] {
+    require(grid, "grid");
+    require(path, "path");
+    save_octomap(grid->grid, path);
   });
 }
 

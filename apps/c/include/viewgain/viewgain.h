@@ -135,6 +135,11 @@ VG_API vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3
 
 VG_API vg_status vg_grid_load(const char* path, vg_grid** grid); /* a .vdb file of viewgain */
 VG_API vg_status vg_grid_save(const vg_grid* grid, const char* path);
+
+/* OctoMap's .ot and .bt: the states, and a .ot's log-odds; the workspace is the box of the known
+   voxels. prior_sigma [m], 0: half a voxel. Saving writes a .ot, in the grid's frame. */
+VG_API vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** grid);
+VG_API vg_status vg_grid_save_octomap(const vg_grid* grid, const char* path);
 VG_API vg_status vg_grid_clone(const vg_grid* grid, vg_grid** copy);
 VG_API void vg_grid_release(vg_grid* grid);
 
