@@ -8,7 +8,7 @@ packages=(
   libeigen3-dev libembree-dev libopenvdb-dev libtbb-dev libcgal-dev libhwy-dev
   libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev
   pkg-config
-  libgtest-dev liboctomap-dev libbenchmark-dev libcgal-demo libopenvdb-tools python3
+  libgtest-dev liboctomap-dev libompl-dev libbenchmark-dev libcgal-demo libopenvdb-tools python3
 )
 
 missing=()
