@@ -9,7 +9,7 @@ packages=(
   libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev
   pkg-config
   pybind11-dev python3-dev python3-numpy python3-pytest python3-matplotlib
-  libgtest-dev liboctomap-dev libbenchmark-dev libcgal-demo libopenvdb-tools python3
+  libgtest-dev liboctomap-dev libompl-dev libbenchmark-dev libcgal-demo libopenvdb-tools python3
 )
 
 missing=()
