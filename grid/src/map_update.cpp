@@ -186,6 +186,8 @@ void MapUpdate::Impl::update_region(BeliefGrid::Storage& s, const Readings& read
       continue;
     }
     if (leaf == nullptr) {
+      // At the rim of the workspace perhaps only because of voxels outside.
+      result.changed = result.changed || is_non_free(tile_code);
       result.leaves.push_back(std::make_unique<CodeLeaf>(to_coord(origin), kUnknownCode, true));
       leaf = result.leaves.back().get();
       std::copy(fresh.begin(), fresh.end(), leaf->buffer().data());

@@ -76,7 +76,8 @@ class Gatherer {
   void run() {
     const std::size_t large_tiles =
         snapshot_.regions.empty() ? snapshot_.tiles.size() : snapshot_.tiles_of(0)[0];
-    for (std::size_t i = 0; i < large_tiles; ++i) add_tile(snapshot_.tiles[i]);
+    // Boxes all of them, also one of which the workspace leaves but a block: it is in no region.
+    for (std::size_t i = 0; i < large_tiles; ++i) add_box(snapshot_.tiles[i]);
     std::size_t earlier = 0;
     for (std::size_t i = 0; i < snapshot_.regions.size(); ++i) {
       note_region();
@@ -157,9 +158,13 @@ class Gatherer {
   void add_tile(const SnapshotTile& tile) {
     if (is_whole_block(tile)) {
       add_block(tile.min);
-      return;
+    } else {
+      add_box(tile);
     }
-    // In pieces whose offsets fit.
+  }
+
+  // In pieces whose offsets fit.
+  void add_box(const SnapshotTile& tile) {
     constexpr std::int32_t kEdge = kMaxBoxEdge;
     const Index3 &min = tile.min, &max = tile.max;
     for (std::int32_t x = min.x; x < max.x; x += kEdge) {

@@ -235,6 +235,37 @@ TEST(Snapshot, FromTheOneBeforeIsTheSame) {
   EXPECT_GT(shared, 300U);
 }
 
+// Where the workspace ends within a block, crossings beyond its face turn a tile into a leaf.
+TEST(Snapshot, FromTheOneBeforeIsTheSameAtARimWithinABlock) {
+  const Sensor sensor = small_sensor(48, 36);
+  std::size_t cases = 0, leaves = 0;
+  for (const double edge : {0.21, 0.133, 0.098}) {
+    BeliefGrid grid(GridConfig{0.01, {{-0.1, -0.1, -0.1}, {edge, edge, edge}}, {}, 0.0072});
+    FrameIntegrator integrator(sensor);
+    GridSnapshot before = grid.snapshot();
+    for (int i = 0; i < 8; ++i) {
+      DepthFrame frame = see_spheres(sensor, ring_view(i), three_spheres_in_a_room());
+      // Some end before the workspace, some at its face, some behind it.
+      for (std::size_t p = 0; p < frame.depth.size(); ++p) {
+        frame.depth[p] = static_cast<float>(0.25 + 0.05 * i + 0.002 * static_cast<double>(p % 48));
+      }
+      integrator.integrate(grid, frame, ring_view(i));
+      const GridSnapshot anew = grid.snapshot(), updated = grid.snapshot(before);
+      ASSERT_EQ(updated.leaves.size(), anew.leaves.size()) << edge << ' ' << i;
+      ASSERT_EQ(updated.tiles.size(), anew.tiles.size()) << edge << ' ' << i;
+      for (std::size_t k = 0; k < anew.leaves.size(); ++k) {
+        EXPECT_EQ(updated.leaves[k].origin, anew.leaves[k].origin);
+        EXPECT_EQ(updated.leaves[k].non_free, anew.leaves[k].non_free);
+      }
+      leaves += anew.leaves.size();
+      before = updated;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 24U);
+  EXPECT_GT(leaves, 100U);
+}
+
 TEST(Snapshot, OutlivesTheGrid) {
   GridSnapshot snapshot;
   {

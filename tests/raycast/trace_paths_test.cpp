@@ -75,5 +75,37 @@ TEST(TracePaths, ManyPrimitivesUnderCoarseBoxesGiveTheSameBits) {
   EXPECT_EQ(compare(grid, sensor, poses), 8U * 61U * 47U);
 }
 
+// A large unknown tile of which the workspace leaves no more than one block, among many primitives.
+TEST(TracePaths, ABlockLeftOfALargeTileIsSeenAmongManyPrimitives) {
+  constexpr int kEdge = 136, kCorner = 128;
+  std::vector<Index3> unknown;
+  for (int x = 3; x < kEdge; x += 8) {
+    for (int y = 3; y < kEdge; y += 8) {
+      for (int z = 3; z < kEdge; z += 8) unknown.push_back({x, y, z});
+    }
+  }
+  for (int x = kCorner; x < kEdge; ++x) {
+    for (int y = kCorner; y < kEdge; ++y) {
+      for (int z = kCorner; z < kEdge; ++z) unknown.push_back({x, y, z});
+    }
+  }
+  const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
+  ASSERT_GT(VoxelScene::build(grid)->primitive_count(), 4096U);
+  ASSERT_EQ(grid.snapshot().tiles_of(0)[0], 1U);
+  Sensor sensor = test::lattice_sensor(61, 47);
+  sensor.camera.fx = sensor.camera.fy = 80;
+  const double corner = (kCorner + 4) * grid.voxel_size();
+  const Pose pose = look_at({corner + 1.5, corner + 1.4, corner + 1.3}, {corner, corner, corner});
+  EXPECT_EQ(compare(grid, sensor, {pose}), 61U * 47U);
+  std::size_t seen = 0;
+  for (const RayHit& hit : GainEvaluator(VoxelScene::build(grid), sensor).trace(pose)) {
+    const Index3& v = hit.voxel;
+    seen += hit.kind == RayHit::Kind::unknown && v.x >= kCorner && v.y >= kCorner && v.z >= kCorner
+                ? 1
+                : 0;
+  }
+  EXPECT_GT(seen, 20U);
+}
+
 }  // namespace
 }  // namespace viewgain
