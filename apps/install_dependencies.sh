@@ -8,6 +8,7 @@ packages=(
   libeigen3-dev libembree-dev libopenvdb-dev libtbb-dev libcgal-dev libhwy-dev
   libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev
   pkg-config
+  pybind11-dev python3-dev python3-numpy python3-pytest python3-matplotlib
   libgtest-dev liboctomap-dev libbenchmark-dev libcgal-demo libopenvdb-tools python3
 )
 

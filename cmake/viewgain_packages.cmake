@@ -50,6 +50,20 @@ if(VIEWGAIN_BUILD_APPS AND BUILD_SHARED_LIBS)
     "Scores camera poses by expected information gain, program" SECTION science
     DEPENDS runtime mesh-runtime)
 endif()
+if(VIEWGAIN_BUILD_PYTHON AND BUILD_SHARED_LIBS)
+  # An extension is for one minor version of Python.
+  math(EXPR next_python "${Python_VERSION_MINOR} + 1")
+  set(python_depends "python3 (>= 3.${Python_VERSION_MINOR})" "python3 (<< 3.${next_python})"
+      python3-numpy)
+  viewgain_package(python python3-viewgain Apache-2.0
+    "Expected information gain of camera poses, Python" SECTION python DEPENDS runtime
+    DEBIAN ${python_depends})
+  if(TARGET _mesh)
+    viewgain_package(python-mesh python3-viewgain-mesh GPL-3.0-or-later
+      "Surfaces and the reconstruction loop of viewgain, Python" SECTION python
+      DEPENDS runtime mesh-runtime python DEBIAN ${python_depends})
+  endif()
+endif()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME viewgain)

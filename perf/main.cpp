@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "approximate_bench.hpp"
 #include "bars.hpp"
 #include "environment.hpp"
 #include "honesty_bench.hpp"
@@ -100,6 +101,16 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
 
+  viewgain::bench::ApproximateOptions approximate;
+  approximate.mesh = viewgain::test::camel_mesh_path();
+  CLI::App* approximate_app = app.add_subcommand(
+      "approximate", "accuracy against speed of pixel strides and random sub-bundles");
+  add_common(*approximate_app, approximate.num_threads, approximate.voxels, approximate.repetitions,
+             approximate.mesh, approximate.json);
+  approximate_app->add_option("--poses", approximate.poses, "views")
+      ->check(CLI::Range(40, 1000000))
+      ->capture_default_str();
+
   viewgain::bench::BarsOptions bars;
   bars.mesh = viewgain::test::camel_mesh_path();
   CLI::App* bars_app =
@@ -155,6 +166,7 @@ int run(int argc, char** argv) {
   if (iteration_app->parsed()) return viewgain::bench::run_iteration(iteration);
   if (honesty_app->parsed()) return viewgain::bench::run_honesty(honesty);
   if (scaling_app->parsed()) return viewgain::bench::run_scaling(scaling);
+  if (approximate_app->parsed()) return viewgain::bench::run_approximate(approximate);
   if (bars_app->parsed()) return viewgain::bench::run_bars(bars);
   if (memory_app->parsed()) return viewgain::bench::run_memory(memory);
   return viewgain::bench::run_environment(environment_threads);

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Draws what `viewgain-bench scaling --json` or `bars --json` printed.
+"""Draws what `viewgain-bench scaling --json`, `bars --json` or `approximate --json` printed.
 
     viewgain-bench scaling --json > scaling.json
     perf/plot.py scaling.json scaling.png
 
 Of `scaling`: rays per second against the map's size, a line for each number of rays a pose and of
-threads, 5 to 95 % as bars. Of `bars`: each figure as a share of its bar, 1 and beyond is a pass.
+threads, 5 to 95 % as bars. Of `bars`: each figure as a share of its bar, 1 and beyond is a pass. Of
+`approximate`: rank correlation with the full gains against speed.
 Needs matplotlib (Debian: python3-matplotlib).
 """
 import argparse
@@ -54,10 +55,30 @@ def plot_bars(axes, result):
         axes.set_title(f"{rows[0]['isa']}, {rows[0]['threads']} threads", fontsize="small")
 
 
+def plot_approximate(axes, result):
+    for kind, label in (("stride", "pixel stride"), ("share", "random tiles")):
+        ways = [way for way in result["ways"] if way["kind"] == kind]
+        axes.plot([way["speed_over_full"] for way in ways],
+                  [1 - way["rank_correlation"] for way in ways], marker="o", label=label)
+        for way in ways:
+            text = (f"{way['parameter']:g}" if kind == "stride"
+                    else f"{100 * way['parameter']:g} %")
+            axes.annotate(text, (way["speed_over_full"], 1 - way["rank_correlation"]),
+                          textcoords="offset points", xytext=(5, 5), fontsize="small")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.invert_yaxis()
+    axes.set_xlabel("speed, times that of scoring in full")
+    axes.set_ylabel("1 − rank correlation with the full gains (up is better)")
+    axes.set_title(f"{result['scene']}, {result['poses']:,} views, {result['cpu']}, "
+                   f"{result['isa']}", fontsize="small")
+    axes.legend(fontsize="small")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("json", help="what `scaling --json` or `bars --json` printed")
+    parser.add_argument("json", help="what one of them printed")
     parser.add_argument("png", help="the picture")
     arguments = parser.parse_args()
     try:
@@ -65,9 +86,14 @@ def main():
             result = json.load(file)
     except (OSError, ValueError) as error:
         sys.exit(f"plot.py: {arguments.json}: {error}")
-    is_bars = isinstance(result, list)
-    if not is_bars and "cases" not in result:
-        sys.exit(f"plot.py: {arguments.json}: neither of `scaling --json` nor of `bars --json`")
+    if isinstance(result, list):
+        plot = plot_bars
+    elif "cases" in result:
+        plot = plot_scaling
+    elif "ways" in result:
+        plot = plot_approximate
+    else:
+        sys.exit(f"plot.py: {arguments.json}: of none of `scaling`, `bars` and `approximate`")
     try:
         import matplotlib
     except ImportError:
@@ -76,7 +102,7 @@ def main():
     import matplotlib.pyplot
 
     figure, axes = matplotlib.pyplot.subplots(figsize=(8, 5))
-    (plot_bars if is_bars else plot_scaling)(axes, result)
+    plot(axes, result)
     figure.tight_layout()
     figure.savefig(arguments.png, dpi=150)
 

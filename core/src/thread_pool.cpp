@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/core/thread_pool.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
@@ -40,10 +42,29 @@ bool spin_until(const Condition& condition) {
 
 }  // namespace
 
+struct ThreadPool::Impl {
+  struct Crew;
+
+  int num_threads = 1;
+  std::atomic<Crew*> crew;
+
+  explicit Impl(int n);
+  ~Impl();
+
+  /// The threads of this process; after a fork the first call makes them.
+  Crew& here();
+};
+
+/// The threads of one process. A fork copies the object but not the threads, and its locks in
+/// whatever state they were: a child leaves it as it is and makes its own.
+///
 /// A run invites workers by `slots`. Each worker that takes a slot works and counts itself in
 /// `finished`; the caller, when no range is left, withdraws the slots nobody took and waits for the
 /// others. So the job's fields change only while nobody holds a slot.
-struct ThreadPool::Impl {
+struct ThreadPool::Impl::Crew {
+  const pid_t process = getpid();
+  const Crew* const abandoned;  // the parent process's: never touched, never freed
+
   std::atomic<bool> busy{false};
 
   std::mutex mutex;  // for sleeping only
@@ -64,7 +85,20 @@ struct ThreadPool::Impl {
 
   std::vector<std::thread> workers;
 
-  ~Impl() {
+  Crew(int num_threads, const Crew* before) : abandoned(before) {
+    workers.reserve(static_cast<std::size_t>(num_threads - 1));
+    try {
+      for (int i = 1; i < num_threads; ++i) workers.emplace_back([this] { worker_loop(); });
+    } catch (const std::system_error& e) {
+      end();
+      throw Error(ErrorCode::capacity,
+                  "cannot start " + std::to_string(num_threads) + " threads: " + e.what());
+    }
+  }
+
+  ~Crew() { end(); }
+
+  void end() {
     {
       const std::lock_guard lock(mutex);
       stopping.store(true);
@@ -150,7 +184,24 @@ struct ThreadPool::Impl {
   }
 };
 
-ThreadPool::ThreadPool(int num_threads) : impl_(std::make_unique<Impl>()) {
+ThreadPool::Impl::Impl(int n) : num_threads(n), crew(new Crew(n, nullptr)) {}
+
+ThreadPool::Impl::~Impl() {
+  Crew* own = crew.load();
+  if (own->process == getpid()) delete own;  // else its threads cannot be joined here
+}
+
+ThreadPool::Impl::Crew& ThreadPool::Impl::here() {
+  Crew* own = crew.load(std::memory_order_acquire);
+  if (own->process == getpid()) return *own;
+  auto made = std::make_unique<Crew>(num_threads, own);
+  if (crew.compare_exchange_strong(own, made.get(), std::memory_order_acq_rel)) {
+    return *made.release();
+  }
+  return *own;  // another thread of the child was faster
+}
+
+ThreadPool::ThreadPool(int num_threads) {
   if (num_threads < 0 || num_threads > kMaxThreads) {
     throw Error(ErrorCode::invalid_argument, "number of threads must be in 0.." +
                                                  std::to_string(kMaxThreads) + ", not " +
@@ -159,29 +210,23 @@ ThreadPool::ThreadPool(int num_threads) : impl_(std::make_unique<Impl>()) {
   if (num_threads == 0) {
     num_threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads);
   }
-  impl_->workers.reserve(static_cast<std::size_t>(num_threads - 1));
-  try {
-    for (int i = 1; i < num_threads; ++i) {
-      impl_->workers.emplace_back([impl = impl_.get()] { impl->worker_loop(); });
-    }
-  } catch (const std::system_error& e) {
-    throw Error(ErrorCode::capacity,
-                "cannot start " + std::to_string(num_threads) + " threads: " + e.what());
-  }
+  impl_ = std::make_unique<Impl>(num_threads);
 }
 
 ThreadPool::~ThreadPool() = default;
 
-int ThreadPool::num_threads() const noexcept { return static_cast<int>(impl_->workers.size()) + 1; }
+int ThreadPool::num_threads() const noexcept { return impl_->num_threads; }
 
 void ThreadPool::run(std::size_t count, std::size_t chunk, Task task) {
   if (count == 0) return;
   if (chunk == 0) throw Error(ErrorCode::invalid_argument, "a loop's chunk must not be 0");
   const std::size_t chunks = (count - 1) / chunk + 1;
-  if (!impl_->workers.empty() && chunks > 1 &&
-      !impl_->busy.exchange(true, std::memory_order_acquire)) {
-    impl_->run_parallel(count, chunk, chunks, task);
-    return;
+  if (impl_->num_threads > 1 && chunks > 1) {
+    Impl::Crew& crew = impl_->here();
+    if (!crew.busy.exchange(true, std::memory_order_acquire)) {
+      crew.run_parallel(count, chunk, chunks, task);
+      return;
+    }
   }
   for (std::size_t begin = 0; begin < count;) {
     const std::size_t end = begin + std::min(chunk, count - begin);

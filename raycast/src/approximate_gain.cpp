@@ -92,9 +92,8 @@ void GainEvaluator::Impl::sample(const Pose& T_world_camera,
   if (!bins.valid()) data.ensure_bvh();
   for (std::size_t g = 0; g < groups.size(); ++g) {
     accumulator.begin();
-    tracer.trace_listed(*frame, groups[g], bins, [&](std::size_t, const detail::RayTile& tile) {
-      accumulator.add(tile);
-    });
+    tracer.trace_listed(*frame, groups[g], bins,
+                        [&](std::size_t, const detail::RayTile& tile) { accumulator.add(tile); });
     ViewGain result;
     accumulator.finish(result);
     gains[g] = result.gain;

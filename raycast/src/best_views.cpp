@@ -49,7 +49,7 @@ GainEvaluator::Impl::Attempt GainEvaluator::Impl::evaluate_above(const Pose& T_w
                                                                  double gain_per_bound,
                                                                  Lease& lease) const {
   Attempt attempt;
-  auto& [accumulator, bins, bounding] = lease.get();
+  auto& [accumulator, bins, bounding, view_hits] = lease.get();
   const auto frame = tracer.frame_of(T_world_camera);
   if (!from.empty()) tracer.sort(*frame, bins);
   if (from.empty() || !bins.valid()) {

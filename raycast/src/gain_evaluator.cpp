@@ -129,7 +129,7 @@ ViewGain GainEvaluator::Impl::evaluate(const Pose& T_world_camera, Lease& lease)
   ViewGain result;
   const auto frame = open_view(T_world_camera, result);
   if (!frame) return result;
-  auto& [accumulator, bins, bounding] = lease.get();
+  auto& [accumulator, bins, bounding, view_hits] = lease.get();
   accumulator.begin();
   tracer.trace(*frame, bins,
                [&](std::size_t, const detail::RayTile& tile) { accumulator.add(tile); });
@@ -176,23 +176,9 @@ std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera,
            std::to_string(results.size()) + " results");
   }
   std::fill(results.begin(), results.end(), ViewGain{});
-  std::atomic<std::size_t> done{0};
-  std::mutex progress_mutex;
-  std::size_t reported = 0;
-  impl_->pool.for_each_chunk(results.size(), 4, [&](std::size_t begin, std::size_t end) {
-    Impl::Lease lease(*impl_);
-    for (std::size_t i = begin; i < end; ++i) {
-      if (control.stop.stop_requested()) return;
-      results[i] = impl_->evaluate(T_world_camera[i], lease);
-      const std::size_t count = done.fetch_add(1) + 1;
-      if (!control.progress) continue;
-      const std::lock_guard lock(progress_mutex);
-      if (count <= reported) continue;  // another thread has already said more
-      reported = count;
-      control.progress(count, results.size());
-    }
+  return impl_->for_each_pose(results.size(), control, [&](std::size_t i, Impl::Lease& lease) {
+    results[i] = impl_->evaluate(T_world_camera[i], lease);
   });
-  return done;
 }
 
 std::vector<ViewGain> GainEvaluator::evaluate(std::span<const Pose> T_world_camera) const {
@@ -218,10 +204,8 @@ std::vector<RayHit> GainEvaluator::trace(const Pose& T_world_camera) const {
         continue;
       }
       const std::uint32_t primitive = tile.primitive[lane], offset = tile.offset[lane];
-      const bool occupied =
-          primitive < data.leaf_count &&
-          test_bit(data.snapshot.leaves[data.leaf_source[primitive]].occupied, offset);
-      hit.kind = occupied ? RayHit::Kind::occupied : RayHit::Kind::unknown;
+      hit.kind = data.occupied_leaf(primitive, offset) != nullptr ? RayHit::Kind::occupied
+                                                                  : RayHit::Kind::unknown;
       hit.voxel = data.voxel_index(primitive, offset);
     }
   });
@@ -231,6 +215,8 @@ std::vector<RayHit> GainEvaluator::trace(const Pose& T_world_camera) const {
 std::size_t GainEvaluator::rays_per_pose() const noexcept {
   return impl_->tracer.table().ray_count();
 }
+const PinholeCamera& GainEvaluator::camera() const noexcept { return impl_->camera; }
+int GainEvaluator::pixel_stride() const noexcept { return impl_->pixel_stride; }
 int GainEvaluator::num_threads() const noexcept { return impl_->pool.num_threads(); }
 double GainEvaluator::prior_sigma() const noexcept { return impl_->prior_sigma; }
 const VoxelScene& GainEvaluator::scene() const noexcept { return *impl_->scene; }

@@ -18,6 +18,14 @@
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
+namespace viewgain::detail {
+
+[[nodiscard]] inline SymmetricMatrix3 matrix_of(const VoxelSum& m) {
+  return {m.a[0], m.a[1], m.a[2], m.a[3], m.b[0], m.b[1]};
+}
+
+}  // namespace viewgain::detail
+
 namespace viewgain {
 
 struct GainEvaluator::Impl {
@@ -38,6 +46,7 @@ struct GainEvaluator::Impl {
     detail::GainAccumulator accumulator;
     detail::TileBins bins;
     detail::ViewBounds::Workspace bounding{};
+    std::vector<ViewHit> view_hits{};  // for a gain of the user's own
   };
   // Those that no thread is using, so that a call need not make one.
   mutable std::mutex idle_mutex;
@@ -69,6 +78,7 @@ struct GainEvaluator::Impl {
         workspace_ = std::make_unique<Workspace>(Workspace{
             detail::GainAccumulator(impl_.data, impl_.settings, impl_.tracer.table().ray_count()),
             {},
+            {},
             {}});
       }
       return *workspace_;
@@ -84,6 +94,9 @@ struct GainEvaluator::Impl {
   [[nodiscard]] std::optional<detail::PoseFrame> open_view(const Pose& T_world_camera,
                                                            ViewGain& result) const;
   [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera, Lease& lease) const;
+  // A gain of the user's own; throws what it throws.
+  [[nodiscard]] double measure(const Pose& T_world_camera, const ViewMeasure& own,
+                               Lease& lease) const;
 
   // A view's tiles in groups, which any thread may trace; their hits are added up in order.
   struct TileGroups {
@@ -95,16 +108,24 @@ struct GainEvaluator::Impl {
   mutable std::vector<std::unique_ptr<TileGroups>> idle_groups;
   // As evaluate(), the same bits, on all threads (one_view.cpp).
   [[nodiscard]] ViewGain evaluate_together(const Pose& T_world_camera) const;
-  // Calls work(i, lease) for every i below count on all threads, and says how far it is; ends early
-  // if a stop is requested. Returns whether all was done.
+  // Calls work(i, lease) for every i below count on all threads; ends early if a stop is requested
+  // or the call cancelled. Returns whether all was done.
   template <typename Work>
   bool for_each(std::size_t count, std::size_t chunk, const BatchControl& control,
                 const Work& work) const {
     std::atomic<bool> complete{true};
+    std::mutex cancel_mutex;
+    const auto is_stopped = [&] {
+      if (!complete || control.stop.stop_requested()) return true;
+      if (!control.is_cancelled) return false;
+      const std::lock_guard lock(cancel_mutex);
+      if (complete && control.is_cancelled()) complete = false;
+      return !complete;
+    };
     pool.for_each_chunk(count, chunk, [&](std::size_t begin, std::size_t end) {
       Lease lease(*this);
       for (std::size_t i = begin; i < end; ++i) {
-        if (control.stop.stop_requested()) {
+        if (is_stopped()) {
           complete = false;
           return;
         }
@@ -112,6 +133,25 @@ struct GainEvaluator::Impl {
       }
     });
     return complete;
+  }
+
+  // The same for whole scores: says how many are done, and returns that.
+  template <typename Work>
+  std::size_t for_each_pose(std::size_t count, const BatchControl& control,
+                            const Work& work) const {
+    std::atomic<std::size_t> done{0};
+    std::mutex progress_mutex;
+    std::size_t reported = 0;
+    for_each(count, 4, control, [&](std::size_t i, Lease& lease) {
+      work(i, lease);
+      const std::size_t now = done.fetch_add(1) + 1;
+      if (!control.progress) return;
+      const std::lock_guard lock(progress_mutex);
+      if (now <= reported) return;  // another thread has already said more
+      reported = now;
+      control.progress(now, count);
+    });
+    return done;
   }
 
   // A pose's score, unless its gain is found not to reach `gain_to_beat` before it is traced whole.

@@ -53,7 +53,7 @@ ViewGain GainEvaluator::Impl::evaluate_together(const Pose& T_world_camera) cons
     std::size_t group;
     if (number == 0) {
       Lease lease(*this);
-      auto& [accumulator, bins, bounding] = lease.get();
+      auto& [accumulator, bins, bounding, view_hits] = lease.get();
       tracer.prepare(*frame, bins);
       sorted.store(&bins, std::memory_order_release);
       accumulator.begin();

@@ -25,8 +25,8 @@ struct BoxArrays {
 };
 
 /// The boxes of a scene, for sorting into the tiles of a view: one a primitive, or, where there are
-/// more than kMaxBoxes, one for each cell of a grid that is coarse enough (32³ voxels, 64³ or 128³),
-/// and the primitives cell by cell. Boxes larger than a region are cells by themselves.
+/// more than kMaxBoxes, one for each cell of a grid that is coarse enough (32³ voxels, 64³ or
+/// 128³), and the primitives cell by cell. Boxes larger than a region are cells by themselves.
 struct SceneBoxes {
   BoxArrays boxes;
   std::size_t count = 0;

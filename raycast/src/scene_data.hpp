@@ -137,6 +137,14 @@ struct VoxelScene::Data {
             snapshot.min_index.z + static_cast<std::int32_t>(min[2]) + z};
   }
 
+  /// The leaf of the occupied voxel that a hit names; null if the voxel is unknown.
+  [[nodiscard]] const SnapshotLeaf* occupied_leaf(std::uint32_t primitive,
+                                                  std::uint32_t offset) const {
+    if (primitive >= leaf_count) return nullptr;
+    const SnapshotLeaf& leaf = snapshot.leaves[leaf_source[primitive]];
+    return test_bit(leaf.occupied, offset) ? &leaf : nullptr;
+  }
+
   [[nodiscard]] std::uint64_t hit_key(std::uint32_t primitive, std::uint32_t offset) const {
     if (primitive < block_count) return block_keys[primitive] | offset;
     const Index3 voxel = voxel_index(primitive, offset);

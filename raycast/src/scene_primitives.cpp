@@ -74,8 +74,8 @@ class Gatherer {
   }
 
   void run() {
-    const std::size_t large_tiles = snapshot_.regions.empty() ? snapshot_.tiles.size()
-                                                              : snapshot_.tiles_of(0)[0];
+    const std::size_t large_tiles =
+        snapshot_.regions.empty() ? snapshot_.tiles.size() : snapshot_.tiles_of(0)[0];
     for (std::size_t i = 0; i < large_tiles; ++i) add_tile(snapshot_.tiles[i]);
     std::size_t earlier = 0;
     for (std::size_t i = 0; i < snapshot_.regions.size(); ++i) {
@@ -166,8 +166,8 @@ class Gatherer {
       for (std::int32_t y = min.y; y < max.y; y += kEdge) {
         for (std::int32_t z = min.z; z < max.z; z += kEdge) {
           const auto low = relative({x, y, z});
-          const auto high = relative({std::min(x + kEdge, max.x), std::min(y + kEdge, max.y),
-                                      std::min(z + kEdge, max.z)});
+          const auto high = relative(
+              {std::min(x + kEdge, max.x), std::min(y + kEdge, max.y), std::min(z + kEdge, max.z)});
           larger_.push_back({{low[0], low[1], low[2]}, {high[0], high[1], high[2]}, 0});
         }
       }
@@ -176,8 +176,7 @@ class Gatherer {
 
   void add_block(const Index3& origin) {
     const auto low = relative(origin);
-    blocks_.push_back(
-        {{low[0], low[1], low[2]}, {low[0] + 8.0F, low[1] + 8.0F, low[2] + 8.0F}, 0});
+    blocks_.push_back({{low[0], low[1], low[2]}, {low[0] + 8.0F, low[1] + 8.0F, low[2] + 8.0F}, 0});
     block_keys_.push_back(key_of(origin));
   }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ray_tile.hpp"
@@ -33,6 +34,8 @@ class TileBins {
   [[nodiscard]] std::span<const TileBox> boxes_of(std::size_t tile) const {
     return {boxes_.data() + starts_[tile], boxes_.data() + starts_[tile + 1]};
   }
+  /// Leaves what TileBinner::select() returned last as it is until this is called again.
+  void keep_selected() { std::swap(selected_, kept_); }
 
  private:
   friend class TileBinner;
@@ -55,7 +58,7 @@ class TileBins {
   std::vector<Cell> cells_;
   std::vector<std::int16_t> column0_, column1_, row0_, row1_;
   std::vector<TileBox> member_;  // primitives
-  std::vector<TileBox> selected_;
+  std::vector<TileBox> selected_, kept_;
 };
 
 /// Sorts a scene's boxes into the tiles of a view by their outlines in the image. About half of a

@@ -18,10 +18,6 @@ constexpr double kRounding = 1 + 1e-9;
 // Poses that are scored anew together in lazy evaluation, whatever the number of threads.
 constexpr std::size_t kLazyBatch = 8;
 
-SymmetricMatrix3 matrix_of(const detail::VoxelSum& m) {
-  return {m.a[0], m.a[1], m.a[2], m.a[3], m.b[0], m.b[1]};
-}
-
 double log_of_diagonal(const SymmetricMatrix3& sigma) {
   return std::log(sigma.xx) + std::log(sigma.yy) + std::log(sigma.zz);
 }
@@ -37,10 +33,10 @@ ViewGain GainEvaluator::Impl::evaluate_after(
   lease.get().accumulator.visit([&](std::uint64_t key, const std::optional<detail::VoxelSum>& known,
                                     const detail::VoxelSum& sum, double weight) {
     SymmetricMatrix3 held{};
-    if (known) held = matrix_of(*known);
+    if (known) held = detail::matrix_of(*known);
     const auto before = chosen.find(key);
     if (before != chosen.end()) held += before->second;
-    const SymmetricMatrix3 added = matrix_of(sum);
+    const SymmetricMatrix3 added = detail::matrix_of(sum);
     const double gain =
         weight * entropy_reduction(held + SymmetricMatrix3::identity(settings.prior_information),
                                    added, settings.criterion);
@@ -111,7 +107,7 @@ ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_
     if (impl_->evaluate(T_world_camera[index], lease).hits == 0) continue;
     lease.get().accumulator.visit([&](std::uint64_t key, const std::optional<detail::VoxelSum>&,
                                       const detail::VoxelSum& sum,
-                                      double) { chosen[key] += matrix_of(sum); });
+                                      double) { chosen[key] += detail::matrix_of(sum); });
   }
   return set;
 }

@@ -81,15 +81,24 @@ class ViewTracer {
       kernels.walk(scene_, frame, cosine, bins.boxes_of(tile), out);
       return;
     }
+    // The primitives of the next cell are chosen, and asked for, while those of this one are
+    // walked.
     float of_interest = std::numeric_limits<float>::max();
+    std::span<const TileBox> waiting;
     for (const TileBox& cell : bins.boxes_of(tile)) {
       if (cell.near > of_interest) break;
       const auto primitives =
           binner_.select(kernels.isa, scene, frame, cell.box, tile, of_interest, bins);
-      if (!primitives.empty()) {
-        of_interest = kernels.walk(scene_, frame, cosine, primitives, out);
+      if (primitives.empty()) continue;
+      for (const TileBox& primitive : primitives) {
+        __builtin_prefetch(&scene_.boxes[primitive.box]);
+        if (primitive.box < scene_.leaf_count) __builtin_prefetch(&scene_.masks[primitive.box]);
       }
+      if (!waiting.empty()) of_interest = kernels.walk(scene_, frame, cosine, waiting, out);
+      waiting = primitives;
+      bins.keep_selected();
     }
+    if (!waiting.empty()) kernels.walk(scene_, frame, cosine, waiting, out);
   }
 
   /// The same through the BVH alone, every tile, which the evaluator does not do where it need not.

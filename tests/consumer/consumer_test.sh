@@ -2,7 +2,7 @@
 # Builds and runs a project of a user of viewgain.
 #   consumer_test.sh KIND SOURCE_FOLDER BUILD_FOLDER WORK_FOLDER EXPECTED_GAIN_PROGRAM
 # KIND: install, install_static (these two first: the others use what they leave in WORK_FOLDER);
-# find_package, native, moved, static, static_native, pkg_config, add_subdirectory, headers,
+# find_package, native, moved, static, static_native, pkg_config, add_subdirectory, headers, python,
 # wrong_version, no_component.
 set -euo pipefail
 kind=$1 source=$2 build=$3 work=$4 expected=$5
@@ -18,14 +18,14 @@ quiet_build() { # FOLDER
   cmake --build "$1" -j 1 >"$1/build.log" 2>&1 || { cat "$1/build.log" >&2; fail "did not build"; }
 }
 
-check_gain() { # PROGRAM
+check_gain() { # PROGRAM [c]
   local gain
   gain=$("$1")
-  [ "$gain" = "$("$expected")" ] || fail "the gain is $gain, expected $("$expected")"
+  [ "$gain" = "$("$expected" "${@:2}")" ] || fail "the gain is $gain, expected $("$expected" "${@:2}")"
   echo "$kind: gain $gain"
 }
 
-# A project that finds viewgain under a prefix, built, and its two programs run.
+# A project that finds viewgain under a prefix, built, and its three programs run.
 check_project() { # PREFIX [cmake arguments]
   local folder=$work/$kind
   rm -rf "$folder"
@@ -33,6 +33,7 @@ check_project() { # PREFIX [cmake arguments]
     "-DCMAKE_PREFIX_PATH=$1" "${@:2}" >/dev/null
   quiet_build "$folder"
   check_gain "$folder/gain"
+  check_gain "$folder/gain_c" c
   local answers
   answers=$("$folder/boundary" "$folder/map.vdb")
   [ "$answers" = 11111111 ] || fail "boundary.cpp says $answers"
@@ -47,7 +48,8 @@ case $kind in
     rm -rf "$work/static_build" "$work/static_prefix"
     cmake -S "$source" -B "$work/static_build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
       -DBUILD_SHARED_LIBS=OFF -DVIEWGAIN_BUILD_APPS=OFF -DVIEWGAIN_BUILD_TESTS=OFF \
-      -DVIEWGAIN_BUILD_PERF=OFF "-DCMAKE_CXX_COMPILER_LAUNCHER=$here/reuse_objects.sh" >/dev/null
+      -DVIEWGAIN_BUILD_PERF=OFF -DVIEWGAIN_BUILD_PYTHON=OFF \
+      "-DCMAKE_CXX_COMPILER_LAUNCHER=$here/reuse_objects.sh" >/dev/null
     quiet_build "$work/static_build"
     grep -q '^reuse_objects.sh: no' "$work/static_build/build.log" && fail "compiled anew"
     cmake --install "$work/static_build" --prefix "$work/static_prefix" >/dev/null
@@ -81,6 +83,11 @@ case $kind in
     c++ -std=c++20 "$here/gain.cpp" -o "$work/$kind/gain" "-Wl,-rpath,$libraries" \
       $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs "viewgain >= 0.1")
     check_gain "$work/$kind/gain"
+    # C99 with the one header.
+    # shellcheck disable=SC2046
+    cc -std=c99 -pedantic -Wall -Wextra -Werror "$here/gain.c" -o "$work/$kind/gain_c" \
+      "-Wl,-rpath,$libraries" $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain)
+    check_gain "$work/$kind/gain_c" c
     # shellcheck disable=SC2046
     c++ -std=c++20 "$here/boundary.cpp" -o "$work/$kind/boundary" "-Wl,-rpath,$libraries" \
       $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-mesh)
@@ -107,6 +114,23 @@ case $kind in
     grep -q Eigen "$work/all.d" || fail "no Eigen in the list"
     ! grep -oE '[^ ]*/(openvdb|embree[34]?|CGAL|tbb|oneapi|hwy|boost|Imath)/[^ ]*' "$work/all.d" ||
       fail "a public header brings in a private library"
+    ;;
+  python)
+    # Both modules, found where they were installed, with libraries of the same prefix.
+    package=$(find "$work/prefix" -type d -path '*-packages/viewgain')
+    export PYTHONPATH=${package%/viewgain} PYTHONDONTWRITEBYTECODE=1
+    # The frame of its map begins elsewhere than gain.cpp's: equal but for rounding.
+    gain=$("$here/gain.py")
+    awk -v a="$gain" -v b="$("$expected")" 'BEGIN { exit !(a > 0 && (a / b - 1) ^ 2 < 1e-20) }' ||
+      fail "the gain is $gain, expected $("$expected")"
+    /usr/bin/python3 -c "import viewgain.mesh; print(viewgain.mesh.__file__)" | grep -q "^$work/prefix/" ||
+      fail "another viewgain.mesh was found"
+    for extension in "$package"/_viewgain.*.so; do
+      nm -DC "$extension" >"$work/$kind.symbols"
+      ! grep -E 'CGAL|gmp|mpfr' "$work/$kind.symbols" || fail "$extension holds CGAL"
+      ! readelf -d "$extension" | grep -E 'NEEDED.*(gmp|mpfr|CGAL|viewgain_mesh)' ||
+        fail "$extension is linked to CGAL's libraries"
+    done
     ;;
   wrong_version | no_component)
     folder=$work/$kind

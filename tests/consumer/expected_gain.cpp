@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Prints the gain that gain.cpp must print, to the last digit, after holding it against the oracle.
+// Prints the gain that gain.cpp must print, to the last digit, after holding it against the oracle;
+// with any argument that of gain.c, whose grid has its origin at the array's corner.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -11,7 +12,7 @@
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 
-int main() {
+int main(int argc, char**) {
   using namespace viewgain;
   std::vector<std::uint8_t> states;
   for (int xy = 0; xy < 64; ++xy) {
@@ -21,6 +22,10 @@ int main() {
   layout.voxel_size = 0.05;
   layout.workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
   layout.prior_sigma = 0.025;
+  if (argc > 1) {
+    layout.workspace = {{0, 0, 0}, {0.4, 0.4, 0.4}};
+    layout.T_world_grid = {Eigen::Matrix3d::Identity(), {-0.2, -0.2, -0.2}};
+  }
   const BeliefGrid grid = BeliefGrid::from_states(layout, states);
   const Sensor sensor = sensor_preset("sr4000");
   const Pose pose = look_at({0.013, 0.007, 0.6}, {0, 0, 0});

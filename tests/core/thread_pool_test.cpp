@@ -3,11 +3,14 @@
 #include "viewgain/core/thread_pool.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <set>
 #include <stdexcept>
@@ -305,6 +308,52 @@ TEST(ThreadPool, RefusesBadArguments) {
   expect_error(ErrorCode::invalid_argument, "chunk",
                [&] { pool.for_each_chunk(3, 0, [](std::size_t, std::size_t) {}); });
   pool.for_each_chunk(0, 0, [](std::size_t, std::size_t) { ADD_FAILURE(); });
+}
+
+/// Runs `body` in a child process, which must say 0 within a minute.
+template <typename Body>
+void expect_in_child(const Body& body) {
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    alarm(60);
+    _exit(body() ? 0 : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "status " << status;
+}
+
+bool two_threads_meet(ThreadPool& pool) {
+  std::atomic<int> arrived{0};
+  std::atomic<bool> met{true};
+  pool.for_each_chunk(2, 1, [&](std::size_t, std::size_t) {
+    if (!meet(arrived, 2)) met = false;
+  });
+  return met;
+}
+
+TEST(ThreadPool, AChildOfAForkHasItsOwnThreads) {
+  auto pool = std::make_unique<ThreadPool>(2);
+  ASSERT_TRUE(two_threads_meet(*pool));
+  expect_in_child([&] { return two_threads_meet(*pool) && two_threads_meet(*pool); });
+  expect_in_child([&] {  // a child that only drops it
+    pool.reset();
+    return true;
+  });
+  // In the middle of a loop of the parent's other thread, which the child does not have.
+  std::atomic<bool> inside{false}, leave{false};
+  std::thread busy([&] {
+    pool->for_each_chunk(2, 1, [&](std::size_t, std::size_t) {
+      inside = true;
+      while (!leave) std::this_thread::yield();
+    });
+  });
+  while (!inside) std::this_thread::yield();
+  expect_in_child([&] { return two_threads_meet(*pool); });
+  leave = true;
+  busy.join();
+  EXPECT_TRUE(two_threads_meet(*pool));
 }
 
 TEST(ThreadPool, ZeroMeansAllHardwareThreads) {

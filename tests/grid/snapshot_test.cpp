@@ -102,9 +102,9 @@ void expect_equal(const GridSnapshot& snapshot, const BeliefGrid& grid) {
     std::set<std::tuple<int, int, int>> cubes;
     for (; leaf < snapshot.leaves_of(r)[1]; ++leaf) {
       cubes.insert(cube_of(snapshot.leaves[leaf].origin));
-      ASSERT_EQ(snapshot.find_leaf(snapshot.leaves[leaf].origin),
-                is_inside(snapshot, snapshot.leaves[leaf].origin) ? &snapshot.leaves[leaf]
-                                                                  : nullptr);
+      ASSERT_EQ(
+          snapshot.find_leaf(snapshot.leaves[leaf].origin),
+          is_inside(snapshot, snapshot.leaves[leaf].origin) ? &snapshot.leaves[leaf] : nullptr);
     }
     for (; tile < snapshot.tiles_of(r)[1]; ++tile) cubes.insert(cube_of(snapshot.tiles[tile].min));
     ASSERT_LE(cubes.size(), 1U);

@@ -117,6 +117,30 @@ TEST(Bench, ScalingAgreesForAllSizesRaysAndThreads) {
   EXPECT_GT(json["memory"][1]["map_bytes"], 0);
 }
 
+TEST(Bench, ApproximateComparesStridesAndShares) {
+  const Result result =
+      run("approximate --json --voxels 48 --poses 200 --repetitions 1 --threads 2");
+  ASSERT_EQ(result.exit_code, 0) << result.out;
+  const Json json = Json::parse(result.out);
+  expect_environment(json, 2);
+  std::map<std::string, int> kinds;
+  for (const Json& way : json["ways"]) {
+    ++kinds[way["kind"].get<std::string>()];
+    EXPECT_GT(way["speed_over_full"].get<double>(), 0) << way;
+    EXPECT_GE(way["regret"].get<double>(), 0) << way;
+    EXPECT_LE(way["rank_correlation"].get<double>(), 1) << way;
+    // Every second pixel, or four tiles in ten, tell the views apart quite well.
+    if (way["name"] == "stride 2" || way["name"] == "40 % of tiles") {
+      EXPECT_GT(way["rank_correlation"].get<double>(), 0.9) << way;
+    }
+    if (way["kind"] == "full") {
+      EXPECT_EQ(way["rank_correlation"].get<double>(), 1) << way;
+    }
+    EXPECT_EQ(way["mean_error"].is_number(), way["kind"] == "share") << way;
+  }
+  EXPECT_EQ(kinds, (std::map<std::string, int>{{"full", 1}, {"stride", 6}, {"share", 5}}));
+}
+
 TEST(Bench, BarsAreListedWithTheirFields) {
   const Result result =
       run("bars --json --voxels 32 --large-voxels 48 --poses 8 --repetitions 1 --maps 2 "

@@ -104,6 +104,24 @@ TEST_F(Batch, StopsEarlyAndMarksWhatItDidNotReach) {
   }
 }
 
+TEST_F(Batch, CancellingIsAskedBetweenPosesOfEveryCall) {
+  for (const int threads : {1, 3}) {
+    const GainEvaluator own = evaluator(threads);
+    std::size_t asked = 0;
+    BatchControl control{.is_cancelled = [&] { return ++asked > 20; }};
+    std::vector<ViewGain> results(poses_.size());
+    EXPECT_EQ(own.evaluate(poses_, results, control), 20U);
+    EXPECT_EQ(asked, 21U);  // and not again
+    asked = 0;
+    EXPECT_FALSE(own.best(poses_, 1, control).complete);
+    asked = 0;
+    EXPECT_FALSE(own.race(poses_, 1, {}, control).complete);
+    asked = 0;
+    EXPECT_FALSE(own.best_set(poses_, 2, control).complete);
+    EXPECT_EQ(asked, 21U);
+  }
+}
+
 TEST_F(Batch, AlreadyStoppedScoresNothing) {
   std::stop_source source;
   source.request_stop();

@@ -28,6 +28,7 @@
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/region_statistics.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/raycast/depth_image.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"

@@ -20,6 +20,8 @@ struct VIEWGAIN_EXPORT BatchControl {
   std::stop_token stop{};  ///< when a stop is requested the call returns early, see the call
   std::function<void(std::size_t done, std::size_t total)>
       progress{};  ///< from any worker, one at a time
+  /// Asked between poses, from any worker, one at a time: true ends the call as a stop would.
+  std::function<bool()> is_cancelled{};
 };
 
 }  // namespace viewgain

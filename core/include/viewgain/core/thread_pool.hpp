@@ -13,7 +13,9 @@ namespace viewgain {
 /// Reusable threads for data-parallel loops. The caller takes part. A call that finds the pool
 /// busy, from another thread or from inside a loop body, runs its whole loop on its caller, so
 /// nested and concurrent use cannot deadlock. Thread safety: every member may be called from any
-/// thread; the destructor only when no call is running.
+/// thread; the destructor only when no call is running. After a fork the first call in the child
+/// starts threads of the child's own; what the parent was running is not continued there, and the
+/// destructor leaves the parent's threads alone.
 class VIEWGAIN_EXPORT ThreadPool {
  public:
   /// num_threads counts the caller; 0 means all hardware threads. Throws Error(invalid_argument) if

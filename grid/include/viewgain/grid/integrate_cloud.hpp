@@ -59,10 +59,8 @@ class VIEWGAIN_EXPORT CloudIntegrator {
 
 /// The box, in the frame of T_world_grid, that holds every reading of the cloud [m], those of the
 /// support plane left out; nothing if it has none. For choosing a workspace.
-[[nodiscard]] VIEWGAIN_EXPORT std::optional<Box> reading_bounds(const Sensor& sensor,
-                                                std::span<const std::array<double, 3>> points,
-                                                const Pose& T_world_sensor,
-                                                const Pose& T_world_grid = {},
-                                                std::optional<double> support_plane = {});
+[[nodiscard]] VIEWGAIN_EXPORT std::optional<Box> reading_bounds(
+    const Sensor& sensor, std::span<const std::array<double, 3>> points, const Pose& T_world_sensor,
+    const Pose& T_world_grid = {}, std::optional<double> support_plane = {});
 
 }  // namespace viewgain

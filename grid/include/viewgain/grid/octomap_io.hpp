@@ -40,9 +40,8 @@ struct VIEWGAIN_EXPORT OctomapConfig {
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_octomap(const std::filesystem::path& path,
                                                       const OctomapConfig& config = {});
 /// The same of a file's contents; `name` stands for the file in messages.
-[[nodiscard]] VIEWGAIN_EXPORT BeliefGrid grid_from_octomap_bytes(std::string_view bytes,
-                                                 const OctomapConfig& config = {},
-                                                 const std::string& name = "octree");
+[[nodiscard]] VIEWGAIN_EXPORT BeliefGrid grid_from_octomap_bytes(
+    std::string_view bytes, const OctomapConfig& config = {}, const std::string& name = "octree");
 
 /// The resolution of an OctoMap file [m], from its header alone. Throws as load_octomap.
 [[nodiscard]] VIEWGAIN_EXPORT double octomap_resolution(const std::filesystem::path& path);

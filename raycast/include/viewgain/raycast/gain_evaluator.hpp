@@ -11,10 +11,13 @@
 #include <vector>
 
 #include "viewgain/core/box.hpp"
+#include "viewgain/core/camera.hpp"
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/view_contributions.hpp"
+#include "viewgain/raycast/view_measure.hpp"
 #include "viewgain/raycast/view_selection.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
@@ -98,6 +101,20 @@ class VIEWGAIN_EXPORT GainEvaluator {
                        const BatchControl& control = {}) const;
   [[nodiscard]] std::vector<ViewGain> evaluate(std::span<const Pose> T_world_camera) const;
 
+  /// The user's own gain of a batch, result i for pose i, on all threads of the evaluator, which
+  /// call `measure` at once. Bad poses: NaN; a camera in an occupied voxel: 0; `measure` is asked
+  /// about neither. Returns how many poses were measured, as the call above; the results not
+  /// reached are NaN. What `measure` throws ends the batch and is thrown again here, and the
+  /// results are then unspecified. Throws Error(invalid_argument) if the sizes differ.
+  std::size_t evaluate(std::span<const Pose> T_world_camera, const ViewMeasure& measure,
+                       std::span<double> results, const BatchControl& control = {}) const;
+
+  /// Why a view is good: one entry for each voxel in which rays of the pose end, the largest gain
+  /// first, ties by the voxel's x, y, z. The gains add up to evaluate()'s gain to rounding (1e-9 of
+  /// it), the rays to its hits. Empty for a bad pose and for a camera in an occupied voxel. On the
+  /// calling thread; takes several times as long as evaluate().
+  [[nodiscard]] std::vector<VoxelContribution> contributions(const Pose& T_world_camera) const;
+
   /// Where the rays of a pose end, in pixel order (row by row, strided); the hits that evaluate()
   /// uses. Empty for a bad pose.
   [[nodiscard]] std::vector<RayHit> trace(const Pose& T_world_camera) const;
@@ -152,6 +169,8 @@ class VIEWGAIN_EXPORT GainEvaluator {
                           const BatchControl& control = {}) const;
 
   [[nodiscard]] std::size_t rays_per_pose() const noexcept;
+  [[nodiscard]] const PinholeCamera& camera() const noexcept;  ///< the sensor's
+  [[nodiscard]] int pixel_stride() const noexcept;
   [[nodiscard]] int num_threads() const noexcept;
   [[nodiscard]] double prior_sigma() const noexcept;  ///< [m]
   [[nodiscard]] const VoxelScene& scene() const noexcept;

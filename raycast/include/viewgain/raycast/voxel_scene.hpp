@@ -41,7 +41,8 @@ class VIEWGAIN_EXPORT VoxelScene {
                                                                const Obstacles& obstacles = {},
                                                                const ExecConfig& exec = {});
   /// The scene of what `grid` is now, with the obstacles of `before`, which stays as it is: as
-  /// build(), but regions that have not changed since a scene of the same grid are copied from it. Throws Error(invalid_argument) for a null scene, and as build().
+  /// build(), but regions that have not changed since a scene of the same grid are copied from it.
+  /// Throws Error(invalid_argument) for a null scene, and as build().
   [[nodiscard]] static std::shared_ptr<const VoxelScene> update(
       const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
       const ExecConfig& exec = {});

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "convert.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+namespace viewgain::c_api {
+namespace {
+
+// As far as a rotation may be off.
+constexpr double kMaxError = 1e-3;
+
+bool has_lowest_row(const double* matrix) {
+  constexpr double row[] = {0, 0, 0, 1};
+  return std::equal(row, row + 4, matrix + 12,
+                    [](double a, double b) { return std::abs(a - b) <= kMaxError; });
+}
+
+}  // namespace
+
+Pose pose_of(const double* matrix) {
+  Pose pose;
+  if (has_lowest_row(matrix)) {
+    std::copy_n(matrix, 12, pose.m.begin());
+  } else {
+    pose.m.fill(std::numeric_limits<double>::quiet_NaN());
+  }
+  return pose;
+}
+
+Pose rigid_pose_of(const double* matrix) {
+  if (!has_lowest_row(matrix)) {
+    std::ostringstream text;
+    text << "the lowest row of a pose is " << matrix[12] << ' ' << matrix[13] << ' ' << matrix[14]
+         << ' ' << matrix[15] << "; it must be 0 0 0 1 (matrices are given row by row)";
+    reject(text.str());
+  }
+  return pose_of(matrix);
+}
+
+std::vector<Pose> poses_of(const double* matrices, std::size_t count) {
+  require_array(matrices, count, "poses");
+  std::vector<Pose> poses(count);
+  for (std::size_t i = 0; i < count; ++i) poses[i] = pose_of(matrices + 16 * i);
+  return poses;
+}
+
+void write_pose(const Pose& pose, double* matrix) {
+  std::copy(pose.m.begin(), pose.m.end(), matrix);
+  std::fill_n(matrix + 12, 3, 0.0);
+  matrix[15] = 1;
+}
+
+void write_poses(std::span<const Pose> poses, double* matrices) {
+  for (std::size_t i = 0; i < poses.size(); ++i) write_pose(poses[i], matrices + 16 * i);
+}
+
+}  // namespace viewgain::c_api

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "status.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+
+namespace viewgain::c_api {
+
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// NaN stands for what is not given.
+[[nodiscard]] inline std::optional<double> given(double value) {
+  return std::isnan(value) ? std::nullopt : std::optional(value);
+}
+
+/// A pose from 16 numbers, row by row; all NaN if the lowest row is off by more than 1e-3.
+[[nodiscard]] Pose pose_of(const double* matrix);
+/// As pose_of(), but throws Error(invalid_argument) for such a row.
+[[nodiscard]] Pose rigid_pose_of(const double* matrix);
+/// count poses of 16 numbers each; throws Error(invalid_argument) for null.
+[[nodiscard]] std::vector<Pose> poses_of(const double* matrices, std::size_t count);
+
+void write_pose(const Pose& pose, double* matrix);
+void write_poses(std::span<const Pose> poses, double* matrices);
+
+/// Throws Error(invalid_argument) for null, another size, or a noise model that does not exist.
+[[nodiscard]] Sensor sensor_of(const vg_sensor* sensor);
+
+[[nodiscard]] inline Eigen::Vector3d vector_of(const double* xyz) {
+  return {xyz[0], xyz[1], xyz[2]};
+}
+
+}  // namespace viewgain::c_api

@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "convert.hpp"
+#include "handles.hpp"
+#include "viewgain/raycast/depth_image.hpp"
+
+using namespace viewgain;
+using namespace viewgain::c_api;
+
+namespace {
+
+static_assert(VG_TRACE == static_cast<int>(Criterion::trace));
+static_assert(VG_VIEW_CAMERA_IN_OCCUPIED == static_cast<int>(ViewStatus::camera_in_occupied));
+static_assert(VG_HIT_OBSTACLE == static_cast<int>(RayHit::Kind::obstacle));
+
+/// A caller's vg_watch for the length of one call.
+class Watcher {
+ public:
+  Watcher(const vg_watch* watch, std::size_t total) : watch_(watch), total_(total) {
+    if (watch == nullptr) return;
+    require_struct(watch, "vg_watch");
+    if (watch->poll == nullptr) reject("poll of vg_watch is null");
+  }
+
+  /// To be used while this lives.
+  [[nodiscard]] BatchControl control() {
+    if (watch_ == nullptr) return {};
+    BatchControl control;
+    control.progress = [this](std::size_t done, std::size_t) {
+      const std::lock_guard lock(mutex_);
+      done_ = std::max(done_, done);
+    };
+    control.is_cancelled = [this] {
+      const std::lock_guard lock(mutex_);
+      return watch_->poll(done_, total_, watch_->user) != 0;
+    };
+    return control;
+  }
+
+  /// At the end of the call. Throws Stopped unless all was done.
+  void finish(bool complete) {
+    if (watch_ == nullptr) return;
+    if (!complete) {
+      throw Stopped("stopped by poll after " + std::to_string(done_) + " of " +
+                    std::to_string(total_) + " poses");
+    }
+    watch_->poll(total_, total_, watch_->user);
+  }
+
+ private:
+  const vg_watch* watch_;
+  std::size_t total_;
+  std::size_t done_ = 0;
+  std::mutex mutex_;
+};
+
+GainConfig settings_of(const vg_evaluator_config& config) {
+  if (config.criterion < VG_LOG_DIAGONAL || config.criterion > VG_TRACE) {
+    reject("criterion is " + std::to_string(config.criterion) + "; the criteria are 0 to 2");
+  }
+  require_array(config.weights, config.weight_count, "weights");
+  GainConfig settings{.criterion = static_cast<Criterion>(config.criterion),
+                      .pixel_stride = config.pixel_stride,
+                      .prior_sigma = given(config.prior_sigma),
+                      .min_range = given(config.min_range),
+                      .max_range = given(config.max_range)};
+  for (const vg_weight_region& region : std::span(config.weights, config.weight_count)) {
+    settings.weights.push_back(
+        {{std::to_array(region.box_min), std::to_array(region.box_max)}, region.weight});
+  }
+  return settings;
+}
+
+/// Scores poses; whether all were.
+bool score(const GainEvaluator& evaluator, std::span<const Pose> poses, std::span<ViewGain> views,
+           bool is_watched, const BatchControl& control) {
+  if (poses.size() == 1 && !is_watched) {
+    views[0] = evaluator.evaluate(poses[0]);
+    return true;
+  }
+  return evaluator.evaluate(poses, views, control) == poses.size();
+}
+
+vg_view_gain written(const ViewGain& view) {
+  return {.gain = view.gain,
+          .exploration = view.exploration,
+          .refinement = view.refinement,
+          .posterior_entropy = view.posterior_entropy,
+          .rays = view.rays,
+          .hits = view.hits,
+          .unknown_voxels = view.unknown_voxels,
+          .occupied_voxels = view.occupied_voxels,
+          .status = static_cast<std::int32_t>(view.status)};
+}
+
+void require_choice(const vg_evaluator* evaluator, std::size_t k, const std::size_t* indices,
+                    const std::size_t* found) {
+  require(evaluator, "evaluator");
+  require_array(indices, k, "indices");
+  require(found, "found");
+}
+
+/// Hands over chosen views; `gains` may be null.
+void hand_over(std::span<const std::size_t> chosen, std::span<const ViewGain> views,
+               std::size_t* indices, double* gains, std::size_t* found) {
+  std::copy(chosen.begin(), chosen.end(), indices);
+  *found = chosen.size();
+  if (gains == nullptr) return;
+  for (std::size_t i = 0; i < views.size(); ++i) gains[i] = views[i].gain;
+}
+
+}  // namespace
+
+void vg_watch_init(vg_watch* watch, size_t struct_size) { initialise(watch, struct_size, {}); }
+
+void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_size) {
+  vg_evaluator_config defaults{};
+  defaults.pixel_stride = 1;
+  defaults.prior_sigma = defaults.min_range = defaults.max_range = kNone;
+  initialise(config, struct_size, defaults);
+}
+
+vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
+                              const vg_evaluator_config* config, vg_evaluator** evaluator) {
+  return make_handle(evaluator, "evaluator", [&] {
+    require(scene, "scene");
+    const Sensor camera = sensor_of(sensor);
+    if (config == nullptr) return GainEvaluator(scene->scene, camera);
+    require_struct(config, "vg_evaluator_config");
+    return GainEvaluator(scene->scene, camera, settings_of(*config),
+                         {.num_threads = config->num_threads});
+  });
+}
+
+void vg_evaluator_release(vg_evaluator* evaluator) { delete evaluator; }
+
+void vg_evaluator_info_init(vg_evaluator_info* info, size_t struct_size) {
+  initialise(info, struct_size, {});
+}
+
+vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluator_info* info) {
+  return guarded([&] {
+    require(evaluator, "evaluator");
+    require_struct(info, "vg_evaluator_info");
+    const GainEvaluator& own = evaluator->evaluator;
+    const PinholeCamera& camera = own.camera();
+    const int stride = own.pixel_stride();
+    *info = {.struct_size = info->struct_size,
+             .image_width = (camera.width + stride - 1) / stride,
+             .image_height = (camera.height + stride - 1) / stride,
+             .rays_per_pose = own.rays_per_pose(),
+             .num_threads = own.num_threads(),
+             .prior_sigma = own.prior_sigma()};
+  });
+}
+
+vg_status vg_evaluate(const vg_evaluator* evaluator, const double* poses, size_t count,
+                      double* gains, const vg_watch* watch) {
+  return guarded([&] {
+    require(evaluator, "evaluator");
+    require_array(gains, count, "gains");
+    Watcher watcher(watch, count);
+    const std::vector<Pose> candidates = poses_of(poses, count);
+    std::vector<ViewGain> views(count);
+    const bool complete =
+        score(evaluator->evaluator, candidates, views, watch != nullptr, watcher.control());
+    for (std::size_t i = 0; i < count; ++i) gains[i] = views[i].gain;
+    watcher.finish(complete);
+  });
+}
+
+vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* poses, size_t count,
+                            vg_view_gain* views, size_t view_size, const vg_watch* watch) {
+  return guarded([&] {
+    require(evaluator, "evaluator");
+    require_array(views, count, "views");
+    require_size(view_size, sizeof(vg_view_gain), "vg_view_gain (view_size)");
+    Watcher watcher(watch, count);
+    const std::vector<Pose> candidates = poses_of(poses, count);
+    std::vector<ViewGain> own(count);
+    const bool complete =
+        score(evaluator->evaluator, candidates, own, watch != nullptr, watcher.control());
+    std::transform(own.begin(), own.end(), views, written);
+    watcher.finish(complete);
+  });
+}
+
+vg_status vg_best(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
+                  size_t* indices, double* gains, size_t* found, const vg_watch* watch) {
+  return guarded([&] {
+    require_choice(evaluator, k, indices, found);
+    *found = 0;
+    Watcher watcher(watch, count);
+    const BestViews best = evaluator->evaluator.best(poses_of(poses, count), k, watcher.control());
+    hand_over(best.indices, best.gains, indices, gains, found);
+    watcher.finish(best.complete);
+  });
+}
+
+vg_status vg_race(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
+                  uint64_t seed, size_t* indices, double* gains, size_t* found,
+                  const vg_watch* watch) {
+  return guarded([&] {
+    require_choice(evaluator, k, indices, found);
+    *found = 0;
+    Watcher watcher(watch, count);
+    const BestViews best =
+        evaluator->evaluator.race(poses_of(poses, count), k, {.seed = seed}, watcher.control());
+    hand_over(best.indices, best.gains, indices, gains, found);
+    watcher.finish(best.complete);
+  });
+}
+
+vg_status vg_best_set(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
+                      size_t* indices, double* gains, size_t* found, const vg_watch* watch) {
+  return guarded([&] {
+    require_choice(evaluator, k, indices, found);
+    *found = 0;
+    Watcher watcher(watch, std::min(k, count));
+    const ViewSet set = evaluator->evaluator.best_set(poses_of(poses, count), k, watcher.control());
+    hand_over(set.indices, set.marginal, indices, gains, found);
+    watcher.finish(set.complete);
+  });
+}
+
+vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_world_camera[16],
+                         float* depth, uint8_t* labels, size_t count) {
+  return guarded([&] {
+    require(evaluator, "evaluator");
+    require(T_world_camera, "T_world_camera");
+    require(depth, "depth");
+    const std::size_t pixels = evaluator->evaluator.rays_per_pose();
+    if (count != pixels) {
+      reject("room for " + std::to_string(count) + " pixels, but the image has " +
+             std::to_string(pixels));
+    }
+    const DepthImage image = depth_image(evaluator->evaluator, rigid_pose_of(T_world_camera));
+    std::copy(image.depth.begin(), image.depth.end(), depth);
+    if (labels == nullptr) return;
+    std::transform(image.labels.begin(), image.labels.end(), labels,
+                   [](RayHit::Kind kind) { return static_cast<std::uint8_t>(kind); });
+  });
+}
+
+vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_camera[16],
+                           vg_contribution* contributions, size_t contribution_size,
+                           size_t capacity, size_t* found) {
+  return guarded([&] {
+    require(evaluator, "evaluator");
+    require(T_world_camera, "T_world_camera");
+    require_array(contributions, capacity, "contributions");
+    require(found, "found");
+    require_size(contribution_size, sizeof(vg_contribution), "vg_contribution (contribution_size)");
+    const Pose pose = rigid_pose_of(T_world_camera);
+    const std::vector<VoxelContribution> own = evaluator->evaluator.contributions(pose);
+    if (own.empty() && evaluator->evaluator.evaluate(pose).status == ViewStatus::bad_pose) {
+      reject("the pose is off from a rigid transform by " +
+             std::to_string(orthonormality_error(pose)) + "; 1e-3 is allowed");
+    }
+    *found = own.size();
+    for (std::size_t i = 0; i < std::min(capacity, own.size()); ++i) {
+      const VoxelContribution& part = own[i];
+      contributions[i] = {.voxel = {part.voxel.x, part.voxel.y, part.voxel.z},
+                          .state = static_cast<std::int32_t>(part.state),
+                          .rays = part.rays,
+                          .gain = part.gain};
+    }
+  });
+}

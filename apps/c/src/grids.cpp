@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+
+#include "convert.hpp"
+#include "handles.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+
+using namespace viewgain;
+using namespace viewgain::c_api;
+
+void vg_grid_config_init(vg_grid_config* config, size_t struct_size) {
+  vg_grid_config defaults{};
+  write_pose(Pose{}, defaults.T_world_grid);
+  initialise(config, struct_size, defaults);
+}
+
+vg_status vg_grid_create(const vg_grid_config* config, vg_grid** grid) {
+  return make_handle(grid, "grid", [&] {
+    require_struct(config, "vg_grid_config");
+    return BeliefGrid(
+        {.voxel_size = config->voxel_size,
+         .workspace = {std::to_array(config->box_min), std::to_array(config->box_max)},
+         .T_world_grid = rigid_pose_of(config->T_world_grid),
+         .prior_sigma = config->prior_sigma});
+  });
+}
+
+vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3], const double origin[3],
+                              double voxel_size, double prior_sigma, vg_grid** grid) {
+  return make_handle(grid, "grid", [&] {
+    require(labels, "labels");
+    require(dims, "dims");
+    require(origin, "origin");
+    GridConfig config{.voxel_size = voxel_size,
+                      .T_world_grid = {Eigen::Matrix3d::Identity(), vector_of(origin)},
+                      .prior_sigma = prior_sigma};
+    // A grid checks its own size, too, but not before it has been given all of the array.
+    constexpr std::int32_t kMaxEdge = 65'536;
+    std::size_t count = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (dims[axis] < 1 || dims[axis] > kMaxEdge) {
+        reject("dims are " + std::to_string(dims[0]) + " x " + std::to_string(dims[1]) + " x " +
+               std::to_string(dims[2]) + "; each must be in 1..65536");
+      }
+      count *= static_cast<std::size_t>(dims[axis]);
+      config.workspace.max[axis] = dims[axis] * voxel_size;
+    }
+    return BeliefGrid::from_states(config, std::span(labels, count));
+  });
+}
+
+vg_status vg_grid_load(const char* path, vg_grid** grid) {
+  return make_handle(grid, "grid", [&] {
+    require(path, "path");
+    return load_vdb(path);
+  });
+}
+
+vg_status vg_grid_save(const vg_grid* grid, const char* path) {
+  return guarded([&] {
+    require(grid, "grid");
+    require(path, "path");
+    save_vdb(grid->grid, path);
+  });
+}
+
+vg_status vg_grid_clone(const vg_grid* grid, vg_grid** copy) {
+  return make_handle(copy, "copy", [&] {
+    require(grid, "grid");
+    return grid->grid.clone();
+  });
+}
+
+void vg_grid_release(vg_grid* grid) { delete grid; }
+
+void vg_grid_info_init(vg_grid_info* info, size_t struct_size) {
+  initialise(info, struct_size, {});
+}
+
+vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info) {
+  return guarded([&] {
+    require(grid, "grid");
+    require_struct(info, "vg_grid_info");
+    const BeliefGrid& map = grid->grid;
+    const GridStatistics statistics = map.statistics();
+    const Index3 base = map.min_index(), dims = map.dims();
+    *info = {.struct_size = info->struct_size,
+             .min_index = {base.x, base.y, base.z},
+             .dims = {dims.x, dims.y, dims.z},
+             .voxel_size = map.voxel_size(),
+             .prior_sigma = map.prior_sigma(),
+             .T_world_grid = {},
+             .unknown = statistics.unknown,
+             .free = statistics.free,
+             .occupied = statistics.occupied,
+             .views = map.views().size(),
+             .bytes = statistics.bytes,
+             .entropy_removed = statistics.entropy_removed};
+    write_pose(map.T_world_grid(), info->T_world_grid);
+  });
+}
+
+vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count) {
+  return guarded([&] {
+    require(grid, "grid");
+    require(states, "states");
+    if (count != grid->grid.voxel_count()) {
+      reject("room for " + std::to_string(count) + " states, but the grid has " +
+             std::to_string(grid->grid.voxel_count()) + " voxels");
+    }
+    grid->grid.copy_states({states, count});
+  });
+}
+
+vg_status vg_grid_hash(const vg_grid* grid, char hash[17]) {
+  return guarded([&] {
+    require(grid, "grid");
+    require(hash, "hash");
+    const std::string digits = grid->grid.content_hash();
+    std::copy_n(digits.c_str(), 17, hash);
+  });
+}
+
+void vg_integrator_config_init(vg_integrator_config* config, size_t struct_size) {
+  vg_integrator_config defaults{};
+  defaults.support_plane = kNone;
+  initialise(config, struct_size, defaults);
+}
+
+void vg_integration_report_init(vg_integration_report* report, size_t struct_size) {
+  initialise(report, struct_size, {});
+}
+
+vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_config* config,
+                               vg_integrator** integrator) {
+  return make_handle(integrator, "integrator", [&] {
+    const Sensor camera = sensor_of(sensor);
+    IntegrationConfig settings;
+    ExecConfig exec;
+    if (config != nullptr) {
+      require_struct(config, "vg_integrator_config");
+      if (config->carve != VG_CARVE_CONES && config->carve != VG_CARVE_LINES) {
+        reject("carve is " + std::to_string(config->carve) + "; it must be 0 or 1 (VG_CARVE_)");
+      }
+      if (config->occupancy != VG_OCCUPANCY_PROBABILISTIC &&
+          config->occupancy != VG_OCCUPANCY_LITERAL) {
+        reject("occupancy is " + std::to_string(config->occupancy) +
+               "; it must be 0 or 1 (VG_OCCUPANCY_)");
+      }
+      settings = {static_cast<Carve>(config->carve), static_cast<Occupancy>(config->occupancy),
+                  given(config->support_plane)};
+      exec.num_threads = config->num_threads;
+    }
+    return vg_integrator{FrameIntegrator(camera, settings, exec), camera.camera.width,
+                         camera.camera.height};
+  });
+}
+
+vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* depth,
+                       const float* amplitude, const double T_world_camera[16],
+                       vg_integration_report* report) {
+  return guarded([&] {
+    require(integrator, "integrator");
+    require(grid, "grid");
+    require(depth, "depth");
+    require(T_world_camera, "T_world_camera");
+    if (report != nullptr) require_struct(report, "vg_integration_report");
+    DepthFrame frame;
+    frame.width = integrator->width;
+    frame.height = integrator->height;
+    const auto count =
+        static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
+    frame.depth.assign(depth, depth + count);
+    if (amplitude != nullptr) frame.amplitude.assign(amplitude, amplitude + count);
+    const IntegrationReport counts =
+        integrator->integrator.integrate(grid->grid, frame, rigid_pose_of(T_world_camera));
+    if (report == nullptr) return;
+    *report = {.struct_size = report->struct_size,
+               .readings = counts.readings,
+               .plane_readings = counts.plane_readings,
+               .out_of_range = counts.out_of_range,
+               .invalid = counts.invalid,
+               .readings_inside = counts.readings_inside,
+               .voxels_hit = counts.voxels_hit,
+               .voxels_crossed = counts.voxels_crossed};
+  });
+}
+
+void vg_integrator_release(vg_integrator* integrator) { delete integrator; }

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "convert.hpp"
+#include "handles.hpp"
+
+using namespace viewgain;
+using namespace viewgain::c_api;
+
+namespace {
+
+static_assert(VG_INFEASIBLE_TOO_NEAR == static_cast<int>(Infeasibility::too_near));
+
+Obstacles obstacles_of(const vg_scene_config& config) {
+  require_array(config.boxes, config.box_count, "boxes");
+  require_array(config.vertices, config.vertex_count, "vertices");
+  require_array(config.triangles, config.triangle_count, "triangles");
+  Obstacles obstacles;
+  for (std::size_t i = 0; i < config.box_count; ++i) {
+    const double* box = config.boxes + 6 * i;
+    obstacles.boxes.push_back({{box[0], box[1], box[2]}, {box[3], box[4], box[5]}});
+  }
+  if (config.triangle_count == 0) return obstacles;
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i < config.vertex_count; ++i) {
+    const double* p = config.vertices + 3 * i;
+    mesh.vertices.push_back({p[0], p[1], p[2]});
+  }
+  for (std::size_t i = 0; i < config.triangle_count; ++i) {
+    const std::uint32_t* corners = config.triangles + 3 * i;
+    mesh.triangles.push_back({corners[0], corners[1], corners[2]});
+  }
+  obstacles.meshes.push_back(std::move(mesh));
+  return obstacles;
+}
+
+FeasibilityConfig settings_of(const vg_feasibility_config& config) {
+  FeasibilityConfig settings;
+  settings.body.size = std::to_array(config.body_size);
+  if (config.has_flange != 0) {
+    settings.body.T_flange_camera = rigid_pose_of(config.T_flange_camera);
+  }
+  settings.clearance = config.clearance;
+  settings.taken_tolerance = {config.taken_distance, config.taken_angle};
+  settings.support_plane = given(config.support_plane);
+  if (config.sensor != nullptr) {
+    settings.sensor = sensor_of(config.sensor);
+    settings.sensor->validate();
+  }
+  settings.max_near_share = config.max_near_share;
+  if (config.reachable != nullptr) {
+    settings.reach.predicate = [reachable = config.reachable,
+                                user = config.user](const Pose& T_world_camera) {
+      std::array<double, 16> matrix{};
+      write_pose(T_world_camera, matrix.data());
+      return reachable(matrix.data(), user) != 0;
+    };
+  }
+  return settings;
+}
+
+}  // namespace
+
+void vg_scene_config_init(vg_scene_config* config, size_t struct_size) {
+  initialise(config, struct_size, {});
+}
+
+vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config, vg_scene** scene) {
+  return make_handle(scene, "scene", [&] {
+    require(grid, "grid");
+    if (config == nullptr) return VoxelScene::build(grid->grid);
+    require_struct(config, "vg_scene_config");
+    return VoxelScene::build(grid->grid, obstacles_of(*config),
+                             {.num_threads = config->num_threads});
+  });
+}
+
+vg_status vg_scene_update(const vg_scene* before, const vg_grid* grid, int32_t num_threads,
+                          vg_scene** scene) {
+  return make_handle(scene, "scene", [&] {
+    require(before, "before");
+    require(grid, "grid");
+    return VoxelScene::update(before->scene, grid->grid, {.num_threads = num_threads});
+  });
+}
+
+void vg_scene_release(vg_scene* scene) { delete scene; }
+
+void vg_feasibility_config_init(vg_feasibility_config* config, size_t struct_size) {
+  const FeasibilityConfig own;
+  vg_feasibility_config defaults{};
+  std::copy(own.body.size.begin(), own.body.size.end(), defaults.body_size);
+  write_pose(Pose{}, defaults.T_flange_camera);
+  defaults.clearance = own.clearance;
+  defaults.support_plane = kNone;
+  defaults.taken_distance = own.taken_tolerance.distance;
+  defaults.taken_angle = own.taken_tolerance.angle;
+  defaults.max_near_share = own.max_near_share;
+  initialise(config, struct_size, defaults);
+}
+
+vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibility_config* config,
+                                vg_feasibility** feasibility) {
+  return make_handle(feasibility, "feasibility", [&] {
+    require(scene, "scene");
+    if (config == nullptr) return FeasibilityChecker(scene->scene, {});
+    require_struct(config, "vg_feasibility_config");
+    return FeasibilityChecker(scene->scene, settings_of(*config));
+  });
+}
+
+vg_status vg_feasibility_check(const vg_feasibility* feasibility, const double* poses, size_t count,
+                               const double* taken, size_t taken_count, int32_t* reasons) {
+  return guarded([&] {
+    require(feasibility, "feasibility");
+    require_array(reasons, count, "reasons");
+    require_array(taken, taken_count, "taken");
+    const std::vector<Pose> views = poses_of(taken, taken_count);
+    const std::vector<Pose> candidates = poses_of(poses, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      reasons[i] = static_cast<std::int32_t>(feasibility->checker.check(candidates[i], views));
+    }
+  });
+}
+
+void vg_feasibility_release(vg_feasibility* feasibility) { delete feasibility; }

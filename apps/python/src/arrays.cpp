@@ -1,0 +1,243 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "arrays.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+namespace viewgain::python {
+namespace {
+
+constexpr double kRigid = 1e-3;
+
+std::string wanted_text(const Shape& wanted) {
+  std::string text = "(";
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (i > 0) text += ", ";
+    text += wanted[i] < 0 ? std::string("n") : std::to_string(wanted[i]);
+  }
+  return text + ")";
+}
+
+[[noreturn]] void reject_shape(const char* name, const std::string& wanted,
+                               const py::array& array) {
+  throw py::value_error(std::string(name) + " must have the shape " + wanted + ", not " +
+                        shape_text(array));
+}
+
+// The pose of 16 numbers; NaN if its last row is none.
+Pose pose_of(const double* m) {
+  Pose pose;
+  std::copy_n(m, 12, pose.m.begin());
+  const std::array<double, 4> last{0, 0, 0, 1};
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!(std::abs(m[12 + i] - last[i]) <= kRigid)) {
+      pose.m[0] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return pose;
+}
+
+// What is wrong with the pose, which is pose_of(m); empty if nothing.
+std::string fault_of(const Pose& pose, const double* m) {
+  if (!std::all_of(m, m + 16, [](double x) { return std::isfinite(x); })) {
+    return "has a number that is not finite";
+  }
+  if (!std::isfinite(pose.m[0])) return "has a last row that is not 0 0 0 1";
+  const double error = orthonormality_error(pose);
+  if (!(error <= kRigid)) {
+    return "has a rotation that is off by " + std::to_string(error) +
+           " from orthonormal and right-handed";
+  }
+  return {};
+}
+
+std::string index_text(std::size_t index, const Shape& shape) {
+  if (shape.empty()) return "";
+  std::string text;
+  for (std::size_t axis = shape.size(); axis-- > 0;) {
+    const auto extent = static_cast<std::size_t>(shape[axis]);
+    text.insert(0, std::to_string(index % extent) + (text.empty() ? "" : ", "));
+    index /= extent;
+  }
+  return "[" + text + "]";
+}
+
+[[noreturn]] void raise_os_error(int code, const std::string& path) {
+  errno = code;
+  PyErr_SetFromErrnoWithFilename(PyExc_OSError, path.c_str());
+  throw py::error_already_set();
+}
+
+}  // namespace
+
+std::string shape_text(const py::array& array) {
+  std::string text = "(";
+  for (py::ssize_t i = 0; i < array.ndim(); ++i) {
+    if (i > 0) text += ", ";
+    text += std::to_string(array.shape(i));
+  }
+  return text + (array.ndim() == 1 ? ",)" : ")");
+}
+
+Doubles doubles(const py::handle& value, const char* name) {
+  const py::array any = py::array::ensure(value);
+  if (!any) {
+    PyErr_Clear();
+    throw py::value_error(std::string(name) + " must be an array of numbers");
+  }
+  const char kind = any.dtype().kind();
+  if (kind != 'f' && kind != 'i' && kind != 'u') {
+    throw py::value_error(std::string(name) + " must hold real numbers, not dtype " +
+                          py::str(any.dtype()).cast<std::string>());
+  }
+  Doubles array = Doubles::ensure(any);
+  if (!array) throw py::error_already_set();
+  return array;
+}
+
+Doubles doubles(const py::handle& value, const char* name, const Shape& wanted) {
+  Doubles array = doubles(value, name);
+  bool same = array.ndim() == static_cast<py::ssize_t>(wanted.size());
+  for (std::size_t i = 0; same && i < wanted.size(); ++i) {
+    same = wanted[i] < 0 || wanted[i] == array.shape(static_cast<py::ssize_t>(i));
+  }
+  if (!same) reject_shape(name, wanted_text(wanted), array);
+  return array;
+}
+
+PoseBatch pose_batch(const py::handle& value, const char* name, bool strict) {
+  const Doubles array = doubles(value, name);
+  const py::ssize_t axes = array.ndim();
+  if (axes < 2 || array.shape(axes - 1) != 4 || array.shape(axes - 2) != 4) {
+    reject_shape(name, "(..., 4, 4)", array);
+  }
+  PoseBatch batch;
+  batch.shape.assign(array.shape(), array.shape() + (axes - 2));
+  const auto count = static_cast<std::size_t>(array.size() / 16);
+  batch.poses.reserve(count);
+  const double* m = array.data();
+  for (std::size_t i = 0; i < count; ++i, m += 16) {
+    batch.poses.push_back(pose_of(m));
+    if (!strict) continue;
+    const std::string fault = fault_of(batch.poses.back(), m);
+    if (!fault.empty()) {
+      throw py::value_error(std::string(name) + index_text(i, batch.shape) + " " + fault);
+    }
+  }
+  return batch;
+}
+
+Pose one_pose(const py::handle& value, const char* name) {
+  PoseBatch batch = pose_batch(value, name, true);
+  if (!batch.shape.empty()) reject_shape(name, "(4, 4)", doubles(value, name));
+  return batch.poses.front();
+}
+
+std::optional<Pose> optional_pose(const py::object& value, const char* name) {
+  if (value.is_none()) return std::nullopt;
+  return one_pose(value, name);
+}
+
+std::vector<Pose> pose_list(const py::handle& value, const char* name) {
+  PoseBatch batch = pose_batch(value, name, true);
+  if (batch.shape.size() != 1) reject_shape(name, "(n, 4, 4)", doubles(value, name));
+  return std::move(batch.poses);
+}
+
+py::array_t<double> to_array(std::span<const Pose> poses, const Shape& leading) {
+  Shape shape = leading;
+  shape.insert(shape.end(), {4, 4});
+  py::array_t<double> array(shape);
+  double* m = array.mutable_data();
+  for (const Pose& pose : poses) {
+    m = std::copy(pose.m.begin(), pose.m.end(), m);
+    for (const double last : {0.0, 0.0, 0.0, 1.0}) *m++ = last;
+  }
+  return array;
+}
+
+py::array_t<double> to_array(const Pose& pose) { return to_array(std::span(&pose, 1), {}); }
+
+Eigen::Vector3d vector3(const py::handle& value, const char* name) {
+  const Doubles array = doubles(value, name, {3});
+  return {array.at(0), array.at(1), array.at(2)};
+}
+
+std::vector<std::array<double, 3>> points(const py::handle& value, const char* name) {
+  const Doubles array = doubles(value, name, {-1, 3});
+  std::vector<std::array<double, 3>> result(static_cast<std::size_t>(array.shape(0)));
+  const double* x = array.data();
+  for (auto& p : result) {
+    std::copy_n(x, 3, p.begin());
+    x += 3;
+  }
+  return result;
+}
+
+Box box(const py::handle& value, const char* name) {
+  const Doubles array = doubles(value, name, {2, 3});
+  Box result;
+  std::copy_n(array.data(), 3, result.min.begin());
+  std::copy_n(array.data() + 3, 3, result.max.begin());
+  return result;
+}
+
+TriangleMesh triangle_mesh(const py::handle& vertices, const py::handle& triangles) {
+  TriangleMesh mesh;
+  mesh.vertices = points(vertices, "vertices");
+  const Doubles array = doubles(triangles, "triangles", {-1, 3});
+  mesh.triangles.resize(static_cast<std::size_t>(array.shape(0)));
+  const double* index = array.data();
+  for (auto& triangle : mesh.triangles) {
+    for (std::uint32_t& corner : triangle) {
+      const double number = *index++;
+      if (!(number >= 0 && number < static_cast<double>(mesh.vertices.size())) ||
+          number != std::floor(number)) {
+        throw py::value_error("triangles has the index " + std::to_string(number) +
+                              " but there are " + std::to_string(mesh.vertices.size()) +
+                              " vertices");
+      }
+      corner = static_cast<std::uint32_t>(number);
+    }
+  }
+  return mesh;
+}
+
+std::vector<float> image(const py::handle& value, const char* name, int height, int width) {
+  const Doubles array = doubles(value, name, {height, width});
+  std::vector<float> pixels(static_cast<std::size_t>(array.size()));
+  std::transform(array.data(), array.data() + array.size(), pixels.begin(),
+                 [](double x) { return static_cast<float>(x); });
+  return pixels;
+}
+
+py::object scalar_or_array(const py::array& array) {
+  if (array.ndim() > 0) return array;
+  return array[py::tuple()];
+}
+
+void require_file(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) raise_os_error(ENOENT, path);
+  if (std::filesystem::is_directory(path, error)) raise_os_error(EISDIR, path);
+}
+
+void require_folder_of(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
+    raise_os_error(ENOENT, folder.string());
+  }
+}
+
+std::string file_path(const py::handle& value) {
+  const auto path = py::reinterpret_steal<py::object>(PyOS_FSPath(value.ptr()));
+  if (!path) throw py::error_already_set();
+  return path.cast<std::string>();
+}
+
+}  // namespace viewgain::python

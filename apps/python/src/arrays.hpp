@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "viewgain/core/box.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/triangle_mesh.hpp"
+
+namespace viewgain::python {
+
+namespace py = pybind11;
+
+// From Python's arrays to the library's types and back. All need the GIL. `name` is the argument's,
+// for messages; each throws py::value_error that names it and the shape or dtype that came.
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Shape = std::vector<py::ssize_t>;
+
+/// "(3, 4)"
+[[nodiscard]] std::string shape_text(const py::array& array);
+
+/// Real numbers as C-contiguous float64: the caller's own memory if they are that already, else
+/// converted once.
+[[nodiscard]] Doubles doubles(const py::handle& value, const char* name);
+
+/// The same for a wanted shape; -1 stands for any extent.
+[[nodiscard]] Doubles doubles(const py::handle& value, const char* name, const Shape& wanted);
+
+/// Poses and the shape of the array without its last two axes.
+struct PoseBatch {
+  std::vector<Pose> poses;
+  Shape shape;
+};
+
+/// T_world_camera (..., 4, 4). A last row that is off from 0 0 0 1 by more than 1e-3 makes a bad
+/// pose (NaN), as does a rotation that is off by more than 1e-3; with `strict`, or for single poses
+/// that a map is built from, these throw and name the pose's index.
+[[nodiscard]] PoseBatch pose_batch(const py::handle& value, const char* name, bool strict);
+[[nodiscard]] Pose one_pose(const py::handle& value, const char* name);
+[[nodiscard]] std::optional<Pose> optional_pose(const py::object& value, const char* name);
+/// (n, 4, 4), every one good.
+[[nodiscard]] std::vector<Pose> pose_list(const py::handle& value, const char* name);
+
+[[nodiscard]] py::array_t<double> to_array(std::span<const Pose> poses, const Shape& leading);
+[[nodiscard]] py::array_t<double> to_array(const Pose& pose);
+
+[[nodiscard]] Eigen::Vector3d vector3(const py::handle& value, const char* name);
+[[nodiscard]] std::vector<std::array<double, 3>> points(const py::handle& value, const char* name);
+/// (2, 3): lowest and highest corner.
+[[nodiscard]] Box box(const py::handle& value, const char* name);
+/// A pair of vertices (n, 3) and triangles (m, 3).
+[[nodiscard]] TriangleMesh triangle_mesh(const py::handle& vertices, const py::handle& triangles);
+
+/// Single precision (height, width), row by row.
+[[nodiscard]] std::vector<float> image(const py::handle& value, const char* name, int height,
+                                       int width);
+
+/// A copy of `values` as an array of one axis.
+template <typename T>
+[[nodiscard]] py::array_t<T> to_array_1d(std::span<const T> values) {
+  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+/// A copy of `values`, three columns each.
+template <typename T>
+[[nodiscard]] py::array_t<T> to_array_3(const std::vector<std::array<T, 3>>& values) {
+  return py::array_t<T>(Shape{static_cast<py::ssize_t>(values.size()), 3},
+                        values.empty() ? nullptr : values.front().data());
+}
+
+/// An array without axes becomes numpy's scalar, as numpy's own functions do it.
+[[nodiscard]] py::object scalar_or_array(const py::array& array);
+
+/// Throw FileNotFoundError, or another OSError, with the file's name as Python has it.
+void require_file(const std::string& path);
+void require_folder_of(const std::string& path);
+/// Of a str, bytes or os.PathLike.
+[[nodiscard]] std::string file_path(const py::handle& value);
+
+}  // namespace viewgain::python

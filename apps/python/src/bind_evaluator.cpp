@@ -1,0 +1,498 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "batch_call.hpp"
+#include "bindings.hpp"
+#include "depth_images.hpp"
+#include "python_call.hpp"
+#include "viewgain/raycast/depth_image.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::python {
+
+/// A pixel of GainEvaluator.trace().
+struct HitRow {
+  std::uint8_t kind;
+  std::array<std::int32_t, 3> voxel;
+  double range;
+};
+
+/// A row of GainEvaluator.contributions().
+struct ContributionRow {
+  std::array<std::int32_t, 3> voxel;
+  std::uint8_t state;
+  std::uint32_t rays;
+  double gain;
+};
+
+/// What a gain of the user's own sees of a ray.
+struct OwnHitRow {
+  std::array<std::int32_t, 3> voxel;
+  std::uint8_t state;
+  std::uint32_t readings;
+  std::array<float, 6> information;
+  std::int64_t ray;
+  double range;
+  std::array<double, 3> direction;
+};
+
+namespace {
+
+// So few poses are through before anybody could wait for Ctrl-C; a thread for them would cost more
+// than they do.
+constexpr std::size_t kFewPoses = 8;
+
+struct Evaluator {
+  std::shared_ptr<VoxelScene> scene;
+  Sensor sensor;
+  std::string criterion;
+  int pixel_stride = 1;
+  GainEvaluator evaluator;
+
+  [[nodiscard]] int width() const { return (sensor.camera.width - 1) / pixel_stride + 1; }
+  [[nodiscard]] int height() const { return (sensor.camera.height - 1) / pixel_stride + 1; }
+};
+
+std::unique_ptr<Evaluator> make(std::shared_ptr<VoxelScene> scene, const Sensor& sensor,
+                                const std::string& criterion, int pixel_stride,
+                                std::optional<double> prior_sigma, std::optional<double> min_range,
+                                std::optional<double> max_range, const py::iterable& weights,
+                                int num_threads) {
+  GainConfig config;
+  config.criterion = parse_criterion(criterion);
+  config.pixel_stride = pixel_stride;
+  config.prior_sigma = prior_sigma;
+  config.min_range = min_range;
+  config.max_range = max_range;
+  for (const py::handle entry : weights) {
+    if (!py::isinstance<py::sequence>(entry) || py::len(entry) != 2) {
+      throw py::value_error("each of weights must be a pair (box, weight)");
+    }
+    const auto pair = py::reinterpret_borrow<py::sequence>(entry);
+    const py::object region = pair[0], weight = pair[1];
+    config.weights.push_back({box(region, "weights' box"), weight.cast<double>()});
+  }
+  GainEvaluator evaluator(scene, sensor, config, ExecConfig{num_threads});
+  return std::unique_ptr<Evaluator>(
+      new Evaluator{std::move(scene), sensor, criterion, pixel_stride, std::move(evaluator)});
+}
+
+void score(const Evaluator& self, std::span<const Pose> poses, std::span<ViewGain> results,
+           Control* control) {
+  if (poses.size() > kFewPoses || control != nullptr) {
+    run_batch(control,
+              [&](const BatchControl& batch) { self.evaluator.evaluate(poses, results, batch); });
+    return;
+  }
+  const py::gil_scoped_release without_gil;
+  self.evaluator.evaluate(poses, results);
+}
+
+py::object evaluate(const Evaluator& self, const py::object& T_world_camera, bool strict,
+                    Control* control) {
+  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", strict);
+  py::array_t<double> gains(batch.shape);
+  std::vector<ViewGain> results(batch.poses.size());
+  score(self, batch.poses, results, control);
+  std::transform(results.begin(), results.end(), gains.mutable_data(),
+                 [](const ViewGain& view) { return view.gain; });
+  return scalar_or_array(gains);
+}
+
+py::object evaluate_detailed(const Evaluator& self, const py::object& T_world_camera, bool strict,
+                             Control* control) {
+  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", strict);
+  py::array_t<ViewGain> views(batch.shape);
+  score(self, batch.poses, {views.mutable_data(), batch.poses.size()}, control);
+  return scalar_or_array(views);
+}
+
+py::array_t<std::int64_t> index_array(const std::vector<std::size_t>& indices) {
+  py::array_t<std::int64_t> array(static_cast<py::ssize_t>(indices.size()));
+  std::transform(indices.begin(), indices.end(), array.mutable_data(),
+                 [](std::size_t i) { return static_cast<std::int64_t>(i); });
+  return array;
+}
+
+py::object chosen(const BestViews& best, bool return_gains) {
+  py::object indices = index_array(best.indices);
+  if (!return_gains) return indices;
+  return py::make_tuple(indices, to_array_1d<ViewGain>(best.gains));
+}
+
+py::object best(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
+                bool return_gains, Control* control) {
+  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  BestViews result;
+  run_batch(control, [&](const BatchControl& watched) {
+    result = self.evaluator.best(batch.poses, k, watched);
+  });
+  return chosen(result, return_gains);
+}
+
+py::object race(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
+                double interval, double first_share, double keep, std::uint64_t seed,
+                bool return_gains, Control* control) {
+  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const RaceConfig config{interval, first_share, keep, seed};
+  BestViews result;
+  run_batch(control, [&](const BatchControl& watched) {
+    result = self.evaluator.race(batch.poses, k, config, watched);
+  });
+  return chosen(result, return_gains);
+}
+
+py::object best_set(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
+                    bool return_gains, Control* control) {
+  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  ViewSet set;
+  run_batch(control, [&](const BatchControl& watched) {
+    set = self.evaluator.best_set(batch.poses, k, watched);
+  });
+  py::object indices = index_array(set.indices);
+  if (!return_gains) return indices;
+  return py::make_tuple(indices, to_array_1d<ViewGain>(set.marginal));
+}
+
+py::object approximate(const Evaluator& self, const py::object& T_world_camera, double share,
+                       int groups, std::size_t anchors, std::uint64_t seed, Control* control) {
+  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const ApproximateConfig config{share, groups, anchors, seed};
+  py::array_t<ApproximateGain> estimates(batch.shape);
+  const std::span<ApproximateGain> out(estimates.mutable_data(), batch.poses.size());
+  run_batch(control, [&](const BatchControl& watched) {
+    self.evaluator.approximate(batch.poses, out, config, watched);
+  });
+  return scalar_or_array(estimates);
+}
+
+std::vector<RayHit> trace(const Evaluator& self, const py::object& T_world_camera) {
+  const Pose pose = one_pose(T_world_camera, "T_world_camera");
+  const py::gil_scoped_release without_gil;
+  return self.evaluator.trace(pose);
+}
+
+py::array_t<HitRow> trace_array(const Evaluator& self, const py::object& T_world_camera) {
+  const std::vector<RayHit> hits = trace(self, T_world_camera);
+  py::array_t<HitRow> rows(Shape{self.height(), self.width()});
+  std::transform(hits.begin(), hits.end(), rows.mutable_data(), [](const RayHit& hit) {
+    return HitRow{
+        static_cast<std::uint8_t>(hit.kind), {hit.voxel.x, hit.voxel.y, hit.voxel.z}, hit.range};
+  });
+  return rows;
+}
+
+py::array_t<float> depth(const Evaluator& self, const py::object& T_world_camera) {
+  const Pose pose = one_pose(T_world_camera, "T_world_camera");
+  DepthImage image;
+  {
+    const py::gil_scoped_release without_gil;
+    image = depth_image(self.evaluator, pose);
+  }
+  return image_array(image.depth, image.height, image.width);
+}
+
+py::array_t<ContributionRow> contributions(const Evaluator& self,
+                                           const py::object& T_world_camera) {
+  const Pose pose = one_pose(T_world_camera, "T_world_camera");
+  std::vector<ContributionRow> rows;
+  {
+    const py::gil_scoped_release without_gil;
+    for (const VoxelContribution& c : self.evaluator.contributions(pose)) {
+      rows.push_back(
+          {{c.voxel.x, c.voxel.y, c.voxel.z}, static_cast<std::uint8_t>(c.state), c.rays, c.gain});
+    }
+  }
+  return to_array_1d<ContributionRow>(rows);
+}
+
+// A Python callable as a gain; takes the GIL for each view.
+class PythonMeasure : public ViewMeasure {
+ public:
+  explicit PythonMeasure(py::object callable) : call_(std::move(callable)) {}
+
+  double measure(const Pose& T_world_camera, std::span<const ViewHit> hits) const override {
+    const py::gil_scoped_acquire with_gil;
+    py::array_t<OwnHitRow> rows(static_cast<py::ssize_t>(hits.size()));
+    std::transform(hits.begin(), hits.end(), rows.mutable_data(), [](const ViewHit& hit) {
+      OwnHitRow row{{hit.voxel.x, hit.voxel.y, hit.voxel.z},
+                    static_cast<std::uint8_t>(hit.state),
+                    0,
+                    {},
+                    static_cast<std::int64_t>(hit.ray),
+                    hit.range,
+                    hit.direction};
+      if (hit.belief != nullptr) {
+        row.readings = hit.belief->hits;
+        row.information = hit.belief->information;
+      }
+      return row;
+    });
+    return call_.get()(to_array(T_world_camera), rows).cast<double>();
+  }
+
+ private:
+  PythonCall call_;
+};
+
+py::object evaluate_own(const Evaluator& self, const py::object& T_world_camera,
+                        const py::object& measure, Control* control) {
+  if (PyCallable_Check(measure.ptr()) == 0) throw py::type_error("measure must be callable");
+  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const PythonMeasure own(measure);
+  py::array_t<double> gains(batch.shape);
+  const std::span<double> out(gains.mutable_data(), batch.poses.size());
+  run_batch(control, [&](const BatchControl& watched) {
+    self.evaluator.evaluate(batch.poses, own, out, watched);
+  });
+  return scalar_or_array(gains);
+}
+
+void bind_rows() {
+  PYBIND11_NUMPY_DTYPE(ViewGain, gain, exploration, refinement, posterior_entropy, rays, hits,
+                       unknown_voxels, occupied_voxels, status);
+  PYBIND11_NUMPY_DTYPE(ApproximateGain, gain, standard_error);
+  PYBIND11_NUMPY_DTYPE(HitRow, kind, voxel, range);
+  PYBIND11_NUMPY_DTYPE(ContributionRow, voxel, state, rays, gain);
+  PYBIND11_NUMPY_DTYPE(OwnHitRow, voxel, state, readings, information, ray, range, direction);
+}
+
+}  // namespace
+
+void bind_evaluator(py::module_& module) {
+  bind_rows();
+  module.def(
+      "criterion_names", [] { return criterion_names(); },
+      "The names that ``criterion`` takes.\n\nReturns\n-------\nlist of str");
+  py::list statuses;
+  for (const ViewStatus status :
+       {ViewStatus::ok, ViewStatus::bad_pose, ViewStatus::camera_in_occupied}) {
+    statuses.append(std::string(view_status_name(status)));
+  }
+  module.attr("VIEW_STATUS_NAMES") = py::tuple(statuses);
+  module.attr("HIT_KIND_NAMES") = py::make_tuple("none", "unknown", "occupied", "obstacle");
+
+  const RaceConfig race_defaults;
+  const ApproximateConfig approximate_defaults;
+  py::class_<Evaluator>(module, "GainEvaluator",
+                        R"(Scores camera poses against a scene by expected information gain.
+
+All methods may run in many threads at once and leave the GIL while they work. Results are the same
+bits for any number of threads, and the same as from C++. Ctrl-C ends a batch. Poses are
+``T_world_camera`` arrays (..., 4, 4) that map the optical frame (x right, y down, z forward) to the
+world [m]: C-contiguous float64 is read in place, other real dtypes are converted once.
+
+Parameters
+----------
+scene : VoxelScene
+sensor : Sensor
+criterion : {"log_diagonal", "log_determinant", "trace"}
+    How uncertainty is measured; gains are in nats, for trace in m**2.
+pixel_stride : int
+    Every s-th pixel of every s-th row.
+prior_sigma : float, optional
+    Standard deviation of an unknown voxel [m]; the map's unless given.
+min_range, max_range : float, optional
+    Along the ray [m]; the sensor's unless given.
+weights : iterable of (box, weight), optional
+    Task weights >= 0 of parts of the workspace: boxes (2, 3) in the grid's frame [m]. The last that
+    holds a voxel's centre counts, 1 outside all.
+num_threads : int
+    0: all hardware threads.
+
+Raises
+------
+ValueError
+    Names the value that is out of its bounds.)")
+      .def(py::init(&make), py::arg("scene"), py::arg("sensor"), py::kw_only(),
+           py::arg("criterion") = "log_diagonal", py::arg("pixel_stride") = 1,
+           py::arg("prior_sigma") = py::none(), py::arg("min_range") = py::none(),
+           py::arg("max_range") = py::none(), py::arg("weights") = py::tuple(),
+           py::arg("num_threads") = 0)
+      .def("evaluate", &evaluate, py::arg("T_world_camera"), py::kw_only(),
+           py::arg("strict") = false, py::arg("control") = py::none(),
+           R"(The expected gains of poses.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+strict : bool
+    Raise ValueError for a bad pose (not finite, rotation or last row off by more than 1e-3) instead
+    of giving it the gain NaN.
+control : BatchControl, optional
+
+Returns
+-------
+ndarray, (...), float64
+    [nat], for trace [m**2]; NaN for bad poses and for those not reached before a stop. A single
+    pose gives a scalar.)")
+      .def("evaluate_detailed", &evaluate_detailed, py::arg("T_world_camera"), py::kw_only(),
+           py::arg("strict") = false, py::arg("control") = py::none(),
+           R"(The expected gains of poses and what they are made of.
+
+Parameters are those of ``evaluate``.
+
+Returns
+-------
+ndarray, (...), structured
+    gain = exploration (unknown voxels) + refinement (occupied ones), posterior_entropy, rays, hits,
+    unknown_voxels, occupied_voxels (distinct), status (index into ``VIEW_STATUS_NAMES``).)")
+      .def("best", &best, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
+           py::arg("return_gains") = false, py::arg("control") = py::none(),
+           R"(The k best poses, exactly, without scoring all where bounds tell.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+k : int
+return_gains : bool
+control : BatchControl, optional
+    After a stop the result is what is best of those scored so far.
+
+Returns
+-------
+indices : ndarray, (k,), int64
+    Into the poses with their leading axes flattened, best first, ties to the lower index.
+gains : ndarray, (k,), structured
+    As from ``evaluate_detailed``; only if return_gains.)")
+      .def("race", &race, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
+           py::arg("interval") = race_defaults.interval,
+           py::arg("first_share") = race_defaults.first_share, py::arg("keep") = race_defaults.keep,
+           py::arg("seed") = race_defaults.seed, py::arg("return_gains") = false,
+           py::arg("control") = py::none(),
+           R"(The k best poses, very probably, by successive halving; see ``best``.
+
+Parameters
+----------
+interval : float
+    Half width of a pose's confidence interval [standard errors].
+first_share : float
+    Of the tiles of an image in the first round, then four times as many.
+keep : float
+    Share of the poses that a round leaves at most.
+seed : int
+    Which tiles.)")
+      .def("best_set", &best_set, py::arg("T_world_camera"), py::arg("k"), py::kw_only(),
+           py::arg("return_gains") = false, py::arg("control") = py::none(),
+           R"(Up to k poses that are good together, chosen one after the other.
+
+Returns
+-------
+indices : ndarray, (<= k,), int64
+    In the order of their choice.
+gains : ndarray, (<= k,), structured
+    What each adds to those before it; only if return_gains.)")
+      .def("approximate", &approximate, py::arg("T_world_camera"), py::kw_only(),
+           py::arg("share") = approximate_defaults.share,
+           py::arg("groups") = approximate_defaults.groups,
+           py::arg("anchors") = approximate_defaults.anchors,
+           py::arg("seed") = approximate_defaults.seed, py::arg("control") = py::none(),
+           R"(Estimates of the gains from a part of each view.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+share : float
+    Of a view's tiles that are traced, in (0, 1].
+groups : int
+    Random groups that the standard error comes from, 2 to 64.
+anchors : int
+    Poses scored in full, for the correction of the bias.
+seed : int
+    Which tiles.
+
+Returns
+-------
+ndarray, (...), structured
+    gain, standard_error.)")
+      .def("trace", &trace_array, py::arg("T_world_camera"), R"(Where the rays of a view end.
+
+Parameters
+----------
+T_world_camera : array_like, (4, 4)
+
+Returns
+-------
+ndarray, (height', width'), structured
+    One a ray, image size divided by the stride, rounded up: kind (index into ``HIT_KIND_NAMES``),
+    voxel (int32, 3), range along the ray [m], inf: nothing.)")
+      .def("depth", &depth, py::arg("T_world_camera"), R"(The depth image of a view of the map.
+
+Parameters
+----------
+T_world_camera : array_like, (4, 4)
+
+Returns
+-------
+ndarray, (height', width'), float32
+    Along the optical axis [m], inf: nothing; size as for ``trace``.)")
+      .def("contributions", &contributions, py::arg("T_world_camera"),
+           R"(Why a view is good: what each voxel adds to its gain.
+
+Parameters
+----------
+T_world_camera : array_like, (4, 4)
+
+Returns
+-------
+ndarray, (n,), structured
+    voxel (int32, 3; on the lattice, minus the grid's ``min_index`` for arrays), state, rays that end
+    in it, gain. Largest gain first; the gains add up to that of the view.)")
+      .def("evaluate_own", &evaluate_own, py::arg("T_world_camera"), py::arg("measure"),
+           py::kw_only(), py::arg("control") = py::none(),
+           R"(A gain of your own: a number for what a view would see.
+
+Slow: the function is called for one view after the other, under the GIL; the C++ interface
+ViewMeasure is the fast way.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+measure : callable
+    Given T_world_camera (4, 4) and the hits of a view, a structured array (n,) with a row for each
+    ray that ends in a voxel: voxel (int32, 3), state, readings (that ended in the voxel), information
+    (float32, 6: xx yy zz xy xz yz [1/m**2]), ray (pixel number, row by row, strided), range along
+    the ray [m], direction (unit, world frame). Returns a float. What it raises passes through.
+control : BatchControl, optional
+
+Returns
+-------
+ndarray, (...), float64
+    NaN for bad poses, 0 for cameras in an occupied voxel; neither is asked about.)")
+      .def_property_readonly(
+          "rays_per_pose", [](const Evaluator& self) { return self.evaluator.rays_per_pose(); },
+          "int")
+      .def_property_readonly(
+          "num_threads", [](const Evaluator& self) { return self.evaluator.num_threads(); }, "int")
+      .def_property_readonly(
+          "prior_sigma", [](const Evaluator& self) { return self.evaluator.prior_sigma(); },
+          "float: [m]")
+      .def_readonly("criterion", &Evaluator::criterion, "str")
+      .def_readonly("pixel_stride", &Evaluator::pixel_stride, "int")
+      .def_readonly("scene", &Evaluator::scene, "VoxelScene")
+      .def_property_readonly(
+          "sensor", [](const Evaluator& self) { return self.sensor; }, "Sensor")
+      .def("__repr__", [](const Evaluator& self) {
+        std::ostringstream text;
+        text << "<GainEvaluator " << self.criterion << ", " << self.sensor.name << ", "
+             << self.evaluator.rays_per_pose() << " rays per pose, " << self.evaluator.num_threads()
+             << " threads>";
+        return text.str();
+      });
+}
+
+}  // namespace viewgain::python

@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "python_call.hpp"
+#include "viewgain/core/reach.hpp"
+#include "viewgain/raycast/feasibility.hpp"
+
+namespace viewgain::python {
+namespace {
+
+struct Checker {
+  std::shared_ptr<VoxelScene> scene;
+  FeasibilityChecker checker;
+};
+
+ReachRegion region_of(const py::object& boxes, const py::object& shells,
+                      const py::object& half_spaces, const py::object& poses, double distance,
+                      double angle, const py::object& predicate) {
+  ReachRegion region;
+  if (!boxes.is_none()) {
+    const Doubles array = doubles(boxes, "boxes", {-1, 2, 3});
+    const double* x = array.data();
+    for (py::ssize_t i = 0; i < array.shape(0); ++i, x += 6) {
+      region.boxes.push_back({{x[0], x[1], x[2]}, {x[3], x[4], x[5]}});
+    }
+  }
+  if (!shells.is_none()) {
+    const Doubles array = doubles(shells, "shells", {-1, 5});
+    const double* x = array.data();
+    for (py::ssize_t i = 0; i < array.shape(0); ++i, x += 5) {
+      region.shells.push_back({{x[0], x[1], x[2]}, x[3], x[4]});
+    }
+  }
+  if (!half_spaces.is_none()) {
+    const Doubles array = doubles(half_spaces, "half_spaces", {-1, 4});
+    const double* x = array.data();
+    for (py::ssize_t i = 0; i < array.shape(0); ++i, x += 4) {
+      region.half_spaces.push_back({{x[0], x[1], x[2]}, x[3]});
+    }
+  }
+  if (!poses.is_none()) region.poses = pose_list(poses, "poses");
+  region.tolerance = {distance, angle};
+  if (!predicate.is_none()) {
+    if (PyCallable_Check(predicate.ptr()) == 0) throw py::type_error("predicate must be callable");
+    region.predicate = [call = PythonCall(predicate)](const Pose& T_world_camera) {
+      const py::gil_scoped_acquire with_gil;
+      const py::object answer = call.get()(to_array(T_world_camera));
+      const int truth = PyObject_IsTrue(answer.ptr());
+      if (truth < 0) throw py::error_already_set();
+      return truth == 1;
+    };
+  }
+  region.validate();
+  return region;
+}
+
+// Codes of Infeasibility, one a pose.
+py::array_t<std::uint8_t> codes_of(const Checker& self, const py::object& T_world_camera,
+                                   const py::object& taken) {
+  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const std::vector<Pose> before =
+      taken.is_none() ? std::vector<Pose>{} : pose_list(taken, "taken");
+  py::array_t<std::uint8_t> codes(batch.shape);
+  std::uint8_t* out = codes.mutable_data();
+  const py::gil_scoped_release without_gil;
+  for (const Pose& pose : batch.poses) {
+    *out++ = static_cast<std::uint8_t>(self.checker.check(pose, before));
+  }
+  return codes;
+}
+
+void bind_reach(py::module_& module) {
+  const PoseTolerance tolerance;
+  py::class_<ReachRegion>(module, "ReachRegion", R"(Where a robot can put the camera, world frame.
+
+A pose is reachable if its centre lies in at least one of the boxes (where there are any), in at least
+one of the shells (where there are any) and in every half-space, if it is among the poses (where there
+are any), and if the predicate says so.
+
+Parameters
+----------
+boxes : array_like, (n, 2, 3), optional
+    Lowest and highest corners [m].
+shells : array_like, (n, 5), optional
+    Centre x y z, smallest and largest radius [m].
+half_spaces : array_like, (n, 4), optional
+    Normal and offset: normal . p >= offset.
+poses : array_like, (n, 4, 4), optional
+    T_world_camera.
+distance, angle : float
+    When two poses are the same one [m], [rad].
+predicate : callable, optional
+    Given T_world_camera (4, 4), returns a truth value. What it raises passes through.)")
+      .def(py::init(&region_of), py::kw_only(), py::arg("boxes") = py::none(),
+           py::arg("shells") = py::none(), py::arg("half_spaces") = py::none(),
+           py::arg("poses") = py::none(), py::arg("distance") = tolerance.distance,
+           py::arg("angle") = tolerance.angle, py::arg("predicate") = py::none())
+      .def(
+          "contains",
+          [](const ReachRegion& region, const py::object& T_world_camera) {
+            const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+            py::array_t<bool> inside(batch.shape);
+            bool* out = inside.mutable_data();
+            for (const Pose& pose : batch.poses) {
+              *out++ = std::isfinite(pose.m[0]) && region.contains(pose);
+            }
+            return scalar_or_array(inside);
+          },
+          py::arg("T_world_camera"), R"(Which poses are reachable.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+
+Returns
+-------
+ndarray, (...), bool)")
+      .def("__repr__", [](const ReachRegion& r) {
+        std::ostringstream text;
+        text << "<ReachRegion " << r.boxes.size() << " boxes, " << r.shells.size() << " shells, "
+             << r.half_spaces.size() << " half-spaces, " << r.poses.size() << " poses"
+             << (r.predicate ? ", predicate" : "") << ">";
+        return text.str();
+      });
+}
+
+}  // namespace
+
+void bind_feasibility(py::module_& module) {
+  bind_reach(module);
+
+  py::list names;
+  for (int i = 0; i <= static_cast<int>(Infeasibility::too_near); ++i) {
+    names.append(std::string(infeasibility_name(static_cast<Infeasibility>(i))));
+  }
+  module.attr("INFEASIBILITY_NAMES") = py::tuple(names);
+
+  const FeasibilityConfig defaults;
+  py::class_<Checker>(module, "FeasibilityChecker",
+                      R"(Says which camera poses are possible in a scene.
+
+The sensor's housing, a box, must not overlap voxels that are not free, obstacles or the support plane;
+the pose must be reachable and not taken already. Outside the workspace nothing is known to block.
+
+Parameters
+----------
+scene : VoxelScene
+body_size : array_like, (3,)
+    Width, height, depth of the housing [m]. It is centred on the flange's z axis and reaches from
+    z = 0 to its depth; without T_flange_camera the camera is the middle of its front face.
+T_flange_camera : array_like, (4, 4), optional
+clearance : float
+    The body is grown by this on each side [m].
+reach : ReachRegion, optional
+support_plane : float, optional
+    Height z [m].
+sensor : Sensor, optional
+    Views much of whose image would show what is nearer than the sensor's min_range are too near.
+max_near_share : float
+    How much: share of the rays that end in the map.)")
+      .def(py::init([](std::shared_ptr<VoxelScene> scene, const py::object& body_size,
+                       const py::object& T_flange_camera, double clearance,
+                       const ReachRegion* reach, std::optional<double> support_plane,
+                       const Sensor* sensor, double max_near_share) {
+             FeasibilityConfig config;
+             const Eigen::Vector3d size = vector3(body_size, "body_size");
+             config.body.size = {size.x(), size.y(), size.z()};
+             config.body.T_flange_camera = optional_pose(T_flange_camera, "T_flange_camera");
+             config.clearance = clearance;
+             if (reach != nullptr) config.reach = *reach;
+             config.support_plane = support_plane;
+             if (sensor != nullptr) config.sensor = *sensor;
+             config.max_near_share = max_near_share;
+             FeasibilityChecker checker(scene, config);
+             return std::unique_ptr<Checker>(new Checker{std::move(scene), std::move(checker)});
+           }),
+           py::arg("scene"), py::kw_only(), py::arg("body_size") = defaults.body.size,
+           py::arg("T_flange_camera") = py::none(), py::arg("clearance") = defaults.clearance,
+           py::arg("reach") = py::none(), py::arg("support_plane") = py::none(),
+           py::arg("sensor") = py::none(), py::arg("max_near_share") = defaults.max_near_share)
+      .def(
+          "feasible",
+          [](const Checker& self, const py::object& T_world_camera, const py::object& taken) {
+            const py::array_t<std::uint8_t> codes = codes_of(self, T_world_camera, taken);
+            py::array_t<bool> good(Shape(codes.shape(), codes.shape() + codes.ndim()));
+            for (py::ssize_t i = 0; i < codes.size(); ++i) {
+              good.mutable_data()[i] = codes.data()[i] == 0;
+            }
+            return scalar_or_array(good);
+          },
+          py::arg("T_world_camera"), py::arg("taken") = py::none(), R"(Which poses are possible.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+taken : array_like, (n, 4, 4), optional
+    Views so far.
+
+Returns
+-------
+ndarray, (...), bool)")
+      .def(
+          "reasons",
+          [](const Checker& self, const py::object& T_world_camera, const py::object& taken) {
+            return scalar_or_array(codes_of(self, T_world_camera, taken));
+          },
+          py::arg("T_world_camera"), py::arg("taken") = py::none(),
+          R"(Why poses are not possible: the first reason that applies.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+taken : array_like, (n, 4, 4), optional
+
+Returns
+-------
+ndarray, (...), uint8
+    Indices into ``INFEASIBILITY_NAMES``; 0 is "none".)")
+      .def("__repr__", [](const Checker& self) {
+        return "<FeasibilityChecker of a scene of " +
+               std::to_string(self.scene->primitive_count()) + " primitives>";
+      });
+}
+
+}  // namespace viewgain::python

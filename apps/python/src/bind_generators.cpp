@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "viewgain/core/generators.hpp"
+
+namespace viewgain::python {
+namespace {
+
+const std::array<double, 3> kOrigin{};
+
+py::array_t<double> pose_array(const std::vector<Pose>& poses) {
+  return to_array(poses, {static_cast<py::ssize_t>(poses.size())});
+}
+
+py::array_t<double> look_at_all(const py::object& eyes, const py::object& target,
+                                const py::object& up) {
+  const Doubles eye = doubles(eyes, "eyes");
+  const Doubles goal = doubles(target, "target");
+  const py::ssize_t axes = eye.ndim();
+  if (axes < 1 || eye.shape(axes - 1) != 3) {
+    throw py::value_error("eyes must have the shape (..., 3), not " + shape_text(eye));
+  }
+  const bool one_target = goal.ndim() == 1 && goal.shape(0) == 3;
+  if (!one_target &&
+      !(goal.ndim() == axes && std::equal(eye.shape(), eye.shape() + axes, goal.shape()))) {
+    throw py::value_error("target must have the shape (3,) or that of eyes, " + shape_text(eye) +
+                          ", not " + shape_text(goal));
+  }
+  const Eigen::Vector3d up_vector = vector3(up, "up");
+  const auto count = static_cast<std::size_t>(eye.size() / 3);
+  std::vector<Pose> poses;
+  poses.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* e = eye.data() + 3 * i;
+    const double* t = goal.data() + (one_target ? 0 : 3 * i);
+    poses.push_back(look_at({e[0], e[1], e[2]}, {t[0], t[1], t[2]}, up_vector));
+  }
+  return to_array(poses, Shape(eye.shape(), eye.shape() + (axes - 1)));
+}
+
+}  // namespace
+
+void bind_generators(py::module_& module) {
+  module.def("look_at", &look_at_all, py::arg("eyes"), py::arg("target"),
+             py::arg("up") = std::array<double, 3>{0, 0, 1},
+             R"(Poses of cameras that look at a point.
+
+Parameters
+----------
+eyes : array_like, (..., 3)
+    Camera centres, world frame [m].
+target : array_like, (3,) or the shape of eyes
+    What each optical axis passes through [m].
+up : array_like, (3,)
+    The image's up is as near to this as it can be.
+
+Returns
+-------
+ndarray, (..., 4, 4), float64
+    T_world_camera.
+
+Raises
+------
+ValueError
+    An eye equals its target, up is zero, or a number is not finite.)");
+  module.def(
+      "sphere_poses",
+      [](std::size_t count, double radius, const py::object& center) {
+        return pose_array(sphere_poses(count, radius, vector3(center, "center")));
+      },
+      py::arg("count"), py::arg("radius"), py::kw_only(), py::arg("center") = kOrigin,
+      R"(Fibonacci lattice on a sphere, looking at its centre, image up = world up.
+
+Parameters
+----------
+count : int
+radius : float
+    [m]
+center : array_like, (3,)
+    World frame [m].
+
+Returns
+-------
+ndarray, (count, 4, 4), float64
+    T_world_camera.)");
+  module.def(
+      "dome_poses",
+      [](std::size_t count, double radius, const py::object& center) {
+        return pose_array(dome_poses(count, radius, vector3(center, "center")));
+      },
+      py::arg("count"), py::arg("radius"), py::kw_only(), py::arg("center") = kOrigin,
+      "The upper half of the lattice of ``sphere_poses``, with ``count`` poses.\n\n"
+      "Returns\n-------\nndarray, (count, 4, 4), float64");
+  module.def(
+      "orbit_poses",
+      [](std::size_t count, double radius, double elevation, double start,
+         std::optional<double> step, const py::object& center) {
+        return pose_array(
+            orbit_poses(count, radius, elevation, start, step, vector3(center, "center")));
+      },
+      py::arg("count"), py::arg("radius"), py::arg("elevation"), py::kw_only(),
+      py::arg("start") = 0.0, py::arg("step") = py::none(), py::arg("center") = kOrigin,
+      "Views on a circle of latitude, looking at the centre.\n\nelevation, start (azimuth) and "
+      "step "
+      "in [rad]; step defaults to 2 pi / count.\n\n"
+      "Returns\n-------\nndarray, (count, 4, 4), float64");
+  module.def(
+      "ring_poses",
+      [](std::size_t count, double radius, double height, double tilt, double start,
+         const py::object& center) {
+        return pose_array(
+            ring_poses(count, radius, height, tilt, start, vector3(center, "center")));
+      },
+      py::arg("count"), py::arg("radius"), py::arg("height"), py::arg("tilt"), py::kw_only(),
+      py::arg("start") = 0.0, py::arg("center") = kOrigin,
+      "Views on a circle round the vertical axis, looking down by tilt [rad] towards it.\n\n"
+      "radius and height (above the centre) in [m], start (azimuth) in [rad].\n\n"
+      "Returns\n-------\nndarray, (count, 4, 4), float64");
+  module.def(
+      "literature_ring_poses",
+      [](std::size_t total, double radius, const py::object& center) {
+        return pose_array(literature_ring_poses(total, radius, vector3(center, "center")));
+      },
+      py::arg("total"), py::arg("radius"), py::kw_only(), py::arg("center") = kOrigin,
+      "The view sets of Isler et al. 2016, scaled to a radius [m]; total is 48, 80, 288 or 864.\n\n"
+      "Returns\n-------\nndarray, (total, 4, 4), float64");
+  module.def(
+      "shell_poses",
+      [](std::size_t count, double min_radius, double max_radius, std::uint64_t seed,
+         const py::object& center) {
+        return pose_array(
+            shell_poses(count, min_radius, max_radius, seed, vector3(center, "center")));
+      },
+      py::arg("count"), py::arg("min_radius"), py::arg("max_radius"), py::kw_only(),
+      py::arg("seed") = 1, py::arg("center") = kOrigin,
+      "Uniform in the volume between two spheres [m], looking at the centre; the same for the same "
+      "seed.\n\nReturns\n-------\nndarray, (count, 4, 4), float64");
+}
+
+}  // namespace viewgain::python

@@ -1,0 +1,347 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "shared_grid.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/fused_points.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+
+namespace viewgain::python {
+
+/// A row of BeliefGrid.beliefs().
+struct BeliefRow {
+  std::array<std::int32_t, 3> voxel;
+  std::uint32_t hits;
+  std::array<float, 6> information;
+  std::array<float, 3> information_vector;
+};
+
+/// A row of BeliefGrid.points().
+struct PointRow {
+  std::array<double, 3> position;
+  std::array<double, 6> covariance;
+  std::array<double, 3> toward_free;
+  std::uint32_t hits;
+};
+
+namespace {
+
+using Labels = py::array_t<std::uint8_t, py::array::c_style>;
+
+double prior_of(std::optional<double> prior_sigma, const Sensor* sensor, double voxel_size) {
+  if (prior_sigma) return *prior_sigma;
+  return sensor != nullptr ? default_prior_sigma(voxel_size, *sensor) : 0.5 * voxel_size;
+}
+
+std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_size,
+                                        const py::object& origin, const py::object& T_world_grid,
+                                        std::optional<double> prior_sigma, const Sensor* sensor) {
+  const py::array any = py::array::ensure(labels);
+  if (!any || any.dtype().kind() != 'u' || any.itemsize() != 1 || any.ndim() != 3) {
+    PyErr_Clear();
+    throw py::value_error(
+        "labels must be uint8 with the shape (nx, ny, nz), not " +
+        (any ? py::str(any.dtype()).cast<std::string>() + " " + shape_text(any) : "that"));
+  }
+  const Labels array = Labels::ensure(any);
+  GridConfig config;
+  config.voxel_size = voxel_size;
+  config.prior_sigma = prior_of(prior_sigma, sensor, voxel_size);
+  // The lattice goes through the corner of the array, wherever that is.
+  config.T_world_grid = T_world_grid.is_none()
+                            ? Pose(Eigen::Matrix3d::Identity(), vector3(origin, "origin"))
+                            : one_pose(T_world_grid, "T_world_grid");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    config.workspace.max[axis] =
+        static_cast<double>(array.shape(static_cast<py::ssize_t>(axis))) * voxel_size;
+  }
+  const std::span states(array.data(), static_cast<std::size_t>(array.size()));
+  const py::gil_scoped_release without_gil;
+  return std::make_shared<SharedGrid>(BeliefGrid::from_states(config, states));
+}
+
+py::array_t<std::uint8_t> states_of(const SharedGrid& grid) {
+  const Index3 dims = grid.layout().dims();
+  py::array_t<std::uint8_t> states(Shape{dims.x, dims.y, dims.z});
+  const std::span out(states.mutable_data(), static_cast<std::size_t>(states.size()));
+  grid.read([&](const BeliefGrid& g) { g.copy_states(out); });
+  return states;
+}
+
+std::vector<BeliefRow> belief_rows(const BeliefGrid& grid) {
+  std::vector<BeliefRow> rows;
+  for (const BeliefBlockAt& block : grid.belief_blocks()) {
+    std::size_t rank = 0;
+    for (unsigned offset = 0; offset < 512; ++offset) {
+      if (!test_bit(block.beliefs->mask, offset)) continue;
+      const Belief& belief = block.beliefs->beliefs[rank++];
+      rows.push_back({{block.origin.x + static_cast<std::int32_t>(offset >> 6U),
+                       block.origin.y + static_cast<std::int32_t>(offset >> 3U & 7U),
+                       block.origin.z + static_cast<std::int32_t>(offset & 7U)},
+                      belief.hits,
+                      belief.information,
+                      belief.information_vector});
+    }
+  }
+  return rows;
+}
+
+std::vector<PointRow> point_rows(const BeliefGrid& grid, const FusedPointsConfig& config,
+                                 const ExecConfig& exec) {
+  std::vector<PointRow> rows;
+  for (const FusedPoint& p : fused_points(grid, config, exec)) {
+    const SymmetricMatrix3& c = p.covariance;
+    rows.push_back({p.position, {c.xx, c.yy, c.zz, c.xy, c.xz, c.yz}, p.toward_free, p.hits});
+  }
+  return rows;
+}
+
+py::dict statistics_of(const SharedGrid& grid, const std::string& criterion) {
+  const Criterion parsed = parse_criterion(criterion);
+  const GridStatistics s = grid.read([&](const BeliefGrid& g) { return g.statistics(parsed); });
+  py::dict result;
+  result["unknown"] = s.unknown;
+  result["free"] = s.free;
+  result["occupied"] = s.occupied;
+  result["bytes"] = s.bytes;
+  result["entropy_removed"] = s.entropy_removed;
+  return result;
+}
+
+std::string repr_of(const SharedGrid& grid) {
+  const Index3 dims = grid.layout().dims();
+  const GridStatistics s = grid.read([](const BeliefGrid& g) { return g.statistics(); });
+  std::ostringstream text;
+  text << "<BeliefGrid " << dims.x << "x" << dims.y << "x" << dims.z << " voxels of "
+       << grid.layout().voxel_size() << " m: " << s.unknown << " unknown, " << s.free << " free, "
+       << s.occupied << " occupied>";
+  return text.str();
+}
+
+}  // namespace
+
+void bind_grid(py::module_& module) {
+  PYBIND11_NUMPY_DTYPE(BeliefRow, voxel, hits, information, information_vector);
+  PYBIND11_NUMPY_DTYPE(PointRow, position, covariance, toward_free, hits);
+
+  py::class_<SharedGrid, std::shared_ptr<SharedGrid>>(
+      module, "BeliefGrid",
+      R"(What is known of a workspace, voxel by voxel.
+
+Voxel (i, j, k) is [i, i+1) x [j, j+1) x [k, k+1) times the voxel size in the grid's frame. A new
+grid is unknown throughout. Threads of Python may share one: they wait for each other.
+
+Parameters
+----------
+voxel_size : float
+    [m]
+workspace : array_like, (2, 3)
+    Lowest and highest corner, grid frame [m]; grown outward to whole voxels.
+prior_sigma : float, optional
+    Standard deviation of an unknown voxel's position [m]. Default: ``default_prior_sigma`` of the
+    sensor where one is given, else half a voxel; give the sensor where voxels are finer than its
+    noise, or unknown would be surer than a reading.
+sensor : Sensor, optional
+T_world_grid : array_like, (4, 4), optional
+    Places the grid's frame in the world.
+
+Raises
+------
+ValueError
+    Names the value that is out of its bounds.
+Error
+    More than 65,536 voxels along an axis or 2**40 in all.)")
+      .def(py::init([](double voxel_size, const py::object& workspace,
+                       std::optional<double> prior_sigma, const Sensor* sensor,
+                       const py::object& T_world_grid) {
+             GridConfig config;
+             config.voxel_size = voxel_size;
+             config.workspace = box(workspace, "workspace");
+             config.prior_sigma = prior_of(prior_sigma, sensor, voxel_size);
+             config.T_world_grid = optional_pose(T_world_grid, "T_world_grid").value_or(Pose{});
+             return std::make_shared<SharedGrid>(BeliefGrid(config));
+           }),
+           py::kw_only(), py::arg("voxel_size"), py::arg("workspace"),
+           py::arg("prior_sigma") = py::none(), py::arg("sensor") = py::none(),
+           py::arg("T_world_grid") = py::none())
+      .def_static("from_labels", &from_labels, py::arg("labels"), py::kw_only(),
+                  py::arg("voxel_size"), py::arg("origin") = std::array<double, 3>{},
+                  py::arg("T_world_grid") = py::none(), py::arg("prior_sigma") = py::none(),
+                  py::arg("sensor") = py::none(),
+                  R"(A grid from an array of states.
+
+Parameters
+----------
+labels : ndarray, (nx, ny, nz), uint8
+    0 unknown, 1 free, 2 occupied.
+voxel_size : float
+    [m]
+origin : array_like, (3,)
+    Lowest corner of voxel (0, 0, 0), world frame [m]; the grid's frame has its origin there.
+T_world_grid : array_like, (4, 4), optional
+    Places that corner and the axes; takes the place of origin.
+prior_sigma, sensor
+    As for a new grid.
+
+Returns
+-------
+BeliefGrid
+
+Raises
+------
+ValueError
+    Another dtype or shape, or a state over 2.)")
+      .def_static(
+          "load",
+          [](const py::object& path) {
+            const std::string file = file_path(path);
+            require_file(file);
+            const py::gil_scoped_release without_gil;
+            return std::make_shared<SharedGrid>(load_vdb(file));
+          },
+          py::arg("path"), R"(Reads a map that ``save`` or the program viewgain wrote.
+
+Parameters
+----------
+path : path-like
+    An OpenVDB file.
+
+Raises
+------
+FileNotFoundError, OSError
+    It cannot be opened.
+Error
+    It is no map or it is damaged.)")
+      .def(
+          "save",
+          [](const SharedGrid& grid, const py::object& path, bool with_covariance) {
+            const std::string file = file_path(path);
+            require_folder_of(file);
+            grid.read([&](const BeliefGrid& g) { save_vdb(g, file, {with_covariance}); });
+          },
+          py::arg("path"), py::kw_only(), py::arg("with_covariance") = false,
+          R"(Writes the map as a plain OpenVDB file; nothing half-written is left behind.
+
+Parameters
+----------
+path : path-like
+with_covariance : bool
+    Adds covariances and positions, for viewers.
+
+Raises
+------
+FileNotFoundError, OSError
+    It cannot be written.)")
+      .def(
+          "clone",
+          [](const SharedGrid& grid) {
+            return grid.read(
+                [](const BeliefGrid& g) { return std::make_shared<SharedGrid>(g.clone()); });
+          },
+          "A deep copy.")
+      .def_property_readonly(
+          "voxel_size", [](const SharedGrid& grid) { return grid.layout().voxel_size(); },
+          "float: [m]")
+      .def_property_readonly(
+          "prior_sigma", [](const SharedGrid& grid) { return grid.layout().prior_sigma(); },
+          "float: standard deviation of an unknown voxel's position [m]")
+      .def_property_readonly(
+          "shape",
+          [](const SharedGrid& grid) {
+            const Index3 dims = grid.layout().dims();
+            return py::make_tuple(dims.x, dims.y, dims.z);
+          },
+          "tuple of 3 int: voxels along x, y, z")
+      .def_property_readonly(
+          "min_index",
+          [](const SharedGrid& grid) {
+            const Index3 min = grid.layout().min_index();
+            return py::make_tuple(min.x, min.y, min.z);
+          },
+          "tuple of 3 int: the lattice's index of the voxel that is (0, 0, 0) in arrays")
+      .def_property_readonly(
+          "workspace",
+          [](const SharedGrid& grid) {
+            const Box box = grid.layout().workspace();
+            return to_array_3<double>({box.min, box.max});
+          },
+          "ndarray, (2, 3): lowest and highest corner, grid frame [m]")
+      .def_property_readonly(
+          "T_world_grid",
+          [](const SharedGrid& grid) { return to_array(grid.layout().T_world_grid()); },
+          "ndarray, (4, 4)")
+      .def("states", &states_of, R"(All voxels' states.
+
+Returns
+-------
+ndarray, (nx, ny, nz), uint8
+    0 unknown, 1 free, 2 occupied. A copy.)")
+      .def(
+          "views",
+          [](const SharedGrid& grid) {
+            const auto views = grid.read([](const BeliefGrid& g) { return g.views(); });
+            return to_array(views, {static_cast<py::ssize_t>(views.size())});
+          },
+          R"(T_world_camera of every frame integrated so far, in order.
+
+Returns
+-------
+ndarray, (n, 4, 4), float64)")
+      .def(
+          "beliefs",
+          [](const SharedGrid& grid) {
+            const auto rows = grid.read(belief_rows);
+            return to_array_1d<BeliefRow>(rows);
+          },
+          R"(What readings have said of the voxels that were ever hit.
+
+Returns
+-------
+ndarray, (n,), structured
+    voxel (int32, 3; on the lattice, minus ``min_index`` for arrays), hits, information (float32, 6:
+    xx yy zz xy xz yz [1/m**2]), information_vector (float32, 3 [1/m], about the voxel's centre).)")
+      .def(
+          "points",
+          [](const SharedGrid& grid, std::uint32_t min_hits, int num_threads) {
+            FusedPointsConfig config;
+            config.min_hits = min_hits;
+            const auto rows = grid.read([&](const BeliefGrid& g) {
+              return point_rows(g, config, ExecConfig{num_threads});
+            });
+            return to_array_1d<PointRow>(rows);
+          },
+          py::kw_only(), py::arg("min_hits") = 3, py::arg("num_threads") = 0,
+          R"(The points of the surface as the map knows it.
+
+Returns
+-------
+ndarray, (n,), structured
+    position (float64, 3, world frame [m]), covariance (float64, 6: xx yy zz xy xz yz [m**2]),
+    toward_free (float64, 3: unit normal towards free space), hits.)")
+      .def("statistics", &statistics_of, py::arg("criterion") = "log_diagonal",
+           R"(Voxel counts and progress.
+
+Returns
+-------
+dict
+    unknown, free, occupied (voxels), bytes, entropy_removed [nat, or m**2 for trace].)")
+      .def(
+          "content_hash",
+          [](const SharedGrid& grid) {
+            return grid.read([](const BeliefGrid& g) { return g.content_hash(); });
+          },
+          "16 hexadecimal digits, the same for equal maps however they came about.")
+      .def("__repr__", &repr_of);
+}
+
+}  // namespace viewgain::python

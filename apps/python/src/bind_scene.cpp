@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "shared_grid.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+namespace viewgain::python {
+namespace {
+
+// pybind11 holds no pointers to const; Python has no member that would change a scene.
+std::shared_ptr<VoxelScene> held(const std::shared_ptr<const VoxelScene>& scene) {
+  return std::const_pointer_cast<VoxelScene>(scene);
+}
+
+Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes) {
+  Obstacles obstacles;
+  if (!boxes.is_none()) {
+    const Doubles array = doubles(boxes, "boxes", {-1, 2, 3});
+    const double* x = array.data();
+    for (py::ssize_t i = 0; i < array.shape(0); ++i, x += 6) {
+      obstacles.boxes.push_back({{x[0], x[1], x[2]}, {x[3], x[4], x[5]}});
+    }
+  }
+  for (const py::handle mesh : meshes) {
+    if (!py::isinstance<py::sequence>(mesh) || py::len(mesh) != 2) {
+      throw py::value_error("each of meshes must be a pair (vertices, triangles)");
+    }
+    const auto pair = py::reinterpret_borrow<py::sequence>(mesh);
+    const py::object vertices = pair[0], triangles = pair[1];
+    obstacles.meshes.push_back(triangle_mesh(vertices, triangles));
+  }
+  return obstacles;
+}
+
+}  // namespace
+
+void bind_scene(py::module_& module) {
+  py::class_<VoxelScene, std::shared_ptr<VoxelScene>>(
+      module, "VoxelScene",
+      R"(An immutable snapshot of a grid, to be traced.
+
+The grid may change or go afterwards. May be shared by any number of evaluators and threads.
+
+Parameters
+----------
+grid : BeliefGrid
+boxes : array_like, (n, 2, 3), optional
+    Known obstacles, which block rays and gain nothing: lowest and highest corners, world frame [m].
+meshes : iterable of (vertices, triangles), optional
+    The same as triangles: (n, 3) [m] and (m, 3) indices.
+num_threads : int
+    Of the build; 0: all hardware threads.
+
+Raises
+------
+ValueError
+    A shape, an index out of range, a box inside out.)")
+      .def(py::init([](const SharedGrid& grid, const py::object& boxes, const py::iterable& meshes,
+                       int num_threads) {
+             const Obstacles obstacles = obstacles_of(boxes, meshes);
+             return grid.read([&](const BeliefGrid& g) {
+               return held(VoxelScene::build(g, obstacles, ExecConfig{num_threads}));
+             });
+           }),
+           py::arg("grid"), py::kw_only(), py::arg("boxes") = py::none(),
+           py::arg("meshes") = py::tuple(), py::arg("num_threads") = 0)
+      .def(
+          "update",
+          [](const std::shared_ptr<VoxelScene>& scene, const SharedGrid& grid, int num_threads) {
+            return grid.read([&](const BeliefGrid& g) {
+              return held(VoxelScene::update(scene, g, ExecConfig{num_threads}));
+            });
+          },
+          py::arg("grid"), py::kw_only(), py::arg("num_threads") = 0,
+          R"(The scene of what the grid is now, with the same obstacles; this one stays as it is.
+
+What has not changed since is taken over, which is faster than a new scene.
+
+Returns
+-------
+VoxelScene)")
+      .def_property_readonly(
+          "isa", [](const VoxelScene& scene) { return std::string(scene.isa()); },
+          "str: the instruction set that traces it")
+      .def_property_readonly(
+          "primitive_count", [](const VoxelScene& scene) { return scene.primitive_count(); },
+          "int: blocks of voxels that are not free")
+      .def_property_readonly(
+          "bytes", [](const VoxelScene& scene) { return scene.bytes(); },
+          "int: memory of the scene, without the snapshot and Embree's own")
+      .def("__repr__", [](const VoxelScene& scene) {
+        const Index3& dims = scene.snapshot().dims;
+        std::ostringstream text;
+        text << "<VoxelScene " << dims.x << "x" << dims.y << "x" << dims.z << " voxels of "
+             << scene.snapshot().voxel_size << " m, " << scene.primitive_count() << " primitives, "
+             << scene.isa() << ">";
+        return text.str();
+      });
+}
+
+}  // namespace viewgain::python

@@ -1,0 +1,385 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "viewgain/core/sensor.hpp"
+
+namespace viewgain::python {
+namespace {
+
+// name=value, name=value
+class Fields {
+ public:
+  template <typename T>
+  Fields& add(const char* name, const T& value) {
+    if (!first_) text_ << ", ";
+    first_ = false;
+    text_ << name << '=' << value;
+    return *this;
+  }
+  [[nodiscard]] std::string in(const char* type) const {
+    return std::string(type) + "(" + text_.str() + ")";
+  }
+
+ private:
+  std::ostringstream text_;
+  bool first_ = true;
+};
+
+void bind_camera(py::module_& module) {
+  py::class_<PinholeCamera>(module, "PinholeCamera",
+                            R"(Pinhole camera with OpenCV's distortion model.
+
+The optical frame has x right, y down, z forward; pixel (0, 0) has its centre at (0, 0).
+
+Parameters
+----------
+width, height : int
+    [px], 1 to 16384.
+fx, fy : float
+    Focal lengths [px].
+cx, cy : float
+    Principal point [px].
+distortion : sequence of 5 floats, optional
+    k1 k2 p1 p2 k3.
+
+Raises
+------
+ValueError
+    Names the field that is out of its bounds.)")
+      .def(py::init([](int width, int height, double fx, double fy, double cx, double cy,
+                       const std::array<double, 5>& distortion) {
+             const PinholeCamera camera{width, height, fx, fy, cx, cy, distortion};
+             camera.validate();
+             return camera;
+           }),
+           py::arg("width"), py::arg("height"), py::kw_only(), py::arg("fx"), py::arg("fy"),
+           py::arg("cx"), py::arg("cy"), py::arg("distortion") = std::array<double, 5>{})
+      .def_readonly("width", &PinholeCamera::width, "int: [px]")
+      .def_readonly("height", &PinholeCamera::height, "int: [px]")
+      .def_readonly("fx", &PinholeCamera::fx, "float: focal length [px]")
+      .def_readonly("fy", &PinholeCamera::fy, "float: focal length [px]")
+      .def_readonly("cx", &PinholeCamera::cx, "float: principal point [px]")
+      .def_readonly("cy", &PinholeCamera::cy, "float: principal point [px]")
+      .def_readonly("distortion", &PinholeCamera::distortion, "list of float: k1 k2 p1 p2 k3")
+      .def(
+          "rays",
+          [](const PinholeCamera& camera) {
+            const std::vector<Eigen::Vector3d> table = camera.ray_table();
+            py::array_t<double> rays(Shape{camera.height, camera.width, 3});
+            double* out = rays.mutable_data();
+            for (const Eigen::Vector3d& ray : table) out = std::copy_n(ray.data(), 3, out);
+            return rays;
+          },
+          R"(Directions (x, y, 1) of all pixel centres, camera frame, distortion undone.
+
+Returns
+-------
+ndarray, (height, width, 3), float64
+    NaN where the distortion model has no solution.)")
+      .def(
+          "project",
+          [](const PinholeCamera& camera, const py::object& points_camera) {
+            const Doubles points = doubles(points_camera, "points");
+            if (points.ndim() < 1 || points.shape(points.ndim() - 1) != 3) {
+              throw py::value_error("points must have the shape (..., 3), not " +
+                                    shape_text(points));
+            }
+            Shape shape(points.shape(), points.shape() + points.ndim());
+            shape.back() = 2;
+            py::array_t<double> pixels(shape);
+            const double* p = points.data();
+            double* out = pixels.mutable_data();
+            for (py::ssize_t i = 0; i < points.size() / 3; ++i, p += 3) {
+              const Eigen::Vector2d uv = camera.project({p[0], p[1], p[2]});
+              *out++ = uv.x();
+              *out++ = uv.y();
+            }
+            return pixels;
+          },
+          py::arg("points"), R"(Pixel coordinates of points in the camera frame.
+
+Parameters
+----------
+points : array_like, (..., 3)
+    Camera frame [m].
+
+Returns
+-------
+ndarray, (..., 2), float64
+    (u, v) [px]; NaN behind the camera.)")
+      .def(
+          "__eq__", [](const PinholeCamera& a, const PinholeCamera& b) { return a == b; },
+          py::is_operator())
+      .def("__repr__", [](const PinholeCamera& c) {
+        std::ostringstream text;
+        text << "PinholeCamera(" << c.width << ", " << c.height << ", ";
+        const std::string rest =
+            Fields().add("fx", c.fx).add("fy", c.fy).add("cx", c.cx).add("cy", c.cy).in("");
+        text << rest.substr(1);
+        if (!c.has_distortion()) return text.str();
+        std::string with = text.str();
+        with.pop_back();
+        return with + ", distortion=" + py::repr(py::cast(c.distortion)).cast<std::string>() + ")";
+      });
+}
+
+void bind_noise(py::module_& module) {
+  const ShotNoise shot;
+  py::class_<ShotNoise>(module, "ShotNoise", R"(Time-of-flight shot noise.
+
+``axial = reference_sigma * (t / reference_range) * sqrt(reference_integration_time /
+integration_time) / sqrt(max(cos, 0.1))``, ``lateral = t / fx``; t is the range along the ray [m].
+
+Parameters
+----------
+reference_sigma, reference_range : float
+    [m]
+reference_integration_time, integration_time : float
+    [s]
+modulation_frequency : float
+    Of the light [Hz]; 0: ranges are unambiguous.
+min_amplitude : float
+    cos / t**2 under which a reading is invalid [1/m**2].)")
+      .def(py::init([](double sigma, double range, double reference_time, double time,
+                       double frequency, double amplitude) {
+             return ShotNoise{sigma, range, reference_time, time, frequency, amplitude};
+           }),
+           py::kw_only(), py::arg("reference_sigma") = shot.reference_sigma,
+           py::arg("reference_range") = shot.reference_range,
+           py::arg("reference_integration_time") = shot.reference_integration_time,
+           py::arg("integration_time") = shot.integration_time,
+           py::arg("modulation_frequency") = shot.modulation_frequency,
+           py::arg("min_amplitude") = shot.min_amplitude)
+      .def_readonly("reference_sigma", &ShotNoise::reference_sigma)
+      .def_readonly("reference_range", &ShotNoise::reference_range)
+      .def_readonly("reference_integration_time", &ShotNoise::reference_integration_time)
+      .def_readonly("integration_time", &ShotNoise::integration_time)
+      .def_readonly("modulation_frequency", &ShotNoise::modulation_frequency)
+      .def_readonly("min_amplitude", &ShotNoise::min_amplitude)
+      .def(
+          "__eq__", [](const ShotNoise& a, const ShotNoise& b) { return a == b; },
+          py::is_operator())
+      .def("__repr__", [](const ShotNoise& n) {
+        return Fields()
+            .add("reference_sigma", n.reference_sigma)
+            .add("reference_range", n.reference_range)
+            .add("reference_integration_time", n.reference_integration_time)
+            .add("integration_time", n.integration_time)
+            .add("modulation_frequency", n.modulation_frequency)
+            .add("min_amplitude", n.min_amplitude)
+            .in("ShotNoise");
+      });
+
+  const StructuredLightNoise light;
+  py::class_<StructuredLightNoise>(module, "StructuredLightNoise",
+                                   R"(Structured light (Nguyen, Izadi, Lovell, 2012).
+
+``axial = offset + quadratic * (z - vertex)**2``, plus ``grazing / sqrt(z) * theta**2 / (pi/2 -
+theta)**2`` beyond 60 degrees; ``lateral = (lateral_px + lateral_grazing_px * theta / (pi/2 - theta))
+* z / fx``; z is taken as the range along the ray [m].)")
+      .def(py::init([](double offset, double quadratic, double vertex, double grazing,
+                       double lateral_px, double lateral_grazing_px) {
+             return StructuredLightNoise{offset,  quadratic,  vertex,
+                                         grazing, lateral_px, lateral_grazing_px};
+           }),
+           py::kw_only(), py::arg("offset") = light.offset, py::arg("quadratic") = light.quadratic,
+           py::arg("vertex") = light.vertex, py::arg("grazing") = light.grazing,
+           py::arg("lateral_px") = light.lateral_px,
+           py::arg("lateral_grazing_px") = light.lateral_grazing_px)
+      .def_readonly("offset", &StructuredLightNoise::offset)
+      .def_readonly("quadratic", &StructuredLightNoise::quadratic)
+      .def_readonly("vertex", &StructuredLightNoise::vertex)
+      .def_readonly("grazing", &StructuredLightNoise::grazing)
+      .def_readonly("lateral_px", &StructuredLightNoise::lateral_px)
+      .def_readonly("lateral_grazing_px", &StructuredLightNoise::lateral_grazing_px)
+      .def(
+          "__eq__",
+          [](const StructuredLightNoise& a, const StructuredLightNoise& b) { return a == b; },
+          py::is_operator())
+      .def("__repr__", [](const StructuredLightNoise& n) {
+        return Fields()
+            .add("offset", n.offset)
+            .add("quadratic", n.quadratic)
+            .add("vertex", n.vertex)
+            .add("grazing", n.grazing)
+            .add("lateral_px", n.lateral_px)
+            .add("lateral_grazing_px", n.lateral_grazing_px)
+            .in("StructuredLightNoise");
+      });
+
+  const StereoNoise stereo;
+  py::class_<StereoNoise>(
+      module, "StereoNoise",
+      "Stereo: ``axial = t**2 * subpixel / (focal * baseline)``, ``lateral = t / "
+      "fx``.\n\nsubpixel and focal in [px], baseline in [m].")
+      .def(py::init([](double subpixel, double focal, double baseline) {
+             return StereoNoise{subpixel, focal, baseline};
+           }),
+           py::kw_only(), py::arg("subpixel") = stereo.subpixel, py::arg("focal") = stereo.focal,
+           py::arg("baseline") = stereo.baseline)
+      .def_readonly("subpixel", &StereoNoise::subpixel)
+      .def_readonly("focal", &StereoNoise::focal)
+      .def_readonly("baseline", &StereoNoise::baseline)
+      .def(
+          "__eq__", [](const StereoNoise& a, const StereoNoise& b) { return a == b; },
+          py::is_operator())
+      .def("__repr__", [](const StereoNoise& n) {
+        return Fields()
+            .add("subpixel", n.subpixel)
+            .add("focal", n.focal)
+            .add("baseline", n.baseline)
+            .in("StereoNoise");
+      });
+
+  const QuadraticNoise quadratic;
+  py::class_<QuadraticNoise>(
+      module, "QuadraticNoise",
+      "``axial = offset + quadratic * t**2``, ``lateral = t / fx``.\n\noffset in [m], quadratic in "
+      "[1/m].")
+      .def(py::init([](double offset, double q) { return QuadraticNoise{offset, q}; }),
+           py::kw_only(), py::arg("offset") = quadratic.offset,
+           py::arg("quadratic") = quadratic.quadratic)
+      .def_readonly("offset", &QuadraticNoise::offset)
+      .def_readonly("quadratic", &QuadraticNoise::quadratic)
+      .def(
+          "__eq__", [](const QuadraticNoise& a, const QuadraticNoise& b) { return a == b; },
+          py::is_operator())
+      .def("__repr__", [](const QuadraticNoise& n) {
+        return Fields().add("offset", n.offset).add("quadratic", n.quadratic).in("QuadraticNoise");
+      });
+
+  const ConstantNoise constant;
+  py::class_<ConstantNoise>(module, "ConstantNoise",
+                            "The same everywhere [m]; equal sigmas make an isotropic sensor.")
+      .def(py::init([](double axial, double lateral) { return ConstantNoise{axial, lateral}; }),
+           py::kw_only(), py::arg("sigma_axial") = constant.sigma_axial,
+           py::arg("sigma_lateral") = constant.sigma_lateral)
+      .def_readonly("sigma_axial", &ConstantNoise::sigma_axial)
+      .def_readonly("sigma_lateral", &ConstantNoise::sigma_lateral)
+      .def(
+          "__eq__", [](const ConstantNoise& a, const ConstantNoise& b) { return a == b; },
+          py::is_operator())
+      .def("__repr__", [](const ConstantNoise& n) {
+        return Fields()
+            .add("sigma_axial", n.sigma_axial)
+            .add("sigma_lateral", n.sigma_lateral)
+            .in("ConstantNoise");
+      });
+}
+
+}  // namespace
+
+void bind_sensors(py::module_& module) {
+  bind_camera(module);
+  bind_noise(module);
+  py::class_<Sensor>(module, "Sensor",
+                     R"(A depth camera: intrinsics, range limits, noise. Immutable.
+
+Parameters
+----------
+camera : PinholeCamera
+min_range, max_range : float
+    Along the ray [m].
+working_distance : float
+    Where it is meant to be used [m].
+noise : ShotNoise or StructuredLightNoise or StereoNoise or QuadraticNoise or ConstantNoise
+name : str, optional
+    For reports.
+T_flange_camera : array_like, (4, 4), optional
+    Mounting on the robot's flange.
+
+Raises
+------
+ValueError
+    Names the field that is out of its bounds.)")
+      .def(py::init([](const PinholeCamera& camera, double min_range, double max_range,
+                       double working_distance, const NoiseModel& noise, std::string name,
+                       const py::object& T_flange_camera) {
+             Sensor sensor{std::move(name),
+                           camera,
+                           min_range,
+                           max_range,
+                           working_distance,
+                           noise,
+                           optional_pose(T_flange_camera, "T_flange_camera")};
+             sensor.validate();
+             return sensor;
+           }),
+           py::arg("camera"), py::kw_only(), py::arg("min_range"), py::arg("max_range"),
+           py::arg("working_distance"), py::arg("noise"), py::arg("name") = "custom",
+           py::arg("T_flange_camera") = py::none())
+      .def_readonly("name", &Sensor::name, "str")
+      .def_property_readonly(
+          "camera", [](const Sensor& sensor) { return sensor.camera; }, "PinholeCamera")
+      .def_readonly("min_range", &Sensor::min_range, "float: along the ray [m]")
+      .def_readonly("max_range", &Sensor::max_range, "float: along the ray [m]")
+      .def_readonly("working_distance", &Sensor::working_distance, "float: [m]")
+      .def_property_readonly(
+          "noise", [](const Sensor& sensor) { return sensor.noise; }, "The noise model.")
+      .def_property_readonly(
+          "T_flange_camera",
+          [](const Sensor& sensor) -> py::object {
+            if (!sensor.T_flange_camera) return py::none();
+            return to_array(*sensor.T_flange_camera);
+          },
+          "ndarray, (4, 4), or None")
+      .def(
+          "sigmas",
+          [](const Sensor& sensor, double t, double cos_incidence) {
+            const MeasurementSigmas sigmas = sensor.sigmas(t, cos_incidence);
+            return std::pair(sigmas.axial, sigmas.lateral);
+          },
+          py::arg("t"), py::arg("cos_incidence") = 1.0,
+          R"(Standard deviations of a reading at range t along the ray.
+
+Parameters
+----------
+t : float
+    [m], >= 0.
+cos_incidence : float
+    Cosine of the angle between ray and surface normal; 1: frontal.
+
+Returns
+-------
+axial, lateral : float
+    [m])")
+      .def("__repr__", [](const Sensor& s) {
+        std::ostringstream text;
+        text << "<Sensor " << s.name << ", " << s.camera.width << "x" << s.camera.height << " px, "
+             << s.min_range << "-" << s.max_range << " m>";
+        return text.str();
+      });
+
+  module.def(
+      "sensor_preset", [](const std::string& name) { return sensor_preset(name); }, py::arg("name"),
+      R"(A sensor with a published noise model.
+
+Parameters
+----------
+name : str
+    One of ``sensor_preset_names()``.
+
+Returns
+-------
+Sensor)");
+  module.def(
+      "sensor_preset_names", [] { return sensor_preset_names(); },
+      "The names that ``sensor_preset`` takes.\n\nReturns\n-------\nlist of str");
+  module.def("default_prior_sigma", &default_prior_sigma, py::arg("voxel_size"), py::arg("sensor"),
+             R"(Standard deviation of an unknown voxel's position, when the map does not say [m].
+
+``max(voxel_size / 2, 2 * axial sigma at the working distance)``: unknown is never surer than one
+reading.)");
+}
+
+}  // namespace viewgain::python

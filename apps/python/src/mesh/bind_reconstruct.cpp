@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "batch_call.hpp"
+#include "candidate_generation.hpp"
+#include "depth_images.hpp"
+#include "mesh/bindings.hpp"
+#include "model.hpp"
+#include "planning_options.hpp"
+#include "policies.hpp"
+#include "shared_grid.hpp"
+#include "viewgain/core/planning.hpp"
+
+namespace viewgain::python {
+namespace {
+
+/// What Python gets back.
+struct Reconstruction {
+  std::string reason;
+  py::list views;
+  std::shared_ptr<SharedGrid> grid;
+  SurfaceMesh surface;
+};
+
+void check_signals() {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+// DATAACQUISITION by a function of Python's.
+class PythonAcquisition : public DataAcquisition {
+ public:
+  PythonAcquisition(py::object callback, const Sensor& sensor)
+      : callback_(std::move(callback)), sensor_(sensor) {}
+
+  Measurements acquire(const Pose& T_world_camera, std::size_t) override {
+    const py::gil_scoped_acquire with_gil;
+    check_signals();
+    const py::object answer = callback_(to_array(T_world_camera));
+    Measurements measurements{T_world_camera, {}};
+    if (!py::isinstance<py::tuple>(answer)) {
+      measurements.frames.push_back(depth_frame(sensor_, answer, py::none()));
+      return measurements;
+    }
+    const auto parts = py::reinterpret_borrow<py::tuple>(answer);
+    if (parts.size() != 2 && parts.size() != 3) {
+      throw py::value_error(
+          "acquire must return depth, (depth, amplitude) or (depth, amplitude, T_world_camera), "
+          "not a tuple of " +
+          std::to_string(parts.size()));
+    }
+    measurements.frames.push_back(depth_frame(sensor_, parts[0], parts[1]));
+    if (parts.size() == 3) measurements.T_world_camera = one_pose(parts[2], "T_world_camera");
+    return measurements;
+  }
+
+ private:
+  py::object callback_;
+  const Sensor& sensor_;
+};
+
+// One turn of the loop.
+py::dict dict_of(const ViewRecord& record) {
+  py::dict view;
+  view["index"] = record.index;
+  view["T_world_camera"] = to_array(record.T_world_camera);
+  view["generator"] = record.chosen_as ? record.chosen_as->generator : "start";
+  view["boundary_class"] = record.chosen_as ? record.chosen_as->boundary_class : "";
+  view["predicted_gain"] = record.predicted_gain;
+  view["realised_gain"] = record.realised_gain;
+  view["entropy_removed"] = record.progress.entropy_removed;
+  view["unknown_voxels"] = record.progress.unknown_voxels;
+  view["travelled"] = record.travelled;
+  view["candidates"] = record.proposal.candidates.size();
+  view["dropped"] = record.proposal.dropped;
+  return view;
+}
+
+app::GenerationConfig generation_config(const Sensor& sensor, double voxel_size, bool boundary,
+                                        const py::object& candidates, const ReachRegion* reach,
+                                        std::optional<double> support_plane) {
+  app::GenerationConfig config;
+  config.boundary = boundary;
+  config.estimator = app::default_estimator(voxel_size);
+  config.working_distance = sensor.working_distance;
+  if (!candidates.is_none()) {
+    config.sets.push_back({"candidates", pose_list(candidates, "candidates")});
+  }
+  config.feasibility.body.T_flange_camera = sensor.T_flange_camera;
+  if (reach != nullptr) config.feasibility.reach = *reach;
+  config.feasibility.support_plane = support_plane;
+  config.feasibility.sensor = sensor;
+  return config;
+}
+
+Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, const py::object& start,
+                           double voxel_size, const py::object& workspace,
+                           const std::string& criterion, const std::string& policy, bool boundary,
+                           const py::object& candidates, const ReachRegion* reach,
+                           std::optional<double> support_plane, bool jump_edges,
+                           std::size_t max_views, double stop_gain, std::size_t idle_views,
+                           const py::object& observer, Control* control, int num_threads) {
+  if (PyCallable_Check(acquire.ptr()) == 0) throw py::type_error("acquire must be callable");
+  if (!observer.is_none() && PyCallable_Check(observer.ptr()) == 0) {
+    throw py::type_error("observer must be callable");
+  }
+  const ExecConfig exec{num_threads};
+  const Pose x_0 = one_pose(start, "start");
+  app::ModelConfig model_config;
+  model_config.grid.voxel_size = voxel_size;
+  model_config.grid.workspace = box(workspace, "workspace");
+  model_config.grid.prior_sigma = default_prior_sigma(voxel_size, sensor);
+  model_config.integration.support_plane = support_plane;
+  if (jump_edges) model_config.jump_edges.emplace();
+  model_config.criterion = parse_criterion(criterion);
+  const app::GenerationConfig generation_settings =
+      generation_config(sensor, voxel_size, boundary, candidates, reach, support_plane);
+  app::PolicyConfig policy_config;
+  policy_config.policy = app::parse_policy(policy);
+  policy_config.criterion = model_config.criterion;
+  PlanningConfig planning;
+  planning.max_views = max_views;
+  planning.stop_gain = stop_gain;
+  planning.idle_views = idle_views;
+  if (control != nullptr) planning.stop = control->stop.get_token();
+
+  app::StageSeconds seconds;
+  PythonAcquisition acquisition(acquire, sensor);
+  app::Model model(sensor, model_config, exec, nullptr, seconds);
+  app::CandidateGeneration generation(model, sensor, generation_settings, exec, seconds);
+  app::PolicyDecision decision(model, generation, sensor, policy_config, exec, seconds);
+  Reconstruction result;
+  const auto watch = [&](const ViewRecord& record) {
+    const py::gil_scoped_acquire with_gil;
+    check_signals();
+    const py::dict view = dict_of(record);
+    result.views.append(view);
+    if (!observer.is_none()) observer(view);
+  };
+  {
+    // On this thread, so that a camera's driver and a plot are called on the thread they know.
+    const py::gil_scoped_release without_gil;
+    const PlanningResult end =
+        active_view_planning(x_0, acquisition, model, generation, decision, planning, watch);
+    result.reason = stop_reason_name(end.reason);
+    result.grid = std::make_shared<SharedGrid>(model.grid().clone());
+    result.surface = model.surface();
+  }
+  return result;
+}
+
+}  // namespace
+
+void bind_reconstruct(py::module_& module) {
+  py::class_<Reconstruction>(module, "Reconstruction", "What ``reconstruct`` came to.")
+      .def_readonly("reason", &Reconstruction::reason,
+                    "str: why it ended: gain, no_candidates, unreachable, idle, max_views, "
+                    "interrupted")
+      .def_readonly("views", &Reconstruction::views, "list of dict: one a view, see reconstruct")
+      .def_readonly("grid", &Reconstruction::grid, "viewgain.BeliefGrid")
+      .def_readonly("surface", &Reconstruction::surface, "Surface")
+      .def("__repr__", [](const Reconstruction& r) {
+        return "<Reconstruction " + std::to_string(r.views.size()) + " views, ended by " +
+               r.reason + ", " + std::to_string(r.surface.triangles.size()) + " triangles>";
+      });
+
+  const PlanningConfig defaults;
+  module.def("reconstruct", &reconstruct, py::arg("acquire"), py::arg("sensor"), py::arg("start"),
+             py::kw_only(), py::arg("voxel_size"), py::arg("workspace"),
+             py::arg("criterion") = "log_diagonal", py::arg("policy") = "gain",
+             py::arg("boundary") = true, py::arg("candidates") = py::none(),
+             py::arg("reach") = py::none(), py::arg("support_plane") = py::none(),
+             py::arg("jump_edges") = true, py::arg("max_views") = defaults.max_views,
+             py::arg("stop_gain") = defaults.stop_gain, py::arg("idle_views") = defaults.idle_views,
+             py::arg("observer") = py::none(), py::arg("control") = py::none(),
+             py::arg("num_threads") = 0,
+             R"(The whole loop: measure, update map and surface, propose views, rank them, go on.
+
+The paper's Algorithm 1 with your camera, or your simulator, in it.
+
+Parameters
+----------
+acquire : callable
+    Given T_world_camera (4, 4) of the wanted view, moves the camera there and returns depth
+    (height, width) along the optical axis [m] (0 or NaN: nothing known, inf: nothing up to
+    max_range), or (depth, amplitude), or (depth, amplitude, T_world_camera) with the pose it really
+    got to; amplitude may be None. Called on the calling thread; what it raises ends the loop and
+    passes through.
+sensor : viewgain.Sensor
+start : array_like, (4, 4)
+    T_world_camera of the first view.
+voxel_size : float
+    [m]
+workspace : array_like, (2, 3)
+    Lowest and highest corner of what is mapped, world frame [m].
+criterion : {"log_diagonal", "log_determinant", "trace"}
+policy : {"gain", "kriegel", "random", "frontier", "sequence"}
+    How the next view is chosen; "sequence" takes the candidates in their order.
+boundary : bool
+    Propose views at the surface's open boundaries.
+candidates : array_like, (n, 4, 4), optional
+    Further poses, proposed after every view.
+reach : viewgain.ReachRegion, optional
+    Where the camera can be put.
+support_plane : float, optional
+    Height z of the table [m].
+jump_edges : bool
+    Remove flying pixels.
+max_views : int
+stop_gain : float
+    End when the best candidate promises less than this per touched voxel [nat, m**2 for trace].
+idle_views : int
+    End after so many views in a row that brought nothing; 0: never.
+observer : callable, optional
+    Given the dict of each view, when the next one has been chosen.
+control : viewgain.BatchControl, optional
+    Its stop() ends the loop with the reason "interrupted"; its progress function is not called.
+num_threads : int
+    0: all hardware threads. Never changes the result.
+
+Returns
+-------
+Reconstruction
+    Its views are dicts: index, T_world_camera, generator ("start", "boundary", "candidates"),
+    boundary_class, predicted_gain, realised_gain, entropy_removed [nat, m**2 for trace],
+    unknown_voxels, travelled [m], candidates (how many), dropped (reason -> how many).
+
+Raises
+------
+ValueError
+    An argument, or what acquire returned, is wrong; the first view has no reading in the workspace.)");
+}
+
+}  // namespace viewgain::python

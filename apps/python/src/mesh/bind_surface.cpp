@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arrays.hpp"
+#include "mesh/bindings.hpp"
+#include "model.hpp"
+#include "planning_options.hpp"
+#include "shared_grid.hpp"
+#include "viewgain/mesh/boundary.hpp"
+#include "viewgain/mesh/surface.hpp"
+#include "viewgain/mesh/viewpoint_estimator.hpp"
+
+namespace viewgain::python {
+
+/// Why a boundary candidate exists.
+struct ReasonRow {
+  std::uint8_t boundary_class;
+  std::uint32_t run;
+  double run_length;
+  std::uint32_t patch;
+  std::array<double, 3> target;
+  double distance, tilt, roll;
+  bool nominal;
+};
+
+namespace {
+
+SurfaceMesh surface_of_points(const py::object& positions, const py::object& toward_free,
+                              double spacing, unsigned smoothing_neighbors, double max_edge,
+                              double join_distance, std::size_t min_component, int num_threads) {
+  const auto where = points(positions, "points");
+  std::vector<OrientedPoint> oriented(where.size());
+  for (std::size_t i = 0; i < where.size(); ++i) oriented[i].position = where[i];
+  if (!toward_free.is_none()) {
+    const auto hints = points(toward_free, "toward_free");
+    if (hints.size() != where.size()) {
+      throw py::value_error("toward_free has " + std::to_string(hints.size()) + " rows for " +
+                            std::to_string(where.size()) + " points");
+    }
+    for (std::size_t i = 0; i < where.size(); ++i) oriented[i].toward_free = hints[i];
+  }
+  const SurfaceConfig config{spacing, smoothing_neighbors, max_edge, join_distance, min_component};
+  const py::gil_scoped_release without_gil;
+  return reconstruct_surface(oriented, config, ExecConfig{num_threads});
+}
+
+SurfaceMesh surface_of_grid(const SharedGrid& grid, std::uint32_t min_hits, int num_threads) {
+  FusedPointsConfig config;
+  config.min_hits = min_hits;
+  return grid.read([&](const BeliefGrid& g) {
+    return app::surface_of(fused_points(g, config, ExecConfig{num_threads}), g.voxel_size());
+  });
+}
+
+py::tuple boundary_candidates(const SurfaceMesh& surface, const py::object& views,
+                              const Sensor& sensor, double spacing,
+                              std::optional<double> working_distance, std::optional<double> overlap,
+                              const std::optional<std::vector<double>>& distances,
+                              const std::optional<std::vector<double>>& tilts,
+                              const std::optional<std::vector<double>>& rolls) {
+  const std::vector<Pose> taken = pose_list(views, "views");
+  EstimatorConfig config = app::default_estimator(spacing);
+  if (overlap) config.overlap = *overlap;
+  if (distances) config.distances = *distances;
+  if (tilts) config.tilts = *tilts;
+  if (rolls) config.rolls = *rolls;
+  EstimatedViews estimated;
+  {
+    const py::gil_scoped_release without_gil;
+    estimated = estimate_views(surface, taken, sensor,
+                               working_distance.value_or(sensor.working_distance), config);
+  }
+  std::vector<Pose> poses;
+  std::vector<ReasonRow> reasons;
+  for (const BoundaryCandidate& c : estimated.candidates) {
+    poses.push_back(c.T_world_camera);
+    reasons.push_back({static_cast<std::uint8_t>(c.boundary_class),
+                       c.run,
+                       estimated.runs[c.run].length,
+                       c.patch,
+                       {c.target.x(), c.target.y(), c.target.z()},
+                       c.distance,
+                       c.tilt,
+                       c.roll,
+                       c.nominal});
+  }
+  return py::make_tuple(to_array(poses, {static_cast<py::ssize_t>(poses.size())}),
+                        to_array_1d<ReasonRow>(reasons));
+}
+
+}  // namespace
+
+void bind_surface(py::module_& module) {
+  PYBIND11_NUMPY_DTYPE(ReasonRow, boundary_class, run, run_length, patch, target, distance, tilt,
+                       roll, nominal);
+  py::list classes;
+  for (const BoundaryClass c :
+       {BoundaryClass::left, BoundaryClass::right, BoundaryClass::top, BoundaryClass::bottom}) {
+    classes.append(std::string(boundary_class_name(c)));
+  }
+  module.attr("BOUNDARY_CLASS_NAMES") = py::tuple(classes);
+
+  py::class_<SurfaceMesh>(module, "Surface",
+                          R"(An open, oriented triangle surface. Made by ``reconstruct_surface``,
+``surface_of_grid`` and ``reconstruct``.
+
+Faces turn counter-clockwise seen from free space.)")
+      .def_property_readonly(
+          "vertices", [](const SurfaceMesh& s) { return to_array_3(s.vertices); },
+          "ndarray, (n, 3), float64: [m]")
+      .def_property_readonly(
+          "normals", [](const SurfaceMesh& s) { return to_array_3(s.normals); },
+          "ndarray, (n, 3), float64: unit, towards free space")
+      .def_property_readonly(
+          "triangles", [](const SurfaceMesh& s) { return to_array_3(s.triangles); },
+          "ndarray, (m, 3), uint32: indices of vertices")
+      .def_property_readonly(
+          "source", [](const SurfaceMesh& s) { return to_array_1d<std::uint32_t>(s.source); },
+          "ndarray, (n,), uint32: the input point of each vertex")
+      .def("__repr__", [](const SurfaceMesh& s) {
+        return "<Surface " + std::to_string(s.vertices.size()) + " vertices, " +
+               std::to_string(s.triangles.size()) + " triangles>";
+      });
+
+  const SurfaceConfig defaults;
+  module.def("reconstruct_surface", &surface_of_points, py::arg("points"),
+             py::arg("toward_free") = py::none(), py::kw_only(), py::arg("spacing"),
+             py::arg("smoothing_neighbors") = defaults.smoothing_neighbors,
+             py::arg("max_edge") = defaults.max_edge,
+             py::arg("join_distance") = defaults.join_distance,
+             py::arg("min_component") = defaults.min_component, py::arg("num_threads") = 0,
+             R"(The open surface through points; no hole is filled beyond max_edge.
+
+Parameters
+----------
+points : array_like, (n, 3)
+    [m]
+toward_free : array_like, (n, 3), optional
+    On which side of the surface free space lies: a hint each, zero where not known.
+spacing : float
+    Typical distance of neighbouring points [m].
+smoothing_neighbors : int
+    Of the jet fit; 0: no smoothing.
+max_edge, join_distance : float
+    Longest edge; how near points of one component are [spacings].
+min_component : int
+    Components of fewer points are dropped.
+
+Returns
+-------
+Surface)");
+  module.def(
+      "surface_of_grid", &surface_of_grid, py::arg("grid"), py::kw_only(), py::arg("min_hits") = 3,
+      py::arg("num_threads") = 0,
+      "The surface through ``grid.points(min_hits=min_hits)``.\n\nReturns\n-------\nSurface");
+  module.def("boundary_candidates", &boundary_candidates, py::arg("surface"), py::arg("views"),
+             py::arg("sensor"), py::kw_only(), py::arg("spacing"),
+             py::arg("working_distance") = py::none(), py::arg("overlap") = py::none(),
+             py::arg("distances") = py::none(), py::arg("tilts") = py::none(),
+             py::arg("rolls") = py::none(),
+             R"(Views that look past the open boundaries of a surface, and why.
+
+Parameters
+----------
+surface : Surface
+views : array_like, (n, 4, 4)
+    T_world_camera of the views that saw it, in order.
+sensor : Sensor
+spacing : float
+    The map's voxel size [m].
+working_distance : float, optional
+    From the surface [m]; the sensor's unless given.
+overlap : float, optional
+    Share of the next view that shows known surface, in (0, 1).
+distances : sequence of float, optional
+    Multiples of the working distance.
+tilts, rolls : sequence of float, optional
+    [rad]; all combinations are tried.
+
+Returns
+-------
+poses : ndarray, (n, 4, 4), float64
+    T_world_camera. What stands in their way is for ``FeasibilityChecker`` to say.
+reasons : ndarray, (n,), structured
+    boundary_class (index into ``BOUNDARY_CLASS_NAMES``), run (of boundary edges), run_length [m],
+    patch, target (the extrapolated point looked at, 3 [m]), distance from it [m], tilt, roll [rad],
+    nominal (neither tilted nor rolled, at the first distance).)");
+}
+
+}  // namespace viewgain::python

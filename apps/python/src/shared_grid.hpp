@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <mutex>
+#include <shared_mutex>
+#include <utility>
+
+#include "viewgain/grid/belief_grid.hpp"
+
+namespace viewgain::python {
+
+/// Python's BeliefGrid. Calls that take long leave the GIL, so that another thread of Python may
+/// come to the same grid meanwhile: it waits here, many readers or one writer.
+class SharedGrid {
+ public:
+  explicit SharedGrid(BeliefGrid grid) : grid_(std::move(grid)) {}
+
+  /// Calls f(const BeliefGrid&) or f(BeliefGrid&) without the GIL; f must not touch Python. Call
+  /// with the GIL.
+  template <typename F>
+  auto read(const F& f) const {
+    const pybind11::gil_scoped_release
+        without_gil;  // before the lock, or two threads hold one each
+    const std::shared_lock lock(mutex_);
+    return f(grid_);
+  }
+  template <typename F>
+  auto write(const F& f) {
+    const pybind11::gil_scoped_release without_gil;
+    const std::unique_lock lock(mutex_);
+    return f(grid_);
+  }
+
+  /// For what never changes: layout, prior.
+  [[nodiscard]] const BeliefGrid& layout() const noexcept { return grid_; }
+
+ private:
+  BeliefGrid grid_;
+  mutable std::shared_mutex mutex_;
+};
+
+}  // namespace viewgain::python

@@ -1,0 +1,19 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""Scores camera poses by expected information gain.
+
+>>> import numpy, viewgain
+>>> labels = numpy.zeros((64, 64, 64), numpy.uint8)             # 0 unknown, 1 free, 2 occupied
+>>> sensor = viewgain.sensor_preset("sr4000")
+>>> grid = viewgain.BeliefGrid.from_labels(labels, voxel_size=0.005, sensor=sensor)
+>>> evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor)
+>>> poses = viewgain.sphere_poses(500, 0.6, center=(0.16, 0.16, 0.16))   # (500, 4, 4) T_world_camera
+>>> gains = evaluator.evaluate(poses)                           # (500,), nat
+
+Frames and units: a pose is ``T_world_camera``, a 4x4 matrix that maps points of the camera's optical
+frame (x right, y down, z forward) to the world; lengths are metres, gains nats. Surfaces and the whole
+reconstruction loop are in ``viewgain.mesh``, which is GPL-3.0-or-later.
+"""
+
+from ._viewgain import *
+from ._viewgain import __version__

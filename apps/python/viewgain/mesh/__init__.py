@@ -1,0 +1,9 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces, views at their open boundaries, and the whole reconstruction loop.
+
+Stands on parts of CGAL that are GPL-3.0-or-later, and so is what imports it; ``import viewgain`` alone
+is Apache-2.0 and loads none of this.
+"""
+
+from ._mesh import *

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The same poses and the same map give the same bits from C and from C++.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "../core/temporary_folder.hpp"
+#include "scene_makers.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/raycast/depth_image.hpp"
+#include "viewgain/viewgain.h"
+
+namespace viewgain {
+namespace {
+
+std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
+
+std::vector<double> matrices_of(std::span<const Pose> poses) {
+  std::vector<double> matrices;
+  for (const Pose& pose : poses) {
+    matrices.insert(matrices.end(), pose.m.begin(), pose.m.end());
+    matrices.insert(matrices.end(), {0, 0, 0, 1});
+  }
+  return matrices;
+}
+
+vg_sensor sensor_of(const Sensor& sensor, const ConstantNoise& noise) {
+  vg_sensor own;
+  vg_sensor_init(&own, sizeof own);
+  own.width = sensor.camera.width;
+  own.height = sensor.camera.height;
+  own.fx = sensor.camera.fx;
+  own.fy = sensor.camera.fy;
+  own.cx = sensor.camera.cx;
+  own.cy = sensor.camera.cy;
+  std::copy(sensor.camera.distortion.begin(), sensor.camera.distortion.end(), own.distortion);
+  own.min_range = sensor.min_range;
+  own.max_range = sensor.max_range;
+  own.working_distance = sensor.working_distance;
+  own.noise_model = VG_NOISE_CONSTANT;
+  own.noise[0] = noise.sigma_axial;
+  own.noise[1] = noise.sigma_lateral;
+  return own;
+}
+
+/// Releases the handles at the end of a case.
+struct Handles {
+  vg_grid* grid = nullptr;
+  vg_scene* scene = nullptr;
+  vg_evaluator* evaluator = nullptr;
+  Handles() = default;
+  Handles(const Handles&) = delete;
+  Handles& operator=(const Handles&) = delete;
+  ~Handles() {
+    vg_grid_release(grid);
+    vg_evaluator_release(evaluator);
+    vg_scene_release(scene);
+  }
+};
+
+TEST(CApi, GainsAreThoseOfCppToTheLastBit) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.path() / "map.vdb";
+  std::size_t views = 0, gained = 0;
+  for (const test::MapFamily family :
+       {test::MapFamily::salt_and_pepper_1, test::MapFamily::tiles_8, test::MapFamily::rotated}) {
+    test::Random random(5);
+    const test::RandomMap map = test::random_map(family, random);
+    Sensor sensor = test::random_sensor(map.grid, random);
+    const ConstantNoise noise{.sigma_axial = 0.4 * map.grid.voxel_size(),
+                              .sigma_lateral = 0.2 * map.grid.voxel_size()};
+    sensor.noise = noise;
+    std::vector<Pose> poses = test::random_poses(map, 40, random);
+    poses[3].m[1] = std::numeric_limits<double>::quiet_NaN();
+    poses[11].m[0] += 5e-4;  // is mended
+    const std::vector<double> matrices = matrices_of(poses);
+    save_vdb(map.grid, path);
+
+    for (const Criterion criterion :
+         {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
+      const GainEvaluator evaluator(VoxelScene::build(map.grid), sensor, {.criterion = criterion});
+      const std::vector<ViewGain> expected = evaluator.evaluate(poses);
+      Handles own;
+      const vg_sensor camera = sensor_of(sensor, noise);
+      vg_evaluator_config config;
+      vg_evaluator_config_init(&config, sizeof config);
+      config.criterion = static_cast<std::int32_t>(criterion);
+      ASSERT_EQ(vg_grid_load(path.c_str(), &own.grid), VG_OK) << vg_last_error();
+      ASSERT_EQ(vg_scene_build(own.grid, nullptr, &own.scene), VG_OK) << vg_last_error();
+      ASSERT_EQ(vg_evaluator_create(own.scene, &camera, &config, &own.evaluator), VG_OK)
+          << vg_last_error();
+      std::vector<double> gains(poses.size());
+      std::vector<vg_view_gain> whole(poses.size());
+      ASSERT_EQ(vg_evaluate(own.evaluator, matrices.data(), poses.size(), gains.data(), nullptr),
+                VG_OK);
+      ASSERT_EQ(vg_evaluate_views(own.evaluator, matrices.data(), poses.size(), whole.data(),
+                                  sizeof whole[0], nullptr),
+                VG_OK);
+      for (std::size_t i = 0; i < poses.size(); ++i, ++views) {
+        const ViewGain& view = expected[i];
+        double single = 0;
+        ASSERT_EQ(vg_evaluate(own.evaluator, &matrices[16 * i], 1, &single, nullptr), VG_OK);
+        EXPECT_EQ(bits(single), bits(view.gain));
+        EXPECT_EQ(bits(gains[i]), bits(view.gain));
+        EXPECT_EQ(bits(whole[i].gain), bits(view.gain));
+        EXPECT_EQ(bits(whole[i].exploration), bits(view.exploration));
+        EXPECT_EQ(bits(whole[i].refinement), bits(view.refinement));
+        EXPECT_EQ(bits(whole[i].posterior_entropy), bits(view.posterior_entropy));
+        EXPECT_EQ(whole[i].rays, view.rays);
+        EXPECT_EQ(whole[i].hits, view.hits);
+        EXPECT_EQ(whole[i].unknown_voxels, view.unknown_voxels);
+        EXPECT_EQ(whole[i].occupied_voxels, view.occupied_voxels);
+        EXPECT_EQ(whole[i].status, static_cast<std::int32_t>(view.status));
+        if (view.gain > 0) ++gained;
+      }
+
+      std::vector<std::size_t> indices(4);
+      std::size_t found = 0;
+      ASSERT_EQ(vg_best(own.evaluator, matrices.data(), poses.size(), 4, indices.data(), nullptr,
+                        &found, nullptr),
+                VG_OK);
+      EXPECT_EQ(indices, best_indices(expected, 4));
+      const DepthImage image = depth_image(evaluator, poses[0]);
+      std::vector<float> depth(image.depth.size());
+      ASSERT_EQ(vg_depth_image(own.evaluator, matrices.data(), depth.data(), nullptr, depth.size()),
+                VG_OK);
+      EXPECT_EQ(depth, image.depth);
+    }
+  }
+  EXPECT_EQ(views, 3U * 3 * 40);
+  EXPECT_GT(gained, 100U);
+}
+
+TEST(CApi, MessagesAreTheThreadsOwn) {
+  ASSERT_EQ(vg_grid_clone(nullptr, nullptr), VG_INVALID_ARGUMENT);
+  const std::string own = vg_last_error();
+  std::string before = "?", after;
+  std::thread other([&] {
+    before = vg_last_error();
+    (void)vg_sensor_preset(nullptr, nullptr);
+    after = vg_last_error();
+  });
+  other.join();
+  EXPECT_EQ(own, "copy is null");
+  EXPECT_EQ(before, "");
+  EXPECT_EQ(after, "name is null");
+  EXPECT_EQ(vg_last_error(), own);
+}
+
+TEST(CApi, ALongMessageIsCutOff) {
+  vg_grid* grid = nullptr;
+  const std::string path = "/nonexistent/" + std::string(3000, 'x');
+  ASSERT_EQ(vg_grid_load(path.c_str(), &grid), VG_IO);
+  EXPECT_EQ(std::string(vg_last_error()).size(), 1023U);
+}
+
+TEST(CApi, SeveralThreadsShareAnEvaluator) {
+  test::Random random(9);
+  const test::RandomMap map = test::random_map(test::MapFamily::salt_and_pepper_30, random);
+  const std::vector<Pose> poses = test::random_poses(map, 50, random);
+  const std::vector<double> matrices = matrices_of(poses);
+  const test::TemporaryFolder folder;
+  const std::string path = folder.path() / "map.vdb";
+  save_vdb(map.grid, path);
+  Handles own;
+  vg_sensor sensor;
+  vg_sensor_init(&sensor, sizeof sensor);
+  ASSERT_EQ(vg_sensor_preset("laser_line", &sensor), VG_OK);
+  ASSERT_EQ(vg_grid_load(path.c_str(), &own.grid), VG_OK);
+  ASSERT_EQ(vg_scene_build(own.grid, nullptr, &own.scene), VG_OK);
+  ASSERT_EQ(vg_evaluator_create(own.scene, &sensor, nullptr, &own.evaluator), VG_OK);
+  std::vector<std::vector<double>> gains(4, std::vector<double>(poses.size()));
+  std::vector<std::thread> threads;
+  for (std::vector<double>& mine : gains) {
+    threads.emplace_back([&] {
+      (void)vg_evaluate(own.evaluator, matrices.data(), poses.size(), mine.data(), nullptr);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::vector<double>& mine : gains) EXPECT_EQ(mine, gains[0]);
+  EXPECT_GT(*std::max_element(gains[0].begin(), gains[0].end()), 0.0);
+}
+
+}  // namespace
+}  // namespace viewgain

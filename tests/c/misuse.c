@@ -1,0 +1,316 @@
+/* SPDX-FileCopyrightText: 2026 The viewgain authors
+   SPDX-License-Identifier: Apache-2.0 */
+
+/* Wrong use: each has its status and a message that names the value. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "check.h"
+
+static void of_sensors(void) {
+  vg_sensor sensor, bad;
+  double sigma;
+  CHECK_FAILS(vg_sensor_preset(NULL, &sensor), VG_INVALID_ARGUMENT, "name is null");
+  CHECK_FAILS(vg_sensor_preset("sr4000", NULL), VG_INVALID_ARGUMENT, "vg_sensor is null");
+  vg_sensor_init(&sensor, 24); /* as if of a version that is not this one */
+  CHECK_FAILS(vg_sensor_preset("sr4000", &sensor), VG_INVALID_ARGUMENT, "is 24 bytes");
+  vg_sensor_init(&sensor, sizeof sensor);
+  CHECK_FAILS(vg_sensor_preset("sr4001", &sensor), VG_INVALID_ARGUMENT, "sr4001");
+  CHECK_OK(vg_sensor_preset("sr4000", &sensor));
+  CHECK_FAILS(vg_default_prior_sigma(0.1, NULL, &sigma), VG_INVALID_ARGUMENT, "vg_sensor is null");
+  CHECK_FAILS(vg_default_prior_sigma(0.1, &sensor, NULL), VG_INVALID_ARGUMENT, "sigma is null");
+  CHECK_FAILS(vg_default_prior_sigma(NAN, &sensor, &sigma), VG_INVALID_ARGUMENT, "nan");
+  bad = sensor;
+  bad.noise_model = 9;
+  CHECK_FAILS(vg_default_prior_sigma(0.1, &bad, &sigma), VG_INVALID_ARGUMENT, "noise_model is 9");
+  bad = sensor;
+  bad.noise_model = VG_NOISE_QUADRATIC;
+  CHECK_FAILS(vg_default_prior_sigma(0.1, &bad, &sigma), VG_INVALID_ARGUMENT, "noise[2] is 0.0085");
+  bad = sensor;
+  bad.fx = -3;
+  CHECK_FAILS(vg_default_prior_sigma(0.1, &bad, &sigma), VG_INVALID_ARGUMENT, "fx");
+  vg_sensor_init(NULL, sizeof sensor);
+  vg_sensor_init(&bad, 0);
+  CHECK(bad.fx == -3);
+}
+
+static void of_grids(const char* folder) {
+  const uint8_t labels[8] = {0, 1, 2, 0, 1, 2, 0, 3};
+  const int32_t dims[3] = {2, 2, 2}, flat[3] = {2, 0, 2}, vast[3] = {2, 70000, 2};
+  const double origin[3] = {0, 0, 0}, nowhere[3] = {0, NAN, 0};
+  vg_grid* grid = (vg_grid*)1;
+  vg_grid* map = test_map();
+  vg_grid_config config;
+  vg_grid_info info;
+  uint8_t states[8];
+  char path[1024], hash[17];
+  FILE* file;
+
+  CHECK_FAILS(vg_grid_from_labels(NULL, dims, origin, 0.1, 0.1, &grid), VG_INVALID_ARGUMENT,
+              "labels is null");
+  CHECK(grid == NULL);
+  CHECK_FAILS(vg_grid_from_labels(labels, NULL, origin, 0.1, 0.1, &grid), VG_INVALID_ARGUMENT,
+              "dims is null");
+  CHECK_FAILS(vg_grid_from_labels(labels, dims, NULL, 0.1, 0.1, &grid), VG_INVALID_ARGUMENT,
+              "origin is null");
+  CHECK_FAILS(vg_grid_from_labels(labels, dims, origin, 0.1, 0.1, NULL), VG_INVALID_ARGUMENT,
+              "grid is null");
+  CHECK_FAILS(vg_grid_from_labels(labels, flat, origin, 0.1, 0.1, &grid), VG_INVALID_ARGUMENT,
+              "2 x 0 x 2");
+  CHECK_FAILS(vg_grid_from_labels(labels, vast, origin, 0.1, 0.1, &grid), VG_INVALID_ARGUMENT,
+              "70000");
+  CHECK_FAILS(vg_grid_from_labels(labels, dims, nowhere, 0.1, 0.1, &grid), VG_INVALID_ARGUMENT,
+              "T_world_grid");
+  CHECK_FAILS(vg_grid_from_labels(labels, dims, origin, -1, 0.1, &grid), VG_INVALID_ARGUMENT, "-1");
+  CHECK_FAILS(vg_grid_from_labels(labels, dims, origin, NAN, 0.1, &grid), VG_INVALID_ARGUMENT,
+              "nan");
+  CHECK_FAILS(vg_grid_from_labels(labels, dims, origin, 0.1, 0, &grid), VG_INVALID_ARGUMENT,
+              "prior");
+  CHECK_FAILS(vg_grid_from_labels(labels, dims, origin, 0.1, 0.1, &grid), VG_INVALID_ARGUMENT, "3");
+
+  CHECK_FAILS(vg_grid_create(NULL, &grid), VG_INVALID_ARGUMENT, "vg_grid_config is null");
+  vg_grid_config_init(&config, sizeof config - 8);
+  CHECK_FAILS(vg_grid_create(&config, &grid), VG_INVALID_ARGUMENT, "vg_grid_config");
+  vg_grid_config_init(&config, sizeof config);
+  CHECK_FAILS(vg_grid_create(&config, &grid), VG_INVALID_ARGUMENT, "voxel");
+  config.voxel_size = config.prior_sigma = 0.1;
+  config.box_max[0] = config.box_max[1] = 1;
+  config.box_max[2] = -1;
+  CHECK_FAILS(vg_grid_create(&config, &grid), VG_INVALID_ARGUMENT, "workspace");
+  config.box_max[2] = 1e5;
+  CHECK_FAILS(vg_grid_create(&config, &grid), VG_CAPACITY, "1000000");
+  config.box_max[2] = 1;
+  config.T_world_grid[12] = 4;
+  CHECK_FAILS(vg_grid_create(&config, &grid), VG_INVALID_ARGUMENT, "4 0 0 1");
+
+  CHECK_FAILS(vg_grid_load(NULL, &grid), VG_INVALID_ARGUMENT, "path is null");
+  sprintf(path, "%.1000s/missing.vdb", folder);
+  CHECK_FAILS(vg_grid_load(path, &grid), VG_IO, "missing.vdb");
+  sprintf(path, "%.1000s/text.vdb", folder);
+  file = fopen(path, "w");
+  CHECK(file != NULL);
+  if (file != NULL) {
+    fputs("not a map", file);
+    fclose(file);
+  }
+  CHECK_FAILS(vg_grid_load(path, &grid), VG_FORMAT, "text.vdb");
+  CHECK_FAILS(vg_grid_save(NULL, path), VG_INVALID_ARGUMENT, "grid is null");
+  CHECK_FAILS(vg_grid_save(map, NULL), VG_INVALID_ARGUMENT, "path is null");
+  CHECK_FAILS(vg_grid_save(map, "/nonexistent/map.vdb"), VG_IO, "/nonexistent/map.vdb");
+  CHECK_FAILS(vg_grid_clone(NULL, &grid), VG_INVALID_ARGUMENT, "grid is null");
+  CHECK_FAILS(vg_grid_clone(map, NULL), VG_INVALID_ARGUMENT, "copy is null");
+  CHECK_FAILS(vg_grid_get_info(NULL, &info), VG_INVALID_ARGUMENT, "grid is null");
+  CHECK_FAILS(vg_grid_get_info(map, NULL), VG_INVALID_ARGUMENT, "vg_grid_info is null");
+  info.struct_size = 3;
+  CHECK_FAILS(vg_grid_get_info(map, &info), VG_INVALID_ARGUMENT, "is 3 bytes");
+  CHECK_FAILS(vg_grid_states(map, states, 8), VG_INVALID_ARGUMENT, "8 states");
+  CHECK_FAILS(vg_grid_states(map, NULL, MAP_VOXELS), VG_INVALID_ARGUMENT, "states is null");
+  CHECK_FAILS(vg_grid_states(NULL, states, 8), VG_INVALID_ARGUMENT, "grid is null");
+  CHECK_FAILS(vg_grid_hash(NULL, hash), VG_INVALID_ARGUMENT, "grid is null");
+  CHECK_FAILS(vg_grid_hash(map, NULL), VG_INVALID_ARGUMENT, "hash is null");
+  vg_grid_release(map);
+}
+
+static void of_frames(void) {
+  vg_sensor sensor;
+  vg_integrator_config config;
+  vg_integrator* integrator = NULL;
+  vg_integration_report report;
+  vg_grid* map = test_map();
+  vg_grid_info info;
+  float depth[640] = {0};
+  double pose[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+  vg_sensor_init(&sensor, sizeof sensor);
+  CHECK_OK(vg_sensor_preset("laser_line", &sensor));
+  CHECK_FAILS(vg_integrator_create(NULL, NULL, &integrator), VG_INVALID_ARGUMENT,
+              "vg_sensor is null");
+  CHECK_FAILS(vg_integrator_create(&sensor, NULL, NULL), VG_INVALID_ARGUMENT, "integrator is null");
+  vg_integrator_config_init(&config, sizeof config);
+  config.carve = 2;
+  CHECK_FAILS(vg_integrator_create(&sensor, &config, &integrator), VG_INVALID_ARGUMENT,
+              "carve is 2");
+  config.carve = VG_CARVE_LINES;
+  config.occupancy = -1;
+  CHECK_FAILS(vg_integrator_create(&sensor, &config, &integrator), VG_INVALID_ARGUMENT,
+              "occupancy is -1");
+  config.occupancy = VG_OCCUPANCY_LITERAL;
+  config.num_threads = -4;
+  CHECK_FAILS(vg_integrator_create(&sensor, &config, &integrator), VG_INVALID_ARGUMENT, "-4");
+  config.num_threads = 1;
+  CHECK_OK(vg_integrator_create(&sensor, &config, &integrator));
+  CHECK_FAILS(vg_integrate(NULL, map, depth, NULL, pose, NULL), VG_INVALID_ARGUMENT,
+              "integrator is null");
+  CHECK_FAILS(vg_integrate(integrator, NULL, depth, NULL, pose, NULL), VG_INVALID_ARGUMENT,
+              "grid is null");
+  CHECK_FAILS(vg_integrate(integrator, map, NULL, NULL, pose, NULL), VG_INVALID_ARGUMENT,
+              "depth is null");
+  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, NULL, NULL), VG_INVALID_ARGUMENT,
+              "T_world_camera is null");
+  report.struct_size = 0;
+  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, pose, &report), VG_INVALID_ARGUMENT,
+              "vg_integration_report");
+  pose[0] = NAN;
+  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, pose, NULL), VG_INVALID_ARGUMENT, "pose");
+  pose[0] = 1;
+  pose[14] = 0.5; /* a matrix column by column */
+  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, pose, NULL), VG_INVALID_ARGUMENT,
+              "0 0 0.5 1");
+  vg_grid_info_init(&info, sizeof info);
+  CHECK_OK(vg_grid_get_info(map, &info));
+  CHECK(info.views == 0);
+  vg_integrator_release(integrator);
+  vg_integrator_release(NULL);
+  vg_grid_release(map);
+}
+
+static void of_scenes(vg_grid* map, vg_scene* scene) {
+  vg_scene_config config;
+  vg_scene* other = NULL;
+  vg_feasibility_config body;
+  vg_feasibility* checker = NULL;
+  int32_t reason;
+  const double inside_out[6] = {1, 1, 1, 0, 0, 0};
+  const double point[3] = {0, 0, 0};
+  const uint32_t triangle[3] = {0, 1, 2};
+
+  CHECK_FAILS(vg_scene_build(NULL, NULL, &other), VG_INVALID_ARGUMENT, "grid is null");
+  CHECK_FAILS(vg_scene_build(map, NULL, NULL), VG_INVALID_ARGUMENT, "scene is null");
+  vg_scene_config_init(&config, sizeof config);
+  config.box_count = 1;
+  CHECK_FAILS(vg_scene_build(map, &config, &other), VG_INVALID_ARGUMENT, "boxes is null");
+  config.boxes = inside_out;
+  CHECK_FAILS(vg_scene_build(map, &config, &other), VG_INVALID_ARGUMENT, "box");
+  config.box_count = 0;
+  config.vertices = point;
+  config.vertex_count = 1;
+  config.triangles = triangle;
+  config.triangle_count = 1;
+  CHECK_FAILS(vg_scene_build(map, &config, &other), VG_INVALID_ARGUMENT, "vertex 1 of 1");
+  config.struct_size = 0;
+  CHECK_FAILS(vg_scene_build(map, &config, &other), VG_INVALID_ARGUMENT, "vg_scene_config");
+  CHECK_FAILS(vg_scene_update(NULL, map, 1, &other), VG_INVALID_ARGUMENT, "before is null");
+  CHECK_FAILS(vg_scene_update(scene, NULL, 1, &other), VG_INVALID_ARGUMENT, "grid is null");
+
+  CHECK_FAILS(vg_feasibility_create(NULL, NULL, &checker), VG_INVALID_ARGUMENT, "scene is null");
+  vg_feasibility_config_init(&body, sizeof body);
+  body.clearance = -0.5;
+  CHECK_FAILS(vg_feasibility_create(scene, &body, &checker), VG_INVALID_ARGUMENT, "clearance");
+  body.clearance = 0;
+  body.has_flange = 1;
+  body.T_flange_camera[13] = 1;
+  CHECK_FAILS(vg_feasibility_create(scene, &body, &checker), VG_INVALID_ARGUMENT, "0 1 0 1");
+  CHECK_OK(vg_feasibility_create(scene, NULL, &checker));
+  CHECK_FAILS(vg_feasibility_check(NULL, point, 0, NULL, 0, &reason), VG_INVALID_ARGUMENT,
+              "feasibility is null");
+  CHECK_FAILS(vg_feasibility_check(checker, NULL, 1, NULL, 0, &reason), VG_INVALID_ARGUMENT,
+              "poses is null");
+  CHECK_FAILS(vg_feasibility_check(checker, NULL, 0, NULL, 2, NULL), VG_INVALID_ARGUMENT,
+              "taken is null");
+  vg_feasibility_release(checker);
+  vg_feasibility_release(NULL);
+}
+
+static void of_evaluators(const vg_scene* scene) {
+  vg_sensor sensor;
+  vg_evaluator_config config;
+  vg_evaluator* evaluator = NULL;
+  vg_evaluator_info info;
+  vg_watch watch;
+  vg_view_gain view;
+  vg_contribution part;
+  float depth[640];
+  size_t index, found;
+  double gain;
+  double pose[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+  vg_sensor_init(&sensor, sizeof sensor);
+  CHECK_FAILS(vg_evaluator_create(scene, &sensor, NULL, &evaluator), VG_INVALID_ARGUMENT, "width");
+  CHECK_OK(vg_sensor_preset("laser_line", &sensor));
+  CHECK_FAILS(vg_evaluator_create(NULL, &sensor, NULL, &evaluator), VG_INVALID_ARGUMENT,
+              "scene is null");
+  CHECK_FAILS(vg_evaluator_create(scene, &sensor, NULL, NULL), VG_INVALID_ARGUMENT,
+              "evaluator is null");
+  vg_evaluator_config_init(&config, sizeof config);
+  config.criterion = 3;
+  CHECK_FAILS(vg_evaluator_create(scene, &sensor, &config, &evaluator), VG_INVALID_ARGUMENT,
+              "criterion is 3");
+  config.criterion = VG_LOG_DETERMINANT;
+  config.pixel_stride = 0;
+  CHECK_FAILS(vg_evaluator_create(scene, &sensor, &config, &evaluator), VG_INVALID_ARGUMENT,
+              "stride is 0");
+  config.pixel_stride = 1;
+  config.weight_count = 1;
+  CHECK_FAILS(vg_evaluator_create(scene, &sensor, &config, &evaluator), VG_INVALID_ARGUMENT,
+              "weights is null");
+  config.weight_count = 0;
+  config.prior_sigma = 0;
+  CHECK_FAILS(vg_evaluator_create(scene, &sensor, &config, &evaluator), VG_INVALID_ARGUMENT,
+              "prior sigma is 0");
+  CHECK(evaluator == NULL);
+  CHECK_OK(vg_evaluator_create(scene, &sensor, NULL, &evaluator));
+
+  CHECK_FAILS(vg_evaluate(NULL, pose, 1, &gain, NULL), VG_INVALID_ARGUMENT, "evaluator is null");
+  CHECK_FAILS(vg_evaluate(evaluator, NULL, 1, &gain, NULL), VG_INVALID_ARGUMENT, "poses is null");
+  CHECK_FAILS(vg_evaluate(evaluator, pose, 1, NULL, NULL), VG_INVALID_ARGUMENT, "gains is null");
+  vg_watch_init(&watch, sizeof watch);
+  CHECK_FAILS(vg_evaluate(evaluator, pose, 1, &gain, &watch), VG_INVALID_ARGUMENT, "poll");
+  watch.struct_size = 1;
+  CHECK_FAILS(vg_evaluate(evaluator, pose, 1, &gain, &watch), VG_INVALID_ARGUMENT, "vg_watch");
+  CHECK_FAILS(vg_evaluate_views(evaluator, pose, 1, &view, 8, NULL), VG_INVALID_ARGUMENT,
+              "is 8 bytes");
+  CHECK_FAILS(vg_best(evaluator, pose, 1, 1, NULL, NULL, &found, NULL), VG_INVALID_ARGUMENT,
+              "indices is null");
+  CHECK_FAILS(vg_best(evaluator, pose, 1, 1, &index, NULL, NULL, NULL), VG_INVALID_ARGUMENT,
+              "found is null");
+  CHECK_FAILS(vg_race(NULL, pose, 1, 1, 1, &index, NULL, &found, NULL), VG_INVALID_ARGUMENT,
+              "evaluator is null");
+  CHECK_FAILS(vg_best_set(evaluator, NULL, 1, 1, &index, NULL, &found, NULL), VG_INVALID_ARGUMENT,
+              "poses is null");
+  CHECK_FAILS(vg_depth_image(evaluator, pose, depth, NULL, 7), VG_INVALID_ARGUMENT, "7 pixels");
+  CHECK_FAILS(vg_contributions(evaluator, pose, &part, 1, 1, &found), VG_INVALID_ARGUMENT,
+              "vg_contribution");
+  info.struct_size = 1;
+  CHECK_FAILS(vg_evaluator_get_info(evaluator, &info), VG_INVALID_ARGUMENT, "vg_evaluator_info");
+
+  /* Bad poses: NaN in a batch, an error where there is only the one. */
+  pose[5] = 3;
+  CHECK_OK(vg_evaluate(evaluator, pose, 1, &gain, NULL));
+  CHECK(isnan(gain));
+  CHECK_FAILS(vg_depth_image(evaluator, pose, depth, NULL, 640), VG_INVALID_ARGUMENT, "off from");
+  CHECK_FAILS(vg_contributions(evaluator, pose, &part, sizeof part, 1, &found), VG_INVALID_ARGUMENT,
+              "8.0");
+  pose[5] = 1;
+  pose[12] = 1;
+  CHECK_OK(vg_evaluate(evaluator, pose, 1, &gain, NULL));
+  CHECK(isnan(gain));
+  CHECK_FAILS(vg_depth_image(evaluator, pose, depth, NULL, 640), VG_INVALID_ARGUMENT, "1 0 0 1");
+  vg_evaluator_release(evaluator);
+  vg_evaluator_release(NULL);
+}
+
+static void of_poses(void) {
+  const double center[3] = {0, 0, 0};
+  double pose[16];
+  CHECK_FAILS(vg_sphere_poses(1, -1, center, pose), VG_INVALID_ARGUMENT, "-1");
+  CHECK_FAILS(vg_sphere_poses(0, 1, center, pose), VG_INVALID_ARGUMENT, "0");
+  CHECK_FAILS(vg_sphere_poses(1, 1, NULL, pose), VG_INVALID_ARGUMENT, "center is null");
+  CHECK_FAILS(vg_dome_poses((size_t)1 << 40, 1, center, pose), VG_CAPACITY, "1099511627776");
+  CHECK_FAILS(vg_look_at(center, center, NULL, pose), VG_INVALID_ARGUMENT, "eye");
+  CHECK_FAILS(vg_look_at(NULL, center, NULL, pose), VG_INVALID_ARGUMENT, "eye is null");
+}
+
+void misuse_everything(const char* folder) {
+  vg_grid* map = test_map();
+  vg_scene* scene = NULL;
+  CHECK_OK(vg_scene_build(map, NULL, &scene));
+  of_sensors();
+  of_grids(folder);
+  of_frames();
+  of_scenes(map, scene);
+  of_evaluators(scene);
+  of_poses();
+  vg_grid_release(map);
+  vg_scene_release(scene);
+  vg_scene_release(NULL);
+}

@@ -1,0 +1,45 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+import numpy as np
+import pytest
+
+import viewgain
+
+
+@pytest.fixture(scope="session")
+def sensor():
+    return viewgain.sensor_preset("sr4000")
+
+
+@pytest.fixture(scope="session")
+def labels():
+    """An occupied box, unknown inside and on one side, free around."""
+    array = np.ones((32, 32, 32), np.uint8)
+    array[8:24, 8:24, 8:24] = 2
+    array[10:22, 10:22, 10:22] = 0
+    array[:, 24:, :8] = 0
+    return array
+
+
+@pytest.fixture(scope="session")
+def grid(labels, sensor):
+    return viewgain.BeliefGrid.from_labels(
+        labels, voxel_size=0.01, origin=(-0.16, -0.16, -0.16), sensor=sensor)
+
+
+@pytest.fixture(scope="session")
+def evaluator(grid, sensor):
+    return viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, pixel_stride=4, num_threads=2)
+
+
+@pytest.fixture(scope="session")
+def poses():
+    return viewgain.sphere_poses(60, 0.6)
+
+
+def box_mesh(low, high):
+    """Vertices (8, 3) and triangles (12, 3) of a box, outward."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    vertices = np.asarray(low) + corners * (np.asarray(high) - np.asarray(low))
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return vertices, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])

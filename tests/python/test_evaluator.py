@@ -1,0 +1,205 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+import numpy as np
+import pytest
+
+import viewgain
+
+
+def test_leading_shape_is_kept_and_a_batch_is_its_poses(evaluator, poses):
+    gains = evaluator.evaluate(poses)
+    assert gains.shape == (60,) and gains.dtype == np.float64
+    assert np.array_equal(evaluator.evaluate(poses.reshape(5, 12, 4, 4)), gains.reshape(5, 12))
+    assert evaluator.evaluate(poses[:0]).shape == (0,)
+    assert evaluator.evaluate(poses.reshape(5, 12, 4, 4)[:0]).shape == (0, 12)
+    singles = [evaluator.evaluate(pose) for pose in poses]
+    assert all(isinstance(gain, np.float64) for gain in singles)
+    assert np.array_equal(singles, gains)
+    assert np.count_nonzero(gains > 0) == 60
+
+
+def test_any_real_dtype_and_any_strides(evaluator, poses):
+    gains = evaluator.evaluate(poses)
+    assert np.array_equal(evaluator.evaluate(np.asfortranarray(poses)), gains)
+    assert np.array_equal(evaluator.evaluate(poses[::-1])[::-1], gains)
+    assert np.array_equal(evaluator.evaluate(poses.astype(">f8")), gains)
+    assert np.array_equal(evaluator.evaluate(poses.tolist()), gains)
+    single = poses.astype(np.float32)
+    assert np.array_equal(evaluator.evaluate(single), evaluator.evaluate(single.astype(np.float64)))
+
+
+def test_details_add_up(evaluator, poses):
+    views = evaluator.evaluate_detailed(poses.reshape(6, 10, 4, 4))
+    assert views.shape == (6, 10)
+    assert np.array_equal(views["gain"].ravel(), evaluator.evaluate(poses))
+    assert np.allclose(views["gain"], views["exploration"] + views["refinement"], rtol=1e-12)
+    assert np.all(views["rays"] == evaluator.rays_per_pose)
+    assert np.all(views["status"] == viewgain.VIEW_STATUS_NAMES.index("ok"))
+    one = evaluator.evaluate_detailed(poses[3])
+    assert one["gain"] == views["gain"].ravel()[3]
+
+
+@pytest.mark.parametrize("criterion", ["log_diagonal", "log_determinant", "trace"])
+def test_choices_agree_with_the_gains(grid, sensor, poses, criterion):
+    assert criterion in viewgain.criterion_names()
+    evaluator = viewgain.GainEvaluator(
+        viewgain.VoxelScene(grid), sensor, pixel_stride=4, criterion=criterion)
+    gains = evaluator.evaluate(poses)
+    order = np.argsort(-gains, kind="stable")
+    best, of_best = evaluator.best(poses.reshape(2, 30, 4, 4), k=5, return_gains=True)
+    assert best.dtype == np.int64 and np.array_equal(best, order[:5])
+    assert np.array_equal(of_best["gain"], gains[best])
+    assert np.array_equal(evaluator.best(poses, k=5), best)
+    raced, of_raced = evaluator.race(poses, k=2, return_gains=True)
+    assert np.array_equal(of_raced["gain"], gains[raced])
+    assert gains[raced[0]] > 0.95 * gains.max()
+    chosen, marginal = evaluator.best_set(poses, 3, return_gains=True)
+    assert chosen[0] == order[0] and len(set(chosen.tolist())) == 3
+    assert marginal["gain"][0] == gains[order[0]]
+    assert np.array_equal(evaluator.best_set(poses, 3), chosen)
+    estimates = evaluator.approximate(poses, share=0.5)
+    assert estimates.shape == (60,) and np.all(estimates["standard_error"] >= 0)
+    assert np.corrcoef(estimates["gain"], gains)[0, 1] > 0.8
+
+
+def test_bad_poses_are_nan_or_refused(evaluator, poses):
+    bad = poses[:7].copy()
+    bad[1, 0, 0] = np.nan
+    bad[2, 3] = [0, 0, 1, 1]
+    bad[3, :3, :3] *= 1.01
+    bad[4, :3, 0] *= -1
+    bad[5, 0, 3] = np.inf
+    gains = evaluator.evaluate(bad)
+    assert np.array_equal(np.isnan(gains), [False, True, True, True, True, True, False])
+    views = evaluator.evaluate_detailed(bad)
+    assert viewgain.VIEW_STATUS_NAMES[views["status"][1]] == "bad_pose"
+    for index, what in [(1, "not finite"), (2, "last row"), (3, "orthonormal"), (4, "orthonormal"),
+                        (5, "not finite")]:
+        with pytest.raises(ValueError, match=rf"T_world_camera\[{index}\].*{what}"):
+            evaluator.evaluate(bad[: index + 1][[0] * index + [index]], strict=True)
+    with pytest.raises(ValueError, match=r"T_world_camera\[1, 0\]"):
+        evaluator.evaluate_detailed(bad[[0, 6, 1, 0]].reshape(2, 2, 4, 4), strict=True)
+    assert 1 not in evaluator.best(bad, k=2)
+
+
+def test_wrong_shapes_and_dtypes_are_named(evaluator, poses):
+    for wrong, text in [(np.zeros((4, 3)), r"\(4, 3\)"), (np.zeros((5, 3, 4)), r"\(5, 3, 4\)"),
+                        (np.zeros(16), r"\(16,\)"), (np.float64(1), r"\(\)")]:
+        for call in (evaluator.evaluate, evaluator.best, evaluator.race, evaluator.approximate,
+                     evaluator.depth, evaluator.contributions, evaluator.trace):
+            with pytest.raises(ValueError, match=text):
+                call(wrong)
+    with pytest.raises(ValueError, match="complex128"):
+        evaluator.evaluate(poses.astype(complex))
+    with pytest.raises(ValueError, match="<U"):
+        evaluator.evaluate(poses.astype(str))
+    with pytest.raises(ValueError, match=r"\(60, 4, 4\)"):
+        evaluator.depth(poses)
+    with pytest.raises(TypeError):
+        evaluator.evaluate(poses, True)
+    with pytest.raises(TypeError):
+        evaluator.best(poses, k=-1)
+
+
+def test_wrong_settings_are_named(grid, sensor, evaluator, poses):
+    scene = viewgain.VoxelScene(grid)
+    cases = [({"criterion": "entropy"}, "entropy"), ({"pixel_stride": 0}, "stride is 0"),
+             ({"prior_sigma": -1.0}, "prior sigma"), ({"min_range": 9.0}, "min_range"),
+             ({"max_range": np.nan}, "max_range"), ({"num_threads": -2}, "-2"),
+             ({"weights": [(np.zeros((2, 2)), 1)]}, r"\(2, 2\)"),
+             ({"weights": [(1, 2, 3)]}, "pair"),
+             ({"weights": [([[0, 0, 0], [1, 1, 1]], -1)]}, "weight is -1")]
+    for settings, text in cases:
+        with pytest.raises(ValueError, match=text):
+            viewgain.GainEvaluator(scene, sensor, **settings)
+    with pytest.raises(TypeError):
+        viewgain.GainEvaluator(grid, sensor)
+    with pytest.raises(TypeError):
+        viewgain.GainEvaluator(None, "sr4000")
+    with pytest.raises(ValueError, match="scene"):
+        viewgain.GainEvaluator(None, sensor)
+    with pytest.raises(ValueError, match="keep"):
+        evaluator.race(poses, keep=7.0)
+
+
+def test_images_of_a_view(evaluator, poses, sensor):
+    hits = evaluator.trace(poses[20])
+    depth = evaluator.depth(poses[20])
+    assert hits.shape == depth.shape == (36, 44) and depth.dtype == np.float32
+    rays = sensor.camera.rays()[::4, ::4]
+    expected = hits["range"] / np.linalg.norm(rays, axis=-1)
+    assert np.allclose(depth, expected, rtol=1e-5)
+    seen = np.isfinite(depth)
+    assert np.array_equal(seen, hits["kind"] != viewgain.HIT_KIND_NAMES.index("none"))
+    assert 100 < np.count_nonzero(seen) < depth.size
+    assert np.count_nonzero(np.isin(hits["kind"], (1, 2))) == evaluator.evaluate_detailed(
+        poses[20])["hits"]
+
+
+def test_contributions_say_why(evaluator, poses, labels, grid):
+    view = evaluator.evaluate_detailed(poses[20])
+    rows = evaluator.contributions(poses[20])
+    assert rows["gain"].sum() == pytest.approx(view["gain"], rel=1e-9)
+    assert rows["rays"].sum() == view["hits"]
+    assert len(rows) == view["unknown_voxels"] + view["occupied_voxels"] > 100
+    assert np.all(np.diff(rows["gain"]) <= 0)
+    index = rows["voxel"] - grid.min_index
+    assert np.array_equal(labels[tuple(index.T)], rows["state"])
+
+
+def test_a_gain_of_ones_own(evaluator, poses):
+    def unknown(T_world_camera, hits):
+        assert T_world_camera.shape == (4, 4)
+        assert np.allclose(np.linalg.norm(hits["direction"], axis=1), 1)
+        return float(len(np.unique(hits["voxel"][hits["state"] == 0], axis=0)))
+
+    batch = poses.copy()
+    batch[5, 0, 0] = np.nan
+    own = evaluator.evaluate_own(batch.reshape(3, 20, 4, 4), unknown)
+    views = evaluator.evaluate_detailed(batch)
+    assert own.shape == (3, 20) and np.isnan(own.ravel()[5])
+    good = np.isfinite(own.ravel())
+    assert np.array_equal(own.ravel()[good], views["unknown_voxels"][good])
+    assert np.count_nonzero(good) == 59
+
+    def broken(T_world_camera, hits):
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        evaluator.evaluate_own(poses, broken)
+    with pytest.raises(RuntimeError):
+        evaluator.evaluate_own(poses, lambda pose, hits: "no number")
+    with pytest.raises(TypeError):
+        evaluator.evaluate_own(poses, 3)
+
+
+def test_the_same_bits_for_any_number_of_threads(grid, sensor, poses):
+    scene = viewgain.VoxelScene(grid)
+    results = [viewgain.GainEvaluator(scene, sensor, num_threads=n).evaluate(poses)
+               for n in (1, 2, 3)]
+    assert np.array_equal(results[0], results[1]) and np.array_equal(results[0], results[2])
+    assert viewgain.GainEvaluator(scene, sensor, num_threads=3).num_threads == 3
+
+
+def test_weights_ranges_and_prior(grid, sensor, poses):
+    scene = viewgain.VoxelScene(grid)
+    everything = [[-1, -1, -1], [1, 1, 1]]
+    plain = viewgain.GainEvaluator(scene, sensor, pixel_stride=4).evaluate(poses)
+
+    def gains(**settings):
+        return viewgain.GainEvaluator(scene, sensor, pixel_stride=4, **settings).evaluate(poses)
+
+    assert np.allclose(gains(weights=[(everything, 2.0)]), 2 * plain, rtol=1e-9)
+    assert np.all(gains(weights=[(everything, 2.0), (everything, 0.0)]) == 0)
+    assert np.all(gains(max_range=0.25) == 0)
+    assert np.all(gains(prior_sigma=1.0) > plain)
+
+
+def test_reprs_have_sizes(evaluator, grid, sensor):
+    assert repr(grid).startswith("<BeliefGrid 32x32x32 voxels of 0.01 m: ")
+    assert repr(evaluator.scene).startswith("<VoxelScene 32x32x32 voxels")
+    assert "sr4000, 1584 rays per pose, 2 threads" in repr(evaluator)
+    assert repr(sensor) == "<Sensor sr4000, 176x144 px, 0.2-5 m>"
+    assert evaluator.criterion == "log_diagonal" and evaluator.pixel_stride == 4
+    assert evaluator.prior_sigma == grid.prior_sigma
+    assert evaluator.sensor.camera == sensor.camera

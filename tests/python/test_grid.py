@@ -1,0 +1,196 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+import numpy as np
+import pytest
+from conftest import box_mesh
+
+import viewgain
+
+
+def test_labels_come_back(labels, grid):
+    assert np.array_equal(grid.states(), labels)
+    assert grid.shape == labels.shape and grid.voxel_size == 0.01
+    assert np.allclose(grid.T_world_grid[:3, 3], -0.16)
+    statistics = grid.statistics()
+    for state, name in enumerate(("unknown", "free", "occupied")):
+        assert statistics[name] == np.count_nonzero(labels == state)
+    turned = viewgain.BeliefGrid.from_labels(labels.transpose(2, 1, 0), voxel_size=0.3, origin=(0.1, 7, 2))
+    assert np.array_equal(turned.states(), labels.transpose(2, 1, 0))
+
+
+def test_any_extent_and_origin_keeps_every_label():
+    rng = np.random.default_rng(3)
+    cases = 0
+    for _ in range(50):
+        shape = rng.integers(1, 20, 3)
+        array = rng.integers(0, 3, shape).astype(np.uint8)
+        grid = viewgain.BeliefGrid.from_labels(
+            array, voxel_size=rng.uniform(1e-3, 2), origin=rng.normal(size=3))
+        assert np.array_equal(grid.states(), array)
+        cases += 1
+    assert cases == 50
+
+
+def test_files(tmp_path, grid):
+    path = tmp_path / "map.vdb"
+    grid.save(path)
+    again = viewgain.BeliefGrid.load(str(path))
+    assert again.content_hash() == grid.content_hash() == grid.clone().content_hash()
+    with pytest.raises(FileNotFoundError) as missing:
+        viewgain.BeliefGrid.load(tmp_path / "none.vdb")
+    assert missing.value.filename == str(tmp_path / "none.vdb")
+    with pytest.raises(IsADirectoryError):
+        viewgain.BeliefGrid.load(tmp_path)
+    with pytest.raises(FileNotFoundError):
+        grid.save(tmp_path / "no" / "map.vdb")
+    with pytest.raises(TypeError):
+        viewgain.BeliefGrid.load(3)
+    path.write_bytes(path.read_bytes()[:200])
+    with pytest.raises(viewgain.Error, match="map.vdb"):
+        viewgain.BeliefGrid.load(path)
+    path.write_text("nothing of the kind")
+    with pytest.raises(viewgain.Error, match="map.vdb"):
+        viewgain.BeliefGrid.load(path)
+    assert issubclass(viewgain.Error, RuntimeError)
+
+
+def test_wrong_labels_and_layouts_are_named(labels):
+    make = viewgain.BeliefGrid.from_labels
+    for wrong, text in [(labels[0], r"\(32, 32\)"), (labels.astype(np.int32), "int32"),
+                        (labels.astype(bool), "bool"), ("labels", "uint8")]:
+        with pytest.raises(ValueError, match=text):
+            make(wrong, voxel_size=0.01)
+    with pytest.raises(ValueError, match="3"):
+        make(np.full((2, 2, 2), 3, np.uint8), voxel_size=0.01)
+    with pytest.raises(ValueError):
+        make(np.zeros((0, 2, 2), np.uint8), voxel_size=0.01)
+    for settings, text in [({"voxel_size": 0.0}, "voxel"), ({"voxel_size": np.nan}, "voxel"),
+                           ({"voxel_size": 0.1, "origin": (0, 0)}, r"\(2,\)"),
+                           ({"voxel_size": 0.1, "prior_sigma": -1.0}, "prior"),
+                           ({"voxel_size": 0.1, "T_world_grid": np.zeros((4, 4))}, "T_world_grid")]:
+        with pytest.raises(ValueError, match=text):
+            make(labels, **settings)
+    with pytest.raises(ValueError, match=r"\(3,\)"):
+        viewgain.BeliefGrid(voxel_size=0.1, workspace=[0, 1, 2])
+    with pytest.raises(viewgain.Error):
+        viewgain.BeliefGrid(voxel_size=1e-4, workspace=[[0, 0, 0], [9, 9, 9]])
+
+
+def test_frames_make_a_map(sensor):
+    vertices, triangles = box_mesh([-0.1] * 3, [0.1] * 3)
+    camera = viewgain.SimulatedSensor(vertices, triangles, sensor, background_radius=1.5)
+    grid = viewgain.BeliefGrid(
+        voxel_size=0.01, workspace=[[-0.2] * 3, [0.2] * 3], sensor=sensor)
+    assert grid.statistics()["unknown"] == 40**3 and grid.views().shape == (0, 4, 4)
+    integrator = viewgain.FrameIntegrator(sensor)
+    poses = viewgain.orbit_poses(4, 0.6, 0.4)
+    for pose in poses:
+        depth, amplitude = camera.acquire(pose)
+        assert depth.shape == amplitude.shape == (144, 176) and depth.dtype == np.float32
+        report = integrator.integrate(grid, depth, pose, amplitude=amplitude)
+        assert report["readings_inside"] > 1000 and report["voxels_hit"] > 100
+    assert np.allclose(grid.views(), poses)
+    points = grid.points()
+    assert len(points) > 300
+    distance = np.abs(np.max(np.abs(points["position"]), axis=1) - 0.1)
+    assert np.median(distance) < 0.005
+    beliefs = grid.beliefs()
+    occupied = grid.states() == 2
+    hit = np.zeros_like(occupied)
+    hit[tuple((beliefs["voxel"] - grid.min_index).T)] = True
+    assert np.all(hit[occupied]) and beliefs["hits"].min() >= 1
+    bounds = viewgain.reading_bounds(sensor, depth, poses[-1])
+    assert bounds.shape == (2, 3) and np.all(bounds[0] < bounds[1])
+    assert viewgain.reading_bounds(sensor, np.zeros((144, 176)), poses[0]) is None
+
+    scene = viewgain.VoxelScene(grid)
+    before = grid.content_hash()
+    with pytest.raises(ValueError, match=r"\(144, 176\), not \(176, 144\)"):
+        integrator.integrate(grid, depth.T, poses[0])
+    with pytest.raises(ValueError, match="amplitude"):
+        integrator.integrate(grid, depth, poses[0], amplitude=amplitude[1:])
+    with pytest.raises(ValueError, match="orthonormal"):
+        integrator.integrate(grid, depth, 2 * poses[0] - np.diag([0, 0, 0, 1]))
+    with pytest.raises(ValueError, match="carve"):
+        viewgain.FrameIntegrator(sensor, carve="rays")
+    with pytest.raises(ValueError, match="occupancy"):
+        viewgain.FrameIntegrator(sensor, occupancy="yes")
+    assert grid.content_hash() == before
+    # What is no depth says nothing.
+    nothing = integrator.integrate(grid, np.full((144, 176), np.nan), poses[0])
+    assert nothing["invalid"] == 144 * 176 and nothing["voxels_crossed"] == 0
+    depth, _ = camera.acquire(viewgain.look_at((0, -0.6, 0), (0, 0, 0)))
+    integrator.integrate(grid, depth, viewgain.look_at((0, -0.6, 0), (0, 0, 0)))
+    fresh, updated = viewgain.VoxelScene(grid), scene.update(grid)
+    candidates = viewgain.sphere_poses(20, 0.5)
+    of_fresh = viewgain.GainEvaluator(fresh, sensor).evaluate(candidates)
+    assert np.array_equal(of_fresh, viewgain.GainEvaluator(updated, sensor).evaluate(candidates))
+    assert not np.array_equal(of_fresh, viewgain.GainEvaluator(scene, sensor).evaluate(candidates))
+
+
+def test_obstacles_block(grid, sensor, poses):
+    plain = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, pixel_stride=4)
+    wall = np.array([[[0.3, -1, -1], [0.4, 1, 1]]])
+    behind = poses[:, 0, 3] > 0.5
+    for scene in (viewgain.VoxelScene(grid, boxes=wall),
+                  viewgain.VoxelScene(grid, meshes=[box_mesh(*wall[0])])):
+        gains = viewgain.GainEvaluator(scene, sensor, pixel_stride=4).evaluate(poses)
+        assert np.all(gains[behind] == 0) and np.count_nonzero(behind) > 2
+        free = poses[:, 0, 3] < 0
+        assert np.array_equal(gains[free], plain.evaluate(poses)[free])
+    vertices, triangles = box_mesh(*wall[0])
+    for boxes, meshes, text in [(wall[0], (), r"\(2, 3\)"), (wall[:, ::-1], (), "inside out|box"),
+                                (None, [vertices], "pair"),
+                                (None, [(vertices, triangles + 1)], "index 8"),
+                                (None, [(vertices, triangles - 0.5)], "index"),
+                                (None, [(vertices * np.nan, triangles)], "finite")]:
+        with pytest.raises(ValueError, match=text):
+            viewgain.VoxelScene(grid, boxes=boxes, meshes=meshes)
+
+
+def test_reach_and_collisions(grid, sensor):
+    scene = viewgain.VoxelScene(grid)
+    poses = viewgain.look_at([[0.6, 0, 0], [-0.6, 0, 0], [0.1, 0, 0], [0, 0, 0.6]], (0, 0, 0.01))
+    checker = viewgain.FeasibilityChecker(scene)
+    assert np.array_equal(checker.feasible(poses), [True, True, False, True])
+    assert checker.feasible(poses[0]) == True  # noqa: E712: numpy's
+    names = np.array(viewgain.INFEASIBILITY_NAMES)
+    assert names[checker.reasons(poses)].tolist() == ["none", "none", "collision", "none"]
+    bad = poses.copy()
+    bad[0, 0, 0] = np.nan
+    assert names[checker.reasons(bad.reshape(2, 2, 4, 4), taken=poses[1:2])].tolist() == [
+        ["bad_pose", "taken"], ["collision", "none"]]
+
+    asked = []
+
+    def predicate(T_world_camera):
+        asked.append(T_world_camera)
+        return T_world_camera[0, 3] > 0
+
+    reach = viewgain.ReachRegion(
+        boxes=[[[-1, -1, -1], [1, 1, 0.5]]], shells=[[0, 0, 0, 0.05, 2]],
+        half_spaces=[[0, 0, 1, -0.5]], predicate=predicate)
+    assert np.array_equal(reach.contains(poses), [True, False, True, False])
+    assert len(asked) == 3 and asked[0].shape == (4, 4)
+    checker = viewgain.FeasibilityChecker(scene, reach=reach, sensor=sensor, support_plane=-0.5)
+    assert names[checker.reasons(poses)].tolist() == [
+        "none", "unreachable", "collision", "unreachable"]
+    assert "predicate" in repr(reach) and "primitives" in repr(checker)
+
+    def broken(T_world_camera):
+        raise KeyError("robot")
+
+    broken_reach = viewgain.ReachRegion(predicate=broken)
+    with pytest.raises(KeyError, match="robot"):
+        viewgain.FeasibilityChecker(scene, reach=broken_reach).feasible(poses)
+    with pytest.raises(KeyError, match="robot"):
+        broken_reach.contains(poses)
+    assert viewgain.ReachRegion(poses=poses).contains(poses).all()
+    for settings, text in [({"boxes": [[0, 1]]}, r"\(1, 2\)"), ({"shells": [[0, 0, 0, 2, 1]]}, "shell"),
+                           ({"half_spaces": [[0, 0, 0, 1]]}, "normal"), ({"poses": poses[0]}, r"\(4, 4\)")]:
+        with pytest.raises(ValueError, match=text):
+            viewgain.ReachRegion(**settings)
+    with pytest.raises(TypeError):
+        viewgain.ReachRegion(predicate=3)
+    with pytest.raises(ValueError, match="body"):
+        viewgain.FeasibilityChecker(scene, body_size=(0, 0, 0))

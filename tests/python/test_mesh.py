@@ -1,0 +1,146 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+import threading
+
+import numpy as np
+import pytest
+from conftest import box_mesh
+
+import viewgain
+import viewgain.mesh
+
+VOXEL = 0.01
+WORKSPACE = np.array([[-0.2] * 3, [0.2] * 3])
+
+
+@pytest.fixture(scope="module")
+def camera(sensor):
+    return viewgain.SimulatedSensor(*box_mesh([-0.1] * 3, [0.1] * 3), sensor, background_radius=1.5)
+
+
+@pytest.fixture(scope="module")
+def start():
+    return viewgain.look_at([0.45, 0.2, 0.25], [0, 0, 0])
+
+
+def reconstruct(camera, sensor, start, **settings):
+    def acquire(T_world_camera):
+        return camera.acquire(T_world_camera)
+
+    settings = {"voxel_size": VOXEL, "workspace": WORKSPACE, "max_views": 4, **settings}
+    return viewgain.mesh.reconstruct(settings.pop("acquire", acquire), sensor, start, **settings)
+
+
+def test_the_loop_with_a_camera_in_python(camera, sensor, start):
+    seen = []
+    result = reconstruct(camera, sensor, start, stop_gain=0.0, observer=seen.append)
+    assert result.reason in ("max_views", "idle", "no_candidates")
+    assert 2 <= len(result.views) <= 4 and seen == result.views
+    assert np.allclose(result.views[0]["T_world_camera"], start)
+    assert result.views[0]["generator"] == "start"
+    assert {view["generator"] for view in result.views[1:]} == {"boundary"}
+    unknown = [view["unknown_voxels"] for view in result.views]
+    assert all(b < a for a, b in zip(unknown, unknown[1:]))
+    assert len(result.grid.views()) == len(result.views)
+    distance = np.abs(np.max(np.abs(result.surface.vertices), axis=1) - 0.1)
+    assert len(distance) > 500 and np.median(distance) < 0.005
+    assert f"{len(result.views)} views" in repr(result) and "vertices" in repr(result.surface)
+    again = reconstruct(camera, sensor, start, stop_gain=0.0, num_threads=1)
+    assert again.grid.content_hash() == result.grid.content_hash()
+
+
+def test_candidates_of_ones_own_and_reach(camera, sensor, start):
+    candidates = viewgain.sphere_poses(40, 0.5)
+    reach = viewgain.ReachRegion(half_spaces=[[0, 0, 1, 0.1]])
+    result = reconstruct(camera, sensor, start, boundary=False, candidates=candidates, reach=reach,
+                         stop_gain=0.0, policy="frontier")
+    assert len(result.views) > 1
+    for view in result.views[1:]:
+        assert np.any(np.all(view["T_world_camera"] == candidates, axis=(1, 2)))
+        assert view["T_world_camera"][2, 3] >= 0.1
+    assert result.views[0]["dropped"]["unreachable"] > 10
+
+
+def test_what_the_camera_returns_is_checked(camera, sensor, start):
+    depth, amplitude = camera.acquire(start)
+    moved = start.copy()
+    moved[0, 3] += 0.01
+    for answer in (depth, depth.astype(float).tolist(), (depth, None), (depth, amplitude, moved)):
+        result = reconstruct(camera, sensor, start, acquire=lambda pose: answer, max_views=1)
+        assert result.reason == "max_views" and len(result.views) == 1
+    assert np.allclose(result.grid.views()[0], moved)
+    for answer, text in [(depth[1:], r"\(143, 176\)"), ((depth, amplitude, moved, 1), "tuple of 4"),
+                         (None, "depth"), ((depth, amplitude, 0 * moved), "T_world_camera"),
+                         (np.zeros_like(depth), "no reading")]:
+        with pytest.raises(ValueError, match=text):
+            reconstruct(camera, sensor, start, acquire=lambda pose: answer)
+
+    def broken(pose):
+        raise KeyError("arm")
+
+    with pytest.raises(KeyError, match="arm"):
+        reconstruct(camera, sensor, start, acquire=broken)
+    with pytest.raises(KeyError, match="arm"):
+        reconstruct(camera, sensor, start, observer=broken)
+    with pytest.raises(KeyboardInterrupt):
+        reconstruct(camera, sensor, start, acquire=lambda pose: (_ for _ in ()).throw(KeyboardInterrupt))
+
+
+def test_wrong_settings_are_named(camera, sensor, start):
+    for settings, text in [({"policy": "best"}, "best"), ({"criterion": "x"}, '"x"'),
+                           ({"voxel_size": 0.0}, "voxel"), ({"workspace": [0, 1]}, r"\(2,\)"),
+                           ({"max_views": 0}, "max_views"), ({"candidates": start}, r"\(4, 4\)")]:
+        with pytest.raises(ValueError, match=text):
+            reconstruct(camera, sensor, start, **settings)
+    with pytest.raises(TypeError):
+        reconstruct(camera, sensor, start, acquire=3)
+    with pytest.raises(ValueError, match="start"):
+        reconstruct(camera, sensor, 2 * start)
+
+
+def test_a_stop_keeps_what_was_measured(camera, sensor, start):
+    control = viewgain.BatchControl()
+    views = []
+
+    def acquire(pose):
+        views.append(pose)
+        if len(views) == 2:
+            thread = threading.Thread(target=control.stop)
+            thread.start()
+            thread.join()
+        return camera.acquire(pose)
+
+    result = reconstruct(camera, sensor, start, acquire=acquire, control=control, stop_gain=0.0)
+    assert result.reason == "interrupted" and len(result.grid.views()) == 2
+
+
+def test_surface_and_boundaries(camera, sensor, start):
+    grid = viewgain.BeliefGrid(voxel_size=VOXEL, workspace=WORKSPACE, sensor=sensor)
+    viewgain.FrameIntegrator(sensor).integrate(grid, camera.acquire(start)[0], start)
+    surface = viewgain.mesh.surface_of_grid(grid, min_hits=1)
+    points = grid.points(min_hits=1)
+    again = viewgain.mesh.reconstruct_surface(
+        points["position"], points["toward_free"], spacing=VOXEL)
+    assert np.array_equal(again.vertices, surface.vertices)
+    assert np.array_equal(again.triangles, surface.triangles)
+    assert surface.triangles.max() < len(surface.vertices) == len(surface.normals)
+    assert surface.source.max() < len(points)
+    poses, reasons = viewgain.mesh.boundary_candidates(surface, [start], sensor, spacing=VOXEL)
+    assert poses.shape == (len(reasons), 4, 4) and len(reasons) > 10
+    assert set(reasons["boundary_class"]) <= set(range(len(viewgain.mesh.BOUNDARY_CLASS_NAMES)))
+    assert reasons["nominal"].any() and np.all(reasons["run_length"] > 0)
+    away = np.linalg.norm(poses[:, :3, 3] - reasons["target"], axis=1)
+    assert np.allclose(away, reasons["distance"])
+    few, _ = viewgain.mesh.boundary_candidates(
+        surface, [start], sensor, spacing=VOXEL, tilts=[0.0], rolls=[0.0], distances=[1.0])
+    assert 0 < len(few) < len(poses)
+    for call, text in [
+            (lambda: viewgain.mesh.boundary_candidates(surface, start, sensor, spacing=VOXEL), r"\(4, 4\)"),
+            (lambda: viewgain.mesh.boundary_candidates(surface, [start], sensor, spacing=VOXEL, overlap=2.0),
+             "overlap"),
+            (lambda: viewgain.mesh.reconstruct_surface(np.zeros((3, 2)), spacing=VOXEL), r"\(3, 2\)"),
+            (lambda: viewgain.mesh.reconstruct_surface(np.zeros((3, 3)), np.zeros((2, 3)), spacing=VOXEL),
+             "2 rows"),
+            (lambda: viewgain.mesh.reconstruct_surface(np.zeros((3, 3)), spacing=0.0), "spacing")]:
+        with pytest.raises(ValueError, match=text):
+            call()

@@ -1,0 +1,128 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+import numpy as np
+import pytest
+
+import viewgain
+
+
+def test_presets():
+    names = viewgain.sensor_preset_names()
+    assert {"sr4000", "kinect_v1", "d435", "azure_kinect_nfov"} <= set(names)
+    for name in names:
+        sensor = viewgain.sensor_preset(name)
+        assert sensor.name == name and name in repr(sensor)
+        assert sensor.min_range < sensor.working_distance < sensor.max_range
+        axial, lateral = sensor.sigmas(sensor.working_distance)
+        assert 0 < axial < 0.1 and 0 < lateral < 0.1
+    with pytest.raises(ValueError, match="sr4000"):
+        viewgain.sensor_preset("sr5000")
+
+
+def test_the_paper_s_camera_can_be_written_out():
+    camera = viewgain.PinholeCamera(176, 144, fx=220.0, fy=231.2, cx=87.5, cy=71.5)
+    sensor = viewgain.Sensor(
+        camera, min_range=0.2, max_range=5.0, working_distance=0.4, noise=viewgain.ShotNoise())
+    preset = viewgain.sensor_preset("sr4000")
+    assert sensor.camera == preset.camera and sensor.noise == preset.noise
+    # DESIGN.md: 4.0 mm at 1.30 m and 8.5 ms; 3.6 mm at 0.4 m and 1 ms
+    assert viewgain.Sensor(
+        camera, min_range=0.2, max_range=5.0, working_distance=0.4,
+        noise=viewgain.ShotNoise(integration_time=8.5e-3)).sigmas(1.30)[0] == pytest.approx(4.0e-3)
+    assert sensor.sigmas(0.4)[0] == pytest.approx(3.6e-3, rel=0.01)
+    assert sensor.sigmas(0.4)[1] == pytest.approx(0.4 / 220)
+    assert viewgain.default_prior_sigma(0.01, sensor) == pytest.approx(2 * sensor.sigmas(0.4)[0])
+    assert repr(camera) == "PinholeCamera(176, 144, fx=220, fy=231.2, cx=87.5, cy=71.5)"
+
+
+@pytest.mark.parametrize("noise", [
+    viewgain.ShotNoise(), viewgain.StructuredLightNoise(), viewgain.StereoNoise(),
+    viewgain.QuadraticNoise(), viewgain.ConstantNoise(sigma_axial=0.002)], ids=lambda n: type(n).__name__)
+def test_noise_models_can_be_read_back(noise):
+    again = eval(repr(noise), vars(viewgain))  # noqa: S307: our own text
+    assert again == noise and noise != "noise" and noise != viewgain.ConstantNoise()
+    camera = viewgain.PinholeCamera(64, 48, fx=60.0, fy=60.0, cx=31.5, cy=23.5)
+    sensor = viewgain.Sensor(camera, min_range=0.3, max_range=2.0, working_distance=0.5, noise=noise)
+    assert type(sensor.noise) is type(noise) and sensor.noise == noise
+    assert sensor.T_flange_camera is None
+
+
+def test_projection_undoes_rays():
+    camera = viewgain.PinholeCamera(
+        64, 48, fx=60.0, fy=62.0, cx=30.0, cy=24.0, distortion=[0.1, -0.05, 1e-3, -1e-3, 0.01])
+    rays = camera.rays()
+    assert rays.shape == (48, 64, 3)
+    v, u = np.mgrid[:48, :64]
+    assert np.allclose(camera.project(2 * rays), np.stack([u, v], axis=-1), atol=1e-8)
+    assert np.isnan(camera.project([0, 0, -1])).all()
+    with pytest.raises(ValueError, match=r"\(4,\)"):
+        camera.project([0, 0, 0, 1])
+
+
+def test_wrong_values_are_named():
+    good = {"fx": 60.0, "fy": 60.0, "cx": 31.5, "cy": 23.5}
+    for width, change, text in [(0, {}, "width"), (64, {"fx": -1.0}, "fx"), (64, {"cy": np.nan}, "cy")]:
+        with pytest.raises(ValueError, match=text):
+            viewgain.PinholeCamera(width, 48, **{**good, **change})
+    with pytest.raises(TypeError):
+        viewgain.PinholeCamera(64, 48, 60, 60, 31, 23)
+    with pytest.raises(TypeError):
+        viewgain.PinholeCamera(64, 48, **good, distortion=[0.0])
+    camera = viewgain.PinholeCamera(64, 48, **good)
+    with pytest.raises(AttributeError):
+        camera.fx = 3.0
+    settings = {"min_range": 0.2, "max_range": 2.0, "working_distance": 0.5,
+                "noise": viewgain.ConstantNoise()}
+    for change in ({"min_range": 3.0}, {"working_distance": 9.0},
+                   {"noise": viewgain.ConstantNoise(sigma_axial=-1.0)},
+                   {"T_flange_camera": np.zeros((4, 4))}):
+        with pytest.raises(ValueError):
+            viewgain.Sensor(camera, **{**settings, **change})
+    with pytest.raises(TypeError):
+        viewgain.Sensor(camera, **{**settings, "noise": "shot"})
+
+
+def rigid(poses):
+    R = poses[..., :3, :3]
+    return (np.allclose(R @ np.swapaxes(R, -1, -2), np.eye(3), atol=1e-12)
+            and np.allclose(np.linalg.det(R), 1) and np.all(poses[..., 3, :] == [0, 0, 0, 1]))
+
+
+def test_look_at():
+    eyes = np.random.default_rng(1).normal(size=(3, 5, 3)) + 3
+    target = np.array([0.5, 0.2, 0.1])
+    poses = viewgain.look_at(eyes, target)
+    assert poses.shape == (3, 5, 4, 4) and rigid(poses)
+    assert np.allclose(poses[..., :3, 3], eyes)
+    toward = target - eyes
+    assert np.allclose(poses[..., :3, 2], toward / np.linalg.norm(toward, axis=-1, keepdims=True))
+    assert np.all(poses[..., 2, 1] < 0)  # image down is down
+    assert viewgain.look_at([1, 0, 0], [0, 0, 0]).shape == (4, 4)
+    assert np.array_equal(viewgain.look_at(eyes, np.broadcast_to(target, eyes.shape)), poses)
+    for eye, goal, text in [([1, 0], target, r"\(2,\)"), (eyes, eyes[0], r"\(5, 3\)"),
+                            (target, target, "target|eye"), ([np.inf, 0, 0], target, "finite")]:
+        with pytest.raises(ValueError, match=text):
+            viewgain.look_at(eye, goal)
+
+
+def test_generators():
+    center = np.array([0.1, -0.2, 0.3])
+    sets = {
+        "sphere": viewgain.sphere_poses(50, 0.6, center=center),
+        "dome": viewgain.dome_poses(50, 0.6, center=center),
+        "orbit": viewgain.orbit_poses(50, 0.6, 0.3, center=center),
+        "shell": viewgain.shell_poses(50, 0.6, 0.6, seed=4, center=center),
+    }
+    for name, poses in sets.items():
+        assert poses.shape == (50, 4, 4) and rigid(poses), name
+        assert np.allclose(np.linalg.norm(poses[:, :3, 3] - center, axis=1), 0.6), name
+        assert np.allclose(poses[:, :3, 3] + 0.6 * poses[:, :3, 2], center), name
+    i = np.arange(50)  # the lattice of DESIGN.md section 11
+    assert np.allclose((sets["sphere"][:, 2, 3] - center[2]) / 0.6, 1 - (2 * i + 1) / 50)
+    assert viewgain.literature_ring_poses(48, 0.5).shape == (48, 4, 4)
+    assert rigid(viewgain.ring_poses(8, 0.5, 0.2, 0.4))
+    for call in (lambda: viewgain.sphere_poses(0, 1.0), lambda: viewgain.sphere_poses(3, -1.0),
+                 lambda: viewgain.literature_ring_poses(49, 1.0),
+                 lambda: viewgain.dome_poses(3, 1.0, center=[0, 0])):
+        with pytest.raises(ValueError):
+            call()
