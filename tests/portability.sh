@@ -35,12 +35,13 @@ dpkg-query -W ccache >/dev/null 2>&1 ||
 cmake --preset release -DCMAKE_BUILD_TYPE=Release -DVIEWGAIN_WERROR=ON \
   -DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/configure.log 2>&1 ||
   { cat /configure.log; exit 1; }
-cmake --build --preset release -j "$1"
+if grep -A 8 'CMake Warning' /configure.log; then exit 1; fi
+cmake --build --preset release -j "$1" -- -k 0 # all that fails, not the first alone
 
 echo "Debian $(cat /etc/debian_version):"
 for package in g++ cmake libembree-dev libopenvdb-dev libcgal-dev libeigen3-dev libtbb-dev libhwy-dev \
   libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev liboctomap-dev libgtest-dev \
-  libbenchmark-dev python3 python3-numpy pybind11-dev libompl-dev; do
+  libbenchmark-dev python3 python3-numpy python3-pytest pybind11-dev libompl-dev; do
   dpkg-query -W -f '  ${Package} ${Version}\n' "$package" 2>/dev/null || true
 done
 ctest --preset release -j "$1"
