@@ -3,6 +3,9 @@
 # Where viewgain is static and taken in by add_subdirectory, its user's directory links these too.
 set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
 
+# CGAL asks for Boost the old way, which newer versions of CMake warn of.
+set(CMAKE_POLICY_DEFAULT_CMP0167 NEW)
+
 find_package(Threads REQUIRED)
 
 # Ranges over major versions are refused by Eigen's version file, hence the check by hand.

@@ -4,15 +4,15 @@
 #   tests/packages.sh [WORK_FOLDER]   (default build/packages_test; the bare system in it is kept)
 set -euo pipefail
 cd "$(dirname "$0")/.."
+. tests/chroot.sh
 work=$(realpath -m "${1:-build/packages_test}")
 jobs=${VIEWGAIN_JOBS:-$(nproc)}
 . /etc/os-release
 
 fail() { echo "packages.sh: $*" >&2; exit 1; }
-[ "$(id -u)" -eq 0 ] || fail "needs root, for chroot"
+need_root
 
 ./apps/install_dependencies.sh
-command -v debootstrap >/dev/null || apt-get install -y -qq --no-install-recommends debootstrap >/dev/null
 mkdir -p "$work"
 
 # Packages.
@@ -34,19 +34,13 @@ for deb in build/packages/packages/libviewgain0_*.deb; do
 done
 
 # A clean system, made once and copied.
-if [ ! -d "$work/bare" ]; then
-  rm -rf "$work/bare.new"
-  debootstrap --variant=minbase "$VERSION_CODENAME" "$work/bare.new" http://deb.debian.org/debian \
-    >"$work/debootstrap.log" 2>&1 || { tail "$work/debootstrap.log" >&2; exit 1; }
-  mv "$work/bare.new" "$work/bare"
-fi
+make_bare_system "$VERSION_CODENAME" "$work/bare"
 root=$work/root
 rm -rf --one-file-system "$root"
 cp -a "$work/bare" "$root"
 mkdir "$root/debs" "$root/client"
 cp build/packages/packages/*.deb "$root/debs"
 cp tests/consumer/gain.cpp "$root/client"
-cp /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
 
 cat >"$root/program.sh" <<'INSIDE'
 set -euo pipefail
@@ -98,8 +92,7 @@ grep -qE '^[1-9][0-9]*\.[0-9]+$' first.txt
 apt-get remove -y -qq libviewgain0 >/dev/null # takes all that depends on it along
 if dpkg -l | grep -E '^ii +(libviewgain|viewgain)'; then exit 1; fi
 INSIDE
-trap 'umount "$root/proc" 2>/dev/null || true' EXIT
-mount -t proc proc "$root/proc" 2>/dev/null || echo "packages.sh: no /proc in the chroot" >&2
+open_system "$root"
 chroot "$root" bash /program.sh
 chroot "$root" bash /client.sh
 echo "packages.sh: all well"

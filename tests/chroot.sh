@@ -1,0 +1,29 @@
+# shellcheck shell=bash
+# Sourced by the scripts that try the project in a clean Debian; needs root and the network that apt uses.
+
+need_root() {
+  [ "$(id -u)" -eq 0 ] || { echo "$(basename "$0"): needs root, for chroot" >&2; exit 1; }
+}
+
+# make_bare_system RELEASE FOLDER: a minimal Debian of that release, unless the folder is there already.
+make_bare_system() {
+  command -v debootstrap >/dev/null || {
+    apt-get update -qq
+    apt-get install -y -qq --no-install-recommends debootstrap >/dev/null
+  }
+  [ ! -d "$2" ] || return 0
+  mkdir -p "$(dirname "$2")"
+  rm -rf --one-file-system "$2.new"
+  debootstrap --variant=minbase "$1" "$2.new" http://deb.debian.org/debian >"$2.log" 2>&1 ||
+    { tail "$2.log" >&2; exit 1; }
+  mv "$2.new" "$2"
+}
+
+# open_system FOLDER: name resolution and /proc for what will run in it, until the script ends.
+open_system() {
+  system=$1
+  cp /etc/resolv.conf "$system/etc/resolv.conf" 2>/dev/null || true
+  trap 'umount "$system/proc" 2>/dev/null || true' EXIT
+  mountpoint -q "$system/proc" || mount -t proc proc "$system/proc" 2>/dev/null ||
+    echo "$(basename "$0"): no /proc in the chroot" >&2
+}

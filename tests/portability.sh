@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# Builds the project, warnings being errors, and runs all its tests in a clean Debian of another release:
+#   tests/portability.sh debian13
+# The system is made by debootstrap in build/portability/<release> and kept with what was compiled; the
+# next run compiles what has changed. Remove the folder to begin anew. VIEWGAIN_JOBS: how many processes
+# (default: the number of processors). Needs root (chroot) and the network that apt uses; not part of ctest.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. tests/chroot.sh
+
+declare -A code_names=([debian13]=trixie)
+usage() {
+  echo "usage: tests/portability.sh RELEASE, one of: ${!code_names[*]}" >&2
+  exit 2
+}
+if [ $# -ne 1 ] || [ -z "$1" ] || [ -z "${code_names[$1]:-}" ]; then usage; fi
+need_root
+
+root=$PWD/build/portability/$1/root
+make_bare_system "${code_names[$1]}" "$root"
+open_system "$root"
+
+# A copy of the sources, their times kept so that only what has changed is compiled.
+mkdir -p "$root/source"
+find "$root/source" -mindepth 1 -maxdepth 1 -not -name build -exec rm -rf {} +
+tar --exclude=./build --exclude=./out --exclude=./.git -cf - . | tar -xf - -C "$root/source"
+
+cat >"$root/inside.sh" <<'INSIDE'
+set -euo pipefail
+export LC_ALL=C CCACHE_DIR=/ccache CCACHE_MAXSIZE=2G
+cd /source
+./apps/install_dependencies.sh
+dpkg-query -W ccache >/dev/null 2>&1 ||
+  DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends ccache >/dev/null
+cmake --preset release -DCMAKE_BUILD_TYPE=Release -DVIEWGAIN_WERROR=ON \
+  -DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/configure.log 2>&1 ||
+  { cat /configure.log; exit 1; }
+if grep -A 8 'CMake Warning' /configure.log; then exit 1; fi
+cmake --build --preset release -j "$1" -- -k 0 # all that fails, not the first alone
+
+echo "Debian $(cat /etc/debian_version):"
+for package in g++ cmake libembree-dev libopenvdb-dev libcgal-dev libeigen3-dev libtbb-dev libhwy-dev \
+  libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev liboctomap-dev libgtest-dev \
+  libbenchmark-dev python3 python3-numpy python3-pytest pybind11-dev libompl-dev; do
+  dpkg-query -W -f '  ${Package} ${Version}\n' "$package" 2>/dev/null || true
+done
+ctest --preset release -j "$1"
+INSIDE
+chroot "$root" bash /inside.sh "${VIEWGAIN_JOBS:-$(nproc)}"
