@@ -24,17 +24,27 @@ struct Run {
   std::uint32_t first, last;
 };
 
-/// Which cell a region of 32³ voxels is in, where cells have an edge of 32 << level.
-std::uint64_t cell_of(std::uint64_t region, int level) {
-  if (level == 0) return region;
-  const std::uint64_t node = region >> 6U;
-  return level == 1 ? node << 6U | (region & 0b101010U) : node;
-}
-
 struct Cell {
   std::uint64_t number;
   std::uint32_t region;  // one of those in the cell
 };
+
+/// The regions by the bits of their numbers that `mask` keeps.
+std::vector<Cell> grouped(std::vector<Cell> cells, std::uint64_t mask) {
+  for (Cell& cell : cells) cell.number &= mask;
+  std::sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) {
+    return std::pair(a.number, a.region) < std::pair(b.number, b.region);
+  });
+  return cells;
+}
+
+std::size_t count_of(const std::vector<Cell>& cells) {
+  std::size_t count = cells.empty() ? 0 : 1;
+  for (std::size_t i = 1; i < cells.size(); ++i) {
+    count += cells[i].number != cells[i - 1].number ? 1U : 0U;
+  }
+  return count;
+}
 
 /// The regions that have primitives, cell by cell.
 std::vector<Cell> regions_by_cell(const VoxelScene::Data& data) {
@@ -45,19 +55,11 @@ std::vector<Cell> regions_by_cell(const VoxelScene::Data& data) {
     regions.push_back({data.snapshot.regions[i].number, i});
   }
   if (regions.size() <= SceneBoxes::kMaxBoxes) return regions;
-  for (const int level : {1, 2}) {
-    std::vector<Cell> cells = regions;
-    for (Cell& cell : cells) cell.number = cell_of(cell.number, level);
-    std::sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) {
-      return std::pair(a.number, a.region) < std::pair(b.number, b.region);
-    });
-    std::size_t count = 1;
-    for (std::size_t i = 1; i < cells.size(); ++i) {
-      count += cells[i].number != cells[i - 1].number ? 1U : 0U;
-    }
-    if (count <= SceneBoxes::kMaxBoxes || level == 2) return cells;
-  }
-  return regions;
+  // Nodes of 128³, of whose regions' numbers the low six bits say where they are: x, y, z, two
+  // each.
+  const std::vector<Cell> eighths = grouped(regions, ~std::uint64_t{0b010101});
+  if (count_of(eighths) <= SceneBoxes::kMaxBoxes) return eighths;
+  return grouped(regions, ~std::uint64_t{0b111111});
 }
 
 std::array<Run, 3> runs_of(const VoxelScene::Data& data, std::uint32_t region) {

@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "batch_call.hpp"
+#include "depth_images.hpp"
+#include "evaluator.hpp"
+#include "python_call.hpp"
+#include "viewgain/raycast/depth_image.hpp"
+
+namespace viewgain::python {
+
+/// A pixel of GainEvaluator.trace().
+struct HitRow {
+  std::uint8_t kind;
+  std::array<std::int32_t, 3> voxel;
+  double range;
+};
+
+/// A row of GainEvaluator.contributions().
+struct ContributionRow {
+  std::array<std::int32_t, 3> voxel;
+  std::uint8_t state;
+  std::uint32_t rays;
+  double gain;
+};
+
+/// What a gain of the user's own sees of a ray.
+struct OwnHitRow {
+  std::array<std::int32_t, 3> voxel;
+  std::uint8_t state;
+  std::uint32_t readings;
+  std::array<float, 6> information;
+  std::int64_t ray;
+  double range;
+  std::array<double, 3> direction;
+};
+
+namespace {
+
+std::vector<RayHit> trace(const Evaluator& self, const py::object& T_world_camera) {
+  const Pose pose = one_pose(T_world_camera, "T_world_camera");
+  const py::gil_scoped_release without_gil;
+  return self.evaluator.trace(pose);
+}
+
+py::array_t<HitRow> trace_array(const Evaluator& self, const py::object& T_world_camera) {
+  const std::vector<RayHit> hits = trace(self, T_world_camera);
+  py::array_t<HitRow> rows(Shape{self.height(), self.width()});
+  std::transform(hits.begin(), hits.end(), rows.mutable_data(), [](const RayHit& hit) {
+    return HitRow{
+        static_cast<std::uint8_t>(hit.kind), {hit.voxel.x, hit.voxel.y, hit.voxel.z}, hit.range};
+  });
+  return rows;
+}
+
+py::array_t<float> depth(const Evaluator& self, const py::object& T_world_camera) {
+  const Pose pose = one_pose(T_world_camera, "T_world_camera");
+  DepthImage image;
+  {
+    const py::gil_scoped_release without_gil;
+    image = depth_image(self.evaluator, pose);
+  }
+  return image_array(image.depth, image.height, image.width);
+}
+
+py::array_t<ContributionRow> contributions(const Evaluator& self,
+                                           const py::object& T_world_camera) {
+  const Pose pose = one_pose(T_world_camera, "T_world_camera");
+  std::vector<ContributionRow> rows;
+  {
+    const py::gil_scoped_release without_gil;
+    for (const VoxelContribution& c : self.evaluator.contributions(pose)) {
+      rows.push_back(
+          {{c.voxel.x, c.voxel.y, c.voxel.z}, static_cast<std::uint8_t>(c.state), c.rays, c.gain});
+    }
+  }
+  return to_array_1d<ContributionRow>(rows);
+}
+
+// A Python callable as a gain; takes the GIL for each view.
+class PythonMeasure : public ViewMeasure {
+ public:
+  explicit PythonMeasure(py::object callable) : call_(std::move(callable)) {}
+
+  double measure(const Pose& T_world_camera, std::span<const ViewHit> hits) const override {
+    const py::gil_scoped_acquire with_gil;
+    py::array_t<OwnHitRow> rows(static_cast<py::ssize_t>(hits.size()));
+    std::transform(hits.begin(), hits.end(), rows.mutable_data(), [](const ViewHit& hit) {
+      OwnHitRow row{{hit.voxel.x, hit.voxel.y, hit.voxel.z},
+                    static_cast<std::uint8_t>(hit.state),
+                    0,
+                    {},
+                    static_cast<std::int64_t>(hit.ray),
+                    hit.range,
+                    hit.direction};
+      if (hit.belief != nullptr) {
+        row.readings = hit.belief->hits;
+        row.information = hit.belief->information;
+      }
+      return row;
+    });
+    return call_.get()(to_array(T_world_camera), rows).cast<double>();
+  }
+
+ private:
+  PythonCall call_;
+};
+
+py::object evaluate_own(const Evaluator& self, const py::object& T_world_camera,
+                        const py::object& measure, Control* control) {
+  if (PyCallable_Check(measure.ptr()) == 0) throw py::type_error("measure must be callable");
+  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const PythonMeasure own(measure);
+  py::array_t<double> gains(batch.shape);
+  const std::span<double> out(gains.mutable_data(), batch.poses.size());
+  run_batch(control, [&](const BatchControl& watched) {
+    self.evaluator.evaluate(batch.poses, own, out, watched);
+  });
+  return scalar_or_array(gains);
+}
+
+}  // namespace
+
+void bind_views(py::module_& module, py::class_<Evaluator>& evaluator) {
+  PYBIND11_NUMPY_DTYPE(HitRow, kind, voxel, range);
+  PYBIND11_NUMPY_DTYPE(ContributionRow, voxel, state, rays, gain);
+  PYBIND11_NUMPY_DTYPE(OwnHitRow, voxel, state, readings, information, ray, range, direction);
+  module.attr("HIT_KIND_NAMES") = py::make_tuple("none", "unknown", "occupied", "obstacle");
+  evaluator
+      .def("trace", &trace_array, py::arg("T_world_camera"), R"(Where the rays of a view end.
+
+Parameters
+----------
+T_world_camera : array_like, (4, 4)
+
+Returns
+-------
+ndarray, (height', width'), structured
+    One a ray, image size divided by the stride, rounded up: kind (index into ``HIT_KIND_NAMES``),
+    voxel (int32, 3), range along the ray [m], inf: nothing.)")
+      .def("depth", &depth, py::arg("T_world_camera"), R"(The depth image of a view of the map.
+
+Parameters
+----------
+T_world_camera : array_like, (4, 4)
+
+Returns
+-------
+ndarray, (height', width'), float32
+    Along the optical axis [m], inf: nothing; size as for ``trace``.)")
+      .def("contributions", &contributions, py::arg("T_world_camera"),
+           R"(Why a view is good: what each voxel adds to its gain.
+
+Parameters
+----------
+T_world_camera : array_like, (4, 4)
+
+Returns
+-------
+ndarray, (n,), structured
+    voxel (int32, 3; on the lattice, minus the grid's ``min_index`` for arrays), state, rays that end
+    in it, gain. Largest gain first; the gains add up to that of the view.)")
+      .def("evaluate_own", &evaluate_own, py::arg("T_world_camera"), py::arg("measure"),
+           py::kw_only(), py::arg("control") = py::none(),
+           R"(A gain of your own: a number for what a view would see.
+
+Slow: the function is called for one view after the other, under the GIL; the C++ interface
+ViewMeasure is the fast way.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+measure : callable
+    Given T_world_camera (4, 4) and the hits of a view, a structured array (n,) with a row for each
+    ray that ends in a voxel: voxel (int32, 3), state, readings (that ended in the voxel), information
+    (float32, 6: xx yy zz xy xz yz [1/m**2]), ray (pixel number, row by row, strided), range along
+    the ray [m], direction (unit, world frame). Returns a float. What it raises passes through.
+control : BatchControl, optional
+
+Returns
+-------
+ndarray, (...), float64
+    NaN for bad poses, 0 for cameras in an occupied voxel; neither is asked about.)");
+}
+
+}  // namespace viewgain::python

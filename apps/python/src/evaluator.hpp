@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <string>
+
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::python {
+
+/// Python's GainEvaluator.
+struct Evaluator {
+  std::shared_ptr<VoxelScene> scene;
+  Sensor sensor;
+  std::string criterion;
+  int pixel_stride = 1;
+  GainEvaluator evaluator;
+
+  [[nodiscard]] int width() const { return (sensor.camera.width - 1) / pixel_stride + 1; }
+  [[nodiscard]] int height() const { return (sensor.camera.height - 1) / pixel_stride + 1; }
+};
+
+/// Adds what looks into single views: trace, depth, contributions, gains of the user's own.
+void bind_views(pybind11::module_& module, pybind11::class_<Evaluator>& evaluator);
+
+}  // namespace viewgain::python
