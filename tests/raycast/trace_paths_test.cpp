@@ -75,6 +75,37 @@ TEST(TracePaths, ManyPrimitivesUnderCoarseBoxesGiveTheSameBits) {
   EXPECT_EQ(compare(grid, sensor, poses), 8U * 61U * 47U);
 }
 
+// More regions than are listed one by one: cells of 64³ voxels.
+TEST(TracePaths, ManyRegionsGiveTheSameBits) {
+  constexpr int kEdge = 544, kRegion = 32;
+  std::vector<Index3> unknown;
+  for (int x = 5; x < kEdge; x += kRegion) {
+    for (int y = 9; y < kEdge; y += kRegion) {
+      for (int z = 3; z < kEdge; z += kRegion) {
+        for (int i = 0; i < 6; ++i) unknown.push_back({x + i, y + (x + z) / 32 % 17, z + i});
+      }
+    }
+  }
+  const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
+  ASSERT_GT(grid.snapshot().regions.size(), 4096U);
+  Sensor sensor = test::lattice_sensor(61, 47);
+  sensor.camera.fx = sensor.camera.fy = 80;
+  const double middle = 0.5 * kEdge * grid.voxel_size();
+  std::vector<Pose> poses;
+  for (const double off : {-1.4, 1.3}) {
+    poses.push_back(look_at({middle * (1 + off), middle * 0.9, middle * (1 - 0.5 * off)},
+                            {middle, middle, middle}));
+    poses.push_back(look_at({middle * 1.02, middle * 0.97, middle * 1.05},
+                            {middle * (1 + off), middle * 0.8, middle * 0.7}));
+  }
+  EXPECT_EQ(compare(grid, sensor, poses), 4U * 61U * 47U);
+  std::size_t hits = 0;
+  for (const ViewGain& view : GainEvaluator(VoxelScene::build(grid), sensor).evaluate(poses)) {
+    hits += view.hits;
+  }
+  EXPECT_GT(hits, 100U);
+}
+
 // A large unknown tile of which the workspace leaves no more than one block, among many primitives.
 TEST(TracePaths, ABlockLeftOfALargeTileIsSeenAmongManyPrimitives) {
   constexpr int kEdge = 136, kCorner = 128;
