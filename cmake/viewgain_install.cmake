@@ -4,13 +4,14 @@ include(CMakePackageConfigHelpers)
 set(VIEWGAIN_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/viewgain)
 
 # viewgain_install_libraries(names... [COMPONENT name] [RUNTIME name] [HEADERS folders...]
-#                            [DEPENDENCIES lines...] [STATIC_DEPENDENCIES lines...]
+#                            [DEPENDENCIES lines...] [STATIC_DEPENDENCIES lines...] [AFTERWARDS lines...]
 #                            [REQUIRES modules...] [STATIC_FLAGS flags...])
 # Installs libraries made by viewgain_add_library and what finds them.
 #   COMPONENT: what a user asks find_package for; without one they come with the package itself.
 #   RUNTIME: the install component of a shared library; all else is in `dev`.
 #   HEADERS: folders whose contents go to include/.
 #   DEPENDENCIES: find_dependency lines that clients need; STATIC_DEPENDENCIES: for static libraries too.
+#   AFTERWARDS: lines once the targets are defined.
 #   REQUIRES, STATIC_FLAGS: pkg-config's modules that clients need; what linking statically takes besides.
 # A library comes after those it uses.
 function(viewgain_install_libraries)
@@ -18,7 +19,7 @@ function(viewgain_install_libraries)
     return()
   endif()
   cmake_parse_arguments(ARG "" "COMPONENT;RUNTIME"
-    "HEADERS;DEPENDENCIES;STATIC_DEPENDENCIES;REQUIRES;STATIC_FLAGS" ${ARGN})
+    "HEADERS;DEPENDENCIES;STATIC_DEPENDENCIES;AFTERWARDS;REQUIRES;STATIC_FLAGS" ${ARGN})
   set(stem viewgain)
   if(ARG_COMPONENT)
     set(stem viewgain-${ARG_COMPONENT})
@@ -40,8 +41,9 @@ function(viewgain_install_libraries)
     set(private_flags ${ARG_STATIC_FLAGS})
   endif()
   list(JOIN lines "\n" lines)
+  list(JOIN ARG_AFTERWARDS "\n" afterwards)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${stem}-libraries.cmake @ONLY
-       CONTENT "@lines@\ninclude(\${CMAKE_CURRENT_LIST_DIR}/@stem@Targets.cmake)\n")
+       CONTENT "@lines@\ninclude(\${CMAKE_CURRENT_LIST_DIR}/@stem@Targets.cmake)\n@afterwards@\n")
   install(FILES ${PROJECT_BINARY_DIR}/${stem}-libraries.cmake
           DESTINATION ${VIEWGAIN_CMAKE_DIR} COMPONENT dev)
   install(EXPORT ${stem}Targets NAMESPACE viewgain:: DESTINATION ${VIEWGAIN_CMAKE_DIR} COMPONENT dev)
@@ -57,8 +59,18 @@ function(viewgain_install_libraries)
   list(JOIN flags " " flags)
   list(JOIN private_flags " " private_flags)
   list(JOIN ARG_REQUIRES ", " requires)
-  # Relative to the file, so that the installed tree can be moved.
+  # Relative to the file, so that the installed tree can be moved; not where a folder is absolute.
   file(RELATIVE_PATH prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+  set(prefix "\${pcfiledir}/${prefix}")
+  if(IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+    set(prefix "${CMAKE_INSTALL_PREFIX}")
+  endif()
+  foreach(folder IN ITEMS LIBDIR INCLUDEDIR)
+    set(${folder} "\${prefix}/${CMAKE_INSTALL_${folder}}")
+    if(IS_ABSOLUTE "${CMAKE_INSTALL_${folder}}")
+      set(${folder} "${CMAKE_INSTALL_FULL_${folder}}")
+    endif()
+  endforeach()
   configure_file(${PROJECT_SOURCE_DIR}/cmake/viewgain.pc.in ${PROJECT_BINARY_DIR}/${stem}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/${stem}.pc
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
@@ -69,9 +81,8 @@ if(VIEWGAIN_INSTALL)
   configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/viewgainConfig.cmake.in
     ${PROJECT_BINARY_DIR}/viewgainConfig.cmake INSTALL_DESTINATION ${VIEWGAIN_CMAKE_DIR}
     NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
-  # While the version is 0.x, names and binary interface may change with the minor version.
-  write_basic_package_version_file(${PROJECT_BINARY_DIR}/viewgainConfigVersion.cmake
-    COMPATIBILITY SameMinorVersion)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/viewgainConfigVersion.cmake.in
+                 ${PROJECT_BINARY_DIR}/viewgainConfigVersion.cmake @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/viewgainConfig.cmake
                 ${PROJECT_BINARY_DIR}/viewgainConfigVersion.cmake
           DESTINATION ${VIEWGAIN_CMAKE_DIR} COMPONENT dev)

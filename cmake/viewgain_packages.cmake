@@ -44,6 +44,9 @@ if(BUILD_SHARED_LIBS)
   # The headers and CMake files are ours and Apache-2.0; linking viewgain::mesh brings the GPL.
   viewgain_package(dev libviewgain-dev Apache-2.0 "Expected information gain of camera poses, headers"
     SECTION libdevel DEPENDS ${dev_depends} DEBIAN "libeigen3-dev (>= 3.4)")
+  if(VIEWGAIN_BUILD_OCTOMAP)
+    set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS liboctomap-dev) # for the component octomap
+  endif()
 endif()
 if(VIEWGAIN_BUILD_APPS AND BUILD_SHARED_LIBS)
   viewgain_package(program viewgain GPL-3.0-or-later

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the Debian packages, installs them in a clean Debian of this machine's release, runs the program
-# there and builds a client. Needs root (chroot) and the network that apt uses; not part of ctest.
+# and Python there and builds a client. Needs root (chroot) and the network that apt uses; not part of ctest.
 #   tests/packages.sh [WORK_FOLDER]   (default build/packages_test; the bare system in it is kept)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -21,17 +21,25 @@ cmake --build --preset packages -j "$jobs"
 rm -rf build/packages/packages
 (cd build/packages && cpack >"$work/cpack.log" 2>&1) || { cat "$work/cpack.log" >&2; exit 1; }
 ls build/packages/packages
-for name in libviewgain0 libviewgain-mesh0 libviewgain-dev viewgain; do
+for name in libviewgain0 libviewgain-mesh0 libviewgain-dev viewgain python3-viewgain python3-viewgain-mesh; do
   test -f build/packages/packages/"$name"_*.deb || fail "no $name"
 done
 
 # Only the surfaces and what links them need CGAL's libraries.
-for deb in build/packages/packages/libviewgain0_*.deb; do
+binaries=0
+for deb in build/packages/packages/{libviewgain0,python3-viewgain}_*.deb; do
   rm -rf "$work/content" && dpkg-deb -x "$deb" "$work/content"
   dpkg-deb -f "$deb" Depends | tee "$work/depends"
   ! grep -E 'gmp|mpfr|cgal|mesh' "$work/depends" || fail "$deb depends on CGAL's libraries"
-  ! nm -DC "$work"/content/usr/lib/*/libviewgain.so.0 | grep CGAL || fail "$deb holds CGAL"
+  while read -r binary; do
+    nm -DC "$binary" >"$work/symbols"
+    ! grep -E 'CGAL|gmp|mpfr' "$work/symbols" || fail "$binary in $deb holds CGAL"
+    binaries=$((binaries + 1))
+  done < <(find "$work/content" -type f -name '*.so*')
 done
+[ "$binaries" -eq 2 ] || fail "$binaries libraries were looked at, there should be 2"
+suggests=$(dpkg-deb -f build/packages/packages/libviewgain-dev_*.deb Suggests)
+[ "$suggests" = liboctomap-dev ] || fail "libviewgain-dev suggests '$suggests'"
 
 # A clean system, made once and copied.
 make_bare_system "$VERSION_CODENAME" "$work/bare"
@@ -90,9 +98,29 @@ cmake --build build >/dev/null
 ./build/gain | cmp - first.txt
 grep -qE '^[1-9][0-9]*\.[0-9]+$' first.txt
 apt-get remove -y -qq libviewgain0 >/dev/null # takes all that depends on it along
-if dpkg -l | grep -E '^ii +(libviewgain|viewgain)'; then exit 1; fi
+if dpkg -l | grep -E '^ii +(libviewgain|viewgain|python3-viewgain)'; then exit 1; fi
+INSIDE
+cat >"$root/python.sh" <<'INSIDE'
+set -euo pipefail
+export DEBIAN_FRONTEND=noninteractive LC_ALL=C
+apt-get install -y -qq --no-install-recommends /debs/python3-viewgain_*.deb >/dev/null
+python3 - <<'PYTHON'
+import numpy as np, viewgain
+grid = viewgain.BeliefGrid.from_labels(np.zeros((32, 32, 32), np.uint8), voxel_size=0.01, origin=(-0.16, -0.16, -0.16))
+evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), viewgain.sensor_preset("sr4000"))
+assert (evaluator.evaluate(viewgain.sphere_poses(5, 0.6)) > 0).all()
+try:
+    import viewgain.mesh
+except ImportError:
+    pass
+else:
+    raise SystemExit("python3-viewgain brings the surfaces along")
+PYTHON
+apt-get install -y -qq --no-install-recommends /debs/python3-viewgain-mesh_*.deb >/dev/null
+python3 -c 'import viewgain.mesh; print(viewgain.mesh.__file__)' | grep -q '^/usr/lib/python3'
 INSIDE
 open_system "$root"
 chroot "$root" bash /program.sh
+chroot "$root" bash /python.sh
 chroot "$root" bash /client.sh
 echo "packages.sh: all well"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, runs all tests; ends with ctest's summary. With --sanitize, core,
-# grid and raycast are built and tested under AddressSanitizer and UBSan instead, without three tests
-# that repeat for statistics' sake what others do.
+# grid, raycast and the C and Python entry points are built and tested under AddressSanitizer and UBSan
+# instead, without three tests that repeat for statistics' sake what others do.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "map_file.hpp"
+#include "sensor_toml.hpp"
 #include "terminal.hpp"
 #include "values.hpp"
 #include "viewgain/core/atomic_file.hpp"
@@ -19,7 +20,7 @@ struct Options {
   CommonOptions common;
   std::string in;
   std::string out;
-  std::string workspace;
+  std::string workspace, sensor;
   std::optional<double> prior_sigma;
   bool with_covariance = false;
 };
@@ -32,6 +33,7 @@ void check(const Options& options) {
     constexpr const char* kWhy = "the map has its own; the flag is for .ot and .bt";
     if (!options.workspace.empty()) refuse("--workspace", options.in, kWhy);
     if (options.prior_sigma) refuse("--prior-sigma", options.in, kWhy);
+    if (!options.sensor.empty()) refuse("--sensor", options.in, kWhy);
   }
   check_map_name(options.out);
   if (options.with_covariance && is_octomap(options.out)) {
@@ -48,16 +50,10 @@ void convert(const Options& options) {
   OctomapConfig config;
   if (!options.workspace.empty()) config.workspace = parse_box("--workspace", options.workspace);
   config.prior_sigma = options.prior_sigma;
-  const BeliefGrid grid = load_map(options.in, nullptr, config);
-  save_map(grid, options.out, {options.with_covariance});
-
-  std::size_t lost_beliefs = 0, lost_views = 0;
-  if (is_octomap(options.out)) {
-    for (const BeliefBlockAt& block : grid.belief_blocks()) {
-      lost_beliefs += block.beliefs->beliefs.size();
-    }
-    lost_views = grid.views().size();
-  }
+  std::optional<Sensor> sensor;
+  if (!options.sensor.empty()) sensor = load_sensor(options.sensor);
+  const BeliefGrid grid = load_map(options.in, sensor ? &*sensor : nullptr, config);
+  const LostInTree lost = save_map(grid, options.out, {options.with_covariance});
   const GridStatistics statistics = grid.statistics();
   const Index3 dims = grid.dims();
   if (options.common.json) {
@@ -70,8 +66,9 @@ void convert(const Options& options) {
                 {"unknown", statistics.unknown},
                 {"free", statistics.free},
                 {"occupied", statistics.occupied},
-                {"lost_beliefs", lost_beliefs},
-                {"lost_views", lost_views},
+                {"lost_beliefs", lost.beliefs},
+                {"lost_views", lost.views},
+                {"lost_T_world_grid", lost.T_world_grid},
                 {"hash", grid.content_hash()},
                 {"seconds", watch.seconds()}});
     return;
@@ -80,9 +77,9 @@ void convert(const Options& options) {
               dims.x, dims.y, dims.z, grid.voxel_size());
   std::printf("voxels: %s unknown, %s free, %s occupied\n", with_commas(statistics.unknown).c_str(),
               with_commas(statistics.free).c_str(), with_commas(statistics.occupied).c_str());
-  if (lost_beliefs > 0 || lost_views > 0) {
+  if (lost.beliefs > 0 || lost.views > 0) {
     std::printf("not in a tree: the beliefs of %s voxels, %s views\n",
-                with_commas(lost_beliefs).c_str(), with_commas(lost_views).c_str());
+                with_commas(lost.beliefs).c_str(), with_commas(lost.views).c_str());
   }
   std::printf("%s\n", options.out.c_str());
 }
@@ -94,14 +91,18 @@ Command add_convert(CLI::App& program) {
   CLI::App* app = program.add_subcommand(
       "convert",
       "A map from one format into another: .vdb, OctoMap's .ot and (read only) .bt. OctoMap trees "
-      "keep states and log-odds, a .bt only states; they have no beliefs, prior, views or frame.");
+      "keep states and log-odds, a .bt only states; they have no beliefs, prior or views, and a "
+      "frame only where it is a shift by whole voxels, which moves the tree.");
   app->add_option("IN", options->in, kMapHelp)->required();
   app->add_option("OUT", options->out, "map to write (.vdb or .ot)")->required();
   app->add_option("--workspace", options->workspace,
                   "x0,y0,z0,x1,y1,z1: the part of a tree to take [m], grown to whole voxels; "
                   "default: its known voxels");
   app->add_option("--prior-sigma", options->prior_sigma,
-                  "sigma of an unknown voxel of a tree [m]; default: voxel/2");
+                  "sigma of an unknown voxel of a tree [m]; default: the sensor's, else voxel/2");
+  app->add_option("--sensor", options->sensor,
+                  std::string("whose readings will be scored, for the prior of a tree's voxels: ") +
+                      kSensorHelp);
   app->add_flag("--with-covariance", options->with_covariance,
                 "add covariances and positions to the .vdb, for viewers");
   add_common_options(*app, options->common);

@@ -135,7 +135,7 @@ Totals integrate_all(ReadingSource& source, const Options& options, BeliefGrid& 
 }
 
 void print_summary(const Options& options, const ReadingSource& source, const BeliefGrid& grid,
-                   const Totals& totals, double seconds) {
+                   const Totals& totals, const LostInTree& lost, double seconds) {
   const GridStatistics statistics = grid.statistics();
   const Index3 dims = grid.dims();
   const double frame_seconds = median(totals.seconds);
@@ -159,6 +159,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
                 {"unknown", statistics.unknown},
                 {"free", statistics.free},
                 {"occupied", statistics.occupied},
+                {"lost_T_world_grid", lost.T_world_grid},
                 {"hash", grid.content_hash()},
                 {"out", options.out},
                 {"seconds", seconds},
@@ -232,8 +233,8 @@ void integrate(const Options& options, const CLI::App& app) {
   BeliefGrid grid =
       options.map.empty() ? new_map(*source, options) : continued_map(source->sensor(), options);
   const Totals totals = integrate_all(*source, options, grid);
-  save_map(grid, options.out, {options.with_covariance});
-  print_summary(options, *source, grid, totals, watch.seconds());
+  const LostInTree lost = save_map(grid, options.out, {options.with_covariance});
+  print_summary(options, *source, grid, totals, lost, watch.seconds());
 }
 
 }  // namespace

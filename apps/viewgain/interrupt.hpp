@@ -7,6 +7,10 @@
 
 namespace viewgain::app {
 
+/// From now on Ctrl-C (SIGINT), SIGTERM and SIGHUP, where they are not ignored, remove the
+/// temporary files of maps and reports being written before they end the program.
+void clean_up_when_ended();
+
 /// While it lives, Ctrl-C (SIGINT) and SIGTERM ask for a stop instead of ending the program; a
 /// second one ends it. One at a time.
 class InterruptGuard {

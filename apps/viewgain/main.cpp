@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/version.hpp"
 
@@ -56,6 +57,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  viewgain::app::clean_up_when_ended();
   try {
     return run(argc, argv);
   } catch (const viewgain::Error& error) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 
 #include "viewgain/core/sensor.hpp"
@@ -13,7 +14,7 @@ namespace viewgain::app {
 
 inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt)";
 
-/// Whether the name ends in .ot or .bt.
+/// Whether the name ends in .ot or .bt, in small or capital letters.
 [[nodiscard]] bool is_octomap(const std::filesystem::path& path);
 
 /// Reads a .vdb map, or an OctoMap tree by `config`, whose prior is, unless given, the default for
@@ -21,11 +22,20 @@ inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt)";
 [[nodiscard]] BeliefGrid load_map(const std::filesystem::path& path, const Sensor* sensor = nullptr,
                                   OctomapConfig config = {});
 
-/// Throws Error(invalid_argument) for names that save_map does not write: .bt.
+/// Throws Error(invalid_argument) for names that save_map does not write: those that end neither in
+/// .vdb nor in .ot, unless what is there is no regular file (/dev/null, a pipe).
 void check_map_name(const std::filesystem::path& path);
 
-/// Writes a .ot for a name that ends so, else a .vdb.
-void save_map(const BeliefGrid& grid, const std::filesystem::path& path,
-              const VdbWriteConfig& config = {});
+/// What a map has and its tree has not.
+struct LostInTree {
+  std::size_t beliefs = 0;  ///< voxels
+  std::size_t views = 0;
+  bool T_world_grid = false;  ///< see octomap_keeps_frame
+};
+
+/// Writes a .ot for a name that ends so, else a .vdb, of which nothing is lost. Warns on stderr if
+/// the frame is.
+LostInTree save_map(const BeliefGrid& grid, const std::filesystem::path& path,
+                    const VdbWriteConfig& config = {});
 
 }  // namespace viewgain::app

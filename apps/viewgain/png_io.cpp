@@ -8,11 +8,9 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string>
-#include <system_error>
 
+#include "file_bytes.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -113,14 +111,7 @@ void write_image(const std::filesystem::path& path, int width, int height, int b
 
 GrayImage read_gray_png(const std::filesystem::path& path, int width, int height) {
   PngState state;
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    fail(ErrorCode::io, path, "no such file");
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail(ErrorCode::io, path, "cannot be opened");
-  state.bytes.assign(std::istreambuf_iterator<char>(file), {});
-  if (file.bad()) fail(ErrorCode::io, path, "cannot be read");
+  state.bytes = file_bytes(path);
 
   GrayImage image{width, height, {}};
   const auto columns = static_cast<std::size_t>(width);

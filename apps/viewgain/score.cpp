@@ -162,6 +162,17 @@ void print_json_report(const Report& report) {
   print_json(json);
 }
 
+// What is not known yet must not count as surer than what a reading would say.
+void warn_of_prior(const GainEvaluator& evaluator, const Sensor& sensor) {
+  const double axial = sensor.sigmas(sensor.working_distance).axial;
+  if (evaluator.prior_sigma() >= axial) return;
+  std::fprintf(
+      stderr,
+      "viewgain: warning: the prior sigma, %.3g m, is below the sensor's along the ray, %.3g "
+      "m at %g m: what is unknown counts as surer than a reading (--prior-sigma)\n",
+      evaluator.prior_sigma(), axial, sensor.working_distance);
+}
+
 void print_speed(const Report& report) {
   const int threads = report.evaluator.num_threads();
   std::printf(
@@ -304,6 +315,7 @@ void score(const Options& options) {
     scores = make_scores(options, evaluator, source.poses, control);
     seconds = watch.seconds();
   }
+  warn_of_prior(evaluator, sensor);
   const Report report{options, grid, sensor, source, evaluator, scores, seconds};
   if (!options.picture.empty()) {
     const std::size_t winner =

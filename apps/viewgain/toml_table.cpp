@@ -4,23 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 #include <utility>
 
+#include "file_bytes.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {
 
 toml::table read_toml(const std::filesystem::path& path) {
   const std::string file = path.string();
-  std::error_code ignored;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(path, ignored)) {
-    throw Error(ErrorCode::io, file + ": cannot be opened");
-  }
-  const std::string contents{std::istreambuf_iterator<char>(stream), {}};
+  const std::string contents = file_bytes(path);
   try {
     return toml::parse(contents);
   } catch (const toml::parse_error& error) {

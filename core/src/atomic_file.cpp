@@ -5,8 +5,11 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <string>
 #include <system_error>
 
@@ -30,6 +33,35 @@ fs::path temporary_name(const fs::path& target) {
   name += ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1));
   name += target.extension().string();
   return target.parent_path() / name;
+}
+
+/// Names of temporary files for remove_temporary_files(). Whoever takes a name out of its place
+/// owns it, so a signal's handler and another thread's destructor do not meet. A file that finds no
+/// place is not listed.
+std::array<std::atomic<char*>, 64> listed{};
+static_assert(std::atomic<char*>::is_always_lock_free);  // else no handler could use it
+
+/// The name as it was listed, or null.
+char* list_temporary(const fs::path& path) {
+  char* name = ::strdup(path.c_str());
+  if (name == nullptr) return nullptr;
+  for (std::atomic<char*>& place : listed) {
+    char* nothing = nullptr;
+    if (place.compare_exchange_strong(nothing, name)) return name;
+  }
+  std::free(name);
+  return nullptr;
+}
+
+void unlist_temporary(char* name) {
+  if (name == nullptr) return;
+  for (std::atomic<char*>& place : listed) {
+    char* expected = name;
+    if (place.compare_exchange_strong(expected, nullptr)) {
+      std::free(name);
+      return;
+    }
+  }
 }
 
 /// Creates the file, which must not be there yet; 0 or errno.
@@ -63,9 +95,11 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(target) {
     error = create_new(temporary_);
   }
   if (error != 0) fail(target, "cannot write", error);
+  listed_ = list_temporary(temporary_);
 }
 
 AtomicFile::~AtomicFile() {
+  unlist_temporary(listed_);
   if (committed_ || temporary_ == resolved_) return;
   std::error_code ignored;
   fs::remove(temporary_, ignored);
@@ -94,6 +128,19 @@ void AtomicFile::commit() {
     if (code) fail(target_, "cannot write", code.value());
   }
   committed_ = true;
+}
+
+void remove_temporary_files() noexcept {
+  const int error = errno;
+  for (std::atomic<char*>& place : listed) {
+    char* const name = place.exchange(nullptr);
+    if (name == nullptr) continue;
+    ::unlink(name);
+    // Back to where its file frees it, which a handler may not do.
+    char* nothing = nullptr;
+    place.compare_exchange_strong(nothing, name);
+  }
+  errno = error;
 }
 
 void write_file_atomically(const fs::path& target, std::string_view contents) {

@@ -201,17 +201,18 @@ ThreadPool::Impl::Crew& ThreadPool::Impl::here() {
   return *own;  // another thread of the child was faster
 }
 
-ThreadPool::ThreadPool(int num_threads) {
+int thread_count(int num_threads) {
   if (num_threads < 0 || num_threads > kMaxThreads) {
     throw Error(ErrorCode::invalid_argument, "number of threads must be in 0.." +
                                                  std::to_string(kMaxThreads) + ", not " +
                                                  std::to_string(num_threads));
   }
-  if (num_threads == 0) {
-    num_threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads);
-  }
-  impl_ = std::make_unique<Impl>(num_threads);
+  if (num_threads > 0) return num_threads;
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads);
 }
+
+ThreadPool::ThreadPool(int num_threads)
+    : impl_(std::make_unique<Impl>(thread_count(num_threads))) {}
 
 ThreadPool::~ThreadPool() = default;
 

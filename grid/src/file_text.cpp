@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "file_text.hpp"
 
+#include <array>
 #include <charconv>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "viewgain/core/error.hpp"
@@ -23,7 +23,14 @@ std::string read_bytes(const std::filesystem::path& path) {
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) throw Error(ErrorCode::io, path.string() + ": cannot be opened");
-  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  // Formatted and unformatted input catch what the buffer throws when a read fails; its iterators
+  // do not.
+  std::string bytes;
+  std::array<char, 65536> part;
+  do {
+    file.read(part.data(), part.size());
+    bytes.append(part.data(), static_cast<std::size_t>(file.gcount()));
+  } while (file);
   if (file.bad()) throw Error(ErrorCode::io, path.string() + ": cannot be read");
   return bytes;
 }

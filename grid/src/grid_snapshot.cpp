@@ -185,34 +185,22 @@ std::uint64_t hash_codes(const std::array<std::uint8_t, kBlockVoxels>& codes) {
   return hash.value();
 }
 
-/// Adds up hashes of 8³ blocks, wholly unknown ones left out, so that neither the tree's topology
-/// nor the order matters.
-class BlockHashes {
+/// Adds up hashes of the largest uniform cubes of 2048, 128 and 8 voxels, unknown ones left out,
+/// and of the blocks that are not uniform. A cube is uniform if its voxels in the workspace are, so
+/// neither the tree's topology nor the order matters, and the cost is that of the tree's nodes.
+class ContentHash {
  public:
-  explicit BlockHashes(const BlockLattice& lattice) : lattice_(lattice) {}
+  explicit ContentHash(const BlockLattice& lattice) : lattice_(lattice) {}
 
-  void add_leaf(const CodeLeaf& leaf) {
-    std::array<std::uint8_t, kBlockVoxels> codes{};
-    const Index3 origin = to_index(leaf.origin());
-    const LeafMask inside = lattice_.clip(origin);
-    const std::uint8_t* from = leaf.buffer().data();
-    bool known = false;
-    for_each_bit(inside, [&](unsigned offset) {
-      codes[offset] = from[offset];
-      known = known || from[offset] != kUnknownCode;
-    });
-    if (known) sum_ += hash_origin(origin, hash_codes(codes));
-  }
-
-  void add_tile(Index3 origin, int size, std::uint8_t code) {
-    if (code == kUnknownCode) return;
-    const IndexBox box = clipped(lattice_, origin, size);
-    const Index3 low = block_origin(box.min);
-    for (std::int32_t x = low.x; x < box.max.x; x += kBlockSize) {
-      for (std::int32_t y = low.y; y < box.max.y; y += kBlockSize) {
-        for (std::int32_t z = low.z; z < box.max.z; z += kBlockSize) add_uniform({x, y, z}, code);
-      }
+  void add_tree(const CodeTree& tree) {
+    Part all;
+    for (auto it = tree.root().cbeginValueAll(); it; ++it) {
+      add_cube(it.getCoord(), CodeUpper::DIM, {.code = *it}, all);
     }
+    for (auto upper = tree.root().cbeginChildOn(); upper; ++upper) {
+      add_cube(upper.getCoord(), CodeUpper::DIM, hash_node(*upper), all);
+    }
+    sum_ += all.sum;
   }
 
   void add_beliefs(Index3 origin, const BeliefBlock& block) {
@@ -230,23 +218,60 @@ class BlockHashes {
   [[nodiscard]] std::uint64_t sum() const { return sum_; }
 
  private:
-  void add_uniform(Index3 origin, std::uint8_t code) {
-    std::array<std::uint8_t, kBlockVoxels> codes{};
-    if (lattice_.covers(origin, kBlockSize)) {
-      std::uint64_t& hash = uniform_[code];
-      if (hash == 0) {
-        codes.fill(code);
-        hash = hash_codes(codes);
-      }
-      sum_ += hash_origin(origin, hash);
-    } else {
-      for_each_bit(lattice_.clip(origin), [&](unsigned offset) { codes[offset] = code; });
-      sum_ += hash_origin(origin, hash_codes(codes));
+  /// A cube's voxels in the workspace.
+  struct Part {
+    bool any = true;      ///< are there some?
+    bool uniform = true;  ///< then `code` is that of all, else `sum` is over smaller cubes
+    std::uint8_t code = kUnknownCode;
+    std::uint64_t sum = 0;
+  };
+
+  template <typename Node>
+  Part hash_node(const Node& node) const {
+    Part all{.any = false};
+    constexpr int kSize = Node::ChildNodeType::DIM;
+    for (auto it = node.cbeginValueAll(); it; ++it) {
+      add_cube(it.getCoord(), kSize, {.code = *it}, all);
+    }
+    for (auto child = node.cbeginChildOn(); child; ++child) {
+      add_cube(child.getCoord(), kSize, hash_node(*child), all);
+    }
+    return all;
+  }
+
+  Part hash_node(const CodeLeaf& leaf) const {
+    const std::uint8_t* codes = leaf.buffer().data();
+    const LeafMask inside = lattice_.clip(to_index(leaf.origin()));
+    std::array<std::uint8_t, kBlockVoxels> own{};
+    Part all{.any = false};
+    for_each_bit(inside, [&](unsigned offset) {
+      own[offset] = codes[offset];
+      all.uniform = all.uniform && (!all.any || codes[offset] == all.code);
+      all.code = codes[offset];
+      all.any = true;
+    });
+    if (!all.uniform) all.sum = hash_codes(own);
+    return all;
+  }
+
+  // Puts one of a node's cubes to the others.
+  void add_cube(const openvdb::Coord& at, int size, const Part& cube, Part& all) const {
+    const Index3 origin = to_index(at);
+    if (!cube.any || !lattice_.overlaps(origin, size)) return;
+    all.uniform = all.uniform && cube.uniform && (!all.any || cube.code == all.code);
+    all.code = cube.code;
+    all.any = true;
+    if (!cube.uniform) {
+      all.sum += size == kBlockSize ? hash_origin(origin, cube.sum) : cube.sum;
+    } else if (cube.code != kUnknownCode) {
+      Hash64 hash;
+      hash.add(static_cast<std::uint64_t>(size));
+      hash.add(cube.code);
+      all.sum += hash_origin(origin, hash.value());
     }
   }
 
   const BlockLattice& lattice_;
-  std::array<std::uint64_t, kMaxCode + 1> uniform_{};
   std::uint64_t sum_ = 0;
 };
 
@@ -341,11 +366,9 @@ GridStatistics BeliefGrid::statistics(Criterion criterion) const {
 
 std::string BeliefGrid::content_hash() const {
   const Storage& s = *storage_;
-  BlockHashes blocks(s.lattice);
-  visit_blocks(
-      s, [&](const CodeLeaf& leaf, Index3) { blocks.add_leaf(leaf); },
-      [&](Index3 origin, int size, std::uint8_t code) { blocks.add_tile(origin, size, code); });
-  for (const auto& [key, block] : s.beliefs) blocks.add_beliefs(s.lattice.origin(key), *block);
+  ContentHash contents(s.lattice);
+  contents.add_tree(s.tree);
+  for (const auto& [key, block] : s.beliefs) contents.add_beliefs(s.lattice.origin(key), *block);
 
   Hash64 hash;
   const auto add_double = [&hash](double value) { hash.add(std::bit_cast<std::uint64_t>(value)); };
@@ -361,7 +384,7 @@ std::string BeliefGrid::content_hash() const {
   }
   hash.add(s.views.size());
   for (const Pose& view : s.views) add_pose(view);
-  hash.add(blocks.sum());
+  hash.add(contents.sum());
   return hash.hex();
 }
 

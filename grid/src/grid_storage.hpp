@@ -11,6 +11,7 @@
 #include <openvdb/tree/Tree.h>
 #pragma GCC visibility pop
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <memory>
@@ -75,6 +76,11 @@ struct BeliefGrid::Storage {
   /// Tells grids apart. A copy goes its own way from `copied_at` on.
   std::uint64_t number = next_number(), copy_of = 0, copied_at = 0;
   [[nodiscard]] static std::uint64_t next_number();
+  /// From now on no snapshot made before counts as one of this grid. Allocates nothing.
+  void forget_snapshots() {
+    number = next_number();
+    copy_of = 0;
+  }
 
   [[nodiscard]] bool is_earlier(const GridSnapshot& snapshot) const {
     return snapshot.grid_number == number ||

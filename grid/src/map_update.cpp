@@ -181,6 +181,12 @@ void MapUpdate::Impl::update_region(BeliefGrid::Storage& s, const Readings& read
     result.changed = result.changed || hit_block != nullptr ||
                      intersection(update.crossed, non_free) != LeafMask{};
 
+    // At once, so that codes and mask agree whatever allocation fails below.
+    if (leaf != nullptr) {
+      for (openvdb::Index i = 0; i < 8; ++i) {
+        leaf->getValueMask().getWord<std::uint64_t>(i) = update.non_free[i];
+      }
+    }
     if (update.uniform && may_be_tile(codes[0])) {
       if (leaf != nullptr || codes[0] != tile_code) result.tiles.emplace_back(origin, codes[0]);
       continue;
@@ -191,9 +197,9 @@ void MapUpdate::Impl::update_region(BeliefGrid::Storage& s, const Readings& read
       result.leaves.push_back(std::make_unique<CodeLeaf>(to_coord(origin), kUnknownCode, true));
       leaf = result.leaves.back().get();
       std::copy(fresh.begin(), fresh.end(), leaf->buffer().data());
-    }
-    for (openvdb::Index i = 0; i < 8; ++i) {
-      leaf->getValueMask().getWord<std::uint64_t>(i) = update.non_free[i];
+      for (openvdb::Index i = 0; i < 8; ++i) {
+        leaf->getValueMask().getWord<std::uint64_t>(i) = update.non_free[i];
+      }
     }
   }
 }
@@ -253,25 +259,37 @@ IntegrationReport MapUpdate::run(BeliefGrid& grid, const Readings& readings,
   }
   m.list_regions(s, cull);
 
-  // Entries are made here, alone; the map's values do not move when it grows.
   const auto empty = std::make_shared<const BeliefBlock>();
-  for (HitBlock& block : m.hits.blocks()) {
-    block.beliefs = &s.beliefs.try_emplace(block.key, empty).first->second;
-  }
-  if (m.results.size() < m.regions.size()) m.results.resize(m.regions.size());
-  for (std::size_t i = 0; i < m.regions.size(); ++i) {
-    m.results[i].crossed = m.results[i].hit = 0;
-    m.results[i].changed = false;
-  }
-  m.pool.for_each_chunk(m.regions.size(), 1, [&](std::size_t i, std::size_t) {
-    m.update_region(s, readings, cull, camera, T_grid_readings, m.regions[i], m.results[i]);
-  });
-  m.put_results(s);
-  for (std::size_t i = 0; i < m.regions.size(); ++i) {
-    if (m.results[i].changed) s.mark_changed(m.regions[i] << 6U);
+  try {
+    // Entries are made here, alone; the map's values do not move when it grows.
+    for (HitBlock& block : m.hits.blocks()) {
+      block.beliefs = &s.beliefs.try_emplace(block.key, empty).first->second;
+    }
+    if (m.results.size() < m.regions.size()) m.results.resize(m.regions.size());
+    for (std::size_t i = 0; i < m.regions.size(); ++i) {
+      m.results[i].crossed = m.results[i].hit = 0;
+      m.results[i].changed = false;
+    }
+    m.pool.for_each_chunk(m.regions.size(), 1, [&](std::size_t i, std::size_t) {
+      m.update_region(s, readings, cull, camera, T_grid_readings, m.regions[i], m.results[i]);
+    });
+    m.put_results(s);
+    for (std::size_t i = 0; i < m.regions.size(); ++i) {
+      if (m.results[i].changed) s.mark_changed(m.regions[i] << 6U);
+    }
+    s.views.push_back(view);
+  } catch (...) {
+    // Memory ran out with some regions written. Nothing that a snapshot told before holds for sure,
+    // and what waits to be put into the tree is not for another frame's regions.
+    s.forget_snapshots();
+    for (RegionResult& result : m.results) result = {};
+    for (const HitBlock& block : m.hits.blocks()) {
+      const auto found = s.beliefs.find(block.key);
+      if (found != s.beliefs.end() && found->second == empty) s.beliefs.erase(found);
+    }
+    throw;
   }
   ++s.time;
-  s.views.push_back(view);
 
   IntegrationReport report;
   for (const PixelKind kind : readings.kinds()) {

@@ -13,6 +13,7 @@
 #include "grid_blocks.hpp"
 #include "log_odds_code.hpp"
 #include "octomap_format.hpp"
+#include "solid_voxels.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 
@@ -179,12 +180,12 @@ class TreeWalk {
 class BlockFiller {
  public:
   BlockFiller(BeliefGrid& grid, const std::string& name)
-      : grid_(grid), name_(name), lattice_(grid.min_index(), grid.dims()) {}
+      : grid_(grid), solid_(name, "; give a workspace"), lattice_(grid.min_index(), grid.dims()) {}
 
   void add(Index3 origin, std::int32_t size, std::uint8_t code) {
     if (!lattice_.overlaps(origin, size)) return;
     if (size >= kBlockSize) {
-      if (is_occupied(code)) count_solid(size);
+      if (is_occupied(code)) count_solid(origin, size);
       fill_cube(grid_, origin, size, code);
       return;
     }
@@ -208,25 +209,22 @@ class BlockFiller {
   }
 
  private:
-  // Occupied cubes cost a byte a voxel, whatever part of a file of a few bytes says so.
-  void count_solid(std::int32_t size) {
-    const auto limit = [&](std::int32_t dim) {
-      return static_cast<double>(std::min(size, dim + 2 * kBlockSize));
+  // The blocks of a cube that lie in the workspace.
+  void count_solid(Index3 origin, std::int32_t size) {
+    const auto low = [](std::int32_t from, std::int32_t least) {
+      return std::max(from, least & ~(kBlockSize - 1));
     };
-    const Index3 dims = grid_.dims();
-    solid_ += limit(dims.x) * limit(dims.y) * limit(dims.z);
-    if (solid_ > kMostSolid) {
-      throw Error(ErrorCode::capacity,
-                  name_ + ": solid occupied cubes of more than 2^30 voxels; give a workspace");
-    }
+    const auto high = [size](std::int32_t from, std::int32_t end) {
+      return std::min(from + size, (end + kBlockSize - 1) & ~(kBlockSize - 1));
+    };
+    const Index3 &min = lattice_.min, &max = lattice_.max;
+    solid_.add({low(origin.x, min.x), low(origin.y, min.y), low(origin.z, min.z)},
+               {high(origin.x, max.x), high(origin.y, max.y), high(origin.z, max.z)});
   }
 
-  static constexpr double kMostSolid = 1073741824.0;  // 2^30
-
   BeliefGrid& grid_;
-  const std::string& name_;
+  SolidVoxels solid_;
   BlockLattice lattice_;
-  double solid_ = 0;
   std::optional<Index3> block_;
   std::array<std::uint8_t, kBlockVoxels> codes_{};
 };

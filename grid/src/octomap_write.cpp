@@ -2,17 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cstring>
-#include <deque>
 #include <span>
 #include <string>
-#include <vector>
 
-#include "grid_blocks.hpp"
 #include "log_odds_code.hpp"
 #include "octomap_format.hpp"
+#include "octomap_parts.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/octomap_io.hpp"
@@ -29,98 +26,10 @@ float written_log_odds(std::uint8_t code) {
   return code == kZeroCode ? kFreeZero : code_log_odds(code);
 }
 
-/// A part of the grid: a block's codes, or a uniform cube.
-struct Part {
-  std::uint64_t place = 0;  ///< of the lowest voxel on the curve of children's numbers
-  int level = 0;            ///< the size is 2^level voxels
-  std::uint8_t code = kUnknownCode;
-  const std::uint8_t* codes = nullptr;
-};
-
-std::uint64_t spread(std::uint64_t v) {
-  std::uint64_t result = 0;
-  for (unsigned bit = 0; bit < kOctomapLevels; ++bit) result |= (v >> bit & 1U) << (3 * bit);
-  return result;
-}
-
-class PartList {
- public:
-  explicit PartList(const BeliefGrid& grid) : lattice_(grid.min_index(), grid.dims()) {
-    visit_grid(
-        grid,
-        [&](Index3 origin, const std::uint8_t* codes) {
-          if (lattice_.covers(origin, kBlockSize)) {
-            add(origin, 3, kUnknownCode, codes);
-          } else {
-            add_clipped(origin, codes);
-          }
-        },
-        [&](Index3 origin, std::int32_t size, std::uint8_t code) {
-          if (code != kUnknownCode) add_cube(origin, size, code);
-        });
-    std::sort(parts_.begin(), parts_.end(),
-              [](const Part& a, const Part& b) { return a.place < b.place; });
-  }
-
-  [[nodiscard]] std::span<const Part> parts() const { return parts_; }
-
- private:
-  void add(Index3 origin, int level, std::uint8_t code, const std::uint8_t* codes) {
-    const auto coordinate = [](std::int32_t v) {
-      const std::int64_t shifted = std::int64_t{v} + kOctomapOffset;
-      if (shifted < 0 || shifted >= 2 * kOctomapOffset) {
-        throw Error(ErrorCode::capacity, "voxel index " + std::to_string(v) +
-                                             " does not fit into an OctoMap tree, which holds "
-                                             "-32768 to 32767");
-      }
-      return spread(static_cast<std::uint64_t>(shifted));
-    };
-    parts_.push_back(
-        {coordinate(origin.x) | coordinate(origin.y) << 1U | coordinate(origin.z) << 2U, level,
-         code, codes});
-  }
-
-  // A cube's part in the workspace, by halves.
-  void add_cube(Index3 origin, std::int32_t size, std::uint8_t code) {
-    if (!lattice_.overlaps(origin, size)) return;
-    if (lattice_.covers(origin, size)) {
-      add(origin, std::countr_zero(static_cast<std::uint32_t>(size)), code, nullptr);
-    } else if (size > kBlockSize) {
-      const std::int32_t half = size / 2;
-      for (const std::int32_t x : {0, half}) {
-        for (const std::int32_t y : {0, half}) {
-          for (const std::int32_t z : {0, half}) {
-            add_cube({origin.x + x, origin.y + y, origin.z + z}, half, code);
-          }
-        }
-      }
-    } else {
-      std::array<std::uint8_t, kBlockVoxels> codes;
-      codes.fill(code);
-      add_clipped(origin, codes.data());
-    }
-  }
-
-  void add_clipped(Index3 origin, const std::uint8_t* codes) {
-    auto& own = clipped_.emplace_back();
-    own.fill(kUnknownCode);
-    for_each_bit(lattice_.clip(origin), [&](unsigned offset) { own[offset] = codes[offset]; });
-    if (std::any_of(own.begin(), own.end(), [](std::uint8_t c) { return c != kUnknownCode; })) {
-      add(origin, 3, kUnknownCode, own.data());
-    } else {
-      clipped_.pop_back();
-    }
-  }
-
-  BlockLattice lattice_;
-  std::vector<Part> parts_;
-  std::deque<std::array<std::uint8_t, kBlockVoxels>> clipped_;
-};
-
 /// Nodes depth first, equal leaves joined.
 class TreeBytes {
  public:
-  explicit TreeBytes(std::span<const Part> parts) { cube(parts, kOctomapLevels); }
+  explicit TreeBytes(std::span<const OctomapPart> parts) { cube(parts, kOctomapLevels); }
 
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
   [[nodiscard]] std::uint64_t nodes() const { return bytes_.size() / kNodeBytes; }
@@ -193,16 +102,16 @@ class TreeBytes {
     });
   }
 
-  Written cube(std::span<const Part> parts, int level) {
+  Written cube(std::span<const OctomapPart> parts, int level) {
     if (parts.empty()) return {};
     if (parts.front().level == level) {
-      const Part& part = parts.front();
+      const OctomapPart& part = parts.front();
       return part.codes != nullptr ? block(part.codes, 0, level) : leaf(part.code);
     }
-    std::span<const Part> rest = parts;
+    std::span<const OctomapPart> rest = parts;
     const int shift = 3 * (level - 1);
     return inner([&](unsigned i) {
-      const auto end = std::partition_point(rest.begin(), rest.end(), [&](const Part& part) {
+      const auto end = std::partition_point(rest.begin(), rest.end(), [&](const OctomapPart& part) {
         return (part.place >> shift & 7U) == i;
       });
       const auto own = rest.first(static_cast<std::size_t>(end - rest.begin()));
@@ -217,7 +126,7 @@ class TreeBytes {
 }  // namespace
 
 std::string octomap_bytes(const BeliefGrid& grid) {
-  const PartList parts(grid);
+  const OctomapParts parts(grid, shift_to_world(grid).value_or(Index3{}));
   const TreeBytes tree(parts.parts());
   std::array<char, 32> resolution;
   const auto end =
@@ -229,6 +138,8 @@ std::string octomap_bytes(const BeliefGrid& grid) {
   file += tree.bytes();
   return file;
 }
+
+bool octomap_keeps_frame(const BeliefGrid& grid) { return shift_to_world(grid).has_value(); }
 
 void save_octomap(const BeliefGrid& grid, const std::filesystem::path& path) {
   write_file_atomically(path, octomap_bytes(grid));

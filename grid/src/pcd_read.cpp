@@ -166,7 +166,7 @@ void read_ascii(LineReader& line, const Header& header,
       line.fail("the file ends after " + std::to_string(points.size()) + " of " +
                 std::to_string(header.points) + " points");
     }
-    if (line.words().empty()) continue;
+    if (line.words().empty() || line.words()[0].front() == '#') continue;
     if (line.words().size() != header.point_words) {
       line.fail("a point has " + std::to_string(header.point_words) + " words, here are " +
                 std::to_string(line.words().size()));
@@ -257,6 +257,12 @@ void read_compressed(const LineReader& line, const Header& header,
   }
   if (unpacked > packed * kMostExpansion) fail_data(line, "the compressed data is damaged");
   expect_size(line, header.points, header.point_bytes, unpacked);
+  if (header.points * header.point_bytes != unpacked) {
+    // The fields would lie elsewhere than the header says.
+    fail_data(line, std::to_string(unpacked) + " bytes are said to be compressed, " +
+                        std::to_string(header.points) + " points of " +
+                        std::to_string(header.point_bytes) + " bytes are less");
+  }
   const std::string data = decompress(line, rest.substr(0, packed), unpacked);
   std::array<std::size_t, 3> begin{}, stride{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -270,6 +276,9 @@ void read_compressed(const LineReader& line, const Header& header,
 }  // namespace
 
 PointCloud parse_pcd(std::string_view bytes, const std::string& name) {
+  // What some editors put before a text.
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
   LineReader line(name, bytes);
   const Header header = read_header(line);
   PointCloud cloud;

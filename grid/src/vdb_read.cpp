@@ -8,13 +8,14 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
 #include <utility>
 
 #include "file_seal.hpp"
+#include "file_text.hpp"
+#include "solid_voxels.hpp"
 #include "vdb_layout.hpp"
 #include "vdb_outline.hpp"
 #include "viewgain/core/error.hpp"
@@ -54,14 +55,7 @@ class Loader {
   }
 
   [[nodiscard]] Contents read() const {
-    std::error_code code;
-    if (std::filesystem::is_directory(path_, code)) {
-      throw Error(ErrorCode::io, path_.string() + ": cannot be read: it is a directory");
-    }
-    std::ifstream file(path_, std::ios::binary);
-    if (!file) throw Error(ErrorCode::io, path_.string() + ": cannot be opened");
-    std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    if (file.bad()) throw Error(ErrorCode::io, path_.string() + ": cannot be read");
+    std::string bytes = read_bytes(path_);
     const std::string fault = fault_in_outline(bytes);
     if (!fault.empty()) fail(fault);
     if (check_seal(bytes) == SealCheck::broken) fail("is corrupt: its checksum does not fit");
@@ -204,28 +198,47 @@ class Loader {
       }
       if (any) s.put_block(to_index(leaf->origin()), codes.data());
     }
+    SolidVoxels solid(path_.string());
     auto tile = log_odds.cbeginValueOn();
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
-      const bool one_state =
-          states.getValueDepth(tile.getCoord()) <= static_cast<int>(tile.getDepth());
-      load_tile(tile.getBoundingBox(), *tile, one_state, state_at, s);
+      const Coord at = tile.getCoord();
+      // The states are a tile too, as large or larger, or a node of the tile's size.
+      const auto depth = static_cast<int>(tile.getDepth());
+      if (states.getValueDepth(at) > depth) {
+        using Upper = openvdb::Int32Tree::RootNodeType::ChildNodeType;
+        if (depth == 0) {
+          check_states(*state.probeConstNode<Upper>(at), *tile);
+        } else if (depth == 1) {
+          check_states(*state.probeConstNode<Upper::ChildNodeType>(at), *tile);
+        } else {
+          check_states(*state.probeConstLeaf(at), *tile);
+        }
+      }
+      load_tile(tile.getBoundingBox(), checked_code(at, *tile, state_at(at)), solid, s);
     }
   }
 
-  // A tile of one log-odds. Its states are a tile too, as large or larger, or are looked at one by
-  // one.
-  template <typename StateAt>
-  void load_tile(const CoordBBox& box, float log_odds, bool one_state, const StateAt& state_at,
-                 BeliefGrid::Storage& s) const {
-    const std::uint8_t code = checked_code(box.min(), log_odds, state_at(box.min()));
-    if (!one_state) {
-      for (auto at = box.begin(); at; ++at) (void)checked_code(*at, log_odds, state_at(*at));
+  // Looks at the states of a node in a tile of one log-odds, by the node's own tiles: one by one,
+  // the voxels of a few forged bytes would take hours.
+  template <typename Node>
+  void check_states(const Node& states, float log_odds) const {
+    for (auto it = states.cbeginValueAll(); it; ++it) {
+      if (!it.isValueOn()) fail("grids 'state' and 'log_odds' do not know the same voxels");
+      (void)checked_code(it.getCoord(), log_odds, *it);
     }
+    if constexpr (Node::LEVEL > 0) {
+      for (auto child = states.cbeginChildOn(); child; ++child) check_states(*child, log_odds);
+    }
+  }
+
+  void load_tile(const CoordBBox& box, std::uint8_t code, SolidVoxels& solid,
+                 BeliefGrid::Storage& s) const {
     if (may_be_tile(code)) {
       s.tree.sparseFill(box, code, is_non_free(code));
       return;
     }
+    solid.add(to_index(box.min()), to_index(box.max().offsetBy(1)));
     std::array<std::uint8_t, kBlockVoxels> codes;
     codes.fill(code);
     for (std::int32_t x = box.min().x(); x <= box.max().x(); x += kBlockSize) {

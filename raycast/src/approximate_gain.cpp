@@ -47,16 +47,17 @@ void check(const ApproximateConfig& config, std::size_t poses, std::size_t resul
 
 }  // namespace
 
-std::vector<std::uint32_t> GainEvaluator::Impl::random_tiles(std::size_t count,
-                                                             std::uint64_t seed) const {
+std::vector<std::vector<std::uint32_t>> GainEvaluator::Impl::random_tiles(
+    std::size_t groups, std::size_t per_group, std::uint64_t seed) const {
   const detail::TileTable& table = tracer.table();
   const auto columns =
       static_cast<std::size_t>((table.columns + detail::kTileEdge - 1) / detail::kTileEdge);
   const std::size_t rows = table.tile_count / columns;
-  count = std::min(count, table.tile_count);
+  const std::size_t count = std::min(groups * per_group, table.tile_count);
   std::vector<std::uint32_t> tiles;
   std::vector<std::uint8_t> taken(table.tile_count, 0);
-  double x = unit_number(mix64(seed)), y = unit_number(mix64(seed + 1));
+  const std::uint64_t start = mix64(seed);
+  double x = unit_number(mix64(start)), y = unit_number(mix64(start + 1));
   // The sequence comes by every tile sooner or later; the last few are taken as they stand.
   for (std::size_t i = 0; tiles.size() < count && i < 16 * table.tile_count; ++i) {
     const std::size_t tile =
@@ -70,7 +71,20 @@ std::vector<std::uint32_t> GainEvaluator::Impl::random_tiles(std::size_t count,
   for (std::uint32_t tile = 0; tiles.size() < count; ++tile) {
     if (taken[tile] == 0) tiles.push_back(tile);
   }
-  return tiles;
+  std::vector<std::vector<std::uint32_t>> dealt(groups);
+  // None is empty, if the view has so few tiles that one must be in several.
+  for (std::size_t i = 0; i < std::max(count, groups); ++i) {
+    dealt[i % groups].push_back(tiles[i % count]);
+  }
+  return dealt;
+}
+
+std::uint64_t GainEvaluator::Impl::rays_of(std::span<const std::uint32_t> tiles) const {
+  std::uint64_t rays = 0;
+  for (const std::uint32_t tile : tiles) {
+    rays += static_cast<std::uint64_t>(std::popcount(tracer.table().valid[tile]));
+  }
+  return rays;
 }
 
 void GainEvaluator::Impl::sample(const Pose& T_world_camera,
@@ -119,20 +133,15 @@ std::size_t GainEvaluator::approximate(std::span<const Pose> T_world_camera,
   const auto all = static_cast<double>(impl_->tracer.table().tile_count);
   const auto per_group = static_cast<std::size_t>(
       std::max(1.0, std::round(config.share * all / static_cast<double>(groups))));
-  std::vector<std::vector<std::uint32_t>> tiles;
-  for (std::size_t g = 0; g < groups; ++g) {
-    tiles.push_back(impl_->random_tiles(per_group, mix64(config.seed) + 2 * g));
-  }
+  const auto tiles = impl_->random_tiles(groups, per_group, config.seed);
   // A tile at the image's edge may hold fewer rays: groups are scaled by their rays.
   std::vector<double> scale;
   for (const auto& group : tiles) {
-    int rays = 0;
-    for (const std::uint32_t tile : group) rays += std::popcount(impl_->tracer.table().valid[tile]);
+    const auto rays = static_cast<double>(impl_->rays_of(group));
     scale.push_back(rays > 0 ? static_cast<double>(impl_->ray_count) / rays : 0.0);
   }
 
-  std::atomic<std::size_t> done{0};
-  impl_->for_each(results.size(), 4, control, [&](std::size_t i, Impl::Lease& lease) {
+  const auto score = [&](std::size_t i, Impl::Lease& lease) {
     std::vector<double> gains(groups);
     impl_->sample(T_world_camera[i], tiles, gains, lease);
     double sum = 0, squares = 0;
@@ -144,8 +153,8 @@ std::size_t GainEvaluator::approximate(std::span<const Pose> T_world_camera,
     const auto n = static_cast<double>(groups);
     const double mean = sum / n;
     results[i] = {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
-    done.fetch_add(1);
-  });
+  };
+  const std::size_t done = impl_->for_each_pose(results.size(), control, score);
   if (done < results.size()) return done;
 
   // What voxels lose to rays of other tiles, from poses spread evenly over the batch.
@@ -167,10 +176,8 @@ std::size_t GainEvaluator::approximate(std::span<const Pose> T_world_camera,
   const double ratio = median(ratios);
   for (double& r : ratios) r = std::abs(r - ratio);
   const double scatter = 1.4826 * median(ratios);
-  const double variance = scatter * scatter;
   for (ApproximateGain& r : results) {
-    r.standard_error = std::sqrt(ratio * ratio * r.standard_error * r.standard_error +
-                                 variance * (1 + 1 / n) * r.gain * r.gain);
+    r.standard_error = scatter * std::sqrt(1 + 1 / n) * r.gain;
     r.gain *= ratio;
   }
   return done;

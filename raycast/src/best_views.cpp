@@ -94,6 +94,7 @@ BestViews GainEvaluator::best(std::span<const Pose> T_world_camera, std::size_t 
   k = std::min(k, count);
   BestViews best;
   if (k == 0) return best;
+  if (control.progress) control.progress(0, count);
 
   // The bounds of each pose's rows of tiles, and of the whole pose; where a sample of the poses
   // says that bounding all would cost more than it saves, of none.

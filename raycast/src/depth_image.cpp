@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "ray_tile.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain {
@@ -20,8 +21,8 @@ DepthImage depth_image(const GainEvaluator& evaluator, const Pose& T_world_camer
     throw Error(ErrorCode::invalid_argument, text.str());
   }
   DepthImage image;
-  image.width = (camera.width + stride - 1) / stride;
-  image.height = (camera.height + stride - 1) / stride;
+  image.width = detail::strided(camera.width, stride);
+  image.height = detail::strided(camera.height, stride);
   image.depth.assign(hits.size(), std::numeric_limits<float>::infinity());
   image.labels.resize(hits.size());
   for (std::size_t i = 0; i < hits.size(); ++i) {

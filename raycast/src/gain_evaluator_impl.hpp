@@ -172,9 +172,13 @@ struct GainEvaluator::Impl {
   // NaN for a bad pose.
   void sample(const Pose& T_world_camera, std::span<const std::vector<std::uint32_t>> groups,
               std::span<double> gains, Lease& lease) const;
-  // The first `count` tiles of a random sequence that covers the image evenly from the start.
-  [[nodiscard]] std::vector<std::uint32_t> random_tiles(std::size_t count,
-                                                        std::uint64_t seed) const;
+  // The first tiles of a random sequence that covers the image evenly from the start, dealt out in
+  // turns, so that all groups together are spread more evenly than each.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> random_tiles(std::size_t groups,
+                                                                     std::size_t per_group,
+                                                                     std::uint64_t seed) const;
+  // Rays of a group.
+  [[nodiscard]] std::uint64_t rays_of(std::span<const std::uint32_t> tiles) const;
   // The gain of a pose after others have been chosen, by what their rays bring to each voxel.
   [[nodiscard]] ViewGain evaluate_after(
       const Pose& T_world_camera, const std::unordered_map<std::uint64_t, SymmetricMatrix3>& chosen,

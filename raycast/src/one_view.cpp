@@ -43,49 +43,32 @@ ViewGain GainEvaluator::Impl::evaluate_together(const Pose& T_world_camera) cons
                       });
     groups->is_traced[group].store(true, std::memory_order_release);
   };
-  // Number 0 sorts the boxes, adds up, and traces while the next group is not there yet; it waits
-  // only for groups that others are tracing. Lists of primitives are the same for all; those of
-  // cells grow as they are read, so each thread has its own.
-  const bool one_sort = data.scene_boxes->are_primitives();
-  std::atomic<detail::TileBins*> sorted{nullptr};
+  // Each thread sorts the boxes for itself, which takes less than reading another core's lists.
+  // Number 0 adds up, and traces while the next group is not there yet; it waits only for groups
+  // that others are tracing.
   std::atomic<bool> has_failed{false};  // out of memory: nobody waits for what will not come
   const auto work = [&](std::size_t number) {
+    if (number > 0 && groups->next.load(std::memory_order_relaxed) >= group_count) return;
+    Lease lease(*this);
+    auto& [accumulator, bins, bounding, view_hits] = lease.get();
+    tracer.prepare(*frame, bins);
     std::size_t group;
-    if (number == 0) {
-      Lease lease(*this);
-      auto& [accumulator, bins, bounding, view_hits] = lease.get();
-      tracer.prepare(*frame, bins);
-      sorted.store(&bins, std::memory_order_release);
-      accumulator.begin();
-      for (std::size_t added = 0; added < group_count && !has_failed;) {
-        if (groups->is_traced[added].load(std::memory_order_acquire)) {
-          if (groups->hits[added].count > 0) accumulator.add(groups->hits[added]);
-          ++added;
-        } else if ((group = groups->next.fetch_add(1)) < group_count) {
-          trace(group, bins);
-        } else {
-          std::this_thread::yield();
-        }
-      }
-      accumulator.finish(result);
-      // The others look at the bins no more: all groups have been handed out
-      // and traced.
+    if (number > 0) {
+      while ((group = groups->next.fetch_add(1)) < group_count) trace(group, bins);
       return;
     }
-    if (groups->next.load(std::memory_order_relaxed) >= group_count) return;
-    if (one_sort) {
-      detail::TileBins* bins;
-      while ((bins = sorted.load(std::memory_order_acquire)) == nullptr) {
-        if (has_failed) return;
+    accumulator.begin();
+    for (std::size_t added = 0; added < group_count && !has_failed;) {
+      if (groups->is_traced[added].load(std::memory_order_acquire)) {
+        if (groups->hits[added].count > 0) accumulator.add(groups->hits[added]);
+        ++added;
+      } else if ((group = groups->next.fetch_add(1)) < group_count) {
+        trace(group, bins);
+      } else {
         std::this_thread::yield();
       }
-      while ((group = groups->next.fetch_add(1)) < group_count) trace(group, *bins);
-      return;
     }
-    Lease lease(*this);
-    detail::TileBins& bins = lease.get().bins;
-    tracer.prepare(*frame, bins);
-    while ((group = groups->next.fetch_add(1)) < group_count) trace(group, bins);
+    accumulator.finish(result);
   };
   pool.for_each_chunk(static_cast<std::size_t>(pool.num_threads()), 1,
                       [&](std::size_t number, std::size_t) {

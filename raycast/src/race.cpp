@@ -4,21 +4,19 @@
 // The best views of a batch, very probably, by successive halving.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <string>
 
 #include "gain_evaluator_impl.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/mix64.hpp"
 
 namespace viewgain {
 namespace {
 
 constexpr std::size_t kGroups = 4;
 // Each round traces this many times the tiles of the one before, up to this share of all.
-constexpr double kGrowth = 4, kLastShare = 0.25;
+constexpr double kGrowth = 5, kLastShare = 0.25;
 // Fewer tiles a group say nothing.
 constexpr double kLeastTiles = 8;
 // So few poses are scored in full without ado.
@@ -52,6 +50,11 @@ BestViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t 
   k = std::min(k, count);
   BestViews best;
   if (k == 0) return best;
+  // Poses are done when they are out.
+  const auto report = [&](std::size_t done) {
+    if (control.progress) control.progress(done, count);
+  };
+  report(0);
   const std::size_t few = std::max(kFewPoses, 4 * k);
 
   std::vector<Estimate> field(count);
@@ -62,14 +65,9 @@ BestViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t 
     // Bundles are nested: each round's begin with those of the round before.
     const auto per_group = static_cast<std::size_t>(std::max(
         kLeastTiles, std::round(share * static_cast<double>(table.tile_count) / double{kGroups})));
-    std::array<std::vector<std::uint32_t>, kGroups> tiles;
+    const auto tiles = impl_->random_tiles(kGroups, per_group, config.seed);
     std::uint64_t rays = 0;
-    for (std::size_t g = 0; g < kGroups; ++g) {
-      tiles[g] = impl_->random_tiles(per_group, mix64(config.seed) + 2 * g);
-      for (const std::uint32_t tile : tiles[g]) {
-        rays += static_cast<std::uint64_t>(std::popcount(table.valid[tile]));
-      }
-    }
+    for (const auto& group : tiles) rays += impl_->rays_of(group);
     best.complete =
         impl_->for_each(field.size(), 4, control, [&](std::size_t j, Impl::Lease& lease) {
           std::array<double, kGroups> gains;
@@ -101,6 +99,7 @@ BestViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t 
     std::erase_if(field, [&](const Estimate& e) {
       return place++ >= few && e.gain + config.interval * e.standard_error < to_reach;
     });
+    report(count - field.size());
   }
 
   // Too few finite estimates for k poses: the others make up the number, NaN and all.
@@ -119,6 +118,7 @@ BestViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t 
     best.indices.push_back(best.scored_indices[j]);
     best.gains.push_back(best.scored_gains[j]);
   }
+  if (best.complete) report(count);
   return best;
 }
 

@@ -8,8 +8,7 @@
 namespace viewgain::detail {
 
 TileTable::TileTable(const PinholeCamera& camera, int pixel_stride)
-    : columns((camera.width + pixel_stride - 1) / pixel_stride),
-      rows((camera.height + pixel_stride - 1) / pixel_stride) {
+    : columns(strided(camera.width, pixel_stride)), rows(strided(camera.height, pixel_stride)) {
   const int tile_columns = (columns + kTileEdge - 1) / kTileEdge;
   const int tile_rows = (rows + kTileEdge - 1) / kTileEdge;
   tile_count = static_cast<std::size_t>(tile_columns) * static_cast<std::size_t>(tile_rows);

@@ -16,6 +16,9 @@ namespace viewgain::detail {
 inline constexpr int kTileEdge = 4;
 inline constexpr int kTileRays = kTileEdge * kTileEdge;
 
+/// Of so many pixels every stride-th, the first included.
+[[nodiscard]] inline int strided(int pixels, int stride) { return (pixels - 1) / stride + 1; }
+
 /// Above every primitive's number, also when compared as a signed one.
 inline constexpr std::uint32_t kNoPrimitive = 0x7FFFFFFFU;
 /// Below every primitive's number as a signed one, so that an obstacle wins a tie with a voxel.

@@ -20,7 +20,7 @@
 #define VIEWGAIN_TILE_BINS_ONCE
 namespace viewgain::detail {
 
-constexpr float kNowhere = -1e9F;  // the last column of a box behind the camera
+constexpr float kEverywhere = 1e9F;  // beyond every column and row
 
 // Where sixteen boxes lie in the image, in rays; empty if max < min.
 struct ImageBounds {
@@ -31,7 +31,8 @@ struct ImageBounds {
 
 struct ImageScale {
   float scale_x, shift_x, scale_y, shift_y;
-  float nearest;  // what is nearer than this along the optical axis no ray meets [voxels]
+  float nearest;   // along the optical axis [voxels]; what is nearer no ray meets
+  float touching;  // except in boxes that come so close to the axis [voxels]; negative: none
   float last_column, last_row;
 };
 
@@ -62,6 +63,8 @@ ImageBounds bounds_of(const BoxArrays& boxes, std::size_t first, const PoseFrame
   ImageBounds out;
   const auto& R = frame.rotation;
   const VF zero = hn::Zero(df), nearest = hn::Set(df, image.nearest);
+  const VF touching = hn::Set(df, image.touching), opposite = hn::Neg(touching);
+  const VF everywhere = hn::Set(df, kEverywhere), nowhere = hn::Neg(everywhere);
   for (std::size_t i = 0; i < kBoxVector; i += hn::Lanes(df)) {
     const std::size_t at = first + i;
     const VF dx = hn::Sub(hn::LoadU(df, &boxes.center_x[at]), hn::Set(df, frame.origin[0]));
@@ -85,18 +88,26 @@ ImageBounds bounds_of(const BoxArrays& boxes, std::size_t first, const PoseFrame
     // Of a box that reaches the camera's plane only the part before it counts.
     const auto behind = hn::Lt(z_high, nearest);
     const VF z_near = hn::Max(z_low, nearest);
-    hn::Store(z_near, df, out.near + i);
+    // Rays that count from the camera on may meet what touches it in any direction.
+    const auto beside = [&](VF low, VF high) HWY_ATTR {
+      return hn::And(hn::Le(low, touching), hn::Ge(high, opposite));
+    };
+    const auto touches = hn::And(hn::And(beside(x_low, x_high), beside(y_low, y_high)),
+                                 hn::And(hn::Le(z_low, nearest), hn::Ge(z_high, opposite)));
+    hn::Store(hn::IfThenElse(touches, zero, z_near), df, out.near + i);
     const VF one = hn::Set(df, 1.0F);
     const VF by_near = hn::Div(one, z_near);
     const VF by_far = hn::Div(one, hn::Max(z_high, nearest));
-    const VF margin = hn::Set(df, kRayMargin), nowhere = hn::Set(df, kNowhere);
+    const VF margin = hn::Set(df, kRayMargin);
     const auto project = [&](VF low, VF high, float scale, float shift, float* min_out,
                              float* max_out) HWY_ATTR {
       const VF least = hn::Mul(low, hn::IfThenElse(hn::Lt(low, zero), by_near, by_far));
       const VF most = hn::Mul(high, hn::IfThenElse(hn::Lt(high, zero), by_far, by_near));
       const VF s = hn::Set(df, scale), o = hn::Set(df, shift);
-      hn::Store(hn::Sub(hn::Add(hn::Mul(least, s), o), margin), df, min_out + i);
-      hn::Store(hn::IfThenElse(behind, nowhere, hn::Add(hn::Add(hn::Mul(most, s), o), margin)), df,
+      const VF min = hn::Sub(hn::Add(hn::Mul(least, s), o), margin);
+      const VF max = hn::Add(hn::Add(hn::Mul(most, s), o), margin);
+      hn::Store(hn::IfThenElse(touches, nowhere, min), df, min_out + i);
+      hn::Store(hn::IfThenElse(touches, everywhere, hn::IfThenElse(behind, nowhere, max)), df,
                 max_out + i);
     };
     project(x_low, x_high, image.scale_x, image.shift_x, out.min_column, out.max_column);
@@ -168,15 +179,9 @@ bool tile_range(float min, float max, float last, Integer& first_tile, Integer& 
 template <typename Integer>
 bool outline(const ImageBounds& bounds, std::size_t i, const ImageScale& image, Integer& column0,
              Integer& column1, Integer& row0, Integer& row1) {
-  float min_column = bounds.min_column[i], max_column = bounds.max_column[i];
-  float min_row = bounds.min_row[i], max_row = bounds.max_row[i];
-  // Rays that count from the camera on can meet what is round it in any direction.
-  if (image.nearest == kLeastDepth && bounds.near[i] == kLeastDepth && max_column > kNowhere) {
-    min_column = min_row = 0;
-    max_column = image.last_column, max_row = image.last_row;
-  }
-  return tile_range(min_column, max_column, image.last_column, column0, column1) &&
-         tile_range(min_row, max_row, image.last_row, row0, row1);
+  return tile_range(bounds.min_column[i], bounds.max_column[i], image.last_column, column0,
+                    column1) &&
+         tile_range(bounds.min_row[i], bounds.max_row[i], image.last_row, row0, row1);
 }
 
 // Rounding moves a distance by less.
@@ -201,13 +206,16 @@ TileBinner::TileBinner(const PinholeCamera& camera, int pixel_stride, const Tile
     const float* z = table.directions.data() + tile * 3 * kTileRays + 2 * kTileRays;
     least_cosine_ = std::min(least_cosine_, *std::min_element(z, z + kTileRays));
   }
+  widest_slope_ = std::max({shift_x_, last_column_ - shift_x_, 1.0F}) / scale_x_ +
+                  std::max({shift_y_, last_row_ - shift_y_, 1.0F}) / scale_y_;
 }
 
 ImageScale TileBinner::image_of(const PoseFrame& frame) const {
   // A ray that has gone min_range is at least this far along the axis.
   const float nearest = 0.999F * frame.min_range * least_cosine_;
-  return {scale_x_,     shift_x_, scale_y_, shift_y_, std::max(nearest, kLeastDepth),
-          last_column_, last_row_};
+  const float touching = nearest < kLeastDepth ? 1.01F * kLeastDepth * widest_slope_ : -kEverywhere;
+  return {scale_x_, shift_x_,     scale_y_, shift_y_, std::max(nearest, kLeastDepth),
+          touching, last_column_, last_row_};
 }
 
 void TileBinner::sort(Isa isa, const SceneBoxes& scene, const PoseFrame& frame,

@@ -90,6 +90,7 @@ class TileBinner {
   float scale_y_ = 0, shift_y_ = 0;
   float last_column_ = 0, last_row_ = 0;
   float least_cosine_ = 1;  // of a ray with the optical axis
+  float widest_slope_ = 0;  // of a ray to the optical axis, or more
   std::size_t tile_columns_ = 0, tile_count_ = 0;
 };
 

@@ -53,6 +53,7 @@ ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_
   k = std::min(k, count);
   ViewSet set;
   if (k == 0) return set;
+  if (control.progress) control.progress(0, k);
   const bool lazy = impl_->settings.criterion == Criterion::log_determinant;
 
   Overlay chosen;

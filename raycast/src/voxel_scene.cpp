@@ -8,6 +8,7 @@
 #include "scene_data.hpp"
 #include "scene_primitives.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/thread_pool.hpp"
 #include "voxel_bvh.hpp"
 
 namespace viewgain {
@@ -71,13 +72,13 @@ std::shared_ptr<const VoxelScene> VoxelScene::make(GridSnapshot snapshot,
                                                    const Obstacles& obstacles,
                                                    const ExecConfig& exec, const Data* before) {
   auto data = std::make_unique<Data>();
+  data->build_threads = thread_count(exec.num_threads);
   data->snapshot = std::move(snapshot);
   detail::gather_primitives(*data, before);
   data->scene_boxes.emplace(*data);
   data->kernels = &detail::trace_kernels(detail::packet_isa());
   data->obstacles = obstacles;
   data->has_obstacles = !obstacles.boxes.empty() || !obstacles.meshes.empty();
-  data->build_threads = exec.num_threads;
   if (data->has_obstacles) data->ensure_bvh();
   return std::shared_ptr<const VoxelScene>(new VoxelScene(std::move(data)));
 }

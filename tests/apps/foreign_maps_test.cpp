@@ -3,14 +3,22 @@
 
 // OctoMap trees and point clouds on the command line.
 
+#include <sys/wait.h>
+
+#include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "program_runner.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
 namespace {
@@ -87,12 +95,128 @@ TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
   const json from_map = run_json({"score", "small.vdb", "--sphere", "20,0.6", "--sensor",
                                   "small.toml", "--prior-sigma", "0.03"});
   EXPECT_EQ(from_tree.at("best"), from_map.at("best"));
+  const json known = run_json({"convert", "tree.ot", "known.vdb", "--sensor", "small.toml"});
+  EXPECT_EQ(known.at("prior_sigma"), map.at("prior_sigma"));
+  expect_refused({"convert", "map.vdb", "x.ot", "--sensor", "small.toml"}, "--sensor");
+  // A prior that is surer than a reading is pointed out.
+  Strings score{"score", "known.vdb", "--sphere", "20,0.6", "--sensor", "small.toml"};
+  EXPECT_EQ(run(score).err.find("warning"), std::string::npos);
+  score.insert(score.end(), {"--prior-sigma", "0.0001"});
+  EXPECT_NE(run(score).err.find("warning: the prior sigma, 0.0001 m"), std::string::npos);
   // A tree is continued; frames straight into a tree.
   const json continued = run_json({"integrate", "frames", "--map", "tree.ot", "--out", "again.ot"});
   EXPECT_EQ(continued.at("prior_sigma"), map.at("prior_sigma"));
   EXPECT_EQ(run_json({"info", "again.ot"}).at("free"), continued.at("free"));
   EXPECT_NE(run_well({"convert", "map.vdb", "tree.ot"}).find("not in a tree: the beliefs of"),
             std::string::npos);
+}
+
+TEST_F(ForeignMaps, TheFrameMovesTheTreeOrIsLostWithAWarning) {
+  const auto save = [&](const char* name, const Eigen::Vector3d& origin) {
+    BeliefGrid grid({0.1, {{0, 0, 0}, {1, 1, 1}}, Pose(Eigen::Matrix3d::Identity(), origin), 0.05});
+    grid.set({3, 4, 5}, 1.0F);
+    save_vdb(grid, dir / name);
+  };
+  save("whole.vdb", {1.3, -0.7, 20});
+  save("odd.vdb", {1.35, 0, 0});
+  const json whole = run_json({"convert", "whole.vdb", "whole.ot"});
+  EXPECT_EQ(whole.at("lost_T_world_grid"), false);
+  const json corner = run_json({"info", "whole.ot"}).at("workspace");
+  const double expected[]{1.6, -0.3, 20.5};
+  for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(corner.at(a).get<double>(), expected[a], 1e-9);
+
+  const auto warned = [&](Strings arguments) {
+    arguments.push_back("--json");
+    const auto result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("warning: odd.ot"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("T_world_grid"), std::string::npos) << result.err;
+    EXPECT_EQ(json::parse(result.out).at("lost_T_world_grid"), true);
+  };
+  warned({"convert", "odd.vdb", "odd.ot"});
+  EXPECT_EQ(run_json({"info", "odd.ot"}).at("occupied"), 1);
+  write("a.pcd", pcd(0));
+  const Strings more{"integrate", "--cloud",  "a.pcd",      "--origin",
+                     "0,0,0",     "--sensor", "small.toml", "--map"};
+  const auto continued = [&](const char* map, const char* out) {
+    Strings arguments = more;
+    arguments.insert(arguments.end(), {map, "--out", out});
+    return arguments;
+  };
+  warned(continued("odd.vdb", "odd.ot"));
+  EXPECT_EQ(run_json(continued("whole.vdb", "more.ot")).at("lost_T_world_grid"), false);
+  EXPECT_EQ(run_json(continued("odd.vdb", "more.vdb")).at("lost_T_world_grid"), false);
+}
+
+TEST_F(ForeignMaps, EndingsAreLargeOrSmallAndOthersRefused) {
+  BeliefGrid grid({0.1, {{0, 0, 0}, {1, 1, 1}}, {}, 0.05});
+  grid.set({3, 4, 5}, 1.0F);
+  save_vdb(grid, dir / "a.vdb");
+  for (const char* name : {"a.OT", "b.Ot", "c.ot"}) {
+    run_well({"convert", "a.vdb", name});
+    EXPECT_TRUE(read(name).starts_with("# Octomap OcTree file")) << name;
+    EXPECT_EQ(run_json({"info", name}).at("occupied"), 1) << name;
+  }
+  run_well({"convert", "a.OT", "b.VDB"});
+  EXPECT_EQ(run_json({"info", "b.VDB"}).at("occupied"), 1);
+  expect_refused({"convert", "a.vdb", "a.BT"}, "not written");
+  for (const char* name : {"a.txt", "a", "a.vdb2", ".vdb", "a.vdb.gz"}) {
+    expect_refused({"convert", "a.vdb", name}, "must end in .vdb or .ot");
+  }
+  write("a.pcd", pcd(0));
+  expect_refused({"integrate", "--cloud", "a.pcd", "--origin", "0,0,0", "--sensor", "small.toml",
+                  "--voxel", "0.1", "--out", "map.txt"},
+                 "must end in .vdb or .ot");
+  EXPECT_EQ(cases_, 7);
+  // What is no file of its own has no ending.
+  EXPECT_EQ(run({"convert", "a.vdb", "/dev/null"}).exit_code, 0);
+}
+
+// A read that fails is bad input, no internal error.
+TEST_F(ForeignMaps, FilesThatCannotBeReadAreBadInput) {
+  for (const char* name : {"mem.vdb", "mem.ot"}) {
+    std::filesystem::create_symlink("/proc/self/mem", dir / name);
+    expect_refused({"info", name}, name);
+  }
+  std::filesystem::create_symlink("/proc/self/mem", dir / "mem.toml");
+  write("a.pcd", pcd(0));
+  expect_refused({"integrate", "--cloud", "a.pcd", "--origin", "0,0,0", "--sensor", "mem.toml",
+                  "--voxel", "0.1", "--out", "map.vdb"},
+                 "mem.toml");
+  EXPECT_EQ(cases_, 3);
+}
+
+// 2^24 occupied voxels in a file of a hundred bytes: as .vdb they take long enough to be met.
+TEST_F(ForeignMaps, AnEndedProgramLeavesNoTemporaryFile) {
+  std::string nodes;
+  for (int depth = 0; depth <= 8; ++depth) {
+    const float log_odds = 1;
+    nodes += std::string(reinterpret_cast<const char*>(&log_odds), sizeof log_odds) +
+             std::string(1, depth < 8 ? '\1' : '\0');
+  }
+  write("solid.ot", "# Octomap OcTree file\nid OcTree\nsize 9\nres 0.1\ndata\n" + nodes);
+  const Strings before = list();
+  int cases = 0;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const pid_t child = start({"convert", "solid.ot", "solid.vdb"});
+    // The second temporary file, the first being there only to see whether it can be written.
+    const auto writing = [&] {
+      for (const std::string& name : list()) {
+        if (name.starts_with(".solid.tmp-") && name.ends_with("-1.vdb")) return true;
+      }
+      return false;
+    };
+    int status = 0;
+    while (!writing() && ::waitpid(child, &status, WNOHANG) == 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ASSERT_EQ(::kill(child, signal), 0);
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
+    EXPECT_EQ(list(), before);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
 }
 
 TEST_F(ForeignMaps, CloudsAreIntegrated) {

@@ -32,7 +32,7 @@ ProgramTest::ProgramTest() {
 
 ProgramTest::~ProgramTest() { fs::remove_all(dir.parent_path()); }
 
-ProgramResult ProgramTest::run(const std::vector<std::string>& arguments) const {
+pid_t ProgramTest::start(const std::vector<std::string>& arguments) const {
   const fs::path out = dir.parent_path() / "stdout", err = dir.parent_path() / "stderr";
   std::vector<char*> argv{const_cast<char*>("viewgain")};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -49,6 +49,12 @@ ProgramResult ProgramTest::run(const std::vector<std::string>& arguments) const 
     }
     ::_exit(127);
   }
+  return child;
+}
+
+ProgramResult ProgramTest::run(const std::vector<std::string>& arguments) const {
+  const fs::path out = dir.parent_path() / "stdout", err = dir.parent_path() / "stderr";
+  const pid_t child = start(arguments);
   ProgramResult result;
   int status = 0;
   EXPECT_EQ(::waitpid(child, &status, 0), child);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <sys/types.h>
 
 #include <filesystem>
 #include <string>
@@ -25,6 +26,9 @@ class ProgramTest : public testing::Test {
 
   /// Runs viewgain with these arguments, the test's folder as working directory.
   [[nodiscard]] ProgramResult run(const std::vector<std::string>& arguments) const;
+
+  /// Starts viewgain as run() does and does not wait for it; returns the process's number.
+  [[nodiscard]] pid_t start(const std::vector<std::string>& arguments) const;
 
   /// As run(), and fails the test unless the exit code is 0 and stderr empty. Returns stdout.
   std::string run_well(const std::vector<std::string>& arguments) const;

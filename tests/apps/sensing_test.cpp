@@ -3,6 +3,7 @@
 
 // What disturbs the simulated time-of-flight camera, and what integrate does about it.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>

@@ -251,11 +251,24 @@ static void of_evaluators(const vg_scene* scene) {
   CHECK_FAILS(vg_evaluator_create(scene, &sensor, &config, &evaluator), VG_INVALID_ARGUMENT,
               "prior sigma is 0");
   CHECK(evaluator == NULL);
+  config.prior_sigma = 0.1;
+  config.pixel_stride = INT32_MAX; /* leaves one pixel, or is refused */
+  vg_evaluator_info_init(&info, sizeof info);
+  if (vg_evaluator_create(scene, &sensor, &config, &evaluator) == VG_OK) {
+    CHECK_OK(vg_evaluator_get_info(evaluator, &info));
+    CHECK(info.image_width == 1 && info.image_height == 1);
+    vg_evaluator_release(evaluator);
+  } else {
+    CHECK(strstr(vg_last_error(), "2147483647") != NULL);
+  }
   CHECK_OK(vg_evaluator_create(scene, &sensor, NULL, &evaluator));
 
   CHECK_FAILS(vg_evaluate(NULL, pose, 1, &gain, NULL), VG_INVALID_ARGUMENT, "evaluator is null");
   CHECK_FAILS(vg_evaluate(evaluator, NULL, 1, &gain, NULL), VG_INVALID_ARGUMENT, "poses is null");
   CHECK_FAILS(vg_evaluate(evaluator, pose, 1, NULL, NULL), VG_INVALID_ARGUMENT, "gains is null");
+  CHECK_FAILS(vg_evaluate(evaluator, pose, SIZE_MAX / 4, &gain, NULL), VG_OUT_OF_MEMORY, "count");
+  CHECK_FAILS(vg_best(evaluator, pose, SIZE_MAX / 4, 1, &index, NULL, &found, NULL),
+              VG_OUT_OF_MEMORY, "count");
   vg_watch_init(&watch, sizeof watch);
   CHECK_FAILS(vg_evaluate(evaluator, pose, 1, &gain, &watch), VG_INVALID_ARGUMENT, "poll");
   watch.struct_size = 1;

@@ -163,7 +163,8 @@ static void choices(const vg_evaluator* evaluator) {
   left = 10;
   CHECK_FAILS(vg_evaluate(evaluator, poses, POSES, again, &watch), VG_STOPPED, "of 60 poses");
   for (found = 0, i = 0; i < POSES; ++i) found += isnan(again[i]) ? 0 : 1;
-  CHECK(found == 9); /* ten poses, one of them bad */
+  /* Ten poses; the bad one is among them unless the thread that took it asked last. */
+  CHECK(found == 9 || found == 10);
   left = 10;
   CHECK_FAILS(vg_best(evaluator, poses, POSES, 1, indices, NULL, &found, &watch), VG_STOPPED,
               "stopped by poll");

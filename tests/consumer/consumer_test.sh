@@ -3,7 +3,7 @@
 #   consumer_test.sh KIND SOURCE_FOLDER BUILD_FOLDER WORK_FOLDER EXPECTED_GAIN_PROGRAM
 # KIND: install, install_static (these two first: the others use what they leave in WORK_FOLDER);
 # find_package, native, moved, static, static_native, pkg_config, add_subdirectory, headers, python,
-# wrong_version, no_component.
+# octomap, absolute_folders, versions, missing_dependency, wrong_version, no_component.
 set -euo pipefail
 kind=$1 source=$2 build=$3 work=$4 expected=$5
 here=$source/tests/consumer
@@ -97,7 +97,9 @@ case $kind in
     folder=$work/$kind
     rm -rf "$folder"
     cmake -S "$here/add_subdirectory" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-      "-DVIEWGAIN_SOURCE=$source" "-DCMAKE_CXX_COMPILER_LAUNCHER=$here/reuse_objects.sh" >/dev/null
+      "-DVIEWGAIN_SOURCE=$source" -DVIEWGAIN_INSTALL=ON \
+      "-DCMAKE_CXX_COMPILER_LAUNCHER=$here/reuse_objects.sh" >/dev/null
+    [ ! -e "$folder/CPackConfig.cmake" ] || fail "viewgain says how its user's project is packed"
     quiet_build "$folder"
     grep -q '^reuse_objects.sh: no' "$folder/build.log" && fail "compiled anew"
     check_gain "$folder/gain"
@@ -131,6 +133,115 @@ case $kind in
       ! readelf -d "$extension" | grep -E 'NEEDED.*(gmp|mpfr|CGAL|viewgain_mesh)' ||
         fail "$extension is linked to CGAL's libraries"
     done
+    ;;
+  octomap)
+    # Where OctoMap lay when viewgain was built is not where it lies for others.
+    targets=$(find "$work/prefix" -name viewgain-octomapTargets.cmake)
+    ! grep -nE 'liboctomap|liboctomath|octomath/|"[^"]*/usr/include' "$targets" || fail "$targets holds paths of this machine"
+    folder=$work/$kind
+    rm -rf "$folder" && mkdir "$folder"
+    cat >"$folder/CMakeLists.txt" <<'PROJECT'
+cmake_minimum_required(VERSION 3.22)
+project(consumer LANGUAGES CXX)
+find_package(viewgain 0.1 REQUIRED COMPONENTS octomap)
+get_target_property(links viewgain::octomap INTERFACE_LINK_LIBRARIES)
+foreach(library IN LISTS OCTOMAP_LIBRARIES)
+  if(NOT library IN_LIST links)
+    message(FATAL_ERROR "viewgain::octomap does not link ${library}, but ${links}")
+  endif()
+endforeach()
+add_executable(tree tree.cpp)
+target_link_libraries(tree PRIVATE viewgain::octomap)
+PROJECT
+    cat >"$folder/tree.cpp" <<'PROGRAM'
+#include <cstdio>
+#include <viewgain/grid/octomap_tree.hpp>
+int main() {
+  viewgain::BeliefGrid grid({0.1, {{0, 0, 0}, {1, 1, 1}}, {}, 0.05});
+  grid.set({1, 2, 3}, 1.0F);
+  std::printf("%zu\n", viewgain::octree_from_grid(grid)->getNumLeafNodes());
+}
+PROGRAM
+    cmake -S "$folder" -B "$folder/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+      "-DCMAKE_PREFIX_PATH=$work/prefix" >/dev/null
+    quiet_build "$folder/build"
+    [ "$("$folder/build/tree")" = 1 ] || fail "the tree has another count of leaves"
+    ;;
+  versions)
+    # Each request says whether this 0.1 answers it.
+    folder=$work/$kind
+    rm -rf "$folder" && mkdir "$folder"
+    cat >"$folder/CMakeLists.txt" <<'PROJECT'
+cmake_minimum_required(VERSION 3.22)
+project(consumer LANGUAGES CXX)
+set(cases 0)
+foreach(case IN ITEMS "0.1;yes" "0.1.0;yes" "0.1...0.5;yes" "0.0...0.1;yes" "0.1...0.1;yes" "0.1...<0.2;yes"
+        "0...1;yes" "0.1.0...0.1.0;yes" "0.0;no" "0.2;no" "0.1.99;no" "1.0;no" "0.2...0.5;no"
+        "0.0...<0.1;no" "0.0...0.0.9;no" "0.1.99...0.5;no" "9...10;no")
+  list(GET case 0 version)
+  list(GET case 1 expected)
+  set(viewgain_DIR viewgain_DIR-NOTFOUND CACHE PATH "" FORCE)
+  find_package(viewgain ${version} QUIET)
+  set(answer no)
+  if(viewgain_FOUND)
+    set(answer yes)
+  endif()
+  if(NOT answer STREQUAL expected)
+    message(FATAL_ERROR "viewgain ${version}: ${answer}, expected ${expected}")
+  endif()
+  math(EXPR cases "${cases} + 1")
+endforeach()
+find_package(viewgain 0.1.0 EXACT REQUIRED)
+message(STATUS "${cases} requests")
+PROJECT
+    cmake -S "$folder" -B "$folder/build" "-DCMAKE_PREFIX_PATH=$work/prefix" >"$folder/log" 2>&1 ||
+      { cat "$folder/log" >&2; fail "find_package answered otherwise"; }
+    grep -q '17 requests' "$folder/log" || fail "not all requests were made"
+    ;;
+  missing_dependency)
+    cases=0
+    check_request() { # REQUEST EXPECTED [cmake arguments]
+      local folder=$work/$kind
+      rm -rf "$folder" && mkdir "$folder"
+      # CMake's variables.
+      # shellcheck disable=SC2016
+      printf 'cmake_minimum_required(VERSION 3.22)\nproject(consumer LANGUAGES CXX)\nfind_package(%s)\n%s\n' "$1" \
+        'message(STATUS "answer:${viewgain_FOUND}:${viewgain_octomap_FOUND}:${viewgain_mesh_FOUND}:${viewgain_NOT_FOUND_MESSAGE}")' \
+        >"$folder/CMakeLists.txt"
+      cmake -S "$folder" -B "$folder/build" "${@:3}" >"$folder/log" 2>&1 || true
+      tr -s ' \n' ' ' <"$folder/log" | grep -qE "$2" ||
+        { cat "$folder/log" >&2; fail "find_package($1): not $2"; }
+      cases=$((cases + 1))
+    }
+    shared=-DCMAKE_PREFIX_PATH=$work/prefix static=-DCMAKE_PREFIX_PATH=$work/static_prefix
+    no_octomap=-DCMAKE_DISABLE_FIND_PACKAGE_octomap=ON no_cgal=-DCMAKE_DISABLE_FIND_PACKAGE_CGAL=ON
+    optional='OPTIONAL_COMPONENTS octomap mesh hovercraft'
+    check_request "viewgain REQUIRED $optional" 'answer:(1|TRUE):TRUE:TRUE: ' "$shared"
+    check_request "viewgain REQUIRED $optional" 'answer:(1|TRUE):FALSE:TRUE: ' "$shared" "$no_octomap"
+    check_request "viewgain $optional" 'answer:(1|TRUE):FALSE:TRUE: ' "$shared" "$no_octomap"
+    check_request "viewgain REQUIRED $optional" 'answer:(1|TRUE):TRUE:FALSE: ' "$static" "$no_cgal"
+    check_request "viewgain COMPONENTS octomap OPTIONAL_COMPONENTS mesh" \
+      'answer:(0|FALSE):FALSE:TRUE:[^:]*octomap could not be found' "$shared" "$no_octomap"
+    check_request "viewgain COMPONENTS hovercraft OPTIONAL_COMPONENTS octomap" \
+      'answer:(0|FALSE):FALSE::[^:]*without the component hovercraft' "$shared" "$no_octomap"
+    check_request "viewgain REQUIRED COMPONENTS octomap" 'CMake Error.*octomap' "$shared" "$no_octomap"
+    check_request "viewgain OPTIONAL_COMPONENTS octomap" 'answer:(0|FALSE):.*Eigen3 could not be found' \
+      "$shared" -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON
+    [ "$cases" = 8 ] || fail "$cases cases"
+    ;;
+  absolute_folders)
+    # Distributions give folders as absolute paths.
+    folder=$work/$kind
+    rm -rf "$folder" && mkdir "$folder"
+    cmake -S "$source" -B "$folder/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+      -DVIEWGAIN_BUILD_APPS=OFF -DVIEWGAIN_BUILD_TESTS=OFF -DVIEWGAIN_BUILD_PERF=OFF \
+      -DVIEWGAIN_BUILD_PYTHON=OFF -DVIEWGAIN_BUILD_MESH=OFF "-DCMAKE_INSTALL_PREFIX=$folder/usr" \
+      "-DCMAKE_INSTALL_LIBDIR=$folder/lib" "-DCMAKE_INSTALL_INCLUDEDIR=$folder/usr/inc" >/dev/null
+    export PKG_CONFIG_PATH=$folder/build
+    [ "$(pkg-config --variable=libdir viewgain)" = "$folder/lib" ] || fail "$(pkg-config --variable=libdir viewgain)"
+    [ "$(pkg-config --variable=includedir viewgain)" = "$folder/usr/inc" ] ||
+      fail "$(pkg-config --variable=includedir viewgain)"
+    [ "$(pkg-config --variable=prefix viewgain)" = "$folder/usr" ] || fail "$(pkg-config --variable=prefix viewgain)"
     ;;
   wrong_version | no_component)
     folder=$work/$kind

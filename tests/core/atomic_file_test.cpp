@@ -3,8 +3,12 @@
 #include "viewgain/core/atomic_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -54,6 +58,45 @@ TEST(AtomicFile, WithoutCommitNothingChanges) {
   } catch (const std::runtime_error&) {
   }
   EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(AtomicFile, TemporaryFilesOfAProgramThatIsEndedAreRemoved) {
+  const TemporaryFolder folder;
+  const fs::path done = folder.path() / "done.csv";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(SIGTERM, [](int) {
+      remove_temporary_files();
+      ::_exit(7);
+    });
+    AtomicFile first(folder.path() / "map.vdb"), second(folder.path() / "scores.csv"), third(done);
+    {
+      const AtomicFile gone(folder.path() / "gone.csv");
+    }
+    first.write("half a");
+    third.commit();
+    std::raise(SIGTERM);
+    ::_exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7);
+  EXPECT_TRUE(fs::exists(done));
+  EXPECT_EQ(folder.entries(), 1);
+
+  // More than are listed, and some that were removed already: nothing goes wrong.
+  std::vector<std::unique_ptr<AtomicFile>> many;
+  for (int i = 0; i < 70; ++i) {
+    many.push_back(std::make_unique<AtomicFile>(folder.path() / std::to_string(i)));
+  }
+  EXPECT_EQ(folder.entries(), 71);
+  remove_temporary_files();
+  EXPECT_EQ(folder.entries(), 7);
+  AtomicFile later(folder.path() / "later");
+  many.clear();
+  EXPECT_EQ(folder.entries(), 2);
+  later.commit();
+  EXPECT_TRUE(fs::exists(folder.path() / "later"));
 }
 
 TEST(AtomicFile, AnotherWriterMayWriteByName) {

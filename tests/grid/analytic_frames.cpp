@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analytic_frames.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>

@@ -16,6 +16,8 @@
 
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
+#include "viewgain/grid/octomap_io.hpp"
+#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
 namespace {
@@ -206,7 +208,13 @@ TEST_F(CloudFiles, EveryFormatIsReadExactly) {
   expect_points("crlf.pcd", crlf);
   expect_points("organised.pcd",
                 with(with(pcd_binary(), "WIDTH 50", "WIDTH 10"), "HEIGHT 1", "HEIGHT 5"));
-  EXPECT_EQ(cases_, 8);
+  // A byte order mark; comments among the points.
+  for (const std::string& file : {pcd_ascii(), pcd_binary(), pcd_compressed()}) {
+    expect_points("marked.pcd", "\xEF\xBB\xBF" + file);
+  }
+  expect_points("comments.pcd", with(with(pcd_ascii(), "DATA ascii\n", "DATA ascii\n# one\n"),
+                                     "\n12 ", "\n  #two of them\n12 "));
+  EXPECT_EQ(cases_, 12);
   const PointCloud small = load_cloud(folder_.file(
       "small.pcd",
       "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n1 2 3\n\nnan 0 +4\n"));
@@ -307,14 +315,19 @@ TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
   const auto in = static_cast<std::uint32_t>(packed.size() - at - 8);
   expect_refused("bad.pcd", "compressed data", lengths(in + 1, 1500));
   expect_refused("bad.pcd", "damaged", lengths(in - 1, 1500));
-  expect_refused("bad.pcd", "damaged", lengths(in, 1501));
+  expect_refused("bad.pcd", "1501 bytes are said", lengths(in, 1501));
   expect_refused("bad.pcd", "are there", lengths(in, 1499));
   expect_refused("bad.pcd", "damaged", lengths(in, 4294967295U));
   expect_refused("bad.pcd", "compressed data", lengths(4294967295U, 4294967295U));
+  // More than the header's points, in the file too: the fields would be taken from wrong places.
+  const std::string longer = compressed(std::string(1530, 'x'));
+  expect_refused("bad.pcd", "1530 bytes are said to be compressed",
+                 packed.substr(0, at) + raw(static_cast<std::uint32_t>(longer.size())) +
+                     raw<std::uint32_t>(1530) + longer);
   std::string back = packed;
   back[at + 8] = '\x3f';  // a reference to before the beginning
   expect_refused("bad.pcd", "damaged", back);
-  EXPECT_EQ(cases_, 40);
+  EXPECT_EQ(cases_, 41);
 }
 
 TEST_F(CloudFiles, ForgedPlyHeadersAreNamedByLine) {
@@ -382,6 +395,20 @@ TEST_F(CloudFiles, FlippedBytesNeverCrash) {
 TEST_F(CloudFiles, FilesThatCannotBeReadAreNamed) {
   expect_error(ErrorCode::io, "none.pcd", [&] { (void)load_cloud(folder_.path() / "none.pcd"); });
   expect_error(ErrorCode::format, ".pcd or .ply", [&] { (void)load_cloud("cloud.xyz"); });
+  // A file of which nothing can be read.
+  for (const char* name : {"mem.pcd", "mem.ply", "mem.ot", "mem.vdb"}) {
+    const auto path = folder_.path() / name;
+    std::filesystem::create_symlink("/proc/self/mem", path);
+    expect_error(ErrorCode::io, name, [&] {
+      if (path.extension() == ".vdb") {
+        (void)load_vdb(path);
+      } else if (path.extension() == ".ot") {
+        (void)load_octomap(path);
+      } else {
+        (void)load_cloud(path);
+      }
+    });
+  }
 }
 
 }  // namespace

@@ -117,11 +117,13 @@ TEST_F(DamagedOctomap, ForgedTrees) {
   expect_refused("16 levels", tree_bytes("binary file", 18, deep_binary));
   expect_refused("not finite", tree_bytes("file", 1, node(std::nanf(""), 0)));
   expect_refused("not finite", tree_bytes("file", 1, node(HUGE_VALF, 0)));
-  // One leaf for all of a tree's space, and one of 8192³ occupied voxels.
+  // One leaf for all of a tree's space, and ones of 8192³ and 1024³ occupied voxels.
   expect_refused("voxels", tree_bytes("file", 1, node(-1, 0)), ErrorCode::capacity);
-  std::string solid;
+  std::string solid, small;
   for (int i = 0; i < 3; ++i) solid += node(1, 1);
-  expect_refused("2^30", tree_bytes("file", 4, solid + node(1, 0)), ErrorCode::capacity);
+  for (int i = 0; i < 6; ++i) small += node(1, 1);
+  expect_refused("2^27", tree_bytes("file", 4, solid + node(1, 0)), ErrorCode::capacity);
+  expect_refused("2^27", tree_bytes("file", 7, small + node(1, 0)), ErrorCode::capacity);
   // Free, the same cube is nothing special.
   const BeliefGrid grid =
       load_octomap(folder_.file("free.ot", tree_bytes("file", 4, solid + node(-1, 0))));
@@ -136,7 +138,7 @@ TEST_F(DamagedOctomap, ForgedTrees) {
           .statistics()
           .occupied,
       18U * 18 * 18);
-  EXPECT_EQ(cases_, 6);
+  EXPECT_EQ(cases_, 7);
 }
 
 TEST_F(DamagedOctomap, FlippedBitsNeverCrash) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <octomap/ColorOcTree.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -255,6 +256,76 @@ TEST(Octomap, OctomapReadsWhatIsWritten) {
   octomap::OcTree updated(tree);
   updated.updateInnerOccupancy();
   EXPECT_TRUE(updated == tree);
+}
+
+/// Random blobs over large free and unknown parts, the same in every frame.
+BeliefGrid blobs(Index3 low, const Pose& T_world_grid) {
+  const double V = 0.1;
+  const auto corner = [&](Index3 v) { return std::array<double, 3>{v.x * V, v.y * V, v.z * V}; };
+  const Index3 high{low.x + 301, low.y + 170, low.z + 155};
+  BeliefGrid grid({V, {corner(low), corner(high)}, T_world_grid, 0.05});
+  std::vector<std::uint8_t> states(grid.voxel_count(), 1);
+  const auto at = [](int x, int y, int z) {
+    return (static_cast<std::size_t>(x) * 170 + static_cast<std::size_t>(y)) * 155 +
+           static_cast<std::size_t>(z);
+  };
+  std::mt19937 random(11);
+  for (int i = 0; i < 60; ++i) {
+    const int size = 1 + static_cast<int>(random() % 24), x0 = static_cast<int>(random() % 270),
+              y0 = static_cast<int>(random() % 60), z0 = static_cast<int>(random() % 60);
+    for (int x = x0; x < x0 + size; ++x) {
+      for (int y = y0; y < y0 + size; ++y) {
+        for (int z = z0; z < z0 + size; ++z) states[at(x, y, z)] = i % 3 == 0 ? 0 : 2;
+      }
+    }
+  }
+  return BeliefGrid::from_states({V, {corner(low), corner(high)}, T_world_grid, 0.05}, states);
+}
+
+TEST(Octomap, AFrameOfWholeVoxelsMovesTheTree) {
+  const Eigen::Matrix3d upright = Eigen::Matrix3d::Identity();
+  const Index3 low{-37, 11, -150};
+  const std::string in_world = octomap_bytes(blobs(low, {}));
+  EXPECT_GT(in_world.size(), 20000U);
+  int cases = 0;
+  for (const Index3 shift :
+       {Index3{1, 0, 0}, Index3{-3, 5, 7}, Index3{8, -16, 24}, Index3{128, 256, -128},
+        Index3{-2048, 0, 2048}, Index3{-32768 - 37, 32000, -1}, Index3{32000, 1000001, 3}}) {
+    // The grid's own lattice lies elsewhere, the voxels in the world do not.
+    const Index3 own{low.x - shift.x, low.y - shift.y, low.z - shift.z};
+    for (const double off : {0.0, 5e-8}) {
+      const Pose T(upright, {0.1 * shift.x + off, 0.1 * shift.y, 0.1 * shift.z - off});
+      const BeliefGrid grid = blobs(own, T);
+      EXPECT_TRUE(octomap_keeps_frame(grid));
+      EXPECT_TRUE(octomap_bytes(grid) == in_world) << shift.x << " " << shift.y << " " << shift.z;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 14);
+  EXPECT_TRUE(*octree_from_grid(blobs({0, 0, 0}, {upright, {-3.7, 1.1, -15.0}})) ==
+              *octree_from_grid(blobs(low, {})));
+}
+
+TEST(Octomap, OtherFramesAreLost) {
+  const BeliefGrid plain = blobs({-37, 11, -150}, {});
+  EXPECT_TRUE(octomap_keeps_frame(plain));
+  const std::string bytes = octomap_bytes(plain);
+  const Eigen::Matrix3d upright = Eigen::Matrix3d::Identity();
+  const auto turned = [](double angle) {
+    return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  };
+  int cases = 0;
+  for (const Pose& T :
+       {Pose(upright, {0.05, 0, 0}), Pose(upright, {0, 1e-6, 0}), Pose(turned(0.3), {0, 0, 0}),
+        Pose(turned(1e-6), {0, 0, 0}), Pose(turned(1.5707963267948966), {0.1, 0, 0}),
+        Pose(upright, {0, 0, 3276.8}), Pose(upright, {1e12, 0, 0}),
+        Pose(upright, {0, -1e300, 0})}) {
+    const BeliefGrid grid = blobs({-37, 11, -150}, T);
+    EXPECT_FALSE(octomap_keeps_frame(grid)) << cases;
+    EXPECT_TRUE(octomap_bytes(grid) == bytes) << cases;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 8);
 }
 
 TEST(Octomap, EmptyTrees) {

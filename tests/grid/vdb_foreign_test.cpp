@@ -7,6 +7,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 
@@ -211,6 +212,109 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
     c.grid<openvdb::Int32Grid>("hits").tree().addTile(1, {8, 0, 0}, 1, true);
   });
   EXPECT_EQ(cases_, 35);
+}
+
+/// A workspace of 4096³ voxels that are one tile of 4096³, of the given log-odds.
+class ForeignTiles : public testing::Test {
+ protected:
+  static constexpr int kSize = 4096;
+
+  ForeignTiles() {
+    openvdb::initialize();
+    log_odds_->setName("log_odds");
+    states_->setName("state");
+  }
+
+  void fill(float log_odds) { log_odds_->tree().addTile(3, {0, 0, 0}, log_odds, true); }
+  void fill_states(openvdb::Index level, int step, int state) {
+    for (int x = 0; x < kSize; x += step) {
+      for (int y = 0; y < kSize; y += step) {
+        for (int z = 0; z < kSize; z += step)
+          states_->tree().addTile(level, {x, y, z}, state, true);
+      }
+    }
+  }
+
+  [[nodiscard]] std::filesystem::path written() const {
+    openvdb::MetaMap metadata;
+    metadata.insertMeta("viewgain_version", openvdb::Int32Metadata(1));
+    metadata.insertMeta("voxel_size", openvdb::DoubleMetadata(0.1));
+    metadata.insertMeta("prior_sigma", openvdb::DoubleMetadata(0.05));
+    metadata.insertMeta("workspace_min", openvdb::Vec3IMetadata({0, 0, 0}));
+    metadata.insertMeta("workspace_max", openvdb::Vec3IMetadata({kSize, kSize, kSize}));
+    metadata.insertMeta("T_world_grid", openvdb::StringMetadata("1 0 0 0 0 1 0 0 0 0 1 0\n"));
+    metadata.insertMeta("views", openvdb::StringMetadata(""));
+    openvdb::GridPtrVec grids{states_, log_odds_, openvdb::Int32Grid::create()};
+    grids.back()->setName("hits");
+    for (const char* name :
+         {"information_diagonal", "information_offdiagonal", "information_vector"}) {
+      grids.push_back(openvdb::Vec3SGrid::create());
+      grids.back()->setName(name);
+    }
+    const auto transform = openvdb::math::Transform::createLinearTransform(0.1);
+    transform->postTranslate(openvdb::Vec3d(0.05));
+    for (const auto& grid : grids) grid->setTransform(transform);
+    const auto path = folder_.path() / "tiles.vdb";
+    openvdb::io::File(path.string()).write(grids, metadata);
+    return path;
+  }
+
+  TemporaryFolder folder_;
+  openvdb::FloatGrid::Ptr log_odds_ = openvdb::FloatGrid::create();
+  openvdb::Int32Grid::Ptr states_ = openvdb::Int32Grid::create();
+};
+
+TEST_F(ForeignTiles, OccupiedOnesAreLimited) {
+  fill(3.5F);
+  fill_states(3, kSize, 2);
+  const auto file = written();
+  EXPECT_LT(std::filesystem::file_size(file), 10000U);
+  expect_error(ErrorCode::capacity, "tiles.vdb", [&] { (void)load_vdb(file); });
+  expect_error(ErrorCode::capacity, "2^27", [&] { (void)load_vdb(file); });
+}
+
+// Voxel by voxel this would take an hour.
+TEST_F(ForeignTiles, StatesMayBeFinerTiles) {
+  fill(-2.0F);
+  fill_states(3, kSize, 1);
+  const std::string hash = load_vdb(written()).content_hash();
+  fill_states(2, 128, 1);
+  const openvdb::Coord somewhere(1000, 2000, 3000);
+  states_->tree().addTile(1, somewhere, 1, true);
+  states_->tree().touchLeaf({3000, 20, 30});
+  ASSERT_EQ(states_->activeVoxelCount(), log_odds_->activeVoxelCount());
+  ASSERT_EQ(states_->tree().leafCount(), 1U);
+  const BeliefGrid grid = load_vdb(written());
+  EXPECT_EQ(grid.statistics().free, std::uint64_t{1} << 36U);
+  EXPECT_EQ(grid.content_hash(), hash);
+
+  states_->tree().setValueOn({3000, 20, 30}, 2);
+  expect_error(ErrorCode::format, "[3000, 20, 30] contradicts", [&] { (void)load_vdb(written()); });
+  states_->tree().setValueOn({3000, 20, 30}, 1);
+  states_->tree().addTile(1, somewhere, 2, true);
+  expect_error(ErrorCode::format, "[1000, 2000, 3000] contradicts",
+               [&] { (void)load_vdb(written()); });
+  states_->tree().addTile(1, somewhere, 1, false);
+  expect_error(ErrorCode::format, "same voxels", [&] { (void)load_vdb(written()); });
+}
+
+// As many voxels, but others: a hole in the states, and a state where nothing is known.
+TEST_F(ForeignTiles, HolesInFinerStatesAreFound) {
+  log_odds_->tree().addTile(2, {128, 0, 0}, -2.0F, true);
+  states_->tree().addTile(2, {128, 0, 0}, 1, true);
+  states_->tree().addTile(1, {160, 32, 8}, 1, false);
+  states_->tree().addTile(1, {1024, 0, 0}, 1, true);
+  expect_error(ErrorCode::format, "same voxels", [&] { (void)load_vdb(written()); });
+  // A block's tile over single voxels.
+  log_odds_->tree().clear();
+  states_->tree().clear();
+  log_odds_->tree().addTile(1, {8, 8, 8}, -2.0F, true);
+  states_->tree().addTile(1, {8, 8, 8}, 1, true);
+  states_->tree().touchLeaf({8, 8, 8});
+  EXPECT_EQ(load_vdb(written()).statistics().free, 512U);
+  states_->tree().setValueOff({9, 10, 11});
+  states_->tree().setValueOn({100, 0, 0}, 1);
+  expect_error(ErrorCode::format, "same voxels", [&] { (void)load_vdb(written()); });
 }
 
 // Without a seal a cut file is only as safe as OpenVDB's reader and our stream make it.

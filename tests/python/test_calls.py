@@ -107,6 +107,39 @@ def test_progress_of_a_short_call_reaches_its_end(evaluator, poses):
     assert told[-1] == (3, 3)
 
 
+def test_progress_hears_of_the_end_of_every_call(evaluator, poses):
+    calls = [evaluator.evaluate, evaluator.evaluate_detailed, evaluator.best, evaluator.race,
+             evaluator.approximate, lambda batch, control: evaluator.best_set(batch, 2, control=control),
+             lambda batch, control: evaluator.evaluate_own(batch, lambda pose, hits: 0.0, control=control)]
+    told = []
+    for call in calls:
+        for batch in (poses, poses[:1], poses[:0]):
+            before = len(told)
+            call(batch, control=viewgain.BatchControl(lambda *now: told.append(now)))
+            assert len(told) > before
+            assert len(batch) > 0 or told[before:] == [(0, 0)]
+    assert len(told) >= 21
+
+
+def test_any_false_answer_of_progress_stops_but_none(slow):
+    evaluator, poses = slow
+    cases = 0
+    for answer, stops in [(False, True), (np.False_, True), (0, True), (None, False), (True, False),
+                          (np.True_, False)]:
+        control = viewgain.BatchControl(lambda done, total: answer)
+        gains = evaluator.evaluate(poses if stops else poses[:50], control=control)
+        assert control.stopped == stops and np.isnan(gains).any() == stops
+        cases += 1
+    assert cases == 6
+
+    class Neither:
+        def __bool__(self):
+            raise KeyError("truth")
+
+    with pytest.raises(KeyError, match="truth"):
+        evaluator.evaluate(poses[:9], control=viewgain.BatchControl(lambda done, total: Neither()))
+
+
 def test_another_thread_can_stop_a_call(slow):
     evaluator, poses = slow
     control = viewgain.BatchControl()

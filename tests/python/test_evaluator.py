@@ -93,12 +93,35 @@ def test_wrong_shapes_and_dtypes_are_named(evaluator, poses):
         evaluator.evaluate(poses.astype(complex))
     with pytest.raises(ValueError, match="<U"):
         evaluator.evaluate(poses.astype(str))
-    with pytest.raises(ValueError, match=r"\(60, 4, 4\)"):
-        evaluator.depth(poses)
+    for wrong, text in [(poses, r"\(60, 4, 4\)"), (np.zeros((3, 3)), r"\(3, 3\)")]:
+        with pytest.raises(ValueError, match=r"the shape \(4, 4\), not " + text):
+            evaluator.depth(wrong)
+    with pytest.raises(ValueError, match=r"the shape \(3,\), not \(2,\)"):
+        viewgain.sphere_poses(3, 1.0, center=(0, 0))
     with pytest.raises(TypeError):
         evaluator.evaluate(poses, True)
     with pytest.raises(TypeError):
         evaluator.best(poses, k=-1)
+
+
+def test_what_an_array_raises_passes_through(evaluator):
+    class Source:
+        def __init__(self, error):
+            self.error = error
+
+        def __array__(self, *arguments, **keywords):
+            raise self.error("mine")
+
+    for error in (KeyboardInterrupt, MemoryError, KeyError):
+        with pytest.raises(error, match="mine"):
+            evaluator.evaluate(Source(error))
+        with pytest.raises(error, match="mine"):
+            viewgain.BeliefGrid.from_labels(Source(error), voxel_size=0.1)
+    for error in (TypeError, ValueError):
+        with pytest.raises(ValueError, match="T_world_camera must be an array of numbers"):
+            evaluator.evaluate(Source(error))
+        with pytest.raises(ValueError, match="labels must be uint8"):
+            viewgain.BeliefGrid.from_labels(Source(error), voxel_size=0.1)
 
 
 def test_wrong_settings_are_named(grid, sensor, evaluator, poses):
@@ -112,6 +135,9 @@ def test_wrong_settings_are_named(grid, sensor, evaluator, poses):
     for settings, text in cases:
         with pytest.raises(ValueError, match=text):
             viewgain.GainEvaluator(scene, sensor, **settings)
+    for weight, text in [("x", "'x'"), (None, "None"), (np.zeros(3), "array")]:
+        with pytest.raises(TypeError, match=f"weight must be a number, not.*{text}"):
+            viewgain.GainEvaluator(scene, sensor, weights=[([[0, 0, 0], [1, 1, 1]], weight)])
     with pytest.raises(TypeError):
         viewgain.GainEvaluator(grid, sensor)
     with pytest.raises(TypeError):
@@ -167,8 +193,10 @@ def test_a_gain_of_ones_own(evaluator, poses):
 
     with pytest.raises(KeyError, match="mine"):
         evaluator.evaluate_own(poses, broken)
-    with pytest.raises(RuntimeError):
-        evaluator.evaluate_own(poses, lambda pose, hits: "no number")
+    for answer, text in [("no number", "'no number'"), (None, "None"), (np.zeros(3), "array")]:
+        with pytest.raises(TypeError, match=f"measure.*{text}"):
+            evaluator.evaluate_own(poses, lambda pose, hits: answer)
+    assert evaluator.evaluate_own(poses[0], lambda pose, hits: np.float32(2)) == 2
     with pytest.raises(TypeError):
         evaluator.evaluate_own(poses, 3)
 

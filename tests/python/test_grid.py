@@ -1,5 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
+import os
+import pathlib
+
 import numpy as np
 import pytest
 from conftest import box_mesh
@@ -34,7 +37,9 @@ def test_any_extent_and_origin_keeps_every_label():
 def test_octomap_files(tmp_path, grid, sensor):
     path = tmp_path / "map.ot"
     grid.save_octomap(path)
-    again = viewgain.BeliefGrid.load_octomap(path, workspace=[[0, 0, 0], [0.32, 0.32, 0.32]])
+    # A tree lies in the world's frame.
+    workspace = np.array([[0, 0, 0], [0.32, 0.32, 0.32]]) + grid.T_world_grid[:3, 3]
+    again = viewgain.BeliefGrid.load_octomap(path, workspace=workspace)
     assert again.prior_sigma == 0.005 and again.voxel_size == 0.01
     assert np.array_equal(again.states(), grid.states())
     of_sensor = viewgain.BeliefGrid.load_octomap(str(path), sensor=sensor)
@@ -61,6 +66,11 @@ def test_files(tmp_path, grid):
         viewgain.BeliefGrid.load(tmp_path)
     with pytest.raises(FileNotFoundError):
         grid.save(tmp_path / "no" / "map.vdb")
+    with pytest.raises(IsADirectoryError) as folder:
+        grid.save(tmp_path)
+    assert folder.value.filename == str(tmp_path)
+    with pytest.raises(NotADirectoryError):
+        grid.save_octomap(path / "map.ot")
     with pytest.raises(TypeError):
         viewgain.BeliefGrid.load(3)
     path.write_bytes(path.read_bytes()[:200])
@@ -70,6 +80,35 @@ def test_files(tmp_path, grid):
     with pytest.raises(viewgain.Error, match="map.vdb"):
         viewgain.BeliefGrid.load(path)
     assert issubclass(viewgain.Error, RuntimeError)
+
+
+def test_names_of_files_are_bytes(tmp_path, grid):
+    folder = os.fsencode(tmp_path)
+    name = folder + b"/m\xff.vdb"
+    grid.save(name)
+    assert os.listdir(folder) == [b"m\xff.vdb"]
+    for same in (name, os.fsdecode(name), pathlib.Path(os.fsdecode(name))):
+        assert viewgain.BeliefGrid.load(same).content_hash() == grid.content_hash()
+    with open(name, "wb") as file:
+        file.write(b"no map" * 100)
+    with pytest.raises(viewgain.Error, match="m\udcff.vdb"):
+        viewgain.BeliefGrid.load(name)
+    with pytest.raises(FileNotFoundError) as missing:
+        viewgain.BeliefGrid.load(f"{tmp_path}/\udcfe.vdb")
+    assert missing.value.filename == f"{tmp_path}/\udcfe.vdb"
+    grid.save(tmp_path / "a")
+    for call in (viewgain.BeliefGrid.load, viewgain.BeliefGrid.load_octomap, grid.save,
+                 grid.save_octomap):
+        with pytest.raises(ValueError, match="null"):
+            call(f"{tmp_path}/a\0b.vdb")
+    assert sorted(os.listdir(folder)) == [b"a", b"m\xff.vdb"]
+
+
+def test_limits_are_looked_at_before_labels_are_copied():
+    # 256 TiB if it were.
+    labels = np.broadcast_to(np.uint8(0), (65536, 65536, 65536))
+    with pytest.raises(viewgain.Error, match="voxels"):
+        viewgain.BeliefGrid.from_labels(labels, voxel_size=0.01)
 
 
 def test_wrong_labels_and_layouts_are_named(labels):
@@ -84,6 +123,7 @@ def test_wrong_labels_and_layouts_are_named(labels):
         make(np.zeros((0, 2, 2), np.uint8), voxel_size=0.01)
     for settings, text in [({"voxel_size": 0.0}, "voxel"), ({"voxel_size": np.nan}, "voxel"),
                            ({"voxel_size": 0.1, "origin": (0, 0)}, r"\(2,\)"),
+                           ({"voxel_size": 0.1, "origin": (0, np.nan, 0)}, "origin"),
                            ({"voxel_size": 0.1, "prior_sigma": -1.0}, "prior"),
                            ({"voxel_size": 0.1, "T_world_grid": np.zeros((4, 4))}, "T_world_grid")]:
         with pytest.raises(ValueError, match=text):

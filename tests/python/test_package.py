@@ -5,7 +5,11 @@ import ast
 import importlib.util
 import inspect
 import pathlib
+import pickle
+import typing
 
+import numpy as np
+import numpy.typing
 import pytest
 
 import viewgain
@@ -80,6 +84,70 @@ def test_everything_is_documented(name):
         thing = getattr(module, public_name)
         if inspect.isclass(thing) or inspect.isbuiltin(thing):
             assert len(thing.__doc__ or "") > 30, public_name
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_members_are_documented_with_what_they_return(name):
+    module = importlib.import_module(name)
+    checked = 0
+    for node in stub_of(module).body:
+        if not isinstance(node, (ast.ClassDef, ast.FunctionDef)) or node.name == "Error":
+            continue
+        is_class = isinstance(node, ast.ClassDef)
+        for function in node.body if is_class else [node]:
+            if function.name == "__init__":
+                continue
+            thing = getattr(getattr(module, node.name), function.name) if is_class else getattr(
+                module, node.name)
+            doc = thing.__doc__ or ""
+            assert len(doc) >= 3, (node.name, function.name)
+            is_property = any(ast.unparse(d) == "property" for d in function.decorator_list)
+            if not is_property and ast.unparse(function.returns) != "None":
+                assert "Returns\n" in doc, (node.name, function.name)
+            checked += 1
+    assert checked >= (80 if name == MODULES[0] else 11)
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_classes_say_how_they_are_pickled(name, grid, evaluator, sensor):
+    module = importlib.import_module(name)
+    classes = [thing for thing in vars(module).values()
+               if inspect.isclass(thing) and not issubclass(thing, Exception)]
+    for one in classes:
+        assert "__reduce_ex__" in vars(one), one
+    assert len(classes) == (16 if name == MODULES[0] else 2)
+    things = [grid, evaluator, evaluator.scene, viewgain.BatchControl(), viewgain.ReachRegion(),
+              viewgain.FeasibilityChecker(evaluator.scene), viewgain.FrameIntegrator(sensor),
+              viewgain.CloudIntegrator(sensor)]
+    for thing in things:
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+            with pytest.raises(TypeError, match=f"cannot pickle '{type(thing).__name__}'"):
+                pickle.dumps(thing, protocol)
+
+
+def test_the_stub_says_where_a_single_pose_gives_a_scalar(evaluator, poses):
+    reach, checker = viewgain.ReachRegion(), viewgain.FeasibilityChecker(evaluator.scene)
+    results = {
+        "evaluate": evaluator.evaluate(poses[0]),
+        "evaluate_detailed": evaluator.evaluate_detailed(poses[0]),
+        "evaluate_own": evaluator.evaluate_own(poses[0], lambda pose, hits: 1.0),
+        "approximate": evaluator.approximate(poses[0]),
+        "contains": reach.contains(poses[0]),
+        "feasible": checker.feasible(poses[0]),
+        "reasons": checker.reasons(poses[0]),
+    }
+    stub = stub_of(viewgain._viewgain)
+    names = {"Union": typing.Union, "np": np, "NDArray": np.typing.NDArray}
+    aliases = {node.targets[0].id: node.value for node in stub.body if isinstance(node, ast.Assign)}
+    checked = 0
+    for node in ast.walk(stub):
+        if isinstance(node, ast.FunctionDef) and node.name in results:
+            union = eval(ast.unparse(aliases[ast.unparse(node.returns)]), names)  # noqa: S307: our own text
+            scalar, array = typing.get_args(union)
+            assert type(results[node.name]) is scalar, node.name
+            assert typing.get_origin(array) is np.ndarray, node.name
+            checked += 1
+    assert checked == len(results) == 7
 
 
 def test_package():

@@ -1,5 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -45,6 +48,34 @@ def test_noise_models_can_be_read_back(noise):
     sensor = viewgain.Sensor(camera, min_range=0.3, max_range=2.0, working_distance=0.5, noise=noise)
     assert type(sensor.noise) is type(noise) and sensor.noise == noise
     assert sensor.T_flange_camera is None
+
+
+def test_default_prior_sigma_refuses_what_is_no_voxel(sensor):
+    for size in (-1.0, 0.0, np.nan, np.inf):
+        with pytest.raises(ValueError, match="voxel_size is"):
+            viewgain.default_prior_sigma(size, sensor)
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_plain_values_can_be_pickled_and_copied(protocol):
+    camera = viewgain.PinholeCamera(
+        64, 48, fx=60.0, fy=62.0, cx=30.0, cy=24.0, distortion=[0.1, -0.05, 1e-3, -1e-3, 0.01])
+    values = [camera, viewgain.ShotNoise(min_amplitude=0.5), viewgain.StructuredLightNoise(vertex=0.7),
+              viewgain.StereoNoise(focal=99.0), viewgain.QuadraticNoise(offset=0.1),
+              viewgain.ConstantNoise(sigma_lateral=0.2)]
+    for value in values:
+        again = pickle.loads(pickle.dumps(value, protocol))
+        assert type(again) is type(value) and again == value == copy.deepcopy(value)
+    assert len(values) == 6
+    mounting = viewgain.look_at([1, 2, 3], [0, 0, 0])
+    for T_flange_camera in (None, mounting):
+        sensor = viewgain.Sensor(
+            camera, min_range=0.2, max_range=2.0, working_distance=0.5, noise=values[1], name="mine",
+            T_flange_camera=T_flange_camera)
+        again = pickle.loads(pickle.dumps(sensor, protocol))
+        assert (again.camera, again.noise, again.name) == (camera, values[1], "mine")
+        assert (again.min_range, again.max_range, again.working_distance) == (0.2, 2.0, 0.5)
+        assert np.array_equal(again.T_flange_camera, sensor.T_flange_camera)
 
 
 def test_projection_undoes_rays():

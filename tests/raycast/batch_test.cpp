@@ -79,6 +79,38 @@ TEST_F(Batch, ReportsProgressOneAtATimeUpToTheTotal) {
   EXPECT_TRUE(test::same_bits(results, evaluator().evaluate(poses_)));
 }
 
+TEST_F(Batch, EveryChoiceReportsProgressUpToItsTotal) {
+  const GainEvaluator own = evaluator(3);
+  int cases = 0;
+  const auto expect_reports = [&](std::size_t total, const auto& call) {
+    std::mutex mutex;
+    std::size_t last = 0, calls = 0;
+    BatchControl control;
+    control.progress = [&](std::size_t done, std::size_t of) {
+      const std::unique_lock lock(mutex, std::try_to_lock);
+      EXPECT_TRUE(lock.owns_lock());
+      EXPECT_GE(done, last);
+      EXPECT_EQ(of, total);
+      last = done;
+      ++calls;
+    };
+    call(control);
+    EXPECT_EQ(last, total);
+    EXPECT_GT(calls, 0U);
+    ++cases;
+  };
+  const std::size_t n = poses_.size();
+  expect_reports(n, [&](const BatchControl& c) { EXPECT_TRUE(own.best(poses_, 2, c).complete); });
+  expect_reports(n,
+                 [&](const BatchControl& c) { EXPECT_TRUE(own.race(poses_, 2, {}, c).complete); });
+  expect_reports(3, [&](const BatchControl& c) { (void)own.best_set(poses_, 3, c); });
+  expect_reports(n, [&](const BatchControl& c) {
+    std::vector<ApproximateGain> results(n);
+    EXPECT_EQ(own.approximate(poses_, results, {}, c), n);
+  });
+  EXPECT_EQ(cases, 4);
+}
+
 TEST_F(Batch, StopsEarlyAndMarksWhatItDidNotReach) {
   const std::vector<ViewGain> expected = evaluator().evaluate(poses_);
   for (const int threads : {1, 3}) {

@@ -4,6 +4,7 @@
 // Gains that can be worked out by hand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "oracle/gain.hpp"

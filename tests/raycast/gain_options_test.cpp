@@ -58,13 +58,13 @@ TEST(GainOptions, StrideTakesEverySthPixelFromTheFirst) {
   const Made made = make(50);
   const auto scene = VoxelScene::build(made.map.grid);
   const std::vector<RayHit> all = GainEvaluator(scene, made.sensor).trace(made.poses[1]);
-  for (const int stride : {2, 3, 5, 100}) {
+  for (const int stride : {2, 3, 5, 100, std::numeric_limits<int>::max()}) {
     SCOPED_TRACE(stride);
     const GainEvaluator evaluator(scene, made.sensor, {.pixel_stride = stride});
     const std::vector<RayHit> some = evaluator.trace(made.poses[1]);
     std::size_t i = 0;
-    for (int v = 0; v < made.sensor.camera.height; v += stride) {
-      for (int u = 0; u < made.sensor.camera.width; u += stride, ++i) {
+    for (std::int64_t v = 0; v < made.sensor.camera.height; v += stride) {
+      for (std::int64_t u = 0; u < made.sensor.camera.width; u += stride, ++i) {
         const RayHit& expected = all[static_cast<std::size_t>(v * made.sensor.camera.width + u)];
         ASSERT_LT(i, some.size());
         EXPECT_TRUE(oracle::same_ending(expected, some[i]));
@@ -298,6 +298,11 @@ TEST(GainOptions, BadArgumentsAreNamed) {
   wild.vertices[2][1] = nan;
   EXPECT_THROW((void)VoxelScene::build(grid, {{}, {wild}}), Error);
   EXPECT_THROW((void)VoxelScene::build(grid, {{Box{{1, 0, 0}, {0, 1, 1}}}, {}}), Error);
+  for (const int threads : {-1, 1025}) {
+    EXPECT_THROW((void)VoxelScene::build(grid, {}, {.num_threads = threads}), Error);
+    EXPECT_THROW((void)VoxelScene::update(scene, grid, {.num_threads = threads}), Error);
+    EXPECT_THROW(GainEvaluator(scene, sensor, {}, {.num_threads = threads}), Error);
+  }
 }
 
 }  // namespace

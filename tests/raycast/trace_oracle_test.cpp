@@ -4,6 +4,7 @@
 // Rays and gains of random maps against the double-precision oracle, under each instruction set.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 

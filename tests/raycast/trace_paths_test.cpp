@@ -19,6 +19,16 @@ std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vec
   const GainEvaluator free_choice(VoxelScene::build(grid), sensor, {}, {.num_threads = 1});
   const GainEvaluator bvh(VoxelScene::build(grid, out_of_reach()), sensor, {}, {.num_threads = 1});
   EXPECT_TRUE(test::same_bits(free_choice.evaluate(poses), bvh.evaluate(poses)));
+  for (const double share : {0.02, 0.1, 0.4}) {  // few tiles, and lists for some
+    std::vector<ApproximateGain> a(poses.size()), b(poses.size());
+    const ApproximateConfig config{.share = share, .groups = 4, .seed = poses.size()};
+    EXPECT_EQ(free_choice.approximate(poses, a, config), poses.size());
+    bvh.approximate(poses, b, config);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      EXPECT_EQ(a[i].gain, b[i].gain);
+      EXPECT_EQ(a[i].standard_error, b[i].standard_error);
+    }
+  }
   std::size_t rays = 0;
   for (const Pose& pose : poses) {
     const std::vector<RayHit> a = free_choice.trace(pose), b = bvh.trace(pose);
@@ -49,6 +59,38 @@ TEST(TracePaths, ListsAndBvhGiveTheSameBits) {
   }
   EXPECT_EQ(cases, 40);
   EXPECT_GT(rays, 50'000U);
+}
+
+// Rays that count from the camera on, where it touches the faces, edges and corners of voxels: what
+// lies beside it is met in any direction, however near.
+TEST(TracePaths, CamerasThatTouchVoxelsSeeTheSameBits) {
+  constexpr int kEdge = 24;
+  test::Random random(7);
+  std::vector<Index3> unknown;
+  for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
+    const Index3 voxel{i / kEdge / kEdge, i / kEdge % kEdge, i % kEdge};
+    if (test::uniform(random, 0, 1) < 0.2) unknown.push_back(voxel);
+  }
+  const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
+  Sensor sensor = test::lattice_sensor(21, 17);
+  sensor.camera.fx = sensor.camera.fy = 12;
+  std::vector<Pose> poses;
+  for (const double step : {0.0, 0.5, 0.25, 1e-4}) {  // corners; edges and faces; inside; next to
+    for (int i = 0; i < 40; ++i) {
+      Eigen::Vector3d at;
+      for (int k = 0; k < 3; ++k) {
+        const bool is_moved = (i >> k & 1) != 0;
+        at[k] = test::uniform_int(random, 1, kEdge - 1) + (is_moved ? step : 0.0);
+      }
+      poses.push_back(test::axis_pose(at, i % 3, i % 2 == 0));
+      Pose turned = test::random_rigid(random, 1);
+      for (int k = 0; k < 3; ++k) {
+        turned.m[static_cast<std::size_t>(4 * k + 3)] = at[k] * test::kExactVoxel;
+      }
+      poses.push_back(turned);
+    }
+  }
+  EXPECT_EQ(compare(grid, sensor, poses), 320U * 21U * 17U);
 }
 
 // More primitives than are listed one by one: boxes stand for cells of many.

@@ -166,7 +166,7 @@ TEST(Race, FindsTheBestOnNearlyAllMapsAndIsDeterministic) {
   int right = 0;
   constexpr int kMaps = 20;
   // Ten rays meet in a voxel here, which bundles cannot see: keep more than by default.
-  const RaceConfig config{.interval = 5, .first_share = 1.0 / 16, .keep = 0.5, .seed = 7};
+  const RaceConfig config{.interval = 5, .first_share = 1.0 / 24, .keep = 0.5, .seed = 7};
   for (int map = 0; map < kMaps; ++map) {
     const auto scene = VoxelScene::build(lump(40 + static_cast<std::uint64_t>(map)));
     const GainEvaluator evaluator(scene, larger_sensor(),
@@ -332,7 +332,7 @@ TEST(Approximate, StandardErrorsCoverTheTruth) {
   EXPECT_NEAR(off / n, 0, 0.02);
   // 0.68 and 0.95 for a normal distribution.
   EXPECT_GT(static_cast<double>(one) / n, 0.6);
-  EXPECT_LT(static_cast<double>(one) / n, 0.9);
+  EXPECT_LT(static_cast<double>(one) / n, 0.8);
   EXPECT_GT(static_cast<double>(two) / n, 0.9);
 }
 

@@ -154,8 +154,8 @@ vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluator_info
     const PinholeCamera& camera = own.camera();
     const int stride = own.pixel_stride();
     *info = {.struct_size = info->struct_size,
-             .image_width = (camera.width + stride - 1) / stride,
-             .image_height = (camera.height + stride - 1) / stride,
+             .image_width = (camera.width - 1) / stride + 1,
+             .image_height = (camera.height - 1) / stride + 1,
              .rays_per_pose = own.rays_per_pose(),
              .num_threads = own.num_threads(),
              .prior_sigma = own.prior_sigma()};

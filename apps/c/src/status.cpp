@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <new>
+#include <stdexcept>
 
 #include "viewgain/version.hpp"
 
@@ -46,6 +47,8 @@ vg_status status_of_exception() noexcept {
     return keep(VG_STOPPED, stopped.what());
   } catch (const std::bad_alloc&) {
     return keep(VG_OUT_OF_MEMORY, "out of memory");
+  } catch (const std::length_error&) {  // of a container, for a count beyond any memory
+    return keep(VG_OUT_OF_MEMORY, "out of memory: a count is larger than any memory");
   } catch (const std::exception& error) {
     return keep(VG_INTERNAL, error.what());
   } catch (...) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "arrays.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -19,7 +21,7 @@ std::string wanted_text(const Shape& wanted) {
     if (i > 0) text += ", ";
     text += wanted[i] < 0 ? std::string("n") : std::to_string(wanted[i]);
   }
-  return text + ")";
+  return text + (wanted.size() == 1 ? ",)" : ")");
 }
 
 [[noreturn]] void reject_shape(const char* name, const std::string& wanted,
@@ -83,20 +85,23 @@ std::string shape_text(const py::array& array) {
   return text + (array.ndim() == 1 ? ",)" : ")");
 }
 
-Doubles doubles(const py::handle& value, const char* name) {
-  const py::array any = py::array::ensure(value);
-  if (!any) {
-    PyErr_Clear();
-    throw py::value_error(std::string(name) + " must be an array of numbers");
+py::array any_array(const py::handle& value, const std::string& refusal) {
+  try {
+    return py::array(py::reinterpret_borrow<py::object>(value));
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;
+    throw py::value_error(refusal);
   }
+}
+
+Doubles doubles(const py::handle& value, const char* name) {
+  const py::array any = any_array(value, std::string(name) + " must be an array of numbers");
   const char kind = any.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u') {
     throw py::value_error(std::string(name) + " must hold real numbers, not dtype " +
                           py::str(any.dtype()).cast<std::string>());
   }
-  Doubles array = Doubles::ensure(any);
-  if (!array) throw py::error_already_set();
-  return array;
+  return Doubles(any);
 }
 
 Doubles doubles(const py::handle& value, const char* name, const Shape& wanted) {
@@ -132,9 +137,7 @@ PoseBatch pose_batch(const py::handle& value, const char* name, bool strict) {
 }
 
 Pose one_pose(const py::handle& value, const char* name) {
-  PoseBatch batch = pose_batch(value, name, true);
-  if (!batch.shape.empty()) reject_shape(name, "(4, 4)", doubles(value, name));
-  return batch.poses.front();
+  return pose_batch(doubles(value, name, {4, 4}), name, true).poses.front();
 }
 
 std::optional<Pose> optional_pose(const py::object& value, const char* name) {
@@ -143,9 +146,7 @@ std::optional<Pose> optional_pose(const py::object& value, const char* name) {
 }
 
 std::vector<Pose> pose_list(const py::handle& value, const char* name) {
-  PoseBatch batch = pose_batch(value, name, true);
-  if (batch.shape.size() != 1) reject_shape(name, "(n, 4, 4)", doubles(value, name));
-  return std::move(batch.poses);
+  return pose_batch(doubles(value, name, {-1, 4, 4}), name, true).poses;
 }
 
 py::array_t<double> to_array(std::span<const Pose> poses, const Shape& leading) {
@@ -162,9 +163,23 @@ py::array_t<double> to_array(std::span<const Pose> poses, const Shape& leading) 
 
 py::array_t<double> to_array(const Pose& pose) { return to_array(std::span(&pose, 1), {}); }
 
+double number(const py::handle& value, const char* name) {
+  const double real = PyFloat_AsDouble(value.ptr());
+  if (real != -1.0 || PyErr_Occurred() == nullptr) return real;
+  const py::error_already_set error;
+  if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw error;
+  throw py::type_error(std::string(name) + " must be a number, not " +
+                       py::repr(value).cast<std::string>());
+}
+
 Eigen::Vector3d vector3(const py::handle& value, const char* name) {
   const Doubles array = doubles(value, name, {3});
-  return {array.at(0), array.at(1), array.at(2)};
+  const Eigen::Vector3d vector(array.at(0), array.at(1), array.at(2));
+  if (!vector.allFinite()) {
+    throw py::value_error(std::string(name) + " must be finite, not " +
+                          py::repr(value).cast<std::string>());
+  }
+  return vector;
 }
 
 std::vector<std::array<double, 3>> points(const py::handle& value, const char* name) {
@@ -226,18 +241,21 @@ void require_file(const std::string& path) {
   if (std::filesystem::is_directory(path, error)) raise_os_error(EISDIR, path);
 }
 
-void require_folder_of(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+void require_writable(const std::string& path) {
   std::error_code error;
-  if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
-    raise_os_error(ENOENT, folder.string());
-  }
+  if (std::filesystem::is_directory(path, error)) raise_os_error(EISDIR, path);
+  std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (folder.empty()) folder = ".";
+  if (!std::filesystem::exists(folder, error)) raise_os_error(ENOENT, folder.string());
+  if (!std::filesystem::is_directory(folder, error)) raise_os_error(ENOTDIR, folder.string());
+  // The file is written beside its name first.
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) raise_os_error(errno, folder.string());
 }
 
 std::string file_path(const py::handle& value) {
-  const auto path = py::reinterpret_steal<py::object>(PyOS_FSPath(value.ptr()));
-  if (!path) throw py::error_already_set();
-  return path.cast<std::string>();
+  PyObject* bytes = nullptr;
+  if (PyUnicode_FSConverter(value.ptr(), &bytes) == 0) throw py::error_already_set();
+  return py::reinterpret_steal<py::bytes>(bytes);
 }
 
 }  // namespace viewgain::python

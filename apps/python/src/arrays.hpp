@@ -31,6 +31,10 @@ using Shape = std::vector<py::ssize_t>;
 /// "(3, 4)"
 [[nodiscard]] std::string shape_text(const py::array& array);
 
+/// What numpy.asarray makes of the value. A TypeError or ValueError on the way becomes ValueError
+/// with the text `refusal`; others pass, MemoryError and KeyboardInterrupt among them.
+[[nodiscard]] py::array any_array(const py::handle& value, const std::string& refusal);
+
 /// Real numbers as C-contiguous float64: the caller's own memory if they are that already, else
 /// converted once.
 [[nodiscard]] Doubles doubles(const py::handle& value, const char* name);
@@ -56,6 +60,8 @@ struct PoseBatch {
 [[nodiscard]] py::array_t<double> to_array(std::span<const Pose> poses, const Shape& leading);
 [[nodiscard]] py::array_t<double> to_array(const Pose& pose);
 
+/// Whatever has a __float__; else throws TypeError with the name and the value.
+[[nodiscard]] double number(const py::handle& value, const char* name);
 [[nodiscard]] Eigen::Vector3d vector3(const py::handle& value, const char* name);
 [[nodiscard]] std::vector<std::array<double, 3>> points(const py::handle& value, const char* name);
 /// (2, 3): lowest and highest corner.
@@ -85,8 +91,9 @@ template <typename T>
 
 /// Throw FileNotFoundError, or another OSError, with the file's name as Python has it.
 void require_file(const std::string& path);
-void require_folder_of(const std::string& path);
-/// Of a str, bytes or os.PathLike.
+/// As above, where no file can be made: not for a disk that is full.
+void require_writable(const std::string& path);
+/// The name as the system has it, of a str, bytes or os.PathLike; ValueError for one with a NUL.
 [[nodiscard]] std::string file_path(const py::handle& value);
 
 }  // namespace viewgain::python

@@ -8,10 +8,13 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include "bindings.hpp"
+#include "gil.hpp"
+#include "pickling.hpp"
 
 namespace viewgain::python {
 namespace {
@@ -27,16 +30,26 @@ struct Mailbox {
   std::exception_ptr error;
 };
 
-// Signals first, then the progress function. Throws what they raise.
-void look(Control* control, std::pair<std::size_t, std::size_t> now,
-          std::pair<std::size_t, std::size_t>& told, std::stop_source& stop) {
+using Count = std::pair<std::size_t, std::size_t>;  // done, total
+
+// Whether the progress function's answer asks for a stop. Throws what its truth value raises.
+bool asks_for_stop(const py::object& answer) {
+  if (answer.is_none()) return false;
+  const int truth = PyObject_IsTrue(answer.ptr());
+  if (truth < 0) throw py::error_already_set();
+  return truth == 0;
+}
+
+// Throws what Python's signal handlers raise.
+void check_signals() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-  if (control == nullptr) return;
-  if (control->stop.stop_requested()) stop.request_stop();
-  if (control->progress.is_none() || now == told || now.second == 0) return;
+}
+
+// Calls the progress function. Throws what it raises.
+void tell(Control* control, Count now, std::optional<Count>& told, std::stop_source& stop) {
+  if (control == nullptr || control->progress.is_none()) return;
   told = now;
-  const py::object answer = control->progress(now.first, now.second);
-  if (answer.is(py::handle(Py_False))) {
+  if (asks_for_stop(call_python(control->progress, now.first, now.second))) {
     control->stop.request_stop();
     stop.request_stop();
   }
@@ -47,8 +60,8 @@ void look(Control* control, std::pair<std::size_t, std::size_t> now,
 void run_batch(Control* control, const std::function<void(const BatchControl&)>& work) {
   Mailbox box;
   std::stop_source stop;
-  std::pair<std::size_t, std::size_t> told{0, 0};
-  // A stop from another thread must not wait for the next look.
+  std::optional<Count> told;
+  // A stop, from whichever thread, must not wait for the next look.
   const std::stop_callback forward(
       control != nullptr ? control->stop.get_token() : std::stop_token(),
       [&] { stop.request_stop(); });
@@ -63,7 +76,7 @@ void run_batch(Control* control, const std::function<void(const BatchControl&)>&
   }
   std::exception_ptr raised;  // by Python
   {
-    const py::gil_scoped_release without_gil;
+    const WithoutGil without_gil;
     std::jthread worker([&] {
       try {
         work(watched);
@@ -76,12 +89,14 @@ void run_batch(Control* control, const std::function<void(const BatchControl&)>&
     });
     std::unique_lock lock(box.mutex);
     while (!box.finished.wait_for(lock, kLook, [&] { return box.done; })) {
-      const std::pair now(box.count, box.total);
+      const Count now(box.count, box.total);
       lock.unlock();
       if (!raised) {
-        const py::gil_scoped_acquire with_gil;
         try {
-          look(control, now, told, stop);
+          with_gil([&] {
+            check_signals();
+            if (now.second > 0) tell(control, now, told, stop);
+          });
         } catch (...) {
           raised = std::current_exception();
           stop.request_stop();
@@ -92,23 +107,27 @@ void run_batch(Control* control, const std::function<void(const BatchControl&)>&
   }
   if (raised) std::rethrow_exception(raised);
   if (box.error) std::rethrow_exception(box.error);
-  look(control, {box.count, box.total}, told, stop);
+  check_signals();
+  const Count last(box.count, box.total);
+  if (told != last) tell(control, last, told, stop);
 }
 
 void bind_control(py::module_& module) {
-  py::class_<Control>(module, "BatchControl", R"(Watches or ends a long call.
+  py::class_<Control> type(module, "BatchControl", R"(Watches or ends a long call.
 
 Parameters
 ----------
 progress : callable, optional
-    Called with ``(done, total)`` on the calling thread, at most about every 50 ms and at the end.
-    If it returns ``False`` the call stops; an exception that it raises stops the call and is raised
+    Called with ``(done, total)`` on the calling thread, about every 50 ms, whether or not more is
+    done, and at the end; for an empty batch with ``(0, 0)``. If it returns something false other than ``None`` (``False``,
+    ``numpy.False_``, 0) the call stops; an exception that it raises stops the call and is raised
     from there.
 
 Notes
 -----
-A control that was stopped stays so: make one for each call. Ctrl-C is honoured with or without one.)")
-      .def(py::init([](py::object progress) {
+A control that was stopped stays so: make one for each call. Ctrl-C is honoured with or without one.)");
+  refuse_pickling(type);
+  type.def(py::init([](py::object progress) {
              if (!progress.is_none() && PyCallable_Check(progress.ptr()) == 0) {
                throw py::type_error("progress must be callable");
              }

@@ -18,6 +18,8 @@
 #include "batch_call.hpp"
 #include "bindings.hpp"
 #include "evaluator.hpp"
+#include "gil.hpp"
+#include "pickling.hpp"
 
 namespace viewgain::python {
 
@@ -44,7 +46,7 @@ std::unique_ptr<Evaluator> make(std::shared_ptr<VoxelScene> scene, const Sensor&
     }
     const auto pair = py::reinterpret_borrow<py::sequence>(entry);
     const py::object region = pair[0], weight = pair[1];
-    config.weights.push_back({box(region, "weights' box"), weight.cast<double>()});
+    config.weights.push_back({box(region, "weights' box"), number(weight, "weights' weight")});
   }
   GainEvaluator evaluator(scene, sensor, config, ExecConfig{num_threads});
   return std::unique_ptr<Evaluator>(
@@ -58,7 +60,7 @@ void score(const Evaluator& self, std::span<const Pose> poses, std::span<ViewGai
               [&](const BatchControl& batch) { self.evaluator.evaluate(poses, results, batch); });
     return;
   }
-  const py::gil_scoped_release without_gil;
+  const WithoutGil without_gil;
   self.evaluator.evaluate(poses, results);
 }
 
@@ -192,7 +194,10 @@ num_threads : int
 Raises
 ------
 ValueError
-    Names the value that is out of its bounds.)");
+    Names the value that is out of its bounds.
+TypeError
+    A weight is no number.)");
+  refuse_pickling(evaluator);
   evaluator
       .def(py::init(&make), py::arg("scene"), py::arg("sensor"), py::kw_only(),
            py::arg("criterion") = "log_diagonal", py::arg("pixel_stride") = 1,
@@ -226,7 +231,8 @@ Returns
 -------
 ndarray, (...), structured
     gain = exploration (unknown voxels) + refinement (occupied ones), posterior_entropy, rays, hits,
-    unknown_voxels, occupied_voxels (distinct), status (index into ``VIEW_STATUS_NAMES``).)")
+    unknown_voxels, occupied_voxels (distinct), status (index into ``VIEW_STATUS_NAMES``). A single
+    pose gives a scalar.)")
       .def("best", &best, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
            py::arg("return_gains") = false, py::arg("control") = py::none(),
            R"(The k best poses, exactly, without scoring all where bounds tell.
@@ -257,11 +263,17 @@ Parameters
 interval : float
     Half width of a pose's confidence interval [standard errors].
 first_share : float
-    Of the tiles of an image in the first round, then four times as many.
+    Of the tiles of an image in the first round, then five times as many.
 keep : float
     Share of the poses that a round leaves at most.
 seed : int
-    Which tiles.)")
+    Which tiles.
+
+Returns
+-------
+indices : ndarray, (k,), int64
+gains : ndarray, (k,), structured
+    Only if return_gains. Both as from ``best``.)")
       .def("best_set", &best_set, py::arg("T_world_camera"), py::arg("k"), py::kw_only(),
            py::arg("return_gains") = false, py::arg("control") = py::none(),
            R"(Up to k poses that are good together, chosen one after the other.
@@ -294,7 +306,7 @@ seed : int
 Returns
 -------
 ndarray, (...), structured
-    gain, standard_error.)")
+    gain, standard_error. A single pose gives a scalar.)")
       .def_property_readonly(
           "rays_per_pose", [](const Evaluator& self) { return self.evaluator.rays_per_pose(); },
           "int")

@@ -13,6 +13,8 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "gil.hpp"
+#include "pickling.hpp"
 #include "python_call.hpp"
 #include "viewgain/core/reach.hpp"
 #include "viewgain/raycast/feasibility.hpp"
@@ -55,11 +57,12 @@ ReachRegion region_of(const py::object& boxes, const py::object& shells,
   if (!predicate.is_none()) {
     if (PyCallable_Check(predicate.ptr()) == 0) throw py::type_error("predicate must be callable");
     region.predicate = [call = PythonCall(predicate)](const Pose& T_world_camera) {
-      const py::gil_scoped_acquire with_gil;
-      const py::object answer = call.get()(to_array(T_world_camera));
-      const int truth = PyObject_IsTrue(answer.ptr());
-      if (truth < 0) throw py::error_already_set();
-      return truth == 1;
+      return with_gil([&] {
+        const py::object answer = call(to_array(T_world_camera));
+        const int truth = PyObject_IsTrue(answer.ptr());
+        if (truth < 0) throw py::error_already_set();
+        return truth == 1;
+      });
     };
   }
   region.validate();
@@ -74,7 +77,7 @@ py::array_t<std::uint8_t> codes_of(const Checker& self, const py::object& T_worl
       taken.is_none() ? std::vector<Pose>{} : pose_list(taken, "taken");
   py::array_t<std::uint8_t> codes(batch.shape);
   std::uint8_t* out = codes.mutable_data();
-  const py::gil_scoped_release without_gil;
+  const WithoutGil without_gil;
   for (const Pose& pose : batch.poses) {
     *out++ = static_cast<std::uint8_t>(self.checker.check(pose, before));
   }
@@ -83,7 +86,8 @@ py::array_t<std::uint8_t> codes_of(const Checker& self, const py::object& T_worl
 
 void bind_reach(py::module_& module) {
   const PoseTolerance tolerance;
-  py::class_<ReachRegion>(module, "ReachRegion", R"(Where a robot can put the camera, world frame.
+  py::class_<ReachRegion> type(module, "ReachRegion",
+                               R"(Where a robot can put the camera, world frame.
 
 A pose is reachable if its centre lies in at least one of the boxes (where there are any), in at least
 one of the shells (where there are any) and in every half-space, if it is among the poses (where there
@@ -102,8 +106,9 @@ poses : array_like, (n, 4, 4), optional
 distance, angle : float
     When two poses are the same one [m], [rad].
 predicate : callable, optional
-    Given T_world_camera (4, 4), returns a truth value. What it raises passes through.)")
-      .def(py::init(&region_of), py::kw_only(), py::arg("boxes") = py::none(),
+    Given T_world_camera (4, 4), returns a truth value. What it raises passes through.)");
+  refuse_pickling(type);
+  type.def(py::init(&region_of), py::kw_only(), py::arg("boxes") = py::none(),
            py::arg("shells") = py::none(), py::arg("half_spaces") = py::none(),
            py::arg("poses") = py::none(), py::arg("distance") = tolerance.distance,
            py::arg("angle") = tolerance.angle, py::arg("predicate") = py::none())
@@ -126,7 +131,8 @@ T_world_camera : array_like, (..., 4, 4)
 
 Returns
 -------
-ndarray, (...), bool)")
+ndarray, (...), bool
+    A single pose gives a scalar.)")
       .def("__repr__", [](const ReachRegion& r) {
         std::ostringstream text;
         text << "<ReachRegion " << r.boxes.size() << " boxes, " << r.shells.size() << " shells, "
@@ -148,8 +154,8 @@ void bind_feasibility(py::module_& module) {
   module.attr("INFEASIBILITY_NAMES") = py::tuple(names);
 
   const FeasibilityConfig defaults;
-  py::class_<Checker>(module, "FeasibilityChecker",
-                      R"(Says which camera poses are possible in a scene.
+  py::class_<Checker> type(module, "FeasibilityChecker",
+                           R"(Says which camera poses are possible in a scene.
 
 The sensor's housing, a box, must not overlap voxels that are not free, obstacles or the support plane;
 the pose must be reachable and not taken already. Outside the workspace nothing is known to block.
@@ -169,8 +175,9 @@ support_plane : float, optional
 sensor : Sensor, optional
     Views much of whose image would show what is nearer than the sensor's min_range are too near.
 max_near_share : float
-    How much: share of the rays that end in the map.)")
-      .def(py::init([](std::shared_ptr<VoxelScene> scene, const py::object& body_size,
+    How much: share of the rays that end in the map.)");
+  refuse_pickling(type);
+  type.def(py::init([](std::shared_ptr<VoxelScene> scene, const py::object& body_size,
                        const py::object& T_flange_camera, double clearance,
                        const ReachRegion* reach, std::optional<double> support_plane,
                        const Sensor* sensor, double max_near_share) {
@@ -210,7 +217,8 @@ taken : array_like, (n, 4, 4), optional
 
 Returns
 -------
-ndarray, (...), bool)")
+ndarray, (...), bool
+    A single pose gives a scalar.)")
       .def(
           "reasons",
           [](const Checker& self, const py::object& T_world_camera, const py::object& taken) {
@@ -227,7 +235,7 @@ taken : array_like, (n, 4, 4), optional
 Returns
 -------
 ndarray, (...), uint8
-    Indices into ``INFEASIBILITY_NAMES``; 0 is "none".)")
+    Indices into ``INFEASIBILITY_NAMES``; 0 is "none". A single pose gives a scalar.)")
       .def("__repr__", [](const Checker& self) {
         return "<FeasibilityChecker of a scene of " +
                std::to_string(self.scene->primitive_count()) + " primitives>";

@@ -11,11 +11,13 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "gil.hpp"
+#include "grid_files.hpp"
+#include "pickling.hpp"
+#include "prior.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/fused_points.hpp"
-#include "viewgain/grid/octomap_io.hpp"
-#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain::python {
 
@@ -39,22 +41,15 @@ namespace {
 
 using Labels = py::array_t<std::uint8_t, py::array::c_style>;
 
-double prior_of(std::optional<double> prior_sigma, const Sensor* sensor, double voxel_size) {
-  if (prior_sigma) return *prior_sigma;
-  return sensor != nullptr ? default_prior_sigma(voxel_size, *sensor) : 0.5 * voxel_size;
-}
-
 std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_size,
                                         const py::object& origin, const py::object& T_world_grid,
                                         std::optional<double> prior_sigma, const Sensor* sensor) {
-  const py::array any = py::array::ensure(labels);
-  if (!any || any.dtype().kind() != 'u' || any.itemsize() != 1 || any.ndim() != 3) {
-    PyErr_Clear();
-    throw py::value_error(
-        "labels must be uint8 with the shape (nx, ny, nz), not " +
-        (any ? py::str(any.dtype()).cast<std::string>() + " " + shape_text(any) : "that"));
+  const std::string wanted = "labels must be uint8 with the shape (nx, ny, nz)";
+  const py::array any = any_array(labels, wanted);
+  if (any.dtype().kind() != 'u' || any.itemsize() != 1 || any.ndim() != 3) {
+    throw py::value_error(wanted + ", not " + py::str(any.dtype()).cast<std::string>() + " " +
+                          shape_text(any));
   }
-  const Labels array = Labels::ensure(any);
   GridConfig config;
   config.voxel_size = voxel_size;
   config.prior_sigma = prior_of(prior_sigma, sensor, voxel_size);
@@ -64,10 +59,12 @@ std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_s
                             : one_pose(T_world_grid, "T_world_grid");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     config.workspace.max[axis] =
-        static_cast<double>(array.shape(static_cast<py::ssize_t>(axis))) * voxel_size;
+        static_cast<double>(any.shape(static_cast<py::ssize_t>(axis))) * voxel_size;
   }
+  static_cast<void>(BeliefGrid(config));  // throws before what no grid can hold is copied
+  const Labels array(any);
   const std::span states(array.data(), static_cast<std::size_t>(array.size()));
-  const py::gil_scoped_release without_gil;
+  const WithoutGil without_gil;
   return std::make_shared<SharedGrid>(BeliefGrid::from_states(config, states));
 }
 
@@ -135,9 +132,8 @@ void bind_grid(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(BeliefRow, voxel, hits, information, information_vector);
   PYBIND11_NUMPY_DTYPE(PointRow, position, covariance, toward_free, hits);
 
-  py::class_<SharedGrid, std::shared_ptr<SharedGrid>>(
-      module, "BeliefGrid",
-      R"(What is known of a workspace, voxel by voxel.
+  GridClass grid_class(module, "BeliefGrid",
+                       R"(What is known of a workspace, voxel by voxel.
 
 Voxel (i, j, k) is [i, i+1) x [j, j+1) x [k, k+1) times the voxel size in the grid's frame. A new
 grid is unknown throughout. Threads of Python may share one: they wait for each other.
@@ -161,7 +157,10 @@ Raises
 ValueError
     Names the value that is out of its bounds.
 Error
-    More than 65,536 voxels along an axis or 2**40 in all.)")
+    More than 65,536 voxels along an axis or 2**40 in all.)");
+  refuse_pickling(grid_class);
+  bind_grid_files(grid_class);
+  grid_class
       .def(py::init([](double voxel_size, const py::object& workspace,
                        std::optional<double> prior_sigma, const Sensor* sensor,
                        const py::object& T_world_grid) {
@@ -201,109 +200,16 @@ BeliefGrid
 Raises
 ------
 ValueError
-    Another dtype or shape, or a state over 2.)")
-      .def_static(
-          "load",
-          [](const py::object& path) {
-            const std::string file = file_path(path);
-            require_file(file);
-            const py::gil_scoped_release without_gil;
-            return std::make_shared<SharedGrid>(load_vdb(file));
-          },
-          py::arg("path"), R"(Reads a map that ``save`` or the program viewgain wrote.
-
-Parameters
-----------
-path : path-like
-    An OpenVDB file.
-
-Raises
-------
-FileNotFoundError, OSError
-    It cannot be opened.
+    Another dtype or shape, a state over 2, or an origin that is not finite.
 Error
-    It is no map or it is damaged.)")
-      .def_static(
-          "load_octomap",
-          [](const py::object& path, const py::object& workspace, std::optional<double> prior_sigma,
-             const Sensor* sensor, double occupied_from) {
-            const std::string file = file_path(path);
-            require_file(file);
-            OctomapConfig config;
-            if (!workspace.is_none()) config.workspace = box(workspace, "workspace");
-            config.occupied_from = static_cast<float>(occupied_from);
-            config.prior_sigma = prior_sigma;
-            const py::gil_scoped_release without_gil;
-            if (!prior_sigma && sensor != nullptr) {
-              config.prior_sigma = default_prior_sigma(octomap_resolution(file), *sensor);
-            }
-            return std::make_shared<SharedGrid>(load_octomap(file, config));
-          },
-          py::arg("path"), py::kw_only(), py::arg("workspace") = py::none(),
-          py::arg("prior_sigma") = py::none(), py::arg("sensor") = py::none(),
-          py::arg("occupied_from") = 0.0,
-          R"(Reads OctoMap's .ot or .bt; states are kept, and the log-odds of a .ot.
-
-Parameters
-----------
-path : path-like
-workspace : array_like, (2, 3), optional
-    Lowest and highest corner [m], in the tree's frame; default: the box of its known voxels.
-prior_sigma, sensor
-    As for a new grid.
-occupied_from : float
-    Log-odds from which a voxel of a .ot is occupied.
-
-Raises
-------
-FileNotFoundError, OSError
-    It cannot be opened.
-Error
-    It is no tree or it is damaged.)")
-      .def(
-          "save_octomap",
-          [](const SharedGrid& grid, const py::object& path) {
-            const std::string file = file_path(path);
-            require_folder_of(file);
-            grid.read([&](const BeliefGrid& g) { save_octomap(g, file); });
-          },
-          py::arg("path"), R"(Writes states and log-odds as an OctoMap .ot, in the grid's frame.
-
-Parameters
-----------
-path : path-like
-
-Raises
-------
-FileNotFoundError, OSError
-    It cannot be written.)")
-      .def(
-          "save",
-          [](const SharedGrid& grid, const py::object& path, bool with_covariance) {
-            const std::string file = file_path(path);
-            require_folder_of(file);
-            grid.read([&](const BeliefGrid& g) { save_vdb(g, file, {with_covariance}); });
-          },
-          py::arg("path"), py::kw_only(), py::arg("with_covariance") = false,
-          R"(Writes the map as a plain OpenVDB file; nothing half-written is left behind.
-
-Parameters
-----------
-path : path-like
-with_covariance : bool
-    Adds covariances and positions, for viewers.
-
-Raises
-------
-FileNotFoundError, OSError
-    It cannot be written.)")
+    More voxels than a grid can hold.)")
       .def(
           "clone",
           [](const SharedGrid& grid) {
             return grid.read(
                 [](const BeliefGrid& g) { return std::make_shared<SharedGrid>(g.clone()); });
           },
-          "A deep copy.")
+          "A deep copy.\n\nReturns\n-------\nBeliefGrid")
       .def_property_readonly(
           "voxel_size", [](const SharedGrid& grid) { return grid.layout().voxel_size(); },
           "float: [m]")
@@ -395,7 +301,8 @@ dict
           [](const SharedGrid& grid) {
             return grid.read([](const BeliefGrid& g) { return g.content_hash(); });
           },
-          "16 hexadecimal digits, the same for equal maps however they came about.")
+          "16 hexadecimal digits, the same for equal maps however they came about.\n\n"
+          "Returns\n-------\nstr")
       .def("__repr__", &repr_of);
 }
 

@@ -10,6 +10,8 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "depth_images.hpp"
+#include "integration.hpp"
+#include "pickling.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/integrate.hpp"
@@ -32,11 +34,7 @@ IntegrationConfig config_of(const std::string& carve, const std::string& occupan
   } else if (carve != "cones") {
     throw py::value_error("carve is \"" + carve + "\"; valid are cones lines");
   }
-  if (occupancy == "literal") {
-    config.occupancy = Occupancy::literal;
-  } else if (occupancy != "probabilistic") {
-    throw py::value_error("occupancy is \"" + occupancy + "\"; valid are probabilistic literal");
-  }
+  config.occupancy = parse_occupancy(occupancy);
   config.support_plane = support_plane;
   return config;
 }
@@ -49,22 +47,14 @@ py::dict integrate(SharedIntegrator& self, SharedGrid& grid, const py::object& d
     const std::lock_guard lock(self.mutex);
     return self.integrator.integrate(g, frame, pose);
   });
-  py::dict result;
-  result["readings"] = report.readings;
-  result["plane_readings"] = report.plane_readings;
-  result["out_of_range"] = report.out_of_range;
-  result["invalid"] = report.invalid;
-  result["readings_inside"] = report.readings_inside;
-  result["voxels_hit"] = report.voxels_hit;
-  result["voxels_crossed"] = report.voxels_crossed;
-  return result;
+  return dict_of(report);
 }
 
 }  // namespace
 
 void bind_integrator(py::module_& module) {
-  py::class_<SharedIntegrator>(module, "FrameIntegrator",
-                               R"(Puts depth frames of one sensor into a belief grid.
+  py::class_<SharedIntegrator> type(module, "FrameIntegrator",
+                                    R"(Puts depth frames of one sensor into a belief grid.
 
 Parameters
 ----------
@@ -76,8 +66,9 @@ occupancy : {"probabilistic", "literal"}
 support_plane : float, optional
     Height z [m] of the table that the object stands on; its readings carve but do not hit.
 num_threads : int
-    0: all hardware threads. Never changes the map.)")
-      .def(py::init([](const Sensor& sensor, const std::string& carve, const std::string& occupancy,
+    0: all hardware threads. Never changes the map.)");
+  refuse_pickling(type);
+  type.def(py::init([](const Sensor& sensor, const std::string& carve, const std::string& occupancy,
                        std::optional<double> support_plane, int num_threads) {
              const IntegrationConfig config = config_of(carve, occupancy, support_plane);
              return std::unique_ptr<SharedIntegrator>(new SharedIntegrator{

@@ -8,6 +8,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "pickling.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
@@ -42,7 +43,7 @@ Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes) {
 }  // namespace
 
 void bind_scene(py::module_& module) {
-  py::class_<VoxelScene, std::shared_ptr<VoxelScene>>(
+  py::class_<VoxelScene, std::shared_ptr<VoxelScene>> type(
       module, "VoxelScene",
       R"(An immutable snapshot of a grid, to be traced.
 
@@ -61,8 +62,9 @@ num_threads : int
 Raises
 ------
 ValueError
-    A shape, an index out of range, a box inside out.)")
-      .def(py::init([](const SharedGrid& grid, const py::object& boxes, const py::iterable& meshes,
+    A shape, an index out of range, a box inside out.)");
+  refuse_pickling(type);
+  type.def(py::init([](const SharedGrid& grid, const py::object& boxes, const py::iterable& meshes,
                        int num_threads) {
              const Obstacles obstacles = obstacles_of(boxes, meshes);
              return grid.read([&](const BeliefGrid& g) {

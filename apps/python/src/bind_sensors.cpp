@@ -11,33 +11,17 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "fields.hpp"
+#include "pickling.hpp"
+#include "prior.hpp"
 #include "viewgain/core/sensor.hpp"
 
 namespace viewgain::python {
 namespace {
 
-// name=value, name=value
-class Fields {
- public:
-  template <typename T>
-  Fields& add(const char* name, const T& value) {
-    if (!first_) text_ << ", ";
-    first_ = false;
-    text_ << name << '=' << value;
-    return *this;
-  }
-  [[nodiscard]] std::string in(const char* type) const {
-    return std::string(type) + "(" + text_.str() + ")";
-  }
-
- private:
-  std::ostringstream text_;
-  bool first_ = true;
-};
-
 void bind_camera(py::module_& module) {
-  py::class_<PinholeCamera>(module, "PinholeCamera",
-                            R"(Pinhole camera with OpenCV's distortion model.
+  py::class_<PinholeCamera> type(module, "PinholeCamera",
+                                 R"(Pinhole camera with OpenCV's distortion model.
 
 The optical frame has x right, y down, z forward; pixel (0, 0) has its centre at (0, 0).
 
@@ -55,8 +39,9 @@ distortion : sequence of 5 floats, optional
 Raises
 ------
 ValueError
-    Names the field that is out of its bounds.)")
-      .def(py::init([](int width, int height, double fx, double fy, double cx, double cy,
+    Names the field that is out of its bounds.)");
+  pickle_as_call(type, {"width", "height", "fx", "fy", "cx", "cy", "distortion"});
+  type.def(py::init([](int width, int height, double fx, double fy, double cx, double cy,
                        const std::array<double, 5>& distortion) {
              const PinholeCamera camera{width, height, fx, fy, cx, cy, distortion};
              camera.validate();
@@ -133,157 +118,12 @@ ndarray, (..., 2), float64
       });
 }
 
-void bind_noise(py::module_& module) {
-  const ShotNoise shot;
-  py::class_<ShotNoise>(module, "ShotNoise", R"(Time-of-flight shot noise.
-
-``axial = reference_sigma * (t / reference_range) * sqrt(reference_integration_time /
-integration_time) / sqrt(max(cos, 0.1))``, ``lateral = t / fx``; t is the range along the ray [m].
-
-Parameters
-----------
-reference_sigma, reference_range : float
-    [m]
-reference_integration_time, integration_time : float
-    [s]
-modulation_frequency : float
-    Of the light [Hz]; 0: ranges are unambiguous.
-min_amplitude : float
-    cos / t**2 under which a reading is invalid [1/m**2].)")
-      .def(py::init([](double sigma, double range, double reference_time, double time,
-                       double frequency, double amplitude) {
-             return ShotNoise{sigma, range, reference_time, time, frequency, amplitude};
-           }),
-           py::kw_only(), py::arg("reference_sigma") = shot.reference_sigma,
-           py::arg("reference_range") = shot.reference_range,
-           py::arg("reference_integration_time") = shot.reference_integration_time,
-           py::arg("integration_time") = shot.integration_time,
-           py::arg("modulation_frequency") = shot.modulation_frequency,
-           py::arg("min_amplitude") = shot.min_amplitude)
-      .def_readonly("reference_sigma", &ShotNoise::reference_sigma)
-      .def_readonly("reference_range", &ShotNoise::reference_range)
-      .def_readonly("reference_integration_time", &ShotNoise::reference_integration_time)
-      .def_readonly("integration_time", &ShotNoise::integration_time)
-      .def_readonly("modulation_frequency", &ShotNoise::modulation_frequency)
-      .def_readonly("min_amplitude", &ShotNoise::min_amplitude)
-      .def(
-          "__eq__", [](const ShotNoise& a, const ShotNoise& b) { return a == b; },
-          py::is_operator())
-      .def("__repr__", [](const ShotNoise& n) {
-        return Fields()
-            .add("reference_sigma", n.reference_sigma)
-            .add("reference_range", n.reference_range)
-            .add("reference_integration_time", n.reference_integration_time)
-            .add("integration_time", n.integration_time)
-            .add("modulation_frequency", n.modulation_frequency)
-            .add("min_amplitude", n.min_amplitude)
-            .in("ShotNoise");
-      });
-
-  const StructuredLightNoise light;
-  py::class_<StructuredLightNoise>(module, "StructuredLightNoise",
-                                   R"(Structured light (Nguyen, Izadi, Lovell, 2012).
-
-``axial = offset + quadratic * (z - vertex)**2``, plus ``grazing / sqrt(z) * theta**2 / (pi/2 -
-theta)**2`` beyond 60 degrees; ``lateral = (lateral_px + lateral_grazing_px * theta / (pi/2 - theta))
-* z / fx``; z is taken as the range along the ray [m].)")
-      .def(py::init([](double offset, double quadratic, double vertex, double grazing,
-                       double lateral_px, double lateral_grazing_px) {
-             return StructuredLightNoise{offset,  quadratic,  vertex,
-                                         grazing, lateral_px, lateral_grazing_px};
-           }),
-           py::kw_only(), py::arg("offset") = light.offset, py::arg("quadratic") = light.quadratic,
-           py::arg("vertex") = light.vertex, py::arg("grazing") = light.grazing,
-           py::arg("lateral_px") = light.lateral_px,
-           py::arg("lateral_grazing_px") = light.lateral_grazing_px)
-      .def_readonly("offset", &StructuredLightNoise::offset)
-      .def_readonly("quadratic", &StructuredLightNoise::quadratic)
-      .def_readonly("vertex", &StructuredLightNoise::vertex)
-      .def_readonly("grazing", &StructuredLightNoise::grazing)
-      .def_readonly("lateral_px", &StructuredLightNoise::lateral_px)
-      .def_readonly("lateral_grazing_px", &StructuredLightNoise::lateral_grazing_px)
-      .def(
-          "__eq__",
-          [](const StructuredLightNoise& a, const StructuredLightNoise& b) { return a == b; },
-          py::is_operator())
-      .def("__repr__", [](const StructuredLightNoise& n) {
-        return Fields()
-            .add("offset", n.offset)
-            .add("quadratic", n.quadratic)
-            .add("vertex", n.vertex)
-            .add("grazing", n.grazing)
-            .add("lateral_px", n.lateral_px)
-            .add("lateral_grazing_px", n.lateral_grazing_px)
-            .in("StructuredLightNoise");
-      });
-
-  const StereoNoise stereo;
-  py::class_<StereoNoise>(
-      module, "StereoNoise",
-      "Stereo: ``axial = t**2 * subpixel / (focal * baseline)``, ``lateral = t / "
-      "fx``.\n\nsubpixel and focal in [px], baseline in [m].")
-      .def(py::init([](double subpixel, double focal, double baseline) {
-             return StereoNoise{subpixel, focal, baseline};
-           }),
-           py::kw_only(), py::arg("subpixel") = stereo.subpixel, py::arg("focal") = stereo.focal,
-           py::arg("baseline") = stereo.baseline)
-      .def_readonly("subpixel", &StereoNoise::subpixel)
-      .def_readonly("focal", &StereoNoise::focal)
-      .def_readonly("baseline", &StereoNoise::baseline)
-      .def(
-          "__eq__", [](const StereoNoise& a, const StereoNoise& b) { return a == b; },
-          py::is_operator())
-      .def("__repr__", [](const StereoNoise& n) {
-        return Fields()
-            .add("subpixel", n.subpixel)
-            .add("focal", n.focal)
-            .add("baseline", n.baseline)
-            .in("StereoNoise");
-      });
-
-  const QuadraticNoise quadratic;
-  py::class_<QuadraticNoise>(
-      module, "QuadraticNoise",
-      "``axial = offset + quadratic * t**2``, ``lateral = t / fx``.\n\noffset in [m], quadratic in "
-      "[1/m].")
-      .def(py::init([](double offset, double q) { return QuadraticNoise{offset, q}; }),
-           py::kw_only(), py::arg("offset") = quadratic.offset,
-           py::arg("quadratic") = quadratic.quadratic)
-      .def_readonly("offset", &QuadraticNoise::offset)
-      .def_readonly("quadratic", &QuadraticNoise::quadratic)
-      .def(
-          "__eq__", [](const QuadraticNoise& a, const QuadraticNoise& b) { return a == b; },
-          py::is_operator())
-      .def("__repr__", [](const QuadraticNoise& n) {
-        return Fields().add("offset", n.offset).add("quadratic", n.quadratic).in("QuadraticNoise");
-      });
-
-  const ConstantNoise constant;
-  py::class_<ConstantNoise>(module, "ConstantNoise",
-                            "The same everywhere [m]; equal sigmas make an isotropic sensor.")
-      .def(py::init([](double axial, double lateral) { return ConstantNoise{axial, lateral}; }),
-           py::kw_only(), py::arg("sigma_axial") = constant.sigma_axial,
-           py::arg("sigma_lateral") = constant.sigma_lateral)
-      .def_readonly("sigma_axial", &ConstantNoise::sigma_axial)
-      .def_readonly("sigma_lateral", &ConstantNoise::sigma_lateral)
-      .def(
-          "__eq__", [](const ConstantNoise& a, const ConstantNoise& b) { return a == b; },
-          py::is_operator())
-      .def("__repr__", [](const ConstantNoise& n) {
-        return Fields()
-            .add("sigma_axial", n.sigma_axial)
-            .add("sigma_lateral", n.sigma_lateral)
-            .in("ConstantNoise");
-      });
-}
-
 }  // namespace
 
 void bind_sensors(py::module_& module) {
   bind_camera(module);
-  bind_noise(module);
-  py::class_<Sensor>(module, "Sensor",
-                     R"(A depth camera: intrinsics, range limits, noise. Immutable.
+  py::class_<Sensor> type(module, "Sensor",
+                          R"(A depth camera: intrinsics, range limits, noise. Immutable.
 
 Parameters
 ----------
@@ -301,8 +141,10 @@ T_flange_camera : array_like, (4, 4), optional
 Raises
 ------
 ValueError
-    Names the field that is out of its bounds.)")
-      .def(py::init([](const PinholeCamera& camera, double min_range, double max_range,
+    Names the field that is out of its bounds.)");
+  pickle_as_call(type, {"camera", "min_range", "max_range", "working_distance", "noise", "name",
+                        "T_flange_camera"});
+  type.def(py::init([](const PinholeCamera& camera, double min_range, double max_range,
                        double working_distance, const NoiseModel& noise, std::string name,
                        const py::object& T_flange_camera) {
              Sensor sensor{std::move(name),
@@ -375,11 +217,20 @@ Sensor)");
   module.def(
       "sensor_preset_names", [] { return sensor_preset_names(); },
       "The names that ``sensor_preset`` takes.\n\nReturns\n-------\nlist of str");
-  module.def("default_prior_sigma", &default_prior_sigma, py::arg("voxel_size"), py::arg("sensor"),
+  module.def("default_prior_sigma", &checked_prior_sigma, py::arg("voxel_size"), py::arg("sensor"),
              R"(Standard deviation of an unknown voxel's position, when the map does not say [m].
 
 ``max(voxel_size / 2, 2 * axial sigma at the working distance)``: unknown is never surer than one
-reading.)");
+reading.
+
+Returns
+-------
+float
+
+Raises
+------
+ValueError
+    voxel_size is not positive and finite.)");
 }
 
 }  // namespace viewgain::python

@@ -11,6 +11,8 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "depth_images.hpp"
+#include "gil.hpp"
+#include "pickling.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain::python {
@@ -25,8 +27,8 @@ struct Simulation {
 
 void bind_simulation(py::module_& module) {
   const SimulationConfig defaults;
-  py::class_<Simulation>(module, "SimulatedSensor",
-                         R"(A depth camera in front of a triangle mesh.
+  py::class_<Simulation> type(module, "SimulatedSensor",
+                              R"(A depth camera in front of a triangle mesh.
 
 Parameters
 ----------
@@ -48,8 +50,9 @@ seed : int
 support_plane : float, optional
     Height z of a diffuse table without end [m].
 num_threads : int
-    0: all hardware threads.)")
-      .def(
+    0: all hardware threads.)");
+  refuse_pickling(type);
+  type.def(
           py::init([](const py::object& vertices, const py::object& triangles, const Sensor& sensor,
                       double background_radius, bool noise, bool lateral_noise, int sub_rays,
                       std::uint64_t seed, std::optional<double> support_plane, int num_threads) {
@@ -77,7 +80,7 @@ num_threads : int
             const Pose pose = one_pose(T_world_camera, "T_world_camera");
             DepthFrame frame;
             {
-              const py::gil_scoped_release without_gil;
+              const WithoutGil without_gil;
               frame = self.camera.acquire(pose, frame_index);
             }
             return py::make_tuple(image_array(frame.depth, frame.height, frame.width),

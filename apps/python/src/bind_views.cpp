@@ -13,6 +13,7 @@
 #include "batch_call.hpp"
 #include "depth_images.hpp"
 #include "evaluator.hpp"
+#include "gil.hpp"
 #include "python_call.hpp"
 #include "viewgain/raycast/depth_image.hpp"
 
@@ -48,7 +49,7 @@ namespace {
 
 std::vector<RayHit> trace(const Evaluator& self, const py::object& T_world_camera) {
   const Pose pose = one_pose(T_world_camera, "T_world_camera");
-  const py::gil_scoped_release without_gil;
+  const WithoutGil without_gil;
   return self.evaluator.trace(pose);
 }
 
@@ -66,7 +67,7 @@ py::array_t<float> depth(const Evaluator& self, const py::object& T_world_camera
   const Pose pose = one_pose(T_world_camera, "T_world_camera");
   DepthImage image;
   {
-    const py::gil_scoped_release without_gil;
+    const WithoutGil without_gil;
     image = depth_image(self.evaluator, pose);
   }
   return image_array(image.depth, image.height, image.width);
@@ -77,7 +78,7 @@ py::array_t<ContributionRow> contributions(const Evaluator& self,
   const Pose pose = one_pose(T_world_camera, "T_world_camera");
   std::vector<ContributionRow> rows;
   {
-    const py::gil_scoped_release without_gil;
+    const WithoutGil without_gil;
     for (const VoxelContribution& c : self.evaluator.contributions(pose)) {
       rows.push_back(
           {{c.voxel.x, c.voxel.y, c.voxel.z}, static_cast<std::uint8_t>(c.state), c.rays, c.gain});
@@ -92,7 +93,11 @@ class PythonMeasure : public ViewMeasure {
   explicit PythonMeasure(py::object callable) : call_(std::move(callable)) {}
 
   double measure(const Pose& T_world_camera, std::span<const ViewHit> hits) const override {
-    const py::gil_scoped_acquire with_gil;
+    return with_gil([&] { return asked(T_world_camera, hits); });
+  }
+
+ private:
+  double asked(const Pose& T_world_camera, std::span<const ViewHit> hits) const {
     py::array_t<OwnHitRow> rows(static_cast<py::ssize_t>(hits.size()));
     std::transform(hits.begin(), hits.end(), rows.mutable_data(), [](const ViewHit& hit) {
       OwnHitRow row{{hit.voxel.x, hit.voxel.y, hit.voxel.z},
@@ -108,10 +113,9 @@ class PythonMeasure : public ViewMeasure {
       }
       return row;
     });
-    return call_.get()(to_array(T_world_camera), rows).cast<double>();
+    return number(call_(to_array(T_world_camera), rows), "what measure returns");
   }
 
- private:
   PythonCall call_;
 };
 
@@ -189,7 +193,13 @@ control : BatchControl, optional
 Returns
 -------
 ndarray, (...), float64
-    NaN for bad poses, 0 for cameras in an occupied voxel; neither is asked about.)");
+    NaN for bad poses, 0 for cameras in an occupied voxel; neither is asked about. A single pose gives
+    a scalar.
+
+Raises
+------
+TypeError
+    measure returned no number.)");
 }
 
 }  // namespace viewgain::python

@@ -8,11 +8,14 @@ namespace viewgain::python {
 
 /// The parts of the module viewgain._viewgain, in the order in which they need each other.
 void bind_errors(pybind11::module_& module);
+void bind_fork();
 void bind_control(pybind11::module_& module);
+void bind_noise(pybind11::module_& module);
 void bind_sensors(pybind11::module_& module);
 void bind_generators(pybind11::module_& module);
 void bind_grid(pybind11::module_& module);
 void bind_integrator(pybind11::module_& module);
+void bind_cloud(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);
 void bind_feasibility(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);

@@ -37,7 +37,9 @@ void bind_errors(py::module_& module) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Error& error) {
-      PyErr_SetString(python_type(error.code()), error.what());
+      // The text may have a file's name in it, whose bytes need not be UTF-8.
+      const auto text = py::reinterpret_steal<py::object>(PyUnicode_DecodeFSDefault(error.what()));
+      if (text) PyErr_SetObject(python_type(error.code()), text.ptr());
     }
   });
 }
@@ -49,11 +51,14 @@ PYBIND11_MODULE(_viewgain, module) {
   module.doc() = "The C++ part of viewgain; import viewgain instead.";
   module.attr("__version__") = VIEWGAIN_PYTHON_VERSION;
   bind_errors(module);
+  bind_fork();
   bind_control(module);
+  bind_noise(module);
   bind_sensors(module);
   bind_generators(module);
   bind_grid(module);
   bind_integrator(module);
+  bind_cloud(module);
   bind_scene(module);
   bind_feasibility(module);
   bind_simulation(module);

@@ -7,19 +7,22 @@
 #include <memory>
 #include <utility>
 
+#include "gil.hpp"
+
 namespace viewgain::python {
 
 /// A callable of Python's that C++ may keep, copy and drop on any thread, with the GIL or without.
 class PythonCall {
  public:
   explicit PythonCall(pybind11::object callable)
-      : callable_(new pybind11::object(std::move(callable)), [](pybind11::object* held) {
-          const pybind11::gil_scoped_acquire with_gil;
-          delete held;
-        }) {}
+      : callable_(new pybind11::object(std::move(callable)),
+                  [](pybind11::object* held) { with_gil([&] { delete held; }); }) {}
 
   /// Call with the GIL.
-  [[nodiscard]] const pybind11::object& get() const { return *callable_; }
+  template <typename... Args>
+  pybind11::object operator()(Args&&... args) const {
+    return call_python(*callable_, std::forward<Args>(args)...);
+  }
 
  private:
   std::shared_ptr<pybind11::object> callable_;

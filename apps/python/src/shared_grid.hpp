@@ -8,6 +8,7 @@
 #include <shared_mutex>
 #include <utility>
 
+#include "gil.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain::python {
@@ -22,14 +23,13 @@ class SharedGrid {
   /// with the GIL.
   template <typename F>
   auto read(const F& f) const {
-    const pybind11::gil_scoped_release
-        without_gil;  // before the lock, or two threads hold one each
+    const WithoutGil without_gil;  // before the lock, or two threads hold one each
     const std::shared_lock lock(mutex_);
     return f(grid_);
   }
   template <typename F>
   auto write(const F& f) {
-    const pybind11::gil_scoped_release without_gil;
+    const WithoutGil without_gil;
     const std::unique_lock lock(mutex_);
     return f(grid_);
   }

@@ -26,7 +26,12 @@
    released again, after its release.
 
    Thread safety: scenes, evaluators and checkers may be used from many threads at once. Nothing may
-   run beside a function that changes a grid, on that grid. One call at a time on an integrator. */
+   run beside a function that changes a grid, on that grid. One call at a time on an integrator.
+
+   Fork: evaluators work in the child, which makes threads of its own. A child that does not exec
+   must end by _exit(), after fflush(NULL) if it wrote anything: exit(), and so a return from main,
+   may wait for ever. Debian's OpenVDB loads log4cplus, whose exit handler waits for threads that a
+   child does not have. The same holds for C++. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -137,7 +142,8 @@ VG_API vg_status vg_grid_load(const char* path, vg_grid** grid); /* a .vdb file 
 VG_API vg_status vg_grid_save(const vg_grid* grid, const char* path);
 
 /* OctoMap's .ot and .bt: the states, and a .ot's log-odds; the workspace is the box of the known
-   voxels. prior_sigma [m], 0: half a voxel. Saving writes a .ot, in the grid's frame. */
+   voxels. prior_sigma [m], 0: half a voxel. Saving writes a .ot, in the world's frame where
+   T_world_grid is a shift by whole voxels, else in the grid's own. */
 VG_API vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** grid);
 VG_API vg_status vg_grid_save_octomap(const vg_grid* grid, const char* path);
 VG_API vg_status vg_grid_clone(const vg_grid* grid, vg_grid** copy);

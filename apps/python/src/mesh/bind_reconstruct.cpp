@@ -12,10 +12,13 @@
 #include "batch_call.hpp"
 #include "candidate_generation.hpp"
 #include "depth_images.hpp"
+#include "gil.hpp"
 #include "mesh/bindings.hpp"
 #include "model.hpp"
+#include "pickling.hpp"
 #include "planning_options.hpp"
 #include "policies.hpp"
+#include "prior.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/planning.hpp"
 
@@ -41,9 +44,13 @@ class PythonAcquisition : public DataAcquisition {
       : callback_(std::move(callback)), sensor_(sensor) {}
 
   Measurements acquire(const Pose& T_world_camera, std::size_t) override {
-    const py::gil_scoped_acquire with_gil;
+    return with_gil([&] { return asked(T_world_camera); });
+  }
+
+ private:
+  Measurements asked(const Pose& T_world_camera) {
     check_signals();
-    const py::object answer = callback_(to_array(T_world_camera));
+    const py::object answer = call_python(callback_, to_array(T_world_camera));
     Measurements measurements{T_world_camera, {}};
     if (!py::isinstance<py::tuple>(answer)) {
       measurements.frames.push_back(depth_frame(sensor_, answer, py::none()));
@@ -61,7 +68,6 @@ class PythonAcquisition : public DataAcquisition {
     return measurements;
   }
 
- private:
   py::object callback_;
   const Sensor& sensor_;
 };
@@ -116,7 +122,7 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
   app::ModelConfig model_config;
   model_config.grid.voxel_size = voxel_size;
   model_config.grid.workspace = box(workspace, "workspace");
-  model_config.grid.prior_sigma = default_prior_sigma(voxel_size, sensor);
+  model_config.grid.prior_sigma = checked_prior_sigma(voxel_size, sensor);
   model_config.integration.support_plane = support_plane;
   if (jump_edges) model_config.jump_edges.emplace();
   model_config.criterion = parse_criterion(criterion);
@@ -138,15 +144,16 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
   app::PolicyDecision decision(model, generation, sensor, policy_config, exec, seconds);
   Reconstruction result;
   const auto watch = [&](const ViewRecord& record) {
-    const py::gil_scoped_acquire with_gil;
-    check_signals();
-    const py::dict view = dict_of(record);
-    result.views.append(view);
-    if (!observer.is_none()) observer(view);
+    with_gil([&] {
+      check_signals();
+      const py::dict view = dict_of(record);
+      result.views.append(view);
+      if (!observer.is_none()) call_python(observer, view);
+    });
   };
   {
     // On this thread, so that a camera's driver and a plot are called on the thread they know.
-    const py::gil_scoped_release without_gil;
+    const WithoutGil without_gil;
     const PlanningResult end =
         active_view_planning(x_0, acquisition, model, generation, decision, planning, watch);
     result.reason = stop_reason_name(end.reason);
@@ -159,10 +166,11 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
 }  // namespace
 
 void bind_reconstruct(py::module_& module) {
-  py::class_<Reconstruction>(
+  py::class_<Reconstruction> type(
       module, "Reconstruction",
-      "What ``reconstruct`` came to: its views, why it ended, the surface and the map.")
-      .def_readonly("reason", &Reconstruction::reason,
+      "What ``reconstruct`` came to: its views, why it ended, the surface and the map.");
+  refuse_pickling(type);
+  type.def_readonly("reason", &Reconstruction::reason,
                     "str: why it ended: gain, no_candidates, unreachable, idle, max_views, "
                     "interrupted")
       .def_readonly("views", &Reconstruction::views, "list of dict: one a view, see reconstruct")

@@ -2,14 +2,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "arrays.hpp"
+#include "gil.hpp"
 #include "mesh/bindings.hpp"
 #include "model.hpp"
+#include "pickling.hpp"
 #include "planning_options.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/mesh/boundary.hpp"
@@ -46,7 +49,7 @@ SurfaceMesh surface_of_points(const py::object& positions, const py::object& tow
     for (std::size_t i = 0; i < where.size(); ++i) oriented[i].toward_free = hints[i];
   }
   const SurfaceConfig config{spacing, smoothing_neighbors, max_edge, join_distance, min_component};
-  const py::gil_scoped_release without_gil;
+  const WithoutGil without_gil;
   return reconstruct_surface(oriented, config, ExecConfig{num_threads});
 }
 
@@ -64,6 +67,10 @@ py::tuple boundary_candidates(const SurfaceMesh& surface, const py::object& view
                               const std::optional<std::vector<double>>& distances,
                               const std::optional<std::vector<double>>& tilts,
                               const std::optional<std::vector<double>>& rolls) {
+  if (!(spacing > 0 && std::isfinite(spacing))) {
+    throw py::value_error("the spacing must be positive and finite, not " +
+                          std::to_string(spacing));
+  }
   const std::vector<Pose> taken = pose_list(views, "views");
   EstimatorConfig config = app::default_estimator(spacing);
   if (overlap) config.overlap = *overlap;
@@ -72,7 +79,7 @@ py::tuple boundary_candidates(const SurfaceMesh& surface, const py::object& view
   if (rolls) config.rolls = *rolls;
   EstimatedViews estimated;
   {
-    const py::gil_scoped_release without_gil;
+    const WithoutGil without_gil;
     estimated = estimate_views(surface, taken, sensor,
                                working_distance.value_or(sensor.working_distance), config);
   }
@@ -106,12 +113,14 @@ void bind_surface(py::module_& module) {
   }
   module.attr("BOUNDARY_CLASS_NAMES") = py::tuple(classes);
 
-  py::class_<SurfaceMesh>(module, "Surface",
-                          R"(An open, oriented triangle surface. Made by ``reconstruct_surface``,
+  py::class_<SurfaceMesh> type(
+      module, "Surface",
+      R"(An open, oriented triangle surface. Made by ``reconstruct_surface``,
 ``surface_of_grid`` and ``reconstruct``.
 
-Faces turn counter-clockwise seen from free space.)")
-      .def_property_readonly(
+Faces turn counter-clockwise seen from free space.)");
+  refuse_pickling(type);
+  type.def_property_readonly(
           "vertices", [](const SurfaceMesh& s) { return to_array_3(s.vertices); },
           "ndarray, (n, 3), float64: [m]")
       .def_property_readonly(

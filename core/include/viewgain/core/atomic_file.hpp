@@ -39,8 +39,14 @@ class VIEWGAIN_EXPORT AtomicFile {
   std::filesystem::path target_;     // as given, for messages
   std::filesystem::path resolved_;   // behind symbolic links
   std::filesystem::path temporary_;  // equals resolved_ when written in place
+  char* listed_ = nullptr;           // the name for remove_temporary_files()
   bool committed_ = false;
 };
+
+/// Removes the temporary files of all AtomicFile objects of this process (of the first 64 alive),
+/// for a program's handler of a signal that then ends it: safe in a signal's handler. Their writers
+/// fail or write into nothing afterwards.
+VIEWGAIN_EXPORT void remove_temporary_files() noexcept;
 
 /// The common case: the whole contents at once.
 VIEWGAIN_EXPORT void write_file_atomically(const std::filesystem::path& target,

@@ -10,6 +10,10 @@
 
 namespace viewgain {
 
+/// The number of threads that ExecConfig::num_threads stands for: all hardware threads if 0. Throws
+/// Error(invalid_argument) if it is negative or over 1024.
+[[nodiscard]] VIEWGAIN_EXPORT int thread_count(int num_threads);
+
 /// Reusable threads for data-parallel loops. The caller takes part. A call that finds the pool
 /// busy, from another thread or from inside a loop body, runs its whole loop on its caller, so
 /// nested and concurrent use cannot deadlock. Thread safety: every member may be called from any
@@ -18,8 +22,7 @@ namespace viewgain {
 /// destructor leaves the parent's threads alone.
 class VIEWGAIN_EXPORT ThreadPool {
  public:
-  /// num_threads counts the caller; 0 means all hardware threads. Throws Error(invalid_argument) if
-  /// negative or over 1024.
+  /// num_threads counts the caller; see thread_count().
   explicit ThreadPool(int num_threads = 0);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;

@@ -32,11 +32,13 @@ struct VIEWGAIN_EXPORT OctomapConfig {
 /// a free one at most 0. A `.bt` says only which is likelier: 3.5 where occupied, -2 where free, as
 /// in OctoMap's own reader. Voxels have no beliefs (as in BeliefGrid::from_states), the map no
 /// views. A pruned leaf costs a tile where it is free, a block per 8³ voxels where it is occupied.
+/// Pruned leaves of more than 2^27 occupied voxels in the workspace are refused: a file of a
+/// hundred bytes can ask for all of the memory with them.
 ///
 /// Throws Error(io) if the file cannot be read; Error(format), naming the file and the line or the
 /// byte, if it is cut, has another count of nodes than it says, a value that is no number, or no
-/// known voxel and no workspace is given; Error(capacity) and Error(invalid_argument) as
-/// BeliefGrid.
+/// known voxel and no workspace is given; Error(capacity), naming the file, for what is too large;
+/// Error(invalid_argument) as BeliefGrid.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_octomap(const std::filesystem::path& path,
                                                       const OctomapConfig& config = {});
 /// The same of a file's contents; `name` stands for the file in messages.
@@ -46,13 +48,18 @@ struct VIEWGAIN_EXPORT OctomapConfig {
 /// The resolution of an OctoMap file [m], from its header alone. Throws as load_octomap.
 [[nodiscard]] VIEWGAIN_EXPORT double octomap_resolution(const std::filesystem::path& path);
 
-/// Writes a `.ot` that OctoMap and load_octomap read, pruned: states and log-odds, in the grid's
-/// frame. A tree has no place for beliefs, prior, T_world_grid and views. A free voxel's log-odds
-/// of 0 is written as -0.001, since OctoMap calls 0 occupied; read back it is 0 again. Atomic: a
-/// temporary file is renamed. Throws Error(io), and Error(capacity) if a known voxel's index is not
-/// in [-32768, 32768).
+/// Writes a `.ot` that OctoMap and load_octomap read, pruned: states and log-odds, in the world's
+/// frame where octomap_keeps_frame(grid), else in the grid's. A tree has no place for beliefs,
+/// prior, T_world_grid and views. A free voxel's log-odds of 0 is written as -0.001, since OctoMap
+/// calls 0 occupied; read back it is 0 again. Atomic: a temporary file is renamed. Throws
+/// Error(io), and Error(capacity) if a known voxel's index is not in [-32768, 32768).
 VIEWGAIN_EXPORT void save_octomap(const BeliefGrid& grid, const std::filesystem::path& path);
 /// The contents of that file.
 [[nodiscard]] VIEWGAIN_EXPORT std::string octomap_bytes(const BeliefGrid& grid);
+
+/// Whether a tree's voxels would lie in the world where the grid's do: T_world_grid is the
+/// identity, or (to 1e-6 voxel) moves the workspace by whole voxels and not out of a tree's space.
+/// Otherwise the frame is lost, and the tree is to be moved by T_world_grid.
+[[nodiscard]] VIEWGAIN_EXPORT bool octomap_keeps_frame(const BeliefGrid& grid);
 
 }  // namespace viewgain

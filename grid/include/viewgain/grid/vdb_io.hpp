@@ -21,7 +21,8 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
 
 /// Reads a file that save_vdb wrote, or another program in the same layout; exact: the loaded map
 /// has the saved one's content_hash(). Throws Error(io) if it cannot be opened and Error(format),
-/// naming the file and what is missing or out of bounds, if it is truncated or no viewgain map.
+/// naming the file and what is missing or out of bounds, if it is truncated or no viewgain map;
+/// Error(capacity) if tiles hold more than 2^27 occupied voxels.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_vdb(const std::filesystem::path& path);
 
 }  // namespace viewgain

@@ -137,12 +137,13 @@ class VIEWGAIN_EXPORT GainEvaluator {
 
   /// The k best poses, very probably: successive halving. Poses are compared by random sub-bundles
   /// of their tiles, nested and the same for all; each round drops those whose confidence interval
-  /// lies below those of k others, and all but a share, and traces four times as many tiles of the
+  /// lies below those of k others, and all but a share, and traces five times as many tiles of the
   /// rest. The survivors (32 or 4 k at least) are scored in full, so gains reported are exact.
   /// Small bundles count rays of different tiles as if they never met in a voxel, which favours
   /// views from near by a little. Works with obstacles, weights and distortion. Deterministic for a
   /// seed and any number of threads. Throws Error(invalid_argument), naming the value, for a config
-  /// out of range. Stopped in a round, it returns nothing and is not `complete`.
+  /// out of range. control.progress counts poses that are out, after each round. Stopped in a
+  /// round, it returns nothing and is not `complete`.
   [[nodiscard]] BestViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const RaceConfig& config = {},
                                const BatchControl& control = {}) const;
@@ -152,19 +153,21 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// voxels' (an unknown voxel goes on blocking rays as unknown). Ties go to the lower index, bad
   /// poses are never chosen, k is clamped. For log_determinant, which is submodular, poses whose
   /// earlier gain cannot win are not scored anew, which gives the same choice; for log_diagonal and
-  /// trace a pose may gain more after another, so that all are scored in every round. A stop
-  /// returns those chosen so far. Costs up to k batches, about twice the time of evaluate() each,
-  /// and memory for the voxels touched.
+  /// trace a pose may gain more after another, so that all are scored in every round.
+  /// control.progress counts those chosen. A stop returns those chosen so far. Costs up to k
+  /// batches, about twice the time of evaluate() each, and memory for the voxels touched.
   [[nodiscard]] ViewSet best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                  const BatchControl& control = {}) const;
 
   /// Estimates of the gains from random sub-bundles of each view's tiles, the same for all poses,
   /// with standard errors, result i for pose i. Sums over single bundles are too large, because
   /// rays of different tiles meet in voxels; the median ratio of true gain to estimate over some
-  /// poses scored in full (`anchors`, every n/anchors-th; none below 2) corrects the mean of that,
-  /// and its scatter is part of the standard error. What is left is that the ratio depends on the
-  /// view's distance. Bad poses: NaN. Deterministic for a seed and any number of threads. Returns
-  /// how many poses were estimated: fewer than all if a stop was requested, then without the
+  /// poses scored in full (`anchors`, every n/anchors-th) corrects the mean of that, and the
+  /// scatter of these ratios is the standard error, as a share of the gain. What is left is that
+  /// the ratio depends on the view's distance. With fewer than two anchors the scatter of the
+  /// bundles counts, which is too large by half or more: together they cover the image more evenly
+  /// than each. Bad poses: NaN. Deterministic for a seed and any number of threads. Returns how
+  /// many poses were estimated: fewer than all if a stop was requested, then without the
   /// correction. Throws Error(invalid_argument) for a config out of range or if the sizes differ.
   std::size_t approximate(std::span<const Pose> T_world_camera, std::span<ApproximateGain> results,
                           const ApproximateConfig& config = {},

@@ -25,8 +25,8 @@ struct VIEWGAIN_EXPORT BestViews {
 
 /// How GainEvaluator::race() parts the wheat from the chaff.
 struct VIEWGAIN_EXPORT RaceConfig {
-  double interval = 4.5;          ///< half width of a pose's confidence interval [standard errors]
-  double first_share = 1.0 / 32;  ///< of the tiles in the first round, then four times as many
+  double interval = 3.0;          ///< half width of a pose's confidence interval [standard errors]
+  double first_share = 1.0 / 40;  ///< of the tiles in the first round, then five times as many
   double keep = 0.25;             ///< of the poses that a round leaves at most
   std::uint64_t seed = 1;         ///< which tiles
 };
@@ -43,7 +43,7 @@ struct VIEWGAIN_EXPORT ViewSet {
 /// How GainEvaluator::approximate() samples a view.
 struct VIEWGAIN_EXPORT ApproximateConfig {
   double share = 0.1;        ///< of a view's tiles that are traced; in (0, 1]
-  int groups = 8;            ///< random groups that the standard error comes from; 2 to 64
+  int groups = 8;            ///< sub-bundles that are summed by themselves; 2 to 64
   std::size_t anchors = 32;  ///< poses scored in full that the correction of the bias rests on
   std::uint64_t seed = 1;    ///< which tiles
 };

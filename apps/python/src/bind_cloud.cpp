@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "gil.hpp"
+#include "integration.hpp"
+#include "pickling.hpp"
+#include "shared_grid.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/cloud_io.hpp"
+#include "viewgain/grid/integrate_cloud.hpp"
+
+namespace viewgain::python {
+namespace {
+
+using Cloud = std::vector<std::array<double, 3>>;
+
+// Python's CloudIntegrator; one call at a time.
+struct SharedCloudIntegrator {
+  Sensor sensor;
+  CloudIntegrator integrator;
+  std::mutex mutex;
+};
+
+void move_to_world(Cloud& cloud, const Pose& pose) {
+  const Pose T_world_sensor = orthonormalized(pose);
+  for (auto& point : cloud) {
+    const Eigen::Vector3d p = T_world_sensor * Eigen::Vector3d(point[0], point[1], point[2]);
+    point = {p.x(), p.y(), p.z()};
+  }
+}
+
+py::dict integrate(SharedCloudIntegrator& self, SharedGrid& grid, const py::object& points_sensor,
+                   const py::object& T_world_sensor) {
+  Cloud cloud = points(points_sensor, "points");
+  const Pose pose = one_pose(T_world_sensor, "T_world_sensor");
+  const IntegrationReport report = grid.write([&](BeliefGrid& g) {
+    const std::lock_guard lock(self.mutex);
+    move_to_world(cloud, pose);
+    return self.integrator.integrate(g, cloud, pose);
+  });
+  return dict_of(report);
+}
+
+py::object bounds(const Sensor& sensor, const py::object& points_sensor,
+                  const py::object& T_world_sensor, std::optional<double> support_plane) {
+  Cloud cloud = points(points_sensor, "points");
+  const Pose pose = one_pose(T_world_sensor, "T_world_sensor");
+  std::optional<Box> box;
+  {
+    const WithoutGil without_gil;
+    move_to_world(cloud, pose);
+    box = reading_bounds(sensor, cloud, pose, {}, support_plane);
+  }
+  if (!box) return py::none();
+  return to_array_3<double>({box->min, box->max});
+}
+
+py::tuple load(const py::object& path) {
+  const std::string file = file_path(path);
+  require_file(file);
+  PointCloud cloud;
+  {
+    const WithoutGil without_gil;
+    cloud = load_cloud(file);
+  }
+  const py::object viewpoint =
+      cloud.viewpoint ? py::object(to_array(*cloud.viewpoint)) : py::none();
+  return py::make_tuple(to_array_3(cloud.points), viewpoint);
+}
+
+}  // namespace
+
+void bind_cloud(py::module_& module) {
+  py::class_<SharedCloudIntegrator> type(module, "CloudIntegrator",
+                                         R"(Puts point clouds of one sensor into a belief grid.
+
+Each point is a reading along the line from the sensor's origin: it carves the voxels that the line
+passes through and hits the one that holds the point, with the sensor's noise at that range and frontal
+incidence. All points of a call count as one frame.
+
+Parameters
+----------
+sensor : Sensor
+    Only its noise, fx (where the noise across the ray is a pixel's footprint) and range limits matter.
+occupancy : {"probabilistic", "literal"}
+    Log-odds once a voxel a cloud, or crossed -> free and hit -> occupied.
+support_plane : float, optional
+    Height z [m] of the table that the object stands on; its readings carve but do not hit.
+num_threads : int
+    0: all hardware threads. Never changes the map.)");
+  refuse_pickling(type);
+  type.def(py::init([](const Sensor& sensor, const std::string& occupancy,
+                       std::optional<double> support_plane, int num_threads) {
+             const CloudIntegrationConfig config{parse_occupancy(occupancy), support_plane};
+             return std::unique_ptr<SharedCloudIntegrator>(new SharedCloudIntegrator{
+                 sensor, CloudIntegrator(sensor, config, ExecConfig{num_threads}), {}});
+           }),
+           py::arg("sensor"), py::kw_only(), py::arg("occupancy") = "probabilistic",
+           py::arg("support_plane") = py::none(), py::arg("num_threads") = 0)
+      .def("integrate", &integrate, py::arg("grid"), py::arg("points"), py::arg("T_world_sensor"),
+           R"(Updates the grid by one cloud.
+
+Parameters
+----------
+grid : BeliefGrid
+points : array_like, (n, 3)
+    In the sensor's frame [m]; any axes do, its origin is where the rays start. Points that are not
+    finite, or nearer than min_range, say nothing; beyond max_range they carve as far as that.
+T_world_sensor : array_like, (4, 4)
+    Rotations that are off by up to 1e-3 are orthonormalised.
+
+Returns
+-------
+dict
+    Counts: readings, plane_readings, out_of_range, invalid, readings_inside (points), voxels_hit,
+    voxels_crossed.
+
+Raises
+------
+ValueError
+    Names the shape, or what is wrong with the pose; the grid is unchanged then.)")
+      .def("__repr__", [](const SharedCloudIntegrator& self) {
+        return "<CloudIntegrator of " + self.sensor.name + ">";
+      });
+
+  module.def("cloud_bounds", &bounds, py::arg("sensor"), py::arg("points"),
+             py::arg("T_world_sensor"), py::kw_only(), py::arg("support_plane") = py::none(),
+             R"(The box that holds every reading of a cloud, for choosing a workspace.
+
+Parameters are those of ``CloudIntegrator``.
+
+Returns
+-------
+ndarray, (2, 3), or None
+    Lowest and highest corner, world frame [m]; None if the cloud has no reading.)");
+  module.def(
+      "load_cloud", &load, py::arg("path"),
+      R"(Reads the points of a .pcd (ascii, binary, binary_compressed) or .ply (ascii, binary).
+
+Parameters
+----------
+path : path-like
+
+Returns
+-------
+points : ndarray, (n, 3), float64
+    As they stand in the file, in the frame that it is in; NaN where an organised cloud has none.
+viewpoint : ndarray, (4, 4), or None
+    A PCD's VIEWPOINT: the sensor's pose in that frame. Points of the world become the sensor's by its
+    inverse.
+
+Raises
+------
+FileNotFoundError, OSError
+    It cannot be opened.
+Error
+    It is no cloud or it is damaged; names the file.)");
+}
+
+}  // namespace viewgain::python

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <string>
+
+#include "arrays.hpp"
+#include "gil.hpp"
+#include "grid_files.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/octomap_io.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+
+namespace viewgain::python {
+
+void bind_grid_files(GridClass& grid_class) {
+  grid_class
+      .def_static(
+          "load",
+          [](const py::object& path) {
+            const std::string file = file_path(path);
+            require_file(file);
+            const WithoutGil without_gil;
+            return std::make_shared<SharedGrid>(load_vdb(file));
+          },
+          py::arg("path"), R"(Reads a map that ``save`` or the program viewgain wrote.
+
+Parameters
+----------
+path : path-like
+    An OpenVDB file.
+
+Returns
+-------
+BeliefGrid
+
+Raises
+------
+FileNotFoundError, OSError
+    It cannot be opened.
+Error
+    It is no map or it is damaged.)")
+      .def_static(
+          "load_octomap",
+          [](const py::object& path, const py::object& workspace, std::optional<double> prior_sigma,
+             const Sensor* sensor, double occupied_from) {
+            const std::string file = file_path(path);
+            require_file(file);
+            OctomapConfig config;
+            if (!workspace.is_none()) config.workspace = box(workspace, "workspace");
+            config.occupied_from = static_cast<float>(occupied_from);
+            config.prior_sigma = prior_sigma;
+            const WithoutGil without_gil;
+            if (!prior_sigma && sensor != nullptr) {
+              config.prior_sigma = default_prior_sigma(octomap_resolution(file), *sensor);
+            }
+            return std::make_shared<SharedGrid>(load_octomap(file, config));
+          },
+          py::arg("path"), py::kw_only(), py::arg("workspace") = py::none(),
+          py::arg("prior_sigma") = py::none(), py::arg("sensor") = py::none(),
+          py::arg("occupied_from") = 0.0,
+          R"(Reads OctoMap's .ot or .bt; states are kept, and the log-odds of a .ot.
+
+Parameters
+----------
+path : path-like
+workspace : array_like, (2, 3), optional
+    Lowest and highest corner [m], in the tree's frame; default: the box of its known voxels.
+prior_sigma, sensor
+    As for a new grid.
+occupied_from : float
+    Log-odds from which a voxel of a .ot is occupied.
+
+Returns
+-------
+BeliefGrid
+
+Raises
+------
+FileNotFoundError, OSError
+    It cannot be opened.
+Error
+    It is no tree or it is damaged.)")
+      .def(
+          "save_octomap",
+          [](const SharedGrid& grid, const py::object& path) {
+            const std::string file = file_path(path);
+            require_writable(file);
+            grid.read([&](const BeliefGrid& g) { save_octomap(g, file); });
+          },
+          py::arg("path"),
+          R"(Writes states and log-odds as an OctoMap .ot, in the world's frame where
+T_world_grid is a shift by whole voxels, else in the grid's own.
+
+Parameters
+----------
+path : path-like
+
+Raises
+------
+FileNotFoundError, OSError
+    It cannot be written.)")
+      .def(
+          "save",
+          [](const SharedGrid& grid, const py::object& path, bool with_covariance) {
+            const std::string file = file_path(path);
+            require_writable(file);
+            grid.read([&](const BeliefGrid& g) { save_vdb(g, file, {with_covariance}); });
+          },
+          py::arg("path"), py::kw_only(), py::arg("with_covariance") = false,
+          R"(Writes the map as a plain OpenVDB file; nothing half-written is left behind.
+
+Parameters
+----------
+path : path-like
+with_covariance : bool
+    Adds covariances and positions, for viewers.
+
+Raises
+------
+FileNotFoundError, OSError
+    It cannot be written.)");
+}
+
+}  // namespace viewgain::python

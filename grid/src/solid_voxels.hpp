@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/grid/grid_snapshot.hpp"
+
+namespace viewgain::detail {
+
+/// Occupied voxels that a file states by whole cubes. In memory each costs more than a byte, in the
+/// file a cube of any size costs a few: without a limit a forged file of a hundred bytes would fill
+/// the memory.
+class SolidVoxels {
+ public:
+  /// For the message: the file, and what its reader can do about it.
+  explicit SolidVoxels(std::string name, std::string advice = {})
+      : name_(std::move(name)), advice_(std::move(advice)) {}
+
+  /// Counts the box [min, max), at most 65,536 voxels a side. Throws Error(capacity) once there are
+  /// more than 2^27 in all.
+  void add(Index3 min, Index3 max) {
+    const auto length = [](std::int32_t from, std::int32_t to) {
+      return static_cast<std::uint64_t>(to - from);
+    };
+    count_ += length(min.x, max.x) * length(min.y, max.y) * length(min.z, max.z);
+    if (count_ > kMost) {
+      throw Error(ErrorCode::capacity,
+                  name_ + ": solid cubes of more than 2^27 occupied voxels" + advice_);
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t kMost = std::uint64_t{1} << 27U;
+
+  std::string name_, advice_;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace viewgain::detail

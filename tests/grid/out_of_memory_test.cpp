@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Integration while memory runs out. A program of its own, since it replaces operator new.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "analytic_frames.hpp"
+#include "viewgain/grid/integrate.hpp"
+
+namespace {
+
+/// Allocations until one fails; negative: none does.
+std::atomic<long> allocations_left{-1};
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  if (allocations_left.load() >= 0 && allocations_left.fetch_sub(1) <= 0) throw std::bad_alloc();
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace viewgain {
+namespace {
+
+using namespace test;
+
+/// What a snapshot tells, in an order of its own.
+std::vector<std::tuple<int, int, int, LeafMask, LeafMask, const BeliefBlock*>> leaves_of(
+    const GridSnapshot& snapshot) {
+  std::vector<std::tuple<int, int, int, LeafMask, LeafMask, const BeliefBlock*>> leaves;
+  for (const SnapshotLeaf& leaf : snapshot.leaves) {
+    leaves.emplace_back(leaf.origin.x, leaf.origin.y, leaf.origin.z, leaf.non_free, leaf.occupied,
+                        leaf.beliefs.get());
+  }
+  return leaves;
+}
+
+TEST(OutOfMemory, WhatAFrameLeftUndoneIsSeenByTheNextSnapshot) {
+  const Sensor sensor = small_sensor(32, 24);
+  const DepthFrame first = see_spheres(sensor, ring_view(0), three_spheres_in_a_room());
+  const DepthFrame second = see_spheres(sensor, ring_view(1), three_spheres_in_a_room());
+  BeliefGrid start(object_grid(64));
+  FrameIntegrator(sensor).integrate(start, first, ring_view(0));
+  BeliefGrid whole = start.clone();
+  FrameIntegrator(sensor).integrate(whole, second, ring_view(1));
+
+  int failed = 0, written = 0, hollow = 0;
+  for (long count = 0;; count += 1 + count / 20) {
+    BeliefGrid grid = start.clone();
+    const GridSnapshot before = grid.snapshot();
+    FrameIntegrator integrator(sensor);
+    bool enough = true;
+    allocations_left = count;
+    try {
+      integrator.integrate(grid, second, ring_view(1));
+    } catch (const std::bad_alloc&) {
+      enough = false;
+    }
+    allocations_left = -1;
+    const GridSnapshot updated = grid.snapshot(before), anew = grid.snapshot();
+    ASSERT_EQ(leaves_of(updated), leaves_of(anew)) << count;
+    ASSERT_EQ(updated.tiles.size(), anew.tiles.size()) << count;
+    if (enough) {
+      EXPECT_EQ(grid.content_hash(), whole.content_hash());
+      break;
+    }
+    ++failed;
+    written += leaves_of(anew) != leaves_of(before);
+    EXPECT_EQ(grid.views().size(), 1U);
+    for (const BeliefBlockAt& block : grid.belief_blocks()) {
+      hollow += block.beliefs->beliefs.empty();
+    }
+    // The integrator goes on with nothing of the frame that failed.
+    BeliefGrid other = start.clone();
+    integrator.integrate(other, second, ring_view(1));
+    ASSERT_EQ(other.content_hash(), whole.content_hash()) << count;
+  }
+  EXPECT_GT(failed, 30);
+  EXPECT_GT(written, 10);
+  EXPECT_EQ(hollow, 0);
+}
+
+}  // namespace
+}  // namespace viewgain
