@@ -194,7 +194,7 @@ endforeach()
 find_package(viewgain 0.1.0 EXACT REQUIRED)
 message(STATUS "${cases} requests")
 PROJECT
-    cmake -S "$folder" -B "$folder/build" "-DCMAKE_PREFIX_PATH=$work/prefix" >"$folder/log" 2>&1 ||
+    cmake -S "$folder" -B "$folder/build" -G Ninja "-DCMAKE_PREFIX_PATH=$work/prefix" >"$folder/log" 2>&1 ||
       { cat "$folder/log" >&2; fail "find_package answered otherwise"; }
     grep -q '17 requests' "$folder/log" || fail "not all requests were made"
     ;;
@@ -208,7 +208,7 @@ PROJECT
       printf 'cmake_minimum_required(VERSION 3.22)\nproject(consumer LANGUAGES CXX)\nfind_package(%s)\n%s\n' "$1" \
         'message(STATUS "answer:${viewgain_FOUND}:${viewgain_octomap_FOUND}:${viewgain_mesh_FOUND}:${viewgain_NOT_FOUND_MESSAGE}")' \
         >"$folder/CMakeLists.txt"
-      cmake -S "$folder" -B "$folder/build" "${@:3}" >"$folder/log" 2>&1 || true
+      cmake -S "$folder" -B "$folder/build" -G Ninja "${@:3}" >"$folder/log" 2>&1 || true
       tr -s ' \n' ' ' <"$folder/log" | grep -qE "$2" ||
         { cat "$folder/log" >&2; fail "find_package($1): not $2"; }
       cases=$((cases + 1))
@@ -255,7 +255,7 @@ PROJECT
     fi
     printf 'cmake_minimum_required(VERSION 3.22)\nproject(consumer LANGUAGES CXX)\nfind_package(%s)\n' \
       "$request" >"$folder/CMakeLists.txt"
-    if cmake -S "$folder" -B "$folder/build" "-DCMAKE_PREFIX_PATH=$work/prefix" >"$folder/log" 2>&1; then
+    if cmake -S "$folder" -B "$folder/build" -G Ninja "-DCMAKE_PREFIX_PATH=$work/prefix" >"$folder/log" 2>&1; then
       fail "find_package($request) was accepted"
     fi
     tr -s ' \n' ' ' <"$folder/log" | grep -qF "$message" || { cat "$folder/log" >&2; fail "no clear message"; }

@@ -22,8 +22,10 @@ poses = viewgain.sphere_poses(40, 0.6)
 
 def run(program, before=BEFORE):
     """Exit code, output and errors of a program in a process of its own."""
-    done = subprocess.run([sys.executable, "-c", before + program], capture_output=True, text=True,
-                          timeout=120)
+    # Python 3.12 and later warn of any fork of a process with threads.
+    quiet = "ignore:This process:DeprecationWarning"
+    done = subprocess.run([sys.executable, "-W", quiet, "-c", before + program],
+                          capture_output=True, text=True, timeout=120)
     return done.returncode, done.stdout, done.stderr
 
 
