@@ -55,8 +55,8 @@ if(VIEWGAIN_BUILD_APPS AND BUILD_SHARED_LIBS)
 endif()
 if(VIEWGAIN_BUILD_PYTHON AND BUILD_SHARED_LIBS)
   # An extension is for one minor version of Python.
-  math(EXPR next_python "${Python_VERSION_MINOR} + 1")
-  set(python_depends "python3 (>= 3.${Python_VERSION_MINOR})" "python3 (<< 3.${next_python})"
+  math(EXPR next_python "${VIEWGAIN_PYTHON_MINOR} + 1")
+  set(python_depends "python3 (>= 3.${VIEWGAIN_PYTHON_MINOR})" "python3 (<< 3.${next_python})"
       python3-numpy)
   viewgain_package(python python3-viewgain Apache-2.0
     "Expected information gain of camera poses, Python" SECTION python DEPENDS runtime
