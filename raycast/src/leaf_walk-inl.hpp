@@ -131,47 +131,55 @@ HWY_INLINE MF walk_leaf(const VoxelScene::Data& scene, const PoseFrame& frame, R
   const auto first_plane = [&](auto c, VF step, float low) HWY_ATTR {
     return hn::Add(hn::Add(hn::Set(df, low), hn::ConvertTo(df, c)), hn::Max(step, zero));
   };
-  VF px = first_plane(cx, step_x, box.min[0]), py = first_plane(cy, step_y, box.min[1]),
-     pz = first_plane(cz, step_z, box.min[2]);
+  const VF px = first_plane(cx, step_x, box.min[0]), py = first_plane(cy, step_y, box.min[1]),
+           pz = first_plane(cz, step_z, box.min[2]);
   VF tx = hn::Mul(hn::Sub(px, ox), ix), ty = hn::Mul(hn::Sub(py, oy), iy),
      tz = hn::Mul(hn::Sub(pz, oz), iz);
+  // The planes after those; where they are met is computed before it is known who steps.
+  VF qx = hn::Add(px, step_x), qy = hn::Add(py, step_y), qz = hn::Add(pz, step_z);
 
   const TraceMask& mask = scene.masks[leaf];
   const VU bit = hn::Set(du, 1U), low_five = hn::Set(du, 31U);
-  MF hits = hn::MaskFromVec(zero);
+  // Where lanes end is noted in registers and compared with what they have once, after the walk:
+  // when a lane ends cannot be predicted.
+  MF found = hn::MaskFromVec(zero);
+  VF found_t = t;
+  VU found_offset = offset;
   while (true) {
+    const VF nx = hn::Mul(hn::Sub(qx, ox), ix);
+    const VF ny = hn::Mul(hn::Sub(qy, oy), iy);
+    const VF nz = hn::Mul(hn::Sub(qz, oz), iz);
     const VF next = hn::Min(tx, hn::Min(ty, tz));
     const VU word = mask_words(mask, offset);
     const MF solid = hn::RebindMask(df, hn::TestBit(word, hn::Shl(bit, hn::And(offset, low_five))));
     // A visit of no length does not count.
-    MF found = hn::And(hn::And(active, solid), hn::Lt(t, next));
-    if (!hn::AllFalse(df, found)) {
-      active = hn::AndNot(found, active);
-      const VU held = hn::Load(du, tile.primitive + lane0);
-      found = hn::And(found, is_nearer(t, range, held, leaf));
-      hits = hn::Or(hits, found);
-      range = hn::IfThenElse(found, t, range);
-      const auto found_u = hn::RebindMask(du, found);
-      hn::Store(hn::IfThenElse(found_u, hn::Set(du, leaf), held), du, tile.primitive + lane0);
-      hn::BlendedStore(offset, found_u, du, tile.offset + lane0);
-      if (hn::AllFalse(df, active)) break;
-    }
+    const MF ends = hn::And(hn::And(active, solid), hn::Lt(t, next));
+    found = hn::Or(found, ends);
+    found_t = hn::IfThenElse(ends, t, found_t);
+    found_offset = hn::IfThenElse(hn::RebindMask(du, ends), offset, found_offset);
     // Axes whose planes are met at the same t step together, over the edge or the corner.
     const MF over_x = hn::Le(tx, next), over_y = hn::Le(ty, next), over_z = hn::Le(tz, next);
     t = hn::Max(t, next);
     // At the plane where the box ends t equals slab.exit exactly, so no index leaves it.
-    active = hn::And(active, hn::Lt(t, slab.exit));
+    active = hn::And(hn::AndNot(ends, active), hn::Lt(t, slab.exit));
     if (hn::AllFalse(df, active)) break;
-    px = hn::Add(px, hn::IfThenElseZero(over_x, step_x));
-    py = hn::Add(py, hn::IfThenElseZero(over_y, step_y));
-    pz = hn::Add(pz, hn::IfThenElseZero(over_z, step_z));
+    tx = hn::IfThenElse(over_x, nx, tx);
+    ty = hn::IfThenElse(over_y, ny, ty);
+    tz = hn::IfThenElse(over_z, nz, tz);
+    qx = hn::Add(qx, hn::IfThenElseZero(over_x, step_x));
+    qy = hn::Add(qy, hn::IfThenElseZero(over_y, step_y));
+    qz = hn::Add(qz, hn::IfThenElseZero(over_z, step_z));
     offset = hn::Add(offset, hn::IfThenElseZero(hn::RebindMask(du, over_x), offset_x));
     offset = hn::Add(offset, hn::IfThenElseZero(hn::RebindMask(du, over_y), offset_y));
     offset = hn::Add(offset, hn::IfThenElseZero(hn::RebindMask(du, over_z), offset_z));
-    tx = hn::Mul(hn::Sub(px, ox), ix);
-    ty = hn::Mul(hn::Sub(py, oy), iy);
-    tz = hn::Mul(hn::Sub(pz, oz), iz);
   }
+  if (hn::AllFalse(df, found)) return found;
+  const VU held = hn::Load(du, tile.primitive + lane0);
+  const MF hits = hn::And(found, is_nearer(found_t, range, held, leaf));
+  range = hn::IfThenElse(hits, found_t, range);
+  const auto hits_u = hn::RebindMask(du, hits);
+  hn::Store(hn::IfThenElse(hits_u, hn::Set(du, leaf), held), du, tile.primitive + lane0);
+  hn::BlendedStore(found_offset, hits_u, du, tile.offset + lane0);
   return hits;
 }
 
