@@ -60,7 +60,7 @@ GainAccumulator::GainAccumulator(const VoxelScene::Data& scene, const GainSettin
   known_a_.resize(max_rays + kOverhang);
   known_b_.resize(max_rays + kOverhang);
   if (settings.criterion == Criterion::trace || !settings.weights.empty()) {
-    each_.resize(max_rays + kOverhang);
+    each_.resize(max_rays + 2 * kOverhang);
   }
 }
 
@@ -162,24 +162,31 @@ void GainAccumulator::add(const HitList& hits) {
   flush();
 }
 
-// Parts the touched voxels into unknown and occupied ones and looks up what is known of the latter.
-// Which is which cannot be predicted, so both lists are written and one of them moves on.
-void GainAccumulator::classify() {
+void GainAccumulator::close() {
+  flush();
+  // Which voxel is of which class cannot be predicted, so both lists are written and one of them
+  // moves on.
   std::size_t unknown = 0, occupied = 0;
   for (std::uint32_t i = 0; i < touched_count_; ++i) {
-    const std::uint32_t offset = touched_[i] & 511U;
     const SnapshotLeaf* leaf = blocks_[touched_[i] >> 9U].leaf;
-    const std::size_t is_occupied = test_bit(leaf->occupied, offset) ? 1 : 0;
+    const std::size_t is_occupied = test_bit(leaf->occupied, touched_[i] & 511U) ? 1 : 0;
     unknown_[unknown] = i;
     occupied_[occupied] = i;
-    occupied_leaf_[occupied] = leaf;
-    occupied_offset_[occupied] = offset;
     unknown += 1 - is_occupied;
     occupied += is_occupied;
   }
   unknown_count_ = unknown;
   occupied_count_ = occupied;
-  kernels_.look_up(occupied_leaf_.data(), occupied_offset_.data(), occupied, known_a_.data(),
+}
+
+// What is known of the occupied voxels.
+void GainAccumulator::look_up() {
+  for (std::size_t i = 0; i < occupied_count_; ++i) {
+    const std::uint32_t code = touched_[occupied_[i]];
+    occupied_leaf_[i] = blocks_[code >> 9U].leaf;
+    occupied_offset_[i] = code & 511U;
+  }
+  kernels_.look_up(occupied_leaf_.data(), occupied_offset_.data(), occupied_count_, known_a_.data(),
                    known_b_.data());
 }
 
@@ -193,45 +200,50 @@ double GainAccumulator::weight(std::uint32_t code) const {
   return 1.0;
 }
 
-double GainAccumulator::finish_class(std::span<const std::uint32_t> members, bool is_known,
-                                     LogProduct& posterior) {
+GainAccumulator::ClassGain GainAccumulator::finish_class(std::span<const std::uint32_t> members,
+                                                         bool is_known, double* each) const {
   const bool logarithmic = settings_.criterion != Criterion::trace;
-  LogProduct ratios;
+  LogProduct ratios, posterior;
   kernels_.finish(settings_.criterion, settings_.prior_information,
                   {sums_.data(), members.data(), is_known ? known_a_.data() : nullptr,
                    known_b_.data(), members.size()},
-                  ratios, posterior, each_.empty() ? nullptr : each_.data());
-  if (each_.empty()) return 0.5 * ratios.log();
+                  ratios, posterior, each);
+  if (each == nullptr) return {0.5 * ratios.log(), posterior.log()};
   double sum = 0;
   for (std::size_t i = 0; i < members.size(); ++i) {
     const double w = settings_.weights.empty() ? 1.0 : weight(touched_[members[i]]);
-    sum += w * (logarithmic ? 0.5 * std::log(each_[i]) : each_[i]);
+    sum += w * (logarithmic ? 0.5 * std::log(each[i]) : each[i]);
   }
-  return sum;
+  return {sum, posterior.log()};
 }
 
-void GainAccumulator::finish(ViewGain& result) {
-  flush();
-  classify();
-  LogProduct posterior;
-  result.exploration = finish_class({unknown_.data(), unknown_count_}, false, posterior);
-  result.refinement = finish_class({occupied_.data(), occupied_count_}, true, posterior);
+GainAccumulator::ClassGain GainAccumulator::explored() {
+  return finish_class({unknown_.data(), unknown_count_}, false,
+                      each_.empty() ? nullptr : each_.data());
+}
+
+GainAccumulator::ClassGain GainAccumulator::refined() {
+  look_up();
+  return finish_class({occupied_.data(), occupied_count_}, true,
+                      each_.empty() ? nullptr : each_.data() + unknown_count_ + kOverhang);
+}
+
+void GainAccumulator::finish(const ClassGain& explored, const ClassGain& refined,
+                             ViewGain& result) const {
+  result.exploration = explored.gain;
+  result.refinement = refined.gain;
   result.gain = result.exploration + result.refinement;
-  result.posterior_entropy = posterior.log();
+  result.posterior_entropy = explored.posterior_entropy + refined.posterior_entropy;
   result.hits = hits_;
   result.unknown_voxels = static_cast<std::uint32_t>(unknown_count_);
   result.occupied_voxels = static_cast<std::uint32_t>(occupied_count_);
 }
 
 double GainAccumulator::upper_bound() {
-  flush();
-  classify();
-  LogProduct posterior;
-  const double refinement = finish_class({occupied_.data(), occupied_count_}, true, posterior);
-  if (settings_.criterion != Criterion::log_diagonal) {
-    return refinement + finish_class({unknown_.data(), unknown_count_}, false, posterior);
-  }
-  LogProduct ratios;
+  close();
+  const double refinement = refined().gain;
+  if (settings_.criterion != Criterion::log_diagonal) return refinement + explored().gain;
+  LogProduct ratios, posterior;
   kernels_.finish(Criterion::log_determinant, settings_.prior_information,
                   {sums_.data(), unknown_.data(), nullptr, nullptr, unknown_count_}, ratios,
                   posterior, nullptr);

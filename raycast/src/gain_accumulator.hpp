@@ -46,7 +46,20 @@ class GainAccumulator {
   /// Takes hits that another thread has listed; at most kBatchSize.
   void add(const HitList& hits);
   /// Fills gain, exploration, refinement, posterior_entropy, hits and voxel counts.
-  void finish(ViewGain& result);
+  void finish(ViewGain& result) {
+    close();
+    finish(explored(), refined(), result);
+  }
+
+  /// finish() in parts: close() parts the touched voxels into unknown and occupied ones; then
+  /// explored() and refined() may run on two threads at once.
+  struct ClassGain {
+    double gain = 0, posterior_entropy = 0;
+  };
+  void close();
+  [[nodiscard]] ClassGain explored();
+  [[nodiscard]] ClassGain refined();
+  void finish(const ClassGain& explored, const ClassGain& refined, ViewGain& result) const;
 
   /// The most that the hits so far count for in an upper bound of the view's gain, to which what
   /// the other rays bring at most may be added; for evaluators without task weights. That of
@@ -58,8 +71,8 @@ class GainAccumulator {
   /// occupied one (nothing: unknown), ΣΛ_r, w_v. In the same order for the same hits.
   template <typename Visit>
   void visit(Visit&& visit) {
-    flush();
-    classify();
+    close();
+    look_up();
     const auto call = [&](std::uint32_t place, const std::optional<VoxelSum>& known) {
       const std::uint32_t code = touched_[place];
       visit(blocks_[code >> 9U].key | (code & 511U), known, sums_[place],
@@ -92,8 +105,9 @@ class GainAccumulator {
   std::uint32_t code_of(std::uint32_t primitive, std::uint32_t offset);
   std::uint32_t block_in_box(std::uint64_t key);
   std::uint32_t start_block(std::uint64_t key, const SnapshotLeaf* leaf);
-  void classify();
-  double finish_class(std::span<const std::uint32_t> members, bool is_known, LogProduct& posterior);
+  void look_up();
+  [[nodiscard]] ClassGain finish_class(std::span<const std::uint32_t> members, bool is_known,
+                                       double* each) const;
   [[nodiscard]] double weight(std::uint32_t code) const;
 
   const VoxelScene::Data& scene_;

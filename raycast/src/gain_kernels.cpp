@@ -213,14 +213,25 @@ HWY_INLINE void finish_as(double prior_information, const VoxelClass& voxels, Lo
       const std::size_t left = voxels.count > first ? voxels.count - first : 0;
       const auto live = hn::FirstN(dd, left);
       alignas(64) double rows_a[kLanes][4], rows_b[kLanes][4];
+      const auto sum_of = [&](std::size_t lane) -> const VoxelSum& {
+        return voxels.sums[lane < left ? voxels.members[first + lane] : 0];
+      };
+#if HWY_TARGET == HWY_AVX3
+      // Whole vectors are written, since what is read back next are whole vectors.
+      for (std::size_t lane = 0; lane < kLanes; lane += 2) {
+        const VD even = hn::Load(dd, sum_of(lane).a), odd = hn::Load(dd, sum_of(lane + 1).a);
+        hn::Store(hn::ConcatLowerLower(dd, odd, even), dd, rows_a[lane]);
+        hn::Store(hn::ConcatUpperUpper(dd, odd, even), dd, rows_b[lane]);
+      }
+#else
       constexpr hn::CappedTag<double, 4> row;
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const VoxelSum& sum = voxels.sums[lane < left ? voxels.members[first + lane] : 0];
         for (std::size_t k = 0; k < 4; k += hn::MaxLanes(row)) {
-          hn::Store(hn::Load(row, sum.a + k), row, rows_a[lane] + k);
-          hn::Store(hn::Load(row, sum.b + k), row, rows_b[lane] + k);
+          hn::Store(hn::Load(row, sum_of(lane).a + k), row, rows_a[lane] + k);
+          hn::Store(hn::Load(row, sum_of(lane).b + k), row, rows_b[lane] + k);
         }
       }
+#endif
       VD xx, yy, zz, xy, xz, yz, pad;
       hn::LoadInterleaved4(dd, rows_a[0], xx, yy, zz, xy);
       hn::LoadInterleaved4(dd, rows_b[0], xz, yz, pad, pad);

@@ -214,7 +214,6 @@ float walk(const VoxelScene::Data& scene, const PoseFrame& frame, float cosine,
     fetch(i + kAhead);
     const Slabs slabs = slabs_of(scene.boxes[entry.box], frame);
     const bool is_leaf = entry.box < scene.leaf_count;
-    bool any = false;
     for (int part = 0; part < kParts; ++part) {
       const int lane0 = part * kWidth;
       const MF more =
@@ -222,9 +221,8 @@ float walk(const VoxelScene::Data& scene, const PoseFrame& frame, float cosine,
               ? walk_leaf(scene, frame, out, lane0, entry.box, slabs, active[part], range[part])
               : enter_box(scene, frame, out, lane0, entry.box, slabs, active[part], range[part]);
       hits[part] = hn::Or(hits[part], more);
-      any = any || !hn::AllFalse(df, more);
     }
-    if (any) of_interest = depth();
+    of_interest = depth();
   }
   for (int part = 0; part < kParts; ++part) {
     const int lane0 = part * kWidth;

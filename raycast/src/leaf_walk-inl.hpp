@@ -173,7 +173,6 @@ HWY_INLINE MF walk_leaf(const VoxelScene::Data& scene, const PoseFrame& frame, R
     offset = hn::Add(offset, hn::IfThenElseZero(hn::RebindMask(du, over_y), offset_y));
     offset = hn::Add(offset, hn::IfThenElseZero(hn::RebindMask(du, over_z), offset_z));
   }
-  if (hn::AllFalse(df, found)) return found;
   const VU held = hn::Load(du, tile.primitive + lane0);
   const MF hits = hn::And(found, is_nearer(found_t, range, held, leaf));
   range = hn::IfThenElse(hits, found_t, range);

@@ -45,8 +45,17 @@ ViewGain GainEvaluator::Impl::evaluate_together(const Pose& T_world_camera) cons
   };
   // Each thread sorts the boxes for itself, which takes less than reading another core's lists.
   // Number 0 adds up, and traces while the next group is not there yet; it waits only for groups
-  // that others are tracing.
+  // that others are tracing. In the end number 1, if it is there, finishes the occupied voxels
+  // while number 0 does the unknown ones.
   std::atomic<bool> has_failed{false};  // out of memory: nobody waits for what will not come
+  std::atomic<detail::GainAccumulator*> closed{nullptr};  // all hits are in
+  detail::GainAccumulator::ClassGain refined;
+  std::atomic<bool> is_refining{false}, is_refined{false};
+  const auto refine = [&](detail::GainAccumulator& accumulator) {
+    if (is_refining.exchange(true)) return;
+    refined = accumulator.refined();
+    is_refined.store(true, std::memory_order_release);
+  };
   const auto work = [&](std::size_t number) {
     if (number > 0 && groups->next.load(std::memory_order_relaxed) >= group_count) return;
     Lease lease(*this);
@@ -55,6 +64,12 @@ ViewGain GainEvaluator::Impl::evaluate_together(const Pose& T_world_camera) cons
     std::size_t group;
     if (number > 0) {
       while ((group = groups->next.fetch_add(1)) < group_count) trace(group, bins);
+      if (number > 1) return;
+      detail::GainAccumulator* whole;
+      while ((whole = closed.load(std::memory_order_acquire)) == nullptr && !has_failed) {
+        std::this_thread::yield();
+      }
+      if (whole != nullptr) refine(*whole);
       return;
     }
     accumulator.begin();
@@ -68,7 +83,13 @@ ViewGain GainEvaluator::Impl::evaluate_together(const Pose& T_world_camera) cons
         std::this_thread::yield();
       }
     }
-    accumulator.finish(result);
+    if (has_failed) return;
+    accumulator.close();
+    closed.store(&accumulator, std::memory_order_release);
+    const auto explored = accumulator.explored();
+    refine(accumulator);
+    while (!is_refined.load(std::memory_order_acquire)) std::this_thread::yield();
+    accumulator.finish(explored, refined, result);
   };
   pool.for_each_chunk(static_cast<std::size_t>(pool.num_threads()), 1,
                       [&](std::size_t number, std::size_t) {
