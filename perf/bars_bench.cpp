@@ -57,6 +57,7 @@ Json to_json(const Rule& rule, const Figure& figure, int threads, bool& is_misse
     entry["pass"] = passes;
     is_missed = is_missed || !passes;
   }
+  if (!figure.note.empty()) entry["note"] = figure.note;
   return entry;
 }
 

@@ -25,9 +25,9 @@ struct VIEWGAIN_EXPORT BestViews {
 
 /// How GainEvaluator::race() parts the wheat from the chaff.
 struct VIEWGAIN_EXPORT RaceConfig {
-  double interval = 3.0;          ///< half width of a pose's confidence interval [standard errors]
+  double interval = 2.25;         ///< half width of a pose's confidence interval [standard errors]
   double first_share = 1.0 / 40;  ///< of the tiles in the first round, then five times as many
-  double keep = 0.25;             ///< of the poses that a round leaves at most
+  double keep = 0.35;             ///< of the poses that a round leaves at most
   std::uint64_t seed = 1;         ///< which tiles
 };
 
