@@ -45,5 +45,23 @@ for package in g++ cmake libembree-dev libopenvdb-dev libcgal-dev libeigen3-dev 
   dpkg-query -W -f '  ${Package} ${Version}\n' "$package" 2>/dev/null || true
 done
 ctest --preset release -j "$1"
+
+# The package by pip, with Debian's own build tools where the release has them.
+if apt-cache show python3-scikit-build-core >/dev/null 2>&1; then
+  DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends python3-pip \
+    python3-scikit-build-core >/dev/null
+  rm -rf /pip
+  CMAKE_BUILD_PARALLEL_LEVEL=$1 CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache \
+    pip install --quiet --no-build-isolation --no-deps --target /pip /source
+  cd /
+  PYTHONPATH=/pip python3 - <<'PYTHON'
+import numpy as np, viewgain
+assert viewgain.__file__.startswith("/pip/"), viewgain.__file__
+grid = viewgain.BeliefGrid.from_labels(np.zeros((16, 16, 16), np.uint8), voxel_size=0.02, origin=(-0.16, -0.16, -0.16))
+evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), viewgain.sensor_preset("sr4000"))
+assert (evaluator.evaluate(viewgain.sphere_poses(5, 0.6)) > 0).all()
+print("pip install: viewgain", viewgain.__version__)
+PYTHON
+fi
 INSIDE
 chroot "$root" bash /inside.sh "${VIEWGAIN_JOBS:-$(nproc)}"

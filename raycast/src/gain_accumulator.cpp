@@ -109,11 +109,11 @@ inline std::uint32_t GainAccumulator::code_of(std::uint32_t primitive, std::uint
   std::uint32_t block = by_primitive_[primitive];
   if (block == kNone) [[unlikely]] {
     const bool may_be_occupied = primitive < scene_.leaf_count && scene_.has_occupied[primitive];
+    touched_primitives_.push_back(primitive);  // first: begin() mends what an exception leaves
     block = start_block(
         scene_.block_keys[primitive],
         may_be_occupied ? &scene_.snapshot.leaves[scene_.leaf_source[primitive]] : &kNoneOccupied);
     by_primitive_[primitive] = block;
-    touched_primitives_.push_back(primitive);
   }
   return block << 9U | offset;
 }

@@ -28,8 +28,8 @@ struct GainSettings {
 };
 
 /// Sums the hits of one view by voxel and turns the sums into a gain (DESIGN.md section 6). One
-/// object serves one thread, view after view; it allocates when made and when a view touches more
-/// voxels than any before.
+/// object serves one thread, view after view, except where it says so; it allocates when made and
+/// when a view touches more voxels than any before.
 class GainAccumulator {
  public:
   /// max_rays bounds the hits of one view.

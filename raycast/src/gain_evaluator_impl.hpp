@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -68,7 +69,10 @@ struct GainEvaluator::Impl {
     ~Lease() {
       if (!workspace_) return;
       const std::lock_guard lock(impl_.idle_mutex);
-      impl_.idle.push_back(std::move(workspace_));
+      try {
+        impl_.idle.push_back(std::move(workspace_));
+      } catch (const std::bad_alloc&) {  // then the next call makes one
+      }
     }
     Lease(const Lease&) = delete;
     Lease& operator=(const Lease&) = delete;

@@ -44,9 +44,9 @@ ViewGain GainEvaluator::Impl::evaluate_together(const Pose& T_world_camera) cons
     groups->is_traced[group].store(true, std::memory_order_release);
   };
   // Each thread sorts the boxes for itself, which takes less than reading another core's lists.
-  // Number 0 adds up, and traces while the next group is not there yet; it waits only for groups
-  // that others are tracing. In the end number 1, if it is there, finishes the occupied voxels
-  // while number 0 does the unknown ones.
+  // Number 0 adds up, and traces while the next group is not there yet. In the end number 1, if
+  // it is there, finishes the occupied voxels while number 0 does the unknown ones. Each waits only
+  // for what another is doing already.
   std::atomic<bool> has_failed{false};  // out of memory: nobody waits for what will not come
   std::atomic<detail::GainAccumulator*> closed{nullptr};  // all hits are in
   detail::GainAccumulator::ClassGain refined;

@@ -58,6 +58,47 @@ TEST(Determinism, SameBitsForAnyNumberOfThreadsAndRunAfterRun) {
   EXPECT_EQ(cases, 36);
 }
 
+// Of a view large enough that all threads have a part in it, its end included.
+TEST(Determinism, OnePoseOnSeveralThreadsUnderEveryCriterionAndWeight) {
+  int cases = 0, both_classes = 0;
+  for (const test::MapFamily family : kFamilies) {
+    Made made = make(13, family, 6);
+    PinholeCamera& camera = made.sensor.camera;
+    camera = {.width = 7 * camera.width,
+              .height = 7 * camera.height,
+              .fx = 7 * camera.fx,
+              .fy = 7 * camera.fy,
+              .cx = 7 * camera.cx,
+              .cy = 7 * camera.cy};
+    const auto scene = VoxelScene::build(made.map.grid);
+    Box half = made.map.grid.workspace();
+    half.max[0] = 0.5 * (half.min[0] + half.max[0]);
+    for (const Criterion criterion :
+         {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
+      for (const bool is_weighted : {false, true}) {
+        GainConfig config{.criterion = criterion};
+        if (is_weighted) config.weights = {{half, 2.5}};
+        const GainEvaluator alone(scene, made.sensor, config, {.num_threads = 1});
+        const std::vector<ViewGain> expected = alone.evaluate(made.poses);
+        for (const ViewGain& view : expected) {
+          both_classes += view.unknown_voxels > 0 && view.occupied_voxels > 0 ? 1 : 0;
+        }
+        for (const int threads : {2, 5}) {
+          const GainEvaluator together(scene, made.sensor, config, {.num_threads = threads});
+          for (int run = 0; run < 4; ++run) {
+            std::vector<ViewGain> actual;
+            for (const Pose& pose : made.poses) actual.push_back(together.evaluate(pose));
+            EXPECT_TRUE(test::same_bits(expected, actual));
+            ++cases;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(cases, 3 * 3 * 2 * 2 * 4);
+  EXPECT_GT(both_classes, 60);
+}
+
 TEST(Determinism, SameBitsAfterSaveAndLoad) {
   const std::filesystem::path path =
       std::filesystem::path(testing::TempDir()) / "viewgain_determinism_test.vdb";
