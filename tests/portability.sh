@@ -52,7 +52,7 @@ if apt-cache show python3-scikit-build-core >/dev/null 2>&1; then
     python3-scikit-build-core >/dev/null
   rm -rf /pip
   CMAKE_BUILD_PARALLEL_LEVEL=$1 CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache \
-    pip install --quiet --no-build-isolation --no-deps --target /pip /source
+    pip install --quiet --root-user-action=ignore --no-build-isolation --no-deps --target /pip /source
   cd /
   PYTHONPATH=/pip python3 - <<'PYTHON'
 import numpy as np, viewgain

@@ -10,9 +10,9 @@
 #include <cstring>
 #include <string>
 
-#include "file_bytes.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
 
 namespace viewgain::app {
 namespace {

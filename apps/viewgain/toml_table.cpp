@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "file_bytes.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
 
 namespace viewgain::app {
 

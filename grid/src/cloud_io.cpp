@@ -3,8 +3,8 @@
 #include "viewgain/grid/cloud_io.hpp"
 
 #include "cloud_formats.hpp"
-#include "file_text.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
 
 namespace viewgain {
 
@@ -14,7 +14,7 @@ PointCloud load_cloud(const std::filesystem::path& path) {
   if (!is_pcd && ending != ".ply" && ending != ".PLY") {
     throw Error(ErrorCode::format, path.string() + ": clouds are .pcd or .ply files");
   }
-  const std::string bytes = detail::read_bytes(path);
+  const std::string bytes = file_bytes(path);
   return is_pcd ? detail::parse_pcd(bytes, path.string()) : detail::parse_ply(bytes, path.string());
 }
 

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "file_text.hpp"
 
-#include <array>
 #include <charconv>
-#include <fstream>
 #include <system_error>
 
 #include "viewgain/core/error.hpp"
@@ -15,25 +13,6 @@ namespace {
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
 }  // namespace
-
-std::string read_bytes(const std::filesystem::path& path) {
-  std::error_code code;
-  if (std::filesystem::is_directory(path, code)) {
-    throw Error(ErrorCode::io, path.string() + ": cannot be read: it is a directory");
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw Error(ErrorCode::io, path.string() + ": cannot be opened");
-  // Formatted and unformatted input catch what the buffer throws when a read fails; its iterators
-  // do not.
-  std::string bytes;
-  std::array<char, 65536> part;
-  do {
-    file.read(part.data(), part.size());
-    bytes.append(part.data(), static_cast<std::size_t>(file.gcount()));
-  } while (file);
-  if (file.bad()) throw Error(ErrorCode::io, path.string() + ": cannot be read");
-  return bytes;
-}
 
 std::string quoted(std::string_view word) {
   std::string text = "'";

@@ -4,15 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace viewgain::detail {
-
-/// A file's bytes. Throws Error(io).
-[[nodiscard]] std::string read_bytes(const std::filesystem::path& path);
 
 /// The lines of a file, or of a binary file's header, from the front. Failures name file and line.
 class LineReader {

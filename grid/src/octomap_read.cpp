@@ -15,6 +15,7 @@
 #include "octomap_format.hpp"
 #include "solid_voxels.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 
 namespace viewgain {
@@ -280,11 +281,11 @@ BeliefGrid grid_from_octomap_bytes(std::string_view bytes, const OctomapConfig& 
 }
 
 BeliefGrid load_octomap(const std::filesystem::path& path, const OctomapConfig& config) {
-  return grid_from_octomap_bytes(read_bytes(path), config, path.string());
+  return grid_from_octomap_bytes(file_bytes(path), config, path.string());
 }
 
 double octomap_resolution(const std::filesystem::path& path) {
-  return read_header(read_bytes(path), path.string()).resolution;
+  return read_header(file_bytes(path), path.string()).resolution;
 }
 
 }  // namespace viewgain

@@ -14,11 +14,11 @@
 #include <utility>
 
 #include "file_seal.hpp"
-#include "file_text.hpp"
 #include "solid_voxels.hpp"
 #include "vdb_layout.hpp"
 #include "vdb_outline.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
@@ -55,7 +55,7 @@ class Loader {
   }
 
   [[nodiscard]] Contents read() const {
-    std::string bytes = read_bytes(path_);
+    std::string bytes = file_bytes(path_);
     const std::string fault = fault_in_outline(bytes);
     if (!fault.empty()) fail(fault);
     if (check_seal(bytes) == SealCheck::broken) fail("is corrupt: its checksum does not fit");

@@ -1,26 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
+#include "viewgain/core/file_bytes.hpp"
 
 #include <array>
-#include <filesystem>
 #include <fstream>
-#include <string>
 #include <system_error>
 
 #include "viewgain/core/error.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 
-/// The bytes of a regular file. Throws Error(io).
-[[nodiscard]] inline std::string file_bytes(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    throw Error(ErrorCode::io, path.string() + ": no such file");
+std::string file_bytes(const std::filesystem::path& path) {
+  std::error_code code;
+  if (std::filesystem::is_directory(path, code)) {
+    throw Error(ErrorCode::io, path.string() + ": cannot be read: it is a directory");
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) throw Error(ErrorCode::io, path.string() + ": cannot be opened");
-  // Not by stream buffer iterators, out of which a failed read throws another exception.
+  // Formatted and unformatted input catch what the buffer throws when a read fails; its iterators
+  // do not.
   std::string bytes;
   std::array<char, 65536> part;
   do {
@@ -31,4 +29,4 @@ namespace viewgain::app {
   return bytes;
 }
 
-}  // namespace viewgain::app
+}  // namespace viewgain
