@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "file_text.hpp"
-#include "grid_blocks.hpp"
-#include "log_odds_code.hpp"
+#include "map/grid_blocks.hpp"
+#include "map/log_odds_code.hpp"
 #include "octomap_format.hpp"
 #include "solid_voxels.hpp"
 #include "viewgain/core/error.hpp"

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "log_odds_code.hpp"
+#include "map/log_odds_code.hpp"
 #include "octomap_format.hpp"
 #include "octomap_parts.hpp"
 #include "viewgain/core/atomic_file.hpp"

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "block_lattice.hpp"
-#include "log_odds_code.hpp"
+#include "map/block_lattice.hpp"
+#include "map/log_odds_code.hpp"
 #include "octomap_format.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <limits>
 
-#include "block_lattice.hpp"
+#include "map/block_lattice.hpp"
 
 namespace viewgain::detail {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "cone_cull.hpp"
 #include "frame_hits.hpp"
-#include "grid_storage.hpp"
+#include "map/grid_storage.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::detail {

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "block_lattice.hpp"
-#include "log_odds_code.hpp"
+#include "map/block_lattice.hpp"
+#include "map/log_odds_code.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain::detail {

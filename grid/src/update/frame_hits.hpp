@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "belief_merge.hpp"
-#include "block_lattice.hpp"
+#include "map/block_lattice.hpp"
 #include "line_marks.hpp"
 #include "readings.hpp"
 #include "viewgain/core/thread_pool.hpp"

@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-#include "analytic_frames.hpp"
+#include "grid/analytic_frames.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/integrate.hpp"
 

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analytic_frames.hpp"
+#include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
 
 namespace viewgain {

@@ -8,7 +8,7 @@
 #include <set>
 #include <tuple>
 
-#include "analytic_frames.hpp"
+#include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
 
 namespace viewgain {

@@ -8,8 +8,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "block_lattice.hpp"
-#include "log_odds_code.hpp"
+#include "map/block_lattice.hpp"
+#include "map/log_odds_code.hpp"
 
 namespace viewgain::detail {
 

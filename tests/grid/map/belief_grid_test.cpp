@@ -14,7 +14,7 @@
 #include <random>
 #include <set>
 
-#include "analytic_frames.hpp"
+#include "grid/analytic_frames.hpp"
 #include "core/expect_error.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/octomap_io.hpp"

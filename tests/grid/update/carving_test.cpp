@@ -13,7 +13,7 @@
 #include <string>
 #include <tuple>
 
-#include "analytic_frames.hpp"
+#include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "voxel_oracle.hpp"
 

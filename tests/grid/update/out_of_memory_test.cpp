@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-#include "analytic_frames.hpp"
+#include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
 
 namespace {

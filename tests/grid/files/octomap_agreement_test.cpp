@@ -9,7 +9,7 @@
 #include <cmath>
 #include <random>
 
-#include "analytic_frames.hpp"
+#include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate_cloud.hpp"
 #include "viewgain/grid/octomap_tree.hpp"
 

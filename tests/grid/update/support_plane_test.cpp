@@ -15,7 +15,7 @@
 #include <string>
 #include <tuple>
 
-#include "analytic_frames.hpp"
+#include "grid/analytic_frames.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/integrate.hpp"
 

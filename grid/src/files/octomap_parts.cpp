@@ -7,7 +7,7 @@
 #include <numeric>
 #include <string>
 
-#include "grid_blocks.hpp"
+#include "map/grid_blocks.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::detail {

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <utility>
 
-#include "belief_merge.hpp"
+#include "update/belief_merge.hpp"
 #include "grid_blocks.hpp"
 #include "grid_storage.hpp"
 #include "viewgain/core/error.hpp"

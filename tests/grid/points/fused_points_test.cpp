@@ -13,7 +13,7 @@
 #include <cmath>
 #include <vector>
 
-#include "analytic_frames.hpp"
+#include "grid/analytic_frames.hpp"
 #include "core/expect_error.hpp"
 #include "core/random_values.hpp"
 #include "viewgain/grid/integrate.hpp"

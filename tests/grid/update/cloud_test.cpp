@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "analytic_frames.hpp"
+#include "grid/analytic_frames.hpp"
 #include "core/expect_error.hpp"
 #include "viewgain/grid/integrate_cloud.hpp"
 #include "voxel_oracle.hpp"

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "hash64.hpp"
+#include "map/hash64.hpp"
 
 namespace viewgain::detail {
 namespace {

@@ -5,7 +5,7 @@
 // correctly, in one fixed order, so every set gives the same bits as a plain scalar loop.
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "block_kernels.cpp"
+#define HWY_TARGET_INCLUDE "update/block_kernels.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
 //
 #include <hwy/highway.h>
@@ -13,7 +13,7 @@
 #include <cstring>
 
 #include "block_kernels.hpp"
-#include "log_odds_code.hpp"
+#include "map/log_odds_code.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {

@@ -11,7 +11,7 @@
 #include <random>
 #include <string>
 
-#include "analytic_frames.hpp"
+#include "grid/analytic_frames.hpp"
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
 #include "viewgain/grid/integrate.hpp"

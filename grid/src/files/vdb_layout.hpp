@@ -9,7 +9,7 @@
 
 #include <mutex>
 
-#include "grid_storage.hpp"
+#include "map/grid_storage.hpp"
 
 // What the writer and the reader of map files share.
 namespace viewgain::detail {
