@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "oracle/dense_map.hpp"
-#include "ray_tile.hpp"
+#include "trace/ray_tile.hpp"
 #include "trace_method.hpp"
 #include "viewgain/core/isa.hpp"
 

@@ -7,10 +7,10 @@
 #include <array>
 #include <type_traits>
 
-#include "device.hpp"
-#include "embree_compat.hpp"
+#include "trace/device.hpp"
+#include "trace/embree_compat.hpp"
 #include "exposed_quads.hpp"
-#include "ray_tile.hpp"
+#include "trace/ray_tile.hpp"
 
 namespace viewgain::bench {
 namespace {

@@ -4,7 +4,7 @@
 // From hits to a gain: sums by voxel, entropy differences.
 #include <benchmark/benchmark.h>
 
-#include "gain_accumulator.hpp"
+#include "gain/gain_accumulator.hpp"
 #include "micro_benchmarks.hpp"
 #include "micro_scene.hpp"
 #include "viewgain/core/criterion.hpp"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "scene_data.hpp"
+#include "scene/scene_data.hpp"
 #include "viewgain/core/generators.hpp"
 
 namespace viewgain::bench {

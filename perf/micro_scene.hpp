@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "support/camel_scene.hpp"
-#include "view_tracer.hpp"
+#include "trace/view_tracer.hpp"
 #include "viewgain/core/isa.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 

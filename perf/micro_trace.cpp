@@ -7,7 +7,7 @@
 
 #include "micro_benchmarks.hpp"
 #include "micro_scene.hpp"
-#include "scene_data.hpp"
+#include "scene/scene_data.hpp"
 
 namespace viewgain::bench {
 namespace {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "scene_data.hpp"
-#include "view_tracer.hpp"
+#include "scene/scene_data.hpp"
+#include "trace/view_tracer.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::bench {

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "trace/leaf_traversal.hpp"
+#include "trace/tile_bins.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+#include "trace/voxel_bvh.hpp"
+
+namespace viewgain::detail {
+
+/// The mask that rays are traced against: 512 bits, one cache line.
+struct alignas(64) TraceMask {
+  std::array<std::uint32_t, 16> words{};  ///< bit of voxel (x,y,z): x << 6 | y << 3 | z
+};
+
+/// A primitive's box in voxels, relative to the workspace's lowest corner: for a leaf the tightest
+/// one round its set bits, whose lowest voxel has the offset first_offset in the leaf.
+struct alignas(32) PrimitiveBox {
+  float min[3];
+  float max[3];
+  std::uint32_t first_offset;
+};
+
+/// How a voxel's offset in its primitive is packed, bits an axis: x << 2 bits | y << bits | z.
+/// Leaves and whole unknown blocks of 8³ have three, larger boxes ten; kMaxBoxEdge is what those
+/// can hold.
+inline constexpr int kBlockBits = 3;
+inline constexpr int kBoxBits = 10;
+inline constexpr int kMaxBoxEdge = 1 << kBoxBits;
+
+/// Where a region's primitives begin, each kind counted by itself: leaves, whole blocks, boxes.
+/// Boxes larger than a region come before all regions' boxes.
+struct SceneRegion {
+  std::uint32_t leaf, block, box;
+};
+
+/// Geometry numbers in the Embree scene.
+inline constexpr unsigned kLeafGeometry = 0;
+inline constexpr unsigned kBoxGeometry = 1;
+inline constexpr unsigned kObstacleGeometry = 2;
+
+}  // namespace viewgain::detail
+
+namespace viewgain {
+
+/// What VoxelScene owns. Primitives are numbered: [0, leaf_count) leaves that are traced by their
+/// masks, [leaf_count, block_count) whole blocks of 8³ unknown voxels, the rest larger or clipped
+/// boxes of unknown voxels.
+///
+/// Blocks are the 8³ cells of the lattice that touch the workspace, numbered x-major; a voxel's key
+/// is block << 9 | x << 6 | y << 3 | z of its place in the block.
+struct VoxelScene::Data {
+  GridSnapshot snapshot;
+  std::vector<detail::TraceMask> masks;     ///< one a leaf
+  std::vector<detail::PrimitiveBox> boxes;  ///< one a primitive
+  std::vector<std::uint64_t> block_keys;    ///< block << 9, one a primitive below block_count
+  std::vector<std::uint32_t> leaf_source;   ///< index into snapshot.leaves, one a leaf primitive
+  std::vector<std::uint8_t>
+      has_occupied;  ///< whether a leaf has occupied voxels, one a leaf primitive
+  std::size_t leaf_count = 0;
+  std::size_t block_count = 0;
+  Obstacles obstacles;
+  bool has_obstacles = false;
+  std::optional<detail::SceneBoxes> scene_boxes;  ///< for sorting into the tiles of a view
+  const detail::TraceKernels* kernels = nullptr;
+  int build_threads = 0;  ///< of the BVH
+
+  /// Where the primitives of each of the snapshot's regions begin, and behind the last.
+  std::vector<detail::SceneRegion> regions;
+
+  /// Builds the BVH unless it is there; only some views are traced through it, see ViewTracer.
+  /// Thread safe. Throws Error(backend), Error(capacity).
+  void ensure_bvh() const {
+    std::call_once(bvh_once_, [this] { bvh_ = detail::build_bvh(*this); });
+  }
+  /// Null unless ensure_bvh() was called.
+  [[nodiscard]] RTCScene bvh() const { return bvh_.scene.get(); }
+
+  /// Key of the voxel at (x, y, z), relative to the workspace's lowest voxel.
+  [[nodiscard]] std::uint64_t voxel_key(std::int32_t x, std::int32_t y, std::int32_t z) const {
+    const std::int32_t gx = x + snapshot.min_index.x, gy = y + snapshot.min_index.y,
+                       gz = z + snapshot.min_index.z;
+    return block_of(gx >> 3, gy >> 3, gz >> 3) << 9U |
+           static_cast<std::uint64_t>((gx & 7) << 6 | (gy & 7) << 3 | (gz & 7));
+  }
+
+  /// Blocks that n voxels from min on touch.
+  [[nodiscard]] static std::uint64_t block_extent(std::int32_t min, std::int32_t n) {
+    return static_cast<std::uint64_t>(((min + n - 1) >> 3) - (min >> 3) + 1);
+  }
+
+  /// Number of the block at block coordinates (voxel index / 8, rounded down).
+  [[nodiscard]] std::uint64_t block_of(std::int32_t bx, std::int32_t by, std::int32_t bz) const {
+    const auto& base = snapshot.min_index;
+    const auto& dims = snapshot.dims;
+    return (static_cast<std::uint64_t>(bx - (base.x >> 3)) * block_extent(base.y, dims.y) +
+            static_cast<std::uint64_t>(by - (base.y >> 3))) *
+               block_extent(base.z, dims.z) +
+           static_cast<std::uint64_t>(bz - (base.z >> 3));
+  }
+
+  /// The inverse: the voxel of a key, as an index of the grid's lattice.
+  [[nodiscard]] Index3 voxel_at(std::uint64_t key) const {
+    const auto& base = snapshot.min_index;
+    const auto& dims = snapshot.dims;
+    const std::uint64_t block = key >> 9U;
+    const std::uint64_t ny = block_extent(base.y, dims.y), nz = block_extent(base.z, dims.z);
+    const auto coordinate = [](std::uint64_t b, std::int32_t min, std::uint64_t low) {
+      return ((static_cast<std::int32_t>(b) + (min >> 3)) << 3) + static_cast<std::int32_t>(low);
+    };
+    return {coordinate(block / (ny * nz), base.x, key >> 6U & 7U),
+            coordinate(block / nz % ny, base.y, key >> 3U & 7U),
+            coordinate(block % nz, base.z, key & 7U)};
+  }
+
+  /// The voxel that a hit names, as an index of the grid's lattice.
+  [[nodiscard]] Index3 voxel_index(std::uint32_t primitive, std::uint32_t offset) const {
+    const int bits = primitive < block_count ? detail::kBlockBits : detail::kBoxBits;
+    const std::uint32_t low = (1U << bits) - 1U;
+    const auto x = static_cast<std::int32_t>(offset >> 2 * bits);
+    const auto y = static_cast<std::int32_t>(offset >> bits & low);
+    const auto z = static_cast<std::int32_t>(offset & low);
+    if (primitive < leaf_count) {
+      const Index3& origin = snapshot.leaves[leaf_source[primitive]].origin;
+      return {origin.x + x, origin.y + y, origin.z + z};
+    }
+    const auto& min = boxes[primitive].min;
+    return {snapshot.min_index.x + static_cast<std::int32_t>(min[0]) + x,
+            snapshot.min_index.y + static_cast<std::int32_t>(min[1]) + y,
+            snapshot.min_index.z + static_cast<std::int32_t>(min[2]) + z};
+  }
+
+  /// The leaf of the occupied voxel that a hit names; null if the voxel is unknown.
+  [[nodiscard]] const SnapshotLeaf* occupied_leaf(std::uint32_t primitive,
+                                                  std::uint32_t offset) const {
+    if (primitive >= leaf_count) return nullptr;
+    const SnapshotLeaf& leaf = snapshot.leaves[leaf_source[primitive]];
+    return test_bit(leaf.occupied, offset) ? &leaf : nullptr;
+  }
+
+  [[nodiscard]] std::uint64_t hit_key(std::uint32_t primitive, std::uint32_t offset) const {
+    if (primitive < block_count) return block_keys[primitive] | offset;
+    const Index3 voxel = voxel_index(primitive, offset);
+    return voxel_key(voxel.x - snapshot.min_index.x, voxel.y - snapshot.min_index.y,
+                     voxel.z - snapshot.min_index.z);
+  }
+
+ private:
+  mutable std::once_flag bvh_once_;
+  mutable detail::VoxelBvh bvh_;
+};
+
+}  // namespace viewgain

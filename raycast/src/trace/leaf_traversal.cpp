@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Tiles of rays through a scene: by Embree's BVH with callbacks, or along lists of primitives.
+// Compiled once for each instruction set.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "trace/leaf_traversal.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+//
+#include <hwy/highway.h>
+
+#include "leaf_walk-inl.hpp"
+#include "scene/scene_data.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace viewgain::detail::HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// What a packet's callbacks need to know; the tile's lanes [lane0, lane0 + kWidth) are the
+// packet's.
+struct PacketQuery : RayQuery {
+  PacketQuery() : RayQuery(true) {}
+  const VoxelScene::Data* scene = nullptr;
+  const PoseFrame* frame = nullptr;
+  RayTile* tile = nullptr;
+  int lane0 = 0;
+};
+
+// Embree's callback. Almost always the packet is the one that was sent, N = kWidth with lanes in
+// order; else each ray is looked up by the lane in its id and goes through the same kernel alone.
+template <typename Kernel>
+HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint32_t primitive,
+                          Kernel kernel) {
+  PacketQuery& query = query_of<PacketQuery>(args);
+  const Slabs slabs = slabs_of(query.scene->boxes[primitive], *query.frame);
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
+  const bool as_sent =
+      args->N == static_cast<unsigned>(kWidth) &&
+      hn::AllTrue(du, hn::Eq(hn::LoadU(du, &RTCRayN_id(rays, args->N, 0)), hn::Iota(du, 0U)));
+  if (as_sent) {
+    if (query.scene->has_obstacles) {
+      const VU geometry = hn::LoadU(du, &RTCHitN_geomID(hit, args->N, 0));
+      hn::BlendedStore(hn::Set(du, kObstaclePrimitive),
+                       hn::Eq(geometry, hn::Set(du, kObstacleGeometry)), du,
+                       query.tile->primitive + query.lane0);
+    }
+    float* tfar = &RTCRayN_tfar(rays, args->N, 0);
+    VF range = hn::LoadU(df, tfar);
+    const MF active = hn::RebindMask(df, hn::Ne(hn::LoadU(di, args->valid), hn::Zero(di)));
+    const MF hits = kernel(*query.scene, *query.frame, *query.tile, query.lane0, primitive, slabs,
+                           active, range);
+    if (hn::AllFalse(df, hits)) return;
+    hn::StoreU(range, df, tfar);
+    hn::BlendedStore(hn::Set(du, args->geomID), hn::RebindMask(du, hits), du,
+                     &RTCHitN_geomID(hit, args->N, 0));
+    return;
+  }
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    const unsigned lane = RTCRayN_id(rays, args->N, i);
+    if (RTCHitN_geomID(hit, args->N, i) == kObstacleGeometry) {
+      query.tile->primitive[static_cast<unsigned>(query.lane0) + lane] = kObstaclePrimitive;
+    }
+    VF range = hn::Set(df, RTCRayN_tfar(rays, args->N, i));
+    const MF active = hn::RebindMask(df, hn::Eq(hn::Iota(du, 0U), hn::Set(du, lane)));
+    const MF hits = kernel(*query.scene, *query.frame, *query.tile, query.lane0, primitive, slabs,
+                           active, range);
+    if (hn::AllFalse(df, hits)) continue;
+    HWY_ALIGN float ranges[kWidth];
+    hn::Store(range, df, ranges);
+    RTCRayN_tfar(rays, args->N, i) = ranges[lane];
+    RTCHitN_geomID(hit, args->N, i) = args->geomID;
+  }
+}
+
+void intersect_leaf(const RTCIntersectFunctionNArguments* args) {
+  intersect(args, args->primID,
+            [](auto&&... a) HWY_ATTR { return walk_leaf(static_cast<decltype(a)>(a)...); });
+}
+
+void intersect_box(const RTCIntersectFunctionNArguments* args) {
+  const PacketQuery& query = query_of<PacketQuery>(args);
+  intersect(args, static_cast<std::uint32_t>(query.scene->leaf_count) + args->primID,
+            [](auto&&... a) HWY_ATTR { return enter_box(static_cast<decltype(a)>(a)...); });
+}
+
+// Directions of a tile in the grid's frame and their inverses.
+void set_up(const TileTable& table, const PoseFrame& frame, std::size_t tile, RayTile& out) {
+  const float* table_x = table.directions.data() + tile * 3 * kTileRays;
+  const float* table_y = table_x + kTileRays;
+  const float* table_z = table_y + kTileRays;
+  const VF tiny = hn::Set(df, 1e-20F);
+  for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
+    const VF x = hn::LoadU(df, table_x + lane0), y = hn::LoadU(df, table_y + lane0),
+             z = hn::LoadU(df, table_z + lane0);
+    const auto row = [&](std::size_t r, float* direction, float* inverse) HWY_ATTR {
+      const VF d = hn::Add(hn::Add(hn::Mul(hn::Set(df, frame.rotation[3 * r]), x),
+                                   hn::Mul(hn::Set(df, frame.rotation[3 * r + 1]), y)),
+                           hn::Mul(hn::Set(df, frame.rotation[3 * r + 2]), z));
+      // Zero counts as a small positive number: 0 * inverse stays 0, and a ray that runs in a face
+      // belongs to the larger index.
+      const VF safe = hn::IfThenElse(hn::Lt(hn::Abs(d), tiny), tiny, d);
+      hn::Store(safe, df, direction + lane0);
+      hn::Store(hn::Div(hn::Set(df, 1.0F), safe), df, inverse + lane0);
+    };
+    row(0, out.dx, out.ix);
+    row(1, out.dy, out.iy);
+    row(2, out.dz, out.iz);
+    hn::Store(hn::Set(df, frame.max_range), df, out.range + lane0);
+    hn::Store(hn::Set(du, kNoPrimitive), du, out.primitive + lane0);
+  }
+  out.valid = table.valid[tile];
+  out.hit = 0;
+  out.blocked = 0;
+}
+
+#if HWY_TARGET == HWY_AVX3
+using Packet = RTCRayHit16;
+constexpr auto intersect_packet = intersect16;
+#elif HWY_TARGET == HWY_AVX2
+using Packet = RTCRayHit8;
+constexpr auto intersect_packet = intersect8;
+#else
+using Packet = RTCRayHit4;
+constexpr auto intersect_packet = intersect4;
+#endif
+static_assert(sizeof(Packet::ray.tfar) == kWidth * sizeof(float));
+
+void trace(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
+           std::size_t tile, RayTile& out) {
+  set_up(table, frame, tile, out);
+  PacketQuery query;
+  query.scene = &scene;
+  query.frame = &frame;
+  query.tile = &out;
+  const VU none = hn::Set(du, RTC_INVALID_GEOMETRY_ID);
+  for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
+    query.lane0 = lane0;
+    Packet packet;
+    alignas(64) int valid[kWidth];
+    const VU lane_bits = hn::Shl(hn::Set(du, 1U), hn::Iota(du, static_cast<std::uint32_t>(lane0)));
+    const auto usable = hn::TestBit(hn::Set(du, out.valid), lane_bits);
+    hn::Store(hn::BitCast(di, hn::VecFromMask(du, usable)), di, valid);
+    hn::Store(hn::Set(df, frame.origin[0]), df, packet.ray.org_x);
+    hn::Store(hn::Set(df, frame.origin[1]), df, packet.ray.org_y);
+    hn::Store(hn::Set(df, frame.origin[2]), df, packet.ray.org_z);
+    hn::Store(hn::Load(df, out.dx + lane0), df, packet.ray.dir_x);
+    hn::Store(hn::Load(df, out.dy + lane0), df, packet.ray.dir_y);
+    hn::Store(hn::Load(df, out.dz + lane0), df, packet.ray.dir_z);
+    // Obstacles block at any range; voxels count from min_range on, which the kernels see to.
+    hn::Store(hn::Set(df, scene.has_obstacles ? 0.0F : frame.min_range), df, packet.ray.tnear);
+    hn::Store(hn::Set(df, frame.max_range), df, packet.ray.tfar);
+    hn::Store(hn::Zero(df), df, packet.ray.time);
+    hn::Store(hn::Set(du, 0xFFFFFFFFU), du, packet.ray.mask);
+    hn::Store(hn::Iota(du, 0U), du, packet.ray.id);
+    hn::Store(hn::Zero(du), du, packet.ray.flags);
+    hn::Store(none, du, packet.hit.geomID);
+    hn::Store(none, du, packet.hit.instID[0]);
+    intersect_packet(valid, scene.bvh(), &packet, &query);
+
+    const VU geometry = hn::Load(du, packet.hit.geomID);
+    const auto ended = hn::And(usable, hn::Ne(geometry, none));
+    const auto in_obstacle = hn::Eq(geometry, hn::Set(du, kObstacleGeometry));
+    const auto in_voxel = hn::AndNot(in_obstacle, ended);
+    hn::Store(hn::Load(df, packet.ray.tfar), df, out.range + lane0);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(du, in_voxel, bits);
+    out.hit |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U)
+               << lane0;
+    std::uint8_t blocked[8] = {};
+    hn::StoreMaskBits(du, in_obstacle, blocked);
+    out.blocked |=
+        (static_cast<std::uint32_t>(blocked[0]) | static_cast<std::uint32_t>(blocked[1]) << 8U)
+        << lane0;
+  }
+}
+
+float walk(const VoxelScene::Data& scene, const PoseFrame& frame, float cosine,
+           std::span<const TileBox> primitives, RayTile& out) {
+  constexpr int kParts = kTileRays / kWidth;
+  VF range[kParts];
+  MF active[kParts], hits[kParts];
+  for (int part = 0; part < kParts; ++part) {
+    const int lane0 = part * kWidth;
+    range[part] = hn::Load(df, out.range + lane0);
+    const VU lane_bits = hn::Shl(hn::Set(du, 1U), hn::Iota(du, static_cast<std::uint32_t>(lane0)));
+    active[part] = hn::RebindMask(df, hn::TestBit(hn::Set(du, out.valid), lane_bits));
+    hits[part] = hn::MaskFromVec(hn::Zero(df));
+  }
+  // A ray of range t is at most t * cosine along the axis.
+  const auto depth = [&]() HWY_ATTR {
+    VF farthest = hn::IfThenElseZero(active[0], range[0]);
+    for (int part = 1; part < kParts; ++part) {
+      farthest = hn::Max(farthest, hn::IfThenElseZero(active[part], range[part]));
+    }
+    return cosine * hn::GetLane(hn::MaxOfLanes(df, farthest));
+  };
+  float of_interest = depth();
+  // In a large scene neither boxes nor masks are in the near caches: ask for them ahead.
+  constexpr std::size_t kAhead = 3;
+  const auto fetch = [&](std::size_t i) {
+    if (i >= primitives.size()) return;
+    const std::uint32_t primitive = primitives[i].box;
+    __builtin_prefetch(&scene.boxes[primitive]);
+    if (primitive < scene.leaf_count) __builtin_prefetch(&scene.masks[primitive]);
+  };
+  for (std::size_t i = 0; i < kAhead; ++i) fetch(i);
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    const TileBox entry = primitives[i];
+    if (entry.near > of_interest) break;
+    fetch(i + kAhead);
+    const Slabs slabs = slabs_of(scene.boxes[entry.box], frame);
+    const bool is_leaf = entry.box < scene.leaf_count;
+    for (int part = 0; part < kParts; ++part) {
+      const int lane0 = part * kWidth;
+      const MF more =
+          is_leaf
+              ? walk_leaf(scene, frame, out, lane0, entry.box, slabs, active[part], range[part])
+              : enter_box(scene, frame, out, lane0, entry.box, slabs, active[part], range[part]);
+      hits[part] = hn::Or(hits[part], more);
+    }
+    of_interest = depth();
+  }
+  for (int part = 0; part < kParts; ++part) {
+    const int lane0 = part * kWidth;
+    hn::Store(range[part], df, out.range + lane0);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(df, hits[part], bits);
+    out.hit |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U)
+               << lane0;
+  }
+  return of_interest;
+}
+
+}  // namespace
+
+const TraceKernels& kernels(Isa isa) {
+  static const TraceKernels table{isa, kWidth, intersect_leaf, intersect_box, trace, set_up, walk};
+  return table;
+}
+
+}  // namespace viewgain::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace viewgain::detail {
+
+const TraceKernels& trace_kernels(Isa isa) {
+  switch (isa) {
+#if HWY_TARGETS & HWY_AVX3
+    case Isa::avx512:
+      return N_AVX3::kernels(isa);
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Isa::avx2:
+      return N_AVX2::kernels(isa);
+#endif
+    default:
+      return HWY_STATIC_DISPATCH(kernels)(isa);
+  }
+}
+
+}  // namespace viewgain::detail
+#endif

@@ -1,0 +1,374 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "trace/tile_bins.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+//
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "scene/scene_data.hpp"
+#include "tile_bins.hpp"
+
+#ifndef VIEWGAIN_TILE_BINS_ONCE
+#define VIEWGAIN_TILE_BINS_ONCE
+namespace viewgain::detail {
+
+constexpr float kEverywhere = 1e9F;  // beyond every column and row
+
+// Where sixteen boxes lie in the image, in rays; empty if max < min.
+struct ImageBounds {
+  alignas(64) float min_column[kBoxVector], max_column[kBoxVector];
+  alignas(64) float min_row[kBoxVector], max_row[kBoxVector];
+  alignas(64) float near[kBoxVector];  // where it begins along the optical axis [voxels]
+};
+
+struct ImageScale {
+  float scale_x, shift_x, scale_y, shift_y;
+  float nearest;   // along the optical axis [voxels]; what is nearer no ray meets
+  float touching;  // except in boxes that come so close to the axis [voxels]; negative: none
+  float last_column, last_row;
+};
+
+struct TileBinKernels {
+  ImageBounds (*bounds_of)(const BoxArrays&, std::size_t first, const PoseFrame&,
+                           const ImageScale&);
+  // One bit for each of sixteen members that cover the tile.
+  std::uint32_t (*covering)(const std::int16_t* column0, const std::int16_t* column1,
+                            const std::int16_t* row0, const std::int16_t* row1, std::int16_t column,
+                            std::int16_t row);
+};
+
+}  // namespace viewgain::detail
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace viewgain::detail::HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Rounding moves a bound by less than this many rays.
+constexpr float kRayMargin = 0.05F;
+
+ImageBounds bounds_of(const BoxArrays& boxes, std::size_t first, const PoseFrame& frame,
+                      const ImageScale& image) {
+  constexpr hn::CappedTag<float, kBoxVector> df;
+  using VF = hn::Vec<decltype(df)>;
+  ImageBounds out;
+  const auto& R = frame.rotation;
+  const VF zero = hn::Zero(df), nearest = hn::Set(df, image.nearest);
+  const VF touching = hn::Set(df, image.touching), opposite = hn::Neg(touching);
+  const VF everywhere = hn::Set(df, kEverywhere), nowhere = hn::Neg(everywhere);
+  for (std::size_t i = 0; i < kBoxVector; i += hn::Lanes(df)) {
+    const std::size_t at = first + i;
+    const VF dx = hn::Sub(hn::LoadU(df, &boxes.center_x[at]), hn::Set(df, frame.origin[0]));
+    const VF dy = hn::Sub(hn::LoadU(df, &boxes.center_y[at]), hn::Set(df, frame.origin[1]));
+    const VF dz = hn::Sub(hn::LoadU(df, &boxes.center_z[at]), hn::Set(df, frame.origin[2]));
+    const VF hx = hn::LoadU(df, &boxes.half_x[at]), hy = hn::LoadU(df, &boxes.half_y[at]),
+             hz = hn::LoadU(df, &boxes.half_z[at]);
+    // The box in the camera's axes: centre and reach along each.
+    const auto along = [&](std::size_t axis, VF& low, VF& high) HWY_ATTR {
+      const VF a = hn::Set(df, R[axis]), b = hn::Set(df, R[3 + axis]), c = hn::Set(df, R[6 + axis]);
+      const VF center = hn::Add(hn::Mul(a, dx), hn::Add(hn::Mul(b, dy), hn::Mul(c, dz)));
+      const VF reach = hn::Add(hn::Mul(hn::Abs(a), hx),
+                               hn::Add(hn::Mul(hn::Abs(b), hy), hn::Mul(hn::Abs(c), hz)));
+      low = hn::Sub(center, reach);
+      high = hn::Add(center, reach);
+    };
+    VF x_low, x_high, y_low, y_high, z_low, z_high;
+    along(0, x_low, x_high);
+    along(1, y_low, y_high);
+    along(2, z_low, z_high);
+    // Of a box that reaches the camera's plane only the part before it counts.
+    const auto behind = hn::Lt(z_high, nearest);
+    const VF z_near = hn::Max(z_low, nearest);
+    // Rays that count from the camera on may meet what touches it in any direction.
+    const auto beside = [&](VF low, VF high) HWY_ATTR {
+      return hn::And(hn::Le(low, touching), hn::Ge(high, opposite));
+    };
+    const auto touches = hn::And(hn::And(beside(x_low, x_high), beside(y_low, y_high)),
+                                 hn::And(hn::Le(z_low, nearest), hn::Ge(z_high, opposite)));
+    hn::Store(hn::IfThenElse(touches, zero, z_near), df, out.near + i);
+    const VF one = hn::Set(df, 1.0F);
+    const VF by_near = hn::Div(one, z_near);
+    const VF by_far = hn::Div(one, hn::Max(z_high, nearest));
+    const VF margin = hn::Set(df, kRayMargin);
+    const auto project = [&](VF low, VF high, float scale, float shift, float* min_out,
+                             float* max_out) HWY_ATTR {
+      const VF least = hn::Mul(low, hn::IfThenElse(hn::Lt(low, zero), by_near, by_far));
+      const VF most = hn::Mul(high, hn::IfThenElse(hn::Lt(high, zero), by_far, by_near));
+      const VF s = hn::Set(df, scale), o = hn::Set(df, shift);
+      const VF min = hn::Sub(hn::Add(hn::Mul(least, s), o), margin);
+      const VF max = hn::Add(hn::Add(hn::Mul(most, s), o), margin);
+      hn::Store(hn::IfThenElse(touches, nowhere, min), df, min_out + i);
+      hn::Store(hn::IfThenElse(touches, everywhere, hn::IfThenElse(behind, nowhere, max)), df,
+                max_out + i);
+    };
+    project(x_low, x_high, image.scale_x, image.shift_x, out.min_column, out.max_column);
+    project(y_low, y_high, image.scale_y, image.shift_y, out.min_row, out.max_row);
+  }
+  return out;
+}
+
+std::uint32_t covering(const std::int16_t* column0, const std::int16_t* column1,
+                       const std::int16_t* row0, const std::int16_t* row1, std::int16_t column,
+                       std::int16_t row) {
+  constexpr hn::CappedTag<std::int16_t, kBoxVector> d;
+  const auto c = hn::Set(d, column), r = hn::Set(d, row);
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < kBoxVector; i += hn::Lanes(d)) {
+    const auto outside =
+        hn::Or(hn::Or(hn::Gt(hn::LoadU(d, column0 + i), c), hn::Lt(hn::LoadU(d, column1 + i), c)),
+               hn::Or(hn::Gt(hn::LoadU(d, row0 + i), r), hn::Lt(hn::LoadU(d, row1 + i), r)));
+    std::uint8_t part[8] = {};
+    hn::StoreMaskBits(d, hn::Not(outside), part);
+    bits |= (static_cast<std::uint32_t>(part[0]) | static_cast<std::uint32_t>(part[1]) << 8U) << i;
+  }
+  return bits;
+}
+
+}  // namespace
+
+const TileBinKernels& tile_bin_kernels() {
+  static const TileBinKernels table{bounds_of, covering};
+  return table;
+}
+
+}  // namespace viewgain::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace viewgain::detail {
+namespace {
+
+// Below this a camera's plane is too near to divide by [voxels].
+constexpr float kLeastDepth = 1e-3F;
+
+const TileBinKernels& kernels_of(Isa isa) {
+  switch (isa) {
+#if HWY_TARGETS & HWY_AVX3
+    case Isa::avx512:
+      return N_AVX3::tile_bin_kernels();
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Isa::avx2:
+      return N_AVX2::tile_bin_kernels();
+#endif
+    default:
+      return HWY_STATIC_DISPATCH(tile_bin_kernels)();
+  }
+}
+
+// Tiles of the rays whose numbers lie in [min, max]; false if there are none.
+template <typename Integer>
+bool tile_range(float min, float max, float last, Integer& first_tile, Integer& last_tile) {
+  const float low = std::max(min, 0.0F), high = std::min(max, last);
+  if (!(low <= high)) return false;
+  first_tile = static_cast<Integer>(static_cast<int>(low) / kTileEdge);
+  last_tile = static_cast<Integer>(static_cast<int>(high) / kTileEdge);
+  return true;
+}
+
+// The tiles that box i of sixteen covers; false if none.
+template <typename Integer>
+bool outline(const ImageBounds& bounds, std::size_t i, const ImageScale& image, Integer& column0,
+             Integer& column1, Integer& row0, Integer& row1) {
+  return tile_range(bounds.min_column[i], bounds.max_column[i], image.last_column, column0,
+                    column1) &&
+         tile_range(bounds.min_row[i], bounds.max_row[i], image.last_row, row0, row1);
+}
+
+// Rounding moves a distance by less.
+float safely_near(float near) { return near - 1e-5F * std::abs(near); }
+
+// Distances along the optical axis in 256 steps: enough to put near boxes first.
+constexpr std::size_t kDistanceSteps = 256;
+
+}  // namespace
+
+TileBinner::TileBinner(const PinholeCamera& camera, int pixel_stride, const TileTable& table)
+    : usable_(!camera.has_distortion()),
+      scale_x_(static_cast<float>(camera.fx / pixel_stride)),
+      shift_x_(static_cast<float>(camera.cx / pixel_stride)),
+      scale_y_(static_cast<float>(camera.fy / pixel_stride)),
+      shift_y_(static_cast<float>(camera.cy / pixel_stride)),
+      last_column_(static_cast<float>(table.columns - 1)),
+      last_row_(static_cast<float>(table.rows - 1)),
+      tile_columns_(static_cast<std::size_t>((table.columns + kTileEdge - 1) / kTileEdge)),
+      tile_count_(table.tile_count) {
+  for (std::size_t tile = 0; tile < table.tile_count; ++tile) {
+    const float* z = table.directions.data() + tile * 3 * kTileRays + 2 * kTileRays;
+    least_cosine_ = std::min(least_cosine_, *std::min_element(z, z + kTileRays));
+  }
+  widest_slope_ = std::max({shift_x_, last_column_ - shift_x_, 1.0F}) / scale_x_ +
+                  std::max({shift_y_, last_row_ - shift_y_, 1.0F}) / scale_y_;
+}
+
+ImageScale TileBinner::image_of(const PoseFrame& frame) const {
+  // A ray that has gone min_range is at least this far along the axis.
+  const float nearest = 0.999F * frame.min_range * least_cosine_;
+  const float touching = nearest < kLeastDepth ? 1.01F * kLeastDepth * widest_slope_ : -kEverywhere;
+  return {scale_x_, shift_x_,     scale_y_, shift_y_, std::max(nearest, kLeastDepth),
+          touching, last_column_, last_row_};
+}
+
+void TileBinner::sort(Isa isa, const SceneBoxes& scene, const PoseFrame& frame,
+                      TileBins& bins) const {
+  bins.valid_ = false;
+  if (!usable_) return;
+  const TileBinKernels& kernels = kernels_of(isa);
+  const ImageScale image = image_of(frame);
+
+  // Where each box lies in the image and how far off it is.
+  bins.entries_.clear();
+  bins.starts_.resize(tile_count_ + 1);
+  float nearest = std::numeric_limits<float>::max(), farthest = 0;
+  for (std::size_t first = 0; first < scene.count; first += kBoxVector) {
+    const ImageBounds bounds = kernels.bounds_of(scene.boxes, first, frame, image);
+    const std::size_t count = std::min(kBoxVector, scene.count - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      TileBins::Entry entry{};
+      if (!outline(bounds, i, image, entry.column0, entry.column1, entry.row0, entry.row1)) {
+        continue;
+      }
+      entry.box = static_cast<std::uint32_t>(first + i);
+      entry.near = bounds.near[i];
+      nearest = std::min(nearest, entry.near);
+      farthest = std::max(farthest, entry.near);
+      bins.entries_.push_back(entry);
+    }
+  }
+
+  // Near boxes first: a counting sort. A list's `near` is that of the step, less the rounding.
+  std::array<std::uint32_t, kDistanceSteps + 1> begins{};
+  const float step = std::max(farthest - nearest, 1e-6F) / static_cast<float>(kDistanceSteps - 1);
+  const auto step_of = [&](const TileBins::Entry& entry) {
+    return std::min(static_cast<std::size_t>((entry.near - nearest) / step), kDistanceSteps - 1);
+  };
+  for (const TileBins::Entry& entry : bins.entries_) ++begins[step_of(entry) + 1];
+  for (std::size_t i = 0; i < kDistanceSteps; ++i) begins[i + 1] += begins[i];
+  bins.sorted_.resize(bins.entries_.size());
+  for (const TileBins::Entry& entry : bins.entries_) {
+    const std::size_t at = step_of(entry);
+    TileBins::Entry& sorted = bins.sorted_[begins[at]++];
+    sorted = entry;
+    sorted.near = safely_near(nearest + static_cast<float>(at) * step);
+  }
+
+  // Each tile's boxes side by side: count, then fill.
+  const auto for_each_tile = [&](const TileBins::Entry& entry, auto&& visit) {
+    for (std::size_t row = entry.row0; row <= entry.row1; ++row) {
+      for (std::size_t column = entry.column0; column <= entry.column1; ++column) {
+        visit(row * tile_columns_ + column);
+      }
+    }
+  };
+  // Counting by differences: a rectangle adds one where it begins and takes it back where it ends.
+  const std::size_t tile_rows = tile_count_ / tile_columns_, pitch = tile_columns_ + 1;
+  bins.differences_.assign((tile_rows + 1) * pitch, 0);
+  std::int32_t* const differences = bins.differences_.data();
+  for (const TileBins::Entry& entry : bins.sorted_) {
+    ++differences[entry.row0 * pitch + entry.column0];
+    --differences[entry.row0 * pitch + entry.column1 + 1U];
+    --differences[(entry.row1 + 1U) * pitch + entry.column0];
+    ++differences[(entry.row1 + 1U) * pitch + entry.column1 + 1U];
+  }
+  std::uint32_t* const starts = bins.starts_.data();
+  std::uint32_t total = 0;
+  for (std::size_t row = 0; row < tile_rows; ++row) {
+    std::int32_t* const here = differences + row * pitch;
+    std::int32_t along = 0;
+    for (std::size_t column = 0; column < tile_columns_; ++column) {
+      along += here[column];
+      const std::int32_t above =
+          row > 0 ? here[static_cast<std::ptrdiff_t>(column) - static_cast<std::ptrdiff_t>(pitch)]
+                  : 0;
+      here[column] = above + along;  // now the number of boxes over this tile
+      total += static_cast<std::uint32_t>(here[column]);
+      starts[row * tile_columns_ + column] = total;
+    }
+  }
+  starts[tile_count_] = total;
+  bins.boxes_.resize(total);
+  TileBox* const out = bins.boxes_.data();
+  // Backwards, so that each start moves down to where its tile begins.
+  for (auto entry = bins.sorted_.rbegin(); entry != bins.sorted_.rend(); ++entry) {
+    for_each_tile(*entry,
+                  [&](std::size_t tile) { out[--starts[tile]] = {entry->box, entry->near}; });
+  }
+
+  if (!scene.are_primitives()) {
+    if (bins.cells_.size() < scene.count) bins.cells_.resize(scene.count);
+    if (++bins.generation_ == 0) {  // after 2^32 views old stamps would look new
+      std::fill(bins.cells_.begin(), bins.cells_.end(), TileBins::Cell{});
+      bins.generation_ = 1;
+    }
+    bins.member_.clear();
+    bins.column0_.clear(), bins.column1_.clear(), bins.row0_.clear(), bins.row1_.clear();
+  }
+  bins.valid_ = true;
+}
+
+void TileBinner::project_cell(const TileBinKernels& kernels, const SceneBoxes& scene,
+                              const PoseFrame& frame, std::uint32_t cell, TileBins& bins) const {
+  const ImageScale image = image_of(frame);
+  TileBins::Cell& state = bins.cells_[cell];
+  state.generation = bins.generation_;
+  state.begin = static_cast<std::uint32_t>(bins.member_.size());
+  const auto append = [&](std::int16_t column0, std::int16_t column1, std::int16_t row0,
+                          std::int16_t row1, const TileBox& member) {
+    bins.column0_.push_back(column0), bins.column1_.push_back(column1);
+    bins.row0_.push_back(row0), bins.row1_.push_back(row1);
+    bins.member_.push_back(member);
+  };
+  for (std::size_t at = scene.first[cell]; at < scene.first[cell + 1]; at += kBoxVector) {
+    const ImageBounds bounds = kernels.bounds_of(scene.members, at, frame, image);
+    for (std::size_t i = 0; i < kBoxVector; ++i) {
+      const std::uint32_t primitive = scene.primitives[at + i];
+      if (primitive == kNoPrimitive) break;
+      std::int16_t column0 = 0, column1 = 0, row0 = 0, row1 = 0;
+      if (outline(bounds, i, image, column0, column1, row0, row1)) {
+        append(column0, column1, row0, row1, {primitive, safely_near(bounds.near[i])});
+      }
+    }
+  }
+  while (bins.member_.size() % kBoxVector != 0) append(1, 0, 1, 0, {kNoPrimitive, 0});
+  state.end = static_cast<std::uint32_t>(bins.member_.size());
+}
+
+std::span<const TileBox> TileBinner::select(Isa isa, const SceneBoxes& scene,
+                                            const PoseFrame& frame, std::uint32_t cell,
+                                            std::size_t tile, float of_interest,
+                                            TileBins& bins) const {
+  const TileBinKernels& kernels = kernels_of(isa);
+  const TileBins::Cell& state = bins.cells_[cell];
+  if (state.generation != bins.generation_) project_cell(kernels, scene, frame, cell, bins);
+  bins.selected_.clear();
+  const auto column = static_cast<std::int16_t>(tile % tile_columns_);
+  const auto row = static_cast<std::int16_t>(tile / tile_columns_);
+  for (std::size_t at = state.begin; at < state.end; at += kBoxVector) {
+    std::uint32_t bits = kernels.covering(&bins.column0_[at], &bins.column1_[at], &bins.row0_[at],
+                                          &bins.row1_[at], column, row);
+    for (; bits != 0; bits &= bits - 1) {
+      const TileBox member = bins.member_[at + static_cast<std::size_t>(std::countr_zero(bits))];
+      if (member.near > of_interest) continue;
+      // They are few: sorted as they come.
+      bins.selected_.push_back(member);
+      std::size_t i = bins.selected_.size() - 1;
+      for (; i > 0 && bins.selected_[i - 1].near > member.near; --i) {
+        bins.selected_[i] = bins.selected_[i - 1];
+      }
+      bins.selected_[i] = member;
+    }
+  }
+  return bins.selected_;
+}
+
+}  // namespace viewgain::detail
+#endif

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/raycast/simulated_sensor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "raycast/scene_makers.hpp"
+#include "surface_makers.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+namespace {
+
+std::shared_ptr<const SurfaceScene> plane_at(double z) {
+  return std::make_shared<const SurfaceScene>(test::square(5.0, z));
+}
+
+/// Something out of sight, for scenes that are all background.
+std::shared_ptr<const SurfaceScene> far_away() { return plane_at(100.0); }
+
+Sensor sensor_without_distortion() { return sensor_preset("sr4000"); }
+
+/// Range along the ray of the pixel [m].
+double range_of(const Sensor& sensor, const DepthFrame& frame, int u, int v) {
+  return static_cast<double>(frame.at(u, v)) * sensor.camera.ray(u, v).norm();
+}
+
+TEST(SimulatedSensor, DepthIsAlongTheOpticalAxis) {
+  const Sensor sensor = sensor_without_distortion();
+  const SimulatedSensor simulated(plane_at(0.75), sensor);
+  const DepthFrame frame = simulated.acquire(Pose{});
+  ASSERT_EQ(frame.width, 176);
+  ASSERT_EQ(frame.height, 144);
+  ASSERT_EQ(frame.depth.size(), 176U * 144U);
+  for (const float z : frame.depth) EXPECT_NEAR(z, 0.75, 1e-5);
+}
+
+TEST(SimulatedSensor, BackgroundIsASphereRoundTheOrigin) {
+  const Sensor sensor = sensor_without_distortion();
+  const SimulatedSensor simulated(far_away(), sensor, {.background_radius = 1.5});
+  test::Random random(3);
+  int cases = 0;
+  for (int i = 0; i < 5; ++i) {
+    const Pose pose = test::random_rigid(random, 0.5);
+    const DepthFrame frame = simulated.acquire(pose);
+    for (int v = 0; v < frame.height; v += 9) {
+      for (int u = 0; u < frame.width; u += 9) {
+        const Eigen::Vector3d p = pose * (frame.at(u, v) * sensor.camera.ray(u, v));
+        EXPECT_NEAR(p.norm(), 1.5, 1e-5);
+        ++cases;
+      }
+    }
+  }
+  EXPECT_EQ(cases, 5 * 16 * 20);
+}
+
+TEST(SimulatedSensor, SurfaceHidesBackgroundOnlyWhereItIsNearer) {
+  const Sensor sensor = sensor_without_distortion();
+  const auto ball = std::make_shared<const SurfaceScene>(test::sphere(0.1, 64));
+  const SimulatedSensor simulated(ball, sensor, {.background_radius = 1.5});
+  const Pose pose = look_at({0.6, 0, 0}, {0, 0, 0});
+  const DepthFrame frame = simulated.acquire(pose);
+  int on_ball = 0;
+  int cases = 0;
+  for (int v = 0; v < frame.height; ++v) {
+    for (int u = 0; u < frame.width; ++u) {
+      const Eigen::Vector3d d = pose.rotation() * sensor.camera.ray(u, v).normalized();
+      const double b = pose.translation().dot(d);
+      const double miss = std::sqrt(pose.translation().squaredNorm() - b * b);
+      if (std::abs(miss - 0.1) < 0.001) continue;  // the facets' outline
+      const double inner = miss < 0.1 ? -b - std::sqrt(0.01 - miss * miss) : 0;
+      const double outer = -b + std::sqrt(2.25 - miss * miss);
+      EXPECT_NEAR(range_of(sensor, frame, u, v), miss < 0.1 ? inner : outer, 0.003);
+      on_ball += miss < 0.1 ? 1 : 0;
+      ++cases;
+    }
+  }
+  EXPECT_GT(on_ball, 3000);
+  EXPECT_GT(cases, 24'000);
+}
+
+TEST(SimulatedSensor, NothingHitOrTooFarIsOutOfRangeAndTooNearIsInvalid) {
+  Sensor sensor = sensor_without_distortion();
+  const DepthFrame nothing = SimulatedSensor(plane_at(-1), sensor).acquire(Pose{});
+  for (const float z : nothing.depth) EXPECT_EQ(z, DepthFrame::kOutOfRange);
+  // The limit is along the ray: the plane's corners are beyond it, its middle is not.
+  sensor.max_range = 0.76;
+  const DepthFrame part = SimulatedSensor(plane_at(0.75), sensor).acquire(Pose{});
+  EXPECT_NEAR(part.at(88, 72), 0.75, 1e-5);
+  EXPECT_EQ(part.at(0, 0), DepthFrame::kOutOfRange);
+  sensor.min_range = 0.4;
+  const DepthFrame near = SimulatedSensor(plane_at(0.39), sensor).acquire(Pose{});
+  EXPECT_EQ(near.at(88, 72), DepthFrame::kInvalid);
+  EXPECT_NEAR(near.at(0, 0), 0.39, 1e-5);
+}
+
+TEST(SimulatedSensor, NoiseIsReproducibleAndDiffersByFrameAndSeed) {
+  const Sensor sensor = sensor_without_distortion();
+  const SimulationConfig noisy{.noise = true, .seed = 5};
+  const Pose pose;
+  const SimulatedSensor one(plane_at(0.75), sensor, noisy, {.num_threads = 1});
+  const SimulatedSensor many(plane_at(0.75), sensor, noisy, {.num_threads = 3});
+  const DepthFrame frame = one.acquire(pose, 4);
+  EXPECT_EQ(frame, one.acquire(pose, 4));
+  EXPECT_EQ(frame, many.acquire(pose, 4));
+  EXPECT_NE(frame, one.acquire(pose, 5));
+  const SimulatedSensor reseeded(plane_at(0.75), sensor, {.noise = true, .seed = 6});
+  EXPECT_NE(frame, reseeded.acquire(pose, 4));
+}
+
+TEST(SimulatedSensor, NoiseIsGaussianAlongTheRayWithTheModelsSigma) {
+  // Inside a sphere, seen from its centre: every ray meets it frontally at 1.5 m.
+  const Sensor sensor = sensor_without_distortion();
+  const SimulatedSensor simulated(far_away(), sensor,
+                                  {.background_radius = 1.5, .noise = true, .seed = 9});
+  const double sigma = sensor.sigmas(1.5).axial;
+  double sum = 0;
+  double sum_squares = 0;
+  double neighbours = 0;
+  int beyond_two = 0;
+  int count = 0;
+  for (std::uint64_t index = 0; index < 4; ++index) {
+    const DepthFrame frame = simulated.acquire(Pose{}, index);
+    double last = 0;
+    for (int v = 0; v < frame.height; ++v) {
+      for (int u = 0; u < frame.width; ++u) {
+        const double z = (range_of(sensor, frame, u, v) - 1.5) / sigma;
+        sum += z;
+        sum_squares += z * z;
+        neighbours += z * last;
+        beyond_two += std::abs(z) > 2 ? 1 : 0;
+        last = z;
+        ++count;
+      }
+    }
+  }
+  ASSERT_EQ(count, 4 * 25'344);
+  // Five standard errors of each statistic.
+  const double n = count;
+  EXPECT_NEAR(sum / n, 0, 5 / std::sqrt(n));
+  EXPECT_NEAR(sum_squares / n, 1, 5 * std::sqrt(2 / n));
+  EXPECT_NEAR(neighbours / n, 0, 5 / std::sqrt(n));
+  EXPECT_NEAR(beyond_two / n, 0.0455, 5 * std::sqrt(0.0455 / n));
+}
+
+TEST(SimulatedSensor, RefusesBadArguments) {
+  Sensor sensor = sensor_without_distortion();
+  EXPECT_THROW(SimulatedSensor(plane_at(1), sensor, {.background_radius = -1}), Error);
+  const SimulatedSensor simulated(plane_at(1), sensor);
+  Pose bad;
+  bad.m[0] = 1.1;
+  EXPECT_THROW((void)simulated.acquire(bad), Error);
+  bad.m[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW((void)simulated.acquire(bad), Error);
+  sensor.camera.width = 0;
+  EXPECT_THROW(SimulatedSensor(plane_at(1), sensor), Error);
+}
+
+}  // namespace
+}  // namespace viewgain

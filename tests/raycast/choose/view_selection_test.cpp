@@ -1,0 +1,366 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Choosing views against brute force: best(), race(), best_set(), approximate().
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stop_token>
+#include <tuple>
+
+#include "oracle/rays.hpp"
+#include "raycast/scene_makers.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/generators.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr std::array kCriteria{Criterion::log_diagonal, Criterion::log_determinant,
+                               Criterion::trace};
+
+// A lump of occupied and unknown voxels in the middle of free space, to be looked at from outside.
+BeliefGrid lump(std::uint64_t seed) {
+  test::Random random(seed);
+  constexpr int kSide = 40;
+  BeliefGrid grid({.voxel_size = 0.01,
+                   .workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}},
+                   .prior_sigma = 0.01});
+  const Eigen::Vector3d shift(test::uniform(random, -4, 4), test::uniform(random, -4, 4),
+                              test::uniform(random, -4, 4));
+  for (int x = -kSide / 2; x < kSide / 2; ++x) {
+    for (int y = -kSide / 2; y < kSide / 2; ++y) {
+      for (int z = -kSide / 2; z < kSide / 2; ++z) {
+        const Eigen::Vector3d p = Eigen::Vector3d(x, y, z) - shift;
+        const double r = p.norm() + 2 * std::sin(0.5 * x + 0.3 * z);
+        if (r < 8) continue;
+        // The half that has been seen has a shell with evidence, the other a ragged shadow.
+        if (r < 10 && x + y > 0) {
+          test::set_occupied_with_belief(grid, {x, y, z}, random);
+        } else if (r >= 11 || test::uniform(random, 0, 1) < 0.5) {
+          grid.set({x, y, z}, -0.4F);
+        }
+      }
+    }
+  }
+  return grid;
+}
+
+Sensor larger_sensor() {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera = {.width = 120, .height = 96, .fx = 150, .fy = 152, .cx = 59.2, .cy = 47.7};
+  return sensor;
+}
+
+Sensor small_sensor() {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera = {.width = 46, .height = 35, .fx = 55, .fy = 57, .cx = 22.4, .cy = 17.1};
+  return sensor;
+}
+
+void expect_exact(const GainEvaluator& evaluator, const std::vector<Pose>& poses, std::size_t k) {
+  const std::vector<ViewGain> all = evaluator.evaluate(poses);
+  const std::vector<std::size_t> expected = best_indices(all, k);
+  const BestViews best = evaluator.best(poses, k);
+  ASSERT_EQ(best.indices, expected);
+  ASSERT_EQ(best.gains.size(), expected.size());
+  for (std::size_t j = 0; j < expected.size(); ++j) {
+    EXPECT_TRUE(test::same_bits(best.gains[j], all[expected[j]]));
+  }
+  ASSERT_EQ(best.scored_indices.size(), best.scored_gains.size());
+  for (std::size_t j = 0; j < best.scored_indices.size(); ++j) {
+    EXPECT_TRUE(test::same_bits(best.scored_gains[j], all[best.scored_indices[j]]));
+  }
+  EXPECT_TRUE(best.complete);
+}
+
+TEST(BestViews, AreThoseOfExhaustiveScoringAndCostFewerRays) {
+  int cases = 0;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const auto scene = VoxelScene::build(lump(seed));
+    for (const Criterion criterion : kCriteria) {
+      const GainEvaluator evaluator(scene, small_sensor(), {.criterion = criterion});
+      std::vector<Pose> poses = sphere_poses(150, 0.6);
+      // Far ones gain little and must not cost much; duplicates tie.
+      for (const Pose& pose : sphere_poses(150, 1.5)) poses.push_back(pose);
+      poses.insert(poses.end(), poses.begin() + 20, poses.begin() + 60);
+      for (const std::size_t k : {std::size_t{1}, std::size_t{5}, poses.size(), poses.size() + 3}) {
+        expect_exact(evaluator, poses, k);
+        ++cases;
+      }
+      const BestViews best = evaluator.best(poses, 1);
+      EXPECT_LT(best.scored_indices.size(), poses.size() / 2);
+      EXPECT_LT(best.rays_traced, evaluator.rays_per_pose() * poses.size() / 2);
+    }
+  }
+  EXPECT_EQ(cases, 4 * 3 * 4);
+}
+
+TEST(BestViews, AreExactOnAllKindsOfMapsFromInsideAndOutside) {
+  int cases = 0;
+  std::uint64_t seed = 300;
+  for (const test::MapFamily family :
+       {test::MapFamily::salt_and_pepper_01, test::MapFamily::salt_and_pepper_1,
+        test::MapFamily::salt_and_pepper_30, test::MapFamily::tiles_8, test::MapFamily::tiles_128,
+        test::MapFamily::odd_and_far, test::MapFamily::rotated}) {
+    for (const Criterion criterion : kCriteria) {
+      test::Random random(++seed);
+      const test::RandomMap map = test::random_map(family, random);
+      Sensor sensor = test::random_sensor(map.grid, random);
+      if (seed % 2 == 0) sensor.camera.distortion = {};
+      std::vector<Pose> poses = test::random_poses(map, 120, random);
+      for (std::size_t i = 5; i < poses.size(); i += 11) poses[i].m[i % 12] = std::nan("");
+      const GainEvaluator evaluator(VoxelScene::build(map.grid), sensor, {.criterion = criterion});
+      for (const std::size_t k : {std::size_t{1}, std::size_t{7}, poses.size() - 2}) {
+        expect_exact(evaluator, poses, k);
+        ++cases;
+      }
+    }
+  }
+  EXPECT_EQ(cases, 7 * 3 * 3);
+}
+
+TEST(BestViews, AreExactNearByWithWeightsObstaclesStridesAndDistortion) {
+  const BeliefGrid grid = lump(9);
+  const auto scene = VoxelScene::build(grid);
+  std::vector<Pose> poses = sphere_poses(60, 0.5);
+  for (const Pose& pose : sphere_poses(60, 0.16)) poses.push_back(pose);  // within min_range of it
+  for (const Pose& pose : sphere_poses(20, 0.05)) poses.push_back(pose);  // inside
+  Sensor sensor = small_sensor();
+  expect_exact(GainEvaluator(scene, sensor), poses, 3);
+  expect_exact(GainEvaluator(scene, sensor, {.pixel_stride = 3}), poses, 3);
+  expect_exact(GainEvaluator(scene, sensor, {.max_range = 0.45}), poses, 3);
+  const Box half{{-0.2, -0.2, -0.2}, {0.0, 0.2, 0.2}};
+  expect_exact(GainEvaluator(scene, sensor, {.weights = {{half, 4.0}}}), poses, 3);
+  const Obstacles wall{.boxes = {{{0.2, -0.3, -0.3}, {0.25, 0.3, 0.3}}}, .meshes = {}};
+  expect_exact(GainEvaluator(VoxelScene::build(grid, wall), sensor), poses, 3);
+  sensor.camera.distortion = {-0.05, 0.01, 1e-3, -1e-3, 0};
+  expect_exact(GainEvaluator(scene, sensor), poses, 3);
+}
+
+TEST(BestViews, DoNotDependOnThreadsAndTakeOddRequests) {
+  const auto scene = VoxelScene::build(lump(5));
+  const std::vector<Pose> poses = sphere_poses(200, 0.6);
+  const GainEvaluator one(scene, small_sensor(), {}, {.num_threads = 1});
+  const BestViews expected = one.best(poses, 4);
+  for (const int threads : {2, 5}) {
+    const GainEvaluator many(scene, small_sensor(), {}, {.num_threads = threads});
+    const BestViews best = many.best(poses, 4);
+    EXPECT_EQ(best.indices, expected.indices);
+    EXPECT_EQ(best.scored_indices, expected.scored_indices);
+    EXPECT_EQ(best.rays_traced, expected.rays_traced);
+  }
+  EXPECT_TRUE(one.best(poses, 0).indices.empty());
+  EXPECT_TRUE(one.best({}, 3).indices.empty());
+  std::stop_source source;
+  source.request_stop();
+  const BestViews stopped = one.best(poses, 1, {.stop = source.get_token()});
+  EXPECT_FALSE(stopped.complete);
+  EXPECT_TRUE(stopped.indices.empty());
+}
+
+TEST(Race, FindsTheBestOnNearlyAllMapsAndIsDeterministic) {
+  int right = 0;
+  constexpr int kMaps = 20;
+  // Ten rays meet in a voxel here, which bundles cannot see: keep more than by default.
+  const RaceConfig config{.interval = 5, .first_share = 1.0 / 24, .keep = 0.5, .seed = 7};
+  for (int map = 0; map < kMaps; ++map) {
+    const auto scene = VoxelScene::build(lump(40 + static_cast<std::uint64_t>(map)));
+    const GainEvaluator evaluator(scene, larger_sensor(),
+                                  {.criterion = kCriteria[static_cast<std::size_t>(map) % 3]});
+    const std::vector<Pose> poses = sphere_poses(300, 0.6);
+    const std::vector<ViewGain> all = evaluator.evaluate(poses);
+    const BestViews race = evaluator.race(poses, 1, config);
+    ASSERT_EQ(race.indices.size(), 1U);
+    EXPECT_TRUE(test::same_bits(race.gains[0], all[race.indices[0]]));
+    EXPECT_LT(race.scored_indices.size(), poses.size() / 2);
+    const std::size_t best = best_indices(all, 1)[0];
+    right += race.indices[0] == best ? 1 : 0;
+    EXPECT_GE(race.gains[0].gain, 0.97 * all[best].gain);
+    const GainEvaluator other(scene, larger_sensor(),
+                              {.criterion = kCriteria[static_cast<std::size_t>(map) % 3]},
+                              {.num_threads = 3});
+    const BestViews again = other.race(poses, 1, config);
+    EXPECT_EQ(again.scored_indices, race.scored_indices);
+    EXPECT_EQ(again.rays_traced, race.rays_traced);
+  }
+  EXPECT_GE(right, 19) << "of " << kMaps;
+}
+
+TEST(Race, TakesOddRequestsAndRefusesBadOnes) {
+  const auto scene = VoxelScene::build(lump(3));
+  const GainEvaluator evaluator(scene, small_sensor());
+  std::vector<Pose> poses = sphere_poses(100, 0.6);
+  for (std::size_t i = 0; i < 95; ++i) poses[i].m[0] = std::nan("");
+  const BestViews race = evaluator.race(poses, 8);
+  EXPECT_EQ(race.indices, evaluator.best(poses, 8).indices);
+  EXPECT_TRUE(evaluator.race(poses, 0).indices.empty());
+  EXPECT_TRUE(evaluator.race({}, 2).indices.empty());
+  EXPECT_EQ(evaluator.race(poses, 1000).indices.size(), poses.size());
+  EXPECT_THROW((void)evaluator.race(poses, 1, {.interval = -1}), Error);
+  EXPECT_THROW((void)evaluator.race(poses, 1, {.first_share = 0}), Error);
+  EXPECT_THROW((void)evaluator.race(poses, 1, {.keep = 2}), Error);
+}
+
+// What a set of views gains together, on the oracle's rays and with dense matrices.
+double joint_gain(const BeliefGrid& grid, const Sensor& sensor, Criterion criterion,
+                  const std::vector<Pose>& views) {
+  const oracle::DenseMap map(grid);
+  std::map<std::tuple<int, int, int>, SymmetricMatrix3> added;
+  for (const Pose& pose : views) {
+    const auto rays =
+        oracle::view_rays(grid.T_world_grid(), grid.voxel_size(), sensor.camera, 1, pose);
+    const auto hits = oracle::trace(map, sensor, {}, pose);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      if (hits[i].kind == RayHit::Kind::none) continue;
+      added[{hits[i].voxel.x, hits[i].voxel.y, hits[i].voxel.z}] +=
+          measurement_information(rays[i].direction, sensor.sigmas(hits[i].range));
+    }
+  }
+  const double sigma = grid.prior_sigma();
+  double gain = 0;
+  for (const auto& [key, information] : added) {
+    SymmetricMatrix3 before = SymmetricMatrix3::identity(1 / (sigma * sigma));
+    const Index3 voxel{std::get<0>(key), std::get<1>(key), std::get<2>(key)};
+    const auto belief = grid.belief(voxel);
+    if (grid.state(voxel) == VoxelState::occupied && belief) before += belief->information_matrix();
+    gain += entropy(before, criterion) - entropy(before + information, criterion);
+  }
+  return gain;
+}
+
+TEST(BestSet, IsTheGreedySetOfTheOracle) {
+  int cases = 0;
+  for (std::uint64_t seed = 70; seed < 73; ++seed) {
+    const BeliefGrid grid = lump(seed);
+    Sensor sensor = small_sensor();
+    sensor.camera = {.width = 16, .height = 12, .fx = 18.3, .fy = 18.7, .cx = 7.6, .cy = 5.4};
+    const std::vector<Pose> poses = sphere_poses(14, 0.55);
+    for (const Criterion criterion : kCriteria) {
+      const GainEvaluator evaluator(VoxelScene::build(grid), sensor, {.criterion = criterion});
+      const ViewSet set = evaluator.best_set(poses, 4);
+      ASSERT_EQ(set.indices.size(), 4U);
+      std::vector<Pose> chosen;
+      double before = 0;
+      for (std::size_t j = 0; j < set.indices.size(); ++j) {
+        double largest = 0;
+        std::vector<double> gains;
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+          std::vector<Pose> with = chosen;
+          with.push_back(poses[i]);
+          gains.push_back(joint_gain(grid, sensor, criterion, with) - before);
+          const bool taken = std::find(set.indices.begin(), set.indices.begin() + std::ptrdiff_t(j),
+                                       i) != set.indices.begin() + std::ptrdiff_t(j);
+          if (!taken) largest = std::max(largest, gains.back());
+          ++cases;
+        }
+        const std::size_t index = set.indices[j];
+        // The oracle may send a ray in ten thousand to another voxel.
+        EXPECT_NEAR(set.marginal[j].gain, gains[index], 2e-3 * gains[index]);
+        EXPECT_GE(gains[index], (1 - 2e-3) * largest);
+        chosen.push_back(poses[index]);
+        before += gains[index];
+      }
+      EXPECT_NEAR(set.gain, joint_gain(grid, sensor, criterion, chosen), 2e-3 * set.gain);
+    }
+  }
+  EXPECT_EQ(cases, 3 * 3 * 4 * 14);
+}
+
+TEST(BestSet, LazyEvaluationChangesNothingButTheWork) {
+  const auto scene = VoxelScene::build(lump(80));
+  const std::vector<Pose> poses = sphere_poses(80, 0.6);
+  const GainEvaluator lazy(scene, small_sensor(), {.criterion = Criterion::log_determinant});
+  const ViewSet set = lazy.best_set(poses, 6);
+  EXPECT_LT(set.evaluations, 80U * 4);
+  const GainEvaluator threads(scene, small_sensor(), {.criterion = Criterion::log_determinant},
+                              {.num_threads = 3});
+  EXPECT_EQ(threads.best_set(poses, 6).indices, set.indices);
+  EXPECT_EQ(set.indices[0], best_indices(lazy.evaluate(poses), 1)[0]);
+  // Greedily, each choice from those that are left must reach what any other would have.
+  for (std::size_t j = 1; j < set.indices.size(); ++j) {
+    EXPECT_LE(set.marginal[j].gain, set.marginal[j - 1].gain * (1 + 1e-9));
+    std::vector<Pose> one_more;  // j chosen ones first, then a rival
+    for (std::size_t i = 0; i < j; ++i) one_more.push_back(poses[set.indices[i]]);
+    EXPECT_EQ(lazy.best_set(one_more, j).indices.size(), j);
+  }
+  const GainEvaluator plain(scene, small_sensor());
+  EXPECT_EQ(plain.best_set(poses, 3).evaluations, 80U + 79U + 78U);
+}
+
+TEST(BestSet, TakesOddRequestsAndSecondLooksGainLess) {
+  const auto scene = VoxelScene::build(lump(81));
+  const GainEvaluator evaluator(scene, small_sensor());
+  const std::vector<Pose> same(3, sphere_poses(5, 0.6)[1]);
+  const ViewSet set = evaluator.best_set(same, 10);
+  EXPECT_EQ(set.indices, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_LT(set.marginal[1].gain, 0.8 * set.marginal[0].gain);
+  EXPECT_EQ(set.marginal[1].unknown_voxels, set.marginal[0].unknown_voxels);
+  std::vector<Pose> with_bad = same;
+  with_bad[0].m[3] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(evaluator.best_set(with_bad, 3).indices, (std::vector<std::size_t>{1, 2}));
+  EXPECT_TRUE(evaluator.best_set(same, 0).indices.empty());
+  EXPECT_TRUE(evaluator.best_set({}, 2).indices.empty());
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_FALSE(evaluator.best_set(same, 2, {.stop = source.get_token()}).complete);
+}
+
+TEST(Approximate, StandardErrorsCoverTheTruth) {
+  std::size_t cases = 0, one = 0, two = 0;
+  double off = 0;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const auto scene = VoxelScene::build(lump(90 + seed));
+    const GainEvaluator evaluator(scene, larger_sensor(), {.criterion = kCriteria[seed % 3]});
+    const std::vector<Pose> poses = sphere_poses(100, 0.5);
+    const std::vector<ViewGain> truth = evaluator.evaluate(poses);
+    std::vector<ApproximateGain> estimates(poses.size());
+    ASSERT_EQ(evaluator.approximate(poses, estimates, {.share = 0.15, .seed = seed}), 100U);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const double error = std::abs(estimates[i].gain - truth[i].gain);
+      one += error <= estimates[i].standard_error ? 1U : 0U;
+      two += error <= 2 * estimates[i].standard_error ? 1U : 0U;
+      off += estimates[i].gain / truth[i].gain - 1;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 1200U);
+  const auto n = static_cast<double>(cases);
+  EXPECT_NEAR(off / n, 0, 0.02);
+  // 0.68 and 0.95 for a normal distribution.
+  EXPECT_GT(static_cast<double>(one) / n, 0.6);
+  EXPECT_LT(static_cast<double>(one) / n, 0.8);
+  EXPECT_GT(static_cast<double>(two) / n, 0.9);
+}
+
+TEST(Approximate, IsDeterministicAndRefusesBadRequests) {
+  const auto scene = VoxelScene::build(lump(99));
+  const std::vector<Pose> poses = sphere_poses(30, 0.6);
+  std::vector<ApproximateGain> first(30), second(30), other(30);
+  const GainEvaluator one(scene, small_sensor(), {}, {.num_threads = 1});
+  const GainEvaluator three(scene, small_sensor(), {}, {.num_threads = 3});
+  one.approximate(poses, first, {.seed = 3});
+  three.approximate(poses, second, {.seed = 3});
+  one.approximate(poses, other, {.seed = 4});
+  int differ = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_EQ(first[i].gain, second[i].gain);
+    EXPECT_EQ(first[i].standard_error, second[i].standard_error);
+    differ += first[i].gain != other[i].gain ? 1 : 0;
+  }
+  EXPECT_GT(differ, 20);
+  EXPECT_THROW(one.approximate(poses, first, {.share = 0}), Error);
+  EXPECT_THROW(one.approximate(poses, first, {.groups = 1}), Error);
+  std::vector<ApproximateGain> few(3);
+  EXPECT_THROW(one.approximate(poses, few), Error);
+  std::vector<Pose> bad(3);
+  bad[1].m[0] = std::nan("");
+  one.approximate(bad, few);
+  EXPECT_TRUE(std::isnan(few[1].gain));
+}
+
+}  // namespace
+}  // namespace viewgain

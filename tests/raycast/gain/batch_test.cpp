@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Batches: bad poses among good ones, progress, cancellation, ranking.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <stop_token>
+
+#include "raycast/scene_makers.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+class Batch : public testing::Test {
+ protected:
+  Batch() {
+    test::Random random(77);
+    const test::RandomMap map = test::random_map(test::MapFamily::salt_and_pepper_1, random);
+    sensor_ = test::random_sensor(map.grid, random);
+    poses_ = test::random_poses(map, 200, random);
+    scene_ = VoxelScene::build(map.grid);
+  }
+
+  [[nodiscard]] GainEvaluator evaluator(int threads = 2) const {
+    return {scene_, sensor_, {}, {.num_threads = threads}};
+  }
+
+  Sensor sensor_;
+  std::vector<Pose> poses_;
+  std::shared_ptr<const VoxelScene> scene_;
+};
+
+TEST_F(Batch, ABadPoseSpoilsOnlyItself) {
+  const std::vector<ViewGain> expected = evaluator().evaluate(poses_);
+  std::vector<Pose> with_bad = poses_;
+  for (std::size_t i = 3; i < with_bad.size(); i += 7) with_bad[i].m[i % 12] = kNan;
+  const std::vector<ViewGain> actual = evaluator().evaluate(with_bad);
+  std::size_t bad = 0;
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    if (i % 7 == 3) {
+      EXPECT_EQ(actual[i].status, ViewStatus::bad_pose);
+      EXPECT_TRUE(std::isnan(actual[i].gain));
+      EXPECT_TRUE(std::isnan(actual[i].posterior_entropy));
+      ++bad;
+    } else {
+      EXPECT_TRUE(test::same_bits(expected[i], actual[i]));
+    }
+  }
+  EXPECT_EQ(bad, 29U);
+  EXPECT_TRUE(evaluator().trace(with_bad[3]).empty());
+}
+
+TEST_F(Batch, ReportsProgressOneAtATimeUpToTheTotal) {
+  std::mutex mutex;
+  std::size_t last = 0;
+  std::size_t calls = 0;
+  bool in_order = true;
+  bool alone = true;
+  BatchControl control;
+  control.progress = [&](std::size_t done, std::size_t total) {
+    const std::unique_lock lock(mutex, std::try_to_lock);
+    alone = alone && lock.owns_lock();
+    in_order = in_order && done >= last && total == poses_.size();
+    last = done;
+    ++calls;
+  };
+  std::vector<ViewGain> results(poses_.size());
+  EXPECT_EQ(evaluator(3).evaluate(poses_, results, control), poses_.size());
+  EXPECT_TRUE(alone);
+  EXPECT_TRUE(in_order);
+  EXPECT_EQ(last, poses_.size());
+  EXPECT_GT(calls, 0U);
+  EXPECT_TRUE(test::same_bits(results, evaluator().evaluate(poses_)));
+}
+
+TEST_F(Batch, EveryChoiceReportsProgressUpToItsTotal) {
+  const GainEvaluator own = evaluator(3);
+  int cases = 0;
+  const auto expect_reports = [&](std::size_t total, const auto& call) {
+    std::mutex mutex;
+    std::size_t last = 0, calls = 0;
+    BatchControl control;
+    control.progress = [&](std::size_t done, std::size_t of) {
+      const std::unique_lock lock(mutex, std::try_to_lock);
+      EXPECT_TRUE(lock.owns_lock());
+      EXPECT_GE(done, last);
+      EXPECT_EQ(of, total);
+      last = done;
+      ++calls;
+    };
+    call(control);
+    EXPECT_EQ(last, total);
+    EXPECT_GT(calls, 0U);
+    ++cases;
+  };
+  const std::size_t n = poses_.size();
+  expect_reports(n, [&](const BatchControl& c) { EXPECT_TRUE(own.best(poses_, 2, c).complete); });
+  expect_reports(n,
+                 [&](const BatchControl& c) { EXPECT_TRUE(own.race(poses_, 2, {}, c).complete); });
+  expect_reports(3, [&](const BatchControl& c) { (void)own.best_set(poses_, 3, c); });
+  expect_reports(n, [&](const BatchControl& c) {
+    std::vector<ApproximateGain> results(n);
+    EXPECT_EQ(own.approximate(poses_, results, {}, c), n);
+  });
+  EXPECT_EQ(cases, 4);
+}
+
+TEST_F(Batch, StopsEarlyAndMarksWhatItDidNotReach) {
+  const std::vector<ViewGain> expected = evaluator().evaluate(poses_);
+  for (const int threads : {1, 3}) {
+    std::stop_source source;
+    BatchControl control{.stop = source.get_token()};
+    control.progress = [&](std::size_t done, std::size_t) {
+      if (done >= 20) source.request_stop();
+    };
+    std::vector<ViewGain> results(poses_.size(), ViewGain{.gain = 5, .status = ViewStatus::ok});
+    const std::size_t scored = evaluator(threads).evaluate(poses_, results, control);
+    EXPECT_GE(scored, 20U);
+    EXPECT_LT(scored, poses_.size());
+    std::size_t ok = 0;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      if (results[i].status == ViewStatus::bad_pose) {
+        EXPECT_TRUE(std::isnan(results[i].gain));
+        continue;
+      }
+      EXPECT_TRUE(test::same_bits(expected[i], results[i]));
+      ++ok;
+    }
+    EXPECT_EQ(ok, scored);
+  }
+}
+
+TEST_F(Batch, CancellingIsAskedBetweenPosesOfEveryCall) {
+  for (const int threads : {1, 3}) {
+    const GainEvaluator own = evaluator(threads);
+    std::size_t asked = 0;
+    BatchControl control{.is_cancelled = [&] { return ++asked > 20; }};
+    std::vector<ViewGain> results(poses_.size());
+    EXPECT_EQ(own.evaluate(poses_, results, control), 20U);
+    EXPECT_EQ(asked, 21U);  // and not again
+    asked = 0;
+    EXPECT_FALSE(own.best(poses_, 1, control).complete);
+    asked = 0;
+    EXPECT_FALSE(own.race(poses_, 1, {}, control).complete);
+    asked = 0;
+    EXPECT_FALSE(own.best_set(poses_, 2, control).complete);
+    EXPECT_EQ(asked, 21U);
+  }
+}
+
+TEST_F(Batch, AlreadyStoppedScoresNothing) {
+  std::stop_source source;
+  source.request_stop();
+  std::vector<ViewGain> results(poses_.size());
+  EXPECT_EQ(evaluator().evaluate(poses_, results, {.stop = source.get_token()}), 0U);
+  EXPECT_EQ(results[0].status, ViewStatus::bad_pose);
+}
+
+TEST_F(Batch, AnEmptyBatchIsFineAndSizesMustAgree) {
+  EXPECT_TRUE(evaluator().evaluate(std::span<const Pose>{}).empty());
+  std::vector<ViewGain> results(poses_.size() - 1);
+  EXPECT_THROW(evaluator().evaluate(poses_, results), Error);
+}
+
+TEST(BestIndices, LargestFirstTiesToTheLowerIndexNanLast) {
+  std::vector<ViewGain> results(6);
+  const std::array<double, 6> gains{1, kNan, 3, 3, 0, kNan};
+  for (std::size_t i = 0; i < gains.size(); ++i) results[i].gain = gains[i];
+  EXPECT_EQ(best_indices(results, 100), (std::vector<std::size_t>{2, 3, 0, 4, 1, 5}));
+  EXPECT_EQ(best_indices(results, 2), (std::vector<std::size_t>{2, 3}));
+  EXPECT_TRUE(best_indices(results, 0).empty());
+  EXPECT_TRUE(best_indices({}, 3).empty());
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Gains that can be worked out by hand.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "oracle/gain.hpp"
+#include "raycast/scene_makers.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::axis_pose;
+using test::lattice_sensor;
+using test::sparse_map;
+
+constexpr double kAxial = 0.02;     ///< [m]
+constexpr double kLateral = 0.005;  ///< [m]
+constexpr double kPrior = 0.1;      ///< [m]
+
+double squared(double x) { return x * x; }
+
+/// 1 / (1/prior² + n/sigma²): variance after n readings of one sigma.
+double fused(double sigma, double readings = 1) {
+  return 1 / (1 / squared(kPrior) + readings / squared(sigma));
+}
+
+Sensor anisotropic(int width = 1, int height = 1) {
+  Sensor sensor = lattice_sensor(width, height);
+  sensor.noise = ConstantNoise{.sigma_axial = kAxial, .sigma_lateral = kLateral};
+  return sensor;
+}
+
+ViewGain score(const BeliefGrid& grid, const Sensor& sensor, const Pose& pose,
+               Criterion criterion) {
+  const GainConfig config{.criterion = criterion, .prior_sigma = kPrior};
+  return GainEvaluator(VoxelScene::build(grid), sensor, config, {.num_threads = 1}).evaluate(pose);
+}
+
+TEST(GainClosedForm, OneVoxelOneRay) {
+  const BeliefGrid grid = sparse_map({16, 16, 16}, {{6, 6, 6}}, VoxelState::unknown);
+  for (int axis = 0; axis < 3; ++axis) {
+    SCOPED_TRACE(axis);
+    Eigen::Vector3d eye = Eigen::Vector3d::Constant(6.5);
+    eye[axis] = -2;
+    const Pose pose = axis_pose(eye, axis, true);
+    const double logs = std::log(squared(kPrior) / fused(kLateral)) +
+                        0.5 * std::log(squared(kPrior) / fused(kAxial));
+    const ViewGain diagonal = score(grid, anisotropic(), pose, Criterion::log_diagonal);
+    EXPECT_NEAR(diagonal.gain, logs, 1e-9 * logs);
+    EXPECT_EQ(diagonal.gain, diagonal.exploration);
+    EXPECT_EQ(diagonal.refinement, 0.0);
+    EXPECT_NEAR(diagonal.posterior_entropy, 4 * std::log(kLateral) + 2 * std::log(kAxial), 1e-9);
+    EXPECT_EQ(diagonal.hits, 1U);
+    EXPECT_EQ(diagonal.unknown_voxels, 1U);
+    EXPECT_EQ(diagonal.occupied_voxels, 0U);
+    const ViewGain determinant = score(grid, anisotropic(), pose, Criterion::log_determinant);
+    EXPECT_NEAR(determinant.gain, logs, 1e-9 * logs);
+    const ViewGain trace = score(grid, anisotropic(), pose, Criterion::trace);
+    const double variances = 3 * squared(kPrior) - 2 * fused(kLateral) - fused(kAxial);
+    EXPECT_NEAR(trace.gain, variances, 1e-9 * variances);
+  }
+}
+
+TEST(GainClosedForm, TwoPerpendicularReadingsInOneVoxel) {
+  // The paper's Fig. 3: a voxel seen along x, then along z. Each view is sharp where the other is
+  // not.
+  BeliefGrid grid = sparse_map({16, 16, 16}, {{6, 6, 6}});
+  Belief belief;
+  const auto a = static_cast<float>(1 / squared(kLateral));
+  const auto b = static_cast<float>(1 / squared(kAxial));
+  belief.information = {b, a, a, 0, 0, 0};
+  belief.hits = 1;
+  grid.set({6, 6, 6}, 0.85F, belief);
+  const Pose pose = axis_pose({6.5, 6.5, -2}, 2, true);
+
+  const double both = 1 / (1 / squared(kPrior) + 1 / squared(kLateral) + 1 / squared(kAxial));
+  const double twice = fused(kLateral, 2);
+  // Before: x axial, y and z lateral. After: x both, y lateral twice, z both.
+  const double logs = 0.5 * (std::log(fused(kAxial) / both) + std::log(fused(kLateral) / twice) +
+                             std::log(fused(kLateral) / both));
+  const double variances = fused(kAxial) + 2 * fused(kLateral) - 2 * both - twice;
+  const ViewGain diagonal = score(grid, anisotropic(), pose, Criterion::log_diagonal);
+  EXPECT_NEAR(diagonal.gain, logs, 1e-6 * logs);
+  EXPECT_EQ(diagonal.gain, diagonal.refinement);
+  EXPECT_EQ(diagonal.occupied_voxels, 1U);
+  EXPECT_NEAR(score(grid, anisotropic(), pose, Criterion::log_determinant).gain, logs, 1e-6 * logs);
+  EXPECT_NEAR(score(grid, anisotropic(), pose, Criterion::trace).gain, variances, 1e-6 * variances);
+
+  // A second look along x says less than the perpendicular one.
+  const Pose again = axis_pose({-2, 6.5, 6.5}, 0, true);
+  EXPECT_LT(score(grid, anisotropic(), again, Criterion::log_diagonal).gain, diagonal.gain);
+}
+
+TEST(GainClosedForm, TwoPerpendicularRaysOfOneView) {
+  // A camera inside an unknown voxel: its outer rays, (-1,0,1) and (1,0,1), end in that voxel.
+  const BeliefGrid grid = sparse_map({16, 16, 16}, {{6, 6, 6}}, VoxelState::unknown);
+  Sensor sensor = anisotropic(2, 1);
+  sensor.camera.fx = 0.5;  // the two pixels look 45° to the left and to the right
+  const Pose pose = axis_pose({6.5, 6.5, 6.5}, 2, true);
+  const double p = 1 / squared(kPrior);
+  const double both = p + 1 / squared(kLateral) + 1 / squared(kAxial);
+  const double across = p + 2 / squared(kLateral);
+  const double logs = 0.5 * (2 * std::log(both / p) + std::log(across / p));
+  EXPECT_NEAR(score(grid, sensor, pose, Criterion::log_diagonal).gain, logs, 1e-6 * logs);
+  EXPECT_NEAR(score(grid, sensor, pose, Criterion::log_determinant).gain, logs, 1e-6 * logs);
+  const double variances = 3 / p - 2 / both - 1 / across;
+  EXPECT_NEAR(score(grid, sensor, pose, Criterion::trace).gain, variances, 1e-6 * variances);
+}
+
+TEST(GainClosedForm, IsotropicNoiseMakesDiagonalAndDeterminantEqual) {
+  test::Random random(3);
+  int cases = 0;
+  for (int i = 0; i < 8; ++i) {
+    test::RandomMap made = test::random_map(test::MapFamily::salt_and_pepper_30, random);
+    // Without beliefs: those of the random map are not isotropic.
+    const oracle::DenseMap map(made.grid);
+    const BeliefGrid bare = BeliefGrid::from_states({.voxel_size = made.grid.voxel_size(),
+                                                     .workspace = made.grid.workspace(),
+                                                     .prior_sigma = made.grid.prior_sigma()},
+                                                    map.states);
+    Sensor sensor = test::random_sensor(bare, random);
+    sensor.noise = ConstantNoise{.sigma_axial = 0.01, .sigma_lateral = 0.01};
+    const auto scene = VoxelScene::build(bare);
+    const GainEvaluator diagonal(scene, sensor, {.criterion = Criterion::log_diagonal});
+    const GainEvaluator determinant(scene, sensor, {.criterion = Criterion::log_determinant});
+    for (const Pose& pose : test::random_poses(made, 5, random)) {
+      const double expected = determinant.evaluate(pose).gain;
+      EXPECT_NEAR(diagonal.evaluate(pose).gain, expected, 1e-9 * expected);
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 40);
+}
+
+TEST(GainClosedForm, TurningHitsAndInformationChangesOnlyTheDiagonalCriterion) {
+  test::Random random(5);
+  int cases = 0;
+  double largest_change = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Matrix3d R = test::random_rigid(random, 0).rotation();
+    const MeasurementSigmas sigmas{kAxial, kLateral};
+    SymmetricMatrix3 before = SymmetricMatrix3::identity(1 / squared(kPrior));
+    for (int k = 0; k < 3; ++k) {
+      before += measurement_information(test::random_rigid(random, 0).rotation().col(0), sigmas);
+    }
+    SymmetricMatrix3 added;
+    SymmetricMatrix3 added_turned;
+    for (int k = 0; k < 4; ++k) {
+      const Eigen::Vector3d d = test::random_rigid(random, 0).rotation().col(0);
+      added += measurement_information(d, sigmas);
+      added_turned += measurement_information(R * d, sigmas);
+    }
+    const auto before_turned = SymmetricMatrix3::from(R * before.matrix() * R.transpose());
+    for (const Criterion criterion : {Criterion::log_determinant, Criterion::trace}) {
+      const double gain = entropy_reduction(before, added, criterion);
+      EXPECT_NEAR(entropy_reduction(before_turned, added_turned, criterion), gain, 1e-9 * gain);
+    }
+    const double gain = entropy_reduction(before, added, Criterion::log_diagonal);
+    const double turned = entropy_reduction(before_turned, added_turned, Criterion::log_diagonal);
+    largest_change = std::max(largest_change, std::abs(turned - gain) / gain);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 200);
+  EXPECT_GT(largest_change, 0.01);
+}
+
+TEST(GainClosedForm, TurningTheWholeWorldChangesNothing) {
+  // The same map and poses seen from another frame: every criterion, since grid axes turn along.
+  test::Random random(9);
+  int cases = 0;
+  for (int i = 0; i < 10; ++i) {
+    const test::RandomMap made = test::random_map(test::MapFamily::salt_and_pepper_1, random);
+    const Pose T = test::random_rigid(random, 2);
+    const BeliefGrid bare = BeliefGrid::from_states({.voxel_size = made.grid.voxel_size(),
+                                                     .workspace = made.grid.workspace(),
+                                                     .prior_sigma = made.grid.prior_sigma()},
+                                                    oracle::DenseMap(made.grid).states);
+    const BeliefGrid turned = BeliefGrid::from_states({.voxel_size = bare.voxel_size(),
+                                                       .workspace = bare.workspace(),
+                                                       .T_world_grid = T,
+                                                       .prior_sigma = bare.prior_sigma()},
+                                                      oracle::DenseMap(bare).states);
+    const Sensor sensor = test::random_sensor(bare, random);
+    const GainEvaluator here(VoxelScene::build(bare), sensor);
+    const GainEvaluator there(VoxelScene::build(turned), sensor);
+    for (const Pose& pose : test::random_poses(made, 5, random)) {
+      const ViewGain a = here.evaluate(pose);
+      const ViewGain b = there.evaluate(T * pose);
+      ASSERT_EQ(a.status, b.status);
+      // A ray or two may tip over at a boundary: rounding differs.
+      EXPECT_NEAR(a.hits, b.hits, 2);
+      EXPECT_NEAR(a.gain, b.gain, 0.01 * a.gain + 1e-9);
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 50);
+}
+
+}  // namespace
+}  // namespace viewgain

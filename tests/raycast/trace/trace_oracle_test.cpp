@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Rays and gains of random maps against the double-precision oracle, under each instruction set.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "oracle/gain.hpp"
+#include "raycast/scene_makers.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::MapFamily;
+
+#ifdef __OPTIMIZE__
+constexpr int kMaps = 40;
+constexpr std::size_t kPosesPerMap = 5;
+#else
+// Builds with sanitizers look for memory errors; the statistics are the optimised build's.
+constexpr int kMaps = 6;
+constexpr std::size_t kPosesPerMap = 3;
+#endif
+constexpr std::size_t kRaysPerPose = 25 * 19;
+constexpr std::array kCriteria{Criterion::log_diagonal, Criterion::log_determinant,
+                               Criterion::trace};
+
+/// |a - b| as a share of |b|; 0 if both are 0.
+double relative_error(double a, double b) {
+  return a == b ? 0.0 : std::abs(a - b) / std::max(std::abs(b), 1e-300);
+}
+
+/// What one instruction set answered over a family.
+struct Tally {
+  std::size_t rays = 0;
+  std::size_t same = 0;
+  std::size_t ties = 0;
+  std::size_t entries = 0;  ///< hits whose range is that of the voxel's entry
+  std::size_t hits = 0;
+  std::string first_wrong;
+};
+
+std::string describe(const oracle::Ray& ray, const RayHit& expected, const RayHit& actual) {
+  std::ostringstream out;
+  const auto put = [&](const RayHit& hit) {
+    out << "kind " << static_cast<int>(hit.kind) << " voxel " << hit.voxel.x << ' ' << hit.voxel.y
+        << ' ' << hit.voxel.z << " range " << hit.range;
+  };
+  out.precision(17);
+  out << "ray from " << ray.origin.transpose() << " along " << ray.direction.transpose()
+      << ": expected ";
+  put(expected);
+  out << ", got ";
+  put(actual);
+  return out.str();
+}
+
+class TraceOracle : public testing::TestWithParam<MapFamily> {
+ protected:
+  /// Compares the evaluator's endings with the oracle's; returns how many rays differ.
+  std::size_t compare(const oracle::DenseMap& map, const Sensor& sensor, const Pose& pose,
+                      const std::vector<RayHit>& expected, const std::vector<RayHit>& actual,
+                      Tally& tally) {
+    const std::vector<oracle::Ray> rays =
+        oracle::view_rays(map.T_world_grid, map.voxel_size, sensor.camera, 1, pose);
+    const oracle::RayLimits limits = oracle::limits_of(map, sensor, {});
+    EXPECT_EQ(actual.size(), rays.size());
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < std::min(actual.size(), rays.size()); ++i) {
+      ++tally.rays;
+      if (oracle::same_ending(expected[i], actual[i])) {
+        ++tally.same;
+      } else {
+        ++different;
+        if (oracle::is_tie(map, rays[i], limits, actual[i])) {
+          ++tally.ties;
+        } else if (tally.first_wrong.empty()) {
+          tally.first_wrong = describe(rays[i], expected[i], actual[i]);
+        }
+      }
+      if (actual[i].kind == RayHit::Kind::none) continue;
+      ++tally.hits;
+      if (oracle::range_is_entry(map, rays[i], limits, actual[i])) ++tally.entries;
+    }
+    return different;
+  }
+
+  void compare_gains(const BeliefGrid& grid, const std::shared_ptr<const VoxelScene>& scene,
+                     const Sensor& sensor, const Pose& pose, const std::vector<RayHit>& expected,
+                     const std::vector<RayHit>& own, std::size_t different) {
+    for (const Criterion criterion : kCriteria) {
+      SCOPED_TRACE(criterion_name(criterion));
+      const GainConfig config{.criterion = criterion};
+      const GainEvaluator evaluator(scene, sensor, config, {.num_threads = 1});
+      const ViewGain actual = evaluator.evaluate(pose);
+      const ViewGain by_own = oracle::gain_of_hits(grid, sensor, config, pose, own);
+      ASSERT_EQ(actual.status, by_own.status);
+      ++gain_checks_;
+      if (actual.status != ViewStatus::ok) {
+        EXPECT_EQ(actual.gain, 0.0);
+        continue;
+      }
+      EXPECT_LE(relative_error(actual.gain, by_own.gain), 1e-6);
+      EXPECT_LE(relative_error(actual.exploration, by_own.exploration), 1e-6);
+      EXPECT_LE(relative_error(actual.refinement, by_own.refinement), 1e-6);
+      EXPECT_LE(relative_error(actual.posterior_entropy, by_own.posterior_entropy), 1e-6);
+      EXPECT_EQ(actual.rays, by_own.rays);
+      EXPECT_EQ(actual.hits, by_own.hits);
+      EXPECT_EQ(actual.unknown_voxels, by_own.unknown_voxels);
+      EXPECT_EQ(actual.occupied_voxels, by_own.occupied_voxels);
+
+      const ViewGain by_oracle = oracle::gain_of_hits(grid, sensor, config, pose, expected);
+      const double one_hit =
+          std::max(oracle::largest_one_hit_gain(grid, sensor, config, pose, expected),
+                   oracle::largest_one_hit_gain(grid, sensor, config, pose, own));
+      EXPECT_LE(std::abs(actual.gain - by_oracle.gain),
+                static_cast<double>(different) * one_hit + 1e-5 * by_oracle.gain);
+    }
+  }
+
+  std::size_t gain_checks_ = 0;
+};
+
+TEST_P(TraceOracle, AgreesUnderEachInstructionSet) {
+  test::Random random(1234 + static_cast<unsigned>(GetParam()));
+  const std::vector<std::string> isas = available_isas();
+  ASSERT_FALSE(isas.empty());
+  std::map<std::string, Tally> tallies;
+  for (int i = 0; i < kMaps; ++i) {
+    const test::RandomMap made = test::random_map(GetParam(), random);
+    const oracle::DenseMap map(made.grid);
+    const Sensor sensor = test::random_sensor(made.grid, random);
+    const std::vector<Pose> poses = test::random_poses(made, kPosesPerMap, random);
+    std::vector<std::vector<RayHit>> expected;
+    for (const Pose& pose : poses) expected.push_back(oracle::trace(map, sensor, {}, pose));
+
+    for (const std::string& isa : isas) {
+      SCOPED_TRACE("map " + std::to_string(i) + ", " + isa);
+      const test::ScopedIsa scoped(isa);
+      const auto scene = VoxelScene::build(made.grid, {}, {.num_threads = 1});
+      ASSERT_EQ(scene->isa(), isa);
+      const GainEvaluator evaluator(scene, sensor, {}, {.num_threads = 1});
+      for (std::size_t k = 0; k < poses.size(); ++k) {
+        const std::vector<RayHit> own = evaluator.trace(poses[k]);
+        const std::size_t different =
+            compare(map, sensor, poses[k], expected[k], own, tallies[isa]);
+        const bool with_gains = k == static_cast<std::size_t>(i) % poses.size();
+        if (with_gains) {
+          compare_gains(made.grid, scene, sensor, poses[k], expected[k], own, different);
+        }
+      }
+    }
+  }
+
+  EXPECT_EQ(gain_checks_, kMaps * kCriteria.size() * isas.size());
+  for (const std::string& isa : isas) {
+    const Tally& tally = tallies[isa];
+    SCOPED_TRACE(isa);
+    EXPECT_EQ(tally.rays, kMaps * kPosesPerMap * kRaysPerPose);
+    EXPECT_GE(static_cast<double>(tally.same), 0.9999 * static_cast<double>(tally.rays));
+    EXPECT_EQ(tally.same + tally.ties, tally.rays) << tally.first_wrong;
+    EXPECT_EQ(tally.entries, tally.hits);
+    EXPECT_GT(tally.hits, 0U);
+    RecordProperty(isa + "_different", std::to_string(tally.ties));
+  }
+}
+
+std::string family_name(const testing::TestParamInfo<MapFamily>& info) {
+  switch (info.param) {
+    case MapFamily::salt_and_pepper_01:
+      return "SaltAndPepper01";
+    case MapFamily::salt_and_pepper_1:
+      return "SaltAndPepper1";
+    case MapFamily::salt_and_pepper_30:
+      return "SaltAndPepper30";
+    case MapFamily::tiles_8:
+      return "Tiles8";
+    case MapFamily::tiles_128:
+      return "Tiles128";
+    case MapFamily::odd_and_far:
+      return "OddAndFar";
+    case MapFamily::rotated:
+      break;
+  }
+  return "Rotated";
+}
+
+INSTANTIATE_TEST_SUITE_P(Maps, TraceOracle,
+                         testing::Values(MapFamily::salt_and_pepper_01,
+                                         MapFamily::salt_and_pepper_1,
+                                         MapFamily::salt_and_pepper_30, MapFamily::tiles_8,
+                                         MapFamily::tiles_128, MapFamily::odd_and_far,
+                                         MapFamily::rotated),
+                         family_name);
+
+}  // namespace
+}  // namespace viewgain

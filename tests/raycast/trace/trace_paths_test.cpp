@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// A view is traced through the BVH or along lists of primitives; which one is a matter of speed
+// alone. An obstacle far outside every range makes the evaluator take the BVH for every tile.
+#include <gtest/gtest.h>
+
+#include "raycast/scene_makers.hpp"
+
+namespace viewgain {
+namespace {
+
+Obstacles out_of_reach() {
+  return {.boxes = {{{1e6, 1e6, 1e6}, {1e6 + 1, 1e6 + 1, 1e6 + 1}}}, .meshes = {}};
+}
+
+// Compares gains and hits of the two ways; returns the number of rays compared.
+std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vector<Pose>& poses) {
+  const GainEvaluator free_choice(VoxelScene::build(grid), sensor, {}, {.num_threads = 1});
+  const GainEvaluator bvh(VoxelScene::build(grid, out_of_reach()), sensor, {}, {.num_threads = 1});
+  EXPECT_TRUE(test::same_bits(free_choice.evaluate(poses), bvh.evaluate(poses)));
+  for (const double share : {0.02, 0.1, 0.4}) {  // few tiles, and lists for some
+    std::vector<ApproximateGain> a(poses.size()), b(poses.size());
+    const ApproximateConfig config{.share = share, .groups = 4, .seed = poses.size()};
+    EXPECT_EQ(free_choice.approximate(poses, a, config), poses.size());
+    bvh.approximate(poses, b, config);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      EXPECT_EQ(a[i].gain, b[i].gain);
+      EXPECT_EQ(a[i].standard_error, b[i].standard_error);
+    }
+  }
+  std::size_t rays = 0;
+  for (const Pose& pose : poses) {
+    const std::vector<RayHit> a = free_choice.trace(pose), b = bvh.trace(pose);
+    EXPECT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].kind, b[i].kind);
+      EXPECT_EQ(a[i].voxel, b[i].voxel);
+      EXPECT_EQ(a[i].range, b[i].range);
+    }
+    rays += a.size();
+  }
+  return rays;
+}
+
+TEST(TracePaths, ListsAndBvhGiveTheSameBits) {
+  int cases = 0;
+  std::size_t rays = 0;
+  for (const test::MapFamily family :
+       {test::MapFamily::salt_and_pepper_01, test::MapFamily::salt_and_pepper_30,
+        test::MapFamily::tiles_8, test::MapFamily::odd_and_far, test::MapFamily::rotated}) {
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+      test::Random random(100 + seed);
+      const test::RandomMap map = test::random_map(family, random);
+      const Sensor sensor = test::random_sensor(map.grid, random);
+      rays += compare(map.grid, sensor, test::random_poses(map, 12, random));
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 40);
+  EXPECT_GT(rays, 50'000U);
+}
+
+// Rays that count from the camera on, where it touches the faces, edges and corners of voxels: what
+// lies beside it is met in any direction, however near.
+TEST(TracePaths, CamerasThatTouchVoxelsSeeTheSameBits) {
+  constexpr int kEdge = 24;
+  test::Random random(7);
+  std::vector<Index3> unknown;
+  for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
+    const Index3 voxel{i / kEdge / kEdge, i / kEdge % kEdge, i % kEdge};
+    if (test::uniform(random, 0, 1) < 0.2) unknown.push_back(voxel);
+  }
+  const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
+  Sensor sensor = test::lattice_sensor(21, 17);
+  sensor.camera.fx = sensor.camera.fy = 12;
+  std::vector<Pose> poses;
+  for (const double step : {0.0, 0.5, 0.25, 1e-4}) {  // corners; edges and faces; inside; next to
+    for (int i = 0; i < 40; ++i) {
+      Eigen::Vector3d at;
+      for (int k = 0; k < 3; ++k) {
+        const bool is_moved = (i >> k & 1) != 0;
+        at[k] = test::uniform_int(random, 1, kEdge - 1) + (is_moved ? step : 0.0);
+      }
+      poses.push_back(test::axis_pose(at, i % 3, i % 2 == 0));
+      Pose turned = test::random_rigid(random, 1);
+      for (int k = 0; k < 3; ++k) {
+        turned.m[static_cast<std::size_t>(4 * k + 3)] = at[k] * test::kExactVoxel;
+      }
+      poses.push_back(turned);
+    }
+  }
+  EXPECT_EQ(compare(grid, sensor, poses), 320U * 21U * 17U);
+}
+
+// More primitives than are listed one by one: boxes stand for cells of many.
+TEST(TracePaths, ManyPrimitivesUnderCoarseBoxesGiveTheSameBits) {
+  constexpr int kEdge = 144;
+  std::vector<Index3> unknown;
+  for (int x = 3; x < kEdge; x += 8) {
+    for (int y = 3; y < kEdge; y += 8) {
+      for (int z = 3; z < kEdge; z += 8) unknown.push_back({x, (y + x) % kEdge, (z + y) % kEdge});
+    }
+  }
+  const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
+  const auto scene = VoxelScene::build(grid);
+  ASSERT_GT(scene->primitive_count(), 4096U);
+  Sensor sensor = test::lattice_sensor(61, 47);
+  sensor.camera.fx = sensor.camera.fy = 80;
+  std::vector<Pose> poses;
+  for (int axis = 0; axis < 3; ++axis) {
+    poses.push_back(test::axis_pose({-70.3, -60.2, -81.7}, axis, true));
+    poses.push_back(test::axis_pose({71.5, 72.5, 70.5}, axis, false));
+  }
+  poses.push_back(look_at({-6, -5, -4}, {2.2, 2.3, 2.1}));
+  poses.push_back(look_at({9, 8, 2}, {2.2, 2.3, 2.1}));
+  EXPECT_EQ(compare(grid, sensor, poses), 8U * 61U * 47U);
+}
+
+// More regions than are listed one by one: cells of 64³ voxels.
+TEST(TracePaths, ManyRegionsGiveTheSameBits) {
+  constexpr int kEdge = 544, kRegion = 32;
+  std::vector<Index3> unknown;
+  for (int x = 5; x < kEdge; x += kRegion) {
+    for (int y = 9; y < kEdge; y += kRegion) {
+      for (int z = 3; z < kEdge; z += kRegion) {
+        for (int i = 0; i < 6; ++i) unknown.push_back({x + i, y + (x + z) / 32 % 17, z + i});
+      }
+    }
+  }
+  const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
+  ASSERT_GT(grid.snapshot().regions.size(), 4096U);
+  Sensor sensor = test::lattice_sensor(61, 47);
+  sensor.camera.fx = sensor.camera.fy = 80;
+  const double middle = 0.5 * kEdge * grid.voxel_size();
+  std::vector<Pose> poses;
+  for (const double off : {-1.4, 1.3}) {
+    poses.push_back(look_at({middle * (1 + off), middle * 0.9, middle * (1 - 0.5 * off)},
+                            {middle, middle, middle}));
+    poses.push_back(look_at({middle * 1.02, middle * 0.97, middle * 1.05},
+                            {middle * (1 + off), middle * 0.8, middle * 0.7}));
+  }
+  EXPECT_EQ(compare(grid, sensor, poses), 4U * 61U * 47U);
+  std::size_t hits = 0;
+  for (const ViewGain& view : GainEvaluator(VoxelScene::build(grid), sensor).evaluate(poses)) {
+    hits += view.hits;
+  }
+  EXPECT_GT(hits, 100U);
+}
+
+// A large unknown tile of which the workspace leaves no more than one block, among many primitives.
+TEST(TracePaths, ABlockLeftOfALargeTileIsSeenAmongManyPrimitives) {
+  constexpr int kEdge = 136, kCorner = 128;
+  std::vector<Index3> unknown;
+  for (int x = 3; x < kEdge; x += 8) {
+    for (int y = 3; y < kEdge; y += 8) {
+      for (int z = 3; z < kEdge; z += 8) unknown.push_back({x, y, z});
+    }
+  }
+  for (int x = kCorner; x < kEdge; ++x) {
+    for (int y = kCorner; y < kEdge; ++y) {
+      for (int z = kCorner; z < kEdge; ++z) unknown.push_back({x, y, z});
+    }
+  }
+  const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
+  ASSERT_GT(VoxelScene::build(grid)->primitive_count(), 4096U);
+  ASSERT_EQ(grid.snapshot().tiles_of(0)[0], 1U);
+  Sensor sensor = test::lattice_sensor(61, 47);
+  sensor.camera.fx = sensor.camera.fy = 80;
+  const double corner = (kCorner + 4) * grid.voxel_size();
+  const Pose pose = look_at({corner + 1.5, corner + 1.4, corner + 1.3}, {corner, corner, corner});
+  EXPECT_EQ(compare(grid, sensor, {pose}), 61U * 47U);
+  std::size_t seen = 0;
+  for (const RayHit& hit : GainEvaluator(VoxelScene::build(grid), sensor).trace(pose)) {
+    const Index3& v = hit.voxel;
+    seen += hit.kind == RayHit::Kind::unknown && v.x >= kCorner && v.y >= kCorner && v.z >= kCorner
+                ? 1
+                : 0;
+  }
+  EXPECT_GT(seen, 20U);
+}
+
+}  // namespace
+}  // namespace viewgain
