@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "shapes.hpp"
+#include "mesh/shapes.hpp"
 #include "surface_checks.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/mesh/surface.hpp"

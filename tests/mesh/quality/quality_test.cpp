@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-#include "shapes.hpp"
+#include "mesh/shapes.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain {

@@ -12,7 +12,7 @@
 #include "boundary_edges.hpp"
 #include "next_view.hpp"
 #include "region_grower.hpp"
-#include "surface_access.hpp"
+#include "surface/surface_access.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "region_grower.hpp"
-#include "surface_access.hpp"
+#include "surface/surface_access.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain {

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <string>
 
-#include "surface_access.hpp"
+#include "surface/surface_access.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::detail {

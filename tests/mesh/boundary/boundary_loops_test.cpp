@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "../core/expect_error.hpp"
+#include "core/expect_error.hpp"
 #include "surface_shapes.hpp"
 #include "viewgain/mesh/boundary.hpp"
 

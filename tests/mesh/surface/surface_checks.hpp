@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "shapes.hpp"
+#include "mesh/shapes.hpp"
 #include "viewgain/mesh/surface.hpp"
 
 namespace viewgain::test {

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <set>
 
-#include "../core/expect_error.hpp"
+#include "core/expect_error.hpp"
 #include "surface_shapes.hpp"
 
 namespace viewgain {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "surface_access.hpp"
+#include "surface/surface_access.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/mesh/boundary.hpp"
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../core/expect_error.hpp"
+#include "core/expect_error.hpp"
 #include "surface_shapes.hpp"
 
 namespace viewgain {

@@ -9,7 +9,7 @@
 #include <queue>
 #include <utility>
 
-#include "surface_access.hpp"
+#include "surface/surface_access.hpp"
 
 namespace viewgain::detail {
 
