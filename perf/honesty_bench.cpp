@@ -11,7 +11,7 @@
 
 #include "environment.hpp"
 #include "measure.hpp"
-#include "model.hpp"
+#include "planner/model.hpp"
 #include "model_scene.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/thread_pool.hpp"

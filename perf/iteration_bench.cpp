@@ -11,9 +11,9 @@
 
 #include "environment.hpp"
 #include "measure.hpp"
-#include "model.hpp"
+#include "planner/model.hpp"
 #include "model_scene.hpp"
-#include "planning_options.hpp"
+#include "planner/planning_options.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/feasibility.hpp"

@@ -6,8 +6,8 @@
 
 #include "micro_benchmarks.hpp"
 #include "micro_scene.hpp"
-#include "model.hpp"
-#include "planning_options.hpp"
+#include "planner/model.hpp"
+#include "planner/planning_options.hpp"
 #include "viewgain/core/generators.hpp"
 
 namespace viewgain::bench {

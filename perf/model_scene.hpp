@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "stage.hpp"
+#include "planner/stage.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/fused_points.hpp"

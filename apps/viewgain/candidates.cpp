@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "candidate_generation.hpp"
+#include "planner/candidate_generation.hpp"
 #include "commands.hpp"
-#include "map_file.hpp"
-#include "model.hpp"
-#include "planning_options.hpp"
-#include "reach_toml.hpp"
-#include "sensor_toml.hpp"
-#include "values.hpp"
+#include "formats/map_file.hpp"
+#include "planner/model.hpp"
+#include "planner/planning_options.hpp"
+#include "formats/reach_toml.hpp"
+#include "formats/sensor_toml.hpp"
+#include "formats/values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 
 #include "reading_source.hpp"
-#include "sensor_toml.hpp"
-#include "values.hpp"
+#include "formats/sensor_toml.hpp"
+#include "formats/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/grid/cloud_io.hpp"

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "commands.hpp"
-#include "map_file.hpp"
-#include "sensor_toml.hpp"
+#include "formats/map_file.hpp"
+#include "formats/sensor_toml.hpp"
 #include "terminal.hpp"
-#include "values.hpp"
+#include "formats/values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 

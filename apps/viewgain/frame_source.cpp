@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "frames_dir.hpp"
+#include "formats/frames_dir.hpp"
 #include "reading_source.hpp"
-#include "sensing.hpp"
+#include "planner/sensing.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 
 namespace viewgain::app {

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "commands.hpp"
-#include "map_file.hpp"
+#include "formats/map_file.hpp"
 #include "terminal.hpp"
-#include "values.hpp"
+#include "formats/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/region_statistics.hpp"

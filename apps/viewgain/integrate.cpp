@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "map_file.hpp"
+#include "formats/map_file.hpp"
 #include "reading_source.hpp"
 #include "terminal.hpp"
-#include "values.hpp"
+#include "formats/values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/belief_grid.hpp"

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "sensing_flags.hpp"
-#include "sensor_toml.hpp"
-#include "values.hpp"
+#include "formats/sensor_toml.hpp"
+#include "formats/values.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {

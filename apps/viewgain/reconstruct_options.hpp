@@ -7,7 +7,7 @@
 #include <string>
 
 #include "commands.hpp"
-#include "sensing.hpp"
+#include "planner/sensing.hpp"
 
 namespace viewgain::app {
 

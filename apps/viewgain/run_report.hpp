@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "model.hpp"
+#include "planner/model.hpp"
 #include "viewgain/core/planning.hpp"
 
 namespace viewgain::app {

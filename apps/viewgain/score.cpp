@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "map_file.hpp"
-#include "picture.hpp"
+#include "formats/map_file.hpp"
+#include "pictures/picture.hpp"
 #include "pose_source.hpp"
-#include "sensor_toml.hpp"
+#include "formats/sensor_toml.hpp"
 #include "terminal.hpp"
-#include "values.hpp"
+#include "formats/values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "sensing.hpp"
+#include "planner/sensing.hpp"
 
 namespace viewgain::app {
 

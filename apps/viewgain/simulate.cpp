@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "frames_dir.hpp"
+#include "formats/frames_dir.hpp"
 #include "pose_source.hpp"
-#include "sensing.hpp"
+#include "planner/sensing.hpp"
 #include "sensing_flags.hpp"
-#include "sensor_toml.hpp"
+#include "formats/sensor_toml.hpp"
 #include "terminal.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/mesh/mesh_io.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "program_runner.hpp"
+#include "apps/program_runner.hpp"
 
 namespace viewgain {
 namespace {

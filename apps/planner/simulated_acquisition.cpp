@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulated_acquisition.hpp"
 
-#include "terminal.hpp"
+#include "viewgain/terminal.hpp"
 
 namespace viewgain::app {
 

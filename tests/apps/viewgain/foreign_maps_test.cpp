@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "program_runner.hpp"
+#include "apps/program_runner.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"

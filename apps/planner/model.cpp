@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "terminal.hpp"
+#include "viewgain/terminal.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "picture_parts.hpp"
-#include "png_io.hpp"
+#include "formats/png_io.hpp"
 #include "ray_tracer.hpp"
 #include "viewgain/core/error.hpp"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <tuple>
 
-#include "terminal.hpp"
+#include "viewgain/terminal.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
 

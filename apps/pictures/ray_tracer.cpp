@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "terminal.hpp"
+#include "viewgain/terminal.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "reach_toml.hpp"
+#include "formats/reach_toml.hpp"
 
 #include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "program_runner.hpp"
+#include "apps/program_runner.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 

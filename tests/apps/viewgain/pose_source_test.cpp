@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "pose_source.hpp"
+#include "viewgain/pose_source.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "program_runner.hpp"
+#include "apps/program_runner.hpp"
 #include "viewgain/core/pose_io.hpp"
 
 namespace viewgain {

@@ -6,11 +6,11 @@
 #include <random>
 #include <string>
 
-#include "frames_dir.hpp"
-#include "png_io.hpp"
-#include "program_runner.hpp"
-#include "sensor_toml.hpp"
-#include "values.hpp"
+#include "formats/frames_dir.hpp"
+#include "formats/png_io.hpp"
+#include "apps/program_runner.hpp"
+#include "formats/sensor_toml.hpp"
+#include "formats/values.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "png_io.hpp"
+#include "formats/png_io.hpp"
 #include "viewgain/core/camera.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/pose.hpp"

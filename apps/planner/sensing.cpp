@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "values.hpp"
+#include "formats/values.hpp"
 #include "viewgain/core/noise.hpp"
 
 namespace viewgain::app {

@@ -10,8 +10,8 @@
 #include <limits>
 #include <thread>
 
-#include "../core/temporary_folder.hpp"
-#include "scene_makers.hpp"
+#include "core/temporary_folder.hpp"
+#include "raycast/scene_makers.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/raycast/depth_image.hpp"
 #include "viewgain/viewgain.h"

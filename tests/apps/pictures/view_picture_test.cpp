@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "view_picture.hpp"
+#include "pictures/view_picture.hpp"
 
 #include <gtest/gtest.h>
 #include <png.h>

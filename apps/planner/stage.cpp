@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "values.hpp"
+#include "formats/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "program_runner.hpp"
+#include "apps/program_runner.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/grid/region_statistics.hpp"
 #include "viewgain/grid/vdb_io.hpp"

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "terminal.hpp"
+#include "viewgain/terminal.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain::app {
