@@ -4,16 +4,16 @@
 #include <cstdio>
 #include <exception>
 
-#include "approximate_bench.hpp"
-#include "bars.hpp"
+#include "benches/approximate_bench.hpp"
+#include "benches/bars.hpp"
+#include "benches/honesty_bench.hpp"
+#include "benches/integrate_bench.hpp"
+#include "benches/iteration_bench.hpp"
+#include "benches/peak_memory.hpp"
+#include "benches/scaling_bench.hpp"
+#include "benches/trace_bench.hpp"
 #include "environment.hpp"
-#include "honesty_bench.hpp"
-#include "integrate_bench.hpp"
-#include "iteration_bench.hpp"
-#include "peak_memory.hpp"
-#include "scaling_bench.hpp"
 #include "support/camel_scene.hpp"
-#include "trace_bench.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace {

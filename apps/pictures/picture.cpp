@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "picture_parts.hpp"
 #include "formats/png_io.hpp"
+#include "picture_parts.hpp"
 #include "ray_tracer.hpp"
 #include "viewgain/core/error.hpp"
 

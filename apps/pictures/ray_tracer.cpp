@@ -11,9 +11,9 @@
 #include <optional>
 #include <utility>
 
-#include "viewgain/terminal.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
+#include "viewgain/terminal.hpp"
 
 namespace viewgain::app {
 namespace {

@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "picture_parts.hpp"
 #include "formats/png_io.hpp"
+#include "picture_parts.hpp"
 #include "ray_tracer.hpp"
 #include "viewgain/core/error.hpp"
 

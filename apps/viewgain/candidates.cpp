@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "planner/candidate_generation.hpp"
 #include "commands.hpp"
 #include "formats/map_file.hpp"
-#include "planner/model.hpp"
-#include "planner/planning_options.hpp"
 #include "formats/reach_toml.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
+#include "planner/candidate_generation.hpp"
+#include "planner/model.hpp"
+#include "planner/planning_options.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"

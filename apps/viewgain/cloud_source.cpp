@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Core>
 
-#include "reading_source.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
+#include "reading_source.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/grid/cloud_io.hpp"

@@ -8,8 +8,8 @@
 #include "commands.hpp"
 #include "formats/map_file.hpp"
 #include "formats/sensor_toml.hpp"
-#include "terminal.hpp"
 #include "formats/values.hpp"
+#include "terminal.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 

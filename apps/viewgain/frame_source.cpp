@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/frames_dir.hpp"
-#include "reading_source.hpp"
 #include "planner/sensing.hpp"
+#include "reading_source.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 
 namespace viewgain::app {

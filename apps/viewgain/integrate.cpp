@@ -14,9 +14,9 @@
 
 #include "commands.hpp"
 #include "formats/map_file.hpp"
+#include "formats/values.hpp"
 #include "reading_source.hpp"
 #include "terminal.hpp"
-#include "formats/values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/belief_grid.hpp"

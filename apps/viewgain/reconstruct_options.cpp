@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "sensing_flags.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
+#include "sensing_flags.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {

@@ -11,11 +11,11 @@
 
 #include "commands.hpp"
 #include "formats/map_file.hpp"
+#include "formats/sensor_toml.hpp"
+#include "formats/values.hpp"
 #include "pictures/picture.hpp"
 #include "pose_source.hpp"
-#include "formats/sensor_toml.hpp"
 #include "terminal.hpp"
-#include "formats/values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"

@@ -9,10 +9,10 @@
 
 #include "commands.hpp"
 #include "formats/frames_dir.hpp"
-#include "pose_source.hpp"
-#include "planner/sensing.hpp"
-#include "sensing_flags.hpp"
 #include "formats/sensor_toml.hpp"
+#include "planner/sensing.hpp"
+#include "pose_source.hpp"
+#include "sensing_flags.hpp"
 #include "terminal.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/mesh/mesh_io.hpp"

@@ -10,9 +10,9 @@
 #include <sstream>
 #include <utility>
 
-#include "update/belief_merge.hpp"
 #include "grid_blocks.hpp"
 #include "grid_storage.hpp"
+#include "update/belief_merge.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain {

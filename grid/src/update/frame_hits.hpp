@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "belief_merge.hpp"
-#include "map/block_lattice.hpp"
 #include "line_marks.hpp"
+#include "map/block_lattice.hpp"
 #include "readings.hpp"
 #include "viewgain/core/thread_pool.hpp"
 

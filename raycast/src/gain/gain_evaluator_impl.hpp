@@ -12,9 +12,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "choose/view_bounds.hpp"
 #include "gain_accumulator.hpp"
 #include "scene/scene_data.hpp"
-#include "choose/view_bounds.hpp"
 #include "trace/view_tracer.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"

@@ -6,8 +6,8 @@
 #include <array>
 #include <utility>
 
-#include "trace/ray_tile.hpp"
 #include "scene_data.hpp"
+#include "trace/ray_tile.hpp"
 
 namespace viewgain::detail {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "trace/leaf_traversal.hpp"
 #include "trace/tile_bins.hpp"
-#include "viewgain/raycast/voxel_scene.hpp"
 #include "trace/voxel_bvh.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain::detail {
 

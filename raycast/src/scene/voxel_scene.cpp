@@ -7,9 +7,9 @@
 
 #include "scene_data.hpp"
 #include "scene_primitives.hpp"
+#include "trace/voxel_bvh.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/thread_pool.hpp"
-#include "trace/voxel_bvh.hpp"
 
 namespace viewgain {
 namespace {

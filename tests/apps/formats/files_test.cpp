@@ -6,9 +6,9 @@
 #include <random>
 #include <string>
 
+#include "apps/program_runner.hpp"
 #include "formats/frames_dir.hpp"
 #include "formats/png_io.hpp"
-#include "apps/program_runner.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
 #include "viewgain/core/error.hpp"

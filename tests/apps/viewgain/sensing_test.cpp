@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/frames_dir.hpp"
 #include "apps/program_runner.hpp"
+#include "formats/frames_dir.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/pose_io.hpp"
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/frames_dir.hpp"
 #include "apps/program_runner.hpp"
+#include "formats/frames_dir.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/sensor.hpp"

@@ -11,9 +11,9 @@
 #include <random>
 #include <string>
 
-#include "grid/analytic_frames.hpp"
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
+#include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
 
 namespace viewgain {

@@ -14,8 +14,8 @@
 #include <random>
 #include <set>
 
-#include "grid/analytic_frames.hpp"
 #include "core/expect_error.hpp"
+#include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 

@@ -13,9 +13,9 @@
 #include <cmath>
 #include <vector>
 
-#include "grid/analytic_frames.hpp"
 #include "core/expect_error.hpp"
 #include "core/random_values.hpp"
+#include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
 
 namespace viewgain {

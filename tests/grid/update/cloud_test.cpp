@@ -11,8 +11,8 @@
 #include <random>
 #include <vector>
 
-#include "grid/analytic_frames.hpp"
 #include "core/expect_error.hpp"
+#include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate_cloud.hpp"
 #include "voxel_oracle.hpp"
 

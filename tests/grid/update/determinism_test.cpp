@@ -11,8 +11,8 @@
 #include <random>
 #include <string>
 
-#include "grid/analytic_frames.hpp"
 #include "core/temporary_folder.hpp"
+#include "grid/analytic_frames.hpp"
 #include "viewgain/core/isa.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"

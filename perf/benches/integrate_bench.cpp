@@ -10,7 +10,7 @@
 
 #include "environment.hpp"
 #include "measure.hpp"
-#include "octomap_integrate.hpp"
+#include "methods/octomap_integrate.hpp"
 #include "oracle/walk.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/thread_pool.hpp"

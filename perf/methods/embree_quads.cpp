@@ -7,9 +7,9 @@
 #include <array>
 #include <type_traits>
 
+#include "exposed_quads.hpp"
 #include "trace/device.hpp"
 #include "trace/embree_compat.hpp"
-#include "exposed_quads.hpp"
 #include "trace/ray_tile.hpp"
 
 namespace viewgain::bench {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "agreement.hpp"
+#include "methods/agreement.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::bench {

@@ -4,15 +4,15 @@
 
 #include <algorithm>
 
-#include "dense_dda.hpp"
-#include "embree_quads.hpp"
 #include "measure.hpp"
-#include "octomap_cast_ray.hpp"
-#include "octomap_gain.hpp"
-#include "openvdb_dda.hpp"
+#include "methods/dense_dda.hpp"
+#include "methods/embree_quads.hpp"
+#include "methods/octomap_cast_ray.hpp"
+#include "methods/octomap_gain.hpp"
+#include "methods/openvdb_dda.hpp"
+#include "methods/viewgain_methods.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/generators.hpp"
-#include "viewgain_methods.hpp"
 
 namespace viewgain::bench {
 namespace {

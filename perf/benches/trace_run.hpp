@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "agreement.hpp"
+#include "methods/agreement.hpp"
+#include "methods/trace_method.hpp"
 #include "trace_bench.hpp"
-#include "trace_method.hpp"
 
 namespace viewgain::bench {
 

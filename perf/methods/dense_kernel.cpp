@@ -7,7 +7,7 @@
 // not be in step with one another.
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "dense_kernel.cpp"
+#define HWY_TARGET_INCLUDE "methods/dense_kernel.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
 //
 #include <hwy/highway.h>

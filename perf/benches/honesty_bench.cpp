@@ -11,8 +11,8 @@
 
 #include "environment.hpp"
 #include "measure.hpp"
-#include "planner/model.hpp"
 #include "model_scene.hpp"
+#include "planner/model.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/mesh/quality.hpp"
