@@ -32,4 +32,10 @@ namespace viewgain::app {
 /// x0, y0, z0 .. x1, y1, z1 for people.
 [[nodiscard]] std::string describe(const Box& box);
 
+/// 2,097,152 for 2097152.
+[[nodiscard]] std::string with_commas(unsigned long long value);
+
+/// 83.2 M for 83200000; one of k, M, G where it helps.
+[[nodiscard]] std::string with_unit(double value);
+
 }  // namespace viewgain::app

@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <numbers>
 #include <optional>
 #include <utility>
 
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
-#include "viewgain/terminal.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -249,9 +247,6 @@ RgbImage render(const PaintedMesh& scene, const PinholeCamera& camera, const Pos
   const auto columns = static_cast<std::size_t>(camera.width);
   const auto rows = static_cast<std::size_t>(camera.height);
   image.pixels.resize(3 * columns * rows);
-  Progress progress("picture row");
-  std::mutex progress_mutex;
-  std::size_t rows_done = 0;
   ThreadPool pool(exec.num_threads);
   pool.for_each_chunk(rows, 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
@@ -271,9 +266,6 @@ RgbImage render(const PaintedMesh& scene, const PinholeCamera& camera, const Pos
         }
       }
     }
-    const std::lock_guard lock(progress_mutex);
-    rows_done += end - begin;
-    progress.update(rows_done, rows);
   });
   return image;
 }

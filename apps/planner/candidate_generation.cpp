@@ -4,8 +4,8 @@
 
 #include <utility>
 
+#include "stopwatch.hpp"
 #include "viewgain/core/thread_pool.hpp"
-#include "viewgain/terminal.hpp"
 
 namespace viewgain::app {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "stopwatch.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/terminal.hpp"
 
 namespace viewgain::app {
 

@@ -8,9 +8,9 @@
 #include <optional>
 #include <tuple>
 
+#include "stopwatch.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
-#include "viewgain/terminal.hpp"
 
 namespace viewgain::app {
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulated_acquisition.hpp"
 
-#include "viewgain/terminal.hpp"
+#include "stopwatch.hpp"
 
 namespace viewgain::app {
 

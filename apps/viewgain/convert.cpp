@@ -9,7 +9,7 @@
 #include "formats/map_file.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
-#include "terminal.hpp"
+#include "planner/stopwatch.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 

@@ -8,7 +8,6 @@
 #include "commands.hpp"
 #include "formats/map_file.hpp"
 #include "formats/values.hpp"
-#include "terminal.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/region_statistics.hpp"

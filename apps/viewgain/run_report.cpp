@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "commands.hpp"
-#include "terminal.hpp"
+#include "formats/values.hpp"
 
 namespace viewgain::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "formats/values.hpp"
+#include "values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "terminal.hpp"
+#include "progress.hpp"
 
 #include <unistd.h>
 
-#include <array>
 #include <cstdio>
 #include <utility>
 
@@ -28,28 +27,6 @@ void Progress::update(std::size_t done, std::size_t total) {
   std::fprintf(stderr, "\r%s %zu of %zu, %.0f %%, %.0f s\033[K", label_.c_str(), done, total,
                100 * share, now);
   std::fflush(stderr);
-}
-
-std::string with_commas(unsigned long long value) {
-  const std::string digits = std::to_string(value);
-  std::string text;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
-    text += digits[i];
-  }
-  return text;
-}
-
-std::string with_unit(double value) {
-  const char* unit = "";
-  for (const char* next : {" k", " M", " G"}) {
-    if (value < 1000) break;
-    value /= 1000;
-    unit = next;
-  }
-  std::array<char, 40> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.3g%s", value, unit);
-  return buffer.data();
 }
 
 }  // namespace viewgain::app

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/pose_source.hpp"
+#include "formats/pose_source.hpp"
 
 #include <gtest/gtest.h>
 
