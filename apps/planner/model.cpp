@@ -43,17 +43,13 @@ Model::Model(BeliefGrid grid, const Sensor& sensor, const ModelConfig& config,
 }
 
 void Model::drop_known_readings(DepthFrame& frame, const Pose& T_world_camera) const {
-  const Pose T_grid_camera = grid_.T_world_grid().inverse() * T_world_camera;
   const std::vector<Eigen::Vector3d> rays = sensor_.camera.ray_table();
   for (std::size_t i = 0; i < frame.depth.size(); ++i) {
     const float z = frame.depth[i];
     if (z == DepthFrame::kInvalid || z == DepthFrame::kOutOfRange || !rays[i].allFinite()) continue;
-    const Eigen::Vector3d p =
-        T_grid_camera * Eigen::Vector3d(rays[i] * static_cast<double>(z)) / grid_.voxel_size();
-    const Index3 voxel{static_cast<std::int32_t>(std::floor(p.x())),
-                       static_cast<std::int32_t>(std::floor(p.y())),
-                       static_cast<std::int32_t>(std::floor(p.z()))};
-    if (grid_.belief(voxel)) frame.depth[i] = DepthFrame::kInvalid;
+    const auto voxel =
+        grid_.index_of(T_world_camera * Eigen::Vector3d(rays[i] * static_cast<double>(z)));
+    if (voxel && grid_.belief(*voxel)) frame.depth[i] = DepthFrame::kInvalid;
   }
 }
 

@@ -81,7 +81,7 @@ extern constinit const Layout VIEWGAIN_LAYOUT_TABLE[] = {VIEWGAIN_LAYOUT(Approxi
                                                          VIEWGAIN_LAYOUT(SimulatedSensor),
                                                          VIEWGAIN_LAYOUT(SimulationConfig),
                                                          VIEWGAIN_LAYOUT(SnapshotLeaf),
-                                                         VIEWGAIN_LAYOUT(SnapshotTile),
+                                                         VIEWGAIN_LAYOUT(VoxelBox),
                                                          VIEWGAIN_LAYOUT(SurfaceHit),
                                                          VIEWGAIN_LAYOUT(SurfaceScene),
                                                          VIEWGAIN_LAYOUT(SymmetricMatrix3),

@@ -21,7 +21,7 @@ inline void initialize_openvdb() {
   std::call_once(once, [] { openvdb::initialize(); });
 }
 
-[[nodiscard]] inline openvdb::math::Transform::Ptr make_transform(const BeliefGrid::Storage& s) {
+[[nodiscard]] inline openvdb::math::Transform::Ptr make_transform(const GridStorage& s) {
   // OpenVDB multiplies row vectors: rows are the images of the index axes, the last the origin's.
   const Eigen::Matrix3d scaled = s.T_world_grid.rotation() * s.voxel_size;
   const Eigen::Vector3d origin = s.T_world_grid * Eigen::Vector3d::Constant(0.5 * s.voxel_size);

@@ -46,7 +46,7 @@ class Loader {
     auto storage = make_storage(*contents.metadata);
     load_states(contents, *storage);
     load_beliefs(contents, *storage);
-    return BeliefGrid::Storage::wrap(std::move(storage));
+    return GridAccess::wrap(std::move(storage));
   }
 
  private:
@@ -94,8 +94,7 @@ class Loader {
     return *std::move(result);
   }
 
-  [[nodiscard]] std::unique_ptr<BeliefGrid::Storage> make_storage(
-      const openvdb::MetaMap& metadata) const {
+  [[nodiscard]] std::unique_ptr<GridStorage> make_storage(const openvdb::MetaMap& metadata) const {
     const auto version = value<openvdb::Int32Metadata>(metadata, "viewgain_version");
     if (version != kVdbLayoutVersion) {
       fail("has viewgain_version " + std::to_string(version) + ", this program reads " +
@@ -114,7 +113,7 @@ class Loader {
     const std::vector<Pose> T_world_grid = poses(metadata, "T_world_grid");
     if (T_world_grid.size() != 1) fail("metadata 'T_world_grid' is not one pose");
     try {
-      auto storage = std::make_unique<BeliefGrid::Storage>(
+      auto storage = std::make_unique<GridStorage>(
           value<openvdb::DoubleMetadata>(metadata, "voxel_size"), T_world_grid.front(),
           value<openvdb::DoubleMetadata>(metadata, "prior_sigma"), Index3{low[0], low[1], low[2]},
           Index3{dims[0], dims[1], dims[2]});
@@ -127,8 +126,7 @@ class Loader {
   }
 
   template <typename Grid>
-  [[nodiscard]] const typename Grid::TreeType& tree(const Contents& contents,
-                                                    const BeliefGrid::Storage& s,
+  [[nodiscard]] const typename Grid::TreeType& tree(const Contents& contents, const GridStorage& s,
                                                     const std::string& name) const {
     typename Grid::Ptr found;
     for (const auto& grid : *contents.grids) {
@@ -173,7 +171,7 @@ class Loader {
     return code;
   }
 
-  void load_states(const Contents& contents, BeliefGrid::Storage& s) const {
+  void load_states(const Contents& contents, GridStorage& s) const {
     const auto& log_odds = tree<FloatGrid>(contents, s, "log_odds");
     const auto& state = tree<Int32Grid>(contents, s, "state");
     if (log_odds.activeVoxelCount() != state.activeVoxelCount()) {
@@ -233,7 +231,7 @@ class Loader {
   }
 
   void load_tile(const CoordBBox& box, std::uint8_t code, SolidVoxels& solid,
-                 BeliefGrid::Storage& s) const {
+                 GridStorage& s) const {
     if (may_be_tile(code)) {
       s.tree.sparseFill(box, code, is_non_free(code));
       return;
@@ -250,7 +248,7 @@ class Loader {
     }
   }
 
-  void load_beliefs(const Contents& contents, BeliefGrid::Storage& s) const {
+  void load_beliefs(const Contents& contents, GridStorage& s) const {
     const auto& hits = tree<Int32Grid>(contents, s, "hits");
     const std::array<const openvdb::Vec3STree*, 3> parts{
         &tree<Vec3SGrid>(contents, s, "information_diagonal"),

@@ -37,7 +37,7 @@ class MemoryArchive : public openvdb::io::Archive {
   }
 };
 
-openvdb::MetaMap make_metadata(const BeliefGrid::Storage& s) {
+openvdb::MetaMap make_metadata(const GridStorage& s) {
   const BlockLattice& l = s.lattice;
   openvdb::MetaMap metadata;
   metadata.insertMeta("viewgain_version", openvdb::Int32Metadata(kVdbLayoutVersion));
@@ -80,7 +80,7 @@ void put_leaf(Tree& tree, Index3 origin, const LeafMask& mask, ValueAt&& value_a
   tree.addLeaf(leaf.release());
 }
 
-void put_states(const BeliefGrid::Storage& s, GridSet& set) {
+void put_states(const GridStorage& s, GridSet& set) {
   auto& state = set.add<Int32Grid>("state");
   auto& log_odds = set.add<FloatGrid>("log_odds");
   const auto state_of = [](std::uint8_t code) {
@@ -104,14 +104,14 @@ void put_states(const BeliefGrid::Storage& s, GridSet& set) {
           log_odds.addTile(kBlockTileLevel, to_coord(origin), code_log_odds(code), true);
           return;
         }
-        const IndexBox box = clipped(s.lattice, origin, size);
+        const VoxelBox box = clipped(s.lattice, origin, size);
         const openvdb::CoordBBox part(to_coord(box.min), to_coord(box.max).offsetBy(-1));
         state.sparseFill(part, state_of(code), true);
         log_odds.sparseFill(part, code_log_odds(code), true);
       });
 }
 
-void put_beliefs(const BeliefGrid::Storage& s, GridSet& set, bool with_covariance) {
+void put_beliefs(const GridStorage& s, GridSet& set, bool with_covariance) {
   auto& diagonal = set.add<Vec3SGrid>("information_diagonal");
   auto& offdiagonal = set.add<Vec3SGrid>("information_offdiagonal");
   auto& vector = set.add<Vec3SGrid>("information_vector");
@@ -145,8 +145,7 @@ void put_beliefs(const BeliefGrid::Storage& s, GridSet& set, bool with_covarianc
       const auto& eta = belief.information_vector;
       const Eigen::Vector3d shift = sigma * Eigen::Vector3d(eta[0], eta[1], eta[2]);
       const Index3 v = offset_voxel(origin, at);
-      const Eigen::Vector3d p =
-          (Eigen::Vector3d(v.x, v.y, v.z).array() + 0.5).matrix() * s.voxel_size + shift;
+      const Eigen::Vector3d p = voxel_center(v, s.voxel_size) + shift;
       const auto narrow = [](double x, double y, double z) {
         return Vec3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
       };
@@ -165,7 +164,7 @@ void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
   AtomicFile file(path);
   try {
     initialize_openvdb();
-    const BeliefGrid::Storage& s = grid.storage();
+    const GridStorage& s = GridAccess::storage(grid);
     GridSet set(make_transform(s));
     put_states(s, set);
     put_beliefs(s, set, config.with_covariance);

@@ -75,11 +75,11 @@ void index_box(const GridConfig& config, Index3& min_index, Index3& dims) {
   dims = {count[0], count[1], count[2]};
 }
 
-std::unique_ptr<BeliefGrid::Storage> make_storage(const GridConfig& config) {
+std::unique_ptr<GridStorage> make_storage(const GridConfig& config) {
   Index3 min_index, dims;
   index_box(config, min_index, dims);
-  return std::make_unique<BeliefGrid::Storage>(config.voxel_size, config.T_world_grid,
-                                               config.prior_sigma, min_index, dims);
+  return std::make_unique<GridStorage>(config.voxel_size, config.T_world_grid, config.prior_sigma,
+                                       min_index, dims);
 }
 
 void check_belief(const Belief& belief) {
@@ -103,21 +103,21 @@ void check_belief(const Belief& belief) {
 
 }  // namespace
 
-std::uint64_t BeliefGrid::Storage::next_number() {
+std::uint64_t detail::GridStorage::next_number() {
   static std::atomic<std::uint64_t> last{0};
   return ++last;
 }
 
-std::unique_ptr<BeliefGrid::Storage> BeliefGrid::Storage::copy() const {
-  auto result = std::make_unique<Storage>(*this);
+std::unique_ptr<detail::GridStorage> detail::GridStorage::copy() const {
+  auto result = std::make_unique<GridStorage>(*this);
   result->copy_of = number;
   result->copied_at = time;
   result->number = next_number();
   return result;
 }
 
-BeliefGrid::Storage::Storage(double voxel_size_in, const Pose& T_world_grid_in,
-                             double prior_sigma_in, Index3 min_index_in, Index3 dims_in)
+detail::GridStorage::GridStorage(double voxel_size_in, const Pose& T_world_grid_in,
+                                 double prior_sigma_in, Index3 min_index_in, Index3 dims_in)
     : voxel_size(voxel_size_in),
       T_world_grid(T_world_grid_in),
       prior_sigma(prior_sigma_in),
@@ -155,7 +155,7 @@ BeliefGrid::Storage::Storage(double voxel_size_in, const Pose& T_world_grid_in,
       kUnknownCode, true);
 }
 
-void BeliefGrid::Storage::put_block(Index3 origin, const std::uint8_t* codes) {
+void detail::GridStorage::put_block(Index3 origin, const std::uint8_t* codes) {
   const bool uniform =
       std::all_of(codes, codes + kBlockVoxels, [&](std::uint8_t code) { return code == codes[0]; });
   if (uniform && may_be_tile(codes[0])) {
@@ -169,7 +169,7 @@ void BeliefGrid::Storage::put_block(Index3 origin, const std::uint8_t* codes) {
   tree.addLeaf(leaf.release());
 }
 
-BeliefGrid::BeliefGrid(std::unique_ptr<Storage> storage) : storage_(std::move(storage)) {}
+BeliefGrid::BeliefGrid(std::unique_ptr<GridStorage> storage) : storage_(std::move(storage)) {}
 BeliefGrid::BeliefGrid(const GridConfig& config) : storage_(make_storage(config)) {}
 BeliefGrid::~BeliefGrid() = default;
 BeliefGrid::BeliefGrid(BeliefGrid&&) noexcept = default;
@@ -202,6 +202,14 @@ std::uint64_t BeliefGrid::voxel_count() const noexcept {
          static_cast<std::uint64_t>(d.z);
 }
 
+std::optional<Index3> BeliefGrid::index_of(const Eigen::Vector3d& p_world) const {
+  return storage_->lattice.voxel_at(storage_->T_world_grid.inverse() * p_world /
+                                    storage_->voxel_size);
+}
+Eigen::Vector3d BeliefGrid::center(Index3 voxel) const {
+  return storage_->T_world_grid * voxel_center(voxel, storage_->voxel_size);
+}
+
 VoxelState BeliefGrid::state(Index3 voxel) const {
   if (!storage_->lattice.contains(voxel)) return VoxelState::unknown;
   const std::uint8_t code = storage_->tree.getValue(to_coord(voxel));
@@ -224,7 +232,7 @@ std::optional<Belief> BeliefGrid::belief(Index3 voxel) const {
 }
 
 void BeliefGrid::set(Index3 voxel, float log_odds, const std::optional<Belief>& belief) {
-  Storage& s = *storage_;
+  GridStorage& s = *storage_;
   if (!s.lattice.contains(voxel)) {
     fail(ErrorCode::invalid_argument, "voxel (", voxel.x, ", ", voxel.y, ", ", voxel.z,
          ") lies outside the workspace");
@@ -266,14 +274,14 @@ BeliefGrid BeliefGrid::from_states(const GridConfig& config, std::span<const std
   constexpr std::array<std::uint8_t, 3> kCodes{kUnknownCode, kLiteralFreeCode,
                                                kLiteralOccupiedCode};
 
-  Storage& s = *grid.storage_;
+  GridStorage& s = *grid.storage_;
   const BlockLattice& l = s.lattice;
   const Index3 first = block_origin(l.min);
   for (std::int32_t x = first.x; x < l.max.x; x += kBlockSize) {
     for (std::int32_t y = first.y; y < l.max.y; y += kBlockSize) {
       for (std::int32_t z = first.z; z < l.max.z; z += kBlockSize) {
         std::array<std::uint8_t, kBlockVoxels> codes{};
-        const IndexBox box = clipped(l, {x, y, z}, kBlockSize);
+        const VoxelBox box = clipped(l, {x, y, z}, kBlockSize);
         bool any = false;
         for (std::int32_t i = box.min.x; i < box.max.x; ++i) {
           for (std::int32_t j = box.min.y; j < box.max.y; ++j) {
@@ -300,13 +308,13 @@ void BeliefGrid::copy_states(std::span<std::uint8_t> states) const {
     fail(ErrorCode::invalid_argument, "array of ", states.size(), " states for a workspace of ",
          voxel_count(), " voxels");
   }
-  const Storage& s = *storage_;
+  const GridStorage& s = *storage_;
   const auto state_of = [](std::uint8_t code) {
     return static_cast<std::uint8_t>(code == kUnknownCode ? VoxelState::unknown
                                      : is_occupied(code)  ? VoxelState::occupied
                                                           : VoxelState::free);
   };
-  const auto each_row = [&](const IndexBox& box, auto&& row) {
+  const auto each_row = [&](const VoxelBox& box, auto&& row) {
     for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
       for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
         const auto at =
@@ -322,7 +330,7 @@ void BeliefGrid::copy_states(std::span<std::uint8_t> states) const {
       s,
       [&](const CodeLeaf& leaf, Index3 origin) {
         const std::uint8_t* codes = leaf.buffer().data();
-        const IndexBox box = clipped(s.lattice, origin, kBlockSize);
+        const VoxelBox box = clipped(s.lattice, origin, kBlockSize);
         each_row(box, [&](std::int32_t x, std::int32_t y, std::span<std::uint8_t> row) {
           const std::uint8_t* from = codes + block_offset({x, y, box.min.z});
           for (std::size_t k = 0; k < row.size(); ++k) row[k] = state_of(from[k]);
@@ -339,15 +347,15 @@ void BeliefGrid::copy_states(std::span<std::uint8_t> states) const {
 namespace detail {
 
 void put_block(BeliefGrid& grid, Index3 origin, const std::uint8_t* codes) {
-  grid.storage().put_block(origin, codes);
+  GridAccess::storage(grid).put_block(origin, codes);
 }
 
 void fill_cube(BeliefGrid& grid, Index3 origin, std::int32_t size, std::uint8_t code) {
-  BeliefGrid::Storage& s = grid.storage();
+  GridStorage& s = GridAccess::storage(grid);
   if (!s.lattice.overlaps(origin, size)) return;
   // Whole blocks, of large cubes whole nodes, round the part in the workspace.
   const std::int32_t unit = may_be_tile(code) && size > kNodeSize ? kNodeSize : kBlockSize;
-  const IndexBox part = clipped(s.lattice, origin, size);
+  const VoxelBox part = clipped(s.lattice, origin, size);
   const auto down = [&](std::int32_t v) { return v & ~(unit - 1); };
   const auto up = [&](std::int32_t v) { return down(v - 1) + unit; };
   const Index3 from{down(part.min.x), down(part.min.y), down(part.min.z)};
@@ -369,7 +377,7 @@ void visit_grid(const BeliefGrid& grid,
                 const std::function<void(Index3, const std::uint8_t*)>& block,
                 const std::function<void(Index3, std::int32_t, std::uint8_t)>& cube) {
   visit_blocks(
-      grid.storage(),
+      GridAccess::storage(grid),
       [&](const CodeLeaf& leaf, Index3 origin) { block(origin, leaf.buffer().data()); },
       [&](Index3 origin, int size, std::uint8_t code) { cube(origin, size, code); });
 }

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 
-#include "viewgain/grid/grid_snapshot.hpp"
+#include "viewgain/grid/belief.hpp"
+#include "viewgain/grid/voxel.hpp"
 
 namespace viewgain::detail {
 
@@ -14,28 +17,38 @@ inline constexpr int kBlockSize = 8;    ///< an OpenVDB leaf
 inline constexpr int kRegionSize = 32;  ///< what one thread updates at a time
 inline constexpr int kNodeSize = 128;   ///< an OpenVDB node of leaves
 
+/// The voxels of the block at `origin` that lie in the box.
+[[nodiscard]] inline LeafMask block_mask(const VoxelBox& box, Index3 origin) {
+  const auto range = [](std::int32_t low, std::int32_t from, std::int32_t to) {
+    return std::array{std::clamp(from - low, 0, kBlockSize), std::clamp(to - low, 0, kBlockSize)};
+  };
+  const auto x = range(origin.x, box.min.x, box.max.x), y = range(origin.y, box.min.y, box.max.y),
+             z = range(origin.z, box.min.z, box.max.z);
+  std::uint64_t plane = 0;
+  for (int j = y[0]; j < y[1]; ++j) {
+    for (int k = z[0]; k < z[1]; ++k) plane |= std::uint64_t{1} << (8 * j + k);
+  }
+  LeafMask mask{};
+  for (int i = x[0]; i < x[1]; ++i) mask[static_cast<std::size_t>(i)] = plane;
+  return mask;
+}
+
 /// The lattices of 8³ blocks, 32³ regions and 128³ nodes over a workspace, and numbers for them. A
 /// key names a block: node, then region in the node, then block in the region, so blocks sorted by
 /// key are grouped by region and by node.
-struct BlockLattice {
-  Index3 min;  ///< workspace: [min, max)
-  Index3 max;
+///
+/// The box is the workspace.
+struct BlockLattice : VoxelBox {
   Index3 node_min;                       ///< origin of the lowest node
   std::array<std::uint32_t, 3> nodes{};  ///< nodes along x, y, z
 
   BlockLattice(Index3 min_index, Index3 dims)
-      : min(min_index),
-        max{min_index.x + dims.x, min_index.y + dims.y, min_index.z + dims.z},
+      : VoxelBox(from_dims(min_index, dims)),
         node_min{min.x & ~(kNodeSize - 1), min.y & ~(kNodeSize - 1), min.z & ~(kNodeSize - 1)} {
     const auto count = [](std::int32_t from, std::int32_t to) {
       return static_cast<std::uint32_t>((to - from + kNodeSize - 1) / kNodeSize);
     };
     nodes = {count(node_min.x, max.x), count(node_min.y, max.y), count(node_min.z, max.z)};
-  }
-
-  [[nodiscard]] bool contains(Index3 v) const {
-    return v.x >= min.x && v.x < max.x && v.y >= min.y && v.y < max.y && v.z >= min.z &&
-           v.z < max.z;
   }
 
   /// Does the cube [origin, origin + size) share a voxel with the workspace?
@@ -81,20 +94,7 @@ struct BlockLattice {
   }
 
   /// The voxels of a block that belong to the workspace.
-  [[nodiscard]] LeafMask clip(Index3 origin) const {
-    const auto range = [](std::int32_t low, std::int32_t from, std::int32_t to) {
-      return std::array{std::clamp(from - low, 0, kBlockSize), std::clamp(to - low, 0, kBlockSize)};
-    };
-    const auto x = range(origin.x, min.x, max.x), y = range(origin.y, min.y, max.y),
-               z = range(origin.z, min.z, max.z);
-    std::uint64_t plane = 0;
-    for (int j = y[0]; j < y[1]; ++j) {
-      for (int k = z[0]; k < z[1]; ++k) plane |= std::uint64_t{1} << (8 * j + k);
-    }
-    LeafMask mask{};
-    for (int i = x[0]; i < x[1]; ++i) mask[static_cast<std::size_t>(i)] = plane;
-    return mask;
-  }
+  [[nodiscard]] LeafMask clip(Index3 origin) const { return block_mask(*this, origin); }
 };
 
 /// Offset of a voxel in its 8³ block: x << 6 | y << 3 | z.

@@ -33,7 +33,7 @@ std::uint64_t tree_bytes(const CodeTree& tree) {
 /// after they are asked for, so that they can be on their way into the cache.
 class SnapshotMaker {
  public:
-  SnapshotMaker(const BeliefGrid::Storage& storage, const GridSnapshot& before, GridSnapshot& out)
+  SnapshotMaker(const GridStorage& storage, const GridSnapshot& before, GridSnapshot& out)
       : storage_(storage), before_(before), out_(out), earlier_(before.regions.begin()) {
     out.shared_until = storage.is_earlier(before) ? before.time : 0;
     if (out.shared_until != 0) {
@@ -76,7 +76,7 @@ class SnapshotMaker {
 
   void add_tile(Index3 origin, int size, std::uint8_t code) {
     if (code != kUnknownCode || !storage_.lattice.overlaps(origin, size)) return;
-    const IndexBox box = clipped(storage_.lattice, origin, size);
+    const VoxelBox box = clipped(storage_.lattice, origin, size);
     out_.tiles.push_back({box.min, box.max});
   }
 
@@ -159,7 +159,7 @@ class SnapshotMaker {
     out_.leaves.push_back({entry.origin, non_free, occupied, std::move(beliefs)});
   }
 
-  const BeliefGrid::Storage& storage_;
+  const GridStorage& storage_;
   const GridSnapshot& before_;
   GridSnapshot& out_;
   std::vector<SnapshotRegion>::const_iterator earlier_;
@@ -277,6 +277,14 @@ class ContentHash {
 
 }  // namespace
 
+std::optional<Index3> GridSnapshot::index_of(const Eigen::Vector3d& p_world) const {
+  return VoxelBox::from_dims(min_index, dims)
+      .voxel_at(T_world_grid.inverse() * p_world / voxel_size);
+}
+Eigen::Vector3d GridSnapshot::center(Index3 voxel) const {
+  return T_world_grid * voxel_center(voxel, voxel_size);
+}
+
 const SnapshotLeaf* GridSnapshot::find_leaf(Index3 voxel) const {
   const BlockLattice lattice(min_index, dims);
   if (!lattice.contains(voxel)) return nullptr;
@@ -296,7 +304,7 @@ const SnapshotLeaf* GridSnapshot::find_leaf(Index3 voxel) const {
 GridSnapshot BeliefGrid::snapshot() const { return snapshot(GridSnapshot{}); }
 
 GridSnapshot BeliefGrid::snapshot(const GridSnapshot& before) const {
-  const Storage& s = *storage_;
+  const GridStorage& s = *storage_;
   GridSnapshot result;
   result.voxel_size = s.voxel_size;
   result.prior_sigma = s.prior_sigma;
@@ -323,7 +331,7 @@ std::vector<BeliefBlockAt> BeliefGrid::belief_blocks() const {
 }
 
 GridStatistics BeliefGrid::statistics(Criterion criterion) const {
-  const Storage& s = *storage_;
+  const GridStorage& s = *storage_;
   GridStatistics result;
   const auto prior = SymmetricMatrix3::identity(1.0 / (s.prior_sigma * s.prior_sigma));
   visit_blocks(
@@ -339,7 +347,7 @@ GridStatistics BeliefGrid::statistics(Criterion criterion) const {
         result.occupied += occupied_count;
         result.free += count_bits(inside) - count_bits(non_free);
         if (occupied_count == 0) return;
-        const IndexBox box = clipped(s.lattice, origin, kBlockSize);
+        const VoxelBox box = clipped(s.lattice, origin, kBlockSize);
         const BeliefBlock* block = s.find_beliefs(s.lattice.key(box.min));
         if (block == nullptr) return;
         for_each_bit(intersection(occupied, block->mask), [&](unsigned offset) {
@@ -352,7 +360,7 @@ GridStatistics BeliefGrid::statistics(Criterion criterion) const {
       });
   result.unknown = voxel_count() - result.free - result.occupied;
 
-  result.bytes = sizeof(Storage) + tree_bytes(s.tree) + s.views.capacity() * sizeof(Pose);
+  result.bytes = sizeof(GridStorage) + tree_bytes(s.tree) + s.views.capacity() * sizeof(Pose);
   // Each entry of the map: its node (link, key, pointer), its bucket and the shared block.
   constexpr std::size_t kSharedCounts = 2 * sizeof(void*);
   for (const auto& [key, block] : s.beliefs) {
@@ -365,7 +373,7 @@ GridStatistics BeliefGrid::statistics(Criterion criterion) const {
 }
 
 std::string BeliefGrid::content_hash() const {
-  const Storage& s = *storage_;
+  const GridStorage& s = *storage_;
   ContentHash contents(s.lattice);
   contents.add_tree(s.tree);
   for (const auto& [key, block] : s.beliefs) contents.add_beliefs(s.lattice.origin(key), *block);

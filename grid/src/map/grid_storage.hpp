@@ -22,9 +22,7 @@
 #include "log_odds_code.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
-namespace viewgain {
-
-namespace detail {
+namespace viewgain::detail {
 
 // One byte a voxel (log_odds_code.hpp); active means not free. Upper nodes span 2048 voxels rather
 // than OpenVDB's usual 4096: small maps around the origin touch eight of them, at 33 KB instead of
@@ -48,21 +46,20 @@ inline constexpr openvdb::Index kNodeTileLevel = 2;
   return words;
 }
 
-}  // namespace detail
-
-struct BeliefGrid::Storage {
+/// What a BeliefGrid holds.
+struct GridStorage {
   double voxel_size = 0;
   Pose T_world_grid;
   double prior_sigma = 0;
   Index3 min_index;
   Index3 dims;
-  detail::BlockLattice lattice;
+  BlockLattice lattice;
   std::vector<Pose> views;
 
   /// Unknown fills the workspace grown outward to multiples of 2048 voxels, so that only tiles of
   /// the root arise; whoever reads the tree clips to the workspace. Voxels outside it hold no
   /// meaning.
-  detail::CodeTree tree{detail::kUnknownCode};
+  CodeTree tree{kUnknownCode};
 
   /// By BlockLattice::key. Blocks are never changed in place: snapshots and clones share them.
   std::unordered_map<std::uint64_t, std::shared_ptr<const BeliefBlock>> beliefs;
@@ -88,14 +85,10 @@ struct BeliefGrid::Storage {
   }
 
   /// Checks everything, as BeliefGrid's constructor says.
-  Storage(double voxel_size, const Pose& T_world_grid, double prior_sigma, Index3 min_index,
-          Index3 dims);
-  Storage(const Storage&) = default;
-  [[nodiscard]] std::unique_ptr<Storage> copy() const;
-
-  [[nodiscard]] static BeliefGrid wrap(std::unique_ptr<Storage> storage) {
-    return BeliefGrid(std::move(storage));
-  }
+  GridStorage(double voxel_size, const Pose& T_world_grid, double prior_sigma, Index3 min_index,
+              Index3 dims);
+  GridStorage(const GridStorage&) = default;
+  [[nodiscard]] std::unique_ptr<GridStorage> copy() const;
 
   [[nodiscard]] const BeliefBlock* find_beliefs(std::uint64_t key) const {
     const auto found = beliefs.find(key);
@@ -106,12 +99,19 @@ struct BeliefGrid::Storage {
   void put_block(Index3 origin, const std::uint8_t* codes);
 };
 
-namespace detail {
+/// The way from a grid to what it holds, and back.
+struct GridAccess {
+  [[nodiscard]] static GridStorage& storage(BeliefGrid& grid) { return *grid.storage_; }
+  [[nodiscard]] static const GridStorage& storage(const BeliefGrid& grid) { return *grid.storage_; }
+  [[nodiscard]] static BeliefGrid wrap(std::unique_ptr<GridStorage> storage) {
+    return BeliefGrid(std::move(storage));
+  }
+};
 
 /// Calls leaf(const CodeLeaf&, Index3 origin), without having looked into the leaf, and tile(Index3
 /// origin, int size, std::uint8_t code) for all leaves and tiles that overlap the workspace.
 template <typename LeafFn, typename TileFn>
-void visit_blocks(const BeliefGrid::Storage& storage, LeafFn&& leaf, TileFn&& tile) {
+void visit_blocks(const GridStorage& storage, LeafFn&& leaf, TileFn&& tile) {
   const BlockLattice& lattice = storage.lattice;
   const auto visit_tile = [&](const openvdb::Coord& at, int size, std::uint8_t code) {
     if (lattice.overlaps(to_index(at), size)) tile(to_index(at), size, code);
@@ -135,18 +135,8 @@ void visit_blocks(const BeliefGrid::Storage& storage, LeafFn&& leaf, TileFn&& ti
 }
 
 /// The part [min, max) of a cube that belongs to the workspace.
-struct IndexBox {
-  Index3 min, max;
-  [[nodiscard]] std::uint64_t volume() const {
-    return static_cast<std::uint64_t>(max.x - min.x) * static_cast<std::uint64_t>(max.y - min.y) *
-           static_cast<std::uint64_t>(max.z - min.z);
-  }
-};
-[[nodiscard]] inline IndexBox clipped(const BlockLattice& lattice, Index3 origin, int size) {
-  return {{std::max(origin.x, lattice.min.x), std::max(origin.y, lattice.min.y),
-           std::max(origin.z, lattice.min.z)},
-          {std::min(origin.x + size, lattice.max.x), std::min(origin.y + size, lattice.max.y),
-           std::min(origin.z + size, lattice.max.z)}};
+[[nodiscard]] inline VoxelBox clipped(const BlockLattice& lattice, Index3 origin, int size) {
+  return lattice.intersection(VoxelBox::from_dims(origin, {size, size, size}));
 }
 
 /// Bits of the occupied voxels, eight codes at a time.
@@ -179,5 +169,4 @@ template <typename Predicate>
   return mask;
 }
 
-}  // namespace detail
-}  // namespace viewgain
+}  // namespace viewgain::detail

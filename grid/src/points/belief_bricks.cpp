@@ -39,7 +39,7 @@ BeliefBricks::BeliefBricks(const BeliefGrid& grid) : min_(grid.min_index()) {
           {belief.information_matrix(), Eigen::Vector3d(v[0], v[1], v[2]), belief.hits});
     });
   }
-  for (const SnapshotTile& tile : snapshot.tiles) {
+  for (const VoxelBox& tile : snapshot.tiles) {
     const bool in_one_block = tile.min.x >> 3 == (tile.max.x - 1) >> 3 &&
                               tile.min.y >> 3 == (tile.max.y - 1) >> 3 &&
                               tile.min.z >> 3 == (tile.max.z - 1) >> 3;
@@ -73,7 +73,7 @@ bool BeliefBricks::is_unknown_tile(Index3 v) const {
     return false;
   }
   return unknown_blocks_.contains(block_number(v)) ||
-         std::any_of(larger_tiles_.begin(), larger_tiles_.end(), [&](const SnapshotTile& t) {
+         std::any_of(larger_tiles_.begin(), larger_tiles_.end(), [&](const VoxelBox& t) {
            return v.x >= t.min.x && v.x < t.max.x && v.y >= t.min.y && v.y < t.max.y &&
                   v.z >= t.min.z && v.z < t.max.z;
          });

@@ -65,7 +65,7 @@ class BeliefBricks {
   std::vector<PlacedBelief> beliefs_;
   std::unordered_map<std::uint64_t, std::int32_t> numbers_;
   std::unordered_set<std::uint64_t> unknown_blocks_;  ///< tiles that lie in one block
-  std::vector<SnapshotTile> larger_tiles_;
+  std::vector<VoxelBox> larger_tiles_;
   Index3 min_, max_;
 };
 

@@ -78,9 +78,8 @@ std::shared_ptr<const BeliefBlock> with_hits(const BeliefBlock* block, std::span
   const Eigen::Matrix3d R_grid_readings = T_grid_readings.rotation();
   for (const Hit& hit : hits) {
     const Index3 voxel = offset_voxel(origin, hit.offset);
-    const Eigen::Vector3d center =
-        (Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5) * voxel_size;
-    const Eigen::Vector3d offset = T_grid_readings * pixels.point(hit.pixel) - center;
+    const Eigen::Vector3d offset =
+        T_grid_readings * pixels.point(hit.pixel) - voxel_center(voxel, voxel_size);
     const SymmetricMatrix3 information = measurement_information(
         R_grid_readings * pixels.direction(hit.pixel), pixels.sigmas(hit.pixel));
     const Eigen::Vector3d vector = information * offset;

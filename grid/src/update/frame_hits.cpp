@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
+#include <optional>
 
 namespace viewgain::detail {
 namespace {
@@ -20,15 +20,10 @@ void FrameHits::find(const Readings& pixels, const BlockLattice& lattice, double
     for (std::size_t i = begin; i < end; ++i) {
       by_pixel_[i].offset = kBlockVoxels;
       if (pixels.kind(i) != PixelKind::reading) continue;
-      const Eigen::Vector3d p = T_grid_readings * pixels.point(i) / voxel_size;
-      const double x = std::floor(p.x()), y = std::floor(p.y()), z = std::floor(p.z());
-      if (!(x >= lattice.min.x && x < lattice.max.x && y >= lattice.min.y && y < lattice.max.y &&
-            z >= lattice.min.z && z < lattice.max.z)) {
-        continue;
-      }
-      const Index3 voxel{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
-                         static_cast<std::int32_t>(z)};
-      by_pixel_[i] = {lattice.key(voxel), static_cast<std::uint32_t>(i), block_offset(voxel)};
+      const std::optional<Index3> voxel =
+          lattice.voxel_at(T_grid_readings * pixels.point(i) / voxel_size);
+      if (!voxel) continue;
+      by_pixel_[i] = {lattice.key(*voxel), static_cast<std::uint32_t>(i), block_offset(*voxel)};
     }
   });
 

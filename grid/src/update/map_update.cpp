@@ -66,16 +66,15 @@ struct MapUpdate::Impl {
         pool(exec.num_threads),
         literal(occupancy == Occupancy::literal) {}
 
-  void list_regions(const BeliefGrid::Storage& s, const std::optional<ConeCull>& cull);
-  void update_region(BeliefGrid::Storage& s, const Readings& readings,
-                     const std::optional<ConeCull>& cull, const ConeCamera* camera,
-                     const Pose& T_grid_readings, std::uint64_t region, RegionResult& result);
-  void put_results(BeliefGrid::Storage& s);
+  void list_regions(const GridStorage& s, const std::optional<ConeCull>& cull);
+  void update_region(GridStorage& s, const Readings& readings, const std::optional<ConeCull>& cull,
+                     const ConeCamera* camera, const Pose& T_grid_readings, std::uint64_t region,
+                     RegionResult& result);
+  void put_results(GridStorage& s);
 };
 
 // The regions that the frame may change, in rising order.
-void MapUpdate::Impl::list_regions(const BeliefGrid::Storage& s,
-                                   const std::optional<ConeCull>& cull) {
+void MapUpdate::Impl::list_regions(const GridStorage& s, const std::optional<ConeCull>& cull) {
   std::vector<std::uint64_t> crossed;
   if (cull) {
     for (std::uint64_t node = 0; node < s.lattice.node_count(); ++node) {
@@ -100,7 +99,7 @@ void MapUpdate::Impl::list_regions(const BeliefGrid::Storage& s,
 
 // Runs on many threads at once: writes leaves and belief blocks of this region only, and reads the
 // rest of the tree, whose shape stays as it is.
-void MapUpdate::Impl::update_region(BeliefGrid::Storage& s, const Readings& readings,
+void MapUpdate::Impl::update_region(GridStorage& s, const Readings& readings,
                                     const std::optional<ConeCull>& cull, const ConeCamera* camera,
                                     const Pose& T_grid_readings, std::uint64_t region,
                                     RegionResult& result) {
@@ -205,7 +204,7 @@ void MapUpdate::Impl::update_region(BeliefGrid::Storage& s, const Readings& read
 }
 
 // Blocks that changed between leaf and tile, and nodes that became uniform.
-void MapUpdate::Impl::put_results(BeliefGrid::Storage& s) {
+void MapUpdate::Impl::put_results(GridStorage& s) {
   for (std::size_t i = 0; i < regions.size(); ++i) {
     RegionResult& result = results[i];
     if (result.leaves.empty() && result.tiles.empty()) continue;
@@ -248,7 +247,7 @@ IntegrationReport MapUpdate::run(BeliefGrid& grid, const Readings& readings,
                                  const Pose& T_grid_readings, const Pose& view,
                                  const ConeCamera* camera) {
   Impl& m = *impl_;
-  BeliefGrid::Storage& s = grid.storage();
+  GridStorage& s = GridAccess::storage(grid);
   std::optional<ConeCull> cull;
   m.hits.find(readings, s.lattice, s.voxel_size, T_grid_readings, m.pool);
   if (camera != nullptr) {

@@ -72,7 +72,7 @@ std::vector<Box> boxes_of(const GridSnapshot& snapshot) {
     const Index3& o = leaf.origin;
     boxes.push_back(box_of(o, {o.x + 8, o.y + 8, o.z + 8}));
   }
-  for (const SnapshotTile& tile : snapshot.tiles) boxes.push_back(box_of(tile.min, tile.max));
+  for (const VoxelBox& tile : snapshot.tiles) boxes.push_back(box_of(tile.min, tile.max));
   return boxes;
 }
 
@@ -92,7 +92,7 @@ class NonFreeVoxels {
     const auto leaf_limits = body.limits(Eigen::Vector3d::Constant(4.0));
     return boxes_.any(range, [&](std::uint32_t item) {
       if (item >= snapshot_.leaves.size()) {
-        const SnapshotTile& tile = snapshot_.tiles[item - snapshot_.leaves.size()];
+        const VoxelBox& tile = snapshot_.tiles[item - snapshot_.leaves.size()];
         return body.overlaps(box_of(tile.min, tile.max));
       }
       const SnapshotLeaf& leaf = snapshot_.leaves[item];

@@ -192,10 +192,9 @@ void GainAccumulator::look_up() {
 
 double GainAccumulator::weight(std::uint32_t code) const {
   const Index3 voxel = scene_.voxel_at(blocks_[code >> 9U].key | (code & 511U));
-  const double size = scene_.snapshot.voxel_size;
-  const double x = (voxel.x + 0.5) * size, y = (voxel.y + 0.5) * size, z = (voxel.z + 0.5) * size;
+  const Eigen::Vector3d center = voxel_center(voxel, scene_.snapshot.voxel_size);
   for (auto region = settings_.weights.rbegin(); region != settings_.weights.rend(); ++region) {
-    if (region->box.contains(x, y, z)) return region->weight;
+    if (region->box.contains(center.x(), center.y(), center.z())) return region->weight;
   }
   return 1.0;
 }

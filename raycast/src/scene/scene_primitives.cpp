@@ -39,7 +39,7 @@ PrimitiveBox tight_box(const LeafMask& mask, const std::array<float, 3>& origin)
           x_min << 6U | y_min << 3U | z_min};
 }
 
-bool is_whole_block(const SnapshotTile& tile) {
+bool is_whole_block(const VoxelBox& tile) {
   const auto aligned = [](std::int32_t min, std::int32_t max) {
     return max - min == 8 && (min & 7) == 0;
   };
@@ -155,7 +155,7 @@ class Gatherer {
     data_.has_occupied.push_back(leaf.occupied != LeafMask{} ? 1 : 0);
   }
 
-  void add_tile(const SnapshotTile& tile) {
+  void add_tile(const VoxelBox& tile) {
     if (is_whole_block(tile)) {
       add_block(tile.min);
     } else {
@@ -164,7 +164,7 @@ class Gatherer {
   }
 
   // In pieces whose offsets fit.
-  void add_box(const SnapshotTile& tile) {
+  void add_box(const VoxelBox& tile) {
     constexpr std::int32_t kEdge = kMaxBoxEdge;
     const Index3 &min = tile.min, &max = tile.max;
     for (std::int32_t x = min.x; x < max.x; x += kEdge) {

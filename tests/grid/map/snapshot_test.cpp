@@ -47,7 +47,7 @@ std::vector<std::uint8_t> states_of(const GridSnapshot& s, std::uint64_t& faults
            test_bit(leaf.occupied, n) ? 2 : 0);
     }
   }
-  for (const SnapshotTile& tile : s.tiles) {
+  for (const VoxelBox& tile : s.tiles) {
     for (int x = tile.min.x; x < tile.max.x; ++x) {
       for (int y = tile.min.y; y < tile.max.y; ++y) {
         for (int z = tile.min.z; z < tile.max.z; ++z) tell(x, y, z, 0);
@@ -149,7 +149,7 @@ TEST(Snapshot, AnUnknownWorkspaceIsAFewBoxes) {
   EXPECT_TRUE(snapshot.leaves.empty());
   EXPECT_LE(snapshot.tiles.size(), 27U);
   std::uint64_t volume = 0;
-  for (const SnapshotTile& tile : snapshot.tiles) {
+  for (const VoxelBox& tile : snapshot.tiles) {
     volume += static_cast<std::uint64_t>(tile.max.x - tile.min.x) *
               static_cast<std::uint64_t>(tile.max.y - tile.min.y) *
               static_cast<std::uint64_t>(tile.max.z - tile.min.z);

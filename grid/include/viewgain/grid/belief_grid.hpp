@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -12,13 +12,19 @@
 #include <vector>
 
 #include "viewgain/core/box.hpp"
-#include "viewgain/core/covariance.hpp"
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/grid/belief.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
+#include "viewgain/grid/voxel.hpp"
 
 namespace viewgain {
+
+namespace detail {
+struct GridAccess;
+struct GridStorage;
+}  // namespace detail
 
 /// How a map is laid out. A value type.
 struct VIEWGAIN_EXPORT GridConfig {
@@ -77,6 +83,12 @@ class VIEWGAIN_EXPORT BeliefGrid {
   [[nodiscard]] Box workspace() const noexcept;       ///< grown to the lattice, grid frame [m]
   [[nodiscard]] std::uint64_t voxel_count() const noexcept;
 
+  /// The voxel that holds a point of the world [m]; nothing outside the workspace, or if the point
+  /// is not finite.
+  [[nodiscard]] std::optional<Index3> index_of(const Eigen::Vector3d& p_world) const;
+  /// Centre of a voxel in the world [m]; it need not lie in the workspace.
+  [[nodiscard]] Eigen::Vector3d center(Index3 voxel) const;
+
   /// Outside the workspace a voxel is unknown, has no log-odds and no belief.
   [[nodiscard]] VoxelState state(Index3 voxel) const;
   [[nodiscard]] std::optional<float> log_odds(Index3 voxel) const;
@@ -110,15 +122,10 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// All beliefs, those of free voxels too, by block in a fixed order; shared, not copied.
   [[nodiscard]] std::vector<BeliefBlockAt> belief_blocks() const;
 
-  /// The storage behind the grid, for this module's other sources (private header
-  /// grid_storage.hpp).
-  struct Storage;
-  [[nodiscard]] Storage& storage() noexcept { return *storage_; }
-  [[nodiscard]] const Storage& storage() const noexcept { return *storage_; }
-
  private:
-  explicit BeliefGrid(std::unique_ptr<Storage> storage);
-  std::unique_ptr<Storage> storage_;
+  friend struct detail::GridAccess;  // this module's sources
+  explicit BeliefGrid(std::unique_ptr<detail::GridStorage> storage);
+  std::unique_ptr<detail::GridStorage> storage_;
 };
 
 }  // namespace viewgain

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "viewgain/core/covariance.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/grid/voxel.hpp"
+
+namespace viewgain {
+
+/// What readings have said about one voxel, in single precision as in the map files, grid frame.
+struct VIEWGAIN_EXPORT Belief {
+  std::array<float, 6> information{};         ///< Λ_v: xx yy zz xy xz yz [m⁻²]
+  std::array<float, 3> information_vector{};  ///< η_v = Σ Λ_r (p_r - voxel centre) [m⁻¹]
+  std::uint32_t hits = 0;                     ///< readings that ended here
+
+  [[nodiscard]] SymmetricMatrix3 information_matrix() const {
+    return {information[0], information[1], information[2],
+            information[3], information[4], information[5]};
+  }
+  bool operator==(const Belief&) const = default;
+};
+
+/// One bit a voxel of an 8³ leaf: word x, bit y << 3 | z (OpenVDB's order).
+using LeafMask = std::array<std::uint64_t, 8>;
+
+[[nodiscard]] inline bool test_bit(const LeafMask& mask, unsigned offset) {
+  return ((mask[offset >> 6U] >> (offset & 63U)) & 1U) != 0;
+}
+
+/// The beliefs of one leaf: those of the voxels in `mask`, in order of their offsets.
+struct VIEWGAIN_EXPORT BeliefBlock {
+  LeafMask mask{};
+  std::vector<Belief> beliefs;
+
+  /// Position in `beliefs` of the voxel with this offset (x << 6 | y << 3 | z); the bit must be
+  /// set.
+  [[nodiscard]] std::size_t rank(unsigned offset) const {
+    int below = 0;
+    for (unsigned word = 0; word < offset >> 6U; ++word) below += std::popcount(mask[word]);
+    const std::uint64_t low = (std::uint64_t{1} << (offset & 63U)) - 1U;
+    return static_cast<std::size_t>(below + std::popcount(mask[offset >> 6U] & low));
+  }
+  [[nodiscard]] const Belief* find(unsigned offset) const {
+    return test_bit(mask, offset) ? &beliefs[rank(offset)] : nullptr;
+  }
+};
+
+/// A block of beliefs and its lowest voxel, a multiple of 8.
+struct VIEWGAIN_EXPORT BeliefBlockAt {
+  Index3 origin;
+  std::shared_ptr<const BeliefBlock> beliefs;
+};
+
+}  // namespace viewgain

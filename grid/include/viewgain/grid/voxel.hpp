@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "viewgain/core/export.hpp"
+
+namespace viewgain {
+
+/// Voxel state; the numbers are those of dense arrays in every language.
+enum class VoxelState : std::uint8_t { unknown = 0, free = 1, occupied = 2 };
+
+/// Index of a voxel on the grid's lattice (through the origin of the grid's frame).
+struct VIEWGAIN_EXPORT Index3 {
+  std::int32_t x = 0, y = 0, z = 0;
+  bool operator==(const Index3&) const = default;
+};
+
+/// A box of voxels: [min, max). It is empty if a side is not positive.
+struct VIEWGAIN_EXPORT VoxelBox {
+  Index3 min;
+  Index3 max;
+
+  /// dims voxels along x, y, z from the lowest voxel on.
+  [[nodiscard]] static VoxelBox from_dims(Index3 min, Index3 dims) {
+    return {min, {min.x + dims.x, min.y + dims.y, min.z + dims.z}};
+  }
+
+  [[nodiscard]] bool contains(Index3 v) const {
+    return v.x >= min.x && v.x < max.x && v.y >= min.y && v.y < max.y && v.z >= min.z &&
+           v.z < max.z;
+  }
+  /// The voxel of the box that holds a point, given in voxels (grid frame, divided by the voxel
+  /// size); nothing if the point lies outside or is not finite.
+  [[nodiscard]] std::optional<Index3> voxel_at(const Eigen::Vector3d& p) const {
+    const double x = std::floor(p.x()), y = std::floor(p.y()), z = std::floor(p.z());
+    if (!(x >= min.x && x < max.x && y >= min.y && y < max.y && z >= min.z && z < max.z)) {
+      return std::nullopt;
+    }
+    return Index3{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
+                  static_cast<std::int32_t>(z)};
+  }
+
+  /// Number of voxels; 0 if the box is empty.
+  [[nodiscard]] std::uint64_t volume() const {
+    const auto side = [](std::int32_t from, std::int32_t to) {
+      return to > from ? static_cast<std::uint64_t>(std::int64_t{to} - from) : 0U;
+    };
+    return side(min.x, max.x) * side(min.y, max.y) * side(min.z, max.z);
+  }
+  /// What both boxes hold.
+  [[nodiscard]] VoxelBox intersection(const VoxelBox& other) const {
+    return {
+        {std::max(min.x, other.min.x), std::max(min.y, other.min.y), std::max(min.z, other.min.z)},
+        {std::min(max.x, other.max.x), std::min(max.y, other.max.y), std::min(max.z, other.max.z)}};
+  }
+  bool operator==(const VoxelBox&) const = default;
+};
+
+/// Centre of a voxel in the grid's frame [m].
+[[nodiscard]] inline Eigen::Vector3d voxel_center(Index3 voxel, double voxel_size) {
+  return (Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5) * voxel_size;
+}
+
+}  // namespace viewgain
