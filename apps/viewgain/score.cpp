@@ -34,7 +34,7 @@ struct Options {
   std::vector<std::string> weights;
   std::optional<double> prior_sigma, min_range, max_range;
   std::size_t top = 10;
-  bool prune = false, race = false;
+  bool race = false;
   std::optional<double> approximate;  // share of the tiles
   std::optional<std::size_t> set;     // how many
   std::uint64_t seed = 1;
@@ -225,7 +225,9 @@ void print_table(const Report& report) {
   print_speed(report);
 }
 
-Scores scores_of(BestViews views) {
+Scores raced_scores(const Options& options, const GainEvaluator& evaluator,
+                    const std::vector<Pose>& poses, const BatchControl& control) {
+  RacedViews views = evaluator.race(poses, options.top, {.seed = options.seed}, control);
   Scores scores;
   scores.indices = std::move(views.scored_indices);
   scores.results = std::move(views.scored_gains);
@@ -277,10 +279,7 @@ Scores approximate_scores(const Options& options, const GainEvaluator& evaluator
 
 Scores make_scores(const Options& options, const GainEvaluator& evaluator,
                    const std::vector<Pose>& poses, const BatchControl& control) {
-  if (options.prune) return scores_of(evaluator.best(poses, options.top, control));
-  if (options.race) {
-    return scores_of(evaluator.race(poses, options.top, {.seed = options.seed}, control));
-  }
+  if (options.race) return raced_scores(options, evaluator, poses, control);
   if (options.set) return set_scores(options, evaluator, poses, control);
   if (options.approximate) return approximate_scores(options, evaluator, poses, control);
   return exhaustive_scores(options, evaluator, poses, control);
@@ -374,8 +373,6 @@ Command add_score(CLI::App& program) {
       ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000'000}, "count"))
       ->capture_default_str();
   auto* selection = app->add_option_group("selection", "at most one of; default: score all poses");
-  selection->add_flag("--prune", options->prune,
-                      "the same best poses, exactly, by upper bounds and with fewer rays");
   selection->add_flag("--race", options->race,
                       "the best poses, very probably, by successive halving on parts of the views");
   selection

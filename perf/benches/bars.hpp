@@ -49,7 +49,7 @@ using BarGroup = std::vector<Figure> (*)(const BarsOptions& options);
 [[nodiscard]] std::vector<Figure> integrate_figures(const BarsOptions& options);
 /// update_over_build.
 [[nodiscard]] std::vector<Figure> update_figures(const BarsOptions& options);
-/// prune_over_exhaustive, race_over_exhaustive.
+/// race_over_exhaustive.
 [[nodiscard]] std::vector<Figure> search_figures(const BarsOptions& options);
 /// memory_mb.
 [[nodiscard]] std::vector<Figure> memory_figures(const BarsOptions& options);

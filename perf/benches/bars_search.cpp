@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The best of many poses: with pruning and by racing against scoring them all.
+// The best of many poses: by racing against scoring them all.
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
@@ -18,7 +18,7 @@ namespace {
 constexpr double kRightShare = 0.95;
 constexpr double kMostRegret = 0.01;
 
-/// One way to find the best pose, over all maps.
+/// Racing for the best pose, over all maps.
 struct Searches {
   std::vector<double> time_ratios;  ///< to scoring all, one a map
   std::vector<double> regrets;      ///< share of the best gain that the choice gives away
@@ -50,35 +50,30 @@ struct Searches {
 };
 
 struct Search {
-  std::optional<std::size_t> chosen;
+  std::size_t chosen = 0;
   double seconds = 0;
 };
 
-/// Scores, prunes and races on one map, each once; odd maps in the other order.
+/// Scores and races on one map, each once; odd maps in the other order.
 void search(const GainEvaluator& evaluator, std::span<const Pose> poses, bool is_odd,
-            Searches& pruned, Searches& raced) {
+            Searches& raced) {
   std::vector<ViewGain> gains;
   // What each thread keeps from pose to pose is made before anything is timed.
   (void)evaluator.evaluate(poses.first(std::min<std::size_t>(poses.size(), 16)));
   const auto score_all = [&] {
     gains = evaluator.evaluate(poses);
-    return std::optional(best_indices(gains, 1).front());
+    return best_indices(gains, 1).front();
   };
-  const auto prune = [&] { return std::optional(evaluator.best(poses, 1).indices.at(0)); };
-  const auto race = [&] { return std::optional(evaluator.race(poses, 1).indices.at(0)); };
+  const auto race = [&] { return evaluator.race(poses, 1).indices.at(0); };
   const auto timed = [](const auto& call) {
     Search result;
     result.seconds = seconds_of([&] { result.chosen = call(); });
     return result;
   };
-  Search all, with_pruning, by_racing;
-  if (is_odd) by_racing = timed(race), with_pruning = timed(prune), all = timed(score_all);
-  if (!is_odd) all = timed(score_all), with_pruning = timed(prune), by_racing = timed(race);
-  const auto add = [&](const Search& s, Searches& to) {
-    if (s.chosen) to.add(s.seconds / all.seconds, *s.chosen, *all.chosen, gains);
-  };
-  add(with_pruning, pruned);
-  add(by_racing, raced);
+  Search all, by_racing;
+  if (is_odd) by_racing = timed(race), all = timed(score_all);
+  if (!is_odd) all = timed(score_all), by_racing = timed(race);
+  raced.add(by_racing.seconds / all.seconds, by_racing.chosen, all.chosen, gains);
 }
 
 }  // namespace
@@ -91,18 +86,14 @@ std::vector<Figure> search_figures(const BarsOptions& options) {
   ModelMapPlan plan;
   plan.voxels = options.voxels;
   plan.most = static_cast<std::size_t>(options.maps);
-  Searches pruned, raced;
+  Searches raced;
   bool is_odd = false;
   for_each_model_map(plan, exec, [&](const ModelMap& map) {
     const GainEvaluator evaluator(map.scene, sensor, {}, exec);
-    search(evaluator, poses, is_odd, pruned, raced);
+    search(evaluator, poses, is_odd, raced);
     is_odd = !is_odd;
   });
   std::vector<Figure> figures;
-  if (!pruned.time_ratios.empty()) {
-    figures.push_back({"prune_over_exhaustive", median(pruned.time_ratios),
-                       pruned.right == pruned.time_ratios.size(), pruned.note()});
-  }
   if (!raced.time_ratios.empty()) {
     const bool is_valid = raced.right_share() >= kRightShare && raced.most_regret() <= kMostRegret;
     figures.push_back({"race_over_exhaustive", median(raced.time_ratios), is_valid, raced.note()});

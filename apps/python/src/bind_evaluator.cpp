@@ -235,7 +235,7 @@ ndarray, (...), structured
     pose gives a scalar.)")
       .def("best", &best, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
            py::arg("return_gains") = false, py::arg("control") = py::none(),
-           R"(The k best poses, exactly, without scoring all where bounds tell.
+           R"(The k best poses, exactly: all are scored.
 
 Parameters
 ----------

@@ -94,7 +94,7 @@ void GainEvaluator::Impl::sample(const Pose& T_world_camera,
   const bool sees = frame && !frame->sees_nothing && !is_in_occupied(*frame);
   std::fill(gains.begin(), gains.end(), frame ? 0.0 : std::numeric_limits<double>::quiet_NaN());
   if (!sees) return;
-  auto& [accumulator, bins, bounding, view_hits] = lease.get();
+  auto& [accumulator, bins, view_hits] = lease.get();
   std::size_t tile_count = 0;
   for (const auto& group : groups) tile_count += group.size();
   if (static_cast<double>(tile_count) >=

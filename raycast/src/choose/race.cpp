@@ -43,12 +43,12 @@ struct Estimate {
 
 }  // namespace
 
-BestViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t k,
-                              const RaceConfig& config, const BatchControl& control) const {
+RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t k,
+                               const RaceConfig& config, const BatchControl& control) const {
   check(config);
   const std::size_t count = T_world_camera.size();
   k = std::min(k, count);
-  BestViews best;
+  RacedViews best;
   if (k == 0) return best;
   // Poses are done when they are out.
   const auto report = [&](std::size_t done) {

@@ -238,15 +238,4 @@ void GainAccumulator::finish(const ClassGain& explored, const ClassGain& refined
   result.occupied_voxels = static_cast<std::uint32_t>(occupied_count_);
 }
 
-double GainAccumulator::upper_bound() {
-  close();
-  const double refinement = refined().gain;
-  if (settings_.criterion != Criterion::log_diagonal) return refinement + explored().gain;
-  LogProduct ratios, posterior;
-  kernels_.finish(Criterion::log_determinant, settings_.prior_information,
-                  {sums_.data(), unknown_.data(), nullptr, nullptr, unknown_count_}, ratios,
-                  posterior, nullptr);
-  return refinement + 0.5 * ratios.log();
-}
-
 }  // namespace viewgain::detail

@@ -61,12 +61,6 @@ class GainAccumulator {
   [[nodiscard]] ClassGain refined();
   void finish(const ClassGain& explored, const ClassGain& refined, ViewGain& result) const;
 
-  /// The most that the hits so far count for in an upper bound of the view's gain, to which what
-  /// the other rays bring at most may be added; for evaluators without task weights. That of
-  /// unknown voxels is subadditive under log_determinant, which log_diagonal does not exceed, and
-  /// under the trace; of occupied ones it is the gain itself. More hits may be added afterwards.
-  [[nodiscard]] double upper_bound();
-
   /// Calls visit(key, known, sum, weight) for every voxel touched so far: its key, Λ_v of an
   /// occupied one (nothing: unknown), ΣΛ_r, w_v. In the same order for the same hits.
   template <typename Visit>

@@ -7,7 +7,6 @@
 #include <bit>
 #include <cmath>
 #include <mutex>
-#include <numeric>
 #include <sstream>
 #include <string>
 
@@ -129,7 +128,7 @@ ViewGain GainEvaluator::Impl::evaluate(const Pose& T_world_camera, Lease& lease)
   ViewGain result;
   const auto frame = open_view(T_world_camera, result);
   if (!frame) return result;
-  auto& [accumulator, bins, bounding, view_hits] = lease.get();
+  auto& [accumulator, bins, view_hits] = lease.get();
   accumulator.begin();
   tracer.trace(*frame, bins,
                [&](std::size_t, const detail::RayTile& tile) { accumulator.add(tile); });
@@ -220,22 +219,5 @@ int GainEvaluator::pixel_stride() const noexcept { return impl_->pixel_stride; }
 int GainEvaluator::num_threads() const noexcept { return impl_->pool.num_threads(); }
 double GainEvaluator::prior_sigma() const noexcept { return impl_->prior_sigma; }
 const VoxelScene& GainEvaluator::scene() const noexcept { return *impl_->scene; }
-
-std::vector<std::size_t> best_indices(std::span<const ViewGain> results, std::size_t k) {
-  std::vector<std::size_t> indices(results.size());
-  std::iota(indices.begin(), indices.end(), std::size_t{0});
-  k = std::min(k, indices.size());
-  const auto better = [&](std::size_t a, std::size_t b) {
-    const double ga = results[a].gain, gb = results[b].gain;
-    if (std::isnan(ga) || std::isnan(gb)) {
-      return std::isnan(ga) == std::isnan(gb) ? a < b : std::isnan(gb);
-    }
-    return ga != gb ? ga > gb : a < b;
-  };
-  std::partial_sort(indices.begin(), indices.begin() + static_cast<std::ptrdiff_t>(k),
-                    indices.end(), better);
-  indices.resize(k);
-  return indices;
-}
 
 }  // namespace viewgain

@@ -12,7 +12,6 @@
 #include <unordered_map>
 #include <vector>
 
-#include "choose/view_bounds.hpp"
 #include "gain_accumulator.hpp"
 #include "scene/scene_data.hpp"
 #include "trace/view_tracer.hpp"
@@ -46,7 +45,6 @@ struct GainEvaluator::Impl {
   struct Workspace {
     detail::GainAccumulator accumulator;
     detail::TileBins bins;
-    detail::ViewBounds::Workspace bounding{};
     std::vector<ViewHit> view_hits{};  // for a gain of the user's own
   };
   // Those that no thread is using, so that a call need not make one.
@@ -81,7 +79,6 @@ struct GainEvaluator::Impl {
       if (!workspace_) {
         workspace_ = std::make_unique<Workspace>(Workspace{
             detail::GainAccumulator(impl_.data, impl_.settings, impl_.tracer.table().ray_count()),
-            {},
             {},
             {}});
       }
@@ -158,20 +155,6 @@ struct GainEvaluator::Impl {
     return done;
   }
 
-  // A pose's score, unless its gain is found not to reach `gain_to_beat` before it is traced whole.
-  struct Attempt {
-    ViewGain result;
-    std::uint64_t rays = 0;
-    bool abandoned = false;
-  };
-  // `from` are the bounds of its rows of tiles, none if it is empty; gain_per_bound, what gains
-  // come to as a share of their bounds, says when to look.
-  [[nodiscard]] Attempt evaluate_above(const Pose& T_world_camera, std::span<const double> from,
-                                       double gain_to_beat, double gain_per_bound,
-                                       Lease& lease) const;
-  // Bounds a pose without tracing; false if it cannot be bounded.
-  bool bound(const Pose& T_world_camera, std::span<double> from, Lease& lease) const;
-
   // Traces groups of a pose's tiles and adds up what each gains by itself, into gains, one a group;
   // NaN for a bad pose.
   void sample(const Pose& T_world_camera, std::span<const std::vector<std::uint32_t>> groups,
@@ -190,11 +173,6 @@ struct GainEvaluator::Impl {
   // The full scores of some of the poses, in their order; entries not reached stay as they are.
   bool evaluate_some(std::span<const Pose> T_world_camera, std::span<const std::size_t> indices,
                      std::span<ViewGain> results, const BatchControl& control) const;
-
-  // Made when first asked for.
-  [[nodiscard]] const detail::ViewBounds& bounds() const;
-  mutable std::once_flag bounds_once;
-  mutable std::optional<detail::ViewBounds> bounds_made;
 };
 
 }  // namespace viewgain

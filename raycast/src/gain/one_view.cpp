@@ -59,7 +59,7 @@ ViewGain GainEvaluator::Impl::evaluate_together(const Pose& T_world_camera) cons
   const auto work = [&](std::size_t number) {
     if (number > 0 && groups->next.load(std::memory_order_relaxed) >= group_count) return;
     Lease lease(*this);
-    auto& [accumulator, bins, bounding, view_hits] = lease.get();
+    auto& [accumulator, bins, view_hits] = lease.get();
     tracer.prepare(*frame, bins);
     std::size_t group;
     if (number > 0) {

@@ -23,7 +23,7 @@ std::vector<VoxelContribution> GainEvaluator::contributions(const Pose& T_world_
   const detail::GainSettings& settings = impl_->settings;
 
   Impl::Lease lease(*impl_);
-  auto& [accumulator, bins, bounding, view_hits] = lease.get();
+  auto& [accumulator, bins, view_hits] = lease.get();
   std::unordered_map<std::uint64_t, std::uint32_t> rays;
   accumulator.begin();
   impl_->tracer.trace(*frame, bins, [&](std::size_t, const detail::RayTile& tile) {

@@ -23,7 +23,7 @@ double GainEvaluator::Impl::measure(const Pose& T_world_camera, const ViewMeasur
   if (!frame) return view.gain;
   const detail::TileTable& table = tracer.table();
   const Eigen::Matrix3d R_world_grid = data.snapshot.T_world_grid.rotation();
-  auto& [accumulator, bins, bounding, hits] = lease.get();
+  auto& [accumulator, bins, hits] = lease.get();
   hits.clear();
   tracer.trace(*frame, bins, [&](std::size_t number, const detail::RayTile& tile) {
     for (std::uint32_t left = tile.hit; left != 0; left &= left - 1) {

@@ -70,30 +70,23 @@ void expect_exact(const GainEvaluator& evaluator, const std::vector<Pose>& poses
   for (std::size_t j = 0; j < expected.size(); ++j) {
     EXPECT_TRUE(test::same_bits(best.gains[j], all[expected[j]]));
   }
-  ASSERT_EQ(best.scored_indices.size(), best.scored_gains.size());
-  for (std::size_t j = 0; j < best.scored_indices.size(); ++j) {
-    EXPECT_TRUE(test::same_bits(best.scored_gains[j], all[best.scored_indices[j]]));
-  }
   EXPECT_TRUE(best.complete);
 }
 
-TEST(BestViews, AreThoseOfExhaustiveScoringAndCostFewerRays) {
+TEST(BestViews, AreThoseOfTheLargestGains) {
   int cases = 0;
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     const auto scene = VoxelScene::build(lump(seed));
     for (const Criterion criterion : kCriteria) {
       const GainEvaluator evaluator(scene, small_sensor(), {.criterion = criterion});
       std::vector<Pose> poses = sphere_poses(150, 0.6);
-      // Far ones gain little and must not cost much; duplicates tie.
+      // Duplicates tie.
       for (const Pose& pose : sphere_poses(150, 1.5)) poses.push_back(pose);
       poses.insert(poses.end(), poses.begin() + 20, poses.begin() + 60);
       for (const std::size_t k : {std::size_t{1}, std::size_t{5}, poses.size(), poses.size() + 3}) {
         expect_exact(evaluator, poses, k);
         ++cases;
       }
-      const BestViews best = evaluator.best(poses, 1);
-      EXPECT_LT(best.scored_indices.size(), poses.size() / 2);
-      EXPECT_LT(best.rays_traced, evaluator.rays_per_pose() * poses.size() / 2);
     }
   }
   EXPECT_EQ(cases, 4 * 3 * 4);
@@ -150,8 +143,6 @@ TEST(BestViews, DoNotDependOnThreadsAndTakeOddRequests) {
     const GainEvaluator many(scene, small_sensor(), {}, {.num_threads = threads});
     const BestViews best = many.best(poses, 4);
     EXPECT_EQ(best.indices, expected.indices);
-    EXPECT_EQ(best.scored_indices, expected.scored_indices);
-    EXPECT_EQ(best.rays_traced, expected.rays_traced);
   }
   EXPECT_TRUE(one.best(poses, 0).indices.empty());
   EXPECT_TRUE(one.best({}, 3).indices.empty());
@@ -160,6 +151,17 @@ TEST(BestViews, DoNotDependOnThreadsAndTakeOddRequests) {
   const BestViews stopped = one.best(poses, 1, {.stop = source.get_token()});
   EXPECT_FALSE(stopped.complete);
   EXPECT_TRUE(stopped.indices.empty());
+  // After seven poses, the first of them bad.
+  std::vector<Pose> some = poses;
+  some[0].m[0] = std::nan("");
+  int asked = 0;
+  const BestViews partly = one.best(some, 9, {.is_cancelled = [&] { return ++asked > 7; }});
+  EXPECT_FALSE(partly.complete);
+  std::vector<ViewGain> reached = one.evaluate(std::span(some).first(7));
+  std::vector<std::size_t> order = best_indices(reached, 7);
+  ASSERT_EQ(order.back(), 0U);
+  order.pop_back();
+  EXPECT_EQ(partly.indices, order);
 }
 
 TEST(Race, FindsTheBestOnNearlyAllMapsAndIsDeterministic) {
@@ -173,7 +175,7 @@ TEST(Race, FindsTheBestOnNearlyAllMapsAndIsDeterministic) {
                                   {.criterion = kCriteria[static_cast<std::size_t>(map) % 3]});
     const std::vector<Pose> poses = sphere_poses(300, 0.6);
     const std::vector<ViewGain> all = evaluator.evaluate(poses);
-    const BestViews race = evaluator.race(poses, 1, config);
+    const RacedViews race = evaluator.race(poses, 1, config);
     ASSERT_EQ(race.indices.size(), 1U);
     EXPECT_TRUE(test::same_bits(race.gains[0], all[race.indices[0]]));
     EXPECT_LT(race.scored_indices.size(), poses.size() / 2);
@@ -183,7 +185,7 @@ TEST(Race, FindsTheBestOnNearlyAllMapsAndIsDeterministic) {
     const GainEvaluator other(scene, larger_sensor(),
                               {.criterion = kCriteria[static_cast<std::size_t>(map) % 3]},
                               {.num_threads = 3});
-    const BestViews again = other.race(poses, 1, config);
+    const RacedViews again = other.race(poses, 1, config);
     EXPECT_EQ(again.scored_indices, race.scored_indices);
     EXPECT_EQ(again.rays_traced, race.rays_traced);
   }
@@ -195,7 +197,7 @@ TEST(Race, TakesOddRequestsAndRefusesBadOnes) {
   const GainEvaluator evaluator(scene, small_sensor());
   std::vector<Pose> poses = sphere_poses(100, 0.6);
   for (std::size_t i = 0; i < 95; ++i) poses[i].m[0] = std::nan("");
-  const BestViews race = evaluator.race(poses, 8);
+  const RacedViews race = evaluator.race(poses, 8);
   EXPECT_EQ(race.indices, evaluator.best(poses, 8).indices);
   EXPECT_TRUE(evaluator.race(poses, 0).indices.empty());
   EXPECT_TRUE(evaluator.race({}, 2).indices.empty());

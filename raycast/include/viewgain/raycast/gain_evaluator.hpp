@@ -121,17 +121,10 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// uses. Empty for a bad pose.
   [[nodiscard]] std::vector<RayHit> trace(const Pose& T_world_camera) const;
 
-  /// The k best poses, exactly as best_indices() of evaluate()'s results: the same indices and
-  /// bits, ties to the lower index, NaN last, k clamped; nothing for k = 0 or no poses. Traces
-  /// fewer rays: poses are bounded from above first, without tracing, and taken from the highest
-  /// bound on; one is given up as soon as what it has gained and a bound of what is left fall below
-  /// the k-th best so far. With obstacles, task weights, a distorted camera or more than 4,096
-  /// primitives there is no bound and all poses are scored. What was traced and scored is also the
-  /// same for any number of threads. The bound grants 1/512 of the rays the most that a ray can
-  /// gain, for those that slip over an edge between two voxels; a camera placed so that more of
-  /// them do is outside of what is promised. control.progress counts poses that need no more work.
-  /// If control.stop is requested the result is what is best of those scored so far, and not
-  /// `complete`.
+  /// The k best poses: best_indices() of evaluate()'s results and those results, ties to the lower
+  /// index, NaN last, k clamped; nothing for k = 0 or no poses. All poses are scored, so it costs
+  /// what evaluate() does. If a stop is requested the result is the best of those scored so far
+  /// that are not NaN, and not `complete`.
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BatchControl& control = {}) const;
 
@@ -144,9 +137,9 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// seed and any number of threads. Throws Error(invalid_argument), naming the value, for a config
   /// out of range. control.progress counts poses that are out, after each round. Stopped in a
   /// round, it returns nothing and is not `complete`.
-  [[nodiscard]] BestViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
-                               const RaceConfig& config = {},
-                               const BatchControl& control = {}) const;
+  [[nodiscard]] RacedViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
+                                const RaceConfig& config = {},
+                                const BatchControl& control = {}) const;
 
   /// Up to k different poses that are good together on the map as it stands, greedily: each is the
   /// one that adds most once the expected information ΣΛ_r of those before it is part of the

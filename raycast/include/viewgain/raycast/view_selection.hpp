@@ -13,14 +13,18 @@ namespace viewgain {
 
 struct ViewGain;
 
-/// Views chosen from a batch of poses; see GainEvaluator::best() and race().
+/// Views chosen from a batch of poses; see GainEvaluator::best().
 struct VIEWGAIN_EXPORT BestViews {
-  std::vector<std::size_t> indices;         ///< into the poses, best first
-  std::vector<ViewGain> gains;              ///< of those, as evaluate() has them
+  std::vector<std::size_t> indices;  ///< into the poses, best first
+  std::vector<ViewGain> gains;       ///< of those, as evaluate() has them
+  bool complete = true;  ///< false: a stop was requested, and this is the best of those scored
+};
+
+/// Views chosen by GainEvaluator::race(), and what that took.
+struct VIEWGAIN_EXPORT RacedViews : BestViews {
   std::vector<std::size_t> scored_indices;  ///< poses that were scored in full, ascending
   std::vector<ViewGain> scored_gains;       ///< of those
-  std::uint64_t rays_traced = 0;  ///< in tiles that can meet anything; evaluate() counts likewise
-  bool complete = true;           ///< false: a stop was requested, and this is the best so far
+  std::uint64_t rays_traced = 0;            ///< of the bundles and of the poses scored in full
 };
 
 /// How GainEvaluator::race() parts the wheat from the chaff.
