@@ -36,6 +36,7 @@ viewgain::BeliefGrid make_map() {
   viewgain::BeliefGrid map(
       {.voxel_size = 0.02, .workspace = {{-0.8, -0.8, 0}, {0.8, 0.8, 0.9}}, .prior_sigma = 0.01});
   const viewgain::Belief well_known{.information = {1e8F, 1e8F, 1e8F}, .hits = 500};
+  std::vector<viewgain::VoxelValue> voxels;
   for (int x = -40; x < 40; ++x) {
     for (int y = -40; y < 40; ++y) {
       for (int z = 0; z < 45; ++z) {
@@ -43,13 +44,14 @@ viewgain::BeliefGrid make_map() {
             std::max(std::abs(2 * x + 1), std::abs(2 * y + 1)) < 14 && z > 14 && z < 31;
         const bool in_screen = x == -16 && y < 18;
         if ((in_object && x == -7) || in_screen) {
-          map.set({x, y, z}, 2.0F, well_known);
+          voxels.push_back({{x, y, z}, 2.0F, well_known});
         } else if (!in_object) {
-          map.set({x, y, z}, -1.0F);
+          voxels.push_back({{x, y, z}, -1.0F});
         }
       }
     }
   }
+  map.set(voxels);
   return map;
 }
 

@@ -79,17 +79,12 @@ py::array_t<std::uint8_t> states_of(const SharedGrid& grid) {
 std::vector<BeliefRow> belief_rows(const BeliefGrid& grid) {
   std::vector<BeliefRow> rows;
   for (const BeliefBlockAt& block : grid.belief_blocks()) {
-    std::size_t rank = 0;
-    for (unsigned offset = 0; offset < 512; ++offset) {
-      if (!test_bit(block.beliefs->mask, offset)) continue;
-      const Belief& belief = block.beliefs->beliefs[rank++];
-      rows.push_back({{block.origin.x + static_cast<std::int32_t>(offset >> 6U),
-                       block.origin.y + static_cast<std::int32_t>(offset >> 3U & 7U),
-                       block.origin.z + static_cast<std::int32_t>(offset & 7U)},
+    block.for_each([&](Index3 voxel, const Belief& belief) {
+      rows.push_back({{voxel.x, voxel.y, voxel.z},
                       belief.hits,
                       belief.information,
                       belief.information_vector});
-    }
+    });
   }
   return rows;
 }

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "file_seal.hpp"
+#include "map/belief_check.hpp"
 #include "solid_voxels.hpp"
 #include "vdb_layout.hpp"
 #include "vdb_outline.hpp"
@@ -268,7 +269,7 @@ class Loader {
       }
       block->beliefs.reserve(leaf->onVoxelCount());
       for (auto it = leaf->cbeginValueOn(); it; ++it) {
-        block->beliefs.push_back(checked_belief(it.getCoord(), *it, parts));
+        block->beliefs.push_back(checked_belief(it.getCoord(), *it, parts, s.voxel_size));
         if (s.tree.getValue(it.getCoord()) == kUnknownCode) {
           fail("grid 'hits' has a voxel that is unknown in 'state'");
         }
@@ -278,18 +279,14 @@ class Loader {
   }
 
   [[nodiscard]] Belief checked_belief(const Coord& at, std::int32_t hits,
-                                      const std::array<const openvdb::Vec3STree*, 3>& parts) const {
+                                      const std::array<const openvdb::Vec3STree*, 3>& parts,
+                                      double voxel_size) const {
     Belief belief;
     for (std::size_t part = 0; part < 3; ++part) {
       Vec3f value;
       if (!parts[part]->probeValue(at, value))
         fail("the grids of beliefs do not hold the same voxels");
       for (int i = 0; i < 3; ++i) {
-        if (!std::isfinite(value[i]) || (part == 0 && value[i] < 0)) {
-          std::ostringstream text;
-          text << "belief at voxel " << at << " has the value " << value[i];
-          fail(text.str());
-        }
         const auto position = static_cast<std::size_t>(i);
         if (part < 2) belief.information[3 * part + position] = value[i];
         if (part == 2) belief.information_vector[position] = value[i];
@@ -297,6 +294,12 @@ class Loader {
     }
     if (hits < 0) fail("grid 'hits' has a negative count");
     belief.hits = static_cast<std::uint32_t>(hits);
+    const std::string fault = fault_of_belief(belief, voxel_size);
+    if (!fault.empty()) {
+      std::ostringstream text;
+      text << "belief at voxel " << at << ' ' << fault;
+      fail(text.str());
+    }
     return belief;
   }
 

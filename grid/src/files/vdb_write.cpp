@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "file_seal.hpp"
+#include "map/code_mask.hpp"
 #include "vdb_layout.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
@@ -84,15 +85,13 @@ void put_states(const GridStorage& s, GridSet& set) {
   auto& state = set.add<Int32Grid>("state");
   auto& log_odds = set.add<FloatGrid>("log_odds");
   const auto state_of = [](std::uint8_t code) {
-    return static_cast<std::int32_t>(is_occupied(code) ? VoxelState::occupied : VoxelState::free);
+    return static_cast<std::int32_t>(code_state(code));
   };
   visit_blocks(
       s,
       [&](const CodeLeaf& leaf, Index3 origin) {
         const std::uint8_t* codes = leaf.buffer().data();
-        LeafMask known = code_mask(codes, [](std::uint8_t code) { return code != kUnknownCode; });
-        const LeafMask inside = s.lattice.clip(origin);
-        for (std::size_t i = 0; i < 8; ++i) known[i] &= inside[i];
+        const LeafMask known = intersection(known_mask(codes), s.lattice.clip(origin));
         if (known == LeafMask{}) return;
         put_leaf(state, origin, known, [&](unsigned at) { return state_of(codes[at]); });
         put_leaf(log_odds, origin, known, [&](unsigned at) { return code_log_odds(codes[at]); });

@@ -6,13 +6,17 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
-#include <sstream>
+#include <cstring>
+#include <string>
 #include <utility>
 
+#include "belief_blocks.hpp"
+#include "belief_check.hpp"
+#include "code_mask.hpp"
 #include "grid_blocks.hpp"
+#include "grid_layout.hpp"
 #include "grid_storage.hpp"
-#include "update/belief_merge.hpp"
+#include "rigid_view.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain {
@@ -20,85 +24,38 @@ namespace {
 
 using namespace detail;
 
-constexpr double kLatticeTolerance = 1e-6;  // [voxel]
-constexpr double kRigidTolerance = 1e-9;
-constexpr std::int32_t kMaxDim = 65536;
-constexpr double kMaxVoxels = 1099511627776.0;  // 2^40
-constexpr double kMaxIndex = 1073741824.0;      // 2^30
-
-template <typename... Parts>
-[[noreturn]] void fail(ErrorCode code, const Parts&... parts) {
-  std::ostringstream text;
-  (text << ... << parts);
-  throw Error(code, text.str());
-}
-
-void check_positive(const char* name, double value) {
-  if (!(std::isfinite(value) && value > 0)) {
-    fail(ErrorCode::invalid_argument, name, " must be positive and finite, not ", value);
-  }
-}
-
-/// The box of whole voxels around the workspace.
-void index_box(const GridConfig& config, Index3& min_index, Index3& dims) {
-  check_positive("voxel size", config.voxel_size);
-  std::int32_t low[3], count[3];
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double from = config.workspace.min[a], to = config.workspace.max[a];
-    if (!std::isfinite(from) || !std::isfinite(to)) {
-      fail(ErrorCode::invalid_argument, "workspace must be finite, axis ", "xyz"[a], " is ", from,
-           " .. ", to);
-    }
-    if (!(from < to)) {
-      fail(ErrorCode::invalid_argument, "workspace is inside out or empty, axis ", "xyz"[a], " is ",
-           from, " .. ", to);
-    }
-    const auto snap = [&](double value, double outward) {
-      const double nearest = std::round(value);
-      return std::abs(value - nearest) <= kLatticeTolerance ? nearest : outward;
-    };
-    const double a0 = from / config.voxel_size, a1 = to / config.voxel_size;
-    const double first = snap(a0, std::floor(a0));
-    const double last = std::max(snap(a1, std::ceil(a1)), first + 1.0);
-    if (!(last - first <= kMaxDim)) {
-      fail(ErrorCode::capacity, "workspace has ", last - first, " voxels along ", "xyz"[a],
-           ", the most is ", kMaxDim);
-    }
-    if (!(std::abs(first) <= kMaxIndex && std::abs(last) <= kMaxIndex)) {
-      fail(ErrorCode::capacity, "workspace is ", std::max(std::abs(first), std::abs(last)),
-           " voxels off the origin along ", "xyz"[a], ", the most is ", kMaxIndex);
-    }
-    low[a] = static_cast<std::int32_t>(first);
-    count[a] = static_cast<std::int32_t>(last - first);
-  }
-  min_index = {low[0], low[1], low[2]};
-  dims = {count[0], count[1], count[2]};
-}
-
 std::unique_ptr<GridStorage> make_storage(const GridConfig& config) {
-  Index3 min_index, dims;
-  index_box(config, min_index, dims);
+  const auto [min_index, dims] = layout_of(config);
   return std::make_unique<GridStorage>(config.voxel_size, config.T_world_grid, config.prior_sigma,
                                        min_index, dims);
 }
 
-void check_belief(const Belief& belief) {
-  for (const float value : belief.information) {
-    if (!std::isfinite(value))
-      fail(ErrorCode::invalid_argument, "belief has an information of ", value);
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (belief.information[i] < 0) {
-      fail(ErrorCode::invalid_argument, "belief has an information of ", belief.information[i]);
-    }
-    if (!std::isfinite(belief.information_vector[i])) {
-      fail(ErrorCode::invalid_argument, "belief has an information vector of ",
-           belief.information_vector[i]);
+std::uint64_t tree_bytes(const CodeTree& tree) {
+  std::uint64_t bytes = sizeof(CodeTree);
+  const auto& root = tree.root();
+  // A node of the root's map: key, entry and the red-black tree's own links and colour.
+  bytes += root.getTableSize() * (sizeof(openvdb::Coord) + 2 * sizeof(void*) + 4 * sizeof(void*));
+  for (auto upper = root.cbeginChildOn(); upper; ++upper) {
+    bytes += sizeof(CodeUpper);
+    for (auto node = upper->cbeginChildOn(); node; ++node) {
+      bytes += sizeof(CodeNode) +
+               std::uint64_t{node->getChildMask().countOn()} * (sizeof(CodeLeaf) + kBlockVoxels);
     }
   }
-  if (belief.hits > static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max())) {
-    fail(ErrorCode::invalid_argument, "belief has ", belief.hits, " hits, the most is 2147483647");
+  return bytes;
+}
+
+void check_value(const GridStorage& s, const VoxelValue& value) {
+  const auto fail = [](const std::string& what) { throw Error(ErrorCode::invalid_argument, what); };
+  const Index3& v = value.voxel;
+  if (!s.lattice.contains(v)) {
+    fail("voxel (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) +
+         ") lies outside the workspace");
   }
+  if (std::isnan(value.log_odds)) fail("log-odds is NaN");
+  if (!value.belief) return;
+  const std::string fault = fault_of_belief(*value.belief, s.voxel_size);
+  if (!fault.empty()) fail("belief " + fault);
 }
 
 }  // namespace
@@ -124,26 +81,7 @@ detail::GridStorage::GridStorage(double voxel_size_in, const Pose& T_world_grid_
       min_index(min_index_in),
       dims(dims_in),
       lattice(BlockLattice({0, 0, 0}, {1, 1, 1})) {
-  check_positive("voxel size", voxel_size);
-  check_positive("prior sigma", prior_sigma);
-  const double error = orthonormality_error(T_world_grid);
-  if (!(error <= kRigidTolerance)) {
-    fail(ErrorCode::invalid_argument, "T_world_grid is no rigid transform: its rotation is off by ",
-         error);
-  }
-  double voxels = 1;
-  for (const auto& [low, count] : {std::pair{min_index.x, dims.x}, std::pair{min_index.y, dims.y},
-                                   std::pair{min_index.z, dims.z}}) {
-    if (count < 1 || count > kMaxDim || std::abs(static_cast<double>(low)) > kMaxIndex ||
-        std::abs(static_cast<double>(low) + count) > kMaxIndex) {
-      fail(ErrorCode::capacity, "workspace of ", count, " voxels from voxel ", low,
-           "; there may be ", kMaxDim, " along an axis, at most ", kMaxIndex, " off the origin");
-    }
-    voxels *= count;
-  }
-  if (voxels > kMaxVoxels) {
-    fail(ErrorCode::capacity, "workspace has ", voxels, " voxels, the most is ", kMaxVoxels);
-  }
+  check_layout(voxel_size, T_world_grid, prior_sigma, {min_index, dims});
   lattice = BlockLattice(min_index, dims);
 
   constexpr std::int32_t kSpan = CodeUpper::DIM;
@@ -164,9 +102,22 @@ void detail::GridStorage::put_block(Index3 origin, const std::uint8_t* codes) {
   }
   auto leaf = std::make_unique<CodeLeaf>(to_coord(origin), kUnknownCode, true);
   std::memcpy(leaf->buffer().data(), codes, kBlockVoxels);
-  const LeafMask mask = code_mask(codes, is_non_free);
-  for (openvdb::Index i = 0; i < 8; ++i) leaf->getValueMask().getWord<std::uint64_t>(i) = mask[i];
+  const LeafMask known = known_mask(codes), occupied = occupied_mask(codes);
+  for (openvdb::Index i = 0; i < 8; ++i) {
+    leaf->getValueMask().getWord<std::uint64_t>(i) = ~known[i] | occupied[i];
+  }
   tree.addLeaf(leaf.release());
+}
+
+std::uint64_t detail::GridStorage::bytes() const {
+  std::uint64_t bytes = sizeof(GridStorage) + tree_bytes(tree) + views.capacity() * sizeof(Pose);
+  // Each entry of the map: its node (link, key, pointer), its bucket and the shared block.
+  constexpr std::size_t kSharedCounts = 2 * sizeof(void*);
+  for (const auto& [key, block] : beliefs) {
+    bytes += sizeof(void*) + sizeof(std::pair<std::uint64_t, std::shared_ptr<BeliefBlock>>) +
+             kSharedCounts + sizeof(BeliefBlock) + block->beliefs.capacity() * sizeof(Belief);
+  }
+  return bytes + beliefs.bucket_count() * sizeof(void*);
 }
 
 BeliefGrid::BeliefGrid(std::unique_ptr<GridStorage> storage) : storage_(std::move(storage)) {}
@@ -187,7 +138,7 @@ Index3 BeliefGrid::min_index() const noexcept { return storage_->min_index; }
 Index3 BeliefGrid::dims() const noexcept { return storage_->dims; }
 const std::vector<Pose>& BeliefGrid::views() const noexcept { return storage_->views; }
 void BeliefGrid::append_view(const Pose& T_world_camera) {
-  storage_->views.push_back(T_world_camera);
+  storage_->views.push_back(rigid_view(T_world_camera));
 }
 
 Box BeliefGrid::workspace() const noexcept {
@@ -212,9 +163,7 @@ Eigen::Vector3d BeliefGrid::center(Index3 voxel) const {
 
 VoxelState BeliefGrid::state(Index3 voxel) const {
   if (!storage_->lattice.contains(voxel)) return VoxelState::unknown;
-  const std::uint8_t code = storage_->tree.getValue(to_coord(voxel));
-  if (code == kUnknownCode) return VoxelState::unknown;
-  return is_occupied(code) ? VoxelState::occupied : VoxelState::free;
+  return code_state(storage_->tree.getValue(to_coord(voxel)));
 }
 
 std::optional<float> BeliefGrid::log_odds(Index3 voxel) const {
@@ -232,116 +181,80 @@ std::optional<Belief> BeliefGrid::belief(Index3 voxel) const {
 }
 
 void BeliefGrid::set(Index3 voxel, float log_odds, const std::optional<Belief>& belief) {
-  GridStorage& s = *storage_;
-  if (!s.lattice.contains(voxel)) {
-    fail(ErrorCode::invalid_argument, "voxel (", voxel.x, ", ", voxel.y, ", ", voxel.z,
-         ") lies outside the workspace");
-  }
-  if (std::isnan(log_odds)) fail(ErrorCode::invalid_argument, "log-odds is NaN");
-  if (belief) check_belief(*belief);
+  const VoxelValue value{voxel, log_odds, belief};
+  set(std::span(&value, 1));
+}
 
-  const std::uint8_t code = log_odds_code(log_odds);
-  if (is_non_free(code)) {
-    s.tree.setValueOn(to_coord(voxel), code);
-  } else {
-    s.tree.setValueOff(to_coord(voxel), code);
-  }
-  const std::uint64_t key = s.lattice.key(voxel);
-  s.mark_changed(key);
-  ++s.time;
-  const BeliefBlock* block = s.find_beliefs(key);
-  if (!belief && block == nullptr) return;
-  auto changed = with_belief(block, block_offset(voxel), belief ? &*belief : nullptr);
-  if (changed == nullptr) {
-    s.beliefs.erase(key);
-  } else {
+void BeliefGrid::set(std::span<const VoxelValue> voxels) {
+  GridStorage& s = *storage_;
+  for (const VoxelValue& value : voxels) check_value(s, value);
+
+  // Block by block, so that its beliefs are copied once.
+  std::vector<std::pair<std::uint64_t, const VoxelValue*>> by_block;
+  by_block.reserve(voxels.size());
+  for (const VoxelValue& value : voxels) by_block.emplace_back(s.lattice.key(value.voxel), &value);
+  std::stable_sort(by_block.begin(), by_block.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto first = by_block.begin(), last = first; first != by_block.end(); first = last) {
+    const std::uint64_t key = first->first;
+    last = std::find_if(first, by_block.end(), [&](const auto& v) { return v.first != key; });
+    s.mark_changed(key);
+    const BeliefBlock* block = s.find_beliefs(key);
+    LeafMask mask = block != nullptr ? block->mask : LeafMask{};
+    for (auto it = first; it != last; ++it) {
+      const VoxelValue& value = *it->second;
+      const std::uint8_t code = log_odds_code(value.log_odds);
+      if (is_non_free(code)) {
+        s.tree.setValueOn(to_coord(value.voxel), code);
+      } else {
+        s.tree.setValueOff(to_coord(value.voxel), code);
+      }
+      const unsigned offset = block_offset(value.voxel);
+      const std::uint64_t bit = std::uint64_t{1} << (offset & 63U);
+      std::uint64_t& word = mask[offset >> 6U];
+      word = value.belief ? word | bit : word & ~bit;
+    }
+    if (mask == LeafMask{}) {
+      s.beliefs.erase(key);
+      continue;
+    }
+    auto changed = reshaped(block, mask);
+    for (auto it = first; it != last; ++it) {
+      const unsigned offset = block_offset(it->second->voxel);
+      // A later value of the same voxel may have none.
+      if (it->second->belief && test_bit(mask, offset)) {
+        changed->beliefs[changed->rank(offset)] = *it->second->belief;
+      }
+    }
     s.beliefs[key] = std::move(changed);
   }
+  ++s.time;
 }
 
-BeliefGrid BeliefGrid::from_states(const GridConfig& config, std::span<const std::uint8_t> states) {
-  BeliefGrid grid(config);
-  if (states.size() != grid.voxel_count()) {
-    fail(ErrorCode::invalid_argument, "array of ", states.size(), " states for a workspace of ",
-         grid.voxel_count(), " voxels");
+void BeliefGrid::for_each_occupied(const std::function<void(const OccupiedVoxel&)>& visit) const {
+  const GridSnapshot now = snapshot();
+  for (const SnapshotLeaf& leaf : now.leaves) {
+    if (leaf.occupied == LeafMask{}) continue;
+    const std::uint8_t* codes =
+        storage_->tree.probeConstLeaf(to_coord(leaf.origin))->buffer().data();
+    for_each_bit(leaf.occupied, [&](unsigned offset) {
+      visit({offset_voxel(leaf.origin, offset), code_log_odds(codes[offset]),
+             leaf.beliefs != nullptr ? leaf.beliefs->find(offset) : nullptr});
+    });
   }
-  const auto wrong =
-      std::find_if(states.begin(), states.end(), [](std::uint8_t s) { return s > 2; });
-  if (wrong != states.end()) {
-    fail(ErrorCode::invalid_argument, "state ", static_cast<int>(*wrong), " at position ",
-         wrong - states.begin(), "; valid are 0, 1, 2");
-  }
-  constexpr std::array<std::uint8_t, 3> kCodes{kUnknownCode, kLiteralFreeCode,
-                                               kLiteralOccupiedCode};
-
-  GridStorage& s = *grid.storage_;
-  const BlockLattice& l = s.lattice;
-  const Index3 first = block_origin(l.min);
-  for (std::int32_t x = first.x; x < l.max.x; x += kBlockSize) {
-    for (std::int32_t y = first.y; y < l.max.y; y += kBlockSize) {
-      for (std::int32_t z = first.z; z < l.max.z; z += kBlockSize) {
-        std::array<std::uint8_t, kBlockVoxels> codes{};
-        const VoxelBox box = clipped(l, {x, y, z}, kBlockSize);
-        bool any = false;
-        for (std::int32_t i = box.min.x; i < box.max.x; ++i) {
-          for (std::int32_t j = box.min.y; j < box.max.y; ++j) {
-            const auto row =
-                (static_cast<std::size_t>(i - l.min.x) * static_cast<std::size_t>(s.dims.y) +
-                 static_cast<std::size_t>(j - l.min.y)) *
-                static_cast<std::size_t>(s.dims.z);
-            for (std::int32_t k = box.min.z; k < box.max.z; ++k) {
-              const std::uint8_t state = states[row + static_cast<std::size_t>(k - l.min.z)];
-              any = any || state != 0;
-              codes[block_offset({i, j, k})] = kCodes[state];
-            }
-          }
-        }
-        if (any) s.put_block({x, y, z}, codes.data());
-      }
-    }
-  }
-  return grid;
 }
 
-void BeliefGrid::copy_states(std::span<std::uint8_t> states) const {
-  if (states.size() != voxel_count()) {
-    fail(ErrorCode::invalid_argument, "array of ", states.size(), " states for a workspace of ",
-         voxel_count(), " voxels");
+std::vector<BeliefBlockAt> BeliefGrid::belief_blocks() const {
+  std::vector<std::uint64_t> keys;
+  keys.reserve(storage_->beliefs.size());
+  for (const auto& [key, block] : storage_->beliefs) keys.push_back(key);
+  std::sort(keys.begin(), keys.end());
+  std::vector<BeliefBlockAt> blocks;
+  blocks.reserve(keys.size());
+  for (const std::uint64_t key : keys) {
+    blocks.push_back({storage_->lattice.origin(key), storage_->beliefs.at(key)});
   }
-  const GridStorage& s = *storage_;
-  const auto state_of = [](std::uint8_t code) {
-    return static_cast<std::uint8_t>(code == kUnknownCode ? VoxelState::unknown
-                                     : is_occupied(code)  ? VoxelState::occupied
-                                                          : VoxelState::free);
-  };
-  const auto each_row = [&](const VoxelBox& box, auto&& row) {
-    for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
-      for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
-        const auto at =
-            (static_cast<std::size_t>(x - s.min_index.x) * static_cast<std::size_t>(s.dims.y) +
-             static_cast<std::size_t>(y - s.min_index.y)) *
-                static_cast<std::size_t>(s.dims.z) +
-            static_cast<std::size_t>(box.min.z - s.min_index.z);
-        row(x, y, states.subspan(at, static_cast<std::size_t>(box.max.z - box.min.z)));
-      }
-    }
-  };
-  visit_blocks(
-      s,
-      [&](const CodeLeaf& leaf, Index3 origin) {
-        const std::uint8_t* codes = leaf.buffer().data();
-        const VoxelBox box = clipped(s.lattice, origin, kBlockSize);
-        each_row(box, [&](std::int32_t x, std::int32_t y, std::span<std::uint8_t> row) {
-          const std::uint8_t* from = codes + block_offset({x, y, box.min.z});
-          for (std::size_t k = 0; k < row.size(); ++k) row[k] = state_of(from[k]);
-        });
-      },
-      [&](Index3 origin, int size, std::uint8_t code) {
-        each_row(clipped(s.lattice, origin, size),
-                 [&](std::int32_t, std::int32_t, std::span<std::uint8_t> row) {
-                   std::fill(row.begin(), row.end(), state_of(code));
-                 });
-      });
+  return blocks;
 }
 
 namespace detail {
@@ -381,6 +294,13 @@ void visit_grid(const BeliefGrid& grid,
       [&](const CodeLeaf& leaf, Index3 origin) { block(origin, leaf.buffer().data()); },
       [&](Index3 origin, int size, std::uint8_t code) { cube(origin, size, code); });
 }
+
+const BeliefBlock* find_beliefs(const BeliefGrid& grid, Index3 voxel) {
+  const GridStorage& s = GridAccess::storage(grid);
+  return s.find_beliefs(s.lattice.key(voxel));
+}
+
+std::uint64_t bytes_of(const BeliefGrid& grid) { return GridAccess::storage(grid).bytes(); }
 
 }  // namespace detail
 

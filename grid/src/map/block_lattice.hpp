@@ -97,14 +97,14 @@ struct BlockLattice : VoxelBox {
   [[nodiscard]] LeafMask clip(Index3 origin) const { return block_mask(*this, origin); }
 };
 
+/// The part of a cube that belongs to the workspace.
+[[nodiscard]] inline VoxelBox clipped(const BlockLattice& lattice, Index3 origin, int size) {
+  return lattice.intersection(VoxelBox::from_dims(origin, {size, size, size}));
+}
+
 /// Offset of a voxel in its 8³ block: x << 6 | y << 3 | z.
 [[nodiscard]] inline unsigned block_offset(Index3 v) {
   return static_cast<unsigned>((v.x & 7) << 6 | (v.y & 7) << 3 | (v.z & 7));
-}
-[[nodiscard]] inline Index3 offset_voxel(Index3 origin, unsigned offset) {
-  return {origin.x + static_cast<std::int32_t>(offset >> 6U),
-          origin.y + static_cast<std::int32_t>(offset >> 3U & 7U),
-          origin.z + static_cast<std::int32_t>(offset & 7U)};
 }
 [[nodiscard]] inline Index3 block_origin(Index3 v) { return {v.x & ~7, v.y & ~7, v.z & ~7}; }
 
@@ -118,16 +118,6 @@ struct BlockLattice : VoxelBox {
   LeafMask result;
   for (std::size_t i = 0; i < 8; ++i) result[i] = a[i] & b[i];
   return result;
-}
-
-/// Calls f(offset) for every set bit, in rising order.
-template <typename F>
-void for_each_bit(const LeafMask& mask, F&& f) {
-  for (unsigned w = 0; w < 8; ++w) {
-    for (std::uint64_t word = mask[w]; word != 0; word &= word - 1) {
-      f(w * 64U + static_cast<unsigned>(std::countr_zero(word)));
-    }
-  }
 }
 
 }  // namespace viewgain::detail

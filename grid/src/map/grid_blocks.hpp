@@ -27,4 +27,10 @@ void visit_grid(const BeliefGrid& grid,
                 const std::function<void(Index3, const std::uint8_t*)>& block,
                 const std::function<void(Index3, std::int32_t, std::uint8_t)>& cube);
 
+/// The beliefs of the block that holds a voxel of the workspace; null if it has none.
+[[nodiscard]] const BeliefBlock* find_beliefs(const BeliefGrid& grid, Index3 voxel);
+
+/// Memory of the grid.
+[[nodiscard]] std::uint64_t bytes_of(const BeliefGrid& grid);
+
 }  // namespace viewgain::detail

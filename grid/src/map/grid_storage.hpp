@@ -11,9 +11,6 @@
 #include <openvdb/tree/Tree.h>
 #pragma GCC visibility pop
 
-#include <algorithm>
-#include <bit>
-#include <cstring>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -95,6 +92,9 @@ struct GridStorage {
     return found == beliefs.end() ? nullptr : found->second.get();
   }
 
+  /// Memory of all of it [bytes].
+  [[nodiscard]] std::uint64_t bytes() const;
+
   /// Writes the 512 codes of a block, as a leaf or, if they are uniform, as a tile.
   void put_block(Index3 origin, const std::uint8_t* codes);
 };
@@ -132,41 +132,6 @@ void visit_blocks(const GridStorage& storage, LeafFn&& leaf, TileFn&& tile) {
       }
     }
   }
-}
-
-/// The part [min, max) of a cube that belongs to the workspace.
-[[nodiscard]] inline VoxelBox clipped(const BlockLattice& lattice, Index3 origin, int size) {
-  return lattice.intersection(VoxelBox::from_dims(origin, {size, size, size}));
-}
-
-/// Bits of the occupied voxels, eight codes at a time.
-[[nodiscard]] inline LeafMask occupied_mask(const std::uint8_t* codes) {
-  static_assert(kMaxCode < 128 && std::endian::native == std::endian::little);
-  constexpr std::uint64_t kOnes = 0x0101010101010101ULL;
-  constexpr std::uint64_t kLift = kOnes * (127U - kZeroCode);  // an occupied code gets its top bit
-  constexpr std::uint64_t kGather = 0x0102040810204080ULL;     // byte i's lowest bit to bit 56 + i
-  LeafMask mask{};
-  for (std::size_t word = 0; word < 8; ++word) {
-    for (std::size_t byte = 0; byte < 8; ++byte) {
-      std::uint64_t eight;
-      std::memcpy(&eight, codes + word * 64 + byte * 8, 8);
-      const std::uint64_t top = ((eight + kLift) >> 7U) & kOnes;
-      mask[word] |= ((top * kGather) >> 56U) << (8 * byte);
-    }
-  }
-  return mask;
-}
-
-/// Bits of the voxels whose code satisfies the predicate.
-template <typename Predicate>
-[[nodiscard]] LeafMask code_mask(const std::uint8_t* codes, Predicate&& holds) {
-  LeafMask mask{};
-  for (std::size_t word = 0; word < 8; ++word) {
-    for (std::size_t bit = 0; bit < 64; ++bit) {
-      mask[word] |= std::uint64_t{holds(codes[word * 64 + bit])} << bit;
-    }
-  }
-  return mask;
 }
 
 }  // namespace viewgain::detail

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "viewgain/grid/voxel.hpp"
+
 namespace viewgain::detail {
 
 // A voxel in one byte: 0 is unknown, else its log-odds in steps of 0.05, plus kZeroCode.
@@ -27,6 +29,11 @@ inline constexpr std::uint8_t kLiteralOccupiedCode = kZeroCode + kHitDelta;
 [[nodiscard]] inline bool is_occupied(std::uint8_t code) { return code > kZeroCode; }
 [[nodiscard]] inline bool is_non_free(std::uint8_t code) {
   return code == kUnknownCode || code > kZeroCode;
+}
+[[nodiscard]] inline VoxelState code_state(std::uint8_t code) {
+  return code == kUnknownCode ? VoxelState::unknown
+         : is_occupied(code)  ? VoxelState::occupied
+                              : VoxelState::free;
 }
 /// Uniform blocks of such a code are kept as tiles; an occupied voxel always lies in a leaf.
 [[nodiscard]] inline bool may_be_tile(std::uint8_t code) { return code <= kZeroCode; }

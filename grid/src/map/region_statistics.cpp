@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "block_lattice.hpp"
+#include "viewgain/core/error.hpp"
 
 namespace viewgain {
 namespace {
@@ -32,6 +34,12 @@ VoxelBox voxels_in(const BeliefGrid& grid, const Box& region) {
 }  // namespace
 
 RegionStatistics region_statistics(const BeliefGrid& grid, const Box& region, Criterion criterion) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (std::isnan(region.min[axis]) || std::isnan(region.max[axis])) {
+      throw Error(ErrorCode::invalid_argument,
+                  std::string("region: a bound along ") + "xyz"[axis] + " is not a number");
+    }
+  }
   const VoxelBox range = voxels_in(grid, region);
   const SymmetricMatrix3 prior =
       SymmetricMatrix3::identity(1.0 / (grid.prior_sigma() * grid.prior_sigma()));

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "input_checks.hpp"
+#include "map/rigid_view.hpp"
 #include "map_update.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/integrate_cloud.hpp"
@@ -74,10 +76,11 @@ IntegrationReport CloudIntegrator::integrate(BeliefGrid& grid,
                                              std::span<const std::array<double, 3>> points,
                                              const Pose& T_world_sensor) {
   Impl& m = *impl_;
-  const Pose view = rigid(T_world_sensor);
+  const Pose view = rigid_view(T_world_sensor);
   m.points.load(points, view.translation(), m.config.occupancy != Occupancy::literal,
                 m.config.support_plane, m.update.pool());
-  return m.update.run(grid, m.points, grid.T_world_grid().inverse(), view, nullptr);
+  const Pose T_grid_world = grid.T_world_grid().inverse();
+  return m.update.run(grid, {m.points, T_grid_world, view}, nullptr);
 }
 
 std::optional<Box> reading_bounds(const Sensor& sensor,
@@ -87,7 +90,7 @@ std::optional<Box> reading_bounds(const Sensor& sensor,
   check_plane(support_plane);
   CloudPoints cloud(sensor);
   ThreadPool caller_alone(1);
-  cloud.load(points, rigid(T_world_sensor).translation(), false, support_plane, caller_alone);
+  cloud.load(points, rigid_view(T_world_sensor).translation(), false, support_plane, caller_alone);
   return bounds_of(cloud, T_world_grid.inverse());
 }
 

@@ -7,15 +7,9 @@
 #include <vector>
 
 #include "block_kernels.hpp"
+#include "evidence.hpp"
 
 namespace viewgain::detail {
-
-/// What a frame can say about the voxel centres of a cube.
-enum class CubeClass : std::uint8_t {
-  untouched,  ///< no centre is crossed
-  crossed,    ///< every centre is crossed at full weight
-  mixed,      ///< each must be looked at
-};
 
 /// Minima and maxima over squares of 2^level pixels.
 class RangePyramid {

@@ -3,7 +3,7 @@
 #include "frame_hits.hpp"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <optional>
 
 namespace viewgain::detail {
@@ -11,17 +11,41 @@ namespace {
 
 constexpr std::size_t kPixelChunk = 1024;
 
+/// Orders the hits by block, keeping their order within each block. `scratch` is working space.
+void sort_by_block(std::vector<Hit>& hits, std::vector<Hit>& scratch) {
+  // Radix sort from the lowest digit: stable, and most keys have few digits that vary.
+  constexpr unsigned kBits = 11;
+  constexpr std::size_t kBuckets = std::size_t{1} << kBits;
+  std::uint64_t varying = 0;
+  for (const Hit& hit : hits) varying |= hit.block ^ hits.front().block;
+  scratch.resize(hits.size());
+  for (unsigned shift = 0; shift < 64 && varying >> shift != 0; shift += kBits) {
+    if ((varying >> shift & (kBuckets - 1)) == 0) continue;
+    std::array<std::uint32_t, kBuckets> position{};
+    for (const Hit& hit : hits) ++position[hit.block >> shift & (kBuckets - 1)];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& p : position) {
+      const std::uint32_t count = p;
+      p = sum;
+      sum += count;
+    }
+    for (const Hit& hit : hits) scratch[position[hit.block >> shift & (kBuckets - 1)]++] = hit;
+    hits.swap(scratch);
+  }
+}
+
 }  // namespace
 
-void FrameHits::find(const Readings& pixels, const BlockLattice& lattice, double voxel_size,
-                     const Pose& T_grid_readings, ThreadPool& pool) {
+void FrameHits::find(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
+                     ThreadPool& pool) {
+  const Readings& pixels = frame.readings;
   by_pixel_.resize(pixels.size());
   pool.for_each_chunk(pixels.size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       by_pixel_[i].offset = kBlockVoxels;
       if (pixels.kind(i) != PixelKind::reading) continue;
       const std::optional<Index3> voxel =
-          lattice.voxel_at(T_grid_readings * pixels.point(i) / voxel_size);
+          lattice.voxel_at(frame.T_grid_readings * pixels.point(i) / voxel_size);
       if (!voxel) continue;
       by_pixel_[i] = {lattice.key(*voxel), static_cast<std::uint32_t>(i), block_offset(*voxel)};
     }
@@ -47,54 +71,6 @@ std::span<const HitBlock> FrameHits::in_region(std::uint64_t region) const {
   const auto first = std::lower_bound(blocks_.begin(), blocks_.end(), region << 6U, below);
   const auto last = std::lower_bound(first, blocks_.end(), (region + 1) << 6U, below);
   return {first, last};
-}
-
-void FrameLines::walk(const Readings& pixels, const BlockLattice& lattice, double voxel_size,
-                      const Pose& T_grid_readings, ThreadPool& pool) {
-  const Eigen::Matrix3d R = T_grid_readings.rotation();
-  const Eigen::Vector3d origin = T_grid_readings * pixels.origin();
-  const std::vector<double>& reach_taper = pixels.reach_taper();
-  marks_.resize(static_cast<std::size_t>(pool.num_threads()));
-  for (LineMarks& marks : marks_) marks.clear();
-  std::atomic<std::size_t> next{0};
-  pool.for_each_chunk(marks_.size(), 1, [&](std::size_t worker, std::size_t) {
-    for (;;) {
-      const std::size_t begin = next.fetch_add(kPixelChunk, std::memory_order_relaxed);
-      if (begin >= pixels.size()) return;
-      for (std::size_t i = begin; i < std::min(begin + kPixelChunk, pixels.size()); ++i) {
-        if (pixels.kind(i) == PixelKind::invalid) continue;
-        walk_line(lattice, voxel_size,
-                  {origin, R * pixels.direction(i), reach_taper[2 * i], reach_taper[2 * i + 1]},
-                  marks_[worker]);
-      }
-    }
-  });
-}
-
-std::vector<std::uint64_t> FrameLines::regions() const {
-  std::vector<std::uint64_t> regions;
-  for (const LineMarks& marks : marks_) {
-    marks.for_each_region([&](std::uint64_t region) { regions.push_back(region); });
-  }
-  std::sort(regions.begin(), regions.end());
-  regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
-  return regions;
-}
-
-bool FrameLines::deltas(std::uint64_t key, std::int8_t* deltas) const {
-  LineMarks::Block strongest{};
-  bool any = false;
-  for (const LineMarks& marks : marks_) {
-    const LineMarks::Block* block = marks.find(key);
-    if (block == nullptr) continue;
-    any = true;
-    for (std::size_t i = 0; i < kBlockVoxels; ++i)
-      strongest[i] = std::max(strongest[i], (*block)[i]);
-  }
-  for (std::size_t i = 0; i < kBlockVoxels; ++i) {
-    deltas[i] = strongest[i] == 0 ? kNoDelta : static_cast<std::int8_t>(1 - strongest[i]);
-  }
-  return any;
 }
 
 }  // namespace viewgain::detail

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "frame_pixels.hpp"
+#include "input_checks.hpp"
+#include "map/rigid_view.hpp"
 #include "map_update.hpp"
 
 namespace viewgain {
@@ -41,13 +43,13 @@ IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame&
                                              const Pose& T_world_camera_in) {
   Impl& m = *impl_;
   m.pixels.check(frame);
-  const Pose T_world_camera = rigid(T_world_camera_in);
+  const Pose T_world_camera = rigid_view(T_world_camera_in);
   const Pose T_camera_grid = T_world_camera.inverse() * grid.T_world_grid();
   const Pose T_grid_camera = grid.T_world_grid().inverse() * T_world_camera;
   const ConeCamera camera(m.pixels.sensor().camera, T_camera_grid);
   m.pixels.load(frame, m.config.occupancy != Occupancy::literal, m.update.pool(),
                 plane_seen_from(T_world_camera, m.config.support_plane));
-  return m.update.run(grid, m.pixels, T_grid_camera, T_world_camera,
+  return m.update.run(grid, {m.pixels, T_grid_camera, T_world_camera},
                       m.config.carve == Carve::cones ? &camera : nullptr);
 }
 
@@ -57,9 +59,10 @@ std::optional<Box> reading_bounds(const Sensor& sensor, const DepthFrame& frame,
   FramePixels pixels(sensor);
   pixels.check(frame);
   check_plane(support_plane);
-  const Pose T_grid_camera = T_world_grid.inverse() * rigid(T_world_camera);
+  const Pose T_grid_camera = T_world_grid.inverse() * rigid_view(T_world_camera);
   ThreadPool caller_alone(1);
-  pixels.load(frame, false, caller_alone, plane_seen_from(rigid(T_world_camera), support_plane));
+  pixels.load(frame, false, caller_alone,
+              plane_seen_from(rigid_view(T_world_camera), support_plane));
   return bounds_of(pixels, T_grid_camera);
 }
 

@@ -13,9 +13,9 @@
 
 namespace viewgain::detail {
 
-/// What the rays of a frame that one thread walked say: one byte a voxel, 0 for nothing, else one
-/// more than the strongest weight; only blocks that a ray entered take memory, which is kept
-/// between frames.
+/// The crossings of those rays of a frame that one thread walked. A voxel's mark is 0 if no ray
+/// crossed it, else 1 + the weight of its strongest crossing. Marks take memory in blocks that a
+/// ray entered; the memory is kept between frames.
 class LineMarks {
  public:
   using Block = std::array<std::uint8_t, kBlockVoxels>;

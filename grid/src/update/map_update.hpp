@@ -11,13 +11,8 @@
 
 namespace viewgain::detail {
 
-/// The pose, orthonormalised if it is off by less than 1e-3. Throws Error(invalid_argument).
-[[nodiscard]] Pose rigid(const Pose& pose);
-
-/// Throws Error(invalid_argument) unless the support plane, if there is one, is finite.
-void check_plane(std::optional<double> height);
-
-/// Puts readings from one origin into a grid, region by region (grid/README.md).
+/// Puts readings from one origin into a grid: readings -> evidence by cones or lines -> hits ->
+/// apply (grid/README.md).
 class MapUpdate {
  public:
   MapUpdate(Occupancy occupancy, const ExecConfig& exec);
@@ -27,10 +22,9 @@ class MapUpdate {
 
   [[nodiscard]] ThreadPool& pool();
 
-  /// Updates states, log-odds and beliefs and appends `view` to the grid's views. With a camera the
+  /// Updates states, log-odds and beliefs and appends the view to the grid's. With a camera the
   /// readings are its pixels and carve cones, else lines.
-  IntegrationReport run(BeliefGrid& grid, const Readings& readings, const Pose& T_grid_readings,
-                        const Pose& view, const ConeCamera* camera);
+  IntegrationReport run(BeliefGrid& grid, const PlacedFrame& frame, const ConeCamera* camera);
 
  private:
   struct Impl;

@@ -19,7 +19,8 @@ enum class PixelKind : std::uint8_t { invalid, reading, out_of_range, on_plane }
 /// Noise spreads readings by this many sigma_ax.
 inline constexpr double kTaperSigmas = 3.0;
 
-/// What the pixels of a frame, or the points of a cloud, say: rays from one origin, in one frame.
+/// The first stage of a frame: what its pixels, or the points of a cloud, say. Rays from one
+/// origin, in one frame.
 class Readings {
  public:
   [[nodiscard]] const Sensor& sensor() const { return sensor_; }
@@ -37,8 +38,9 @@ class Readings {
   }
   [[nodiscard]] MeasurementSigmas sigmas(std::size_t pixel) const { return sigmas_[pixel]; }
 
-  /// Two numbers a pixel: a voxel is crossed if its range is below the first, with less than the
-  /// full weight over the last stretch of the length of the second; 0, 0 for invalid pixels.
+  /// Reach and taper [m] of each pixel, one after the other; 0, 0 for invalid pixels. A voxel that
+  /// is nearer than the reach is crossed. Within the taper before the reach the crossing weighs
+  /// less (miss_weight()).
   [[nodiscard]] const std::vector<double>& reach_taper() const { return reach_taper_; }
 
  protected:
@@ -62,6 +64,13 @@ class Readings {
   std::vector<Eigen::Vector3d> points_;
   std::vector<MeasurementSigmas> sigmas_;
   std::vector<double> reach_taper_;
+};
+
+/// Readings and where they belong in a grid.
+struct PlacedFrame {
+  const Readings& readings;
+  const Pose& T_grid_readings;
+  const Pose& T_world_view;  ///< what the grid's views get
 };
 
 /// The box that holds every reading, those of the support plane left out, in the grid's frame [m];

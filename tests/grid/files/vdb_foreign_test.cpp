@@ -190,7 +190,9 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
   vector("information_diagonal", {1, -1, 1});
   vector("information_diagonal", {1, 1, bad});
   vector("information_offdiagonal", {bad, 0, 0});
+  vector("information_offdiagonal", {1e8F, 0, 0});
   vector("information_vector", {0, std::numeric_limits<float>::infinity(), 0});
+  vector("information_vector", {0, 1e30F, 0});
   expect_refused(
       "hits", [&](Contents& c) { c.grid<openvdb::Int32Grid>("hits").tree().setValueOn(wall, -4); });
   expect_refused("beliefs",
@@ -211,7 +213,7 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
     c.grid<openvdb::Int32Grid>("hits").tree().clear();
     c.grid<openvdb::Int32Grid>("hits").tree().addTile(1, {8, 0, 0}, 1, true);
   });
-  EXPECT_EQ(cases_, 35);
+  EXPECT_EQ(cases_, 37);
 }
 
 /// A workspace of 4096³ voxels that are one tile of 4096³, of the given log-odds.

@@ -44,7 +44,6 @@ TEST(BeliefGrid, WorkspaceGrowsOutwardToTheLattice) {
 }
 
 TEST(BeliefGrid, AnUnknownWorkspaceCostsTiles) {
-  int cases = 0;
   for (const double low : {-20.0, 0.0, 3.217, -512.0 * 0.01}) {
     const BeliefGrid grid(cube(0.01, low, low + 40.0));
     const GridStatistics statistics = grid.statistics();
@@ -53,9 +52,7 @@ TEST(BeliefGrid, AnUnknownWorkspaceCostsTiles) {
     EXPECT_EQ(statistics.free + statistics.occupied, 0U);
     EXPECT_LT(statistics.bytes, 1000000U);
     EXPECT_EQ(statistics.entropy_removed, 0.0);
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
 }
 
 TEST(BeliefGrid, RefusesBadConfigurations) {
@@ -64,13 +61,11 @@ TEST(BeliefGrid, RefusesBadConfigurations) {
   const auto refused = [](ErrorCode code, const std::string& part, const GridConfig& config) {
     expect_error(code, part, [&] { (void)BeliefGrid(config); });
   };
-  int cases = 0;
   for (const double bad : {0.0, -0.01, nan, inf}) {
     refused(ErrorCode::invalid_argument, "voxel size", cube(bad, 0, 1));
     GridConfig config = cube(0.01, 0, 1);
     config.prior_sigma = bad;
     refused(ErrorCode::invalid_argument, "prior sigma", config);
-    cases += 2;
   }
   for (const double bad : {nan, inf, -inf}) {
     GridConfig config = cube(0.01, 0, 1);
@@ -79,7 +74,6 @@ TEST(BeliefGrid, RefusesBadConfigurations) {
     config = cube(0.01, 0, 1);
     config.workspace.max[2] = bad;
     refused(ErrorCode::invalid_argument, "axis z", config);
-    cases += 2;
   }
   refused(ErrorCode::invalid_argument, "inside out", cube(0.01, 1, 0));
   refused(ErrorCode::invalid_argument, "inside out", cube(0.01, 1, 1));
@@ -92,12 +86,10 @@ TEST(BeliefGrid, RefusesBadConfigurations) {
   refused(ErrorCode::invalid_argument, "T_world_grid", skewed);
   skewed.T_world_grid.m[1] = nan;
   refused(ErrorCode::invalid_argument, "T_world_grid", skewed);
-  EXPECT_EQ(cases + 8, 22);
 }
 
 TEST(BeliefGrid, DenseStatesRoundTrip) {
   std::mt19937 random(3);
-  int cases = 0;
   for (const double share : {0.0, 0.001, 0.3, 1.0}) {
     for (const double low : {-0.2, 0.013, 127.3}) {
       // No multiple of 8; the low corner is anywhere.
@@ -132,10 +124,8 @@ TEST(BeliefGrid, DenseStatesRoundTrip) {
       EXPECT_EQ(statistics.unknown, counts[0]);
       EXPECT_EQ(statistics.free, counts[1]);
       EXPECT_EQ(statistics.occupied, counts[2]);
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 12);
 
   std::vector<std::uint8_t> states(8, 1);
   const GridConfig config = cube(0.5, 0, 1);
@@ -154,7 +144,6 @@ TEST(BeliefGrid, DenseStatesRoundTrip) {
 
 TEST(BeliefGrid, SetRoundsClampsAndKeepsToTheWorkspace) {
   BeliefGrid grid(cube(0.1, 0, 1));
-  int cases = 0;
   for (const auto& [given, kept] : {std::pair{0.0F, 0.0F},
                                     {0.024F, 0.0F},
                                     {0.026F, 0.05F},
@@ -166,9 +155,7 @@ TEST(BeliefGrid, SetRoundsClampsAndKeepsToTheWorkspace) {
     grid.set({3, 4, 5}, given);
     EXPECT_FLOAT_EQ(grid.log_odds({3, 4, 5}).value(), kept);
     EXPECT_EQ(grid.state({3, 4, 5}), kept > 0 ? VoxelState::occupied : VoxelState::free);
-    ++cases;
   }
-  EXPECT_EQ(cases, 8);
   EXPECT_EQ(grid.statistics().unknown, 999U);
 
   const Belief belief{{4, 5, 6, 1, 2, 3}, {7, 8, 9}, 11};
@@ -244,6 +231,28 @@ TEST(BeliefGrid, CloneIsIndependent) {
   EXPECT_EQ(grid.content_hash(), copy.content_hash());
 }
 
+TEST(BeliefGrid, AppendedViewsAreRigid) {
+  BeliefGrid grid(cube(0.1, 0, 1));
+  const std::string before = grid.content_hash();
+  Pose bad;
+  for (const double value : {std::nan(""), std::numeric_limits<double>::infinity(), 1.01}) {
+    for (const std::size_t place : {0U, 3U}) {
+      if (place == 3 && value == 1.01) continue;  // a translation
+      bad = Pose{};
+      bad.m[place] = value;
+      expect_error(ErrorCode::invalid_argument, "not rigid", [&] { grid.append_view(bad); });
+    }
+  }
+  EXPECT_EQ(grid.content_hash(), before);
+  // What a file with six digits makes of a rotation is mended, as integrators do.
+  Pose close = ring_view(2);
+  close.m[1] += 1e-4;
+  grid.append_view(close);
+  EXPECT_LT(orthonormality_error(grid.views().at(0)), 1e-12);
+  grid.append_view(ring_view(3));
+  EXPECT_EQ(grid.views().at(1), ring_view(3));
+}
+
 TEST(BeliefGrid, HashIsThatOfTheContents) {
   const GridConfig config{0.01, {{-0.13, -0.11, -0.2}, {0.15, 0.1, 0.02}}, {}, 0.01};
   const Belief belief{{4, 5, 6, 1, 2, 3}, {7, 8, 9}, 11};
@@ -303,7 +312,6 @@ TEST(BeliefGrid, HashIsThatOfTheContents) {
   hashes.insert(BeliefGrid(config).content_hash());
   ++cases;
   EXPECT_EQ(hashes.size(), static_cast<std::size_t>(cases));
-  EXPECT_EQ(cases, 25);
 }
 
 /// An octree of one free leaf, the lowest cube of 65,536 / 2^depth voxels, cut into eight `splits`

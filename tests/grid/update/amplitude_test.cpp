@@ -28,7 +28,6 @@ TEST(Amplitude, GivesTheCosineOfIncidence) {
   struct Case {
     double amplitude, cosine;
   };
-  int cases = 0;
   for (const auto& [amplitude, cosine] :
        {Case{1 / (t * t), 1.0}, Case{0.5 / (t * t), 0.5}, Case{0.2 / (t * t), 0.2},
         Case{0.01 / (t * t), kMinCosIncidence}, Case{7.0 / (t * t), 1.0},
@@ -41,9 +40,7 @@ TEST(Amplitude, GivesTheCosineOfIncidence) {
     ASSERT_TRUE(belief.has_value());
     const double sigma = sensor.sigmas(t, cosine).axial;
     EXPECT_NEAR(belief->information[2], 1 / (sigma * sigma), 1e-5 / (sigma * sigma)) << amplitude;
-    ++cases;
   }
-  EXPECT_EQ(cases, 9);
 }
 
 TEST(Amplitude, ReplacesTheNeighbourhoodAndOnlyWhereThereIsOne) {
@@ -76,7 +73,6 @@ TEST(Amplitude, OfAnotherSizeIsRefused) {
   const Sensor sensor = small_sensor(4, 3);
   BeliefGrid grid(kBox);
   FrameIntegrator integrator(sensor);
-  int cases = 0;
   for (const std::size_t size : {1U, 11U, 13U}) {
     const DepthFrame frame{4, 3, std::vector<float>(12, 0.5F), std::vector<float>(size, 1.0F)};
     try {
@@ -88,9 +84,7 @@ TEST(Amplitude, OfAnotherSizeIsRefused) {
                 std::string::npos);
     }
     EXPECT_THROW((void)reading_bounds(sensor, frame, Pose{}), Error);
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
   EXPECT_TRUE(grid.views().empty());
 }
 

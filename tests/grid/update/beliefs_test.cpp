@@ -105,7 +105,6 @@ TEST(Beliefs, IncidenceComesFromTheNeighbourhood) {
     EXPECT_TRUE(belief.has_value());
     return std::sqrt(belief->hits / static_cast<double>(belief->information[2]));
   };
-  int cases = 0;
   for (const double degrees : {0.0, 30.0, 50.0, 65.0, 75.0}) {
     const double angle = degrees * std::numbers::pi / 180.0;
     // Tilted about y, so that z = 0.52 + tan(angle) x; few pixels lie in the voxel [0, 0.1]² x
@@ -136,9 +135,7 @@ TEST(Beliefs, IncidenceComesFromTheNeighbourhood) {
     EXPECT_GT(hits, 3U);
     EXPECT_NEAR(belief->information[2], expected.zz, 2e-4 * expected.zz) << degrees;
     EXPECT_NEAR(belief->information[0], expected.xx, 2e-4 * expected.xx) << degrees;
-    ++cases;
   }
-  EXPECT_EQ(cases, 5);
 
   // Where a pixel has no neighbours its surface counts as frontal; so it does beside a jump on all
   // sides.

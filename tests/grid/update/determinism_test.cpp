@@ -85,7 +85,6 @@ TEST(Determinism, ThreadsAndInstructionSets) {
     bool distorted;
     IntegrationConfig config;
   };
-  int cases = 0;
   for (const auto& [distorted, config] : {Rule{false, {Carve::cones, Occupancy::probabilistic}},
                                           Rule{true, {Carve::cones, Occupancy::probabilistic}},
                                           Rule{true, {Carve::cones, Occupancy::literal}},
@@ -95,14 +94,12 @@ TEST(Determinism, ThreadsAndInstructionSets) {
     const std::string expected = hash_of_run(sensor, config, 1);
     for (const int threads : {1, 2, 3, 8}) {
       EXPECT_EQ(hash_of_run(sensor, config, threads), expected) << threads;
-      ++cases;
     }
     for (const Isa isa : supported_isas()) {
       const IsaLimit limit(isa);
       EXPECT_EQ(hash_of_run(sensor, config, 2), expected) << isa_name(isa);
     }
   }
-  EXPECT_EQ(cases, 20);
 }
 
 TEST(Determinism, AnIntegratorHasNoMemoryOfOtherFrames) {
@@ -126,7 +123,6 @@ TEST(Determinism, SavingAndLoadingBetweenFramesChangesNothing) {
   const Sensor sensor = noisy_sensor(false);
   BeliefGrid straight = turned_grid(), through_files = turned_grid();
   FrameIntegrator integrator(sensor, {}, {2});
-  int cases = 0;
   for (int view = 0; view < 4; ++view) {
     const DepthFrame frame = noisy_frame(sensor, view);
     integrator.integrate(straight, frame, ring_view(view));
@@ -134,9 +130,7 @@ TEST(Determinism, SavingAndLoadingBetweenFramesChangesNothing) {
     save_vdb(through_files, folder.path() / "map.vdb");
     through_files = load_vdb(folder.path() / "map.vdb");
     EXPECT_EQ(through_files.content_hash(), straight.content_hash()) << view;
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
 }
 
 }  // namespace

@@ -67,7 +67,6 @@ TEST(Occupancy, AWallSeenFiftyTimesWithNoiseStays) {
 TEST(Occupancy, OneFlyingPixelInSpaceSeenFreeFiftyTimesStaysFree) {
   const Sensor sensor = small_sensor(24, 18);
   const GridConfig config{0.01, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01};
-  int cases = 0;
   for (const int when : {0, 25, 50}) {  // among 51 frames
     BeliefGrid grid(config);
     FrameIntegrator integrator(sensor);
@@ -83,9 +82,7 @@ TEST(Occupancy, OneFlyingPixelInSpaceSeenFreeFiftyTimesStaysFree) {
     ASSERT_TRUE(belief.has_value());
     EXPECT_EQ(belief->hits, 1U);
     EXPECT_EQ(grid.state(voxel), VoxelState::free) << when;
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 TEST(Occupancy, LogOddsAreClampedAndRoundedToSteps) {

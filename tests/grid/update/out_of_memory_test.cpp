@@ -12,8 +12,10 @@
 #include <tuple>
 #include <vector>
 
+#include "core/temporary_folder.hpp"
 #include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/grid/vdb_io.hpp"
 
 namespace {
 
@@ -46,6 +48,14 @@ std::vector<std::tuple<int, int, int, LeafMask, LeafMask, const BeliefBlock*>> l
   return leaves;
 }
 
+std::uint64_t hits_of(const BeliefGrid& grid) {
+  std::uint64_t hits = 0;
+  for (const BeliefBlockAt& block : grid.belief_blocks()) {
+    for (const Belief& belief : block.beliefs->beliefs) hits += belief.hits;
+  }
+  return hits;
+}
+
 TEST(OutOfMemory, WhatAFrameLeftUndoneIsSeenByTheNextSnapshot) {
   const Sensor sensor = small_sensor(32, 24);
   const DepthFrame first = see_spheres(sensor, ring_view(0), three_spheres_in_a_room());
@@ -55,7 +65,8 @@ TEST(OutOfMemory, WhatAFrameLeftUndoneIsSeenByTheNextSnapshot) {
   BeliefGrid whole = start.clone();
   FrameIntegrator(sensor).integrate(whole, second, ring_view(1));
 
-  int failed = 0, written = 0, hollow = 0;
+  const TemporaryFolder folder;
+  int failed = 0, written = 0, hollow = 0, with_new_beliefs = 0;
   for (long count = 0;; count += 1 + count / 20) {
     BeliefGrid grid = start.clone();
     const GridSnapshot before = grid.snapshot();
@@ -81,6 +92,12 @@ TEST(OutOfMemory, WhatAFrameLeftUndoneIsSeenByTheNextSnapshot) {
     for (const BeliefBlockAt& block : grid.belief_blocks()) {
       hollow += block.beliefs->beliefs.empty();
     }
+    // It stays a map: what is saved can be loaded, and another frame goes in.
+    save_vdb(grid, folder.path() / "map.vdb");
+    ASSERT_EQ(load_vdb(folder.path() / "map.vdb").content_hash(), grid.content_hash()) << count;
+    with_new_beliefs += hits_of(grid) != hits_of(start);
+    integrator.integrate(grid, second, ring_view(1));
+    EXPECT_EQ(grid.views().size(), 2U);
     // The integrator goes on with nothing of the frame that failed.
     BeliefGrid other = start.clone();
     integrator.integrate(other, second, ring_view(1));
@@ -89,6 +106,7 @@ TEST(OutOfMemory, WhatAFrameLeftUndoneIsSeenByTheNextSnapshot) {
   EXPECT_GT(failed, 30);
   EXPECT_GT(written, 10);
   EXPECT_EQ(hollow, 0);
+  EXPECT_GT(with_new_beliefs, 10);
 }
 
 }  // namespace

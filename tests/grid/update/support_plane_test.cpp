@@ -42,7 +42,6 @@ IntegrationReport read_once(const Pose& pose, double t, double plane) {
 }
 
 TEST(SupportPlane, BoundsAreThreeSigmaAlongTheRayAndBelow) {
-  int cases = 0;
   for (const double degrees : {0.0, 40.0, 70.0}) {  // of the ray from the vertical
     const double angle = degrees * std::numbers::pi / 180;
     const double to_plane = 0.3;
@@ -66,11 +65,9 @@ TEST(SupportPlane, BoundsAreThreeSigmaAlongTheRayAndBelow) {
         EXPECT_EQ(report.voxels_hit, expected ? 0U : 1U);
         EXPECT_EQ(report.readings_inside, expected ? 0U : 1U);
         EXPECT_GT(report.voxels_crossed, 5U);
-        ++cases;
       }
     }
   }
-  EXPECT_EQ(cases, 36);
   // A level ray never meets the plane; 1 mm above it is no reading of it.
   const Pose level = look_at({0.3, 0, 0.051}, {0, 0, 0.051});
   EXPECT_EQ(read_once(level, 0.25, 0.05).plane_readings, 0U);
@@ -79,7 +76,6 @@ TEST(SupportPlane, BoundsAreThreeSigmaAlongTheRayAndBelow) {
 
 TEST(SupportPlane, CarvesAsFarAsTheReadingReaches) {
   const Pose down = look_at({0.005, 0.005, 0.5}, {0.005, 0.005, 0});
-  int cases = 0;
   for (const Carve carve : {Carve::cones, Carve::lines}) {
     for (const Occupancy occupancy : {Occupancy::probabilistic, Occupancy::literal}) {
       const auto column = [&](std::optional<double> plane) {
@@ -98,10 +94,8 @@ TEST(SupportPlane, CarvesAsFarAsTheReadingReaches) {
       EXPECT_EQ(carved.substr(0, 12), "ffffffffffff");
       EXPECT_EQ(carved.substr(13), ".......");
       EXPECT_NE(carved[12], 'o');
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 4);
 }
 
 // A ball that half stands out of the table, seen from four sides, in a turned grid.
@@ -182,7 +176,6 @@ TEST_F(SupportPlaneScene, OnlyVoxelsWithReadingsOfThePlaneDiffer) {
 
 TEST_F(SupportPlaneScene, TheSameForAnyNumberOfThreads) {
   std::string first;
-  int cases = 0;
   for (const int threads : {1, 2, 5}) {
     BeliefGrid grid(grid_config_);
     FrameIntegrator integrator(sensor_, {.support_plane = kHeight}, {threads});
@@ -191,9 +184,7 @@ TEST_F(SupportPlaneScene, TheSameForAnyNumberOfThreads) {
     }
     if (first.empty()) first = grid.content_hash();
     EXPECT_EQ(grid.content_hash(), first);
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 TEST_F(SupportPlaneScene, BoundsLeaveItOut) {
@@ -209,13 +200,10 @@ TEST_F(SupportPlaneScene, BoundsLeaveItOut) {
 }
 
 TEST(SupportPlane, MustBeFinite) {
-  int cases = 0;
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(FrameIntegrator(one_pixel(), {.support_plane = bad}), Error);
     EXPECT_THROW((void)reading_bounds(one_pixel(), {1, 1, {0.5F}}, Pose{}, {}, bad), Error);
-    ++cases;
   }
-  EXPECT_EQ(cases, 2);
 }
 
 }  // namespace

@@ -28,11 +28,28 @@ struct VIEWGAIN_EXPORT Belief {
   bool operator==(const Belief&) const = default;
 };
 
+/// The voxel at an offset (x << 6 | y << 3 | z) in the leaf whose lowest voxel is `origin`.
+[[nodiscard]] inline Index3 offset_voxel(Index3 origin, unsigned offset) {
+  return {origin.x + static_cast<std::int32_t>(offset >> 6U),
+          origin.y + static_cast<std::int32_t>(offset >> 3U & 7U),
+          origin.z + static_cast<std::int32_t>(offset & 7U)};
+}
+
 /// One bit a voxel of an 8³ leaf: word x, bit y << 3 | z (OpenVDB's order).
 using LeafMask = std::array<std::uint64_t, 8>;
 
 [[nodiscard]] inline bool test_bit(const LeafMask& mask, unsigned offset) {
   return ((mask[offset >> 6U] >> (offset & 63U)) & 1U) != 0;
+}
+
+/// Calls f(offset) for every set bit, in rising order.
+template <typename F>
+void for_each_bit(const LeafMask& mask, F&& f) {
+  for (unsigned w = 0; w < 8; ++w) {
+    for (std::uint64_t word = mask[w]; word != 0; word &= word - 1) {
+      f(w * 64U + static_cast<unsigned>(std::countr_zero(word)));
+    }
+  }
 }
 
 /// The beliefs of one leaf: those of the voxels in `mask`, in order of their offsets.
@@ -57,6 +74,15 @@ struct VIEWGAIN_EXPORT BeliefBlock {
 struct VIEWGAIN_EXPORT BeliefBlockAt {
   Index3 origin;
   std::shared_ptr<const BeliefBlock> beliefs;
+
+  /// Calls visit(Index3 voxel, const Belief&), voxels in the order [x][y][z] with z fastest.
+  template <typename Visit>
+  void for_each(Visit&& visit) const {
+    std::size_t rank = 0;
+    for_each_bit(beliefs->mask, [&](unsigned offset) {
+      visit(offset_voxel(origin, offset), beliefs->beliefs[rank++]);
+    });
+  }
 };
 
 }  // namespace viewgain

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,6 +44,20 @@ struct VIEWGAIN_EXPORT GridStatistics {
   std::uint64_t bytes = 0;  ///< memory of the map: tree, beliefs, book-keeping
   double entropy_removed =
       0;  ///< sum over occupied of H(Λ_0) - H(Λ_0 + Λ_v) [nat, or m² for trace]
+};
+
+/// What BeliefGrid::set() makes of a voxel.
+struct VIEWGAIN_EXPORT VoxelValue {
+  Index3 voxel;
+  float log_odds = 0;  ///< rounded to the nearest step of 0.05 and clamped
+  std::optional<Belief> belief{};
+};
+
+/// What BeliefGrid::for_each_occupied() shows of a voxel.
+struct VIEWGAIN_EXPORT OccupiedVoxel {
+  Index3 voxel;
+  float log_odds = 0;
+  const Belief* belief = nullptr;  ///< null without one; valid during the visit
 };
 
 /// The belief grid: what is known of a workspace, voxel by voxel (DESIGN.md section 5).
@@ -97,12 +112,25 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Fills the dense array of states, [x][y][z] with z fastest; size must be voxel_count().
   void copy_states(std::span<std::uint8_t> states) const;
 
-  /// Sets one voxel of the workspace, for importers and tests. log_odds is rounded to the nearest
-  /// step of 0.05 and clamped. Throws Error(invalid_argument) outside the workspace.
+  /// Sets one voxel of the workspace, for importers and tests; without a belief it has none
+  /// afterwards. Throws Error(invalid_argument) outside the workspace, for a log-odds that is NaN,
+  /// or for a belief that no readings make: a number that is not finite, information that is not
+  /// positive semidefinite (but for the rounding of `hits` sums), or a place Λ⁻¹η that is absurdly
+  /// far (2^28 voxels) from the voxel. The grid is unchanged then.
   void set(Index3 voxel, float log_odds, const std::optional<Belief>& belief = {});
+  /// Sets many voxels: as one by one in their order, but faster, and all or none if one of them is
+  /// refused.
+  void set(std::span<const VoxelValue> voxels);
+
+  /// Visits the occupied voxels: by leaves in the order of snapshot().leaves, in a leaf [x][y][z]
+  /// with z fastest. Equal maps give the same order. The visit must not change the grid. Costs a
+  /// snapshot.
+  void for_each_occupied(const std::function<void(const OccupiedVoxel&)>& visit) const;
 
   /// T_world_camera of every frame integrated so far, in order.
   [[nodiscard]] const std::vector<Pose>& views() const noexcept;
+  /// Throws Error(invalid_argument) if the pose is not rigid (1e-3; smaller errors are
+  /// orthonormalised).
   void append_view(const Pose& T_world_camera);
 
   [[nodiscard]] GridStatistics statistics(Criterion criterion = Criterion::log_diagonal) const;

@@ -71,6 +71,8 @@ class VIEWGAIN_EXPORT FrameIntegrator {
   /// Updates states, log-odds and beliefs, and appends the pose to the grid's views. Throws
   /// Error(invalid_argument) if the frame's size, or its amplitude's, is not the sensor's or
   /// the pose is not rigid (1e-3; smaller errors are orthonormalised); the grid is unchanged then.
+  /// If memory runs out (std::bad_alloc), part of the frame may be in the grid, which stays one
+  /// that can be saved and loaded, and the pose is not.
   IntegrationReport integrate(BeliefGrid& grid, const DepthFrame& frame,
                               const Pose& T_world_camera);
 

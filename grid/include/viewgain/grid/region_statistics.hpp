@@ -24,7 +24,8 @@ struct VIEWGAIN_EXPORT RegionStatistics {
 };
 
 /// Of the voxels whose centres lie in `region` (grid frame [m], half-open); what lies outside the
-/// workspace is not counted. One pass over the leaves that are not free. Deterministic.
+/// workspace is not counted; bounds may be infinite. One pass over the leaves that are not free.
+/// Deterministic. Throws Error(invalid_argument) if a bound is NaN.
 [[nodiscard]] VIEWGAIN_EXPORT RegionStatistics region_statistics(
     const BeliefGrid& grid, const Box& region, Criterion criterion = Criterion::log_diagonal);
 

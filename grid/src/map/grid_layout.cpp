@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "grid_layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+constexpr double kLatticeTolerance = 1e-6;  // [voxel]
+constexpr double kRigidTolerance = 1e-9;
+constexpr std::int32_t kMaxDim = 65536;
+constexpr double kMaxVoxels = 1099511627776.0;  // 2^40
+constexpr double kMaxIndex = 1073741824.0;      // 2^30
+
+template <typename... Parts>
+[[noreturn]] void fail(ErrorCode code, const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  throw Error(code, text.str());
+}
+
+void check_positive(const char* name, double value) {
+  if (!(std::isfinite(value) && value > 0)) {
+    fail(ErrorCode::invalid_argument, name, " must be positive and finite, not ", value);
+  }
+}
+
+}  // namespace
+
+GridLayout layout_of(const GridConfig& config) {
+  check_positive("voxel size", config.voxel_size);
+  std::int32_t low[3], count[3];
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double from = config.workspace.min[a], to = config.workspace.max[a];
+    if (!std::isfinite(from) || !std::isfinite(to)) {
+      fail(ErrorCode::invalid_argument, "workspace must be finite, axis ", "xyz"[a], " is ", from,
+           " .. ", to);
+    }
+    if (!(from < to)) {
+      fail(ErrorCode::invalid_argument, "workspace is inside out or empty, axis ", "xyz"[a], " is ",
+           from, " .. ", to);
+    }
+    const auto snap = [&](double value, double outward) {
+      const double nearest = std::round(value);
+      return std::abs(value - nearest) <= kLatticeTolerance ? nearest : outward;
+    };
+    const double a0 = from / config.voxel_size, a1 = to / config.voxel_size;
+    const double first = snap(a0, std::floor(a0));
+    const double last = std::max(snap(a1, std::ceil(a1)), first + 1.0);
+    if (!(last - first <= kMaxDim)) {
+      fail(ErrorCode::capacity, "workspace has ", last - first, " voxels along ", "xyz"[a],
+           ", the most is ", kMaxDim);
+    }
+    if (!(std::abs(first) <= kMaxIndex && std::abs(last) <= kMaxIndex)) {
+      fail(ErrorCode::capacity, "workspace is ", std::max(std::abs(first), std::abs(last)),
+           " voxels off the origin along ", "xyz"[a], ", the most is ", kMaxIndex);
+    }
+    low[a] = static_cast<std::int32_t>(first);
+    count[a] = static_cast<std::int32_t>(last - first);
+  }
+  return {{low[0], low[1], low[2]}, {count[0], count[1], count[2]}};
+}
+
+void check_layout(double voxel_size, const Pose& T_world_grid, double prior_sigma,
+                  const GridLayout& layout) {
+  check_positive("voxel size", voxel_size);
+  check_positive("prior sigma", prior_sigma);
+  const double error = orthonormality_error(T_world_grid);
+  if (!(error <= kRigidTolerance)) {
+    fail(ErrorCode::invalid_argument, "T_world_grid is no rigid transform: its rotation is off by ",
+         error);
+  }
+  double voxels = 1;
+  for (const auto& [low, count] :
+       {std::pair{layout.min_index.x, layout.dims.x}, std::pair{layout.min_index.y, layout.dims.y},
+        std::pair{layout.min_index.z, layout.dims.z}}) {
+    if (count < 1 || count > kMaxDim || std::abs(static_cast<double>(low)) > kMaxIndex ||
+        std::abs(static_cast<double>(low) + count) > kMaxIndex) {
+      fail(ErrorCode::capacity, "workspace of ", count, " voxels from voxel ", low,
+           "; there may be ", kMaxDim, " along an axis, at most ", kMaxIndex, " off the origin");
+    }
+    voxels *= count;
+  }
+  if (voxels > kMaxVoxels) {
+    fail(ErrorCode::capacity, "workspace has ", voxels, " voxels, the most is ", kMaxVoxels);
+  }
+}
+
+}  // namespace viewgain::detail

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "viewgain/grid/belief_grid.hpp"
+
+namespace viewgain::detail {
+
+/// The voxels of a workspace.
+struct GridLayout {
+  Index3 min_index;
+  Index3 dims;
+};
+
+/// The box of whole voxels round the workspace. Throws as BeliefGrid's constructor.
+[[nodiscard]] GridLayout layout_of(const GridConfig& config);
+
+/// Throws as BeliefGrid's constructor.
+void check_layout(double voxel_size, const Pose& T_world_grid, double prior_sigma,
+                  const GridLayout& layout);
+
+}  // namespace viewgain::detail

@@ -1,0 +1,315 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "apply.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "belief_merge.hpp"
+#include "map/grid_storage.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+// What a thread found in a region and may not put into the tree itself.
+struct RegionResult {
+  std::vector<std::unique_ptr<CodeLeaf>> leaves;
+  std::vector<std::pair<Index3, std::uint8_t>> tiles;
+  ApplyCounts counts;
+  bool changed = false;  // in what a snapshot tells
+};
+
+// The regions that the frame may change, in rising order.
+template <Evidence E>
+void list_regions(const BlockLattice& lattice, const E& evidence, FrameHits& hits,
+                  std::vector<std::uint64_t>& regions) {
+  const std::vector<std::uint64_t> crossed = evidence.regions(lattice);
+  std::vector<std::uint64_t> hit;
+  for (const HitBlock& block : hits.blocks()) {
+    if (hit.empty() || hit.back() != block.key >> 6U) hit.push_back(block.key >> 6U);
+  }
+  regions.clear();
+  std::set_union(crossed.begin(), crossed.end(), hit.begin(), hit.end(),
+                 std::back_inserter(regions));
+}
+
+void put_mask(const LeafMask& mask, CodeLeaf& leaf) {
+  for (openvdb::Index i = 0; i < 8; ++i) {
+    leaf.getValueMask().getWord<std::uint64_t>(i) = mask[i];
+  }
+}
+
+// A block before the frame: its leaf, else the code that all of its voxels have.
+struct BlockPlace {
+  Index3 origin;
+  bool whole = true;  // is all of it in the workspace?
+  CodeLeaf* leaf = nullptr;
+  std::uint8_t tile_code = kUnknownCode;
+};
+
+/// Works off regions, on many threads at once: writes leaves and belief blocks of its own region
+/// only, and reads the rest of the tree, whose shape stays as it is.
+template <Evidence E>
+class RegionUpdate {
+ public:
+  RegionUpdate(GridStorage& storage, const PlacedFrame& frame, const E& evidence,
+               const FrameHits& hits, const BlockKernels& kernels, bool literal)
+      : s_(storage),
+        frame_(frame),
+        evidence_(evidence),
+        hits_(hits),
+        kernels_(kernels),
+        literal_(literal) {}
+
+  void run(std::uint64_t region, RegionResult& result) const {
+    const Index3 region_origin = s_.lattice.origin(region << 6U);
+    std::span<const HitBlock> hit_blocks = hits_.in_region(region);
+    const CubeClass region_class = evidence_.classify(region_origin, kRegionSize);
+    if (region_class == CubeClass::untouched && hit_blocks.empty()) return;
+
+    auto* node = s_.tree.template probeNode<CodeNode>(to_coord(region_origin));
+    BlockPlace place;
+    if (node == nullptr) place.tile_code = s_.tree.getValue(to_coord(region_origin));
+    for (std::uint64_t key = region << 6U; key < (region + 1) << 6U; ++key) {
+      place.origin = s_.lattice.origin(key);
+      const HitBlock* hit_block = nullptr;
+      if (!hit_blocks.empty() && hit_blocks.front().key == key) {
+        hit_block = &hit_blocks.front();
+        hit_blocks = hit_blocks.subspan(1);
+      }
+      place.whole = s_.lattice.covers(place.origin, kBlockSize);
+      if (!place.whole && !s_.lattice.overlaps(place.origin, kBlockSize)) continue;
+      CubeClass block_class = region_class;
+      if (region_class == CubeClass::mixed) {
+        block_class = evidence_.classify(place.origin, kBlockSize);
+      }
+      if (block_class == CubeClass::untouched && hit_block == nullptr) continue;
+
+      if (node != nullptr) {
+        place.leaf = node->probeLeaf(to_coord(place.origin));
+        if (place.leaf == nullptr) {
+          place.tile_code =
+              node->getTable()[CodeNode::coordToOffset(to_coord(place.origin))].getValue();
+        }
+      }
+      if (block_class == CubeClass::crossed && hit_block == nullptr && place.leaf == nullptr &&
+          may_be_tile(place.tile_code)) {
+        cross_tile(place, result);
+      } else {
+        update_block(key, place, block_class, hit_block, result);
+      }
+    }
+  }
+
+ private:
+  void cross_tile(const BlockPlace& place, RegionResult& result) const {
+    const std::uint8_t code = updated_code(place.tile_code, kMissDelta, literal_);
+    if (code != place.tile_code) result.tiles.emplace_back(place.origin, code);
+    result.changed = result.changed || is_non_free(place.tile_code);
+    result.counts.crossed += place.whole ? kBlockVoxels : count_bits(s_.lattice.clip(place.origin));
+  }
+
+  void update_block(std::uint64_t key, const BlockPlace& place, CubeClass block_class,
+                    const HitBlock* hit_block, RegionResult& result) const {
+    alignas(64) std::array<std::int8_t, kBlockVoxels> deltas;
+    bool any = block_class == CubeClass::crossed;
+    if (block_class == CubeClass::mixed) {
+      any = evidence_.deltas(key, place.origin, deltas.data());
+    } else {
+      deltas.fill(any ? kMissDelta : kNoDelta);
+    }
+    if (!any && hit_block == nullptr) return;
+    if (hit_block != nullptr) {
+      result.changed = true;
+      put_hits(place, *hit_block, deltas.data(), result);
+    }
+    put_codes(place, deltas.data(), result);
+  }
+
+  void put_hits(const BlockPlace& place, const HitBlock& hit_block, std::int8_t* deltas,
+                RegionResult& result) const {
+    LeafMask mask{};
+    for (const Hit& hit : hits_.of(hit_block)) {
+      deltas[hit.offset] = kHitDelta;  // beats a crossing
+      mask[hit.offset >> 6U] |= std::uint64_t{1} << (hit.offset & 63U);
+    }
+    result.counts.hit += count_bits(mask);
+    *hit_block.beliefs = with_hits(hit_block.beliefs->get(), hits_.of(hit_block), frame_.readings,
+                                   frame_.T_grid_readings, place.origin, s_.voxel_size);
+  }
+
+  void put_codes(const BlockPlace& place, const std::int8_t* deltas, RegionResult& result) const {
+    alignas(64) std::array<std::uint8_t, kBlockVoxels> fresh;
+    CodeLeaf* const leaf = place.leaf;
+    std::uint8_t* codes = leaf != nullptr ? leaf->buffer().data() : fresh.data();
+    LeafMask non_free;
+    if (leaf != nullptr) {
+      non_free = leaf_mask(leaf->getValueMask());
+    } else {
+      fresh.fill(place.tile_code);
+      non_free.fill(is_non_free(place.tile_code) ? ~std::uint64_t{0} : 0);
+    }
+    BlockUpdate update;
+    kernels_.update(deltas, literal_, codes, update);
+    if (!place.whole) update.crossed = intersection(update.crossed, s_.lattice.clip(place.origin));
+    result.counts.crossed += count_bits(update.crossed);
+    // What is free stays free when it is crossed.
+    result.changed = result.changed || intersection(update.crossed, non_free) != LeafMask{};
+
+    // At once, so that codes and mask agree whatever allocation fails below.
+    if (leaf != nullptr) put_mask(update.non_free, *leaf);
+    if (update.uniform && may_be_tile(codes[0])) {
+      if (leaf != nullptr || codes[0] != place.tile_code) {
+        result.tiles.emplace_back(place.origin, codes[0]);
+      }
+      return;
+    }
+    if (leaf != nullptr) return;
+    // At the rim of the workspace perhaps only because of voxels outside.
+    result.changed = result.changed || is_non_free(place.tile_code);
+    result.leaves.push_back(std::make_unique<CodeLeaf>(to_coord(place.origin), kUnknownCode, true));
+    CodeLeaf& made = *result.leaves.back();
+    std::copy(fresh.begin(), fresh.end(), made.buffer().data());
+    put_mask(update.non_free, made);
+  }
+
+  GridStorage& s_;
+  const PlacedFrame& frame_;
+  const E& evidence_;
+  const FrameHits& hits_;
+  const BlockKernels& kernels_;
+  const bool literal_;
+};
+
+// Takes out the beliefs of voxels that stayed unknown since memory ran out before their leaf was in
+// the tree. Only a block that this frame made has such voxels: nobody else holds it yet, and a
+// shorter list needs no memory.
+void drop_beliefs_of_unknown(const GridStorage& s, Index3 origin, const BeliefBlock& made) {
+  LeafMask unknown{};
+  for_each_bit(made.mask, [&](unsigned offset) {
+    if (s.tree.getValue(to_coord(offset_voxel(origin, offset))) == kUnknownCode) {
+      unknown[offset >> 6U] |= std::uint64_t{1} << (offset & 63U);
+    }
+  });
+  if (unknown == LeafMask{}) return;
+  auto& block = const_cast<BeliefBlock&>(made);
+  std::size_t kept = 0, rank = 0;
+  for_each_bit(block.mask, [&](unsigned offset) {
+    if (!test_bit(unknown, offset)) block.beliefs[kept++] = block.beliefs[rank];
+    ++rank;
+  });
+  block.beliefs.resize(kept);
+  for (std::size_t word = 0; word < 8; ++word) block.mask[word] &= ~unknown[word];
+}
+
+}  // namespace
+
+struct FrameApply::Impl {
+  const BlockKernels& kernels;
+  bool literal;
+  std::vector<std::uint64_t> regions;
+  std::vector<RegionResult> results;
+
+  void put_results(GridStorage& s);
+  void recover(GridStorage& s, FrameHits& hits);
+};
+
+// Blocks that changed between leaf and tile, and nodes that became uniform.
+void FrameApply::Impl::put_results(GridStorage& s) {
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    RegionResult& result = results[i];
+    if (result.leaves.empty() && result.tiles.empty()) continue;
+    const Index3 origin = s.lattice.origin(regions[i] << 6U);
+    auto* node = s.tree.probeNode<CodeNode>(to_coord(origin));
+    if (node == nullptr) {
+      // A tile of the same value one level down makes the nodes above it.
+      const std::uint8_t code = s.tree.getValue(to_coord(origin));
+      s.tree.addTile(kBlockTileLevel, to_coord(origin), code, is_non_free(code));
+      node = s.tree.probeNode<CodeNode>(to_coord(origin));
+    }
+    for (auto& leaf : result.leaves) node->addLeaf(leaf.release());
+    for (const auto& [at, code] : result.tiles) {
+      node->addTile(kBlockTileLevel, to_coord(at), code, is_non_free(code));
+    }
+    result.leaves.clear();
+    result.tiles.clear();
+  }
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (i + 1 < regions.size() && regions[i] >> 6U == regions[i + 1] >> 6U) continue;
+    const openvdb::Coord origin = to_coord(s.lattice.origin(regions[i] << 6U));
+    const auto* node = s.tree.probeConstNode<CodeNode>(origin);
+    std::uint8_t code = 0;
+    bool active = false;
+    if (node != nullptr && node->isConstant(code, active)) {
+      s.tree.addTile(kNodeTileLevel, origin, code, active);
+    }
+  }
+}
+
+// After memory ran out with some regions written: the map stays one that can be saved and loaded.
+void FrameApply::Impl::recover(GridStorage& s, FrameHits& hits) {
+  // Nothing that a snapshot told before holds for sure, and what waits to be put into the tree is
+  // not for another frame's regions.
+  s.forget_snapshots();
+  for (RegionResult& result : results) result = {};
+  for (const HitBlock& block : hits.blocks()) {
+    const auto found = s.beliefs.find(block.key);
+    if (found == s.beliefs.end()) continue;
+    drop_beliefs_of_unknown(s, s.lattice.origin(block.key), *found->second);
+    if (found->second->beliefs.empty()) s.beliefs.erase(found);
+  }
+}
+
+FrameApply::FrameApply(const BlockKernels& kernels, bool literal)
+    : impl_(std::make_unique<Impl>(Impl{kernels, literal, {}, {}})) {}
+FrameApply::~FrameApply() = default;
+
+template <Evidence E>
+ApplyCounts FrameApply::run(BeliefGrid& grid, const PlacedFrame& frame, const E& evidence,
+                            FrameHits& hits, ThreadPool& pool) {
+  Impl& m = *impl_;
+  GridStorage& s = GridAccess::storage(grid);
+  list_regions(s.lattice, evidence, hits, m.regions);
+  const RegionUpdate<E> update(s, frame, evidence, hits, m.kernels, m.literal);
+  const auto empty = std::make_shared<const BeliefBlock>();
+  try {
+    // Entries are made here, alone; the map's values do not move when it grows.
+    for (HitBlock& block : hits.blocks()) {
+      block.beliefs = &s.beliefs.try_emplace(block.key, empty).first->second;
+    }
+    if (m.results.size() < m.regions.size()) m.results.resize(m.regions.size());
+    for (std::size_t i = 0; i < m.regions.size(); ++i) {
+      m.results[i].counts = {};
+      m.results[i].changed = false;
+    }
+    pool.for_each_chunk(m.regions.size(), 1, [&](std::size_t i, std::size_t) {
+      update.run(m.regions[i], m.results[i]);
+    });
+    m.put_results(s);
+    for (std::size_t i = 0; i < m.regions.size(); ++i) {
+      if (m.results[i].changed) s.mark_changed(m.regions[i] << 6U);
+    }
+    s.views.push_back(frame.T_world_view);
+  } catch (...) {
+    m.recover(s, hits);
+    throw;
+  }
+  ++s.time;
+
+  ApplyCounts counts;
+  for (std::size_t i = 0; i < m.regions.size(); ++i) {
+    counts.hit += m.results[i].counts.hit;
+    counts.crossed += m.results[i].counts.crossed;
+  }
+  return counts;
+}
+
+template ApplyCounts FrameApply::run(BeliefGrid&, const PlacedFrame&, const ConeEvidence&,
+                                     FrameHits&, ThreadPool&);
+template ApplyCounts FrameApply::run(BeliefGrid&, const PlacedFrame&, const LineEvidence&,
+                                     FrameHits&, ThreadPool&);
+
+}  // namespace viewgain::detail

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cone_evidence.hpp"
+
+namespace viewgain::detail {
+
+void ConeEvidence::gather(const Readings& readings, const ConeCamera& camera, double voxel_size) {
+  readings_ = &readings;
+  camera_ = &camera;
+  voxel_size_ = voxel_size;
+  pyramid_.build(readings.reach_taper(), camera.width, camera.height);
+  cull_.emplace(camera, pyramid_, voxel_size);
+}
+
+std::vector<std::uint64_t> ConeEvidence::regions(const BlockLattice& lattice) const {
+  std::vector<std::uint64_t> regions;
+  for (std::uint64_t node = 0; node < lattice.node_count(); ++node) {
+    if (classify(lattice.origin(node << 12U), kNodeSize) == CubeClass::untouched) continue;
+    for (std::uint64_t region = node << 6U; region < (node + 1) << 6U; ++region) {
+      if (lattice.overlaps(lattice.origin(region << 6U), kRegionSize)) regions.push_back(region);
+    }
+  }
+  return regions;
+}
+
+}  // namespace viewgain::detail

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <vector>
+
+#include "map/block_lattice.hpp"
+
+namespace viewgain::detail {
+
+/// What a frame can say about the voxel centres of a cube.
+enum class CubeClass : std::uint8_t {
+  untouched,  ///< no centre is crossed
+  crossed,    ///< every centre is crossed at full weight
+  mixed,      ///< each must be looked at
+};
+
+/// What a frame says about the voxels in front of its readings. ConeEvidence and LineEvidence are
+/// the two ways of carving. They offer:
+/// - regions(): the regions in which a voxel may be crossed, in rising order;
+/// - classify(): of the cube [origin, origin + size) as a whole;
+/// - deltas(): of the 512 voxels of the block with this key and origin, in steps of the log-odds,
+///   kNoDelta where nothing is said; false if nothing is said anywhere.
+template <typename T>
+concept Evidence = requires(const T& evidence, const BlockLattice& lattice, std::uint64_t key,
+                            Index3 origin, int size, std::int8_t* deltas) {
+  { evidence.regions(lattice) } -> std::same_as<std::vector<std::uint64_t>>;
+  { evidence.classify(origin, size) } -> std::same_as<CubeClass>;
+  { evidence.deltas(key, origin, deltas) } -> std::same_as<bool>;
+};
+
+}  // namespace viewgain::detail

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::detail {
+
+/// Throws Error(invalid_argument) unless the support plane, if there is one, is finite.
+inline void check_plane(std::optional<double> height) {
+  if (height && !std::isfinite(*height)) {
+    throw Error(ErrorCode::invalid_argument,
+                "support plane " + std::to_string(*height) + " m is not finite");
+  }
+}
+
+}  // namespace viewgain::detail

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Which beliefs a map takes.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+
+#include "core/expect_error.hpp"
+#include "grid/analytic_frames.hpp"
+#include "viewgain/grid/integrate.hpp"
+#include "viewgain/grid/integrate_cloud.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace test;
+
+const GridConfig kConfig{0.01, {{-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}}, {}, 0.01};
+
+TEST(BeliefCheck, RefusesWhatNoReadingsMake) {
+  BeliefGrid grid(kConfig);
+  const std::string before = grid.content_hash();
+  const float nan = std::numeric_limits<float>::quiet_NaN(), most = 1e30F;
+  for (const auto& [part, belief] :
+       {std::pair<const char*, Belief>{"nan", {{1, 1, 1, nan, 0, 0}, {}, 1}},
+        {"nan", {{1, 1, 1, 0, 0, 0}, {0, nan, 0}, 1}},
+        {"-1", {{1, 1, -1, 0, 0, 0}, {}, 1}},
+        {"hits", {{1, 1, 1, 0, 0, 0}, {}, 1U << 31U}},
+        // entropy_removed would be NaN
+        {"semidefinite", {{1, 1, 1, 1e8F, 0, 0}, {}, 1}},
+        {"semidefinite", {{1, 1, 1, 1e8F, 0, 0}, {}, 2147483647}},
+        {"semidefinite", {{1, 1, 1, 0, 1.001F, 0}, {}, 1}},
+        {"semidefinite", {{1, 1, 1, 0.8F, 0.8F, -0.8F}, {}, 1}},  // each pair alone would do
+        {"semidefinite", {{1e12F, 1, 1, 0, 0, 1.001F}, {}, 1}},   // in its own scale
+        {"semidefinite", {{0, 1, 1, 0.001F, 0, 0}, {}, 1}},
+        // fused points would lie beyond all voxels
+        {"place", {{1e-30F, 1e-30F, 1e-30F, 0, 0, 0}, {most, 0, 0}, 3}},
+        {"place", {{1e8F, 1e8F, 1e-2F, 0, 0, 0}, {0, 0, 1e5F}, 3}},
+        {"place", {{0, 0, 0, 0, 0, 0}, {0, 1, 0}, 0}}}) {
+    expect_error(ErrorCode::invalid_argument, part, [&] { grid.set({1, 2, 3}, 1.0F, belief); });
+    EXPECT_EQ(grid.content_hash(), before) << part;
+  }
+}
+
+TEST(BeliefCheck, TakesWhatRoundingAndImportersMake) {
+  BeliefGrid grid(kConfig);
+  for (const Belief& belief :
+       {Belief{}, Belief{{1e5F, 1e5F, 1e4F, 0, 0, 0}, {0, 0, 20}, 1},
+        Belief{{1, 1, 1, 1, 1, 1}, {1e-3F, 1e-3F, 1e-3F}, 1},             // one direction alone
+        Belief{{1, 1, 1, 1.0000001F, 1, 1}, {1e-3F, 1e-3F, 1e-3F}, 1},    // and its rounding
+        Belief{{1, 1, 1, 1.001F, 1, 1}, {1e-3F, 1e-3F, 1e-3F}, 100'000},  // of so many sums
+        Belief{{1e-30F, 1e-30F, 1e-30F, 0, 0, 0}, {}, 1},
+        Belief{{1e38F, 1e38F, 1e38F, 0, 0, 0}, {1e36F, 0, 0}, 1}}) {
+    grid.set({1, 2, 3}, 1.0F, belief);
+    EXPECT_EQ(grid.belief({1, 2, 3}), belief);
+  }
+}
+
+/// Beliefs of a map that its own set() takes; all must be.
+std::size_t taken(const BeliefGrid& grid) {
+  BeliefGrid other(kConfig);
+  std::size_t count = 0;
+  for (const BeliefBlockAt& block : grid.belief_blocks()) {
+    block.for_each([&](Index3 voxel, const Belief& belief) {
+      EXPECT_NO_THROW(other.set(voxel, 1.0F, belief));
+      ++count;
+    });
+  }
+  return count;
+}
+
+// Sigmas that differ by large factors leave information that single precision hardly tells from
+// singular, or from indefinite.
+TEST(BeliefCheck, TakesAllThatIntegratorsMake) {
+  std::mt19937 random(31);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::size_t beliefs = 0, indefinite = 0;
+  for (const ConstantNoise noise : {ConstantNoise{1e-3, 1e-3},
+                                    {1e-6, 1e-1},
+                                    {1e-1, 1e-6},
+                                    {1e-5, 1e-2},
+                                    {1e-7, 1e-7},
+                                    {10, 1e-3},
+                                    {1e-3, 30}}) {
+    Sensor sensor = small_sensor(32, 24);
+    sensor.noise = noise;
+    BeliefGrid grid(kConfig);
+    CloudIntegrator integrator(sensor);
+    for (int frame = 0; frame < 40; ++frame) {
+      // Many readings a voxel, some frames of one direction.
+      const Eigen::Vector3d eye(0.4 + 0.2 * unit(random), frame % 2 == 0 ? 0.0 : unit(random),
+                                frame % 2 == 0 ? 0.0 : unit(random));
+      std::vector<std::array<double, 3>> points;
+      for (int i = 0; i < 3000; ++i) {
+        points.push_back({0.03 * unit(random), 0.03 * unit(random), 0.03 * unit(random)});
+      }
+      integrator.integrate(grid, points, Pose(Eigen::Matrix3d::Identity(), eye));
+    }
+    beliefs += taken(grid);
+    for (const BeliefBlockAt& block : grid.belief_blocks()) {
+      block.for_each([&](Index3, const Belief& b) {
+        indefinite += b.information_matrix().determinant() <= 0;
+      });
+    }
+  }
+  EXPECT_GT(beliefs, 1000U);
+  EXPECT_GT(indefinite, 20U);  // which a check without tolerance would refuse
+}
+
+TEST(BeliefCheck, TakesALongStareInOneDirection) {
+  // A hundred thousand readings of one voxel: the sums' rounding adds up.
+  Sensor sensor = small_sensor(32, 24);
+  sensor.noise = ConstantNoise{1.1e-6, 2.3e-2};
+  BeliefGrid grid(kConfig);
+  CloudIntegrator integrator(sensor);
+  const std::vector<std::array<double, 3>> points(20'000, {0.0051, 0.0049, 0.0053});
+  for (int frame = 0; frame < 10; ++frame) {
+    integrator.integrate(grid, points, Pose(Eigen::Matrix3d::Identity(), {0.31, 0.17, 0.23}));
+  }
+  EXPECT_EQ(grid.belief({0, 0, 0}).value().hits, 200'000U);
+  EXPECT_EQ(taken(grid), 1U);
+}
+
+}  // namespace
+}  // namespace viewgain
