@@ -12,6 +12,7 @@
 #include "point_support.hpp"
 #include "point_thinning.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain {
@@ -27,7 +28,7 @@ void check(const FusedPointsConfig& config) {
   const auto need = [](bool ok, const char* name, double value) {
     if (!ok) {
       throw Error(ErrorCode::invalid_argument, "fused points: " + std::string(name) + " " +
-                                                   std::to_string(value) + " is out of bounds");
+                                                   short_text(value) + " is out of bounds");
     }
   };
   need(config.normal_radius >= 1 && config.normal_radius <= kMaxReach, "normal_radius",

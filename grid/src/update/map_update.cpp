@@ -16,6 +16,7 @@
 #include "frame_hits.hpp"
 #include "map/grid_storage.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -47,7 +48,7 @@ Pose rigid(const Pose& pose) {
 void check_plane(std::optional<double> height) {
   if (height && !std::isfinite(*height)) {
     throw Error(ErrorCode::invalid_argument,
-                "support plane " + std::to_string(*height) + " m is not finite");
+                "support plane " + short_text(*height) + " m is not finite");
   }
 }
 
