@@ -160,6 +160,32 @@ TEST(VdbIo, PythonsOpenVdbReadsTheGrids) {
                 "information_offdiagonal information_vector log_odds position state\n");
 }
 
+TEST(VdbIo, VoxelsAreAsSmallAsCanBeSaved) {
+  const TemporaryFolder folder;
+  const auto grid = [](double voxel) {
+    return BeliefGrid(GridConfig{
+        voxel,
+        {{0, 0, 0}, {20 * voxel, 20 * voxel, 20 * voxel}},
+        Pose(Eigen::AngleAxisd(0.3, Eigen::Vector3d(2, 1, -1).normalized()).toRotationMatrix(),
+             Eigen::Vector3d(0.01, 0.02, 0.03)),
+        voxel});
+  };
+  int cases = 0;
+  for (const double voxel : {1e-300, 1e-5, 1.4e-5, 1.99e-5}) {
+    expect_error(ErrorCode::invalid_argument, "voxel size", [&] { (void)grid(voxel); });
+    ++cases;
+  }
+  for (const double voxel : {2e-5, 1e-4, 1.0, 1e3}) {
+    const auto path = folder.path() / "map.vdb";
+    BeliefGrid small = grid(voxel);
+    small.set({1, 2, 3}, 1.0F);
+    save_vdb(small, path);
+    expect_same(load_vdb(path), small);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 8);
+}
+
 TEST(VdbIo, TruncatedAtAnyLength) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "map.vdb";
