@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "viewgain/core/error.hpp"
@@ -13,7 +14,8 @@ namespace viewgain::app {
 
 toml::table read_toml(const std::filesystem::path& path) {
   const std::string file = path.string();
-  const std::string contents = file_bytes(path);
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 24U;  // [bytes]
+  const std::string contents = file_bytes(path, kMost);
   try {
     return toml::parse(contents);
   } catch (const toml::parse_error& error) {

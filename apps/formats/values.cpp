@@ -74,20 +74,6 @@ Box parse_box(std::string_view flag, std::string_view text) {
   return box_of(flag, parse_numbers(flag, text, 6, 6));
 }
 
-std::string exact_text(double value) {
-  if (std::isnan(value)) return "nan";
-  std::array<char, 40> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.17g", value);
-  return buffer.data();
-}
-
-std::string short_text(double value) {
-  if (std::isnan(value)) return "nan";
-  std::array<char, 40> buffer{};
-  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return {buffer.data(), end};
-}
-
 std::string describe(const Box& box) {
   std::array<char, 200> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%g,%g,%g,%g,%g,%g", box.min[0], box.min[1],

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "viewgain/core/box.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::app {
 
@@ -22,12 +23,6 @@ namespace viewgain::app {
 /// x0,y0,z0,x1,y1,z1 [m]. Throws Error(invalid_argument) if it is inside out or has no extent.
 [[nodiscard]] Box parse_box(std::string_view flag, std::string_view text);
 [[nodiscard]] Box box_of(std::string_view flag, const std::vector<double>& numbers);
-
-/// With 17 significant digits, so that it reads back as the same double; "nan" for a NaN.
-[[nodiscard]] std::string exact_text(double value);
-
-/// The shortest text that reads back as the same double.
-[[nodiscard]] std::string short_text(double value);
 
 /// x0, y0, z0 .. x1, y1, z1 for people.
 [[nodiscard]] std::string describe(const Box& box);

@@ -8,11 +8,13 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
 
-constexpr int kMaxSize = 16384;           // [px]
+constexpr int kMaxSize = 16384;  // [px]
+constexpr int kMaxPixels = 1 << 24;
 constexpr double kTolerance = 1e-12;      // of normalised coordinates
 constexpr int kFixedPointIterations = 4;  // brings usual lenses into Newton's basin
 constexpr int kNewtonIterations = 30;
@@ -94,9 +96,13 @@ void PinholeCamera::validate() const {
   };
   check_size("width", width);
   check_size("height", height);
+  if (width * height > kMaxPixels) {
+    fail("width x height is " + std::to_string(width) + " x " + std::to_string(height) +
+         ", more than 2^24 pixels");
+  }
   const auto check_focal = [](const char* name, double value) {
     if (!(std::isfinite(value) && value > 0)) {
-      fail(std::string(name) + " must be positive and finite, not " + std::to_string(value));
+      fail(std::string(name) + " must be positive and finite, not " + short_text(value));
     }
   };
   check_focal("fx", fx);

@@ -10,48 +10,12 @@
 namespace viewgain {
 namespace {
 
-/// det / (xx yy zz) is in (0, 1] and bounds the cancellation in cofactors: above this they are good
-/// to about 1e-12, below it a factorisation is worth its divisions.
-constexpr double kWellScaled = 1e-4;
-
 struct Inverse {
+  explicit Inverse(const SymmetricMatrix3& m) : sigma(m.inverse(determinant)) {}
+
+  double determinant = 0;  ///< of the matrix, not of sigma; NaN unless positive definite
   SymmetricMatrix3 sigma;
-  double determinant;  ///< of the matrix, not of sigma; NaN unless positive definite
 };
-
-/// LDLᵀ without pivoting, backward stable for positive definite matrices.
-Inverse inverse_by_factorisation(const SymmetricMatrix3& m) {
-  const double d1 = m.xx;
-  const double l21 = m.xy / d1, l31 = m.xz / d1;
-  const double d2 = m.yy - l21 * m.xy;
-  const double s32 = m.yz - l21 * m.xz;
-  const double l32 = s32 / d2;
-  const double d3 = m.zz - l31 * m.xz - l32 * s32;
-  if (!(d1 > 0 && d2 > 0 && d3 > 0)) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    return {{kNan, kNan, kNan, kNan, kNan, kNan}, kNan};
-  }
-  // L⁻¹ is lower triangular with ones on the diagonal.
-  const double k21 = -l21, k32 = -l32, k31 = l21 * l32 - l31;
-  const double i1 = 1.0 / d1, i2 = 1.0 / d2, i3 = 1.0 / d3;
-  return {{i1 + k21 * k21 * i2 + k31 * k31 * i3, i2 + k32 * k32 * i3, i3, k21 * i2 + k31 * k32 * i3,
-           k31 * i3, k32 * i3},
-          d1 * d2 * d3};
-}
-
-Inverse invert(const SymmetricMatrix3& m) {
-  const double c_xx = m.yy * m.zz - m.yz * m.yz;
-  const double c_xy = m.xz * m.yz - m.xy * m.zz;
-  const double c_xz = m.xy * m.yz - m.xz * m.yy;
-  const double determinant = m.xx * c_xx + m.xy * c_xy + m.xz * c_xz;
-  if (!(m.xx > 0 && m.yy > 0 && determinant > kWellScaled * (m.xx * m.yy * m.zz))) {
-    return inverse_by_factorisation(m);
-  }
-  const double s = 1.0 / determinant;
-  return {{c_xx * s, (m.xx * m.zz - m.xz * m.xz) * s, (m.xx * m.yy - m.xy * m.xy) * s, c_xy * s,
-           c_xz * s, (m.xy * m.xz - m.xx * m.yz) * s},
-          determinant};
-}
 
 /// tr(a b)
 double trace_of_product(const SymmetricMatrix3& a, const SymmetricMatrix3& b) {
@@ -107,7 +71,7 @@ Criterion parse_criterion(std::string_view name) {
 }
 
 double entropy(const SymmetricMatrix3& information, Criterion criterion) {
-  const Inverse inverse = invert(information);
+  const Inverse inverse(information);
   const SymmetricMatrix3& sigma = inverse.sigma;
   switch (criterion) {
     case Criterion::log_diagonal:
@@ -122,11 +86,11 @@ double entropy(const SymmetricMatrix3& information, Criterion criterion) {
 
 double entropy_reduction(const SymmetricMatrix3& before, const SymmetricMatrix3& added,
                          Criterion criterion) {
-  const Inverse prior = invert(before);
+  const Inverse prior(before);
   if (criterion == Criterion::log_determinant) {
     return not_negative(0.5 * std::log1p(determinant_ratio_minus_one(before, prior, added)));
   }
-  const SymmetricMatrix3 after = invert(before + added).sigma;
+  const SymmetricMatrix3 after = (before + added).inverse();
   const Eigen::Vector3d drop = covariance_drop(prior.sigma, added, after);
   if (criterion == Criterion::trace) return not_negative(drop.sum());
   // The three ratios Σ_before,kk / Σ_after,kk are 1 + x, 1 + y, 1 + z; their product less one:

@@ -9,6 +9,7 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -25,7 +26,7 @@ void check(const char* what, std::size_t count, double radius, const Eigen::Vect
   }
   if (!(std::isfinite(radius) && radius > 0)) {
     throw Error(ErrorCode::invalid_argument,
-                name + ": the radius must be positive and finite, not " + std::to_string(radius));
+                name + ": the radius must be positive and finite, not " + short_text(radius));
   }
   if (!center.allFinite()) {
     throw Error(ErrorCode::invalid_argument, name + ": the centre is not finite");
@@ -98,9 +99,7 @@ class PortableRandom {
   explicit PortableRandom(std::uint64_t seed) : seed_(seed) {}
 
   /// Uniform in [0, 1).
-  double unit() {
-    return static_cast<double>(mix64(counter_++ * kMixStep + seed_) >> 11U) * 0x1.0p-53;
-  }
+  double unit() { return unit_number(mix64(counter_++ * kMixStep + seed_)); }
 
   /// Uniform on the unit sphere (Marsaglia 1972): no sine or cosine, whose last bits depend on the
   /// mathematical library.
@@ -170,7 +169,6 @@ std::vector<Pose> literature_ring_poses(std::size_t total, double radius,
       {0.1, 0.2, 0.3, 0.4}, {30 * kDegree, 60 * kDegree}, {0.0, -22.5 * kDegree, 22.5 * kDegree}};
   check("rings", total, radius, center);
   std::vector<Pose> poses;
-  poses.reserve(total);
   switch (total) {
     case 48:
       append_pattern(of_48, 0.6, radius / 0.6, center, poses);
@@ -196,9 +194,9 @@ std::vector<Pose> shell_poses(std::size_t count, double min_radius, double max_r
   check("shell", count, min_radius, center);
   check("shell", count, max_radius, center);
   if (min_radius > max_radius) {
-    throw Error(ErrorCode::invalid_argument,
-                "shell: the smaller radius " + std::to_string(min_radius) +
-                    " is over the larger one, " + std::to_string(max_radius));
+    throw Error(ErrorCode::invalid_argument, "shell: the smaller radius " + short_text(min_radius) +
+                                                 " is over the larger one, " +
+                                                 short_text(max_radius));
   }
   PortableRandom random(seed);
   std::vector<Pose> poses;

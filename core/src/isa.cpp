@@ -45,8 +45,9 @@ std::vector<Isa> supported_isas() {
   return isas;
 }
 
-Isa select_isa() {
-  const std::vector<Isa> isas = supported_isas();
+Isa select_isa() { return select_isa(supported_isas()); }
+
+Isa select_isa(std::span<const Isa> isas) {
   if (isas.empty()) throw Error(ErrorCode::backend, "viewgain needs a CPU with SSE4.2");
   const char* wish = std::getenv("VIEWGAIN_ISA");
   if (wish == nullptr || *wish == '\0') return isas.front();

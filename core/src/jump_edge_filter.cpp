@@ -7,6 +7,7 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -30,7 +31,7 @@ JumpEdgeFilter::JumpEdgeFilter(const PinholeCamera& camera, const JumpEdgeConfig
   camera_.validate();
   if (!(config_.angle >= kMinAngle - kAngleSlack && config_.angle <= kMaxAngle + kAngleSlack)) {
     throw Error(ErrorCode::invalid_argument, "jump-edge angle must be in 1..10 degrees, not " +
-                                                 std::to_string(config_.angle / kDegree));
+                                                 short_text(config_.angle / kDegree));
   }
   rays_ = camera_.ray_table();
 }

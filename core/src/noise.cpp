@@ -41,7 +41,7 @@ MeasurementSigmas sigmas(const StructuredLightNoise& noise, double t, double fx,
 
 MeasurementSigmas sigmas(const StereoNoise& noise, double t, double fx, double /*cos_incidence*/) {
   t = clamped_range(t);
-  return {t * t * noise.subpixel / (noise.focal * noise.baseline), t / fx};
+  return {t * t * noise.subpixel / (noise.focal_with(fx) * noise.baseline), t / fx};
 }
 
 MeasurementSigmas sigmas(const QuadraticNoise& noise, double t, double fx,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -17,7 +18,7 @@ void check(const PlanningConfig& config) {
   };
   const auto check_finite = [&fail](const char* name, double value) {
     if (!std::isfinite(value)) {
-      fail(std::string(name) + " must be finite, not " + std::to_string(value));
+      fail(std::string(name) + " must be finite, not " + short_text(value));
     }
   };
   if (config.max_views == 0) fail("max_views is 0");
@@ -46,9 +47,10 @@ class IdleRule {
            is_nothing(unknown - static_cast<double>(now.unknown_voxels), unknown);
   }
 
-  // No change at all is nothing even where the total is 0.
+  // No change at all is nothing even where the total is 0. So is NaN: a run that cannot tell what
+  // it gains must end.
   [[nodiscard]] bool is_nothing(double change, double total) const {
-    return change <= 0 || change < fraction_ * total;
+    return !(change > 0) || change < fraction_ * total;
   }
 
   std::size_t limit_;

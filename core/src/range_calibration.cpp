@@ -8,6 +8,7 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 
@@ -16,13 +17,13 @@ void RangeCalibration::validate() const {
     const auto& [measured, error] = table[i];
     if (!std::isfinite(measured) || !std::isfinite(error)) {
       throw Error(ErrorCode::invalid_argument, "range calibration: entry " + std::to_string(i) +
-                                                   " is not finite: " + std::to_string(measured) +
-                                                   ", " + std::to_string(error));
+                                                   " is not finite: " + short_text(measured) +
+                                                   ", " + short_text(error));
     }
     if (i > 0 && !(measured > table[i - 1][0])) {
       throw Error(ErrorCode::invalid_argument,
-                  "range calibration: measured ranges must rise, but " + std::to_string(measured) +
-                      " m follows " + std::to_string(table[i - 1][0]) + " m");
+                  "range calibration: measured ranges must rise, but " + short_text(measured) +
+                      " m follows " + short_text(table[i - 1][0]) + " m");
     }
   }
 }

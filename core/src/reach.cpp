@@ -7,6 +7,7 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -16,6 +17,7 @@ namespace {
               std::string("reach: ") + part + " " + std::to_string(index) + " " + what);
 }
 
+/// Unlike Box::contains, faces included: a camera may stand on the limit.
 bool contains(const Box& box, const Eigen::Vector3d& p) {
   for (std::size_t k = 0; k < 3; ++k) {
     const double value = p[static_cast<Eigen::Index>(k)];
@@ -61,7 +63,7 @@ void ReachRegion::validate() const {
       const double low = boxes[i].min[k], high = boxes[i].max[k];
       if (!std::isfinite(low) || !std::isfinite(high)) fail("box", i, "is not finite");
       if (low > high) {
-        fail("box", i, "is inside out: " + std::to_string(low) + " > " + std::to_string(high));
+        fail("box", i, "is inside out: " + short_text(low) + " > " + short_text(high));
       }
     }
   }
@@ -72,12 +74,11 @@ void ReachRegion::validate() const {
       fail("shell", i, "is not finite");
     }
     if (shell.min_radius < 0) {
-      fail("shell", i, "has the radius " + std::to_string(shell.min_radius));
+      fail("shell", i, "has the radius " + short_text(shell.min_radius));
     }
     if (shell.min_radius > shell.max_radius) {
       fail("shell", i,
-           "is inside out: " + std::to_string(shell.min_radius) + " > " +
-               std::to_string(shell.max_radius));
+           "is inside out: " + short_text(shell.min_radius) + " > " + short_text(shell.max_radius));
     }
   }
   for (std::size_t i = 0; i < half_spaces.size(); ++i) {
@@ -95,7 +96,7 @@ void ReachRegion::validate() const {
     if (!(std::isfinite(value) && value >= 0)) {
       throw Error(ErrorCode::invalid_argument, std::string("reach: the tolerance's ") + name +
                                                    " must be finite and not negative, not " +
-                                                   std::to_string(value));
+                                                   short_text(value));
     }
   }
 }

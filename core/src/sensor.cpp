@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -16,7 +17,7 @@ using NamedValues = std::initializer_list<std::pair<const char*, double>>;
 
 [[noreturn]] void refuse(const char* name, const char* rule, double value) {
   throw Error(ErrorCode::invalid_argument, std::string("noise: ") + name + " must be " + rule +
-                                               " and finite, not " + std::to_string(value));
+                                               " and finite, not " + short_text(value));
 }
 
 void check_positive(NamedValues values) {
@@ -48,7 +49,8 @@ void validate_noise(const StructuredLightNoise& n) {
                   {"lateral_grazing_px", n.lateral_grazing_px}});
 }
 void validate_noise(const StereoNoise& n) {
-  check_positive({{"subpixel", n.subpixel}, {"focal", n.focal}, {"baseline", n.baseline}});
+  check_positive({{"subpixel", n.subpixel}, {"baseline", n.baseline}});
+  check_not_negative({{"focal", n.focal}});
 }
 void validate_noise(const QuadraticNoise& n) {
   check_positive({{"offset", n.offset}, {"quadratic", n.quadratic}});
@@ -100,14 +102,14 @@ void Sensor::validate() const {
   };
   camera.validate();
   if (!(std::isfinite(min_range) && min_range >= 0)) {
-    fail("min_range must be finite and not negative, not " + std::to_string(min_range));
+    fail("min_range must be finite and not negative, not " + short_text(min_range));
   }
   if (!(std::isfinite(max_range) && max_range > min_range)) {
-    fail("max_range must be finite and over min_range, not " + std::to_string(max_range));
+    fail("max_range must be finite and over min_range, not " + short_text(max_range));
   }
   if (!(working_distance > 0 && working_distance >= min_range && working_distance <= max_range)) {
     fail("working_distance must be positive and within min_range and max_range, not " +
-         std::to_string(working_distance));
+         short_text(working_distance));
   }
   std::visit([](const auto& model) { validate_noise(model); }, noise);
   if (T_flange_camera && !(orthonormality_error(*T_flange_camera) <= 1e-3)) {

@@ -93,6 +93,9 @@ struct ThreadPool::Impl::Crew {
       end();
       throw Error(ErrorCode::capacity,
                   "cannot start " + std::to_string(num_threads) + " threads: " + e.what());
+    } catch (...) {  // no memory for a thread's state: those that run must end before the object
+      end();
+      throw;
     }
   }
 

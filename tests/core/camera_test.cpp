@@ -205,6 +205,13 @@ TEST(PinholeCamera, ValidateNamesTheField) {
   expect_bad("width", [](PinholeCamera& c) { c.width = 0; });
   expect_bad("width", [](PinholeCamera& c) { c.width = 16385; });
   expect_bad("height", [](PinholeCamera& c) { c.height = -3; });
+  // A table of rays for the largest sides would take 6.4 GB.
+  expect_bad("16384 x 16384, more than 2^24 pixels",
+             [](PinholeCamera& c) { c.width = c.height = 16384; });
+  expect_bad("2^24 pixels", [](PinholeCamera& c) { c.width = 4096, c.height = 4097; });
+  PinholeCamera largest = small_camera();
+  largest.width = largest.height = 4096;
+  EXPECT_NO_THROW(largest.validate());
   expect_bad("fx", [](PinholeCamera& c) { c.fx = 0; });
   expect_bad("fy", [](PinholeCamera& c) { c.fy = kNan; });
   expect_bad("cx", [](PinholeCamera& c) { c.cx = kNan; });

@@ -39,8 +39,35 @@ TEST(SymmetricMatrix3, KeepsTheOrderOfTheMapFiles) {
   EXPECT_EQ(sum, (SymmetricMatrix3{2, 3, 4, 4, 5, 6}));
 }
 
-TEST(SymmetricMatrix3, ASingularMatrixHasNoFiniteInverse) {
-  EXPECT_FALSE(std::isfinite(SymmetricMatrix3{}.inverse().xx));
+TEST(SymmetricMatrix3, InversesOfIllConditionedMatricesKeepTheirDigits) {
+  RandomValues random(6);
+  int cases = 0;
+  for (; cases < 2000; ++cases) {
+    // Eigenvalues 1 .. 1e10 along random axes; the inverse is known from them.
+    const Eigen::Vector3d values(1, random.magnitude(1, 1e10), random.magnitude(1, 1e10));
+    const Eigen::Matrix3d R = random.rotation();
+    const Eigen::Matrix3d m = R * values.asDiagonal() * R.transpose();
+    const Eigen::Matrix3d expected = R * values.cwiseInverse().asDiagonal() * R.transpose();
+    double determinant = 0;
+    const SymmetricMatrix3 inverse =
+        SymmetricMatrix3::from(0.5 * (m + m.transpose())).inverse(determinant);
+    ASSERT_LT((inverse.matrix() - expected).norm(), 1e-4 * expected.norm());
+    ASSERT_NEAR(determinant / values.prod(), 1, 1e-4);
+  }
+  EXPECT_EQ(cases, 2000);
+}
+
+TEST(SymmetricMatrix3, OnlyPositiveDefiniteOnesHaveAnInverse) {
+  int cases = 0;
+  for (const SymmetricMatrix3& m :
+       {SymmetricMatrix3{}, SymmetricMatrix3{1, 1, 1, 2, 0, 0}, SymmetricMatrix3{1, 1, 1, 1, 1, 1},
+        SymmetricMatrix3{-1, -1, 1, 0, 0, 0}, SymmetricMatrix3{1, 1, 1, 1e8, 0, 0}}) {
+    double determinant = 0;
+    EXPECT_TRUE(std::isnan(m.inverse(determinant).xx)) << cases;
+    EXPECT_TRUE(std::isnan(determinant));
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5);
 }
 
 TEST(Measurement, CovarianceHasTheSigmasAlongAndAcrossTheRay) {

@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <clocale>
+#include <limits>
 #include <locale>
 #include <string>
 
+#include "expect_error.hpp"
 #include "temporary_folder.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -51,6 +55,20 @@ TEST(Locale, DoesNotReachPoseFiles) {
   }
   EXPECT_EQ(test::read_all(folder.path() / "plain.txt"),
             test::read_all(folder.path() / "comma.txt"));
+}
+
+TEST(Locale, DoesNotReachMessages) {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.min_range = -1234.5;
+  const CommaLocale locale;
+  test::expect_error(ErrorCode::invalid_argument, "not -1234.5", [&] { sensor.validate(); });
+  EXPECT_EQ(short_text(0.1), "0.1");
+  EXPECT_EQ(short_text(1.52F), "1.52");
+  EXPECT_EQ(short_text(1e-9), "1e-09");
+  EXPECT_EQ(short_text(-std::numeric_limits<double>::quiet_NaN()), "nan");
+  EXPECT_EQ(short_text(-std::numeric_limits<double>::infinity()), "-inf");
+  EXPECT_EQ(exact_text(0.1), "0.10000000000000001");
+  EXPECT_EQ(exact_text(1500), "1500");
 }
 
 }  // namespace

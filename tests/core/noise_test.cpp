@@ -73,6 +73,12 @@ TEST(StereoNoise, GrowsWithTheSquareOfTheRange) {
   EXPECT_NEAR(sigmas(noise, 2.0, 447, 0.3).lateral, 2.0 / 447, 1e-15);
 }
 
+TEST(StereoNoise, HasTheCamerasFocalLengthUnlessItSaysOtherwise) {
+  // Half of the resolution: half the focal length in pixels, twice the error.
+  EXPECT_NEAR(sigmas(StereoNoise{}, 1.0, 223.5, 1.0).axial, 0.08 / (223.5 * 0.05), 1e-15);
+  EXPECT_NEAR(sigmas(StereoNoise{.focal = 600}, 1.0, 223.5, 1.0).axial, 0.08 / (600 * 0.05), 1e-15);
+}
+
 TEST(QuadraticNoise, IsOffsetPlusSquare) {
   const QuadraticNoise noise{.offset = 2e-3, .quadratic = 0.5e-3};
   EXPECT_NEAR(sigmas(noise, 2.0, 400, 1.0).axial, 4e-3, 1e-15);

@@ -253,6 +253,10 @@ TEST(Planning, IdleViewsInARow) {
       {steps({{100, 0}, {90, 0}, {80, 0}}), 3},
       // Nothing at all from the start: the first view itself is never idle.
       {steps({{0, 0}}), 3},
+      // NaN says nothing about progress: the unknown voxels decide.
+      {steps({{kNan, 1000}}), 3},
+      {steps({{100, 1000}, {kNan, 1000}, {kNan, 1000}}), 3},
+      {steps({{kNan, 1000}, {kNan, 900}, {kNan, 900}, {kNan, 900}}), 4},
   };
   std::size_t count = 0;
   for (const Case& c : cases) {
@@ -264,7 +268,7 @@ TEST(Planning, IdleViewsInARow) {
     EXPECT_EQ(result.reason, c.views == 9 ? StopReason::max_views : StopReason::idle) << count;
     ++count;
   }
-  EXPECT_EQ(count, 6U);
+  EXPECT_EQ(count, 9U);
 
   config.idle_views = 0;
   Script never;
@@ -303,7 +307,7 @@ TEST(Planning, EndsBetweenTheStepsWhenAsked) {
     EXPECT_EQ(result.views.back().decision.has_value(), c.has_decision);
     ++count;
   }
-  EXPECT_EQ(count, 6U);
+  EXPECT_EQ(count, 9U);
 }
 
 // All rules that could hold do; taking the first away shows the next.

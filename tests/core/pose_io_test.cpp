@@ -146,6 +146,36 @@ TEST(Tum, ABadPoseIsNotWrittenAndLeavesTheOldFile) {
   EXPECT_EQ(folder.entries(), 1);
 }
 
+TEST(Tum, TimestampsComeBackAsTheyWere) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "poses.txt";
+  const std::vector<double> timestamps{1305031102.1758, -0.0, 1e-300, 1.0 / 3.0, 1e17};
+  const std::vector<Pose> poses(timestamps.size());
+  write_tum(path, poses, timestamps);
+  EXPECT_EQ(read_tum(path).timestamps, timestamps);
+  write_tum(path, read_tum(path).poses, read_tum(path).timestamps);
+  EXPECT_EQ(read_tum(path).timestamps, timestamps);
+  expect_error(ErrorCode::invalid_argument, "5 poses but 4 timestamps",
+               [&] { write_tum(path, poses, std::span(timestamps).first(4)); });
+  const std::vector<double> bad(timestamps.size(), NAN);
+  expect_error(ErrorCode::invalid_argument, "timestamp 0 is not finite",
+               [&] { write_tum(path, poses, bad); });
+}
+
+TEST(Poses, AByteOrderMarkIsSkipped) {
+  const TemporaryFolder folder;
+  const std::string mark = "\xEF\xBB\xBF";
+  EXPECT_EQ(read_tum(folder.file("a.txt", mark + "1 2 3 4 0 0 0 1\n")).timestamps,
+            std::vector<double>{1});
+  EXPECT_EQ(read_tum(folder.file("b.txt", mark + "# header\n1 2 3 4 0 0 0 1\n")).poses.size(), 1U);
+  const auto matrix = folder.file("m.txt", mark + "1 0 0 0.5  0 1 0 1.5  0 0 1 2.5  0 0 0 1");
+  EXPECT_EQ(read_pose_matrix(matrix).translation(), Eigen::Vector3d(0.5, 1.5, 2.5));
+  // Only at the beginning.
+  expect_error(ErrorCode::format, ":2: ", [&] {
+    (void)read_tum(folder.file("c.txt", "1 2 3 4 0 0 0 1\n" + mark + "2 2 3"));
+  });
+}
+
 TEST(PoseMatrix, ReadsAndMends) {
   const TemporaryFolder folder;
   bool mended = true;

@@ -118,12 +118,15 @@ TEST(Sensor, ValidateNamesTheField) {
   expect_bad("min_amplitude", [](Sensor& s) { s.noise = ShotNoise{.min_amplitude = -0.1}; });
   expect_bad("grazing", [](Sensor& s) { s.noise = StructuredLightNoise{.grazing = -1}; });
   expect_bad("baseline", [](Sensor& s) { s.noise = StereoNoise{.baseline = kNan}; });
+  expect_bad("focal", [](Sensor& s) { s.noise = StereoNoise{.focal = -1}; });
+  // Small values keep their digits.
+  expect_bad("not -1e-09", [](Sensor& s) { s.min_range = -1e-9; });
   expect_bad("offset", [](Sensor& s) { s.noise = QuadraticNoise{.offset = 0}; });
   expect_bad("sigma_lateral", [](Sensor& s) { s.noise = ConstantNoise{.sigma_lateral = 0}; });
   expect_bad("T_flange_camera", [](Sensor& s) {
     s.T_flange_camera = Pose(2 * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
   });
-  EXPECT_EQ(cases, 17);
+  EXPECT_EQ(cases, 19);
   Sensor touching = sensor_preset("sr4000");
   touching.noise = ShotNoise{.modulation_frequency = 0, .min_amplitude = 0};
   touching.min_range = 0;

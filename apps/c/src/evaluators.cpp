@@ -10,6 +10,7 @@
 
 #include "convert.hpp"
 #include "handles.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/raycast/depth_image.hpp"
 
 using namespace viewgain;
@@ -262,8 +263,8 @@ vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_c
     const Pose pose = rigid_pose_of(T_world_camera);
     const std::vector<VoxelContribution> own = evaluator->evaluator.contributions(pose);
     if (own.empty() && evaluator->evaluator.evaluate(pose).status == ViewStatus::bad_pose) {
-      reject("the pose is off from a rigid transform by " +
-             std::to_string(orthonormality_error(pose)) + "; 1e-3 is allowed");
+      reject("the pose is off from a rigid transform by " + short_text(orthonormality_error(pose)) +
+             "; 1e-3 is allowed");
     }
     *found = own.size();
     for (std::size_t i = 0; i < std::min(capacity, own.size()); ++i) {

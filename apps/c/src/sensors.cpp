@@ -7,6 +7,7 @@
 
 #include "convert.hpp"
 #include "viewgain/core/noise.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::c_api {
 namespace {
@@ -46,8 +47,8 @@ NoiseModel noise_of(std::int32_t model, const Parameters& p) {
   const auto rest_is_zero = [&](std::size_t used) {
     for (std::size_t i = used; i < p.size(); ++i) {
       if (p[i] != 0) {
-        reject("noise[" + std::to_string(i) + "] is " + std::to_string(p[i]) +
-               "; the noise model " + std::to_string(model) + " has " + std::to_string(used) +
+        reject("noise[" + std::to_string(i) + "] is " + short_text(p[i]) + "; the noise model " +
+               std::to_string(model) + " has " + std::to_string(used) +
                " parameters and the rest must be 0");
       }
     }
@@ -122,7 +123,7 @@ vg_status vg_default_prior_sigma(double voxel_size, const vg_sensor* sensor, dou
   return guarded([&] {
     require(sigma, "sigma");
     if (!(voxel_size > 0 && std::isfinite(voxel_size))) {
-      reject("voxel_size is " + std::to_string(voxel_size) + " m; it must be positive and finite");
+      reject("voxel_size is " + short_text(voxel_size) + " m; it must be positive and finite");
     }
     const Sensor camera = sensor_of(sensor);
     camera.validate();

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "viewgain/core/text.hpp"
+
 namespace viewgain::python {
 namespace {
 
@@ -51,7 +53,7 @@ std::string fault_of(const Pose& pose, const double* m) {
   if (!std::isfinite(pose.m[0])) return "has a last row that is not 0 0 0 1";
   const double error = orthonormality_error(pose);
   if (!(error <= kRigid)) {
-    return "has a rotation that is off by " + std::to_string(error) +
+    return "has a rotation that is off by " + short_text(error) +
            " from orthonormal and right-handed";
   }
   return {};

@@ -107,7 +107,8 @@ theta)**2`` beyond 60 degrees; ``lateral = (lateral_px + lateral_grazing_px * th
   py::class_<StereoNoise> stereo_class(
       module, "StereoNoise",
       "Stereo: ``axial = t**2 * subpixel / (focal * baseline)``, ``lateral = t / "
-      "fx``.\n\nsubpixel and focal in [px], baseline in [m].");
+      "fx``.\n\nsubpixel and focal in [px], baseline in [m]; a focal of 0\n"
+      "stands for the camera's fx.");
   pickle_as_call(stereo_class, {"subpixel", "focal", "baseline"});
   stereo_class
       .def(py::init([](double subpixel, double focal, double baseline) {

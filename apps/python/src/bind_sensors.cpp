@@ -28,7 +28,7 @@ The optical frame has x right, y down, z forward; pixel (0, 0) has its centre at
 Parameters
 ----------
 width, height : int
-    [px], 1 to 16384.
+    [px], 1 to 16384; at most 2**24 pixels.
 fx, fy : float
     Focal lengths [px].
 cx, cy : float

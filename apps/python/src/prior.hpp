@@ -8,14 +8,15 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::python {
 
 /// default_prior_sigma() [m]; throws Error(invalid_argument) for a voxel size that is none.
 [[nodiscard]] inline double checked_prior_sigma(double voxel_size, const Sensor& sensor) {
   if (!(voxel_size > 0 && std::isfinite(voxel_size))) {
-    throw Error(ErrorCode::invalid_argument, "voxel_size is " + std::to_string(voxel_size) +
-                                                 " m; it must be positive and finite");
+    throw Error(ErrorCode::invalid_argument,
+                "voxel_size is " + short_text(voxel_size) + " m; it must be positive and finite");
   }
   return default_prior_sigma(voxel_size, sensor);
 }

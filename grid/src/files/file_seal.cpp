@@ -3,9 +3,6 @@
 #include "file_seal.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 
 #include "map/hash64.hpp"
 
@@ -65,38 +62,6 @@ SealCheck check_seal(std::string_view file) {
   const std::string_view seal = file.substr(bytes.size());
   if (!seal.starts_with(kMark)) return SealCheck::absent;
   return seal == make_seal(bytes) ? SealCheck::intact : SealCheck::broken;
-}
-
-std::string poses_to_text(const std::vector<Pose>& poses) {
-  std::string text;
-  std::array<char, 32> digits;
-  for (const Pose& pose : poses) {
-    for (std::size_t i = 0; i < pose.m.size(); ++i) {
-      const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), pose.m[i]);
-      text.append(digits.data(), end.ptr);
-      text.push_back(i + 1 < pose.m.size() ? ' ' : '\n');
-    }
-  }
-  return text;
-}
-
-std::optional<std::vector<Pose>> poses_from_text(std::string_view text) {
-  std::vector<Pose> poses;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (at != end) {
-    Pose pose;
-    for (std::size_t i = 0; i < pose.m.size(); ++i) {
-      const auto result = std::from_chars(at, end, pose.m[i]);
-      if (result.ec != std::errc{} || !std::isfinite(pose.m[i]) || result.ptr == end) {
-        return std::nullopt;
-      }
-      at = result.ptr;
-      if (*at++ != (i + 1 < pose.m.size() ? ' ' : '\n')) return std::nullopt;
-    }
-    poses.push_back(pose);
-  }
-  return poses;
 }
 
 }  // namespace viewgain::detail

@@ -3,12 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
-
-#include "viewgain/core/pose.hpp"
 
 namespace viewgain::detail {
 
@@ -20,11 +16,5 @@ namespace viewgain::detail {
 
 enum class SealCheck : std::uint8_t { absent, intact, broken };
 [[nodiscard]] SealCheck check_seal(std::string_view file);
-
-/// Poses as text: twelve numbers [R | t] row by row for each, shortest digits that read back the
-/// same double, one pose a line.
-[[nodiscard]] std::string poses_to_text(const std::vector<Pose>& poses);
-/// Nothing if the text is anything else.
-[[nodiscard]] std::optional<std::vector<Pose>> poses_from_text(std::string_view text);
 
 }  // namespace viewgain::detail

@@ -29,8 +29,10 @@ struct OctomapPart {
   const std::uint8_t* codes = nullptr;
 };
 
-/// A grid cut anew into the tree's cubes, which the shift and the workspace's rim have put out of
-/// step with the grid's own. Cost: pieces of the grid times levels, and the blocks at the rims.
+/// A grid as cubes of the tree. The tree's cubes start at multiples of their size from a corner
+/// that is shifted against the grid's, so the grid's own blocks and tiles, clipped to the
+/// workspace, are cut where a cube of the tree ends. Cost: pieces of the grid times levels of the
+/// tree.
 class OctomapParts {
  public:
   /// Throws Error(capacity) if a known block lies outside of a tree's space. The grid must stay as
@@ -41,8 +43,8 @@ class OctomapParts {
   [[nodiscard]] std::span<const OctomapPart> parts() const { return parts_; }
 
  private:
-  /// What a block or cube of the grid has in the workspace: [min, max), in voxels from the corner
-  /// of the tree's space.
+  /// The part of a block or tile of the grid that lies in the workspace: [min, max), in voxels from
+  /// the lowest corner of the tree's space.
   struct Piece {
     Index3 min, max;
     std::uint8_t code;
@@ -60,7 +62,8 @@ class OctomapParts {
   BlockLattice lattice_;
   Index3 shift_;
   std::vector<Piece> pieces_;
-  std::array<std::array<Pieces, 8>, kOctomapLevels + 1> pieces_at_;  ///< in a cube's children
+  /// By level, those that reach into each child of the cube that is being cut.
+  std::array<std::array<Pieces, 8>, kOctomapLevels + 1> pieces_at_;
   std::vector<OctomapPart> parts_;
   std::deque<std::array<std::uint8_t, kBlockVoxels>> cut_codes_;
 };

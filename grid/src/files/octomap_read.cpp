@@ -9,13 +9,13 @@
 #include <optional>
 #include <utility>
 
-#include "file_text.hpp"
 #include "map/grid_blocks.hpp"
 #include "map/log_odds_code.hpp"
 #include "octomap_format.hpp"
 #include "solid_voxels.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 
 namespace viewgain {
@@ -260,7 +260,7 @@ BeliefGrid grid_from_octomap_bytes(std::string_view bytes, const OctomapConfig& 
                                    const std::string& name) {
   if (!std::isfinite(config.occupied_from)) {
     throw Error(ErrorCode::invalid_argument, "the log-odds from which a voxel is occupied is " +
-                                                 std::to_string(config.occupied_from));
+                                                 short_text(config.occupied_from));
   }
   const Header header = read_header(bytes, name);
   const std::optional<Box> known = check_tree(bytes, header, name);
@@ -285,7 +285,8 @@ BeliefGrid load_octomap(const std::filesystem::path& path, const OctomapConfig& 
 }
 
 double octomap_resolution(const std::filesystem::path& path) {
-  return read_header(file_bytes(path), path.string()).resolution;
+  constexpr std::size_t kMostHeader = std::size_t{1} << 16U;  // [bytes]; OctoMap's has some 100
+  return read_header(file_head(path, kMostHeader), path.string()).resolution;
 }
 
 }  // namespace viewgain

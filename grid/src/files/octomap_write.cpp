@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cstring>
 #include <span>
 #include <string>
@@ -12,6 +10,7 @@
 #include "octomap_parts.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 
 namespace viewgain {
@@ -128,13 +127,9 @@ class TreeBytes {
 std::string octomap_bytes(const BeliefGrid& grid) {
   const OctomapParts parts(grid, shift_to_world(grid).value_or(Index3{}));
   const TreeBytes tree(parts.parts());
-  std::array<char, 32> resolution;
-  const auto end =
-      std::to_chars(resolution.data(), resolution.data() + resolution.size(), grid.voxel_size());
   std::string file(kOctomapFullMark);
-  file += "\nid OcTree\nsize " + std::to_string(tree.nodes()) + "\nres ";
-  file.append(resolution.data(), end.ptr);
-  file += "\ndata\n";
+  file += "\nid OcTree\nsize " + std::to_string(tree.nodes()) + "\nres " +
+          short_text(grid.voxel_size()) + "\ndata\n";
   file += tree.bytes();
   return file;
 }

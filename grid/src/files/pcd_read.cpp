@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "cloud_formats.hpp"
-#include "file_text.hpp"
 #include "scalar_type.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -57,12 +57,11 @@ Pose read_viewpoint(const LineReader& line) {
   std::array<double, 7> v{};
   if (line.words().size() != 8) line.fail("VIEWPOINT needs 7 numbers: tx ty tz qw qx qy qz");
   for (std::size_t i = 0; i < 7; ++i) {
-    v[i] = line.number(i + 1);
-    if (!std::isfinite(v[i])) line.fail("VIEWPOINT has a number that is not finite");
+    v[i] = line.finite_number(i + 1);
   }
   const Eigen::Quaterniond q(v[3], v[4], v[5], v[6]);
   if (!(std::abs(q.norm() - 1) <= kMendableNorm)) {
-    line.fail("VIEWPOINT's quaternion has the norm " + std::to_string(q.norm()) + ", not 1");
+    line.fail("VIEWPOINT's quaternion has the norm " + short_text(q.norm()) + ", not 1");
   }
   return {q.normalized().toRotationMatrix(), Eigen::Vector3d(v[0], v[1], v[2])};
 }
@@ -263,6 +262,14 @@ void read_compressed(const LineReader& line, const Header& header,
                         std::to_string(header.points) + " points of " +
                         std::to_string(header.point_bytes) + " bytes are less");
   }
+  // A few bytes can stand for many, and a point of 3 bytes takes 24 in memory.
+  constexpr std::uint64_t kMostGrowth = 64, kAlwaysAllowed = std::uint64_t{1} << 28U;  // [bytes]
+  const std::uint64_t memory = unpacked + header.points * sizeof(std::array<double, 3>);
+  if (memory > std::max(kAlwaysAllowed, kMostGrowth * packed)) {
+    throw Error(ErrorCode::capacity, line.name() + ": " + std::to_string(packed) +
+                                         " bytes of compressed data stand for " +
+                                         std::to_string(memory) + " bytes in memory");
+  }
   const std::string data = decompress(line, rest.substr(0, packed), unpacked);
   std::array<std::size_t, 3> begin{}, stride{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -276,9 +283,6 @@ void read_compressed(const LineReader& line, const Header& header,
 }  // namespace
 
 PointCloud parse_pcd(std::string_view bytes, const std::string& name) {
-  // What some editors put before a text.
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
   LineReader line(name, bytes);
   const Header header = read_header(line);
   PointCloud cloud;

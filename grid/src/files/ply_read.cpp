@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "cloud_formats.hpp"
-#include "file_text.hpp"
 #include "scalar_type.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::detail {
 namespace {

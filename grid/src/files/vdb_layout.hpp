@@ -14,7 +14,12 @@
 // What the writer and the reader of map files share.
 namespace viewgain::detail {
 
-inline constexpr std::int32_t kVdbLayoutVersion = 1;
+// Versions of the layout: 2 has `state` and `hits` as floats, since OpenVDB's Python module knows
+// Float, Bool and Vec3S alone; 1 had them as Int32. A float holds whole numbers up to 2^24. Where a
+// voxel has more hits, `hits` is rounded and `hits_rest`, a grid that is there only then, says what
+// is to be added.
+inline constexpr std::int32_t kVdbLayoutVersion = 2;
+inline constexpr std::int32_t kOldestVdbLayoutVersion = 1;
 
 inline void initialize_openvdb() {
   static std::once_flag once;

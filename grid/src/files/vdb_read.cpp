@@ -6,20 +6,24 @@
 #include <openvdb/tree/ValueAccessor.h>
 #pragma GCC visibility pop
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
 
 #include "file_seal.hpp"
 #include "map/belief_check.hpp"
+#include "pose_text.hpp"
 #include "solid_voxels.hpp"
 #include "vdb_layout.hpp"
 #include "vdb_outline.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
@@ -29,6 +33,7 @@ using namespace detail;
 using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
+using openvdb::FloatTree;
 using openvdb::Int32Grid;
 using openvdb::Vec3f;
 using openvdb::Vec3SGrid;
@@ -44,10 +49,14 @@ class Loader {
 
   [[nodiscard]] BeliefGrid load() const {
     const Contents contents = read();
-    auto storage = make_storage(*contents.metadata);
-    load_states(contents, *storage);
-    load_beliefs(contents, *storage);
-    return GridAccess::wrap(std::move(storage));
+    try {
+      auto storage = make_storage(*contents.metadata);
+      load_states(contents, *storage);
+      load_beliefs(contents, *storage);
+      return GridAccess::wrap(std::move(storage));
+    } catch (const openvdb::Exception& error) {
+      fail(std::string("cannot be read by OpenVDB: ") + error.what());
+    }
   }
 
  private:
@@ -95,12 +104,17 @@ class Loader {
     return *std::move(result);
   }
 
-  [[nodiscard]] std::unique_ptr<GridStorage> make_storage(const openvdb::MetaMap& metadata) const {
-    const auto version = value<openvdb::Int32Metadata>(metadata, "viewgain_version");
-    if (version != kVdbLayoutVersion) {
-      fail("has viewgain_version " + std::to_string(version) + ", this program reads " +
-           std::to_string(kVdbLayoutVersion));
+  /// Of the layout (vdb_layout.hpp).
+  [[nodiscard]] std::int32_t version(const openvdb::MetaMap& metadata) const {
+    const auto found = value<openvdb::Int32Metadata>(metadata, "viewgain_version");
+    if (found < kOldestVdbLayoutVersion || found > kVdbLayoutVersion) {
+      fail("has viewgain_version " + std::to_string(found) + ", this program reads " +
+           std::to_string(kOldestVdbLayoutVersion) + " to " + std::to_string(kVdbLayoutVersion));
     }
+    return found;
+  }
+
+  [[nodiscard]] std::unique_ptr<GridStorage> make_storage(const openvdb::MetaMap& metadata) const {
     const auto low = value<openvdb::Vec3IMetadata>(metadata, "workspace_min");
     const auto high = value<openvdb::Vec3IMetadata>(metadata, "workspace_max");
     std::int32_t dims[3];
@@ -124,6 +138,11 @@ class Loader {
       if (error.code() == ErrorCode::format) throw;
       fail(error.what());
     }
+  }
+
+  [[nodiscard]] static bool has_grid(const Contents& contents, const std::string& name) {
+    return std::any_of(contents.grids->begin(), contents.grids->end(),
+                       [&](const auto& grid) { return grid->getName() == name; });
   }
 
   template <typename Grid>
@@ -151,36 +170,38 @@ class Loader {
     return found->tree();
   }
 
-  [[nodiscard]] std::uint8_t checked_code(const Coord& at, float log_odds,
-                                          std::int32_t state) const {
+  [[nodiscard]] std::uint8_t checked_code(const Coord& at, float log_odds, float state) const {
     const auto where = [&at] {
       std::ostringstream text;
       text << " at voxel " << at;
       return text.str();
     };
     if (!(log_odds > -2.001F && log_odds < 3.501F)) {
-      fail("log_odds " + std::to_string(log_odds) + where() + " is not within -2 .. 3.5");
+      fail("log_odds " + short_text(log_odds) + where() + " is not within -2 .. 3.5");
     }
     const std::uint8_t code = log_odds_code(log_odds);
     if (std::abs(code_log_odds(code) - log_odds) > 1e-4F) {
-      fail("log_odds " + std::to_string(log_odds) + where() + " is no multiple of 0.05");
+      fail("log_odds " + short_text(log_odds) + where() + " is no multiple of 0.05");
     }
-    if (state != (is_occupied(code) ? 2 : 1)) {
-      fail("state " + std::to_string(state) + where() + " contradicts log_odds " +
-           std::to_string(log_odds));
+    if (state != (is_occupied(code) ? 2.0F : 1.0F)) {
+      fail("state " + short_text(state) + where() + " contradicts log_odds " +
+           short_text(log_odds));
     }
     return code;
   }
 
   void load_states(const Contents& contents, GridStorage& s) const {
     const auto& log_odds = tree<FloatGrid>(contents, s, "log_odds");
-    const auto& state = tree<Int32Grid>(contents, s, "state");
+    std::optional<FloatTree> from_integers;
+    const FloatTree& state = version(*contents.metadata) == 1
+                                 ? from_integers.emplace(tree<Int32Grid>(contents, s, "state"))
+                                 : tree<FloatGrid>(contents, s, "state");
     if (log_odds.activeVoxelCount() != state.activeVoxelCount()) {
       fail("grids 'state' and 'log_odds' do not know the same voxels");
     }
-    const openvdb::tree::ValueAccessor<const openvdb::Int32Tree, false> states(state);
+    const openvdb::tree::ValueAccessor<const FloatTree, false> states(state);
     const auto state_at = [&](const Coord& at) {
-      std::int32_t found = 0;
+      float found = 0;
       if (!states.probeValue(at, found)) {
         fail("grids 'state' and 'log_odds' do not know the same voxels");
       }
@@ -205,7 +226,7 @@ class Loader {
       // The states are a tile too, as large or larger, or a node of the tile's size.
       const auto depth = static_cast<int>(tile.getDepth());
       if (states.getValueDepth(at) > depth) {
-        using Upper = openvdb::Int32Tree::RootNodeType::ChildNodeType;
+        using Upper = FloatTree::RootNodeType::ChildNodeType;
         if (depth == 0) {
           check_states(*state.probeConstNode<Upper>(at), *tile);
         } else if (depth == 1) {
@@ -249,19 +270,61 @@ class Loader {
     }
   }
 
+  /// The hits of a voxel, whichever grids say them.
+  class Hits {
+   public:
+    Hits(const Loader& loader, const Contents& contents, const GridStorage& s) : loader_(loader) {
+      if (loader.version(*contents.metadata) == 1) {
+        integers_ = &loader.tree<Int32Grid>(contents, s, "hits");
+        return;
+      }
+      floats_ = &loader.tree<FloatGrid>(contents, s, "hits");
+      if (loader.has_grid(contents, "hits_rest")) {
+        rest_ = &loader.tree<FloatGrid>(contents, s, "hits_rest");
+      }
+    }
+
+    [[nodiscard]] std::uint64_t voxels() const {
+      return integers_ != nullptr ? integers_->activeVoxelCount() : floats_->activeVoxelCount();
+    }
+
+    [[nodiscard]] std::uint32_t at(const Coord& voxel) const {
+      std::int32_t integer = 0;
+      float rounded = 0;
+      if (integers_ != nullptr ? !integers_->probeValue(voxel, integer)
+                               : !floats_->probeValue(voxel, rounded)) {
+        loader_.fail("the grids of beliefs do not hold the same voxels");
+      }
+      const double hits =
+          integers_ != nullptr
+              ? integer
+              : double{rounded} + double{rest_ != nullptr ? rest_->getValue(voxel) : 0.0F};
+      constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+      if (!(hits >= 0 && hits <= kMost && hits == std::floor(hits))) {
+        loader_.fail("grid 'hits' has the count " + short_text(hits));
+      }
+      return static_cast<std::uint32_t>(hits);
+    }
+
+   private:
+    const Loader& loader_;
+    const openvdb::Int32Tree* integers_ = nullptr;
+    const FloatTree *floats_ = nullptr, *rest_ = nullptr;
+  };
+
   void load_beliefs(const Contents& contents, GridStorage& s) const {
-    const auto& hits = tree<Int32Grid>(contents, s, "hits");
+    const Hits hits(*this, contents, s);
     const std::array<const openvdb::Vec3STree*, 3> parts{
         &tree<Vec3SGrid>(contents, s, "information_diagonal"),
         &tree<Vec3SGrid>(contents, s, "information_offdiagonal"),
         &tree<Vec3SGrid>(contents, s, "information_vector")};
     for (const openvdb::Vec3STree* part : parts) {
-      if (part->activeVoxelCount() != hits.activeVoxelCount()) {
+      if (part->activeVoxelCount() != hits.voxels()) {
         fail("the grids of beliefs do not hold the same voxels");
       }
     }
-    if (hits.activeTileCount() != 0) fail("grid 'hits' has tiles");
-    for (auto leaf = hits.cbeginLeaf(); leaf; ++leaf) {
+    if (parts[0]->activeTileCount() != 0) fail("grid 'information_diagonal' has tiles");
+    for (auto leaf = parts[0]->cbeginLeaf(); leaf; ++leaf) {
       if (leaf->isEmpty()) continue;
       auto block = std::make_shared<BeliefBlock>();
       for (openvdb::Index i = 0; i < 8; ++i) {
@@ -269,7 +332,8 @@ class Loader {
       }
       block->beliefs.reserve(leaf->onVoxelCount());
       for (auto it = leaf->cbeginValueOn(); it; ++it) {
-        block->beliefs.push_back(checked_belief(it.getCoord(), *it, parts, s.voxel_size));
+        block->beliefs.push_back(
+            checked_belief(it.getCoord(), hits.at(it.getCoord()), parts, s.voxel_size));
         if (s.tree.getValue(it.getCoord()) == kUnknownCode) {
           fail("grid 'hits' has a voxel that is unknown in 'state'");
         }
@@ -278,7 +342,7 @@ class Loader {
     }
   }
 
-  [[nodiscard]] Belief checked_belief(const Coord& at, std::int32_t hits,
+  [[nodiscard]] Belief checked_belief(const Coord& at, std::uint32_t hits,
                                       const std::array<const openvdb::Vec3STree*, 3>& parts,
                                       double voxel_size) const {
     Belief belief;
@@ -292,8 +356,7 @@ class Loader {
         if (part == 2) belief.information_vector[position] = value[i];
       }
     }
-    if (hits < 0) fail("grid 'hits' has a negative count");
-    belief.hits = static_cast<std::uint32_t>(hits);
+    belief.hits = hits;
     const std::string fault = fault_of_belief(belief, voxel_size);
     if (!fault.empty()) {
       std::ostringstream text;

@@ -6,12 +6,14 @@
 #pragma GCC visibility pop
 
 #include <cmath>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <utility>
 
 #include "file_seal.hpp"
 #include "map/code_mask.hpp"
+#include "pose_text.hpp"
 #include "vdb_layout.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
@@ -22,7 +24,6 @@ namespace {
 
 using namespace detail;
 using openvdb::FloatGrid;
-using openvdb::Int32Grid;
 using openvdb::Vec3f;
 using openvdb::Vec3SGrid;
 
@@ -82,11 +83,9 @@ void put_leaf(Tree& tree, Index3 origin, const LeafMask& mask, ValueAt&& value_a
 }
 
 void put_states(const GridStorage& s, GridSet& set) {
-  auto& state = set.add<Int32Grid>("state");
+  auto& state = set.add<FloatGrid>("state");
   auto& log_odds = set.add<FloatGrid>("log_odds");
-  const auto state_of = [](std::uint8_t code) {
-    return static_cast<std::int32_t>(code_state(code));
-  };
+  const auto state_of = [](std::uint8_t code) { return static_cast<float>(code_state(code)); };
   visit_blocks(
       s,
       [&](const CodeLeaf& leaf, Index3 origin) {
@@ -110,27 +109,21 @@ void put_states(const GridStorage& s, GridSet& set) {
       });
 }
 
-void put_beliefs(const GridStorage& s, GridSet& set, bool with_covariance) {
-  auto& diagonal = set.add<Vec3SGrid>("information_diagonal");
-  auto& offdiagonal = set.add<Vec3SGrid>("information_offdiagonal");
-  auto& vector = set.add<Vec3SGrid>("information_vector");
-  auto& hits = set.add<Int32Grid>("hits");
-  for (const auto& [key, block_pointer] : s.beliefs) {
-    const BeliefBlock& block = *block_pointer;
-    const Index3 origin = s.lattice.origin(key);
-    const auto information = [&](unsigned at, std::size_t first) {
-      const auto& values = block.find(at)->information;
-      return Vec3f(values[first], values[first + 1], values[first + 2]);
-    };
-    put_leaf(diagonal, origin, block.mask, [&](unsigned at) { return information(at, 0); });
-    put_leaf(offdiagonal, origin, block.mask, [&](unsigned at) { return information(at, 3); });
-    put_leaf(vector, origin, block.mask,
-             [&](unsigned at) { return Vec3f(block.find(at)->information_vector.data()); });
-    put_leaf(hits, origin, block.mask,
-             [&](unsigned at) { return static_cast<std::int32_t>(block.find(at)->hits); });
-  }
-  if (!with_covariance) return;
+/// What the float of a voxel's hits leaves out.
+float hits_rest(const Belief& belief) {
+  return static_cast<float>(static_cast<double>(belief.hits) -
+                            double{static_cast<float>(belief.hits)});
+}
 
+void put_hits_rest(const GridStorage& s, GridSet& set) {
+  auto& rest = set.add<FloatGrid>("hits_rest");
+  for (const auto& [key, block] : s.beliefs) {
+    put_leaf(rest, s.lattice.origin(key), block->mask,
+             [&](unsigned at) { return hits_rest(*block->find(at)); });
+  }
+}
+
+void put_covariances(const GridStorage& s, GridSet& set) {
   auto& covariance = set.add<Vec3SGrid>("covariance_diagonal");
   auto& off_covariance = set.add<Vec3SGrid>("covariance_offdiagonal");
   auto& position = set.add<Vec3SGrid>("position");
@@ -156,6 +149,44 @@ void put_beliefs(const GridStorage& s, GridSet& set, bool with_covariance) {
   }
 }
 
+void put_beliefs(const GridStorage& s, GridSet& set, bool with_covariance) {
+  auto& diagonal = set.add<Vec3SGrid>("information_diagonal");
+  auto& offdiagonal = set.add<Vec3SGrid>("information_offdiagonal");
+  auto& vector = set.add<Vec3SGrid>("information_vector");
+  auto& hits = set.add<FloatGrid>("hits");
+  bool are_exact = true;
+  for (const auto& [key, block_pointer] : s.beliefs) {
+    const BeliefBlock& block = *block_pointer;
+    const Index3 origin = s.lattice.origin(key);
+    const auto information = [&](unsigned at, std::size_t first) {
+      const auto& values = block.find(at)->information;
+      return Vec3f(values[first], values[first + 1], values[first + 2]);
+    };
+    put_leaf(diagonal, origin, block.mask, [&](unsigned at) { return information(at, 0); });
+    put_leaf(offdiagonal, origin, block.mask, [&](unsigned at) { return information(at, 3); });
+    put_leaf(vector, origin, block.mask,
+             [&](unsigned at) { return Vec3f(block.find(at)->information_vector.data()); });
+    put_leaf(hits, origin, block.mask,
+             [&](unsigned at) { return static_cast<float>(block.find(at)->hits); });
+    for (const Belief& belief : block.beliefs) are_exact = are_exact && hits_rest(belief) == 0;
+  }
+  if (!are_exact) put_hits_rest(s, set);
+  if (with_covariance) put_covariances(s, set);
+}
+
+/// Memory that is given back when memory runs out: to take down a tree OpenVDB makes a list of its
+/// leaves, and where there is none for that the process ends.
+class Reserve {
+ public:
+  explicit Reserve(std::size_t leaves)
+      : bytes_(std::make_unique_for_overwrite<char[]>(kAlways + kPerLeaf * leaves)) {}
+
+ private:
+  static constexpr std::size_t kAlways = std::size_t{1} << 20U;
+  static constexpr std::size_t kPerLeaf = 4 * sizeof(void*);  // a list that grows by doubling
+  std::unique_ptr<char[]> bytes_;
+};
+
 }  // namespace
 
 void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
@@ -165,6 +196,7 @@ void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
     initialize_openvdb();
     const GridStorage& s = GridAccess::storage(grid);
     GridSet set(make_transform(s));
+    const Reserve reserve(s.tree.leafCount());  // behind the grids, so that it goes before them
     put_states(s, set);
     put_beliefs(s, set, config.with_covariance);
     const std::string image = MemoryArchive().image(set.grids(), make_metadata(s));

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kLatticeTolerance = 1e-6;  // [voxel]
 constexpr double kRigidTolerance = 1e-9;
+constexpr double kMinVoxelSize = 2e-5;  // [m]; OpenVDB has no transform for less than 1.44e-5
 constexpr std::int32_t kMaxDim = 65536;
 constexpr double kMaxVoxels = 1099511627776.0;  // 2^40
 constexpr double kMaxIndex = 1073741824.0;      // 2^30
@@ -70,6 +71,10 @@ GridLayout layout_of(const GridConfig& config) {
 void check_layout(double voxel_size, const Pose& T_world_grid, double prior_sigma,
                   const GridLayout& layout) {
   check_positive("voxel size", voxel_size);
+  if (voxel_size < kMinVoxelSize) {
+    fail(ErrorCode::invalid_argument, "voxel size ", voxel_size, " m is under ", kMinVoxelSize,
+         " m, and could not be saved");
+  }
   check_positive("prior sigma", prior_sigma);
   const double error = orthonormality_error(T_world_grid);
   if (!(error <= kRigidTolerance)) {

@@ -5,16 +5,18 @@
 #include <cstdint>
 #include <string>
 
+#include "viewgain/core/mix64.hpp"
+
 namespace viewgain::detail {
 
 /// A 64-bit hash of a sequence of 64-bit words, the same on every machine. Not cryptographic.
 class Hash64 {
  public:
   void add(std::uint64_t word) {
-    state_ = mix(state_ ^ (word + kOdd)) + kOdd;
+    state_ = finalize64(state_ ^ (word + kMixStep)) + kMixStep;
     ++count_;
   }
-  [[nodiscard]] std::uint64_t value() const { return mix(state_ ^ count_); }
+  [[nodiscard]] std::uint64_t value() const { return finalize64(state_ ^ count_); }
 
   /// 16 hexadecimal digits.
   [[nodiscard]] std::string hex() const {
@@ -26,15 +28,6 @@ class Hash64 {
   }
 
  private:
-  static constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15U;
-
-  // The finaliser of SplitMix64: a bijection in which every input bit flips half of the output's.
-  static constexpr std::uint64_t mix(std::uint64_t x) {
-    x = (x ^ x >> 30U) * 0xbf58476d1ce4e5b9U;
-    x = (x ^ x >> 27U) * 0x94d049bb133111ebU;
-    return x ^ x >> 31U;
-  }
-
   std::uint64_t state_ = 0;
   std::uint64_t count_ = 0;
 };

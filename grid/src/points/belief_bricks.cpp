@@ -5,20 +5,29 @@
 namespace viewgain::detail {
 namespace {
 
-// Blocks lie within +-2^27 of the origin, so 21 bits an axis would not do for all of them; within
-// one workspace (at most 2^13 blocks an axis) the low 21 bits tell them apart.
-std::uint64_t block_number(Index3 origin) {
-  const auto bits = [](std::int32_t v) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v) >> 3U & 0x1FFFFFU);
+// Cubes of 2^shift voxels lie within +-2^27 of the origin, so 21 bits an axis would not do for all
+// of them; within one workspace (at most 2^13 blocks an axis) the low 21 bits tell them apart.
+std::uint64_t cube_number(Index3 voxel, unsigned shift) {
+  const auto bits = [shift](std::int32_t v) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v) >> shift & 0x1FFFFFU);
   };
-  return bits(origin.x) << 42U | bits(origin.y) << 21U | bits(origin.z);
+  return bits(voxel.x) << 42U | bits(voxel.y) << 21U | bits(voxel.z);
+}
+
+std::uint64_t block_number(Index3 origin) { return cube_number(origin, 3); }
+
+bool is_in_one_cube(const VoxelBox& tile, unsigned shift) {
+  const auto same = [shift](std::int32_t from, std::int32_t to) {
+    return from >> shift == (to - 1) >> shift;
+  };
+  return same(tile.min.x, tile.max.x) && same(tile.min.y, tile.max.y) &&
+         same(tile.min.z, tile.max.z);
 }
 
 }  // namespace
 
-BeliefBricks::BeliefBricks(const BeliefGrid& grid) : min_(grid.min_index()) {
-  const Index3 dims = grid.dims();
-  max_ = {min_.x + dims.x, min_.y + dims.y, min_.z + dims.z};
+BeliefBricks::BeliefBricks(const BeliefGrid& grid)
+    : workspace_(VoxelBox::from_dims(grid.min_index(), grid.dims())) {
   const GridSnapshot snapshot = grid.snapshot();
   const std::vector<BeliefBlockAt> blocks = grid.belief_blocks();
   numbers_.reserve(snapshot.leaves.size() + blocks.size());
@@ -40,14 +49,9 @@ BeliefBricks::BeliefBricks(const BeliefGrid& grid) : min_(grid.min_index()) {
     });
   }
   for (const VoxelBox& tile : snapshot.tiles) {
-    const bool in_one_block = tile.min.x >> 3 == (tile.max.x - 1) >> 3 &&
-                              tile.min.y >> 3 == (tile.max.y - 1) >> 3 &&
-                              tile.min.z >> 3 == (tile.max.z - 1) >> 3;
-    if (in_one_block) {
-      unknown_blocks_.insert(block_number(tile.min));
-    } else {
-      larger_tiles_.push_back(tile);
-    }
+    std::size_t size = 0;
+    while (size + 1 < kTileShifts.size() && !is_in_one_cube(tile, kTileShifts[size])) ++size;
+    unknown_cubes_[size].insert(cube_number(tile.min, kTileShifts[size]));
   }
 }
 
@@ -68,15 +72,11 @@ std::int32_t BeliefBricks::number(Index3 origin) const {
 }
 
 bool BeliefBricks::is_unknown_tile(Index3 v) const {
-  if (v.x < min_.x || v.y < min_.y || v.z < min_.z || v.x >= max_.x || v.y >= max_.y ||
-      v.z >= max_.z) {
-    return false;
+  if (!workspace_.contains(v)) return false;
+  for (std::size_t size = 0; size < kTileShifts.size(); ++size) {
+    if (unknown_cubes_[size].contains(cube_number(v, kTileShifts[size]))) return true;
   }
-  return unknown_blocks_.contains(block_number(v)) ||
-         std::any_of(larger_tiles_.begin(), larger_tiles_.end(), [&](const VoxelBox& t) {
-           return v.x >= t.min.x && v.x < t.max.x && v.y >= t.min.y && v.y < t.max.y &&
-                  v.z >= t.min.z && v.z < t.max.z;
-         });
+  return false;
 }
 
 std::vector<std::pair<std::size_t, unsigned>> BeliefBricks::occupied_with_belief() const {

@@ -49,7 +49,7 @@ class BeliefBricks {
 
   /// Number of the brick with this origin, kNone if there is none.
   [[nodiscard]] std::int32_t number(Index3 origin) const;
-  /// State of a voxel in a block without a brick, which is uniform.
+  /// State of a voxel in a block without a brick, which is uniform. O(1).
   [[nodiscard]] bool is_unknown_tile(Index3 voxel) const;
 
  private:
@@ -59,23 +59,29 @@ class BeliefBricks {
     LeafMask occupied{};
     std::array<std::int32_t, kBlockVoxels> belief{};
   };
+  /// Edges of a snapshot's tiles before they are clipped, as powers of two.
+  static constexpr std::array<unsigned, 3> kTileShifts{3, 7, 11};
+
   std::size_t brick_at(Index3 origin);
 
   std::vector<Brick> bricks_;
   std::vector<PlacedBelief> beliefs_;
   std::unordered_map<std::uint64_t, std::int32_t> numbers_;
-  std::unordered_set<std::uint64_t> unknown_blocks_;  ///< tiles that lie in one block
-  std::vector<VoxelBox> larger_tiles_;
-  Index3 min_, max_;
+  /// Cubes that are unknown as far as the workspace reaches, by the size of tile.
+  std::array<std::unordered_set<std::uint64_t>, kTileShifts.size()> unknown_cubes_;
+  VoxelBox workspace_;
 };
 
 /// A brick and its 26 neighbours.
 class BrickNeighborhood {
  public:
+  /// The greatest radius and half height of a search [voxels]: one brick further.
+  static constexpr double kMaxReach = kBlockSize;
+
   BrickNeighborhood(const BeliefBricks& bricks, std::size_t center);
 
   /// f(belief, from the centre of `voxel` to that of the belief's [voxels]) for the voxels
-  /// whose centres are within `radius` [voxels]; the radius must be at most 8.
+  /// whose centres are within `radius` [voxels]; the radius must be at most kMaxReach.
   template <typename F>
   void for_each_in_ball(Index3 voxel, double radius, F&& f) const {
     const int r = static_cast<int>(radius);
@@ -93,7 +99,7 @@ class BrickNeighborhood {
 
   /// f(belief, from `start` to the centre of the belief's voxel [voxels]) for the voxels whose
   /// centres are within `radius` of the line start + h n and within `half_height` of start along
-  /// it.
+  /// it. `start` must be near.
   template <typename F>
   void for_each_in_column(const Eigen::Vector3d& start, const Eigen::Vector3d& n, double radius,
                           double half_height, F&& f) const {
@@ -125,8 +131,16 @@ class BrickNeighborhood {
     }
   }
 
-  /// From where unknown voxels are around `position` [voxels] to where free ones are; zero if there
-  /// is no difference. Not normalised.
+  /// Can a search from `position` [voxels] find anything? Beyond this everything is out of the
+  /// neighbourhood, and so far out that coordinates lose their digits, or are NaN.
+  [[nodiscard]] bool is_near(const Eigen::Vector3d& position) const {
+    const Eigen::Vector3d middle =
+        (Eigen::Vector3d(low_.x, low_.y, low_.z).array() + 1.5) * kBlockSize;
+    return ((position - middle).array().abs() <= 1.5 * kBlockSize + kMaxReach).all();
+  }
+
+  /// From where unknown voxels are around `position` [voxels], which must be near, to where free
+  /// ones are; zero if there is no difference. Not normalised.
   [[nodiscard]] Eigen::Vector3d free_side(const Eigen::Vector3d& position) const;
 
  private:

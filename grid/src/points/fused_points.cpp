@@ -12,6 +12,7 @@
 #include "point_support.hpp"
 #include "point_thinning.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain {
@@ -19,7 +20,7 @@ namespace {
 
 using namespace detail;
 
-constexpr double kMaxReach = 8.0;       // voxels: bricks know their direct neighbours
+constexpr double kMaxReach = BrickNeighborhood::kMaxReach;
 constexpr double kSupportRadius = 4.0;  // voxels
 constexpr int kSteps = 3;               // of a point towards its column's mean
 
@@ -27,7 +28,7 @@ void check(const FusedPointsConfig& config) {
   const auto need = [](bool ok, const char* name, double value) {
     if (!ok) {
       throw Error(ErrorCode::invalid_argument, "fused points: " + std::string(name) + " " +
-                                                   std::to_string(value) + " is out of bounds");
+                                                   short_text(value) + " is out of bounds");
     }
   };
   need(config.normal_radius >= 1 && config.normal_radius <= kMaxReach, "normal_radius",
@@ -52,6 +53,7 @@ struct Seed {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   SymmetricMatrix3 information{};  ///< [m⁻²]
   std::uint32_t hits = 0;
+  bool is_near = false;  ///< is the position in the voxel's neighbourhood?
 };
 
 /// The direction in which the readings around a voxel spread least.
@@ -80,7 +82,7 @@ void pool_column(const BrickNeighborhood& around, double voxel_size, const Place
   const double sigma = std::sqrt(std::max(variance, 0.0)) / voxel_size;
   const double half_height =
       std::clamp(config.column_sigmas * sigma, 1.0, kMaxReach / 2);  // NaN: not for valid beliefs
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < kSteps && around.is_near(seed.position); ++step) {
     SymmetricMatrix3 information{};
     Eigen::Vector3d vector = Eigen::Vector3d::Zero();  // Σ Λ (p - seed), lengths in voxels
     std::uint32_t hits = 0;
@@ -124,14 +126,14 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
       seed.information = own.information;
       seed.hits = own.hits;
       if (config.rule == PointRule::pooled) pool_column(around, V, own, config, seed);
+      seed.is_near = around.is_near(seed.position);
     }
   });
 
   std::vector<std::size_t> kept(seeds.size());
   std::iota(kept.begin(), kept.end(), std::size_t{0});
-  std::erase_if(kept, [&](std::size_t i) {
-    return seeds[i].hits < config.min_hits || !seeds[i].position.allFinite();
-  });
+  std::erase_if(
+      kept, [&](std::size_t i) { return seeds[i].hits < config.min_hits || !seeds[i].is_near; });
   if (config.rule == PointRule::pooled) {
     std::stable_sort(kept.begin(), kept.end(),
                      [&](std::size_t a, std::size_t b) { return seeds[a].hits > seeds[b].hits; });

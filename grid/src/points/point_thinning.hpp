@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "point_cells.hpp"
 
@@ -12,7 +13,7 @@ namespace viewgain::detail {
 class PointThinning {
  public:
   explicit PointThinning(double min_distance)
-      : cells_(min_distance > 0 ? min_distance : 1.0), limit_(min_distance * min_distance) {}
+      : cells_(std::max(min_distance, kLeastEdge)), limit_(min_distance * min_distance) {}
 
   [[nodiscard]] bool accept(const Eigen::Vector3d& point) {
     bool crowded = false;
@@ -24,6 +25,9 @@ class PointThinning {
   }
 
  private:
+  /// Tinier cubes than this save nothing, and their numbers would not fit into an integer.
+  static constexpr double kLeastEdge = 0.1;
+
   PointCells<Eigen::Vector3d> cells_;
   double limit_;
 };

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::detail {
 
@@ -14,7 +15,7 @@ namespace viewgain::detail {
 inline void check_plane(std::optional<double> height) {
   if (height && !std::isfinite(*height)) {
     throw Error(ErrorCode::invalid_argument,
-                "support plane " + std::to_string(*height) + " m is not finite");
+                "support plane " + short_text(*height) + " m is not finite");
   }
 }
 

@@ -23,6 +23,7 @@
 
 #include "mesh_file_checks.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -210,7 +211,7 @@ TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement) {
   if (!std::isfinite(placement.longest_side) || placement.longest_side < 0) {
     throw Error(ErrorCode::invalid_argument,
                 "the longest side must be finite and not negative, not " +
-                    std::to_string(placement.longest_side));
+                    short_text(placement.longest_side));
   }
   for (auto& v : mesh.vertices) {
     // Cyclic permutations keep the orientation of the faces.

@@ -12,6 +12,7 @@
 #include "box_tree.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain {
@@ -28,8 +29,7 @@ Vector3d vector_of(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; 
 
 // In [0, 1): the same on every machine.
 double uniform(std::uint64_t seed, std::uint64_t counter) {
-  const std::uint64_t h = mix64(seed * 0xD1B54A32D192ED03ULL + counter * kMixStep);
-  return static_cast<double>(h >> 11U) * 0x1.0p-53;
+  return unit_number(mix64(seed * 0xD1B54A32D192ED03ULL + counter * kMixStep));
 }
 
 struct Triangle {
@@ -233,7 +233,7 @@ Consistency GroundTruth::consistency(std::span<const std::array<double, 3>> poin
     const double variance = n.dot(covariances[i] * n);
     if (!(variance > 0) || !std::isfinite(variance)) {
       throw Error(ErrorCode::invalid_argument, "the covariance of point " + std::to_string(i) +
-                                                   " has the variance " + std::to_string(variance) +
+                                                   " has the variance " + short_text(variance) +
                                                    " along the normal");
     }
     z2.push_back(distance * distance / variance);

@@ -15,6 +15,7 @@
 #include "point_cleaning.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -28,7 +29,7 @@ constexpr double kMinDistance = 0.25;  // of vertices after smoothing [spacings]
 
 void check(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
   const auto refuse = [](const std::string& what, double value) {
-    throw Error(ErrorCode::invalid_argument, what + ", not " + std::to_string(value));
+    throw Error(ErrorCode::invalid_argument, what + ", not " + short_text(value));
   };
   if (!std::isfinite(config.spacing) || config.spacing <= 0) {
     refuse("the spacing must be positive and finite", config.spacing);
@@ -76,7 +77,7 @@ std::vector<Point3> triangulation_points(std::span<const OrientedPoint> points, 
   std::vector<Point3> scaled(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const double offset = static_cast<double>(mix64((3 * i + k) * kMixStep) >> 11U) * 0x1.0p-53;
+      const double offset = unit_number(mix64((3 * i + k) * kMixStep));
       scaled[i][k] =
           (points[i].position[k] - points[0].position[k]) / spacing + 1e-4 * (offset - 0.5);
     }

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain {
@@ -60,7 +61,7 @@ RangeCalibration measure_calibration(const Sensor& sensor, const SimulationConfi
     if (!(reading > 0) || !std::isfinite(reading)) {
       throw Error(
           ErrorCode::invalid_argument,
-          "cannot calibrate " + sensor.name + ": no reading at " + std::to_string(distance) + " m");
+          "cannot calibrate " + sensor.name + ": no reading at " + short_text(distance) + " m");
     }
     calibration.table.push_back({reading, reading - distance});
   }

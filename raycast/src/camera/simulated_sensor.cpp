@@ -12,6 +12,7 @@
 
 #include "tof_pixel.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain {
@@ -31,26 +32,25 @@ void check(const Sensor& sensor, const SimulationConfig& config) {
     throw Error(ErrorCode::invalid_argument, "simulated sensor: " + what);
   };
   if (!(config.background_radius >= 0) || !std::isfinite(config.background_radius)) {
-    fail("background radius " + std::to_string(config.background_radius) + " m is not >= 0");
+    fail("background radius " + short_text(config.background_radius) + " m is not >= 0");
   }
   if (config.sub_rays < 1 || config.sub_rays > kMaxSubRays) {
     fail("sub-rays " + std::to_string(config.sub_rays) + " are not in 1.." +
          std::to_string(kMaxSubRays));
   }
   if (config.support_plane && !std::isfinite(*config.support_plane)) {
-    fail("support plane " + std::to_string(*config.support_plane) + " m is not finite");
+    fail("support plane " + short_text(*config.support_plane) + " m is not finite");
   }
   config.calibration.validate();
   if (config.wiggling == 0) return;
   const double unambiguous = unambiguous_range(sensor.noise);
   if (!std::isfinite(unambiguous)) {
-    fail("wiggling " + std::to_string(config.wiggling) + " m, but " + sensor.name +
+    fail("wiggling " + short_text(config.wiggling) + " m, but " + sensor.name +
          " has no modulation frequency");
   }
   const double bound = unambiguous / (8.0 * std::numbers::pi);
   if (!(std::abs(config.wiggling) < bound)) {
-    fail("wiggling " + std::to_string(config.wiggling) + " m is not under " +
-         std::to_string(bound) + " m");
+    fail("wiggling " + short_text(config.wiggling) + " m is not under " + short_text(bound) + " m");
   }
 }
 

@@ -10,6 +10,7 @@
 #include "gain/gain_evaluator_impl.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -19,8 +20,6 @@ constexpr double kStepX = 0.7548776662466927, kStepY = 0.5698402909980532;
 
 // For fewer of a view's tiles than this share the BVH is quicker than lists for all tiles.
 constexpr double kLeastListedShare = 0.08;
-
-double unit_number(std::uint64_t bits) { return static_cast<double>(bits >> 11U) * 0x1.0p-53; }
 
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -33,7 +32,7 @@ void check(const ApproximateConfig& config, std::size_t poses, std::size_t resul
     throw Error(ErrorCode::invalid_argument, what);
   };
   if (!(config.share > 0 && config.share <= 1)) {
-    reject(std::string("share of the tiles is ") + std::to_string(config.share) +
+    reject(std::string("share of the tiles is ") + short_text(config.share) +
            "; it must be in (0, 1]");
   }
   if (config.groups < 2 || config.groups > 64) {

@@ -10,6 +10,7 @@
 
 #include "gain/gain_evaluator_impl.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -25,7 +26,7 @@ constexpr std::size_t kFewPoses = 32;
 void check(const RaceConfig& config) {
   const auto reject = [](const char* name, double value, const char* rule) {
     throw Error(ErrorCode::invalid_argument,
-                std::string(name) + " is " + std::to_string(value) + "; it must be in " + rule);
+                std::string(name) + " is " + short_text(value) + "; it must be in " + rule);
   };
   if (!(config.interval > 0 && config.interval < 1e6)) {
     reject("interval", config.interval, "(0, 1e6)");

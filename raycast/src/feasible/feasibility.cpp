@@ -15,6 +15,7 @@
 #include "oriented_box.hpp"
 #include "scene/scene_data.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain {
@@ -34,7 +35,7 @@ void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConf
   if (scene == nullptr) fail("there is no scene");
   for (const double size : config.body.size) {
     if (!(std::isfinite(size) && size > 0)) {
-      fail("the body's size must be positive and finite, not " + std::to_string(size));
+      fail("the body's size must be positive and finite, not " + short_text(size));
     }
   }
   if (config.body.T_flange_camera &&
@@ -42,7 +43,7 @@ void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConf
     fail("T_flange_camera is not a rigid transform");
   }
   if (!(std::isfinite(config.clearance) && config.clearance >= 0)) {
-    fail("the clearance must be finite and not negative, not " + std::to_string(config.clearance));
+    fail("the clearance must be finite and not negative, not " + short_text(config.clearance));
   }
   const PoseTolerance& taken = config.taken_tolerance;
   if (!(std::isfinite(taken.distance) && taken.distance >= 0 && std::isfinite(taken.angle) &&
@@ -55,7 +56,7 @@ void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConf
   config.reach.validate();
   if (config.sensor) config.sensor->validate();
   if (!(config.max_near_share >= 0 && config.max_near_share <= 1)) {
-    fail("the share of near rays must be in 0..1, not " + std::to_string(config.max_near_share));
+    fail("the share of near rays must be in 0..1, not " + short_text(config.max_near_share));
   }
 }
 

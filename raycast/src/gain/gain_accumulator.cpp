@@ -30,7 +30,7 @@ FrontalSigmas frontal_sigmas(const Sensor& sensor) {
       return {.a0 = n.offset, .a2 = n.quadratic, .v = n.vertex, .l1 = n.lateral_px / fx};
     }
     FrontalSigmas operator()(const StereoNoise& n) const {
-      return {.a2 = n.subpixel / (n.focal * n.baseline), .l1 = 1.0 / fx};
+      return {.a2 = n.subpixel / (n.focal_with(fx) * n.baseline), .l1 = 1.0 / fx};
     }
     FrontalSigmas operator()(const QuadraticNoise& n) const {
       return {.a0 = n.offset, .a2 = n.quadratic, .l1 = 1.0 / fx};

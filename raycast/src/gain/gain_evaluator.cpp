@@ -12,6 +12,7 @@
 
 #include "gain_evaluator_impl.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -29,7 +30,7 @@ constexpr double kMaxSigmaRatio = 1e4;
 
 void check_range(const char* name, double value) {
   if (!std::isfinite(value) || value < 0) {
-    reject(std::string(name) + " is " + std::to_string(value) + " m; it must be >= 0 and finite");
+    reject(std::string(name) + " is " + short_text(value) + " m; it must be >= 0 and finite");
   }
 }
 
@@ -43,8 +44,8 @@ void check(const GainConfig& config, const Sensor& sensor, const VoxelScene& sce
   check_range("min_range", min_range);
   check_range("max_range", max_range);
   if (min_range >= max_range) {
-    reject("min_range " + std::to_string(min_range) + " m is not below max_range " +
-           std::to_string(max_range) + " m");
+    reject("min_range " + short_text(min_range) + " m is not below max_range " +
+           short_text(max_range) + " m");
   }
   if (!(prior_sigma >= kMinPriorSigma && prior_sigma <= kMaxPriorSigma)) {
     std::ostringstream text;
@@ -64,7 +65,7 @@ void check(const GainConfig& config, const Sensor& sensor, const VoxelScene& sce
   }
   for (const WeightRegion& region : config.weights) {
     if (!std::isfinite(region.weight) || region.weight < 0) {
-      reject("task weight is " + std::to_string(region.weight) + "; it must be >= 0 and finite");
+      reject("task weight is " + short_text(region.weight) + "; it must be >= 0 and finite");
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!(region.box.min[axis] < region.box.max[axis]))

@@ -297,7 +297,7 @@ TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
   change("FIELDS needs", "FIELDS intensity x normal y z", "FIELDS");
   change("VIEWPOINT needs 7", "VIEWPOINT 1 2 3 0 1 0 0", "VIEWPOINT 1 2 3");
   change("bad.pcd:9: VIEWPOINT's quaternion", "0 1 0 0\n", "0 2 0 0\n");
-  change("VIEWPOINT has a number that is not finite", "VIEWPOINT 1", "VIEWPOINT nan");
+  change("the number 'nan' is not finite", "VIEWPOINT 1", "VIEWPOINT nan");
   change("DATA 'bin'", "DATA binary", "DATA bin\n");
   change("no line DATA", good.substr(good.find("DATA")), "");
   change("the header's word 'ply' is unknown", "VERSION 0.7", "ply");

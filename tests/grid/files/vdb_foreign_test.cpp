@@ -86,7 +86,7 @@ TEST_F(ForeignVdb, WellFormedFilesAreRead) {
   EXPECT_EQ(load_vdb(rewritten([](Contents&) {})).content_hash(), hash);
   // Other tree topologies of the same values.
   EXPECT_EQ(load_vdb(rewritten([](Contents& c) {
-              openvdb::tools::prune(c.grid<openvdb::Int32Grid>("state").tree());
+              openvdb::tools::prune(c.grid<openvdb::FloatGrid>("state").tree());
             })).content_hash(),
             hash);
   EXPECT_EQ(load_vdb(rewritten([](Contents& c) {
@@ -106,6 +106,74 @@ TEST_F(ForeignVdb, WellFormedFilesAreRead) {
               c.metadata.insertMeta("comment", openvdb::StringMetadata("more"));
             })).content_hash(),
             hash);
+}
+
+/// The same values as whole numbers.
+openvdb::Int32Grid::Ptr as_integers(const openvdb::FloatGrid& grid) {
+  auto result = openvdb::Int32Grid::create();
+  result->setName(grid.getName());
+  result->setTransform(grid.transform().copy());
+  for (auto it = grid.cbeginValueOn(); it; ++it) {
+    result->tree().setValueOn(it.getCoord(), static_cast<std::int32_t>(*it));
+  }
+  return result;
+}
+
+TEST_F(ForeignVdb, FilesOfTheFirstLayoutAreRead) {
+  BeliefGrid expected = small_map();
+  Belief belief = *expected.belief({3, 4, 6});
+  belief.hits = 2147483647U;
+  expected.set({3, 4, 6}, 1.5F, belief);
+  belief.hits = 16777217U;  // no float
+  expected.set({3, 5, 6}, 1.5F, belief);
+  const auto old = rewritten([](Contents& c) {
+    auto state = as_integers(c.grid<openvdb::FloatGrid>("state"));
+    auto hits = as_integers(c.grid<openvdb::FloatGrid>("hits"));
+    hits->tree().setValueOn({3, 4, 6}, 2147483647);
+    hits->tree().setValueOn({3, 5, 6}, 16777217);
+    c.remove("state");
+    c.remove("hits");
+    c.grids.insert(c.grids.begin(), {state, hits});
+    c.metadata.removeMeta("viewgain_version");
+    c.metadata.insertMeta("viewgain_version", openvdb::Int32Metadata(1));
+  });
+  EXPECT_EQ(load_vdb(old).content_hash(), expected.content_hash());
+  // Says that it is of this layout.
+  expect_refused("grid 'state' has values of type int32", [](Contents& c) {
+    auto state = as_integers(c.grid<openvdb::FloatGrid>("state"));
+    c.remove("state");
+    c.grids.push_back(state);
+  });
+}
+
+TEST_F(ForeignVdb, HitsBeyondWhatAFloatHoldsAreKept) {
+  const auto names = [&] {
+    std::string all;
+    (void)rewritten([&](Contents& c) {
+      for (const auto& grid : c.grids) all += grid->getName() + " ";
+    });
+    return all;
+  };
+  EXPECT_EQ(names().find("hits_rest"), std::string::npos);
+  BeliefGrid grid = small_map();
+  Belief belief = *grid.belief({3, 4, 6});
+  std::int32_t x = 0;
+  const std::vector<std::uint32_t> counts{16777216U,  16777217U,   16777219U,  33554435U,
+                                          999999999U, 2147483583U, 2147483647U};
+  for (const std::uint32_t hits : counts) {
+    belief.hits = hits;
+    grid.set({x++, 4, 6}, 1.5F, belief);
+  }
+  save_vdb(grid, path());
+  EXPECT_NE(names().find("hits_rest"), std::string::npos);
+  const BeliefGrid loaded = load_vdb(path());
+  EXPECT_EQ(loaded.content_hash(), grid.content_hash());
+  x = 0;
+  for (const std::uint32_t hits : counts) EXPECT_EQ(loaded.belief({x++, 4, 6})->hits, hits);
+  EXPECT_EQ(x, 7);
+  expect_refused("hits", [](Contents& c) {
+    c.grid<openvdb::FloatGrid>("hits_rest").tree().setValueOn({3, 4, 6}, 0.5F);
+  });
 }
 
 TEST_F(ForeignVdb, MissingPartsAndWrongTypesAreNamed) {
@@ -139,7 +207,10 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
     });
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  metadata("viewgain_version", "viewgain_version", openvdb::Int32Metadata(2));
+  metadata("this program reads 1 to 2", "viewgain_version", openvdb::Int32Metadata(3));
+  metadata("viewgain_version", "viewgain_version", openvdb::Int32Metadata(0));
+  // Says that it is of the first layout, which had other types of values.
+  metadata("grid 'state' has values of type float", "viewgain_version", openvdb::Int32Metadata(1));
   metadata("voxel size", "voxel_size", openvdb::DoubleMetadata(-1));
   metadata("voxel size", "voxel_size", openvdb::DoubleMetadata(nan));
   metadata("transform", "voxel_size", openvdb::DoubleMetadata(0.06));
@@ -167,18 +238,18 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
   log_odds("contradicts", wall, -1.0F);
   log_odds("contradicts", free, 1.0F);
   log_odds("same voxels", unknown, 1.0F);
-  for (const int state : {0, 1, 3, -1}) {
+  for (const float state : {0.0F, 1.0F, 3.0F, -1.0F, 1.5F, static_cast<float>(nan)}) {
     expect_refused("state", [&](Contents& c) {
-      c.grid<openvdb::Int32Grid>("state").tree().setValueOn(wall, state);
+      c.grid<openvdb::FloatGrid>("state").tree().setValueOn(wall, state);
     });
   }
   expect_refused("same voxels", [&](Contents& c) {
-    c.grid<openvdb::Int32Grid>("state").tree().setValueOff(wall);
+    c.grid<openvdb::FloatGrid>("state").tree().setValueOff(wall);
   });
   expect_refused("same voxels", [&](Contents& c) {
     // As many voxels, but others.
-    c.grid<openvdb::Int32Grid>("state").tree().setValueOff(wall);
-    c.grid<openvdb::Int32Grid>("state").tree().setValueOn(unknown, 1);
+    c.grid<openvdb::FloatGrid>("state").tree().setValueOff(wall);
+    c.grid<openvdb::FloatGrid>("state").tree().setValueOn(unknown, 1);
   });
 
   const auto vector = [&](const char* name, const openvdb::Vec3f& value) {
@@ -193,16 +264,23 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
   vector("information_offdiagonal", {1e8F, 0, 0});
   vector("information_vector", {0, std::numeric_limits<float>::infinity(), 0});
   vector("information_vector", {0, 1e30F, 0});
-  expect_refused(
-      "hits", [&](Contents& c) { c.grid<openvdb::Int32Grid>("hits").tree().setValueOn(wall, -4); });
+  for (const float hits : {-4.0F, 0.5F, 2147483648.0F, bad}) {
+    expect_refused("hits", [&](Contents& c) {
+      c.grid<openvdb::FloatGrid>("hits").tree().setValueOn(wall, hits);
+    });
+  }
   expect_refused("beliefs",
-                 [&](Contents& c) { c.grid<openvdb::Int32Grid>("hits").tree().setValueOff(wall); });
+                 [&](Contents& c) { c.grid<openvdb::FloatGrid>("hits").tree().setValueOff(wall); });
+  expect_refused("beliefs", [&](Contents& c) {
+    c.grid<openvdb::FloatGrid>("hits").tree().setValueOff(wall);
+    c.grid<openvdb::FloatGrid>("hits").tree().setValueOn(unknown, 1);
+  });
   expect_refused("unknown", [&](Contents& c) {
     for (const char* name :
          {"information_diagonal", "information_offdiagonal", "information_vector"}) {
       c.grid<openvdb::Vec3SGrid>(name).tree().setValueOn(unknown, openvdb::Vec3f(1));
     }
-    c.grid<openvdb::Int32Grid>("hits").tree().setValueOn(unknown, 1);
+    c.grid<openvdb::FloatGrid>("hits").tree().setValueOn(unknown, 1);
   });
   expect_refused("tiles", [&](Contents& c) {
     for (const char* name :
@@ -210,13 +288,14 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
       c.grid<openvdb::Vec3SGrid>(name).tree().clear();
       c.grid<openvdb::Vec3SGrid>(name).tree().addTile(1, {8, 0, 0}, openvdb::Vec3f(1), true);
     }
-    c.grid<openvdb::Int32Grid>("hits").tree().clear();
-    c.grid<openvdb::Int32Grid>("hits").tree().addTile(1, {8, 0, 0}, 1, true);
+    c.grid<openvdb::FloatGrid>("hits").tree().clear();
+    c.grid<openvdb::FloatGrid>("hits").tree().addTile(1, {8, 0, 0}, 1, true);
   });
-  EXPECT_EQ(cases_, 37);
+  EXPECT_EQ(cases_, 45);
 }
 
-/// A workspace of 4096³ voxels that are one tile of 4096³, of the given log-odds.
+/// A workspace of 4096³ voxels that are one tile of 4096³, of the given log-odds. In the first
+/// layout, with whole numbers.
 class ForeignTiles : public testing::Test {
  protected:
   static constexpr int kSize = 4096;

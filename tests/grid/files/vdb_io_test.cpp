@@ -116,7 +116,7 @@ TEST(VdbIo, VdbPrintListsTheGrids) {
   const std::string plain = listing({});
   for (const char* part :
        {"state", "log_odds", "information_diagonal", "information_offdiagonal",
-        "information_vector", "hits", "int32", "float", "vec3s", "voxel_size", "prior_sigma",
+        "information_vector", "hits", "float", "vec3s", "voxel_size", "prior_sigma",
         "workspace_min", "workspace_max", "T_world_grid", "views", "viewgain_version"}) {
     EXPECT_NE(plain.find(part), std::string::npos) << part << "\n" << plain;
   }
@@ -125,6 +125,65 @@ TEST(VdbIo, VdbPrintListsTheGrids) {
   for (const char* part : {"covariance_diagonal", "covariance_offdiagonal", "position"}) {
     EXPECT_NE(full.find(part), std::string::npos) << part;
   }
+}
+
+TEST(VdbIo, PythonsOpenVdbReadsTheGrids) {
+  const std::string python = "/usr/bin/python3";
+  if (std::system((python + " -c 'import pyopenvdb' 2> /dev/null").c_str()) != 0) {
+    GTEST_SKIP() << "no python3-openvdb";
+  }
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "map.vdb";
+  const BeliefGrid grid = seen_object(40);
+  save_vdb(grid, path, {.with_covariance = true});
+  const auto script =
+      folder.file("read.py",
+                  "import pyopenvdb, sys\n"
+                  "grids, metadata = pyopenvdb.readAll(sys.argv[1])\n"
+                  "grids = {g.name: g for g in grids}\n"
+                  "states = [v['value'] for v in grids['state'].citerOnValues()]\n"
+                  "hits = sum(v['value'] for v in grids['hits'].citerOnValues())\n"
+                  "names = ' '.join(sorted(grids))\n"
+                  "print(states.count(2), int(hits), metadata['voxel_size'], names)\n");
+  FILE* pipe =
+      ::popen((python + " '" + script.string() + "' '" + path.string() + "' 2>&1").c_str(), "r");
+  std::array<char, 1024> text{};
+  const std::size_t length = std::fread(text.data(), 1, text.size(), pipe);
+  EXPECT_EQ(::pclose(pipe), 0);
+  std::uint64_t hits = 0;
+  for (const BeliefBlockAt& block : grid.belief_blocks()) {
+    for (const Belief& belief : block.beliefs->beliefs) hits += belief.hits;
+  }
+  EXPECT_EQ(std::string(text.data(), length),
+            std::to_string(grid.statistics().occupied) + " " + std::to_string(hits) +
+                " 0.01 covariance_diagonal covariance_offdiagonal hits information_diagonal "
+                "information_offdiagonal information_vector log_odds position state\n");
+}
+
+TEST(VdbIo, VoxelsAreAsSmallAsCanBeSaved) {
+  const TemporaryFolder folder;
+  const auto grid = [](double voxel) {
+    return BeliefGrid(GridConfig{
+        voxel,
+        {{0, 0, 0}, {20 * voxel, 20 * voxel, 20 * voxel}},
+        Pose(Eigen::AngleAxisd(0.3, Eigen::Vector3d(2, 1, -1).normalized()).toRotationMatrix(),
+             Eigen::Vector3d(0.01, 0.02, 0.03)),
+        voxel});
+  };
+  int cases = 0;
+  for (const double voxel : {1e-300, 1e-5, 1.4e-5, 1.99e-5}) {
+    expect_error(ErrorCode::invalid_argument, "voxel size", [&] { (void)grid(voxel); });
+    ++cases;
+  }
+  for (const double voxel : {2e-5, 1e-4, 1.0, 1e3}) {
+    const auto path = folder.path() / "map.vdb";
+    BeliefGrid small = grid(voxel);
+    small.set({1, 2, 3}, 1.0F);
+    save_vdb(small, path);
+    expect_same(load_vdb(path), small);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 8);
 }
 
 TEST(VdbIo, TruncatedAtAnyLength) {

@@ -15,6 +15,7 @@
 #include "planner/model.hpp"
 #include "planner/planning_options.hpp"
 #include "shared_grid.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/mesh/boundary.hpp"
 #include "viewgain/mesh/surface.hpp"
 #include "viewgain/mesh/viewpoint_estimator.hpp"
@@ -68,8 +69,7 @@ py::tuple boundary_candidates(const SurfaceMesh& surface, const py::object& view
                               const std::optional<std::vector<double>>& tilts,
                               const std::optional<std::vector<double>>& rolls) {
   if (!(spacing > 0 && std::isfinite(spacing))) {
-    throw py::value_error("the spacing must be positive and finite, not " +
-                          std::to_string(spacing));
+    throw py::value_error("the spacing must be positive and finite, not " + short_text(spacing));
   }
   const std::vector<Pose> taken = pose_list(views, "views");
   EstimatorConfig config = app::default_estimator(spacing);

@@ -9,12 +9,17 @@
 
 namespace viewgain {
 
-/// A file that appears whole or not at all. What is written goes to temporary_path(), in the
-/// target's folder; commit() renames it to the target, and without a commit() the destructor
-/// removes it. Writers that want a file name (OpenVDB, PNG libraries) get temporary_path(), others
-/// use write(). The temporary's name begins with a dot, is unique by process and counter, and keeps
-/// the target's ending. A target that is there and is no regular file (/dev/stdout, a pipe) is
-/// written in place, without a rename; a symbolic link stays and the file behind it is replaced.
+/// A file that appears whole or not at all, over a power cut too. What is written goes to
+/// temporary_path(), in the target's folder; commit() syncs it and renames it to the target, and
+/// without a commit() the destructor removes it. Writers that want a file name get
+/// temporary_path(), others use write(). The temporary's name is .NAME.tmp-PROCESS-COUNTER.ENDING;
+/// what a killed process left there is removed by the next writer of the same target.
+///
+/// A symbolic link stays, and the file that it leads to is replaced, or made. A target that is no
+/// regular file (a pipe, a device) is written in place, without a rename, and so is one that stands
+/// for an open file of this process (/dev/stdout, /dev/fd/N): that goes on where others stopped,
+/// even if it is a regular file. A pipe is opened once, by the first write().
+///
 /// Every failure throws Error(io) that names the target. Thread safety: distinct objects may be
 /// used from distinct threads.
 class VIEWGAIN_EXPORT AtomicFile {
@@ -25,7 +30,7 @@ class VIEWGAIN_EXPORT AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Where to write; exists.
+  /// Where to write; exists. Only for targets that are regular files or are not there yet.
   [[nodiscard]] const std::filesystem::path& temporary_path() const noexcept { return temporary_; }
 
   /// Appends bytes.
@@ -36,9 +41,12 @@ class VIEWGAIN_EXPORT AtomicFile {
   void commit();
 
  private:
+  [[nodiscard]] bool is_in_place() const noexcept { return temporary_ == resolved_; }
+
   std::filesystem::path target_;     // as given, for messages
   std::filesystem::path resolved_;   // behind symbolic links
   std::filesystem::path temporary_;  // equals resolved_ when written in place
+  int file_ = -1;                    // where write() writes, once it is open
   char* listed_ = nullptr;           // the name for remove_temporary_files()
   bool committed_ = false;
 };

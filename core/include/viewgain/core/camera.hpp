@@ -21,8 +21,9 @@ struct VIEWGAIN_EXPORT PinholeCamera {
 
   [[nodiscard]] bool has_distortion() const { return distortion != std::array<double, 5>{}; }
 
-  /// Throws Error(invalid_argument), naming the field, unless sizes are in 1..16384, focal lengths
-  /// are positive and all numbers are finite.
+  /// Throws Error(invalid_argument), naming the field, unless sizes are in 1..16384 and make at
+  /// most 2^24 pixels (a table of rays takes 24 bytes a pixel), focal lengths are positive and all
+  /// numbers are finite.
   void validate() const;
 
   /// Direction (x, y, 1) in the camera frame of the ray through pixel coordinates (u, v) [px],

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/noise.hpp"
@@ -39,14 +40,54 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   [[nodiscard]] double determinant() const {
     return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
   }
-  /// By cofactors; exact to a few ulps times the condition number. Not finite if singular.
+  /// By cofactors where they are good to about 1e-12, else by a factorisation, so that condition
+  /// numbers of 1e10 do no harm. NaN unless positive definite.
   [[nodiscard]] SymmetricMatrix3 inverse() const {
-    const double c_xx = yy * zz - yz * yz, c_yy = xx * zz - xz * xz, c_zz = xx * yy - xy * xy;
-    const double c_xy = xz * yz - xy * zz, c_xz = xy * yz - xz * yy, c_yz = xy * xz - xx * yz;
-    const double s = 1.0 / (xx * c_xx + xy * c_xy + xz * c_xz);
-    return {c_xx * s, c_yy * s, c_zz * s, c_xy * s, c_xz * s, c_yz * s};
+    double ignored;
+    return inverse(ignored);
+  }
+  /// The same, and the determinant of this matrix.
+  [[nodiscard]] SymmetricMatrix3 inverse(double& determinant) const {
+    // determinant / (xx yy zz) is in (0, 1] and bounds the cancellation in cofactors.
+    constexpr double kWellScaled = 1e-4;
+    const double c_xx = yy * zz - yz * yz;
+    const double c_xy = xz * yz - xy * zz;
+    const double c_xz = xy * yz - xz * yy;
+    determinant = xx * c_xx + xy * c_xy + xz * c_xz;
+    if (!(xx > 0 && yy > 0 && determinant > kWellScaled * (xx * yy * zz))) {
+      return inverse_by_factorisation(determinant);
+    }
+    const double s = 1.0 / determinant;
+    return {c_xx * s, (xx * zz - xz * xz) * s, (xx * yy - xy * xy) * s, c_xy * s,
+            c_xz * s, (xy * xz - xx * yz) * s};
   }
   bool operator==(const SymmetricMatrix3&) const = default;
+
+ private:
+  /// LDLᵀ without pivoting, backward stable for positive definite matrices.
+  [[nodiscard]] SymmetricMatrix3 inverse_by_factorisation(double& determinant) const {
+    const double d1 = xx;
+    const double l21 = xy / d1, l31 = xz / d1;
+    const double d2 = yy - l21 * xy;
+    const double s32 = yz - l21 * xz;
+    const double l32 = s32 / d2;
+    const double d3 = zz - l31 * xz - l32 * s32;
+    if (!(d1 > 0 && d2 > 0 && d3 > 0)) {
+      constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+      determinant = kNan;
+      return {kNan, kNan, kNan, kNan, kNan, kNan};
+    }
+    determinant = d1 * d2 * d3;
+    // L⁻¹ is lower triangular with ones on the diagonal.
+    const double k21 = -l21, k32 = -l32, k31 = l21 * l32 - l31;
+    const double i1 = 1.0 / d1, i2 = 1.0 / d2, i3 = 1.0 / d3;
+    return {i1 + k21 * k21 * i2 + k31 * k31 * i3,
+            i2 + k32 * k32 * i3,
+            i3,
+            k21 * i2 + k31 * k32 * i3,
+            k31 * i3,
+            k32 * i3};
+  }
 };
 
 /// Information of one reading along the unit direction d, in d's frame:

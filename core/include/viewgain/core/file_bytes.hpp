@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -9,8 +10,19 @@
 
 namespace viewgain {
 
-/// All bytes of a file, pipes included. Throws Error(io) that names it if it cannot be opened or a
-/// read fails. Thread safe.
-[[nodiscard]] VIEWGAIN_EXPORT std::string file_bytes(const std::filesystem::path& path);
+/// The largest file that file_bytes() reads unless told otherwise, and the most that it takes from
+/// a pipe, whose length nobody knows beforehand [bytes].
+inline constexpr std::uint64_t kMostFileBytes = std::uint64_t{1} << 34U;
+inline constexpr std::uint64_t kMostPipeBytes = std::uint64_t{1} << 30U;
+
+/// All bytes of a regular file or a pipe. Throws Error(io) that names the file if it cannot be
+/// opened, is something else (a folder, a device), or a read fails; Error(capacity) if it has more
+/// than `most` bytes or does not fit into memory. Thread safe.
+[[nodiscard]] VIEWGAIN_EXPORT std::string file_bytes(const std::filesystem::path& path,
+                                                     std::uint64_t most = kMostFileBytes);
+
+/// At most the first `count` bytes. Throws Error(io) as file_bytes. Thread safe.
+[[nodiscard]] VIEWGAIN_EXPORT std::string file_head(const std::filesystem::path& path,
+                                                    std::size_t count);
 
 }  // namespace viewgain

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -28,5 +29,7 @@ enum class Isa : std::uint8_t {
 /// the names for any other value, Error(backend) if the CPU has none. Reads the environment at each
 /// call; keeps no state.
 [[nodiscard]] VIEWGAIN_EXPORT Isa select_isa();
+/// The same choice for a CPU that supports these sets, best first.
+[[nodiscard]] VIEWGAIN_EXPORT Isa select_isa(std::span<const Isa> supported);
 
 }  // namespace viewgain

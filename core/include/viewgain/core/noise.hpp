@@ -43,11 +43,14 @@ struct VIEWGAIN_EXPORT StructuredLightNoise {
   bool operator==(const StructuredLightNoise&) const = default;
 };
 
-/// Stereo: sigma_ax = t² * subpixel / (focal * baseline); sigma_lat = t / fx.
+/// Stereo: sigma_ax = t² * subpixel / (focal * baseline); sigma_lat = t / fx. Both images have the
+/// camera's focal length fx unless `focal` says otherwise.
 struct VIEWGAIN_EXPORT StereoNoise {
   double subpixel = 0.08;  ///< matching error [px]
-  double focal = 447.0;    ///< [px]
+  double focal = 0;        ///< [px]; 0: that of the camera, fx
   double baseline = 0.05;  ///< [m]
+
+  [[nodiscard]] double focal_with(double fx) const { return focal > 0 ? focal : fx; }
   bool operator==(const StereoNoise&) const = default;
 };
 

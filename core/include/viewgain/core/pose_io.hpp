@@ -21,9 +21,10 @@ struct VIEWGAIN_EXPORT PoseList {
 };
 
 /// Reads the TUM format: one pose a line, "timestamp tx ty tz qx qy qz qw" ([s], [m], quaternion of
-/// T_world_camera); empty lines and lines that begin with # are skipped. A quaternion whose norm is
-/// within 1e-2 of 1 is normalised. Throws Error(io) if the file cannot be read and Error(format),
-/// naming the file and the line, for anything else that is wrong, also for a file without a pose.
+/// T_world_camera); empty lines, lines that begin with # and a byte order mark are skipped. A
+/// quaternion whose norm is within 1e-2 of 1 is normalised. Throws Error(io) if the file cannot be
+/// read and Error(format), naming the file and the line, for anything else that is wrong, also for
+/// a file without a pose; Error(capacity) beyond 1 GiB.
 [[nodiscard]] VIEWGAIN_EXPORT PoseList read_tum(const std::filesystem::path& path);
 
 /// Writes the TUM format with 17 significant digits, so that reading it back gives the same
@@ -31,11 +32,16 @@ struct VIEWGAIN_EXPORT PoseList {
 /// temporary file is renamed. Throws Error(io), and Error(invalid_argument) naming the index of a
 /// pose whose rotation is off by more than 1e-2 or not finite.
 VIEWGAIN_EXPORT void write_tum(const std::filesystem::path& path, std::span<const Pose> poses);
+/// The same with a timestamp for each pose [s], such as read_tum gives, kept exactly. Throws
+/// Error(invalid_argument), too, for another count of them or one that is not finite.
+VIEWGAIN_EXPORT void write_tum(const std::filesystem::path& path, std::span<const Pose> poses,
+                               std::span<const double> timestamps);
 
 /// Reads one 4x4 row-major matrix of T_world_camera [m] (16 numbers, as RGB-D data sets have it). A
 /// rotation that is off by 1e-9 to 1e-2 is orthonormalised; *orthonormalized says whether. A larger
 /// error, a last row that is not 0 0 0 1 (1e-6), another count of numbers or a word that is no
-/// finite number throws Error(format), naming the file. Throws Error(io) if it cannot be read.
+/// finite number throws Error(format), naming the file. Throws Error(io) if it cannot be read,
+/// Error(capacity) beyond 1 GiB. A byte order mark is skipped.
 [[nodiscard]] VIEWGAIN_EXPORT Pose read_pose_matrix(const std::filesystem::path& path,
                                                     bool* orthonormalized = nullptr);
 

@@ -50,7 +50,8 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
 /// point starts at each occupied voxel, moves along the local normal to the information-weighted
 /// mean of its column, beliefs of voxels that have turned free included (leaving them out would
 /// bias the mean away from the camera), and survives if no point with more support is within
-/// min_distance. Deterministic for any number of threads. Costs about 1 µs a voxel that was ever
+/// min_distance. A belief whose fused position is more than 24 voxels away from its voxel makes no
+/// point. Deterministic for any number of threads. Costs about 1 µs a voxel that was ever
 /// hit. Throws Error(invalid_argument) naming a setting that is negative, not finite or too large.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<FusedPoint> fused_points(
     const BeliefGrid& grid, const FusedPointsConfig& config = {}, const ExecConfig& exec = {});

@@ -1,23 +1,43 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "file_text.hpp"
+#include "viewgain/core/text.hpp"
 
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <system_error>
 
 #include "viewgain/core/error.hpp"
 
-namespace viewgain::detail {
+namespace viewgain {
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
+template <typename Number, typename... Format>
+std::string number_text(Number value, Format... format) {
+  if (std::isnan(value)) return "nan";
+  std::array<char, 40> digits;
+  const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value, format...);
+  return {digits.data(), result.ptr};
+}
+
 }  // namespace
+
+std::string short_text(double value) { return number_text(value); }
+std::string short_text(float value) { return number_text(value); }
+std::string exact_text(double value) { return number_text(value, std::chars_format::general, 17); }
 
 std::string quoted(std::string_view word) {
   std::string text = "'";
   for (const char c : word.substr(0, 32)) text += (c >= ' ' && c <= '~') ? c : '?';
   return text + (word.size() > 32 ? "...'" : "'");
+}
+
+LineReader::LineReader(std::string name, std::string_view bytes)
+    : name_(std::move(name)), rest_(bytes) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // what some editors put first
+  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
 }
 
 bool LineReader::next() {
@@ -60,6 +80,12 @@ double LineReader::number(std::size_t word) const {
   return value;
 }
 
+double LineReader::finite_number(std::size_t word) const {
+  const double value = number(word);
+  if (!std::isfinite(value)) fail("the number " + quoted(word_at(word)) + " is not finite");
+  return value;
+}
+
 std::uint64_t LineReader::count(std::size_t word, std::uint64_t most) const {
   const std::string_view text = word_at(word);
   std::uint64_t value = 0;
@@ -73,4 +99,4 @@ std::uint64_t LineReader::count(std::size_t word, std::uint64_t most) const {
   return value;
 }
 
-}  // namespace viewgain::detail
+}  // namespace viewgain

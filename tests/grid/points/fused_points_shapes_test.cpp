@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Surface points on curved surfaces, beside large unknown tiles, and of beliefs that make no sense.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/random_values.hpp"
+#include "grid/analytic_frames.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/grid/fused_points.hpp"
+#include "viewgain/grid/integrate.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace test;
+using Eigen::Vector3d;
+
+Vector3d vector(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
+
+TEST(FusedPointsShapes, OnASphereTheyLieOnItAndPointOutwards) {
+  constexpr double kRadius = 0.12, kSigma = 0.003;
+  Sensor sensor = small_sensor(96, 72);
+  sensor.noise = ConstantNoise{kSigma, 0.002};
+  BeliefGrid grid({0.005, {{-0.16, -0.16, -0.16}, {0.16, 0.16, 0.16}}, {}, 0.0072});
+  FrameIntegrator integrator(sensor);
+  RandomValues random(11);
+  for (int view = 0; view < 8; ++view) {
+    DepthFrame frame =
+        see_spheres(sensor, ring_view(view), {{Vector3d::Zero(), kRadius}, {{0, 0, 0}, 1.5}});
+    const std::vector<Vector3d> rays = sensor.camera.ray_table();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      frame.depth[i] += static_cast<float>(kSigma * random.normal() / rays[i].norm());
+    }
+    integrator.integrate(grid, frame, ring_view(view));
+  }
+  const std::vector<FusedPoint> points = fused_points(grid);
+  std::size_t outward = 0;
+  double sum = 0, squares = 0, consistency = 0;
+  for (const FusedPoint& point : points) {
+    const Vector3d p = vector(point.position), n = p.normalized();
+    const double e = p.norm() - kRadius;
+    sum += e;
+    squares += e * e;
+    consistency += std::min(e * e / n.dot(point.covariance * n), 25.0);
+    if (vector(point.toward_free).dot(n) > 0.9) ++outward;
+  }
+  // The views see the part above -0.3 radii or so.
+  ASSERT_GT(points.size(), 3000U);
+  const auto count = static_cast<double>(points.size());
+  EXPECT_LT(std::abs(sum / count), 0.1 * 0.005);  // a column of a curved surface is not biased
+  EXPECT_LT(std::sqrt(squares / count), 0.5 * kSigma);
+  EXPECT_LT(consistency / count, 2.0);
+  EXPECT_GT(static_cast<double>(outward), 0.97 * count);
+}
+
+// A hall of 20 x 20 x 3 m at 1 cm, whose unknown parts are tiles of three sizes. The side of free
+// space is found by asking the map for every voxel around each point.
+TEST(FusedPointsShapes, FreeSideBesideLargeUnknownTiles) {
+  BeliefGrid grid({0.01, {{-10, -10, 0}, {10, 10, 3}}, {}, 0.01});
+  RandomValues random(5);
+  const auto put = [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+    grid.set({x, y, z}, 2.0F, Belief{{1e5F, 1e5F, 1e5F, 0, 0, 0}, {0, 0, 0}, 5});
+  };
+  // Walls with a known free layer before them, at the borders of blocks, nodes and their parents.
+  int patches = 0;
+  for (const std::int32_t face : {-1000, -896, -513, 0, 8, 127, 128, 640, 900}) {
+    for (const std::int32_t z : {0, 120, 250}) {
+      for (std::int32_t y = -3; y <= 3; ++y) {
+        for (std::int32_t k = 0; k < 7; ++k) {
+          put(face, y + face / 2, z + k);
+          for (std::int32_t free = 1; free <= 4; ++free) {
+            grid.set({face + free, y + face / 2, z + k}, -1.0F);
+          }
+        }
+      }
+      ++patches;
+    }
+  }
+  ASSERT_EQ(patches, 27);
+  FusedPointsConfig config;
+  config.rule = PointRule::per_voxel;  // so that each point is its voxel's centre
+  const std::vector<FusedPoint> points = fused_points(grid, config);
+  ASSERT_EQ(points.size(), 27U * 49U);
+  const VoxelBox workspace = VoxelBox::from_dims(grid.min_index(), grid.dims());
+  std::size_t compared = 0;
+  for (const FusedPoint& point : points) {
+    const Vector3d at = vector(point.position) / grid.voxel_size();
+    Vector3d side = Vector3d::Zero();
+    for (int x = -3; x <= 3; ++x) {
+      for (int y = -3; y <= 3; ++y) {
+        for (int z = -3; z <= 3; ++z) {
+          const Index3 v{static_cast<std::int32_t>(std::floor(at.x())) + x,
+                         static_cast<std::int32_t>(std::floor(at.y())) + y,
+                         static_cast<std::int32_t>(std::floor(at.z())) + z};
+          const bool inside = workspace.contains(v);
+          const VoxelState state = inside ? grid.state(v) : VoxelState::free;
+          if (state == VoxelState::free) side += Vector3d(x, y, z);
+          if (state == VoxelState::unknown) side -= Vector3d(x, y, z);
+        }
+      }
+    }
+    const double along = side.dot(vector(point.toward_free));
+    EXPECT_GE(along, 0) << at.transpose();
+    if (along > 0) ++compared;
+  }
+  EXPECT_GT(compared, 1200U);
+}
+
+// Numbers that no reading makes, as far as `set` takes them: none may cost more than another, nor
+// spoil the points beside it.
+TEST(FusedPointsShapes, BeliefsFarFromTheirVoxelMakeNoPoint) {
+  const float most = std::numeric_limits<float>::max(), least = 1e-40F;
+  const std::vector<Belief> strange{
+      {{1e-30F, 1e-30F, 1e-30F, 0, 0, 0}, {1e30F, 0, 0}, 3},
+      {{1e-30F, 1e-30F, 1e-30F, 0, 0, 0}, {-1e30F, 1e30F, 1e30F}, 2147483647U},
+      {{1, 1, 1, 0, 0, 0}, {0, 0, 1e9F}, 3},      // 1e11 voxels
+      {{1, 1, 1, 0, 0, 0}, {1e5F, -1e6F, 0}, 3},  // 1e8 voxels
+      {{1, 1, 1, 0, 0, 0}, {0, 0, -0.3F}, 3},
+      {{1, 1, 1, 0, 0, 0}, {0.3F, 0, 0}, 3},  // 30 voxels
+      {{least, least, least, 0, 0, 0}, {most, most, -most}, 3},
+      {{0, 0, 0, 0, 0, 0}, {1, 0, 0}, 3},
+      {{most, 0, most, 0, 0, 0}, {0, 1, 0}, 3}};
+  std::size_t cases = 0, refused = 0;
+  for (const Belief& belief : strange) {
+    for (const PointRule rule : {PointRule::pooled, PointRule::per_voxel}) {
+      BeliefGrid grid({0.01, {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}}, {}, 0.01});
+      try {
+        grid.set({0, 0, 0}, 0.85F, belief);
+      } catch (const Error&) {
+        ++refused;
+        continue;
+      }
+      for (std::int32_t x = -4; x < 4; ++x) {
+        for (std::int32_t y = -4; y < 4; ++y) {
+          grid.set({x, y, 40}, 2.0F, Belief{{1e5F, 1e5F, 1e5F, 0, 0, 0}, {0, 0, 0}, 5});
+        }
+      }
+      FusedPointsConfig config;
+      config.rule = rule;
+      const std::vector<FusedPoint> points = fused_points(grid, config);
+      EXPECT_EQ(points.size(), 64U) << cases;
+      for (const FusedPoint& point : points) EXPECT_NEAR(point.position[2], 0.405, 1e-6);
+      ++cases;
+    }
+  }
+  EXPECT_GE(cases, 4U);
+  EXPECT_EQ(cases + refused, 18U);
+}
+
+}  // namespace
+}  // namespace viewgain
