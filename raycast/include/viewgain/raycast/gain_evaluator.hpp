@@ -106,7 +106,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
 
   /// The expected gains of a batch, result i for pose i, on all threads of the evaluator. A bad
   /// pose spoils only its own result. Returns how many poses were scored: all, or fewer if
-  /// control.stop was requested, when the results not reached keep status bad_pose and NaN. Throws
+  /// `control` ended the call, when the results not reached keep status bad_pose and NaN. Throws
   /// Error(invalid_argument) if the sizes differ.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<ViewGain> results,
                        const BatchControl& control = {}) const;
@@ -116,8 +116,8 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// call `measure` at once. Bad poses: NaN; a camera in an occupied voxel: 0; `measure` is asked
   /// about neither. Returns how many poses were measured, as the call above; the results not
   /// reached are NaN. What `measure` throws ends the batch and is thrown again here, and the
-  /// results are then unspecified. Costs 1.4 times as much as evaluate(),
-  /// and what `measure` takes. Throws Error(invalid_argument) if the sizes differ.
+  /// results are then unspecified. Costs 1.4 times as much as evaluate() without it, and what
+  /// `measure` takes. Throws Error(invalid_argument) if the sizes differ.
   std::size_t evaluate(std::span<const Pose> T_world_camera, const ViewMeasure& measure,
                        std::span<double> results, const BatchControl& control = {}) const;
 
