@@ -53,9 +53,10 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
                                                std::span<const Candidate> candidates) {
   if (candidates.empty()) return std::nullopt;
   const Stopwatch watch;
-  GainConfig gain_config;
-  gain_config.criterion = config_.criterion;
-  const GainEvaluator evaluator(model_.scene(), sensor_, gain_config, exec_);
+  evaluator_ =
+      evaluator_ ? evaluator_->with_scene(model_.scene())
+                 : GainEvaluator(model_.scene(), sensor_, {.criterion = config_.criterion}, exec_);
+  const GainEvaluator& evaluator = *evaluator_;
   const bool by_gain = config_.policy == Policy::gain;
   const bool scored = by_gain || config_.policy == Policy::frontier;
   std::vector<ViewGain> gains(candidates.size());

@@ -63,6 +63,7 @@ class PolicyDecision : public DecisionMaking {
   Sensor sensor_;
   PolicyConfig config_;
   ExecConfig exec_;
+  std::optional<GainEvaluator> evaluator_;  ///< of the last decision's scene
   StageSeconds& seconds_;
 };
 

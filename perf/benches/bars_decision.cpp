@@ -30,12 +30,12 @@ std::vector<Figure> decision_figures(const BarsOptions& options) {
   }
   const DepthFrame frame = model.acquire(views[kViews], kViews);
   const auto scene_before = VoxelScene::build(before, {}, exec);
+  const GainEvaluator evaluator_before(scene_before, model.sensor(), {}, exec);
 
   const auto decide = [&](BeliefGrid& grid, std::span<const Pose> poses) {
     integrator.integrate(grid, frame, views[kViews]);
     const auto scene = VoxelScene::update(scene_before, grid, exec);
-    const GainEvaluator evaluator(scene, model.sensor(), {}, exec);
-    return evaluator.best(poses, 1).indices.front();
+    return evaluator_before.with_scene(scene).best(poses, 1).indices.front();
   };
   std::array<std::vector<double>, kCandidates.size()> seconds;
   for (int repetition = -1; repetition < options.repetitions; ++repetition) {

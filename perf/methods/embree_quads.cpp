@@ -19,8 +19,7 @@ namespace {
 class QuadScene {
  public:
   QuadScene(const TraceTask& task, bool robust)
-      : device_(detail::make_device(select_isa(), task.num_threads)),
-        scene_(rtcNewScene(device_.get())) {
+      : device_(detail::shared_device(select_isa())), scene_(rtcNewScene(device_)) {
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
     rtcSetSceneFlags(scene_.get(), robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -28,8 +27,7 @@ class QuadScene {
       attach(static_cast<unsigned>(axis), quads);
       for (const Quad& quad : quads) behind_[axis].push_back(voxels_behind(quad, axis));
     }
-    rtcCommitScene(scene_.get());
-    detail::check_device(device_.get(), "building the quads");
+    detail::commit_scene(device_, scene_.get(), "building the quads");
   }
 
   [[nodiscard]] RTCScene get() const { return scene_.get(); }
@@ -46,13 +44,13 @@ class QuadScene {
  private:
   void attach(unsigned axis, const std::vector<Quad>& quads) {
     if (quads.empty()) return;
-    const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_QUAD);
+    const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_QUAD);
     auto* vertices = static_cast<float*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                 3 * sizeof(float), 4 * quads.size()));
     auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), quads.size()));
-    detail::check_device(device_.get(), "storing the quads");
+    detail::check_device(device_, "storing the quads");
     for (std::size_t i = 0; i < 4 * quads.size(); ++i) {
       indices[i] = static_cast<unsigned>(i);
       for (std::size_t k = 0; k < 3; ++k) vertices[3 * i + k] = quads[i / 4].corners[i % 4][k];
@@ -74,7 +72,7 @@ class QuadScene {
     return voxels;
   }
 
-  detail::DevicePtr device_;
+  RTCDevice device_;
   detail::ScenePtr scene_;
   std::array<std::vector<Voxels>, 3> behind_;
 };

@@ -54,8 +54,9 @@ class ViewgainTrace : public TraceMethod {
       : TraceMethod(std::move(name), task.sensor.camera.ray_table().size()),
         map_(task.map),
         scene_(std::move(scene)),
-        data_(scene_->data()),
-        tracer_(data_, task.sensor.camera, 1, task.sensor.min_range, task.sensor.max_range),
+        data_(detail::SceneAccess::data(*scene_)),
+        tracer_(data_, std::make_shared<const detail::SensorRays>(task.sensor.camera, 1),
+                task.sensor.min_range, task.sensor.max_range),
         way_(way) {}
 
   void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
@@ -90,9 +91,12 @@ class ViewgainTrace : public TraceMethod {
 
   /// The tiles that may have hit something.
   virtual void for_each_tile(const Pose& T_world_camera, const Visit& visit) const {
-    if (way_ == Way::bvh) return tracer_.trace_bvh(frame_of(T_world_camera), visit);
+    const detail::PoseFrame frame = frame_of(T_world_camera);
+    const auto tiles = tracer_.all_tiles();
+    if (way_ == Way::bvh) return tracer_.trace_bvh(frame, tiles, visit);
     thread_local detail::TileBins bins;
-    tracer_.trace(frame_of(T_world_camera), bins, visit);
+    tracer_.prepare(frame, tiles.size(), bins);
+    tracer_.trace(frame, tiles, bins, visit);
   }
 
   [[nodiscard]] detail::PoseFrame frame_of(const Pose& T_world_camera) const {
@@ -101,7 +105,7 @@ class ViewgainTrace : public TraceMethod {
 
   const oracle::DenseMap& map_;
   ScenePointer scene_;
-  const VoxelScene::Data& data_;
+  const detail::SceneData& data_;
   detail::ViewTracer tracer_;
 
  private:
@@ -116,10 +120,11 @@ class ViewgainFloor final : public ViewgainTrace {
     const std::size_t tiles = tracer_.table().tile_count;
     begins_.assign(poses_.size() * tiles + 1, 0);
     for (std::size_t p = 0; p < poses_.size(); ++p) {
-      tracer_.trace_bvh(frame_of(poses_[p]), [&](std::size_t tile, const detail::RayTile& out) {
-        add_way(out);
-        begins_[p * tiles + tile + 1] = ways_.size();
-      });
+      tracer_.trace_bvh(frame_of(poses_[p]), tracer_.all_tiles(),
+                        [&](std::size_t tile, const detail::RayTile& out) {
+                          add_way(out);
+                          begins_[p * tiles + tile + 1] = ways_.size();
+                        });
     }
   }
 
@@ -133,8 +138,8 @@ class ViewgainFloor final : public ViewgainTrace {
       const std::size_t i = static_cast<std::size_t>(pose) * tiles + tile;
       if (begins_[i] == begins_[i + 1]) continue;  // known to miss everything
       const std::span<const detail::TileBox> way(&ways_[begins_[i]], begins_[i + 1] - begins_[i]);
-      data_.kernels->begin(tracer_.table(), frame, tile, out);
-      data_.kernels->walk(data_, frame, 1.0F, way, out);
+      data_.tracing->kernels.begin(tracer_.table(), frame, tile, out);
+      data_.tracing->kernels.walk(data_, frame, 1.0F, way, out);
       visit(tile, out);
     }
   }

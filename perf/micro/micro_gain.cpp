@@ -19,7 +19,7 @@ void accumulation(benchmark::State& state, Criterion criterion) {
   settings.criterion = criterion;
   settings.prior_information = 1 / (micro.grid.prior_sigma() * micro.grid.prior_sigma());
   settings.sigmas = detail::frontal_sigmas(micro.sensor);
-  detail::GainAccumulator accumulator(micro.scene->data(), settings,
+  detail::GainAccumulator accumulator(detail::SceneAccess::data(*micro.scene), settings,
                                       micro.tracer.table().ray_count());
   std::size_t hits = 0, next = 0;
   for (auto _ : state) {

@@ -20,11 +20,13 @@ MicroScene::MicroScene()
       frames(test::camel_views(4)),
       grid(test::camel_grid(kVoxels, {frames.begin(), frames.begin() + 3})),
       scene(VoxelScene::build(grid, {}, {.num_threads = 1})),
-      tracer(scene->data(), sensor.camera, 1, sensor.min_range, sensor.max_range) {
+      tracer(detail::SceneAccess::data(*scene),
+             std::make_shared<const detail::SensorRays>(sensor.camera, 1), sensor.min_range,
+             sensor.max_range) {
   for (const Pose& pose : sphere_poses(kViews, 0.6)) {
     View view;
     view.frame = tracer.frame_of(pose).value();
-    tracer.trace_bvh(view.frame, [&](std::size_t number, const detail::RayTile& tile) {
+    const auto note = [&](std::size_t number, const detail::RayTile& tile) {
       if (tile.hit == 0) return;
       std::vector<detail::TileBox> leaves;
       for (std::size_t lane = 0; lane < detail::kTileRays; ++lane) {
@@ -39,7 +41,8 @@ MicroScene::MicroScene()
       view.tiles.push_back(tile);
       view.numbers.push_back(number);
       view.leaves.push_back(std::move(leaves));
-    });
+    };
+    tracer.trace_bvh(view.frame, tracer.all_tiles(), note);
     views.push_back(std::move(view));
   }
 }

@@ -23,7 +23,7 @@ void packet_traversal(benchmark::State& state) {
   std::size_t rays = 0, next = 0;
   for (auto _ : state) {
     std::uint32_t hits = 0;
-    micro.tracer.trace_bvh(micro.views[next++ % micro.views.size()].frame,
+    micro.tracer.trace_bvh(micro.views[next++ % micro.views.size()].frame, micro.tracer.all_tiles(),
                            [&](std::size_t, const detail::RayTile& tile) { hits += tile.hit; });
     benchmark::DoNotOptimize(hits);
     rays += micro.tracer.table().ray_count();
@@ -38,7 +38,10 @@ void tile_traversal(benchmark::State& state) {
   std::size_t rays = 0, next = 0;
   for (auto _ : state) {
     std::uint32_t hits = 0;
-    micro.tracer.trace(micro.views[next++ % micro.views.size()].frame, bins,
+    const detail::PoseFrame& frame = micro.views[next++ % micro.views.size()].frame;
+    const auto tiles = micro.tracer.all_tiles();
+    micro.tracer.prepare(frame, tiles.size(), bins);
+    micro.tracer.trace(frame, tiles, bins,
                        [&](std::size_t, const detail::RayTile& tile) { hits += tile.hit; });
     benchmark::DoNotOptimize(hits);
     rays += micro.tracer.table().ray_count();
@@ -50,13 +53,14 @@ void tile_traversal(benchmark::State& state) {
 void leaf_dda(benchmark::State& state, Isa isa) {
   const MicroScene& micro = MicroScene::get();
   const detail::TraceKernels& kernels = detail::trace_kernels(isa);
+  const detail::SceneData& scene = detail::SceneAccess::data(*micro.scene);
   detail::RayTile out;
   std::size_t rays = 0, next = 0;
   for (auto _ : state) {
     const MicroScene::View& view = micro.views[next++ % micro.views.size()];
     for (std::size_t i = 0; i < view.tiles.size(); ++i) {
       kernels.begin(micro.tracer.table(), view.frame, view.numbers[i], out);
-      kernels.walk(micro.scene->data(), view.frame, 1.0F, view.leaves[i], out);
+      kernels.walk(scene, view.frame, 1.0F, view.leaves[i], out);
       benchmark::DoNotOptimize(out.hit);
     }
     rays += view.tiles.size() * detail::kTileRays;

@@ -9,12 +9,12 @@
 
 #include "trace/device.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain {
 
 struct SurfaceScene::Impl {
   TriangleMesh mesh;
-  detail::DevicePtr device;
   detail::ScenePtr scene;
 };
 
@@ -44,15 +44,15 @@ SurfaceScene::SurfaceScene(TriangleMesh mesh, const ExecConfig& exec)
     }
   }
   impl_->mesh = std::move(mesh);
-  impl_->device = detail::make_device(select_isa(), exec.num_threads);
-  impl_->scene.reset(rtcNewScene(impl_->device.get()));
+  (void)thread_count(exec.num_threads);
+  RTCDevice device = detail::shared_device(select_isa());
+  impl_->scene.reset(rtcNewScene(device));
   // Robust: no ray may slip between two triangles that share an edge.
   rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(impl_->scene.get(), RTC_BUILD_QUALITY_HIGH);
-  detail::attach_triangles(impl_->device.get(), impl_->scene.get(), 0, vertices.data(),
-                           vertices.size() / 3, indices.data(), indices.size() / 3);
-  rtcCommitScene(impl_->scene.get());
-  detail::check_device(impl_->device.get(), "building the surface scene");
+  detail::attach_triangles(device, impl_->scene.get(), 0, vertices.data(), vertices.size() / 3,
+                           indices.data(), indices.size() / 3);
+  detail::commit_scene(device, impl_->scene.get(), "building the surface scene");
 }
 
 SurfaceScene::~SurfaceScene() = default;

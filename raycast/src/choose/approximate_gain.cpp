@@ -3,23 +3,20 @@
 
 // Gains from random sub-bundles of a view's rays.
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <optional>
 #include <string>
 
+#include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
+#include "tile_sample.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/mix64.hpp"
 #include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
 
-// Irrational steps of a two-dimensional sequence whose points keep apart: 1/g and 1/g², g³ = g + 1.
-constexpr double kStepX = 0.7548776662466927, kStepY = 0.5698402909980532;
-
-// For fewer of a view's tiles than this share the BVH is quicker than lists for all tiles.
-constexpr double kLeastListedShare = 0.08;
+using detail::ViewDriver;
 
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -44,83 +41,88 @@ void check(const ApproximateConfig& config, std::size_t poses, std::size_t resul
   }
 }
 
+// Groups of tiles, and their sums as estimates of a view's gain.
+class Sampler {
+ public:
+  Sampler(const ViewDriver& driver, const ApproximateConfig& config) : driver_(driver) {
+    const detail::TileTable& table = driver.tracer().table();
+    const auto groups = static_cast<std::size_t>(config.groups);
+    const auto per_group = static_cast<std::size_t>(
+        std::max(1.0, std::round(config.share * static_cast<double>(table.tile_count) /
+                                 static_cast<double>(groups))));
+    tiles_ = detail::random_tiles(table, groups, per_group, config.seed);
+    // A tile at the image's edge may hold fewer rays: groups are scaled by their rays.
+    for (const auto& group : tiles_) {
+      const auto rays = static_cast<double>(detail::rays_of(table, group));
+      scale_.push_back(rays > 0 ? static_cast<double>(driver.core()->ray_count) / rays : 0.0);
+    }
+  }
+
+  [[nodiscard]] ApproximateGain estimate(const Pose& T_world_camera,
+                                         ViewDriver::Lease& lease) const {
+    std::vector<double> gains(tiles_.size());
+    detail::sample(driver_, T_world_camera, tiles_, gains, lease);
+    double sum = 0, squares = 0;
+    for (std::size_t g = 0; g < gains.size(); ++g) {
+      const double gain = scale_[g] * gains[g];
+      sum += gain;
+      squares += gain * gain;
+    }
+    const auto n = static_cast<double>(gains.size());
+    const double mean = sum / n;
+    return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
+  }
+
+ private:
+  const ViewDriver& driver_;
+  std::vector<std::vector<std::uint32_t>> tiles_;
+  std::vector<double> scale_;
+};
+
+// What voxels lose to rays of other tiles, from poses spread evenly over the batch.
+struct Anchors {
+  std::vector<std::size_t> indices;  // ascending
+  std::vector<ApproximateGain> estimates;
+  std::vector<ViewGain> truth;
+
+  Anchors(std::size_t count, std::size_t poses) : estimates(count), truth(count) {
+    for (std::size_t j = 0; j < count; ++j) indices.push_back(j * poses / count);
+  }
+  [[nodiscard]] const ApproximateGain* find(std::size_t i) const {
+    const auto at = std::lower_bound(indices.begin(), indices.end(), i);
+    if (at == indices.end() || *at != i) return nullptr;
+    return &estimates[static_cast<std::size_t>(at - indices.begin())];
+  }
+};
+
+// The ratio of true gains to estimates, and the standard error of a corrected estimate as a share
+// of the estimate.
+struct Correction {
+  double ratio, error;
+
+  [[nodiscard]] ApproximateGain applied(const ApproximateGain& estimate) const {
+    return {estimate.gain * ratio, error * estimate.gain};
+  }
+};
+
+// Nothing if there are too few to tell.
+std::optional<Correction> correction_of(const Anchors& anchors) {
+  std::vector<double> ratios;
+  for (std::size_t j = 0; j < anchors.indices.size(); ++j) {
+    const double truth = anchors.truth[j].gain, estimate = anchors.estimates[j].gain;
+    if (truth > 0 && estimate > 0) ratios.push_back(truth / estimate);
+  }
+  if (ratios.size() < 2) return std::nullopt;
+  // Medians, for views that see next to nothing have wild ratios; 1.4826 makes the median deviation
+  // of a normal distribution its standard deviation.
+  const auto n = static_cast<double>(ratios.size());
+  const double ratio = median(ratios);
+  for (double& r : ratios) r = std::abs(r - ratio);
+  const double scatter = 1.4826 * median(ratios);
+  return Correction{ratio, scatter * std::sqrt(1 + 1 / n)};
+}
+
 }  // namespace
-
-std::vector<std::vector<std::uint32_t>> GainEvaluator::Impl::random_tiles(
-    std::size_t groups, std::size_t per_group, std::uint64_t seed) const {
-  const detail::TileTable& table = tracer.table();
-  const auto columns =
-      static_cast<std::size_t>((table.columns + detail::kTileEdge - 1) / detail::kTileEdge);
-  const std::size_t rows = table.tile_count / columns;
-  const std::size_t count = std::min(groups * per_group, table.tile_count);
-  std::vector<std::uint32_t> tiles;
-  std::vector<std::uint8_t> taken(table.tile_count, 0);
-  const std::uint64_t start = mix64(seed);
-  double x = unit_number(mix64(start)), y = unit_number(mix64(start + 1));
-  // The sequence comes by every tile sooner or later; the last few are taken as they stand.
-  for (std::size_t i = 0; tiles.size() < count && i < 16 * table.tile_count; ++i) {
-    const std::size_t tile =
-        std::min(static_cast<std::size_t>(y * static_cast<double>(rows)), rows - 1) * columns +
-        std::min(static_cast<std::size_t>(x * static_cast<double>(columns)), columns - 1);
-    if (taken[tile] == 0) tiles.push_back(static_cast<std::uint32_t>(tile));
-    taken[tile] = 1;
-    x += kStepX, y += kStepY;
-    x -= std::floor(x), y -= std::floor(y);
-  }
-  for (std::uint32_t tile = 0; tiles.size() < count; ++tile) {
-    if (taken[tile] == 0) tiles.push_back(tile);
-  }
-  std::vector<std::vector<std::uint32_t>> dealt(groups);
-  // None is empty, if the view has so few tiles that one must be in several.
-  for (std::size_t i = 0; i < std::max(count, groups); ++i) {
-    dealt[i % groups].push_back(tiles[i % count]);
-  }
-  return dealt;
-}
-
-std::uint64_t GainEvaluator::Impl::rays_of(std::span<const std::uint32_t> tiles) const {
-  std::uint64_t rays = 0;
-  for (const std::uint32_t tile : tiles) {
-    rays += static_cast<std::uint64_t>(std::popcount(tracer.table().valid[tile]));
-  }
-  return rays;
-}
-
-void GainEvaluator::Impl::sample(const Pose& T_world_camera,
-                                 std::span<const std::vector<std::uint32_t>> groups,
-                                 std::span<double> gains, Lease& lease) const {
-  const auto frame = tracer.frame_of(T_world_camera);
-  const bool sees = frame && !frame->sees_nothing && !is_in_occupied(*frame);
-  std::fill(gains.begin(), gains.end(), frame ? 0.0 : std::numeric_limits<double>::quiet_NaN());
-  if (!sees) return;
-  auto& [accumulator, bins, view_hits] = lease.get();
-  std::size_t tile_count = 0;
-  for (const auto& group : groups) tile_count += group.size();
-  if (static_cast<double>(tile_count) >=
-      kLeastListedShare * static_cast<double>(tracer.table().tile_count)) {
-    tracer.prepare(*frame, bins);
-  } else {
-    bins.invalidate();
-  }
-  if (!bins.valid()) data.ensure_bvh();
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    accumulator.begin();
-    tracer.trace_listed(*frame, groups[g], bins,
-                        [&](std::size_t, const detail::RayTile& tile) { accumulator.add(tile); });
-    ViewGain result;
-    accumulator.finish(result);
-    gains[g] = result.gain;
-  }
-}
-
-bool GainEvaluator::Impl::evaluate_some(std::span<const Pose> T_world_camera,
-                                        std::span<const std::size_t> indices,
-                                        std::span<ViewGain> results,
-                                        const BatchControl& control) const {
-  return for_each(indices.size(), 1, control, [&](std::size_t j, Lease& lease) {
-    results[j] = evaluate(T_world_camera[indices[j]], lease);
-  });
-}
 
 std::size_t GainEvaluator::approximate(std::span<const Pose> T_world_camera,
                                        std::span<ApproximateGain> results,
@@ -128,58 +130,28 @@ std::size_t GainEvaluator::approximate(std::span<const Pose> T_world_camera,
                                        const BatchControl& control) const {
   check(config, T_world_camera.size(), results.size());
   std::fill(results.begin(), results.end(), ApproximateGain{});
-  const auto groups = static_cast<std::size_t>(config.groups);
-  const auto all = static_cast<double>(impl_->tracer.table().tile_count);
-  const auto per_group = static_cast<std::size_t>(
-      std::max(1.0, std::round(config.share * all / static_cast<double>(groups))));
-  const auto tiles = impl_->random_tiles(groups, per_group, config.seed);
-  // A tile at the image's edge may hold fewer rays: groups are scaled by their rays.
-  std::vector<double> scale;
-  for (const auto& group : tiles) {
-    const auto rays = static_cast<double>(impl_->rays_of(group));
-    scale.push_back(rays > 0 ? static_cast<double>(impl_->ray_count) / rays : 0.0);
-  }
+  const ViewDriver& driver = impl_->driver;
+  const Sampler sampler(driver, config);
 
-  const auto score = [&](std::size_t i, Impl::Lease& lease) {
-    std::vector<double> gains(groups);
-    impl_->sample(T_world_camera[i], tiles, gains, lease);
-    double sum = 0, squares = 0;
-    for (std::size_t g = 0; g < groups; ++g) {
-      const double gain = scale[g] * gains[g];
-      sum += gain;
-      squares += gain * gain;
-    }
-    const auto n = static_cast<double>(groups);
-    const double mean = sum / n;
-    results[i] = {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
-  };
-  const std::size_t done = impl_->for_each_pose(results.size(), control, score);
-  if (done < results.size()) return done;
+  // The correction comes first, so that a call that is stopped hands out no estimate without it.
+  const std::size_t count = std::min(config.anchors, results.size());
+  Anchors anchors(count < 2 ? 0 : count, results.size());
+  const bool is_anchored = detail::for_each(driver, anchors.indices.size(), control,
+                                            [&](std::size_t j, ViewDriver::Lease& lease) {
+                                              const Pose& pose = T_world_camera[anchors.indices[j]];
+                                              anchors.estimates[j] = sampler.estimate(pose, lease);
+                                              anchors.truth[j] = driver.evaluate(pose, lease);
+                                            });
+  if (!is_anchored) return 0;
+  const std::optional<Correction> correction = correction_of(anchors);
 
-  // What voxels lose to rays of other tiles, from poses spread evenly over the batch.
-  const std::size_t anchors = std::min(config.anchors, results.size());
-  if (anchors < 2) return done;
-  std::vector<std::size_t> indices;
-  for (std::size_t j = 0; j < anchors; ++j) indices.push_back(j * results.size() / anchors);
-  std::vector<ViewGain> truth(anchors);
-  if (!impl_->evaluate_some(T_world_camera, indices, truth, control)) return done;
-  std::vector<double> ratios;
-  for (std::size_t j = 0; j < anchors; ++j) {
-    const double estimate = results[indices[j]].gain;
-    if (truth[j].gain > 0 && estimate > 0) ratios.push_back(truth[j].gain / estimate);
-  }
-  if (ratios.size() < 2) return done;
-  // Medians, for views that see next to nothing have wild ratios; 1.4826 makes the median deviation
-  // of a normal distribution its standard deviation.
-  const auto n = static_cast<double>(ratios.size());
-  const double ratio = median(ratios);
-  for (double& r : ratios) r = std::abs(r - ratio);
-  const double scatter = 1.4826 * median(ratios);
-  for (ApproximateGain& r : results) {
-    r.standard_error = scatter * std::sqrt(1 + 1 / n) * r.gain;
-    r.gain *= ratio;
-  }
-  return done;
+  return detail::for_each_pose(
+      driver, results.size(), control, [&](std::size_t i, ViewDriver::Lease& lease) {
+        const ApproximateGain* known = anchors.find(i);
+        const ApproximateGain estimate =
+            known != nullptr ? *known : sampler.estimate(T_world_camera[i], lease);
+        results[i] = correction ? correction->applied(estimate) : estimate;
+      });
 }
 
 }  // namespace viewgain

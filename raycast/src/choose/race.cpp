@@ -8,7 +8,9 @@
 #include <numeric>
 #include <string>
 
+#include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
+#include "tile_sample.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/text.hpp"
 
@@ -16,7 +18,8 @@ namespace viewgain {
 namespace {
 
 constexpr std::size_t kGroups = 4;
-// Each round traces this many times the tiles of the one before, up to this share of all.
+// Each round traces this many times the tiles of the one before, up to this share of all; the first
+// what was asked for.
 constexpr double kGrowth = 5, kLastShare = 0.25;
 // Fewer tiles a group say nothing.
 constexpr double kLeastTiles = 8;
@@ -60,19 +63,20 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
 
   std::vector<Estimate> field(count);
   for (std::size_t i = 0; i < count; ++i) field[i].index = i;
-  const detail::TileTable& table = impl_->tracer.table();
-  for (double share = config.first_share; share <= kLastShare && field.size() > few;
-       share *= kGrowth) {
+  const detail::ViewDriver& driver = impl_->driver;
+  const detail::TileTable& table = driver.tracer().table();
+  for (double share = config.first_share;
+       share <= std::max(kLastShare, config.first_share) && field.size() > few; share *= kGrowth) {
     // Bundles are nested: each round's begin with those of the round before.
     const auto per_group = static_cast<std::size_t>(std::max(
         kLeastTiles, std::round(share * static_cast<double>(table.tile_count) / double{kGroups})));
-    const auto tiles = impl_->random_tiles(kGroups, per_group, config.seed);
+    const auto tiles = detail::random_tiles(table, kGroups, per_group, config.seed);
     std::uint64_t rays = 0;
-    for (const auto& group : tiles) rays += impl_->rays_of(group);
-    best.complete =
-        impl_->for_each(field.size(), 4, control, [&](std::size_t j, Impl::Lease& lease) {
+    for (const auto& group : tiles) rays += detail::rays_of(table, group);
+    best.complete = detail::for_each(
+        driver, field.size(), control, [&](std::size_t j, detail::ViewDriver::Lease& lease) {
           std::array<double, kGroups> gains;
-          impl_->sample(T_world_camera[field[j].index], tiles, gains, lease);
+          detail::sample(driver, T_world_camera[field[j].index], tiles, gains, lease);
           double sum = 0, squares = 0;
           for (const double gain : gains) sum += gain, squares += gain * gain;
           constexpr auto n = static_cast<double>(kGroups);
@@ -112,9 +116,9 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
   for (const Estimate& e : field) best.scored_indices.push_back(e.index);
   std::sort(best.scored_indices.begin(), best.scored_indices.end());
   best.scored_gains.resize(best.scored_indices.size());
-  best.complete =
-      impl_->evaluate_some(T_world_camera, best.scored_indices, best.scored_gains, control);
-  best.rays_traced += best.scored_indices.size() * std::uint64_t{impl_->ray_count};
+  best.complete = detail::evaluate_some(driver, T_world_camera, best.scored_indices,
+                                        best.scored_gains, control);
+  best.rays_traced += best.scored_indices.size() * std::uint64_t{driver.core()->ray_count};
   for (const std::size_t j : best_indices(best.scored_gains, k)) {
     best.indices.push_back(best.scored_indices[j]);
     best.gains.push_back(best.scored_gains[j]);

@@ -6,10 +6,14 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
+#include "viewgain/core/criterion.hpp"
 
 namespace viewgain {
 namespace {
+
+using detail::ViewDriver;
 
 using Overlay = std::unordered_map<std::uint64_t, SymmetricMatrix3>;
 
@@ -22,30 +26,44 @@ double log_of_diagonal(const SymmetricMatrix3& sigma) {
   return std::log(sigma.xx) + std::log(sigma.yy) + std::log(sigma.zz);
 }
 
-}  // namespace
+// The gain of a view after others have been chosen, by what their rays bring to each voxel.
+struct AfterOthersConsumer : detail::GainConsumer {
+  const detail::GainSettings& settings;
+  const Overlay& chosen;
 
-ViewGain GainEvaluator::Impl::evaluate_after(
-    const Pose& T_world_camera, const std::unordered_map<std::uint64_t, SymmetricMatrix3>& chosen,
-    Lease& lease) const {
-  ViewGain result = evaluate(T_world_camera, lease);
-  if (chosen.empty() || result.status != ViewStatus::ok || result.hits == 0) return result;
-  result.exploration = result.refinement = result.posterior_entropy = 0;
-  lease.get().accumulator.visit([&](std::uint64_t key, const std::optional<detail::VoxelSum>& known,
-                                    const detail::VoxelSum& sum, double weight) {
-    SymmetricMatrix3 held{};
-    if (known) held = detail::matrix_of(*known);
-    const auto before = chosen.find(key);
-    if (before != chosen.end()) held += before->second;
-    const SymmetricMatrix3 added = detail::matrix_of(sum);
-    const double gain =
-        weight * entropy_reduction(held + SymmetricMatrix3::identity(settings.prior_information),
-                                   added, settings.criterion);
-    (known ? result.refinement : result.exploration) += gain;
-    result.posterior_entropy += log_of_diagonal((held + added).inverse());
-  });
-  result.gain = result.exploration + result.refinement;
-  return result;
-}
+  void finish(ViewGain& result) {
+    GainConsumer::finish(result);
+    if (chosen.empty() || result.hits == 0) return;
+    result.exploration = result.refinement = result.posterior_entropy = 0;
+    accumulator.visit([&](std::uint64_t key, const std::optional<detail::VoxelSum>& known,
+                          const detail::VoxelSum& sum, double weight) {
+      SymmetricMatrix3 held{};
+      if (known) held = detail::matrix_of(*known);
+      const auto before = chosen.find(key);
+      if (before != chosen.end()) held += before->second;
+      const SymmetricMatrix3 added = detail::matrix_of(sum);
+      const double gain =
+          weight * entropy_reduction(held + SymmetricMatrix3::identity(settings.prior_information),
+                                     added, settings.criterion);
+      (known ? result.refinement : result.exploration) += gain;
+      result.posterior_entropy += log_of_diagonal((held + added).inverse());
+    });
+    result.gain = result.exploration + result.refinement;
+  }
+};
+
+// Adds what a view's rays bring to each voxel to what those chosen bring.
+struct ChosenConsumer : detail::GainConsumer {
+  Overlay& chosen;
+
+  void finish(ViewGain&) {
+    accumulator.visit([&](std::uint64_t key, const std::optional<detail::VoxelSum>&,
+                          const detail::VoxelSum& sum,
+                          double) { chosen[key] += detail::matrix_of(sum); });
+  }
+};
+
+}  // namespace
 
 ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                 const BatchControl& control) const {
@@ -54,7 +72,8 @@ ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_
   ViewSet set;
   if (k == 0) return set;
   if (control.progress) control.progress(0, k);
-  const bool lazy = impl_->settings.criterion == Criterion::log_determinant;
+  const ViewDriver& driver = impl_->driver;
+  const bool lazy = driver.settings().criterion == Criterion::log_determinant;
 
   Overlay chosen;
   std::vector<ViewGain> gains(count);     // marginal, as of round[i]
@@ -62,10 +81,13 @@ ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_
   std::vector<std::size_t> open(count);   // poses that may be chosen
   for (std::size_t i = 0; i < count; ++i) open[i] = i;
   const auto score = [&](std::span<const std::size_t> indices, std::size_t now) {
-    set.complete =
-        impl_->for_each(indices.size(), 1, control, [&](std::size_t j, Impl::Lease& lease) {
-          gains[indices[j]] = impl_->evaluate_after(T_world_camera[indices[j]], chosen, lease);
-          round[indices[j]] = now;
+    set.complete = detail::for_each(
+        driver, indices.size(), control, [&](std::size_t j, ViewDriver::Lease& lease) {
+          const std::size_t i = indices[j];
+          gains[i] =
+              driver.view(T_world_camera[i], lease,
+                          AfterOthersConsumer{{lease.accumulator()}, driver.settings(), chosen});
+          round[i] = now;
         });
     set.evaluations += indices.size();
     return set.complete;
@@ -104,11 +126,8 @@ ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_
     if (control.progress) control.progress(now, k);
     if (now == k) break;
 
-    Impl::Lease lease(*impl_);
-    if (impl_->evaluate(T_world_camera[index], lease).hits == 0) continue;
-    lease.get().accumulator.visit([&](std::uint64_t key, const std::optional<detail::VoxelSum>&,
-                                      const detail::VoxelSum& sum,
-                                      double) { chosen[key] += detail::matrix_of(sum); });
+    ViewDriver::Lease lease(driver);
+    driver.view(T_world_camera[index], lease, ChosenConsumer{{lease.accumulator()}, chosen});
   }
   return set;
 }

@@ -188,7 +188,7 @@ struct FeasibilityChecker::Impl {
   Impl(std::shared_ptr<const VoxelScene> scene_in, FeasibilityConfig config_in)
       : scene(std::move(scene_in)),
         config(std::move(config_in)),
-        obstacles(scene->data().obstacles),
+        obstacles(detail::SceneAccess::data(*scene).obstacles),
         voxels(scene->snapshot()),
         T_grid_world(scene->snapshot().T_world_grid.inverse()) {
     const SensorBody& body = config.body;

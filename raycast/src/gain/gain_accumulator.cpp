@@ -7,6 +7,8 @@
 #include <cmath>
 #include <variant>
 
+#include "trace/scene_tracing.hpp"
+
 namespace viewgain::detail {
 namespace {
 
@@ -42,15 +44,9 @@ FrontalSigmas frontal_sigmas(const Sensor& sensor) {
   return std::visit(Visitor{sensor.camera.fx}, sensor.noise);
 }
 
-GainAccumulator::GainAccumulator(const VoxelScene::Data& scene, const GainSettings& settings,
+GainAccumulator::GainAccumulator(const SceneData& scene, const GainSettings& settings,
                                  std::size_t max_rays)
-    : scene_(scene), settings_(settings), kernels_(gain_kernels(scene.kernels->isa)) {
-  by_primitive_.assign(scene.block_count, kNone);
-  if (scene.boxes.size() > scene.block_count) {
-    const std::size_t size = std::bit_ceil(std::max<std::size_t>(2 * max_rays, 64));
-    by_key_.resize(size);
-    shift_ = 64U - static_cast<unsigned>(std::countr_zero(size));
-  }
+    : max_rays_(max_rays) {
   touched_.resize(max_rays + kOverhang);
   sums_.resize(max_rays + kOverhang);
   unknown_.resize(max_rays + kOverhang);
@@ -61,6 +57,20 @@ GainAccumulator::GainAccumulator(const VoxelScene::Data& scene, const GainSettin
   known_b_.resize(max_rays + kOverhang);
   if (settings.criterion == Criterion::trace || !settings.weights.empty()) {
     each_.resize(max_rays + 2 * kOverhang);
+  }
+  rebind(scene, settings);
+}
+
+void GainAccumulator::rebind(const SceneData& scene, const GainSettings& settings) {
+  begin();  // leaves no trace of the scene before
+  scene_ = &scene;
+  settings_ = &settings;
+  kernels_ = &gain_kernels(scene.tracing->kernels.isa);
+  by_primitive_.resize(scene.block_count, kNone);
+  if (scene.boxes.size() > scene.block_count && by_key_.empty()) {
+    const std::size_t size = std::bit_ceil(std::max<std::size_t>(2 * max_rays_, 64));
+    by_key_.resize(size);
+    shift_ = 64U - static_cast<unsigned>(std::countr_zero(size));
   }
 }
 
@@ -102,24 +112,24 @@ std::uint32_t GainAccumulator::block_in_box(std::uint64_t key) {
 
 // The code of the voxel that a hit ends in.
 inline std::uint32_t GainAccumulator::code_of(std::uint32_t primitive, std::uint32_t offset) {
-  if (primitive >= scene_.block_count) [[unlikely]] {
-    const std::uint64_t key = scene_.hit_key(primitive, offset);
+  if (primitive >= scene_->block_count) [[unlikely]] {
+    const std::uint64_t key = scene_->hit_key(primitive, offset);
     return block_in_box(key & ~std::uint64_t{511}) << 9U | static_cast<std::uint32_t>(key & 511U);
   }
   std::uint32_t block = by_primitive_[primitive];
   if (block == kNone) [[unlikely]] {
-    const bool may_be_occupied = primitive < scene_.leaf_count && scene_.has_occupied[primitive];
+    const bool may_be_occupied = primitive < scene_->leaf_count && scene_->has_occupied[primitive];
     touched_primitives_.push_back(primitive);  // first: begin() mends what an exception leaves
-    block = start_block(
-        scene_.block_keys[primitive],
-        may_be_occupied ? &scene_.snapshot.leaves[scene_.leaf_source[primitive]] : &kNoneOccupied);
+    block = start_block(scene_->block_keys[primitive],
+                        may_be_occupied ? &scene_->snapshot.leaves[scene_->leaf_source[primitive]]
+                                        : &kNoneOccupied);
     by_primitive_[primitive] = block;
   }
   return block << 9U | offset;
 }
 
 void GainAccumulator::flush() {
-  kernels_.expand(settings_.sigmas, scene_.snapshot.voxel_size, batch_);
+  kernels_->expand(settings_->sigmas, scene_->snapshot.voxel_size, batch_);
   // Three loops of independent steps, so that many memory requests are in flight at once.
   const std::size_t count = batch_.count;
   std::uint32_t codes[kBatchSize + kTileRays];
@@ -145,7 +155,7 @@ void GainAccumulator::flush() {
     keep[i] = std::uint64_t{is_new} - 1;
   }
   touched_count_ = touched_count;
-  kernels_.accumulate(batch_, places, keep, sums_.data());
+  kernels_->accumulate(batch_, places, keep, sums_.data());
   hits_ += static_cast<std::uint32_t>(count);
   batch_.count = 0;
 }
@@ -186,14 +196,14 @@ void GainAccumulator::look_up() {
     occupied_leaf_[i] = blocks_[code >> 9U].leaf;
     occupied_offset_[i] = code & 511U;
   }
-  kernels_.look_up(occupied_leaf_.data(), occupied_offset_.data(), occupied_count_, known_a_.data(),
-                   known_b_.data());
+  kernels_->look_up(occupied_leaf_.data(), occupied_offset_.data(), occupied_count_,
+                    known_a_.data(), known_b_.data());
 }
 
 double GainAccumulator::weight(std::uint32_t code) const {
-  const Index3 voxel = scene_.voxel_at(blocks_[code >> 9U].key | (code & 511U));
-  const Eigen::Vector3d center = voxel_center(voxel, scene_.snapshot.voxel_size);
-  for (auto region = settings_.weights.rbegin(); region != settings_.weights.rend(); ++region) {
+  const Index3 voxel = scene_->voxel_at(blocks_[code >> 9U].key | (code & 511U));
+  const Eigen::Vector3d center = voxel_center(voxel, scene_->snapshot.voxel_size);
+  for (auto region = settings_->weights.rbegin(); region != settings_->weights.rend(); ++region) {
     if (region->box.contains(center.x(), center.y(), center.z())) return region->weight;
   }
   return 1.0;
@@ -201,16 +211,16 @@ double GainAccumulator::weight(std::uint32_t code) const {
 
 GainAccumulator::ClassGain GainAccumulator::finish_class(std::span<const std::uint32_t> members,
                                                          bool is_known, double* each) const {
-  const bool logarithmic = settings_.criterion != Criterion::trace;
+  const bool logarithmic = settings_->criterion != Criterion::trace;
   LogProduct ratios, posterior;
-  kernels_.finish(settings_.criterion, settings_.prior_information,
-                  {sums_.data(), members.data(), is_known ? known_a_.data() : nullptr,
-                   known_b_.data(), members.size()},
-                  ratios, posterior, each);
+  kernels_->finish(settings_->criterion, settings_->prior_information,
+                   {sums_.data(), members.data(), is_known ? known_a_.data() : nullptr,
+                    known_b_.data(), members.size()},
+                   ratios, posterior, each);
   if (each == nullptr) return {0.5 * ratios.log(), posterior.log()};
   double sum = 0;
   for (std::size_t i = 0; i < members.size(); ++i) {
-    const double w = settings_.weights.empty() ? 1.0 : weight(touched_[members[i]]);
+    const double w = settings_->weights.empty() ? 1.0 : weight(touched_[members[i]]);
     sum += w * (logarithmic ? 0.5 * std::log(each[i]) : each[i]);
   }
   return {sum, posterior.log()};

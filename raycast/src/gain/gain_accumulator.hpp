@@ -19,6 +19,10 @@ namespace viewgain::detail {
 /// Frontal sigmas of a sensor in the form the kernels take.
 [[nodiscard]] FrontalSigmas frontal_sigmas(const Sensor& sensor);
 
+[[nodiscard]] inline SymmetricMatrix3 matrix_of(const VoxelSum& m) {
+  return {m.a[0], m.a[1], m.a[2], m.a[3], m.b[0], m.b[1]};
+}
+
 /// What the gain of a view depends on besides the scene and the hits.
 struct GainSettings {
   Criterion criterion = Criterion::log_diagonal;
@@ -32,15 +36,18 @@ struct GainSettings {
 /// when a view touches more voxels than any before.
 class GainAccumulator {
  public:
-  /// max_rays bounds the hits of one view.
-  GainAccumulator(const VoxelScene::Data& scene, const GainSettings& settings,
-                  std::size_t max_rays);
+  /// max_rays bounds the hits of one view. Scene and settings must outlive its use.
+  GainAccumulator(const SceneData& scene, const GainSettings& settings, std::size_t max_rays);
+
+  /// Goes over to another scene, with settings of the same criterion and as many weights; what it
+  /// knew of the one before, which may be gone, is forgotten.
+  void rebind(const SceneData& scene, const GainSettings& settings);
 
   void begin();
   /// Takes the hits of a traced tile.
   void add(const RayTile& tile) {
     if (tile.hit == 0) return;
-    kernels_.append(tile, batch_);
+    kernels_->append(tile, batch_);
     if (batch_.count >= kBatchSize) flush();
   }
   /// Takes hits that another thread has listed; at most kBatchSize.
@@ -70,7 +77,7 @@ class GainAccumulator {
     const auto call = [&](std::uint32_t place, const std::optional<VoxelSum>& known) {
       const std::uint32_t code = touched_[place];
       visit(blocks_[code >> 9U].key | (code & 511U), known, sums_[place],
-            settings_.weights.empty() ? 1.0 : weight(code));
+            settings_->weights.empty() ? 1.0 : weight(code));
     };
     for (std::size_t i = 0; i < unknown_count_; ++i) call(unknown_[i], std::nullopt);
     for (std::size_t i = 0; i < occupied_count_; ++i) {
@@ -104,9 +111,10 @@ class GainAccumulator {
                                        double* each) const;
   [[nodiscard]] double weight(std::uint32_t code) const;
 
-  const VoxelScene::Data& scene_;
-  const GainSettings& settings_;
-  const GainKernels& kernels_;
+  std::size_t max_rays_;
+  const SceneData* scene_ = nullptr;
+  const GainSettings* settings_ = nullptr;
+  const GainKernels* kernels_ = nullptr;
   HitBatch batch_;
   // Touched blocks. Those that are primitives of their own are found by the primitive's number
   // (kNone: not touched), those of larger boxes by their key in an open-addressing table.

@@ -40,13 +40,17 @@ void append(const RayTile& tile, HitList& hits) {
     const auto hit = hn::TestBit(hn::Set(du, tile.hit), bit);
     const auto hit_f = hn::RebindMask(df, hit);
     const std::size_t n = hits.count;
-    hn::CompressStore(hn::Load(df, tile.dx + lane0), hit_f, df, hits.dx + n);
-    hn::CompressStore(hn::Load(df, tile.dy + lane0), hit_f, df, hits.dy + n);
-    hn::CompressStore(hn::Load(df, tile.dz + lane0), hit_f, df, hits.dz + n);
-    hn::CompressStore(hn::Load(df, tile.range + lane0), hit_f, df, hits.range + n);
-    hn::CompressStore(hn::Load(du, tile.offset + lane0), hit, du, hits.offset + n);
-    hits.count +=
-        hn::CompressStore(hn::Load(du, tile.primitive + lane0), hit, du, hits.primitive + n);
+    // In registers, then whole vectors: compressing stores to memory are slow on some CPUs. What
+    // lies beyond the hits is overwritten by the next ones.
+    const auto store = [&](auto d, const auto* from, const auto& mask, auto* to)
+                           HWY_ATTR { hn::StoreU(hn::Compress(hn::Load(d, from), mask), d, to); };
+    store(df, tile.dx + lane0, hit_f, hits.dx + n);
+    store(df, tile.dy + lane0, hit_f, hits.dy + n);
+    store(df, tile.dz + lane0, hit_f, hits.dz + n);
+    store(df, tile.range + lane0, hit_f, hits.range + n);
+    store(du, tile.offset + lane0, hit, hits.offset + n);
+    store(du, tile.primitive + lane0, hit, hits.primitive + n);
+    hits.count += hn::CountTrue(du, hit);
   }
 #else
   // Compressing stores are slower than a loop over the hits where the CPU has no instruction for

@@ -7,13 +7,9 @@
 #include <utility>
 
 #include "scene_data.hpp"
-#include "trace/ray_tile.hpp"
 
 namespace viewgain::detail {
 namespace {
-
-// Boxes count as larger by this much [voxels], against rounding.
-constexpr float kBoxMargin = 0.02F;
 
 std::size_t whole_vectors(std::size_t size) {
   return (size + kBoxVector - 1) / kBoxVector * kBoxVector;
@@ -47,22 +43,22 @@ std::size_t count_of(const std::vector<Cell>& cells) {
 }
 
 /// The regions that have primitives, cell by cell.
-std::vector<Cell> regions_by_cell(const VoxelScene::Data& data) {
+std::vector<Cell> regions_by_cell(const SceneData& data) {
   std::vector<Cell> regions;
   for (std::uint32_t i = 0; i + 1 < data.regions.size(); ++i) {
     const SceneRegion &begin = data.regions[i], &end = data.regions[i + 1];
     if (begin.leaf == end.leaf && begin.block == end.block && begin.box == end.box) continue;
     regions.push_back({data.snapshot.regions[i].number, i});
   }
-  if (regions.size() <= SceneBoxes::kMaxBoxes) return regions;
+  if (regions.size() <= SceneBoxes::kMaxCells) return regions;
   // Nodes of 128³, of whose regions' numbers the low six bits say where they are: x, y, z, two
   // each.
   const std::vector<Cell> eighths = grouped(regions, ~std::uint64_t{0b010101});
-  if (count_of(eighths) <= SceneBoxes::kMaxBoxes) return eighths;
+  if (count_of(eighths) <= SceneBoxes::kMaxCells) return eighths;
   return grouped(regions, ~std::uint64_t{0b111111});
 }
 
-std::array<Run, 3> runs_of(const VoxelScene::Data& data, std::uint32_t region) {
+std::array<Run, 3> runs_of(const SceneData& data, std::uint32_t region) {
   const SceneRegion &begin = data.regions[region], &end = data.regions[region + 1];
   const auto leaves = static_cast<std::uint32_t>(data.leaf_count);
   const auto blocks = static_cast<std::uint32_t>(data.block_count);
@@ -84,9 +80,9 @@ void BoxArrays::set(std::size_t at, const PrimitiveBox& box) {
   half_x[at] = half(0), half_y[at] = half(1), half_z[at] = half(2);
 }
 
-SceneBoxes::SceneBoxes(const VoxelScene::Data& data) {
+SceneBoxes::SceneBoxes(const SceneData& data, Kind kind) {
   const std::vector<PrimitiveBox>& all = data.boxes;
-  if (all.size() <= kMaxBoxes) {
+  if (kind == Kind::primitives) {
     count = all.size();
     boxes.resize(whole_vectors(count));
     for (std::size_t i = 0; i < boxes.size(); ++i) boxes.set(i, all[std::min(i, count - 1)]);

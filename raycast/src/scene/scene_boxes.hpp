@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "viewgain/raycast/voxel_scene.hpp"
-
 namespace viewgain::detail {
 
 struct PrimitiveBox;
+struct SceneData;
+
+/// Boxes count as larger by this much [voxels], against rounding.
+inline constexpr float kBoxMargin = 0.02F;
 
 /// Boxes are read in vectors of this many.
 inline constexpr std::size_t kBoxVector = 16;
@@ -22,11 +24,12 @@ struct BoxArrays {
   void resize(std::size_t size);
   void set(std::size_t at, const PrimitiveBox& box);
   [[nodiscard]] std::size_t size() const { return center_x.size(); }
+  [[nodiscard]] std::size_t bytes() const { return 6 * sizeof(float) * size(); }
 };
 
-/// The boxes of a scene, for sorting into the tiles of a view: one a primitive, or, where there are
-/// more than kMaxBoxes, one for each cell of a grid that is coarse enough (32³ voxels, 64³ or
-/// 128³), and the primitives cell by cell. Boxes larger than a region are cells by themselves.
+/// The boxes of a scene, for sorting into the tiles of a view: one a primitive, or one for each
+/// cell of a grid whose cells (32³ voxels, 64³ or 128³) are at most kMaxCells, or the coarsest, and
+/// the primitives cell by cell. Boxes larger than a region are cells by themselves.
 struct SceneBoxes {
   BoxArrays boxes;
   std::size_t count = 0;
@@ -36,12 +39,19 @@ struct SceneBoxes {
   BoxArrays members;
   std::vector<std::uint32_t> primitives;  ///< of the members; kNoPrimitive where padded
 
+  enum class Kind : std::uint8_t { primitives, cells };
+
   /// Of a scene whose primitives are gathered.
-  explicit SceneBoxes(const VoxelScene::Data& data);
+  SceneBoxes(const SceneData& data, Kind kind);
 
   [[nodiscard]] bool are_primitives() const { return first.empty(); }
 
-  static constexpr std::size_t kMaxBoxes = 4096;
+  [[nodiscard]] std::size_t bytes() const {
+    return boxes.bytes() + members.bytes() +
+           sizeof(std::uint32_t) * (first.size() + primitives.size());
+  }
+
+  static constexpr std::size_t kMaxCells = 4096;
 };
 
 }  // namespace viewgain::detail

@@ -4,16 +4,16 @@
 
 #include <array>
 #include <cstdint>
-#include <mutex>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "trace/leaf_traversal.hpp"
-#include "trace/tile_bins.hpp"
-#include "trace/voxel_bvh.hpp"
+#include "scene_boxes.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain::detail {
+
+class SceneTracing;
 
 /// The mask that rays are traced against: 512 bits, one cache line.
 struct alignas(64) TraceMask {
@@ -28,6 +28,9 @@ struct alignas(32) PrimitiveBox {
   std::uint32_t first_offset;
 };
 
+/// Above every primitive's number, also when compared as a signed one.
+inline constexpr std::uint32_t kNoPrimitive = 0x7FFFFFFFU;
+
 /// How a voxel's offset in its primitive is packed, bits an axis: x << 2 bits | y << bits | z.
 /// Leaves and whole unknown blocks of 8³ have three, larger boxes ten; kMaxBoxEdge is what those
 /// can hold.
@@ -41,47 +44,28 @@ struct SceneRegion {
   std::uint32_t leaf, block, box;
 };
 
-/// Geometry numbers in the Embree scene.
-inline constexpr unsigned kLeafGeometry = 0;
-inline constexpr unsigned kBoxGeometry = 1;
-inline constexpr unsigned kObstacleGeometry = 2;
-
-}  // namespace viewgain::detail
-
-namespace viewgain {
-
 /// What VoxelScene owns. Primitives are numbered: [0, leaf_count) leaves that are traced by their
 /// masks, [leaf_count, block_count) whole blocks of 8³ unknown voxels, the rest larger or clipped
 /// boxes of unknown voxels.
 ///
 /// Blocks are the 8³ cells of the lattice that touch the workspace, numbered x-major; a voxel's key
 /// is block << 9 | x << 6 | y << 3 | z of its place in the block.
-struct VoxelScene::Data {
+struct SceneData {
   GridSnapshot snapshot;
-  std::vector<detail::TraceMask> masks;     ///< one a leaf
-  std::vector<detail::PrimitiveBox> boxes;  ///< one a primitive
-  std::vector<std::uint64_t> block_keys;    ///< block << 9, one a primitive below block_count
-  std::vector<std::uint32_t> leaf_source;   ///< index into snapshot.leaves, one a leaf primitive
-  std::vector<std::uint8_t>
-      has_occupied;  ///< whether a leaf has occupied voxels, one a leaf primitive
+  std::vector<TraceMask> masks;            ///< one a leaf
+  std::vector<PrimitiveBox> boxes;         ///< one a primitive
+  std::vector<std::uint64_t> block_keys;   ///< block << 9, one a primitive below block_count
+  std::vector<std::uint32_t> leaf_source;  ///< index into snapshot.leaves, one a leaf primitive
+  std::vector<std::uint8_t> has_occupied;  ///< whether it has occupied voxels, one a leaf primitive
   std::size_t leaf_count = 0;
   std::size_t block_count = 0;
+  /// Where the primitives of each of the snapshot's regions begin, and behind the last.
+  std::vector<SceneRegion> regions;
   Obstacles obstacles;
   bool has_obstacles = false;
-  std::optional<detail::SceneBoxes> scene_boxes;  ///< for sorting into the tiles of a view
-  const detail::TraceKernels* kernels = nullptr;
-  int build_threads = 0;  ///< of the BVH
-
-  /// Where the primitives of each of the snapshot's regions begin, and behind the last.
-  std::vector<detail::SceneRegion> regions;
-
-  /// Builds the BVH unless it is there; only some views are traced through it, see ViewTracer.
-  /// Thread safe. Throws Error(backend), Error(capacity).
-  void ensure_bvh() const {
-    std::call_once(bvh_once_, [this] { bvh_ = detail::build_bvh(*this); });
-  }
-  /// Null unless ensure_bvh() was called.
-  [[nodiscard]] RTCScene bvh() const { return bvh_.scene.get(); }
+  std::optional<SceneBoxes> scene_boxes;  ///< for sorting into the tiles of a view
+  /// Kernels and BVH: what the room trace keeps with a scene; opaque here.
+  std::shared_ptr<const SceneTracing> tracing;
 
   /// Key of the voxel at (x, y, z), relative to the workspace's lowest voxel.
   [[nodiscard]] std::uint64_t voxel_key(std::int32_t x, std::int32_t y, std::int32_t z) const {
@@ -122,7 +106,7 @@ struct VoxelScene::Data {
 
   /// The voxel that a hit names, as an index of the grid's lattice.
   [[nodiscard]] Index3 voxel_index(std::uint32_t primitive, std::uint32_t offset) const {
-    const int bits = primitive < block_count ? detail::kBlockBits : detail::kBoxBits;
+    const int bits = primitive < block_count ? kBlockBits : kBoxBits;
     const std::uint32_t low = (1U << bits) - 1U;
     const auto x = static_cast<std::int32_t>(offset >> 2 * bits);
     const auto y = static_cast<std::int32_t>(offset >> bits & low);
@@ -151,10 +135,15 @@ struct VoxelScene::Data {
     return voxel_key(voxel.x - snapshot.min_index.x, voxel.y - snapshot.min_index.y,
                      voxel.z - snapshot.min_index.z);
   }
-
- private:
-  mutable std::once_flag bvh_once_;
-  mutable detail::VoxelBvh bvh_;
 };
 
-}  // namespace viewgain
+/// The way into a scene for this module's other rooms and for perf/.
+struct SceneAccess {
+  [[nodiscard]] static const SceneData& data(const VoxelScene& scene) { return *scene.data_; }
+  [[nodiscard]] static std::shared_ptr<const VoxelScene> make(
+      std::unique_ptr<const SceneData> data) {
+    return std::shared_ptr<const VoxelScene>(new VoxelScene(std::move(data)));
+  }
+};
+
+}  // namespace viewgain::detail

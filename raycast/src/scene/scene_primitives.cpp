@@ -60,7 +60,7 @@ bool is_wholly_unknown(const SnapshotLeaf& leaf) {
 /// leaves, which come first, are all there.
 class Gatherer {
  public:
-  Gatherer(VoxelScene::Data& data, const VoxelScene::Data* before)
+  Gatherer(SceneData& data, const SceneData* before)
       : data_(data), snapshot_(data.snapshot), before_(before) {
     const std::size_t leaves = snapshot_.leaves.size(), most = leaves + snapshot_.tiles.size();
     data.masks.reserve(leaves);
@@ -117,7 +117,7 @@ class Gatherer {
   }
 
   void copy_region(std::size_t earlier, const SnapshotRegion& region) {
-    const VoxelScene::Data& from = *before_;
+    const SceneData& from = *before_;
     const SceneRegion &first = from.regions[earlier], &last = from.regions[earlier + 1];
     const auto append = [](auto& to, const auto& list, std::size_t begin, std::size_t end) {
       to.insert(to.end(), list.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -194,17 +194,15 @@ class Gatherer {
             static_cast<float>(voxel.z - base.z)};
   }
 
-  VoxelScene::Data& data_;
+  SceneData& data_;
   const GridSnapshot& snapshot_;
-  const VoxelScene::Data* before_;
+  const SceneData* before_;
   std::vector<PrimitiveBox> blocks_, larger_;
   std::vector<std::uint64_t> block_keys_;
 };
 
 }  // namespace
 
-void gather_primitives(VoxelScene::Data& data, const VoxelScene::Data* before) {
-  Gatherer(data, before).run();
-}
+void gather_primitives(SceneData& data, const SceneData* before) { Gatherer(data, before).run(); }
 
 }  // namespace viewgain::detail

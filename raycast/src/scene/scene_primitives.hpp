@@ -9,6 +9,6 @@ namespace viewgain::detail {
 /// Makes the primitives of data.snapshot. Regions that the snapshot shares with `before` (null:
 /// none), the data of the scene that its snapshot was made from, are copied from there. Throws
 /// Error(capacity).
-void gather_primitives(VoxelScene::Data& data, const VoxelScene::Data* before);
+void gather_primitives(SceneData& data, const SceneData* before);
 
 }  // namespace viewgain::detail

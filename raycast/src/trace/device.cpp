@@ -3,6 +3,8 @@
 #include "device.hpp"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 
 #include "viewgain/core/error.hpp"
 
@@ -44,15 +46,25 @@ const char* error_text(RTCError code) {
 
 }  // namespace
 
-DevicePtr make_device(Isa isa, int num_threads) {
-  std::string config = std::string("isa=") + embree_isa(isa);
-  if (num_threads > 0) config += ",threads=" + std::to_string(num_threads);
-  DevicePtr device(rtcNewDevice(config.c_str()));
-  if (!device) {
+RTCDevice shared_device(Isa isa) {
+  static std::array<std::atomic<RTCDevice>, 4> devices{};  // by Isa
+  std::atomic<RTCDevice>& kept = devices.at(static_cast<std::size_t>(isa));
+  RTCDevice device = kept.load(std::memory_order_acquire);
+  if (device != nullptr) return device;
+  const std::string config = std::string("isa=") + embree_isa(isa);
+  RTCDevice made = rtcNewDevice(config.c_str());
+  if (made == nullptr) {
     throw Error(ErrorCode::backend,
                 std::string("Embree gives no device: ") + error_text(rtcGetDeviceError(nullptr)));
   }
+  if (kept.compare_exchange_strong(device, made, std::memory_order_acq_rel)) return made;
+  rtcReleaseDevice(made);  // another thread was faster
   return device;
+}
+
+void commit_scene(RTCDevice device, RTCScene scene, const std::string& what) {
+  rtcJoinCommitScene(scene);
+  check_device(device, what);
 }
 
 void check_device(RTCDevice device, const std::string& what) {

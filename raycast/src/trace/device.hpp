@@ -10,20 +10,22 @@
 
 namespace viewgain::detail {
 
-struct DeviceRelease {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
 struct SceneRelease {
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
 };
-using DevicePtr = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
 using ScenePtr = std::unique_ptr<RTCSceneTy, SceneRelease>;
 
-/// An Embree device that uses at most num_threads threads (0: all) to build, and no instruction set
-/// above `isa`. Throws Error(backend).
-[[nodiscard]] DevicePtr make_device(Isa isa, int num_threads);
+/// The process's Embree device that uses no instruction set above `isa`: made when first asked for
+/// and kept until the process ends. It is told no number of threads, since Embree would make that a
+/// limit for all of the process's TBB. Thread safe. Throws Error(backend).
+[[nodiscard]] RTCDevice shared_device(Isa isa);
 
-/// Throws Error(backend) with the device's message if the last calls on it failed.
+/// Builds a scene's BVH; the calling thread joins in. Throws Error(backend) or Error(capacity), of
+/// which `what` says what was being built.
+void commit_scene(RTCDevice device, RTCScene scene, const std::string& what);
+
+/// Throws Error(backend) or Error(capacity) with the device's message if the last calls on it
+/// failed.
 void check_device(RTCDevice device, const std::string& what);
 
 /// Attaches triangles to a scene as geometry `id`, vertices copied. Throws Error(backend).

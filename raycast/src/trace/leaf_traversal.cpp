@@ -10,8 +10,8 @@
 //
 #include <hwy/highway.h>
 
+#include "leaf_traversal.hpp"
 #include "leaf_walk-inl.hpp"
-#include "scene/scene_data.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
@@ -22,7 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // packet's.
 struct PacketQuery : RayQuery {
   PacketQuery() : RayQuery(true) {}
-  const VoxelScene::Data* scene = nullptr;
+  const SceneData* scene = nullptr;
   const PoseFrame* frame = nullptr;
   RayTile* tile = nullptr;
   int lane0 = 0;
@@ -129,7 +129,7 @@ constexpr auto intersect_packet = intersect4;
 #endif
 static_assert(sizeof(Packet::ray.tfar) == kWidth * sizeof(float));
 
-void trace(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
+void trace(const SceneData& scene, RTCScene bvh, const TileTable& table, const PoseFrame& frame,
            std::size_t tile, RayTile& out) {
   set_up(table, frame, tile, out);
   PacketQuery query;
@@ -159,7 +159,7 @@ void trace(const VoxelScene::Data& scene, const TileTable& table, const PoseFram
     hn::Store(hn::Zero(du), du, packet.ray.flags);
     hn::Store(none, du, packet.hit.geomID);
     hn::Store(none, du, packet.hit.instID[0]);
-    intersect_packet(valid, scene.bvh(), &packet, &query);
+    intersect_packet(valid, bvh, &packet, &query);
 
     const VU geometry = hn::Load(du, packet.hit.geomID);
     const auto ended = hn::And(usable, hn::Ne(geometry, none));
@@ -178,7 +178,7 @@ void trace(const VoxelScene::Data& scene, const TileTable& table, const PoseFram
   }
 }
 
-float walk(const VoxelScene::Data& scene, const PoseFrame& frame, float cosine,
+float walk(const SceneData& scene, const PoseFrame& frame, float cosine,
            std::span<const TileBox> primitives, RayTile& out) {
   constexpr int kParts = kTileRays / kWidth;
   VF range[kParts];

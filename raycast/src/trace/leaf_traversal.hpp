@@ -7,11 +7,16 @@
 
 #include "embree_compat.hpp"
 #include "ray_tile.hpp"
+#include "scene/scene_data.hpp"
 #include "tile_bins.hpp"
 #include "viewgain/core/isa.hpp"
-#include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain::detail {
+
+/// Geometry numbers in the Embree scene.
+inline constexpr unsigned kLeafGeometry = 0;
+inline constexpr unsigned kBoxGeometry = 1;
+inline constexpr unsigned kObstacleGeometry = 2;
 
 /// The tracing kernels of one instruction set.
 struct TraceKernels {
@@ -23,8 +28,8 @@ struct TraceKernels {
   RTCIntersectFunctionN intersect_box;
 
   /// Sets up tile number `tile` of the table for a pose and traces it through the scene's BVH.
-  void (*trace)(const VoxelScene::Data& scene, const TileTable& table, const PoseFrame& frame,
-                std::size_t tile, RayTile& out);
+  void (*trace)(const SceneData& scene, RTCScene bvh, const TileTable& table,
+                const PoseFrame& frame, std::size_t tile, RayTile& out);
 
   /// Sets up a tile that has met nothing yet.
   void (*begin)(const TileTable& table, const PoseFrame& frame, std::size_t tile, RayTile& out);
@@ -33,7 +38,7 @@ struct TraceKernels {
   /// BVH; lists may follow one another. When they hold all that the tile's rays meet the answer is
   /// that of `trace`, obstacles apart. `cosine`: no ray of the tile makes a smaller angle with the
   /// optical axis. Returns how far along the axis something must begin to be of no more interest.
-  float (*walk)(const VoxelScene::Data& scene, const PoseFrame& frame, float cosine,
+  float (*walk)(const SceneData& scene, const PoseFrame& frame, float cosine,
                 std::span<const TileBox> primitives, RayTile& out);
 };
 

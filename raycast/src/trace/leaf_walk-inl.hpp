@@ -19,6 +19,7 @@
 
 #include <hwy/highway.h>
 
+#include "ray_tile.hpp"
 #include "scene/scene_data.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -90,8 +91,8 @@ HWY_INLINE VU mask_words(const TraceMask& mask, VU offset) {
 
 // Walks the voxels of a leaf along the active rays and notes the first one whose bit is set, if it
 // is nearer than what the ray has. Returns the lanes that took a hit; `range` is updated.
-HWY_INLINE MF walk_leaf(const VoxelScene::Data& scene, const PoseFrame& frame, RayTile& tile,
-                        int lane0, std::uint32_t leaf, const Slabs& slabs, MF active, VF& range) {
+HWY_INLINE MF walk_leaf(const SceneData& scene, const PoseFrame& frame, RayTile& tile, int lane0,
+                        std::uint32_t leaf, const Slabs& slabs, MF active, VF& range) {
   const VF ix = hn::Load(df, tile.ix + lane0), iy = hn::Load(df, tile.iy + lane0),
            iz = hn::Load(df, tile.iz + lane0);
   const Interval slab = intersect_slabs(ix, iy, iz, slabs, frame.min_range);
@@ -183,9 +184,8 @@ HWY_INLINE MF walk_leaf(const VoxelScene::Data& scene, const PoseFrame& frame, R
 }
 
 // The entry into a box of unknown voxels.
-HWY_INLINE MF enter_box(const VoxelScene::Data& scene, const PoseFrame& frame, RayTile& tile,
-                        int lane0, std::uint32_t primitive, const Slabs& slabs, MF active,
-                        VF& range) {
+HWY_INLINE MF enter_box(const SceneData& scene, const PoseFrame& frame, RayTile& tile, int lane0,
+                        std::uint32_t primitive, const Slabs& slabs, MF active, VF& range) {
   const PrimitiveBox& box = scene.boxes[primitive];
   const Interval slab =
       intersect_slabs(hn::Load(df, tile.ix + lane0), hn::Load(df, tile.iy + lane0),

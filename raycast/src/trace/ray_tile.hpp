@@ -19,8 +19,6 @@ inline constexpr int kTileRays = kTileEdge * kTileEdge;
 /// Of so many pixels every stride-th, the first included.
 [[nodiscard]] inline int strided(int pixels, int stride) { return (pixels - 1) / stride + 1; }
 
-/// Above every primitive's number, also when compared as a signed one.
-inline constexpr std::uint32_t kNoPrimitive = 0x7FFFFFFFU;
 /// Below every primitive's number as a signed one, so that an obstacle wins a tie with a voxel.
 inline constexpr std::uint32_t kObstaclePrimitive = 0xFFFFFFFFU;
 
@@ -49,7 +47,7 @@ struct TileTable {
 };
 
 /// Cameras farther than this from the workspace's lowest corner [voxels] see nothing: single
-/// precision hardly tells one voxel from the next there, and the margins of boxes would not hold.
+/// precision hardly tells one voxel from the next there.
 inline constexpr double kFarthestCamera = 1e6;
 
 /// A camera pose as the tracer sees it. Lengths are in voxels, coordinates relative to the lowest
@@ -60,6 +58,7 @@ struct PoseFrame {
   std::array<float, 9> rotation{};  ///< R_grid_camera, row by row
   float min_range = 0;
   float max_range = 0;
+  float extra_margin = 0;     ///< by which boxes in lists count as larger, against rounding
   bool sees_nothing = false;  ///< too far away: not to be traced
 };
 

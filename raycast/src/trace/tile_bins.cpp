@@ -34,6 +34,7 @@ struct ImageScale {
   float nearest;   // along the optical axis [voxels]; what is nearer no ray meets
   float touching;  // except in boxes that come so close to the axis [voxels]; negative: none
   float last_column, last_row;
+  float margin;  // by which boxes count as larger [voxels]
 };
 
 struct TileBinKernels {
@@ -63,6 +64,7 @@ ImageBounds bounds_of(const BoxArrays& boxes, std::size_t first, const PoseFrame
   ImageBounds out;
   const auto& R = frame.rotation;
   const VF zero = hn::Zero(df), nearest = hn::Set(df, image.nearest);
+  const VF margin = hn::Set(df, image.margin), ray_margin = hn::Set(df, kRayMargin);
   const VF touching = hn::Set(df, image.touching), opposite = hn::Neg(touching);
   const VF everywhere = hn::Set(df, kEverywhere), nowhere = hn::Neg(everywhere);
   for (std::size_t i = 0; i < kBoxVector; i += hn::Lanes(df)) {
@@ -76,8 +78,9 @@ ImageBounds bounds_of(const BoxArrays& boxes, std::size_t first, const PoseFrame
     const auto along = [&](std::size_t axis, VF& low, VF& high) HWY_ATTR {
       const VF a = hn::Set(df, R[axis]), b = hn::Set(df, R[3 + axis]), c = hn::Set(df, R[6 + axis]);
       const VF center = hn::Add(hn::Mul(a, dx), hn::Add(hn::Mul(b, dy), hn::Mul(c, dz)));
-      const VF reach = hn::Add(hn::Mul(hn::Abs(a), hx),
-                               hn::Add(hn::Mul(hn::Abs(b), hy), hn::Mul(hn::Abs(c), hz)));
+      const VF reach =
+          hn::Add(margin, hn::Add(hn::Mul(hn::Abs(a), hx),
+                                  hn::Add(hn::Mul(hn::Abs(b), hy), hn::Mul(hn::Abs(c), hz))));
       low = hn::Sub(center, reach);
       high = hn::Add(center, reach);
     };
@@ -98,14 +101,13 @@ ImageBounds bounds_of(const BoxArrays& boxes, std::size_t first, const PoseFrame
     const VF one = hn::Set(df, 1.0F);
     const VF by_near = hn::Div(one, z_near);
     const VF by_far = hn::Div(one, hn::Max(z_high, nearest));
-    const VF margin = hn::Set(df, kRayMargin);
     const auto project = [&](VF low, VF high, float scale, float shift, float* min_out,
                              float* max_out) HWY_ATTR {
       const VF least = hn::Mul(low, hn::IfThenElse(hn::Lt(low, zero), by_near, by_far));
       const VF most = hn::Mul(high, hn::IfThenElse(hn::Lt(high, zero), by_far, by_near));
       const VF s = hn::Set(df, scale), o = hn::Set(df, shift);
-      const VF min = hn::Sub(hn::Add(hn::Mul(least, s), o), margin);
-      const VF max = hn::Add(hn::Add(hn::Mul(most, s), o), margin);
+      const VF min = hn::Sub(hn::Add(hn::Mul(least, s), o), ray_margin);
+      const VF max = hn::Add(hn::Add(hn::Mul(most, s), o), ray_margin);
       hn::Store(hn::IfThenElse(touches, nowhere, min), df, min_out + i);
       hn::Store(hn::IfThenElse(touches, everywhere, hn::IfThenElse(behind, nowhere, max)), df,
                 max_out + i);
@@ -193,8 +195,7 @@ constexpr std::size_t kDistanceSteps = 256;
 }  // namespace
 
 TileBinner::TileBinner(const PinholeCamera& camera, int pixel_stride, const TileTable& table)
-    : usable_(!camera.has_distortion()),
-      scale_x_(static_cast<float>(camera.fx / pixel_stride)),
+    : scale_x_(static_cast<float>(camera.fx / pixel_stride)),
       shift_x_(static_cast<float>(camera.cx / pixel_stride)),
       scale_y_(static_cast<float>(camera.fy / pixel_stride)),
       shift_y_(static_cast<float>(camera.cy / pixel_stride)),
@@ -214,14 +215,13 @@ ImageScale TileBinner::image_of(const PoseFrame& frame) const {
   // A ray that has gone min_range is at least this far along the axis.
   const float nearest = 0.999F * frame.min_range * least_cosine_;
   const float touching = nearest < kLeastDepth ? 1.01F * kLeastDepth * widest_slope_ : -kEverywhere;
-  return {scale_x_, shift_x_,     scale_y_, shift_y_, std::max(nearest, kLeastDepth),
-          touching, last_column_, last_row_};
+  return {scale_x_, shift_x_,     scale_y_,  shift_y_,          std::max(nearest, kLeastDepth),
+          touching, last_column_, last_row_, frame.extra_margin};
 }
 
 void TileBinner::sort(Isa isa, const SceneBoxes& scene, const PoseFrame& frame,
                       TileBins& bins) const {
   bins.valid_ = false;
-  if (!usable_) return;
   const TileBinKernels& kernels = kernels_of(isa);
   const ImageScale image = image_of(frame);
 

@@ -85,7 +85,6 @@ class TileBinner {
                     std::uint32_t cell, TileBins& bins) const;
   [[nodiscard]] ImageScale image_of(const PoseFrame& frame) const;
 
-  bool usable_ = true;
   float scale_x_ = 0, shift_x_ = 0;  // ray column = scale * x / z + shift
   float scale_y_ = 0, shift_y_ = 0;
   float last_column_ = 0, last_row_ = 0;

@@ -3,24 +3,31 @@
 #include "view_tracer.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace viewgain::detail {
 namespace {
 
 constexpr double kMaxPoseError = 1e-3;
 constexpr double kMendPoseError = 1e-9;
+// Embree's rays have finite ends; all of the workspace is nearer than this [voxels].
+constexpr double kRayEnd = 4 * kFarthestCamera;
 
 }  // namespace
 
-ViewTracer::ViewTracer(const VoxelScene::Data& scene, const PinholeCamera& camera, int pixel_stride,
+ViewTracer::ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays> rays,
                        double min_range, double max_range)
     : scene_(scene),
-      table_(camera, pixel_stride),
-      binner_(camera, pixel_stride, table_),
-      T_grid_world_(scene.snapshot.T_world_grid.inverse()),
-      min_range_(min_range),
-      max_range_(max_range) {
-  if (scene.has_obstacles || camera.has_distortion()) scene.ensure_bvh();
+      kernels_(scene.tracing->kernels),
+      rays_(std::move(rays)),
+      T_grid_world_(scene.snapshot.T_world_grid.inverse()) {
+  const double voxel = scene.snapshot.voxel_size;
+  const double nearest = min_range / voxel, farthest = std::min(max_range / voxel, kRayEnd);
+  min_range_ = static_cast<float>(nearest);
+  max_range_ = static_cast<float>(farthest);
+  is_out_of_range_ = nearest >= kRayEnd;
+  choice_ = choose_tracing(scene, *rays_, farthest);
+  if (!choice_.by_lists) (void)scene.tracing->bvh(choice_.margin_level);
 }
 
 std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const {
@@ -40,12 +47,10 @@ std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const 
       frame.rotation[static_cast<std::size_t>(3 * r + c)] = static_cast<float>(R(r, c));
     }
   }
-  // Embree's rays have finite ends; all of the workspace is nearer than this.
-  const double end = 4 * kFarthestCamera;
-  frame.sees_nothing =
-      !(origin.cwiseAbs().maxCoeff() <= kFarthestCamera) || min_range_ / voxel >= end;
-  frame.min_range = static_cast<float>(min_range_ / voxel);
-  frame.max_range = static_cast<float>(std::min(max_range_ / voxel, end));
+  frame.sees_nothing = !(origin.cwiseAbs().maxCoeff() <= kFarthestCamera) || is_out_of_range_;
+  frame.min_range = min_range_;
+  frame.max_range = max_range_;
+  frame.extra_margin = margin_of(choice_.margin_level) - margin_of(0);
   return frame;
 }
 

@@ -3,82 +3,79 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <ranges>
 
-#include "ray_tile.hpp"
 #include "scene/scene_data.hpp"
-#include "tile_bins.hpp"
+#include "scene_tracing.hpp"
+#include "sensor_rays.hpp"
+#include "trace_choice.hpp"
 
 namespace viewgain::detail {
 
-/// Traces the views of one sensor in one scene. There are two ways, which give the same bits:
-/// through Embree's BVH, and, where the camera has no distortion and the scene no obstacles, along
-/// lists of the primitives that each tile can meet. Immutable; thread safe.
+/// Traces the views of one sensor in one scene, one way or the other (trace_choice.hpp); the scene
+/// must outlive it. Immutable; thread safe.
 class ViewTracer {
  public:
-  ViewTracer(const VoxelScene::Data& scene, const PinholeCamera& camera, int pixel_stride,
-             double min_range, double max_range);
+  /// Ranges in metres. Throws Error(backend), Error(capacity) if a BVH is wanted and cannot be
+  /// built.
+  ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays> rays, double min_range,
+             double max_range);
 
   /// The pose in the scene's coordinates; nothing if it is not finite or its rotation is off by
   /// more than 1e-3.
   [[nodiscard]] std::optional<PoseFrame> frame_of(const Pose& T_world_camera) const;
 
-  /// Calls visit(tile number, RayTile) for the tiles that can meet anything, in order.
-  template <typename Visit>
-  void trace(const PoseFrame& frame, TileBins& bins, Visit&& visit) const {
-    prepare(frame, bins);
-    trace_some(frame, 0, table_.tile_count, bins, visit);
-  }
-
-  /// Makes `bins` ready for trace_some().
-  void prepare(const PoseFrame& frame, TileBins& bins) const {
-    if (frame.sees_nothing || scene_.has_obstacles) {
-      bins.invalidate();
+  /// Makes `bins` ready for tracing `tile_count` of the view's tiles.
+  void prepare(const PoseFrame& frame, std::size_t tile_count, TileBins& bins) const {
+    if (choice_.by_lists && !frame.sees_nothing && tile_count >= choice_.least_listed) {
+      rays_->binner.sort(kernels_.isa, *scene_.scene_boxes, frame, bins);
     } else {
-      sort(frame, bins);
+      bins.invalidate();
     }
   }
 
-  /// As trace(), of the tiles [begin, end).
-  template <typename Visit>
-  void trace_some(const PoseFrame& frame, std::size_t begin, std::size_t end, TileBins& bins,
-                  Visit&& visit) const {
-    trace_listed(frame, std::views::iota(begin, end), bins, visit);
-  }
-
-  /// As trace(), of the tiles with these numbers.
+  /// Calls visit(tile number, RayTile) for those of the tiles with these numbers that can meet
+  /// anything, in order. `bins` are prepared for the view.
   template <typename Tiles, typename Visit>
-  void trace_listed(const PoseFrame& frame, const Tiles& tiles, TileBins& bins,
-                    Visit&& visit) const {
+  void trace(const PoseFrame& frame, const Tiles& tiles, TileBins& bins, Visit&& visit) const {
     if (frame.sees_nothing) return;
+    if (!bins.valid()) return trace_bvh(frame, tiles, visit);
     RayTile out;
     for (const std::size_t tile : tiles) {
-      if (!bins.valid()) {
-        scene_.kernels->trace(scene_, table_, frame, tile, out);
-      } else if (bins.boxes_of(tile).empty()) {
-        continue;
-      } else {
-        trace_tile(frame, tile, bins, out);
-      }
+      if (bins.boxes_of(tile).empty()) continue;
+      trace_lists(frame, tile, bins, out);
       visit(tile, out);
     }
   }
 
-  /// Sorts the scene's boxes into the tiles; only if bins.valid() is then true may trace_tile() be
-  /// called.
-  void sort(const PoseFrame& frame, TileBins& bins) const {
-    binner_.sort(scene_.kernels->isa, *scene_.scene_boxes, frame, bins);
+  /// The same through the BVH, every tile.
+  template <typename Tiles, typename Visit>
+  void trace_bvh(const PoseFrame& frame, const Tiles& tiles, Visit&& visit) const {
+    if (frame.sees_nothing) return;
+    RTCScene bvh = scene_.tracing->bvh(choice_.margin_level);
+    RayTile out;
+    for (const std::size_t tile : tiles) {
+      kernels_.trace(scene_, bvh, rays_->table, frame, tile, out);
+      visit(tile, out);
+    }
   }
 
-  /// One tile whose boxes have been sorted.
-  void trace_tile(const PoseFrame& frame, std::size_t tile, TileBins& bins, RayTile& out) const {
+  /// The numbers of all tiles.
+  [[nodiscard]] auto all_tiles() const {
+    return std::views::iota(std::size_t{0}, rays_->table.tile_count);
+  }
+  [[nodiscard]] const TileTable& table() const { return rays_->table; }
+
+ private:
+  // One tile along its list, or from cell to cell.
+  void trace_lists(const PoseFrame& frame, std::size_t tile, TileBins& bins, RayTile& out) const {
     const SceneBoxes& scene = *scene_.scene_boxes;
-    const TraceKernels& kernels = *scene_.kernels;
-    kernels.begin(table_, frame, tile, out);
-    const float cosine = table_.cosine[tile];
+    kernels_.begin(rays_->table, frame, tile, out);
+    const float cosine = rays_->table.cosine[tile];
     if (scene.are_primitives()) {
-      kernels.walk(scene_, frame, cosine, bins.boxes_of(tile), out);
+      kernels_.walk(scene_, frame, cosine, bins.boxes_of(tile), out);
       return;
     }
     // The primitives of the next cell are chosen, and asked for, while those of this one are
@@ -88,39 +85,26 @@ class ViewTracer {
     for (const TileBox& cell : bins.boxes_of(tile)) {
       if (cell.near > of_interest) break;
       const auto primitives =
-          binner_.select(kernels.isa, scene, frame, cell.box, tile, of_interest, bins);
+          rays_->binner.select(kernels_.isa, scene, frame, cell.box, tile, of_interest, bins);
       if (primitives.empty()) continue;
       for (const TileBox& primitive : primitives) {
         __builtin_prefetch(&scene_.boxes[primitive.box]);
         if (primitive.box < scene_.leaf_count) __builtin_prefetch(&scene_.masks[primitive.box]);
       }
-      if (!waiting.empty()) of_interest = kernels.walk(scene_, frame, cosine, waiting, out);
+      if (!waiting.empty()) of_interest = kernels_.walk(scene_, frame, cosine, waiting, out);
       waiting = primitives;
       bins.keep_selected();
     }
-    if (!waiting.empty()) kernels.walk(scene_, frame, cosine, waiting, out);
+    if (!waiting.empty()) kernels_.walk(scene_, frame, cosine, waiting, out);
   }
 
-  /// The same through the BVH alone, every tile, which the evaluator does not do where it need not.
-  template <typename Visit>
-  void trace_bvh(const PoseFrame& frame, Visit&& visit) const {
-    scene_.ensure_bvh();
-    if (frame.sees_nothing) return;
-    RayTile out;
-    for (std::size_t tile = 0; tile < table_.tile_count; ++tile) {
-      scene_.kernels->trace(scene_, table_, frame, tile, out);
-      visit(tile, out);
-    }
-  }
-
-  [[nodiscard]] const TileTable& table() const { return table_; }
-
- private:
-  const VoxelScene::Data& scene_;
-  TileTable table_;
-  TileBinner binner_;
+  const SceneData& scene_;
+  const TraceKernels& kernels_;
+  std::shared_ptr<const SensorRays> rays_;
+  ViewChoice choice_;
   Pose T_grid_world_;
-  double min_range_, max_range_;  // [m]
+  float min_range_, max_range_;  // [voxels]
+  bool is_out_of_range_;         // min_range is beyond all that is traced
 };
 
 }  // namespace viewgain::detail

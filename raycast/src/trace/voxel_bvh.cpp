@@ -2,15 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "voxel_bvh.hpp"
 
-#include "scene/scene_data.hpp"
-#include "viewgain/core/error.hpp"
+#include "scene_tracing.hpp"
 
 namespace viewgain::detail {
 namespace {
-
-// Embree's own arithmetic may put a ray on the wrong side of a box by a few ulps of the distance;
-// boxes that are larger by this much [voxels] are met all the same. The kernels decide exactly.
-constexpr float kBoundsMargin = 0.02F;
 
 // A box's twelve triangles, added to a mesh.
 void append_box(const Box& box, TriangleMesh& mesh) {
@@ -28,34 +23,40 @@ void append_box(const Box& box, TriangleMesh& mesh) {
   }
 }
 
-void attach_boxes(const VoxelScene::Data& data, const VoxelBvh& bvh, unsigned id, std::size_t first,
-                  std::size_t count, RTCIntersectFunctionN intersect) {
-  RTCGeometry geometry = rtcNewGeometry(bvh.device.get(), RTC_GEOMETRY_TYPE_USER);
+// What Embree asks the bounds of.
+struct BoundsQuestion {
+  const PrimitiveBox* boxes;
+  float margin;
+};
+
+void attach_boxes(RTCDevice device, RTCScene scene, unsigned id, std::size_t count,
+                  BoundsQuestion& question, RTCIntersectFunctionN intersect) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
-  rtcSetGeometryUserData(geometry, const_cast<PrimitiveBox*>(data.boxes.data() + first));
+  rtcSetGeometryUserData(geometry, &question);
   rtcSetGeometryBoundsFunction(
       geometry,
       [](const RTCBoundsFunctionArguments* args) {
-        const PrimitiveBox& box =
-            static_cast<const PrimitiveBox*>(args->geometryUserPtr)[args->primID];
+        const auto& [boxes, margin] = *static_cast<const BoundsQuestion*>(args->geometryUserPtr);
+        const PrimitiveBox& box = boxes[args->primID];
         RTCBounds& out = *args->bounds_o;
-        out.lower_x = box.min[0] - kBoundsMargin;
-        out.lower_y = box.min[1] - kBoundsMargin;
-        out.lower_z = box.min[2] - kBoundsMargin;
-        out.upper_x = box.max[0] + kBoundsMargin;
-        out.upper_y = box.max[1] + kBoundsMargin;
-        out.upper_z = box.max[2] + kBoundsMargin;
+        out.lower_x = box.min[0] - margin;
+        out.lower_y = box.min[1] - margin;
+        out.lower_z = box.min[2] - margin;
+        out.upper_x = box.max[0] + margin;
+        out.upper_y = box.max[1] + margin;
+        out.upper_z = box.max[2] + margin;
       },
       nullptr);
   rtcSetGeometryIntersectFunction(geometry, intersect);
   rtcSetGeometryMask(geometry, 0xFFFFFFFFU);
   rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(bvh.scene.get(), geometry, id);
+  rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
 }
 
 // Obstacles in the scene's coordinates: voxels from the workspace's lowest corner.
-void attach_obstacles(const VoxelScene::Data& data, const VoxelBvh& bvh) {
+void attach_obstacles(const SceneData& data, RTCDevice device, RTCScene scene) {
   const Obstacles& obstacles = data.obstacles;
   const Pose T_grid_world = data.snapshot.T_world_grid.inverse();
   const Eigen::Vector3d base(data.snapshot.min_index.x, data.snapshot.min_index.y,
@@ -78,40 +79,32 @@ void attach_obstacles(const VoxelScene::Data& data, const VoxelBvh& bvh) {
   append(boxes);
   for (const TriangleMesh& mesh : obstacles.meshes) append(mesh);
   if (indices.empty()) return;
-  attach_triangles(bvh.device.get(), bvh.scene.get(), kObstacleGeometry, vertices.data(),
-                   vertices.size() / 3, indices.data(), indices.size() / 3);
+  attach_triangles(device, scene, kObstacleGeometry, vertices.data(), vertices.size() / 3,
+                   indices.data(), indices.size() / 3);
 }
 
 }  // namespace
 
-Isa packet_isa() {
-  const Isa best = select_isa();
-  for (const Isa isa : supported_isas()) {
-    if (isa > best) continue;
-    const DevicePtr device = make_device(isa, 1);
-    const int width = trace_kernels(isa).width;
-    const RTCDeviceProperty native = width == 16  ? RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED
-                                     : width == 8 ? RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED
-                                                  : RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED;
-    if (rtcGetDeviceProperty(device.get(), native) != 0) return isa;
-  }
-  throw Error(ErrorCode::backend, "this build of Embree has no ray packets");
+ScenePtr build_bvh(const SceneData& data, const TraceKernels& kernels, float margin) {
+  RTCDevice device = shared_device(kernels.isa);
+  ScenePtr bvh(rtcNewScene(device));
+  rtcSetSceneBuildQuality(bvh.get(), RTC_BUILD_QUALITY_HIGH);
+  // Without it a ray may slip between two triangles that share an edge. Voxels do not need it.
+  if (data.has_obstacles) rtcSetSceneFlags(bvh.get(), RTC_SCENE_FLAG_ROBUST);
+  BoundsQuestion leaves{data.boxes.data(), margin};
+  BoundsQuestion others{data.boxes.data() + data.leaf_count, margin};
+  attach_boxes(device, bvh.get(), kLeafGeometry, data.leaf_count, leaves, kernels.intersect_leaf);
+  attach_boxes(device, bvh.get(), kBoxGeometry, data.boxes.size() - data.leaf_count, others,
+               kernels.intersect_box);
+  attach_obstacles(data, device, bvh.get());
+  commit_scene(device, bvh.get(), "building the voxel scene");
+  return bvh;
 }
 
-VoxelBvh build_bvh(const VoxelScene::Data& data) {
-  VoxelBvh bvh;
-  bvh.device = make_device(data.kernels->isa, data.build_threads);
-  bvh.scene.reset(rtcNewScene(bvh.device.get()));
-  rtcSetSceneBuildQuality(bvh.scene.get(), RTC_BUILD_QUALITY_HIGH);
-  // Without it a ray may slip between two triangles that share an edge. Voxels do not need it.
-  if (data.has_obstacles) rtcSetSceneFlags(bvh.scene.get(), RTC_SCENE_FLAG_ROBUST);
-  attach_boxes(data, bvh, kLeafGeometry, 0, data.leaf_count, data.kernels->intersect_leaf);
-  attach_boxes(data, bvh, kBoxGeometry, data.leaf_count, data.boxes.size() - data.leaf_count,
-               data.kernels->intersect_box);
-  attach_obstacles(data, bvh);
-  rtcCommitScene(bvh.scene.get());
-  check_device(bvh.device.get(), "building the voxel scene");
-  return bvh;
+RTCScene SceneTracing::bvh(int margin_level) const {
+  Bvh& bvh = bvhs_.at(static_cast<std::size_t>(margin_level));
+  std::call_once(bvh.once, [&] { bvh.scene = build_bvh(data_, kernels, margin_of(margin_level)); });
+  return bvh.scene.get();
 }
 
 }  // namespace viewgain::detail

@@ -207,6 +207,16 @@ TEST(Race, TakesOddRequestsAndRefusesBadOnes) {
   EXPECT_THROW((void)evaluator.race(poses, 1, {.keep = 2}), Error);
 }
 
+TEST(Race, HasARoundHoweverLargeItsFirstShare) {
+  const GainEvaluator evaluator(VoxelScene::build(lump(3)), larger_sensor());
+  const std::vector<Pose> poses = sphere_poses(200, 0.6);
+  for (const double first_share : {0.26, 0.5, 1.0}) {
+    const RacedViews race = evaluator.race(poses, 1, {.first_share = first_share});
+    EXPECT_LT(race.scored_indices.size(), poses.size()) << first_share;
+    EXPECT_GT(race.rays_traced, race.scored_indices.size() * evaluator.rays_per_pose());
+  }
+}
+
 // What a set of views gains together, on the oracle's rays and with dense matrices.
 double joint_gain(const BeliefGrid& grid, const Sensor& sensor, Criterion criterion,
                   const std::vector<Pose>& views) {
@@ -336,6 +346,29 @@ TEST(Approximate, StandardErrorsCoverTheTruth) {
   EXPECT_GT(static_cast<double>(one) / n, 0.6);
   EXPECT_LT(static_cast<double>(one) / n, 0.8);
   EXPECT_GT(static_cast<double>(two) / n, 0.9);
+}
+
+TEST(Approximate, AStopLeavesNoEstimateWithoutTheCorrection) {
+  const GainEvaluator one(VoxelScene::build(lump(98)), larger_sensor(), {}, {.num_threads = 1});
+  const std::vector<Pose> poses = sphere_poses(60, 0.6);
+  const ApproximateConfig config{.anchors = 20};
+  std::vector<ApproximateGain> all(poses.size()), some(poses.size());
+  ASSERT_EQ(one.approximate(poses, all, config), poses.size());
+  int asked = 0;
+  for (const int allowed : {0, 5, 19, 20, 21, 50, 79}) {
+    asked = 0;
+    const std::size_t done =
+        one.approximate(poses, some, config, {.is_cancelled = [&] { return ++asked > allowed; }});
+    EXPECT_EQ(done, static_cast<std::size_t>(std::max(0, allowed - 20)));
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (i >= done) {
+        EXPECT_TRUE(std::isnan(some[i].gain));
+      } else {
+        EXPECT_EQ(some[i].gain, all[i].gain);
+        EXPECT_EQ(some[i].standard_error, all[i].standard_error);
+      }
+    }
+  }
 }
 
 TEST(Approximate, IsDeterministicAndRefusesBadRequests) {

@@ -4,7 +4,9 @@
 // Batches: bad poses among good ones, progress, cancellation, ranking.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <limits>
 #include <mutex>
 #include <stop_token>
@@ -151,6 +153,37 @@ TEST_F(Batch, CancellingIsAskedBetweenPosesOfEveryCall) {
     asked = 0;
     EXPECT_FALSE(own.best_set(poses_, 2, control).complete);
     EXPECT_EQ(asked, 21U);
+  }
+}
+
+// Whoever measures a view waits until as many are at it as there are threads.
+class Meeting final : public ViewMeasure {
+ public:
+  explicit Meeting(int size) : size_(size) {}
+
+  double measure(const Pose&, std::span<const ViewHit>) const override {
+    std::unique_lock lock(mutex_);
+    ++here_;
+    changed_.notify_all();
+    const bool met =
+        changed_.wait_for(lock, std::chrono::seconds(60), [&] { return here_ >= size_; });
+    return met ? 1 : 0;
+  }
+
+ private:
+  int size_;
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  mutable int here_ = 0;
+};
+
+TEST_F(Batch, AllThreadsTakePartInASmallOne) {
+  const GainEvaluator own = evaluator(8);
+  for (const std::size_t count : {8U, 16U, 31U}) {
+    const std::vector<Pose> same(count, poses_[0]);
+    std::vector<double> results(count);
+    EXPECT_EQ(own.evaluate(same, Meeting(8), results), count);
+    EXPECT_EQ(results, std::vector<double>(count, 1.0));
   }
 }
 

@@ -93,6 +93,40 @@ TEST(TracePaths, CamerasThatTouchVoxelsSeeTheSameBits) {
   EXPECT_EQ(compare(grid, sensor, poses), 320U * 21U * 17U);
 }
 
+// Cameras so far away that single precision moves a box by many hundredths of a voxel: neither way
+// may lose what the kernels meet.
+TEST(TracePaths, FarCamerasSeeTheSameBits) {
+  constexpr int kEdge = 24;
+  test::Random random(16);
+  std::vector<Index3> unknown;
+  for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
+    const Index3 voxel{i / kEdge / kEdge, i / kEdge % kEdge, i % kEdge};
+    if (test::uniform(random, 0, 1) < 0.05) unknown.push_back(voxel);
+  }
+  const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
+  Sensor sensor = test::lattice_sensor(61, 47);
+  sensor.max_range = 2e6 * test::kExactVoxel;
+  const double middle = 0.5 * kEdge * test::kExactVoxel;
+  std::size_t rays = 0, hits = 0;
+  for (const double distance : {1.5e4, 5e4, 1.3e5, 4e5, 9e5}) {  // [voxels]
+    sensor.camera.fx = sensor.camera.fy = 2 * distance;          // two pixels a voxel
+    std::vector<Pose> poses;
+    for (int i = 0; i < 10; ++i) {
+      const Eigen::Vector3d away(test::uniform(random, -1, 1), test::uniform(random, -1, 1),
+                                 test::uniform(random, -1, 1));
+      const Eigen::Vector3d eye =
+          Eigen::Vector3d::Constant(middle) + distance * test::kExactVoxel * away.normalized();
+      poses.push_back(look_at({eye.x(), eye.y(), eye.z()}, {middle, middle, middle}));
+    }
+    rays += compare(grid, sensor, poses);
+    for (const ViewGain& view : GainEvaluator(VoxelScene::build(grid), sensor).evaluate(poses)) {
+      hits += view.hits;
+    }
+  }
+  EXPECT_EQ(rays, 5U * 10U * 61U * 47U);
+  EXPECT_GT(hits, rays / 4);
+}
+
 // More primitives than are listed one by one: boxes stand for cells of many.
 TEST(TracePaths, ManyPrimitivesUnderCoarseBoxesGiveTheSameBits) {
   constexpr int kEdge = 144;

@@ -16,6 +16,11 @@
 
 namespace viewgain {
 
+namespace detail {
+struct SceneAccess;
+struct SceneData;
+}  // namespace detail
+
 /// Known things that are not part of the map: they block rays at any range and gain nothing. World
 /// frame.
 struct VIEWGAIN_EXPORT Obstacles {
@@ -33,7 +38,8 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// Takes a snapshot of the grid and sorts it (about 0.2 ms per 1,000 leaves; with a BVH 0.5 ms).
   /// Throws Error(backend) if Embree fails, Error(capacity) beyond 2^23 leaves and tiles,
   /// Error(invalid_argument) if an obstacle has a vertex that is not finite, an index out of range
-  /// or a box inside out. exec.num_threads bounds the threads of the build (see thread_count()).
+  /// or a box inside out, or for a number of threads out of range. Runs on the calling thread, and
+  /// where a BVH is built on those that the process's TBB has: exec does not limit it.
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(const BeliefGrid& grid,
                                                                const Obstacles& obstacles = {},
                                                                const ExecConfig& exec = {});
@@ -58,22 +64,15 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// VIEWGAIN_ISA.
   [[nodiscard]] std::string_view isa() const noexcept;
 
-  /// Leaves and tiles, and the bytes that the scene adds to the snapshot's,
-  /// Embree's BVH not counted.
+  /// Leaves and tiles, and the bytes that the scene adds to the snapshot's: primitives, boxes,
+  /// obstacles; Embree's BVH not counted.
   [[nodiscard]] std::size_t primitive_count() const noexcept;
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
-  /// For this module's other sources and for perf/ (private header scene_data.hpp).
-  struct Data;
-  [[nodiscard]] const Data& data() const noexcept { return *data_; }
-
  private:
-  [[nodiscard]] static std::shared_ptr<const VoxelScene> make(GridSnapshot snapshot,
-                                                              const Obstacles& obstacles,
-                                                              const ExecConfig& exec,
-                                                              const Data* before);
-  explicit VoxelScene(std::unique_ptr<const Data> data);
-  std::unique_ptr<const Data> data_;
+  friend struct detail::SceneAccess;
+  explicit VoxelScene(std::unique_ptr<const detail::SceneData> data);
+  std::unique_ptr<const detail::SceneData> data_;
 };
 
 /// Names of the instruction sets that this machine and this build have, best first.

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluator_core.hpp"
+
+#include <bit>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+// Information goes with the inverse square and determinants with its cube; within these bounds [m]
+// they stay far from the ends of double precision.
+constexpr double kMinPriorSigma = 1e-6;
+constexpr double kMaxPriorSigma = 1e3;
+// Determinants of Λ_r lose about the square of this ratio of a sensor's sigmas in digits.
+constexpr double kMaxSigmaRatio = 1e4;
+
+[[noreturn]] void reject(const std::string& what) {
+  throw Error(ErrorCode::invalid_argument, what);
+}
+
+void check_range(const char* name, double value) {
+  if (!std::isfinite(value) || value < 0) {
+    reject(std::string(name) + " is " + short_text(value) + " m; it must be >= 0 and finite");
+  }
+}
+
+void check(const GainConfig& config, const Sensor& sensor) {
+  const double min_range = config.min_range.value_or(sensor.min_range);
+  const double max_range = config.max_range.value_or(sensor.max_range);
+  if (config.pixel_stride < 1) {
+    reject("pixel stride is " + std::to_string(config.pixel_stride) + "; it must be >= 1");
+  }
+  check_range("min_range", min_range);
+  check_range("max_range", max_range);
+  if (min_range >= max_range) {
+    reject("min_range " + short_text(min_range) + " m is not below max_range " +
+           short_text(max_range) + " m");
+  }
+  for (const double t : {min_range, sensor.working_distance, max_range}) {
+    const MeasurementSigmas sigma = sensor.sigmas(t);
+    const double ratio = sigma.axial / sigma.lateral;
+    if (!(ratio <= kMaxSigmaRatio && ratio >= 1 / kMaxSigmaRatio)) {
+      std::ostringstream text;
+      text << "the sensor's sigmas at " << t << " m, " << sigma.axial << " m along the ray and "
+           << sigma.lateral << " m across, differ by more than a factor of " << kMaxSigmaRatio;
+      reject(text.str());
+    }
+  }
+  for (const WeightRegion& region : config.weights) {
+    if (!std::isfinite(region.weight) || region.weight < 0) {
+      reject("task weight is " + short_text(region.weight) + "; it must be >= 0 and finite");
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!(region.box.min[axis] < region.box.max[axis]))
+        reject("a task weight's box is inside out");
+    }
+  }
+}
+
+// The sensor, once it and the configuration are known to be good.
+const Sensor& checked(const Sensor& sensor, const GainConfig& config) {
+  sensor.validate();
+  check(config, sensor);
+  return sensor;
+}
+
+}  // namespace
+
+EvaluatorCore::EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config,
+                             const ExecConfig& exec)
+    : config(gain_config),
+      sigmas(frontal_sigmas(checked(sensor, gain_config))),
+      min_range(gain_config.min_range.value_or(sensor.min_range)),
+      max_range(gain_config.max_range.value_or(sensor.max_range)),
+      rays(std::make_shared<const SensorRays>(sensor.camera, gain_config.pixel_stride)),
+      pool(exec.num_threads) {
+  for (const std::uint16_t lanes : rays->table.valid) {
+    ray_count += static_cast<std::uint32_t>(std::popcount(lanes));
+  }
+}
+
+double EvaluatorCore::prior_sigma_in(const VoxelScene& scene) const {
+  const double prior_sigma = config.prior_sigma.value_or(scene.snapshot().prior_sigma);
+  if (!(prior_sigma >= kMinPriorSigma && prior_sigma <= kMaxPriorSigma)) {
+    std::ostringstream text;
+    text << "prior sigma is " << prior_sigma << " m; it must be in " << kMinPriorSigma << ".."
+         << kMaxPriorSigma << " m";
+    reject(text.str());
+  }
+  return prior_sigma;
+}
+
+}  // namespace viewgain::detail

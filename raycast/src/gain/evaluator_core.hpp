@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gain_accumulator.hpp"
+#include "idle_list.hpp"
+#include "trace/sensor_rays.hpp"
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::detail {
+
+/// What a thread needs for a view. Serves the views of any scene, one after another.
+struct Workspace {
+  TileBins bins;
+  std::vector<ViewHit> view_hits;              ///< for a gain of the user's own
+  std::optional<GainAccumulator> accumulator;  ///< made when first needed
+  std::uint64_t bound_to = 0;                  ///< number of the driver whose scene it sums for
+};
+
+/// A view's tiles in groups, which any thread may trace; their hits are added up in order.
+struct TileGroups {
+  explicit TileGroups(std::size_t count) : hits(count), is_traced(count) {}
+  std::vector<HitList> hits;
+  std::vector<std::atomic<bool>> is_traced;
+  std::atomic<std::size_t> next{0};  ///< to be traced
+};
+
+/// What the evaluators of one sensor and configuration share, whatever their scenes: rays, threads
+/// and what threads work in. Thread safe.
+struct EvaluatorCore {
+  GainConfig config;
+  FrontalSigmas sigmas;
+  double min_range, max_range;  ///< along the ray [m]
+  std::shared_ptr<const SensorRays> rays;
+  std::uint32_t ray_count = 0;  ///< of the rays that a lens has
+  ThreadPool pool;
+  IdleList<Workspace> workspaces;
+  IdleList<TileGroups> tile_groups;
+  std::atomic<std::uint64_t> drivers{0};  ///< made so far
+
+  /// Throws Error(invalid_argument), naming the value, as GainEvaluator's constructor.
+  EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config, const ExecConfig& exec);
+
+  /// sigma_0 [m] in a scene. Throws Error(invalid_argument) unless it is in 1e-6..1e3.
+  [[nodiscard]] double prior_sigma_in(const VoxelScene& scene) const;
+};
+
+}  // namespace viewgain::detail

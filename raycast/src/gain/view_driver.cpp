@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "view_driver.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace viewgain::detail {
+
+ViewDriver::ViewDriver(const VoxelScene& scene, std::shared_ptr<EvaluatorCore> core)
+    : scene_(SceneAccess::data(scene)),
+      core_(std::move(core)),
+      prior_sigma_(core_->prior_sigma_in(scene)),
+      settings_{core_->config.criterion, 1.0 / (prior_sigma_ * prior_sigma_), core_->sigmas,
+                core_->config.weights},
+      tracer_(scene_, core_->rays, core_->min_range, core_->max_range),
+      number_(++core_->drivers) {}
+
+void ViewDriver::bind(Workspace& workspace) const {
+  workspace.bound_to = 0;  // in case memory runs out
+  if (workspace.accumulator) {
+    workspace.accumulator->rebind(scene_, settings_);
+  } else {
+    workspace.accumulator.emplace(scene_, settings_, tracer_.table().ray_count());
+  }
+  workspace.bound_to = number_;
+}
+
+bool ViewDriver::is_in_occupied(const PoseFrame& frame) const {
+  const GridSnapshot& snapshot = scene_.snapshot;
+  const std::array<std::int32_t, 3> size{snapshot.dims.x, snapshot.dims.y, snapshot.dims.z};
+  std::array<std::int32_t, 3> voxel{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float c = std::floor(frame.origin[i]);
+    if (!(c >= 0 && c < static_cast<float>(size[i]))) return false;
+    voxel[i] = static_cast<std::int32_t>(c);
+  }
+  const Index3& base = snapshot.min_index;
+  const Index3 at{base.x + voxel[0], base.y + voxel[1], base.z + voxel[2]};
+  const SnapshotLeaf* leaf = snapshot.find_leaf(at);
+  return leaf != nullptr &&
+         test_bit(leaf->occupied,
+                  static_cast<unsigned>((at.x & 7) << 6 | (at.y & 7) << 3 | (at.z & 7)));
+}
+
+std::optional<PoseFrame> ViewDriver::open(const Pose& T_world_camera, ViewGain& result,
+                                          From from) const {
+  const auto frame = tracer_.frame_of(T_world_camera);
+  if (!frame) return std::nullopt;
+  result.rays = core_->ray_count;
+  if (from == From::outside_occupied && is_in_occupied(*frame)) {
+    result.gain = result.exploration = result.refinement = result.posterior_entropy = 0;
+    result.status = ViewStatus::camera_in_occupied;
+    return std::nullopt;
+  }
+  return frame;
+}
+
+ViewGain ViewDriver::evaluate(const Pose& T_world_camera, Lease& lease) const {
+  return view(T_world_camera, lease, GainConsumer{lease.accumulator()});
+}
+
+}  // namespace viewgain::detail

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "scene_data.hpp"
+
+namespace viewgain::detail {
+
+/// Throws Error(invalid_argument) for a vertex that is not finite, an index out of range or a box
+/// inside out.
+void check_obstacles(const Obstacles& obstacles);
+
+/// What is to be traced, but not how: boxes and tracing are still to be filled. Regions that the
+/// snapshot shares with `before` (null: none), the scene that it was made from, are copied from
+/// there. Throws Error(capacity).
+[[nodiscard]] std::unique_ptr<SceneData> gather_scene(GridSnapshot snapshot,
+                                                      const Obstacles& obstacles,
+                                                      const SceneData* before);
+
+}  // namespace viewgain::detail

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// A scene is gathered, then made ready for tracing.
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "scene/gather_scene.hpp"
+#include "scene_tracing.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+namespace viewgain {
+namespace {
+
+using detail::SceneAccess;
+
+std::shared_ptr<const VoxelScene> make_traceable(std::unique_ptr<detail::SceneData> data) {
+  data->scene_boxes.emplace(*data, detail::choose_boxes(data->boxes.size()));
+  data->tracing = std::make_shared<const detail::SceneTracing>(*data);
+  if (data->has_obstacles) {
+    const Index3& dims = data->snapshot.dims;
+    const double reach = std::max({dims.x, dims.y, dims.z});
+    (void)data->tracing->bvh(detail::choose_margin_level(reach));
+  }
+  return SceneAccess::make(std::move(data));
+}
+
+}  // namespace
+
+std::shared_ptr<const VoxelScene> VoxelScene::build(const BeliefGrid& grid,
+                                                    const Obstacles& obstacles,
+                                                    const ExecConfig& exec) {
+  return build(grid.snapshot(), obstacles, exec);
+}
+
+std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
+                                                    const Obstacles& obstacles,
+                                                    const ExecConfig& exec) {
+  (void)thread_count(exec.num_threads);
+  detail::check_obstacles(obstacles);
+  return make_traceable(detail::gather_scene(std::move(snapshot), obstacles, nullptr));
+}
+
+std::shared_ptr<const VoxelScene> VoxelScene::update(
+    const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
+    const ExecConfig& exec) {
+  if (!before) throw Error(ErrorCode::invalid_argument, "there is no scene to update");
+  (void)thread_count(exec.num_threads);
+  const detail::SceneData& data = SceneAccess::data(*before);
+  return make_traceable(detail::gather_scene(grid.snapshot(data.snapshot), data.obstacles, &data));
+}
+
+std::string_view VoxelScene::isa() const noexcept { return isa_name(data_->tracing->kernels.isa); }
+
+std::vector<std::string> available_isas() {
+  std::vector<std::string> names;
+  for (const Isa isa : supported_isas()) names.emplace_back(isa_name(isa));
+  return names;
+}
+
+}  // namespace viewgain

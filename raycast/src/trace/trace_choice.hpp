@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "scene/scene_boxes.hpp"
+#include "sensor_rays.hpp"
+#include "viewgain/core/isa.hpp"
+
+namespace viewgain::detail {
+
+/// How scenes and views are traced is decided here and nowhere else. All ways give the same bits.
+///
+/// - Lists of what each tile of a view can meet, made by sorting the scene's boxes into the tiles.
+///   Of many primitives, cells are sorted first, and the primitives of a cell when a tile comes to
+///   it.
+/// - Embree's BVH, where lists cannot be: obstacles are triangles, and a lens bends the outlines of
+///   boxes. And where lists for all tiles would take longer than tracing the few that are wanted.
+
+/// The best instruction set, within VIEWGAIN_ISA, for which Embree has packets of the kernels'
+/// width. Throws Error(backend) if there is none, Error(invalid_argument) as select_isa().
+[[nodiscard]] Isa choose_isa();
+
+/// What a scene of so many primitives sorts into the tiles of a view.
+[[nodiscard]] SceneBoxes::Kind choose_boxes(std::size_t primitive_count);
+
+/// The margin by which boxes count as larger [voxels], so that rounding hides none from a ray that
+/// the kernels let into it: by halvings and doublings of the coordinates that single precision has
+/// to hold. Level 0 holds up to 2e4 voxels.
+inline constexpr int kMarginLevels = 9;
+[[nodiscard]] int choose_margin_level(double reach);
+[[nodiscard]] inline float margin_of(int level) {
+  return kBoxMargin * static_cast<float>(1 << level);
+}
+
+/// How the views of one sensor are traced in one scene.
+struct ViewChoice {
+  bool by_lists = false;
+  std::size_t least_listed = 0;  ///< fewer of a view's tiles than this go through the BVH
+  int margin_level = 0;
+};
+/// `max_range` in voxels.
+[[nodiscard]] ViewChoice choose_tracing(const SceneData& scene, const SensorRays& rays,
+                                        double max_range);
+
+}  // namespace viewgain::detail
