@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -66,7 +67,7 @@ struct VoxelScene::Data {
       has_occupied;  ///< whether a leaf has occupied voxels, one a leaf primitive
   std::size_t leaf_count = 0;
   std::size_t block_count = 0;
-  Obstacles obstacles;
+  std::shared_ptr<const Obstacles> obstacles;  ///< never null; shared by the scenes of a map
   bool has_obstacles = false;
   std::optional<detail::SceneBoxes> scene_boxes;  ///< for sorting into the tiles of a view
   const detail::TraceKernels* kernels = nullptr;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "scene_data.hpp"
 #include "scene_primitives.hpp"
@@ -57,7 +58,7 @@ std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
                                                     const Obstacles& obstacles,
                                                     const ExecConfig& exec) {
   check(obstacles);
-  return make(std::move(snapshot), obstacles, exec, nullptr);
+  return make(std::move(snapshot), std::make_shared<const Obstacles>(obstacles), exec, nullptr);
 }
 
 std::shared_ptr<const VoxelScene> VoxelScene::update(
@@ -69,7 +70,7 @@ std::shared_ptr<const VoxelScene> VoxelScene::update(
 }
 
 std::shared_ptr<const VoxelScene> VoxelScene::make(GridSnapshot snapshot,
-                                                   const Obstacles& obstacles,
+                                                   std::shared_ptr<const Obstacles> obstacles,
                                                    const ExecConfig& exec, const Data* before) {
   auto data = std::make_unique<Data>();
   data->build_threads = thread_count(exec.num_threads);
@@ -77,8 +78,8 @@ std::shared_ptr<const VoxelScene> VoxelScene::make(GridSnapshot snapshot,
   detail::gather_primitives(*data, before);
   data->scene_boxes.emplace(*data);
   data->kernels = &detail::trace_kernels(detail::packet_isa());
-  data->obstacles = obstacles;
-  data->has_obstacles = !obstacles.boxes.empty() || !obstacles.meshes.empty();
+  data->obstacles = std::move(obstacles);
+  data->has_obstacles = !data->obstacles->boxes.empty() || !data->obstacles->meshes.empty();
   if (data->has_obstacles) data->ensure_bvh();
   return std::shared_ptr<const VoxelScene>(new VoxelScene(std::move(data)));
 }
@@ -87,6 +88,7 @@ VoxelScene::VoxelScene(std::unique_ptr<const Data> data) : data_(std::move(data)
 VoxelScene::~VoxelScene() = default;
 
 const GridSnapshot& VoxelScene::snapshot() const noexcept { return data_->snapshot; }
+const Obstacles& VoxelScene::obstacles() const noexcept { return *data_->obstacles; }
 std::string_view VoxelScene::isa() const noexcept { return isa_name(data_->kernels->isa); }
 std::size_t VoxelScene::primitive_count() const noexcept { return data_->boxes.size(); }
 

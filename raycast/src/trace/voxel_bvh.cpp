@@ -56,7 +56,7 @@ void attach_boxes(const VoxelScene::Data& data, const VoxelBvh& bvh, unsigned id
 
 // Obstacles in the scene's coordinates: voxels from the workspace's lowest corner.
 void attach_obstacles(const VoxelScene::Data& data, const VoxelBvh& bvh) {
-  const Obstacles& obstacles = data.obstacles;
+  const Obstacles& obstacles = *data.obstacles;
   const Pose T_grid_world = data.snapshot.T_world_grid.inverse();
   const Eigen::Vector3d base(data.snapshot.min_index.x, data.snapshot.min_index.y,
                              data.snapshot.min_index.z);

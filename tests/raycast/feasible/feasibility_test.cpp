@@ -77,7 +77,6 @@ Solid body_of(const FeasibilityConfig& config, const Pose& T_world_camera) {
 
 TEST(Feasibility, BodiesAgainstEveryVoxel) {
   Random random(1);
-  int cases = 0;
   std::map<Infeasibility, int> answers;
   for (int map = 0; map < 12; ++map) {
     constexpr int kSide = 20;
@@ -98,7 +97,7 @@ TEST(Feasibility, BodiesAgainstEveryVoxel) {
     if (map % 3 != 0) config.body.T_flange_camera = random_rigid(random, 0.02);
     const FeasibilityChecker checker = checker_of(grid, config);
     const double radius = half_size(config).norm() + kVoxel;
-    for (int i = 0; i < 150; ++i, ++cases) {
+    for (int i = 0; i < 150; ++i) {
       Pose pose = random_rigid(random, 1.0);
       const Eigen::Vector3d eye =
           T_world_grid * Eigen::Vector3d(uniform(random, -0.01, 0.07), uniform(random, -0.01, 0.07),
@@ -123,7 +122,6 @@ TEST(Feasibility, BodiesAgainstEveryVoxel) {
       ++answers[answer];
     }
   }
-  EXPECT_EQ(cases, 1800);
   EXPECT_GT(answers[Infeasibility::none], 300);
   EXPECT_GT(answers[Infeasibility::collision], 300);
 }
@@ -131,7 +129,6 @@ TEST(Feasibility, BodiesAgainstEveryVoxel) {
 TEST(Feasibility, BodiesAgainstObstacles) {
   Random random(2);
   const BeliefGrid grid = free_map();
-  int cases = 0;
   std::map<Infeasibility, int> answers;
   const auto anywhere = [&random] {
     return Eigen::Vector3d(uniform(random, -0.2, 0.2), uniform(random, -0.2, 0.2),
@@ -163,7 +160,7 @@ TEST(Feasibility, BodiesAgainstObstacles) {
     config.body.size = {uniform(random, 0.02, 0.1), uniform(random, 0.02, 0.1),
                         uniform(random, 0.02, 0.1)};
     const FeasibilityChecker checker = checker_of(grid, config, obstacles);
-    for (int i = 0; i < 200; ++i, ++cases) {
+    for (int i = 0; i < 200; ++i) {
       const Pose pose(random_rigid(random, 1).rotation(), anywhere());
       const Solid body = body_of(config, pose);
       const bool expected =
@@ -177,7 +174,6 @@ TEST(Feasibility, BodiesAgainstObstacles) {
       ++answers[answer];
     }
   }
-  EXPECT_EQ(cases, 4000);
   EXPECT_GT(answers[Infeasibility::none], 500);
   EXPECT_GT(answers[Infeasibility::obstacle], 500);
 }
@@ -195,14 +191,11 @@ TEST(Feasibility, ClosedMeshesAreSolidOpenOnesAreSheets) {
   TriangleMesh inward = cube, open = cube;
   for (auto& triangle : inward.triangles) std::swap(triangle[0], triangle[1]);
   open.triangles.pop_back();
-  int cases = 0;
   for (const TriangleMesh& mesh : {cube, separate, inward}) {
     const FeasibilityChecker checker = checker_of(grid, {}, {{}, {mesh}});
     EXPECT_EQ(checker.check(inside), Infeasibility::obstacle);
     EXPECT_EQ(checker.check(outside), Infeasibility::none);
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
   const FeasibilityChecker bucket = checker_of(grid, {}, {{}, {open}});
   EXPECT_EQ(bucket.check(inside), Infeasibility::none);
   EXPECT_EQ(bucket.check(looking_down({0, 0, 0.08})), Infeasibility::obstacle);
@@ -214,7 +207,6 @@ TEST(Feasibility, ClosedMeshesAreSolidOpenOnesAreSheets) {
 // coordinates are no round numbers.
 TEST(Feasibility, TouchingFacesDoNotOverlap) {
   constexpr int kSide = 24;
-  int cases = 0;
   for (int low = 1; low <= 12; ++low) {
     const int high = low + 5;  // free: [low, high) along each axis
     const BeliefGrid grid = map_of(kSide, {}, [&](int x, int y, int z) {
@@ -230,10 +222,8 @@ TEST(Feasibility, TouchingFacesDoNotOverlap) {
       FeasibilityConfig larger = config;
       larger.clearance = 1e-6;
       EXPECT_EQ(checker_of(grid, larger).check(pose), Infeasibility::collision) << low;
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 24);
 
   const FeasibilityChecker on_box = checker_of(free_map(), {}, {{{{-1, -1, -1}, {1, 1, 0.1}}}, {}});
   EXPECT_EQ(on_box.check({Eigen::Vector3d(1, -1, -1).asDiagonal(), {0, 0, 0.1}}),
@@ -271,7 +261,7 @@ TEST(Feasibility, TheMountingPlacesTheBody) {
                                  0.01};
     const FeasibilityChecker checker =
         checker_of(BeliefGrid::from_states(grid_config, std::vector<std::uint8_t>{2}), config);
-    return checker.check({}) == Infeasibility::collision;
+    return checker.check(Pose()) == Infeasibility::collision;
   };
   EXPECT_TRUE(occupied_at(0.010, 0, -0.002));
   EXPECT_TRUE(occupied_at(0.0001, 0, -0.0011));
@@ -344,9 +334,8 @@ TEST(Feasibility, TheLowestCornerDecidesAboutThePlane) {
   FeasibilityConfig config;
   config.support_plane = 0.5;
   const FeasibilityChecker checker = checker_of(free_map(), config);
-  int cases = 0;
   Random random(3);
-  for (int i = 0; i < 200; ++i, ++cases) {
+  for (int i = 0; i < 200; ++i) {
     const Eigen::Matrix3d R = random_rigid(random, 1).rotation();
     const Solid body = body_of(config, {R, {0, 0, 0}});
     double lowest = 0;
@@ -361,7 +350,6 @@ TEST(Feasibility, TheLowestCornerDecidesAboutThePlane) {
     EXPECT_EQ(checker.check({R, {3, 4, 0.5 - lowest}}), Infeasibility::plane);
     EXPECT_EQ(checker.check({R, {3, 4, -5}}), Infeasibility::plane);
   }
-  EXPECT_EQ(cases, 200);
 }
 
 TEST(Feasibility, AWallNearerThanTheSensorMeasuresIsTooNear) {
@@ -371,14 +359,11 @@ TEST(Feasibility, AWallNearerThanTheSensorMeasuresIsTooNear) {
   config.sensor = sensor_preset("sr4000");  // measures from 0.2 m on
   const double floor = 24 * kVoxel, middle = 24 * kVoxel;
   const auto above = [&](double height) { return looking_down({middle, middle, floor + height}); };
-  std::size_t cases = 0;
   for (const double height : {0.05, 0.1, 0.19, 0.21, 0.3, 0.6}) {
     const Infeasibility expected = height < 0.2 ? Infeasibility::too_near : Infeasibility::none;
     EXPECT_EQ(checker_of(grid, config).check(above(height)), expected) << height;
     EXPECT_EQ(checker_of(grid).check(above(height)), Infeasibility::none) << height;
-    ++cases;
   }
-  EXPECT_EQ(cases, 6U);
   // Nothing in view is not too near, however near the map is behind the camera.
   const Pose up(Eigen::Matrix3d::Identity(), Eigen::Vector3d(middle, middle, floor + 0.1));
   EXPECT_EQ(checker_of(grid, config).check(up), Infeasibility::none);

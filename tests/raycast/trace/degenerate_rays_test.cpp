@@ -146,7 +146,7 @@ TEST_P(DegenerateRays, OnTheHalfVoxelLatticeEqualTheOracleExactly) {
   test::Random random(42);
   const test::ScopedIsa scoped(GetParam());
   const Sensor sensor = lattice_sensor(3, 3);
-  std::size_t cases = 0;
+  std::size_t hits = 0, misses = 0;
   for (const double share : {0.01, 0.1, 0.4}) {
     std::vector<Index3> non_free;
     for (int i = 0; i < 20 * 20 * 20; ++i) {
@@ -170,11 +170,12 @@ TEST_P(DegenerateRays, OnTheHalfVoxelLatticeEqualTheOracleExactly) {
             << k << ": expected " << expected[k].voxel.x << ' ' << expected[k].voxel.y << ' '
             << expected[k].voxel.z << ", got " << actual[k].voxel.x << ' ' << actual[k].voxel.y
             << ' ' << actual[k].voxel.z << " kind " << static_cast<int>(actual[k].kind);
-        ++cases;
+        ++(actual[k].kind == RayHit::Kind::none ? misses : hits);
       }
     }
   }
-  EXPECT_EQ(cases, 3U * 300U * 9U);
+  EXPECT_GT(hits, 2000U);
+  EXPECT_GT(misses, 500U);
 }
 
 TEST_P(DegenerateRays, StartingInAnUnknownVoxelEndThere) {

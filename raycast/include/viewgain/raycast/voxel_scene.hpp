@@ -52,6 +52,8 @@ class VIEWGAIN_EXPORT VoxelScene {
   VoxelScene& operator=(const VoxelScene&) = delete;
 
   [[nodiscard]] const GridSnapshot& snapshot() const noexcept;
+  /// The same object in all scenes that update() has made from one.
+  [[nodiscard]] const Obstacles& obstacles() const noexcept;
 
   /// Which kernel traces this scene: "avx512", "avx2" or "sse4" ("baseline" off x86-64). Chosen
   /// when the scene is built: the best that the CPU has, lowered by the environment variable
@@ -68,10 +70,9 @@ class VIEWGAIN_EXPORT VoxelScene {
   [[nodiscard]] const Data& data() const noexcept { return *data_; }
 
  private:
-  [[nodiscard]] static std::shared_ptr<const VoxelScene> make(GridSnapshot snapshot,
-                                                              const Obstacles& obstacles,
-                                                              const ExecConfig& exec,
-                                                              const Data* before);
+  [[nodiscard]] static std::shared_ptr<const VoxelScene> make(
+      GridSnapshot snapshot, std::shared_ptr<const Obstacles> obstacles, const ExecConfig& exec,
+      const Data* before);
   explicit VoxelScene(std::unique_ptr<const Data> data);
   std::unique_ptr<const Data> data_;
 };
