@@ -9,6 +9,8 @@
 #include <optional>
 #include <tuple>
 
+#include "voxel_walk.hpp"
+
 namespace viewgain::detail {
 namespace {
 
@@ -94,59 +96,6 @@ bool voxels_overlap(const OrientedBox& body, const Box& range, const SnapshotLea
   }
   return false;
 }
-
-/// Walks along a half-line from one cube of voxels into the next.
-class Walk {
- public:
-  Walk(const HalfLine& line, double from, const VoxelBox& box) : line_(line), from_(from) {
-    const std::array<std::int32_t, 3> min{box.min.x, box.min.y, box.min.z};
-    const std::array<std::int32_t, 3> max{box.max.x, box.max.y, box.max.z};
-    for (std::size_t k = 0; k < 3; ++k) voxel_[k] = at(k, from, min[k], max[k] - 1);
-  }
-
-  [[nodiscard]] Index3 voxel() const { return {voxel_[0], voxel_[1], voxel_[2]}; }
-  /// Where it has come in.
-  [[nodiscard]] double from() const { return from_; }
-
-  /// Leaves the cube of this size that it is in; false if it was in there for no length.
-  bool leave(std::int32_t size) {
-    std::array<std::int32_t, 3> low{};
-    std::array<double, 3> exit{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
-      low[k] = voxel_[k] & -size;
-      exit[k] =
-          ((is_rising(k) ? low[k] + size : low[k]) - line_.origin[axis]) * line_.inverse[axis];
-    }
-    const double out = std::min({exit[0], exit[1], exit[2]});
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (exit[k] == out) {
-        voxel_[k] = is_rising(k) ? low[k] + size : low[k] - 1;
-      } else {
-        voxel_[k] = at(k, out, low[k], low[k] + size - 1);
-      }
-    }
-    const bool has_length = out > from_;
-    from_ = std::max(from_, out);
-    return has_length;
-  }
-
- private:
-  [[nodiscard]] bool is_rising(std::size_t k) const {
-    return line_.inverse[static_cast<Eigen::Index>(k)] > 0;
-  }
-  [[nodiscard]] std::int32_t at(std::size_t k, double t, std::int32_t low,
-                                std::int32_t high) const {
-    const auto axis = static_cast<Eigen::Index>(k);
-    const double place = std::floor(line_.origin[axis] + t * line_.direction[axis]);
-    return static_cast<std::int32_t>(
-        std::clamp(place, static_cast<double>(low), static_cast<double>(high)));
-  }
-
-  const HalfLine& line_;
-  double from_;
-  std::array<std::int32_t, 3> voxel_{};
-};
 
 }  // namespace
 
@@ -369,7 +318,7 @@ double NonFreeVoxels::first_along(const HalfLine& line, double end) const {
   });
   out = std::min(out, nearest);
 
-  Walk walk(line, begin, workspace_);
+  VoxelWalk walk(line, begin, workspace_);
   const Node* node = nullptr;
   for (Index3 voxel = walk.voxel(); workspace_.contains(voxel) && walk.from() <= out;
        voxel = walk.voxel()) {
