@@ -37,9 +37,9 @@ bool is_before(const Index3& a, const Index3& b) {
 
 /// The number of the cube of this size in the next larger one, of four a side, that holds a voxel.
 unsigned place_in_four(const Index3& v, std::int32_t size) {
-  const auto part = [&](std::int32_t x) { return static_cast<unsigned>(x / size & 3); };
-  const Index3 low = rounded_down(v, size);
-  return part(low.x) << 4U | part(low.y) << 2U | part(low.z);
+  const int shift = std::countr_zero(static_cast<unsigned>(size));
+  const auto part = [&](std::int32_t x) { return static_cast<unsigned>(x >> shift & 3); };
+  return part(v.x) << 4U | part(v.y) << 2U | part(v.z);
 }
 
 /// The 64 cubes of this size from `origin` on that the voxels [low, high] touch.
@@ -147,35 +147,32 @@ const NonFreeVoxels::Node* NonFreeVoxels::find_node(const Index3& voxel) const {
   return node != nodes_.end() && node->origin == origin ? &*node : nullptr;
 }
 
-std::uint64_t NonFreeVoxels::blocks_of(std::uint32_t region) const {
-  std::uint64_t blocks = blocks_[region].load(std::memory_order_relaxed);
-  if (blocks != 0) return blocks;
+NonFreeVoxels::Blocks NonFreeVoxels::blocks_of(std::uint32_t region) const {
+  KnownBlocks& known = blocks_[region];
+  if (known.is_known.load(std::memory_order_acquire)) {
+    return {known.leaves.load(std::memory_order_relaxed),
+            known.tiles.load(std::memory_order_relaxed)};
+  }
+  Blocks blocks;
   const auto [leaf, leaf_end] = snapshot_.leaves_of(region);
   for (std::uint32_t i = leaf; i < leaf_end; ++i) {
-    blocks |= std::uint64_t{1} << place_in_four(snapshot_.leaves[i].origin, kBlock);
+    blocks.leaves |= std::uint64_t{1} << place_in_four(snapshot_.leaves[i].origin, kBlock);
   }
   const auto [tile, tile_end] = snapshot_.tiles_of(region);
   for (std::uint32_t i = tile; i < tile_end; ++i) {
-    blocks |= std::uint64_t{1} << place_in_four(snapshot_.tiles[i].min, kBlock);
+    blocks.tiles |= std::uint64_t{1} << place_in_four(snapshot_.tiles[i].min, kBlock);
   }
-  blocks_[region].store(blocks, std::memory_order_relaxed);
+  known.leaves.store(blocks.leaves, std::memory_order_relaxed);
+  known.tiles.store(blocks.tiles, std::memory_order_relaxed);
+  known.is_known.store(true, std::memory_order_release);
   return blocks;
 }
 
-NonFreeVoxels::Block NonFreeVoxels::find_block(std::uint32_t region, const Index3& voxel) const {
-  const unsigned wanted = place_in_four(voxel, kBlock);
-  const auto found = [&](const auto& list, const std::array<std::uint32_t, 2>& range,
-                         const auto& corner) {
-    const auto end = list.begin() + range[1];
-    const auto at = std::lower_bound(
-        list.begin() + range[0], end, wanted,
-        [&](const auto& item, unsigned n) { return place_in_four(corner(item), kBlock) < n; });
-    return at != end && place_in_four(corner(*at), kBlock) == wanted ? &*at : nullptr;
-  };
-  return {found(snapshot_.leaves, snapshot_.leaves_of(region),
-                [](const SnapshotLeaf& leaf) { return leaf.origin; }),
-          found(snapshot_.tiles, snapshot_.tiles_of(region),
-                [](const VoxelBox& tile) { return tile.min; })};
+const SnapshotLeaf& NonFreeVoxels::leaf_at(std::uint32_t region, const Blocks& blocks,
+                                           unsigned block) const {
+  const std::uint64_t before = blocks.leaves & ((std::uint64_t{1} << block) - 1U);
+  const std::uint32_t first = snapshot_.leaves_of(region)[0];
+  return snapshot_.leaves[first + static_cast<std::uint32_t>(std::popcount(before))];
 }
 
 template <typename Visit>
@@ -222,7 +219,8 @@ bool NonFreeVoxels::any_block(const Box& range, const LeafVisit& leaf_visit,
     return true;
   }
   return any_region(range, [&](std::uint32_t region, const Index3&, std::uint64_t wanted) {
-    if ((blocks_of(region) & wanted) == 0) return false;
+    const Blocks blocks = blocks_of(region);
+    if (((blocks.leaves | blocks.tiles) & wanted) == 0) return false;
     const auto is_wanted = [&](const Index3& at) {
       return (wanted >> place_in_four(at, kBlock) & 1U) != 0;
     };
@@ -282,9 +280,11 @@ bool NonFreeVoxels::contains(const Index3& voxel) const {
   const Node* node = find_node(voxel);
   const unsigned region = place_in_four(voxel, kRegion);
   if (node == nullptr || (node->in_use >> region & 1U) == 0) return false;
-  const Block block = find_block(node->place(region), voxel);
-  return block.tile != nullptr ||
-         (block.leaf != nullptr && test_bit(block.leaf->non_free, offset_in_block(voxel)));
+  const Blocks blocks = blocks_of(node->place(region));
+  const unsigned block = place_in_four(voxel, kBlock);
+  if ((blocks.tiles >> block & 1U) != 0) return true;
+  return (blocks.leaves >> block & 1U) != 0 &&
+         test_bit(leaf_at(node->place(region), blocks, block).non_free, offset_in_block(voxel));
 }
 
 bool NonFreeVoxels::enclose(const Eigen::Vector3d& point, double touch) const {
@@ -302,48 +302,54 @@ bool NonFreeVoxels::enclose(const Eigen::Vector3d& point, double touch) const {
   return true;
 }
 
-double NonFreeVoxels::first_along(const HalfLine& line, double end) const {
+double NonFreeVoxels::first_along(const HalfLine& line, double begin, double end) const {
   constexpr double kNowhere = std::numeric_limits<double>::infinity();
-  auto [begin, out] = line.inside(box_of(workspace_));
-  begin = std::max(begin, 0.0);
-  out = std::min(out, end);
-  if (!(begin < out)) return kNowhere;
+  const auto [enter_all, leave_all] = line.inside(box_of(workspace_));
+  const double from = std::max(begin, enter_all);
+  double out = std::min(end, leave_all);
+  if (!(from < out)) return kNowhere;
 
   double nearest = kNowhere;
   (void)large_.any_along(line, out, [&](std::uint32_t item) {
-    const VoxelBox& tile = snapshot_.tiles[item];
-    const auto [enter, leave] = line.inside(box_of(tile));
-    if (std::max(enter, 0.0) < leave) nearest = std::min(nearest, std::max(enter, 0.0));
+    const auto [enter, leave] = line.inside(box_of(snapshot_.tiles[item]));
+    if (std::max(enter, begin) < leave) nearest = std::min(nearest, std::max(enter, begin));
     return false;
   });
   out = std::min(out, nearest);
 
-  VoxelWalk walk(line, begin, workspace_);
+  VoxelWalk walk(line, from, workspace_);
   const Node* node = nullptr;
   for (Index3 voxel = walk.voxel(); workspace_.contains(voxel) && walk.from() <= out;
        voxel = walk.voxel()) {
     if (node == nullptr || node->origin != rounded_down(voxel, kNode)) node = find_node(voxel);
     if (node == nullptr) {
-      walk.leave(kNode);
+      walk.leave<kNode>();
       continue;
     }
     const unsigned number = place_in_four(voxel, kRegion);
     if ((node->in_use >> number & 1U) == 0) {
-      walk.leave(kRegion);
+      walk.leave<kRegion>();
       continue;
     }
     const std::uint32_t region = node->place(number);
-    if ((blocks_of(region) >> place_in_four(voxel, kBlock) & 1U) == 0) {
-      walk.leave(kBlock);
-      continue;
-    }
-    const Block block = find_block(region, voxel);
-    const Index3 corner = rounded_down(voxel, kBlock);
-    while (workspace_.contains(walk.voxel()) && rounded_down(walk.voxel(), kBlock) == corner) {
-      const double enter = walk.from();
-      const bool is_solid =
-          block.leaf == nullptr || test_bit(block.leaf->non_free, offset_in_block(walk.voxel()));
-      if (walk.leave(1) && is_solid) return enter <= out ? enter : nearest;
+    const Blocks blocks = blocks_of(region);
+    const Index3 cube = rounded_down(voxel, kRegion);
+    while (walk.from() <= out && rounded_down(voxel, kRegion) == cube) {
+      const unsigned block = place_in_four(voxel, kBlock);
+      const bool is_tile = (blocks.tiles >> block & 1U) != 0;
+      if (!is_tile && (blocks.leaves >> block & 1U) == 0) {
+        walk.leave<kBlock>();
+        voxel = walk.voxel();
+        continue;
+      }
+      const LeafMask* mask = is_tile ? nullptr : &leaf_at(region, blocks, block).non_free;
+      const Index3 corner = rounded_down(voxel, kBlock);
+      for (; rounded_down(voxel, kBlock) == corner; voxel = walk.voxel()) {
+        const double enter = walk.from();
+        const bool is_solid =
+            mask == nullptr ? workspace_.contains(voxel) : test_bit(*mask, offset_in_block(voxel));
+        if (walk.leave<1>() && is_solid) return enter <= out ? enter : nearest;
+      }
     }
   }
   return nearest;

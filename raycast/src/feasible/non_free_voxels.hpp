@@ -36,9 +36,10 @@ class NonFreeVoxels {
   };
   [[nodiscard]] bool may_meet(const Cone& cone, const Box& range) const;
 
-  /// Where the half-line, whose direction has unit length, first enters one of them; infinity if
-  /// nowhere up to `end`. Visits of zero length do not count.
-  [[nodiscard]] double first_along(const HalfLine& line, double end) const;
+  /// Where the half-line, whose direction has unit length, first enters one of them, or `begin` if
+  /// it is in one there; infinity if nowhere from `begin` to `end`. Visits of zero length do not
+  /// count.
+  [[nodiscard]] double first_along(const HalfLine& line, double begin, double end) const;
 
  private:
   /// A cube of 128³ voxels. Bits are regions: x << 4 | y << 2 | z, two bits each.
@@ -50,15 +51,21 @@ class NonFreeVoxels {
 
     [[nodiscard]] std::uint32_t place(unsigned region) const;
   };
-  /// What a block of 8³ voxels is; one of both is null, both if all is free.
-  struct Block {
-    const SnapshotLeaf* leaf = nullptr;
-    const VoxelBox* tile = nullptr;
+  /// The blocks of 8³ voxels in a region that have some, bits as above: leaves, in the snapshot's
+  /// order, and blocks that are unknown as a whole.
+  struct Blocks {
+    std::uint64_t leaves = 0, tiles = 0;
+  };
+  struct KnownBlocks {
+    std::atomic<bool> is_known{false};
+    std::atomic<std::uint64_t> leaves{0}, tiles{0};
   };
 
   [[nodiscard]] const Node* find_node(const Index3& voxel) const;
-  [[nodiscard]] std::uint64_t blocks_of(std::uint32_t region) const;
-  [[nodiscard]] Block find_block(std::uint32_t region, const Index3& voxel) const;
+  [[nodiscard]] Blocks blocks_of(std::uint32_t region) const;
+  /// The leaf of a block that has one.
+  [[nodiscard]] const SnapshotLeaf& leaf_at(std::uint32_t region, const Blocks& blocks,
+                                            unsigned block) const;
   [[nodiscard]] bool contains(const Index3& voxel) const;
   template <typename Visit>
   [[nodiscard]] bool any_region(const Box& range, const Visit& visit) const;
@@ -70,8 +77,7 @@ class NonFreeVoxels {
   VoxelBox workspace_;
   BoxHierarchy large_;  ///< tiles larger than a region
   std::vector<Node> nodes_;
-  /// Of each region in the list the blocks that have some, bits as above; 0: not looked up yet.
-  mutable std::vector<std::atomic<std::uint64_t>> blocks_;
+  mutable std::vector<KnownBlocks> blocks_;  ///< of each region in the list
 };
 
 }  // namespace viewgain::detail

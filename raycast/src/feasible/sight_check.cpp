@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace viewgain::detail {
 namespace {
@@ -75,39 +76,44 @@ bool SightCheck::too_near(const Pose& T_world_camera, const Pose& T_grid_camera,
   if (!may_be_near(all_)) return false;
 
   std::size_t ends = 0, near = 0, left = rays_.size();
-  const auto trace = [&](const Bundle& bundle, std::size_t i) {
+  const auto too_many = [&](std::size_t of) {
+    return static_cast<double>(near) > max_near_share_ * static_cast<double>(of);
+  };
+  // Where a ray ends, from `begin` on; nothing if it does not end in the map yet.
+  const auto end_of = [&](std::size_t ray, double begin, double end) -> std::optional<double> {
+    const double t = voxels.first_along(HalfLine(tip, R_grid_camera * rays_[ray]), begin, end);
+    return t <= end ? std::optional(t) : std::nullopt;
+  };
+  const auto count = [&](std::size_t ray, double t) {
     --left;
-    const Eigen::Vector3d& ray = rays_[bundle.first + i];
-    const double t = voxels.first_along(HalfLine(tip, R_grid_camera * ray), far_end);
-    if (!(t <= far_end)) return;
-    if (obstacles.block({T_world_camera.translation(), T_world_camera.rotation() * ray},
+    if (obstacles.block({T_world_camera.translation(), T_world_camera.rotation() * rays_[ray]},
                         t * voxel_size)) {
       return;
     }
     ++ends;
     near += t < near_end ? 1U : 0U;
   };
-  const auto too_many = [&](std::size_t of) {
-    return static_cast<double>(near) > max_near_share_ * static_cast<double>(of);
-  };
-  // Bundles that cannot be near wait: they only count if others are.
-  std::vector<const Bundle*> far;
+  std::vector<std::size_t> farther;  // rays that do not end near
   for (const Bundle& bundle : bundles_) {
-    if (!may_be_near(bundle)) {
-      far.push_back(&bundle);
-      continue;
-    }
-    for (std::size_t i = 0; i < bundle.count; ++i) {
-      trace(bundle, i);
+    const bool is_near = may_be_near(bundle);
+    for (std::size_t ray = bundle.first; ray < bundle.first + bundle.count; ++ray) {
+      const std::optional<double> t = is_near ? end_of(ray, 0, near_end) : std::nullopt;
+      if (!t) {
+        farther.push_back(ray);
+        continue;
+      }
+      count(ray, *t);
       if (too_many(ends + left)) return true;
     }
   }
-  for (const Bundle* bundle : far) {
-    for (std::size_t i = 0; i < bundle->count; ++i) {
-      if (!too_many(ends)) return false;
-      trace(*bundle, i);
-      if (too_many(ends + left)) return true;
+  for (const std::size_t ray : farther) {
+    if (!too_many(ends)) return false;
+    if (const std::optional<double> t = end_of(ray, near_end, far_end)) {
+      count(ray, *t);
+    } else {
+      --left;
     }
+    if (too_many(ends + left)) return true;
   }
   return too_many(ends);
 }

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 
 #include "box_hierarchy.hpp"
@@ -26,8 +25,10 @@ class VoxelWalk {
   /// Where it has come in.
   [[nodiscard]] double from() const { return from_; }
 
-  /// Leaves the cube of this size that it is in; false if it was in there for no length.
-  bool leave(std::int32_t size) {
+  /// Leaves the cube of this many voxels an edge that it is in; false if it was in there for no
+  /// length.
+  template <std::int32_t size>
+  bool leave() {
     std::array<std::int32_t, 3> low{};
     std::array<double, 3> exit{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -40,7 +41,7 @@ class VoxelWalk {
     for (std::size_t k = 0; k < 3; ++k) {
       if (exit[k] == out) {
         voxel_[k] = is_rising(k) ? low[k] + size : low[k] - 1;
-      } else {
+      } else if constexpr (size > 1) {
         voxel_[k] = at(k, out, low[k], low[k] + size - 1);
       }
     }
@@ -56,9 +57,8 @@ class VoxelWalk {
   [[nodiscard]] std::int32_t at(std::size_t k, double t, std::int32_t low,
                                 std::int32_t high) const {
     const auto axis = static_cast<Eigen::Index>(k);
-    const double place = std::floor(line_.origin[axis] + t * line_.direction[axis]);
-    return static_cast<std::int32_t>(
-        std::clamp(place, static_cast<double>(low), static_cast<double>(high)));
+    const double above = line_.origin[axis] + t * line_.direction[axis] - low;
+    return low + static_cast<std::int32_t>(std::clamp(above, 0.0, static_cast<double>(high - low)));
   }
 
   const HalfLine& line_;

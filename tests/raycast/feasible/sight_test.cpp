@@ -22,11 +22,11 @@ namespace {
 using test::MapFamily;
 
 #ifdef __OPTIMIZE__
-constexpr int kMaps = 20;
+constexpr int kMaps = 6;
 #else
 constexpr int kMaps = 3;
 #endif
-constexpr std::size_t kPoses = 60;
+constexpr std::size_t kPoses = 30;
 
 /// As wide as its stride of 8 allows rays, with and without distortion.
 Sensor sensor_for(const BeliefGrid& grid, test::Random& random) {

@@ -239,8 +239,10 @@ TEST_P(SceneUpdate, AChainOfUpdatesIsWhatBuildsAre) {
   EXPECT_GT(gaining, compared / 3);
   EXPECT_GT(hits, compared * 25);
   EXPECT_EQ(in_cells > 5 * isas.size(), chain.has_cells) << in_cells;
-  EXPECT_GT(changes.leaves_of_tiles, 100U);
-  EXPECT_GT(changes.emptied, 200U);
+  if (!chain.has_cells) {
+    EXPECT_GT(changes.leaves_of_tiles, 100U);
+  }
+  EXPECT_GT(changes.emptied, 100U);
   EXPECT_GT(changes.back_again, 30U);
   EXPECT_GT(changes.regions_emptied, 2U);
   if (!chain.has_obstacles) {
