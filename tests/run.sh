@@ -1,12 +1,17 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, runs all tests; ends with ctest's summary. With --sanitize, core,
-# grid, raycast and the C and Python entry points are built and tested under AddressSanitizer and UBSan
-# instead, without three tests that repeat for statistics' sake what others do.
+# Installs what is missing, builds, runs all tests; ends with ctest's summary.
+#   --sanitize  core, grid, raycast and the C and Python entry points instead, under AddressSanitizer and
+#               UBSan, without three tests that repeat for statistics' sake what others do
+#   --tsan      the tests of what runs at once, of core, grid, raycast and C, under ThreadSanitizer
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-preset=release
-[ "${1:-}" = "--sanitize" ] && preset=asan
+case "${1:-}" in
+  "") preset=release ;;
+  --sanitize) preset=asan ;;
+  --tsan) preset=tsan ;;
+  *) echo "tests/run.sh: no option $1; there are --sanitize and --tsan" >&2; exit 2 ;;
+esac
 ./apps/install_dependencies.sh
 cmake --preset "$preset" >/dev/null
 cmake --build --preset "$preset"

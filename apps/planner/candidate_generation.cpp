@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "stopwatch.hpp"
-#include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain::app {
 
@@ -33,14 +32,12 @@ Proposal CandidateGeneration::generate(const Pose&) {
     }
   }
 
-  const FeasibilityChecker checker(model_.scene(), config_.feasibility);
-  std::vector<Infeasibility> reasons(all.size());
-  ThreadPool pool(exec_.num_threads);
-  pool.for_each_chunk(all.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      reasons[i] = checker.check(all[i].T_world_camera, views);
-    }
-  });
+  checker_ = checker_ ? checker_->with_scene(model_.scene())
+                      : FeasibilityChecker(model_.scene(), config_.feasibility, exec_);
+  std::vector<Pose> poses;
+  poses.reserve(all.size());
+  for (const Candidate& candidate : all) poses.push_back(candidate.T_world_camera);
+  const std::vector<Infeasibility> reasons = checker_->check(poses, views);
 
   Proposal proposal;
   dropped_.clear();

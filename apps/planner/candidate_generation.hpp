@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,7 @@ class CandidateGeneration : public ViewpointGeneration {
   Sensor sensor_;
   GenerationConfig config_;
   ExecConfig exec_;
+  std::optional<FeasibilityChecker> checker_;  ///< of the last proposal's scene
   StageSeconds& seconds_;
   EstimatedViews estimated_;
   std::vector<Dropped> dropped_;

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
       benchmark::AddCustomContext(key, value.is_string() ? value.get<std::string>() : value.dump());
     }
     viewgain::bench::register_trace_benchmarks();
+    viewgain::bench::register_feasible_benchmarks();
     viewgain::bench::register_gain_benchmarks();
     viewgain::bench::register_map_benchmarks();
     viewgain::bench::register_surface_benchmarks();

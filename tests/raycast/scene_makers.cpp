@@ -288,4 +288,9 @@ bool same_bits(const std::vector<ViewGain>& a, const std::vector<ViewGain>& b) {
                     [](const ViewGain& x, const ViewGain& y) { return same_bits(x, y); });
 }
 
+std::size_t gaining(const std::vector<ViewGain>& views) {
+  return static_cast<std::size_t>(
+      std::count_if(views.begin(), views.end(), [](const ViewGain& v) { return v.gain > 0; }));
+}
+
 }  // namespace viewgain::test

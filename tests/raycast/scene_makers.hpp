@@ -81,4 +81,7 @@ inline constexpr double kExactVoxel = 1.0 / 32.0;  ///< [m]
 [[nodiscard]] bool same_bits(const ViewGain& a, const ViewGain& b);
 [[nodiscard]] bool same_bits(const std::vector<ViewGain>& a, const std::vector<ViewGain>& b);
 
+/// How many of the views gain something.
+[[nodiscard]] std::size_t gaining(const std::vector<ViewGain>& views);
+
 }  // namespace viewgain::test

@@ -121,10 +121,9 @@ vg_status vg_feasibility_check(const vg_feasibility* feasibility, const double* 
     require_array(reasons, count, "reasons");
     require_array(taken, taken_count, "taken");
     const std::vector<Pose> views = poses_of(taken, taken_count);
-    const std::vector<Pose> candidates = poses_of(poses, count);
-    for (std::size_t i = 0; i < count; ++i) {
-      reasons[i] = static_cast<std::int32_t>(feasibility->checker.check(candidates[i], views));
-    }
+    const std::vector<Infeasibility> answers =
+        feasibility->checker.check(poses_of(poses, count), views);
+    for (std::size_t i = 0; i < count; ++i) reasons[i] = static_cast<std::int32_t>(answers[i]);
   });
 }
 

@@ -78,8 +78,8 @@ py::array_t<std::uint8_t> codes_of(const Checker& self, const py::object& T_worl
   py::array_t<std::uint8_t> codes(batch.shape);
   std::uint8_t* out = codes.mutable_data();
   const WithoutGil without_gil;
-  for (const Pose& pose : batch.poses) {
-    *out++ = static_cast<std::uint8_t>(self.checker.check(pose, before));
+  for (const Infeasibility reason : self.checker.check(batch.poses, before)) {
+    *out++ = static_cast<std::uint8_t>(reason);
   }
   return codes;
 }

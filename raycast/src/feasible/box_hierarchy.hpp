@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -10,10 +13,48 @@
 
 namespace viewgain::detail {
 
+/// Whether boxes have a point in common, limits included.
+[[nodiscard]] inline bool boxes_meet(const Box& a, const Box& b) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (a.max[k] < b.min[k] || b.max[k] < a.min[k]) return false;
+  }
+  return true;
+}
+
+/// A half-line, and what its intersections with boxes need.
+struct HalfLine {
+  Eigen::Vector3d origin;
+  Eigen::Vector3d direction;  ///< of any length but zero
+  Eigen::Vector3d inverse;    ///< 1 / direction; zero counts as a small positive number
+
+  HalfLine(const Eigen::Vector3d& from, const Eigen::Vector3d& along)
+      : origin(from), direction(along) {
+    constexpr double kTiny = 1e-300;
+    for (int k = 0; k < 3; ++k) {
+      inverse[k] = 1.0 / (std::abs(along[k]) < kTiny ? kTiny : along[k]);
+    }
+  }
+
+  /// Where its line is inside a box: from the first to the second, nowhere if the first is not
+  /// less. In units of the direction.
+  [[nodiscard]] std::array<double, 2> inside(const Box& box) const {
+    std::array<double, 2> t{-1e300, 1e300};
+    for (int k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      const double a = (box.min[i] - origin[k]) * inverse[k];
+      const double b = (box.max[i] - origin[k]) * inverse[k];
+      t[0] = std::max(t[0], std::min(a, b));
+      t[1] = std::min(t[1], std::max(a, b));
+    }
+    return t;
+  }
+};
+
 /// A binary tree over axis-aligned boxes, to find those near a place. Items are numbered as the
 /// boxes were.
 class BoxHierarchy {
  public:
+  BoxHierarchy() = default;
   /// n log n for n boxes.
   explicit BoxHierarchy(std::vector<Box> boxes);
 
@@ -21,23 +62,18 @@ class BoxHierarchy {
   /// the first.
   template <typename Visit>
   [[nodiscard]] bool any(const Box& range, const Visit& visit) const {
-    if (nodes_.empty()) return false;
-    std::array<std::uint32_t, kMaxDepth> stack{};
-    std::size_t size = 0;
-    stack[size++] = 0;
-    while (size > 0) {
-      const Node& node = nodes_[stack[--size]];
-      if (!meet(node.box, range)) continue;
-      if (node.count == 0) {
-        stack[size++] = node.first;
-        stack[size++] = node.first + 1;
-        continue;
-      }
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        if (meet(boxes_[order_[i]], range) && visit(order_[i])) return true;
-      }
-    }
-    return false;
+    return any_that([&range](const Box& box) { return boxes_meet(box, range); }, visit);
+  }
+
+  /// The same of the boxes that a half-line meets not beyond `end`, which visit may lower.
+  template <typename Visit>
+  [[nodiscard]] bool any_along(const HalfLine& line, const double& end, const Visit& visit) const {
+    return any_that(
+        [&](const Box& box) {
+          const auto [first, last] = line.inside(box);
+          return first <= last && last >= 0 && first <= end;
+        },
+        visit);
   }
 
  private:
@@ -49,11 +85,25 @@ class BoxHierarchy {
     std::uint32_t count = 0;  ///< 0: an inner node
   };
 
-  [[nodiscard]] static bool meet(const Box& a, const Box& b) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (a.max[k] < b.min[k] || b.max[k] < a.min[k]) return false;
+  template <typename Meets, typename Visit>
+  [[nodiscard]] bool any_that(const Meets& meets, const Visit& visit) const {
+    if (nodes_.empty()) return false;
+    std::array<std::uint32_t, kMaxDepth> stack{};
+    std::size_t size = 0;
+    stack[size++] = 0;
+    while (size > 0) {
+      const Node& node = nodes_[stack[--size]];
+      if (!meets(node.box)) continue;
+      if (node.count == 0) {
+        stack[size++] = node.first;
+        stack[size++] = node.first + 1;
+        continue;
+      }
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        if (meets(boxes_[order_[i]]) && visit(order_[i])) return true;
+      }
     }
-    return true;
+    return false;
   }
   void build(std::uint32_t node, std::uint32_t first, std::uint32_t count);
 

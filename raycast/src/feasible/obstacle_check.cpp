@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -76,7 +78,7 @@ std::vector<Box> bounds_of(const std::vector<Triangle>& triangles) {
   return boxes;
 }
 
-Box around(const std::vector<Triangle>& triangles) {
+Box around(std::span<const Triangle> triangles) {
   Box box = bounds_of(triangles.front());
   for (const Triangle& triangle : triangles) {
     const Box other = bounds_of(triangle);
@@ -90,7 +92,7 @@ Box around(const std::vector<Triangle>& triangles) {
 
 // How often a closed mesh winds round a point, from the solid angles of its triangles (Van Oosterom
 // and Strackee 1983).
-double winding_number(const std::vector<Triangle>& triangles, const Eigen::Vector3d& p) {
+double winding_number(std::span<const Triangle> triangles, const Eigen::Vector3d& p) {
   double half_angle = 0;
   for (const Triangle& triangle : triangles) {
     const Eigen::Vector3d a = triangle[0] - p, b = triangle[1] - p, c = triangle[2] - p;
@@ -99,6 +101,40 @@ double winding_number(const std::vector<Triangle>& triangles, const Eigen::Vecto
         std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
   return half_angle / (2.0 * std::numbers::pi);
+}
+
+// Which way the half-line from p along +x goes through a triangle: 1, -1, or 0 if not at all;
+// nothing if it passes an edge too closely to say.
+std::optional<int> crossing(const Triangle& triangle, const Eigen::Vector3d& p) {
+  std::array<double, 3> side{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3d& a = triangle[i];
+    const Eigen::Vector3d& b = triangle[(i + 1) % 3];
+    const double left = (b.y() - a.y()) * (p.z() - a.z());
+    const double right = (b.z() - a.z()) * (p.y() - a.y());
+    side[i] = left - right;
+    if (std::abs(side[i]) <= 1e-14 * (std::abs(left) + std::abs(right))) return std::nullopt;
+  }
+  if ((side[0] > 0) != (side[1] > 0) || (side[0] > 0) != (side[2] > 0)) return 0;
+  const double x =
+      (side[1] * triangle[0].x() + side[2] * triangle[1].x() + side[0] * triangle[2].x()) /
+      (side[0] + side[1] + side[2]);
+  if (x < p.x()) return 0;
+  return side[0] > 0 ? 1 : -1;
+}
+
+// Möller and Trumbore 1997, from either side.
+bool crosses(const HalfLine& ray, double range, const Triangle& triangle) {
+  const Eigen::Vector3d u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
+  const Eigen::Vector3d across = ray.direction.cross(v);
+  const double det = u.dot(across);
+  if (det == 0) return false;
+  const Eigen::Vector3d from = ray.origin - triangle[0];
+  const double a = from.dot(across) / det;
+  const Eigen::Vector3d other = from.cross(u);
+  const double b = ray.direction.dot(other) / det;
+  const double t = v.dot(other) / det;
+  return a >= 0 && b >= 0 && a + b <= 1 && t >= 0 && t <= range;
 }
 
 std::vector<Triangle> all_triangles(const Obstacles& obstacles) {
@@ -116,28 +152,55 @@ ObstacleCheck::ObstacleCheck(const Obstacles& obstacles)
     : boxes_(obstacles.boxes),
       triangles_(all_triangles(obstacles)),
       triangle_boxes_(bounds_of(triangles_)) {
+  std::uint32_t first = 0;
   for (const TriangleMesh& mesh : obstacles.meshes) {
-    if (!is_closed(mesh)) continue;
-    Solid solid{{}, triangles_of(mesh)};
-    solid.bounds = around(solid.triangles);
-    solids_.push_back(std::move(solid));
+    const auto last = first + static_cast<std::uint32_t>(mesh.triangles.size());
+    if (is_closed(mesh)) {
+      const auto own = std::span(triangles_).subspan(first, last - first);
+      solids_.push_back({around(own), first, last});
+    }
+    first = last;
   }
 }
 
+bool ObstacleCheck::encloses(const Solid& solid, const Eigen::Vector3d& point) const {
+  if (!solid.bounds.contains(point.x(), point.y(), point.z())) return false;
+  int windings = 0;
+  bool is_clear = true;
+  const Box ahead{{point.x(), point.y(), point.z()}, {solid.bounds.max[0], point.y(), point.z()}};
+  (void)triangle_boxes_.any(ahead, [&](std::uint32_t i) {
+    if (i < solid.first || i >= solid.last) return false;
+    const std::optional<int> way = crossing(triangles_[i], point);
+    is_clear = way.has_value();
+    windings += way.value_or(0);
+    return !is_clear;
+  });
+  if (is_clear) return windings != 0;
+  const auto own = std::span(triangles_).subspan(solid.first, solid.last - solid.first);
+  return std::abs(winding_number(own, point)) > 0.5;
+}
+
 bool ObstacleCheck::overlaps(const OrientedBox& body, const Eigen::Vector3d& body_center) const {
+  const Box range = body.bounds();
   if (std::any_of(boxes_.begin(), boxes_.end(),
-                  [&body](const Box& box) { return body.overlaps(box); })) {
+                  [&](const Box& box) { return boxes_meet(box, range) && body.overlaps(box); })) {
     return true;
   }
-  if (triangle_boxes_.any(body.bounds(),
-                          [&](std::uint32_t i) { return body.overlaps(triangles_[i]); })) {
+  if (triangle_boxes_.any(range, [&](std::uint32_t i) { return body.overlaps(triangles_[i]); })) {
     return true;
   }
   // No triangle meets the body: it is inside a solid as a whole or not at all.
-  return std::any_of(solids_.begin(), solids_.end(), [&body_center](const Solid& solid) {
-    return solid.bounds.contains(body_center.x(), body_center.y(), body_center.z()) &&
-           std::abs(winding_number(solid.triangles, body_center)) > 0.5;
-  });
+  return std::any_of(solids_.begin(), solids_.end(),
+                     [&](const Solid& solid) { return encloses(solid, body_center); });
+}
+
+bool ObstacleCheck::block(const HalfLine& ray, double range) const {
+  for (const Box& box : boxes_) {
+    const auto [enter, leave] = ray.inside(box);
+    if (enter <= leave && leave >= 0 && (enter >= 0 ? enter : leave) <= range) return true;
+  }
+  return triangle_boxes_.any_along(
+      ray, range, [&](std::uint32_t i) { return crosses(ray, range, triangles_[i]); });
 }
 
 }  // namespace viewgain::detail

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "box_hierarchy.hpp"
@@ -14,18 +15,27 @@ namespace viewgain::detail {
 
 /// Bodies against obstacles. Boxes are solid, and so are closed meshes (each edge used once in each
 /// direction, corners at the same place being one); an open mesh is a sheet. World frame [m].
+/// Immutable; thread safe.
 class ObstacleCheck {
  public:
   explicit ObstacleCheck(const Obstacles& obstacles);
 
+  [[nodiscard]] bool is_empty() const { return boxes_.empty() && triangles_.empty(); }
+
   [[nodiscard]] bool overlaps(const OrientedBox& body, const Eigen::Vector3d& body_center) const;
+
+  /// Whether the surface of one crosses a ray, whose direction has unit length, within `range` of
+  /// its origin.
+  [[nodiscard]] bool block(const HalfLine& ray, double range) const;
 
  private:
   using Triangle = std::array<Eigen::Vector3d, 3>;
+  /// A closed mesh: its triangles [first, last).
   struct Solid {
     Box bounds;
-    std::vector<Triangle> triangles;
+    std::uint32_t first, last;
   };
+  [[nodiscard]] bool encloses(const Solid& solid, const Eigen::Vector3d& point) const;
 
   std::vector<Box> boxes_;
   std::vector<Triangle> triangles_;

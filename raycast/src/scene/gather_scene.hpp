@@ -16,7 +16,7 @@ void check_obstacles(const Obstacles& obstacles);
 /// snapshot shares with `before` (null: none), the scene that it was made from, are copied from
 /// there. Throws Error(capacity).
 [[nodiscard]] std::unique_ptr<SceneData> gather_scene(GridSnapshot snapshot,
-                                                      const Obstacles& obstacles,
+                                                      std::shared_ptr<const Obstacles> obstacles,
                                                       const SceneData* before);
 
 }  // namespace viewgain::detail

@@ -61,7 +61,7 @@ struct SceneData {
   std::size_t block_count = 0;
   /// Where the primitives of each of the snapshot's regions begin, and behind the last.
   std::vector<SceneRegion> regions;
-  Obstacles obstacles;
+  std::shared_ptr<const Obstacles> obstacles;  ///< never null; shared by the scenes of a map
   bool has_obstacles = false;
   std::optional<SceneBoxes> scene_boxes;  ///< for sorting into the tiles of a view
   /// Kernels and BVH: what the room trace keeps with a scene; opaque here.

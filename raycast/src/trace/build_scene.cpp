@@ -41,7 +41,8 @@ std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
                                                     const ExecConfig& exec) {
   (void)thread_count(exec.num_threads);
   detail::check_obstacles(obstacles);
-  return make_traceable(detail::gather_scene(std::move(snapshot), obstacles, nullptr));
+  return make_traceable(detail::gather_scene(
+      std::move(snapshot), std::make_shared<const Obstacles>(obstacles), nullptr));
 }
 
 std::shared_ptr<const VoxelScene> VoxelScene::update(

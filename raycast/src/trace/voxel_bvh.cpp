@@ -57,7 +57,7 @@ void attach_boxes(RTCDevice device, RTCScene scene, unsigned id, std::size_t cou
 
 // Obstacles in the scene's coordinates: voxels from the workspace's lowest corner.
 void attach_obstacles(const SceneData& data, RTCDevice device, RTCScene scene) {
-  const Obstacles& obstacles = data.obstacles;
+  const Obstacles& obstacles = *data.obstacles;
   const Pose T_grid_world = data.snapshot.T_world_grid.inverse();
   const Eigen::Vector3d base(data.snapshot.min_index.x, data.snapshot.min_index.y,
                              data.snapshot.min_index.z);

@@ -17,7 +17,6 @@ namespace {
 TEST(SurfaceScene, PlaneAtItsAnalyticDistance) {
   const SurfaceScene scene(test::square(2.0, 1.5));
   test::Random random(1);
-  int cases = 0;
   for (int i = 0; i < 500; ++i) {
     const Eigen::Vector3d origin(test::uniform(random, -1, 1), test::uniform(random, -1, 1), -0.5);
     const Eigen::Vector3d target(test::uniform(random, -1, 1), test::uniform(random, -1, 1), 1.5);
@@ -26,9 +25,7 @@ TEST(SurfaceScene, PlaneAtItsAnalyticDistance) {
     EXPECT_NEAR(hit.range, (target - origin).norm(), 1e-6);
     EXPECT_NEAR(std::abs(hit.normal.z()), 1.0, 1e-6);
     EXPECT_LT(hit.triangle, 2U);
-    ++cases;
   }
-  EXPECT_EQ(cases, 500);
 }
 
 TEST(SurfaceScene, NormalFollowsTheRightHandRule) {

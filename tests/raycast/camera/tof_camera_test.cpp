@@ -95,7 +95,7 @@ TEST(TofCamera, TooDarkIsInvalid) {
 
 TEST(TofCamera, ReturnsMixAsPhasors) {
   const Sensor sensor = one_pixel();
-  int cases = 0;
+  int readings = 0;
   for (const auto& [near, far] :
        {std::pair{0.5, 0.7}, std::pair{0.45, 1.9}, std::pair{1.0, 2.9}, std::pair{0.3, 4.6}}) {
     for (const int covered : {0, 3, 8, 13, 16}) {  // columns of sub-rays that meet the near board
@@ -115,11 +115,11 @@ TEST(TofCamera, ReturnsMixAsPhasors) {
       } else {
         EXPECT_NEAR(frame.depth[0], expected, 1e-5) << near << " " << far << " " << covered;
         EXPECT_NEAR(frame.amplitude[0], std::abs(sum), 1e-5);
+        ++readings;
       }
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 20);
+  EXPECT_GE(readings, 18);
 }
 
 TEST(TofCamera, NothingAddsNothing) {
@@ -142,7 +142,6 @@ TEST(TofCamera, NothingAddsNothing) {
 }
 
 TEST(TofCamera, RangesFoldBackWherePhasesAreMeasured) {
-  int cases = 0;
   for (const double range : {4.9, 6.0, 9.7, 11.5}) {
     const double folded = range - kPeriod * std::floor(range / kPeriod);
     const auto read = [&](const Sensor& sensor, const SimulationConfig& config) {
@@ -164,9 +163,7 @@ TEST(TofCamera, RangesFoldBackWherePhasesAreMeasured) {
     EXPECT_EQ(read(sensor, {.sub_rays = 3, .ambiguity = true}), plain);
     sensor.noise = ConstantNoise{};
     EXPECT_EQ(read(sensor, {.sub_rays = 3, .ambiguity = true}), plain);
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
   // A fold that ends under min_range is no reading.
   const Sensor sensor = one_pixel();
   EXPECT_EQ(SimulatedSensor(plane_at(0), sensor, {.ambiguity = true})
@@ -213,7 +210,6 @@ TEST(TofCamera, WigglingIsTheFourthHarmonicAndIsCalibratedAway) {
 TEST(TofCamera, RefusesBadConfigurations) {
   const auto scene = plane_at(1);
   const Sensor sensor = sensor_preset("sr4000");
-  int cases = 0;
   const auto refused = [&](const Sensor& s, const SimulationConfig& config, const char* word) {
     try {
       SimulatedSensor camera(scene, s, config);
@@ -222,7 +218,6 @@ TEST(TofCamera, RefusesBadConfigurations) {
       EXPECT_EQ(error.code(), ErrorCode::invalid_argument);
       EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
     }
-    ++cases;
   };
   refused(sensor, {.sub_rays = 0}, "0");
   refused(sensor, {.sub_rays = 17}, "17");
@@ -231,7 +226,6 @@ TEST(TofCamera, RefusesBadConfigurations) {
   refused(sensor_preset("d435"), {.wiggling = 0.01}, "modulation frequency");
   refused(sensor, {.calibration = {{{2, 0}, {1, 0}}}}, "rise");
   refused(sensor, {.support_plane = std::nan("")}, "nan");
-  EXPECT_EQ(cases, 7);
   EXPECT_THROW((void)measure_calibration(sensor, {}, 0.5, 1.0, 1), Error);
   EXPECT_THROW((void)measure_calibration(sensor, {}, 1.0, 0.5, 9), Error);
   EXPECT_THROW((void)measure_calibration(sensor, {}, 0.1, 1.0, 9), Error);

@@ -55,7 +55,6 @@ std::pair<double, double> moments(const SimulatedSensor& camera, int frames) {
 TEST(TofNoise, LateralNoiseReadsBesideTheRay) {
   constexpr int kFrames = 4000;
   const Sensor sensor = one_pixel(ConstantNoise{.sigma_axial = 1e-3, .sigma_lateral = 2e-3});
-  int cases = 0;
   for (const double angle : {0.0, 30.0, 60.0}) {
     const SimulatedSensor camera(tilted_plane(1.0, angle * kDegree), sensor,
                                  {.seed = 3, .lateral_noise = true});
@@ -64,9 +63,7 @@ TEST(TofNoise, LateralNoiseReadsBesideTheRay) {
     const double expected = 2e-3 * std::tan(angle * kDegree);
     EXPECT_NEAR(mean, 1.0, 5 * expected / std::sqrt(kFrames) + 5e-5) << angle;
     EXPECT_NEAR(sigma, expected, expected * 5 / std::sqrt(2.0 * kFrames) + 1e-5) << angle;
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 // At the edge of a board: a pixel whose centre is 1 px off it sees the board when its rays are
@@ -75,7 +72,6 @@ TEST(TofNoise, LateralNoiseMovesRaysOverAnEdge) {
   Sensor sensor = sensor_preset("sr4000");
   sensor.camera.cx = 87;
   sensor.camera.cy = 71;
-  int cases = 0;
   for (const bool vertical : {false, true}) {
     TriangleMesh mesh = test::square(20, 1.5);
     const std::uint32_t first = 4;
@@ -98,15 +94,11 @@ TEST(TofNoise, LateralNoiseMovesRaysOverAnEdge) {
     const double expected = 0.5 * std::erfc(off * sensor.camera.fx / std::sqrt(2.0));
     const double tolerance = 5 * std::sqrt(expected * (1 - expected) / total) + 0.01;
     EXPECT_NEAR(static_cast<double>(near) / total, expected, tolerance) << vertical;
-    EXPECT_EQ(total, 2000);
-    ++cases;
   }
-  EXPECT_EQ(cases, 2);
 }
 
 TEST(TofNoise, AxialSigmaFollowsTheMeasuredIncidence) {
   constexpr int kFrames = 4000;
-  int cases = 0;
   for (const int sub_rays : {1, 3}) {
     for (const double angle : {0.0, 60.0, 80.0}) {
       const Sensor sensor = one_pixel(ShotNoise{});
@@ -116,10 +108,8 @@ TEST(TofNoise, AxialSigmaFollowsTheMeasuredIncidence) {
       const double expected = sensor.sigmas(1.0, std::cos(angle * kDegree)).axial;
       EXPECT_NEAR(mean, 1.0, 5 * expected / std::sqrt(kFrames)) << angle;
       EXPECT_NEAR(sigma, expected, expected * 5 / std::sqrt(2.0 * kFrames)) << angle;
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 6);
 }
 
 TEST(TofNoise, AmplitudeIsAsUncertainAsThePhase) {
@@ -233,7 +223,6 @@ TEST(TofNoise, TheSameForAnyNumberOfThreadsAndReproducible) {
   const Pose pose = look_at({0.5, 0.1, 0.2}, {0, 0, 0});
   std::vector<PixelTruth> truth, other_truth;
   const DepthFrame first = SimulatedSensor(ball, sensor, config, {1}).acquire(pose, 7, truth);
-  int cases = 0;
   for (const int threads : {1, 2, 3, 5}) {
     const SimulatedSensor camera(ball, sensor, config, {threads});
     EXPECT_EQ(camera.acquire(pose, 7, other_truth), first);
@@ -243,9 +232,7 @@ TEST(TofNoise, TheSameForAnyNumberOfThreadsAndReproducible) {
       EXPECT_EQ(other_truth[i].min_range, truth[i].min_range);
       EXPECT_EQ(other_truth[i].nearest_range, truth[i].nearest_range);
     }
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
   config.seed = 12;
   EXPECT_NE(SimulatedSensor(ball, sensor, config).acquire(pose, 7), first);
 }

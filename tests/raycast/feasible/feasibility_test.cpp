@@ -77,15 +77,13 @@ Solid body_of(const FeasibilityConfig& config, const Pose& T_world_camera) {
 
 TEST(Feasibility, BodiesAgainstEveryVoxel) {
   Random random(1);
-  int cases = 0;
   std::map<Infeasibility, int> answers;
   for (int map = 0; map < 12; ++map) {
-    constexpr int kSide = 20;
     const double share = map % 3 == 0 ? 0.001 : map % 3 == 1 ? 0.01 : 0.2;
     const Pose T_world_grid = map % 4 == 0 ? Pose() : random_rigid(random, 2.0);
     std::vector<Index3> non_free;
     // A block of 8³ that is unknown as a whole, and specks.
-    const BeliefGrid grid = map_of(kSide, T_world_grid, [&](int x, int y, int z) {
+    const BeliefGrid grid = map_of(20, T_world_grid, [&](int x, int y, int z) {
       const bool block = map % 2 == 0 && x / 8 == 1 && y / 8 == 0 && z / 8 == 1;
       const bool is = block || uniform(random, 0, 1) < share;
       if (is) non_free.push_back({x, y, z});
@@ -98,7 +96,7 @@ TEST(Feasibility, BodiesAgainstEveryVoxel) {
     if (map % 3 != 0) config.body.T_flange_camera = random_rigid(random, 0.02);
     const FeasibilityChecker checker = checker_of(grid, config);
     const double radius = half_size(config).norm() + kVoxel;
-    for (int i = 0; i < 150; ++i, ++cases) {
+    for (int i = 0; i < 150; ++i) {
       Pose pose = random_rigid(random, 1.0);
       const Eigen::Vector3d eye =
           T_world_grid * Eigen::Vector3d(uniform(random, -0.01, 0.07), uniform(random, -0.01, 0.07),
@@ -123,7 +121,6 @@ TEST(Feasibility, BodiesAgainstEveryVoxel) {
       ++answers[answer];
     }
   }
-  EXPECT_EQ(cases, 1800);
   EXPECT_GT(answers[Infeasibility::none], 300);
   EXPECT_GT(answers[Infeasibility::collision], 300);
 }
@@ -131,7 +128,6 @@ TEST(Feasibility, BodiesAgainstEveryVoxel) {
 TEST(Feasibility, BodiesAgainstObstacles) {
   Random random(2);
   const BeliefGrid grid = free_map();
-  int cases = 0;
   std::map<Infeasibility, int> answers;
   const auto anywhere = [&random] {
     return Eigen::Vector3d(uniform(random, -0.2, 0.2), uniform(random, -0.2, 0.2),
@@ -163,7 +159,7 @@ TEST(Feasibility, BodiesAgainstObstacles) {
     config.body.size = {uniform(random, 0.02, 0.1), uniform(random, 0.02, 0.1),
                         uniform(random, 0.02, 0.1)};
     const FeasibilityChecker checker = checker_of(grid, config, obstacles);
-    for (int i = 0; i < 200; ++i, ++cases) {
+    for (int i = 0; i < 200; ++i) {
       const Pose pose(random_rigid(random, 1).rotation(), anywhere());
       const Solid body = body_of(config, pose);
       const bool expected =
@@ -177,7 +173,6 @@ TEST(Feasibility, BodiesAgainstObstacles) {
       ++answers[answer];
     }
   }
-  EXPECT_EQ(cases, 4000);
   EXPECT_GT(answers[Infeasibility::none], 500);
   EXPECT_GT(answers[Infeasibility::obstacle], 500);
 }
@@ -195,14 +190,11 @@ TEST(Feasibility, ClosedMeshesAreSolidOpenOnesAreSheets) {
   TriangleMesh inward = cube, open = cube;
   for (auto& triangle : inward.triangles) std::swap(triangle[0], triangle[1]);
   open.triangles.pop_back();
-  int cases = 0;
   for (const TriangleMesh& mesh : {cube, separate, inward}) {
     const FeasibilityChecker checker = checker_of(grid, {}, {{}, {mesh}});
     EXPECT_EQ(checker.check(inside), Infeasibility::obstacle);
     EXPECT_EQ(checker.check(outside), Infeasibility::none);
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
   const FeasibilityChecker bucket = checker_of(grid, {}, {{}, {open}});
   EXPECT_EQ(bucket.check(inside), Infeasibility::none);
   EXPECT_EQ(bucket.check(looking_down({0, 0, 0.08})), Infeasibility::obstacle);
@@ -213,11 +205,9 @@ TEST(Feasibility, ClosedMeshesAreSolidOpenOnesAreSheets) {
 // Bodies of whole voxels that stand against occupied layers on all sides, at places whose
 // coordinates are no round numbers.
 TEST(Feasibility, TouchingFacesDoNotOverlap) {
-  constexpr int kSide = 24;
-  int cases = 0;
   for (int low = 1; low <= 12; ++low) {
     const int high = low + 5;  // free: [low, high) along each axis
-    const BeliefGrid grid = map_of(kSide, {}, [&](int x, int y, int z) {
+    const BeliefGrid grid = map_of(24, {}, [&](int x, int y, int z) {
       const auto in = [&](int v) { return v >= low && v < high; };
       return !(in(x) && in(y) && in(z));
     });
@@ -230,10 +220,8 @@ TEST(Feasibility, TouchingFacesDoNotOverlap) {
       FeasibilityConfig larger = config;
       larger.clearance = 1e-6;
       EXPECT_EQ(checker_of(grid, larger).check(pose), Infeasibility::collision) << low;
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 24);
 
   const FeasibilityChecker on_box = checker_of(free_map(), {}, {{{{-1, -1, -1}, {1, 1, 0.1}}}, {}});
   EXPECT_EQ(on_box.check({Eigen::Vector3d(1, -1, -1).asDiagonal(), {0, 0, 0.1}}),
@@ -271,7 +259,7 @@ TEST(Feasibility, TheMountingPlacesTheBody) {
                                  0.01};
     const FeasibilityChecker checker =
         checker_of(BeliefGrid::from_states(grid_config, std::vector<std::uint8_t>{2}), config);
-    return checker.check({}) == Infeasibility::collision;
+    return checker.check(Pose()) == Infeasibility::collision;
   };
   EXPECT_TRUE(occupied_at(0.010, 0, -0.002));
   EXPECT_TRUE(occupied_at(0.0001, 0, -0.0011));
@@ -333,20 +321,19 @@ TEST(Feasibility, ReasonsInOrder) {
   EXPECT_EQ(checker_of(free_map(), config).check(bent), Infeasibility::none);
 
   std::set<std::string_view> names;
-  for (int i = 0; i <= static_cast<int>(Infeasibility::collision); ++i) {
+  for (int i = 0; i <= static_cast<int>(Infeasibility::too_near); ++i) {
     names.insert(infeasibility_name(static_cast<Infeasibility>(i)));
   }
   EXPECT_EQ(names, (std::set<std::string_view>{"none", "bad_pose", "unreachable", "taken", "plane",
-                                               "obstacle", "collision"}));
+                                               "obstacle", "collision", "too_near"}));
 }
 
 TEST(Feasibility, TheLowestCornerDecidesAboutThePlane) {
   FeasibilityConfig config;
   config.support_plane = 0.5;
   const FeasibilityChecker checker = checker_of(free_map(), config);
-  int cases = 0;
   Random random(3);
-  for (int i = 0; i < 200; ++i, ++cases) {
+  for (int i = 0; i < 200; ++i) {
     const Eigen::Matrix3d R = random_rigid(random, 1).rotation();
     const Solid body = body_of(config, {R, {0, 0, 0}});
     double lowest = 0;
@@ -361,7 +348,6 @@ TEST(Feasibility, TheLowestCornerDecidesAboutThePlane) {
     EXPECT_EQ(checker.check({R, {3, 4, 0.5 - lowest}}), Infeasibility::plane);
     EXPECT_EQ(checker.check({R, {3, 4, -5}}), Infeasibility::plane);
   }
-  EXPECT_EQ(cases, 200);
 }
 
 TEST(Feasibility, AWallNearerThanTheSensorMeasuresIsTooNear) {
@@ -371,21 +357,17 @@ TEST(Feasibility, AWallNearerThanTheSensorMeasuresIsTooNear) {
   config.sensor = sensor_preset("sr4000");  // measures from 0.2 m on
   const double floor = 24 * kVoxel, middle = 24 * kVoxel;
   const auto above = [&](double height) { return looking_down({middle, middle, floor + height}); };
-  std::size_t cases = 0;
   for (const double height : {0.05, 0.1, 0.19, 0.21, 0.3, 0.6}) {
     const Infeasibility expected = height < 0.2 ? Infeasibility::too_near : Infeasibility::none;
     EXPECT_EQ(checker_of(grid, config).check(above(height)), expected) << height;
     EXPECT_EQ(checker_of(grid).check(above(height)), Infeasibility::none) << height;
-    ++cases;
   }
-  EXPECT_EQ(cases, 6U);
   // Nothing in view is not too near, however near the map is behind the camera.
   const Pose up(Eigen::Matrix3d::Identity(), Eigen::Vector3d(middle, middle, floor + 0.1));
   EXPECT_EQ(checker_of(grid, config).check(up), Infeasibility::none);
   // All rays may be near if the share says so.
   config.max_near_share = 1.0;
   EXPECT_EQ(checker_of(grid, config).check(above(0.1)), Infeasibility::none);
-  EXPECT_EQ(infeasibility_name(Infeasibility::too_near), "too_near");
 }
 
 TEST(Feasibility, RefusesWhatMakesNoSense) {

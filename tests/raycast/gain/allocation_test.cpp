@@ -59,7 +59,6 @@ TEST(Allocation, NonePerPoseInTheSteadyState) {
   const Sensor sensor = test::random_sensor(map.grid, random);
   const std::vector<Pose> poses = test::random_poses(map, 100, random);
   std::vector<ViewGain> results(poses.size());
-  int cases = 0;
   for (const Criterion criterion :
        {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
     for (const int threads : {1, 2}) {
@@ -82,10 +81,9 @@ TEST(Allocation, NonePerPoseInTheSteadyState) {
         for (const Pose& pose : poses) results[0] = evaluator.evaluate(pose);
         EXPECT_EQ(allocations - before, 0U);
       }
-      ++cases;
+      EXPECT_GT(test::gaining(results), 0U);
     }
   }
-  EXPECT_EQ(cases, 6);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ constexpr std::array kFamilies{test::MapFamily::salt_and_pepper_30, test::MapFam
                                test::MapFamily::rotated};
 
 TEST(Determinism, SameBitsForAnyNumberOfThreadsAndRunAfterRun) {
-  int cases = 0;
+  std::size_t views = 0, gaining = 0;
   for (const test::MapFamily family : kFamilies) {
     const Made made = make(11, family);
     const auto scene = VoxelScene::build(made.map.grid);
@@ -43,8 +43,10 @@ TEST(Determinism, SameBitsForAnyNumberOfThreadsAndRunAfterRun) {
       const GainEvaluator evaluator(own_scene, made.sensor, {}, {.num_threads = threads});
       EXPECT_EQ(evaluator.num_threads(), threads);
       for (int run = 0; run < 3; ++run) {
-        EXPECT_TRUE(test::same_bits(expected, evaluator.evaluate(made.poses)));
-        ++cases;
+        const std::vector<ViewGain> actual = evaluator.evaluate(made.poses);
+        EXPECT_TRUE(test::same_bits(expected, actual));
+        views += actual.size();
+        gaining += test::gaining(actual);
       }
     }
     // One by one as in a batch: the threads share each view.
@@ -55,12 +57,12 @@ TEST(Determinism, SameBitsForAnyNumberOfThreadsAndRunAfterRun) {
       }
     }
   }
-  EXPECT_EQ(cases, 36);
+  EXPECT_GT(gaining, views / 2);
 }
 
 // Of a view large enough that all threads have a part in it, its end included.
 TEST(Determinism, OnePoseOnSeveralThreadsUnderEveryCriterionAndWeight) {
-  int cases = 0, both_classes = 0;
+  int both_classes = 0;
   for (const test::MapFamily family : kFamilies) {
     Made made = make(13, family, 6);
     PinholeCamera& camera = made.sensor.camera;
@@ -89,20 +91,17 @@ TEST(Determinism, OnePoseOnSeveralThreadsUnderEveryCriterionAndWeight) {
             std::vector<ViewGain> actual;
             for (const Pose& pose : made.poses) actual.push_back(together.evaluate(pose));
             EXPECT_TRUE(test::same_bits(expected, actual));
-            ++cases;
           }
         }
       }
     }
   }
-  EXPECT_EQ(cases, 3 * 3 * 2 * 2 * 4);
   EXPECT_GT(both_classes, 60);
 }
 
 TEST(Determinism, SameBitsAfterSaveAndLoad) {
   const std::filesystem::path path =
       std::filesystem::path(testing::TempDir()) / "viewgain_determinism_test.vdb";
-  int cases = 0;
   for (const test::MapFamily family : kFamilies) {
     const Made made = make(12, family);
     save_vdb(made.map.grid, path);
@@ -110,27 +109,26 @@ TEST(Determinism, SameBitsAfterSaveAndLoad) {
     EXPECT_EQ(loaded.content_hash(), made.map.grid.content_hash());
     const GainEvaluator before(VoxelScene::build(made.map.grid), made.sensor);
     const GainEvaluator after(VoxelScene::build(loaded), made.sensor);
-    EXPECT_TRUE(test::same_bits(before.evaluate(made.poses), after.evaluate(made.poses)));
-    ++cases;
+    const std::vector<ViewGain> gains = before.evaluate(made.poses);
+    EXPECT_TRUE(test::same_bits(gains, after.evaluate(made.poses)));
+    EXPECT_GT(test::gaining(gains), gains.size() / 2);
   }
   std::filesystem::remove(path);
-  EXPECT_EQ(cases, 3);
 }
 
 TEST(Determinism, SameBitsAcrossInstructionSets) {
-  int cases = 0;
   for (const test::MapFamily family : kFamilies) {
     const Made made = make(13, family);
     std::vector<std::vector<ViewGain>> by_isa;
     for (const std::string& isa : available_isas()) {
       const test::ScopedIsa scoped(isa);
       const GainEvaluator evaluator(VoxelScene::build(made.map.grid), made.sensor);
+      EXPECT_EQ(evaluator.scene().isa(), isa);
       by_isa.push_back(evaluator.evaluate(made.poses));
       EXPECT_TRUE(test::same_bits(by_isa.front(), by_isa.back())) << isa;
-      ++cases;
+      EXPECT_GT(test::gaining(by_isa.back()), made.poses.size() / 2) << isa;
     }
   }
-  EXPECT_EQ(static_cast<std::size_t>(cases), kFamilies.size() * available_isas().size());
 }
 
 TEST(Determinism, SceneOutlivesTheGridAndIgnoresItsChanges) {

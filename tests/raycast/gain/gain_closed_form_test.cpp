@@ -113,7 +113,7 @@ TEST(GainClosedForm, TwoPerpendicularRaysOfOneView) {
 
 TEST(GainClosedForm, IsotropicNoiseMakesDiagonalAndDeterminantEqual) {
   test::Random random(3);
-  int cases = 0;
+  int gaining = 0;
   for (int i = 0; i < 8; ++i) {
     test::RandomMap made = test::random_map(test::MapFamily::salt_and_pepper_30, random);
     // Without beliefs: those of the random map are not isotropic.
@@ -130,15 +130,14 @@ TEST(GainClosedForm, IsotropicNoiseMakesDiagonalAndDeterminantEqual) {
     for (const Pose& pose : test::random_poses(made, 5, random)) {
       const double expected = determinant.evaluate(pose).gain;
       EXPECT_NEAR(diagonal.evaluate(pose).gain, expected, 1e-9 * expected);
-      ++cases;
+      gaining += expected > 0 ? 1 : 0;
     }
   }
-  EXPECT_EQ(cases, 40);
+  EXPECT_GT(gaining, 20);
 }
 
 TEST(GainClosedForm, TurningHitsAndInformationChangesOnlyTheDiagonalCriterion) {
   test::Random random(5);
-  int cases = 0;
   double largest_change = 0;
   for (int i = 0; i < 200; ++i) {
     const Eigen::Matrix3d R = test::random_rigid(random, 0).rotation();
@@ -162,16 +161,14 @@ TEST(GainClosedForm, TurningHitsAndInformationChangesOnlyTheDiagonalCriterion) {
     const double gain = entropy_reduction(before, added, Criterion::log_diagonal);
     const double turned = entropy_reduction(before_turned, added_turned, Criterion::log_diagonal);
     largest_change = std::max(largest_change, std::abs(turned - gain) / gain);
-    ++cases;
   }
-  EXPECT_EQ(cases, 200);
   EXPECT_GT(largest_change, 0.01);
 }
 
 TEST(GainClosedForm, TurningTheWholeWorldChangesNothing) {
   // The same map and poses seen from another frame: every criterion, since grid axes turn along.
   test::Random random(9);
-  int cases = 0;
+  int gaining = 0;
   for (int i = 0; i < 10; ++i) {
     const test::RandomMap made = test::random_map(test::MapFamily::salt_and_pepper_1, random);
     const Pose T = test::random_rigid(random, 2);
@@ -194,10 +191,10 @@ TEST(GainClosedForm, TurningTheWholeWorldChangesNothing) {
       // A ray or two may tip over at a boundary: rounding differs.
       EXPECT_NEAR(a.hits, b.hits, 2);
       EXPECT_NEAR(a.gain, b.gain, 0.01 * a.gain + 1e-9);
-      ++cases;
+      gaining += a.gain > 0 ? 1 : 0;
     }
   }
-  EXPECT_EQ(cases, 50);
+  EXPECT_GT(gaining, 25);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ Made make(std::uint64_t seed, test::MapFamily family = test::MapFamily::salt_and
 }
 
 TEST(GainOptions, MoreRaysNeverLowerAGain) {
-  int cases = 0;
+  int compared = 0, lower = 0;
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const Made made = make(seed, test::MapFamily::salt_and_pepper_30);
     const auto scene = VoxelScene::build(made.map.grid);
@@ -44,14 +44,17 @@ TEST(GainOptions, MoreRaysNeverLowerAGain) {
         const std::vector<ViewGain> gains = evaluator.evaluate(made.poses);
         for (std::size_t i = 0; i < gains.size(); ++i) {
           EXPECT_GE(gains[i].gain, 0.0);
-          EXPECT_TRUE(denser.empty() || gains[i].gain <= denser[i].gain * (1 + 1e-12));
-          ++cases;
+          if (denser.empty() || denser[i].gain == 0) continue;
+          EXPECT_LE(gains[i].gain, denser[i].gain * (1 + 1e-12));
+          ++compared;
+          lower += gains[i].gain < 0.9 * denser[i].gain ? 1 : 0;
         }
         denser = gains;
       }
     }
   }
-  EXPECT_EQ(cases, 8 * 3 * 6 * 4);
+  EXPECT_GT(compared, 200);
+  EXPECT_GT(lower, 150);
 }
 
 TEST(GainOptions, StrideTakesEverySthPixelFromTheFirst) {
@@ -78,7 +81,7 @@ TEST(GainOptions, StrideTakesEverySthPixelFromTheFirst) {
 }
 
 TEST(GainOptions, WeightsMultiplyVoxelsByTheLastRegionThatHoldsTheirCentre) {
-  int cases = 0;
+  int weighed = 0;
   for (std::uint64_t seed = 100; seed < 110; ++seed) {
     const Made made = make(seed, test::MapFamily::odd_and_far);
     const Box box = made.map.grid.workspace();
@@ -96,14 +99,16 @@ TEST(GainOptions, WeightsMultiplyVoxelsByTheLastRegionThatHoldsTheirCentre) {
       const ViewGain actual = weighted.evaluate(pose);
       EXPECT_NEAR(actual.gain, expected.gain, 1e-6 * expected.gain);
       EXPECT_EQ(actual.unknown_voxels, expected.unknown_voxels);
-      ++cases;
+      const double unweighted =
+          oracle::gain_of_hits(made.map.grid, made.sensor, {}, pose, hits).gain;
+      weighed += std::abs(actual.gain - unweighted) > 0.1 * unweighted ? 1 : 0;
     }
     const GainEvaluator plain(scene, made.sensor);
     const GainEvaluator doubled(scene, made.sensor, {.weights = {{box, 2.0}}});
     EXPECT_NEAR(doubled.evaluate(made.poses[1]).gain, 2 * plain.evaluate(made.poses[1]).gain,
                 1e-12 * plain.evaluate(made.poses[1]).gain);
   }
-  EXPECT_EQ(cases, 60);
+  EXPECT_GT(weighed, 30);
 }
 
 TEST(GainOptions, PriorAndRangesOverrideTheMapsAndTheSensors) {
@@ -226,7 +231,6 @@ TEST(GainOptions, ObstaclesInRandomMapsAgreeWithTheOracle) {
 // An obstacle's face on a voxel's face: the obstacle wins, whichever the BVH meets first; and a ray
 // through the diagonal that a box face's two triangles share does not slip through.
 TEST(GainOptions, ObstaclesWinTiesAndHaveNoSeams) {
-  int cases = 0;
   const double v = kExactVoxel;
   for (const std::string& isa : available_isas()) {
     const test::ScopedIsa scoped(isa);
@@ -245,11 +249,9 @@ TEST(GainOptions, ObstaclesWinTiesAndHaveNoSeams) {
         EXPECT_EQ(hits.at(4).kind, RayHit::Kind::obstacle);
         EXPECT_NEAR(hits.at(4).range, (8 - eye.x()) * v, 1e-6);
         EXPECT_EQ(evaluator.evaluate(pose).gain, 0.0);
-        ++cases;
       }
     }
   }
-  EXPECT_EQ(cases, 6 * static_cast<int>(available_isas().size()));
 }
 
 TEST(GainOptions, PriorsAndSigmasThatDoublePrecisionCannotWeighAreRefused) {

@@ -34,13 +34,11 @@ TEST(Oracle, VisitsVoxelsOfADiagonalOnce) {
 TEST(Oracle, VisitsAreConsecutiveAndInsideTheirVoxels) {
   test::Random random(7);
   const DenseMap map(sparse_map({9, 7, 5}, {}));
-  std::size_t cases = 0;
   std::size_t visits = 0;
   for (int i = 0; i < 2000; ++i) {
     const Pose pose = test::random_rigid(random, 8);
     const Ray ray{pose.translation(), pose.rotation().col(2)};
     double last = -1;
-    ++cases;
     oracle::walk(map, ray, [&](Index3 voxel, double t_in, double t_out) {
       EXPECT_LT(t_in, t_out);
       EXPECT_TRUE(last < 0 || t_in == last);
@@ -53,7 +51,6 @@ TEST(Oracle, VisitsAreConsecutiveAndInsideTheirVoxels) {
       return false;
     });
   }
-  EXPECT_EQ(cases, 2000U);
   EXPECT_GT(visits, 1000U);
 }
 

@@ -14,7 +14,7 @@ Obstacles out_of_reach() {
   return {.boxes = {{{1e6, 1e6, 1e6}, {1e6 + 1, 1e6 + 1, 1e6 + 1}}}, .meshes = {}};
 }
 
-// Compares gains and hits of the two ways; returns the number of rays compared.
+// Compares gains and hits of the two ways; returns the number of rays that hit something.
 std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vector<Pose>& poses) {
   const GainEvaluator free_choice(VoxelScene::build(grid), sensor, {}, {.num_threads = 1});
   const GainEvaluator bvh(VoxelScene::build(grid, out_of_reach()), sensor, {}, {.num_threads = 1});
@@ -29,7 +29,7 @@ std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vec
       EXPECT_EQ(a[i].standard_error, b[i].standard_error);
     }
   }
-  std::size_t rays = 0;
+  std::size_t hits = 0;
   for (const Pose& pose : poses) {
     const std::vector<RayHit> a = free_choice.trace(pose), b = bvh.trace(pose);
     EXPECT_EQ(a.size(), b.size());
@@ -37,15 +37,14 @@ std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vec
       EXPECT_EQ(a[i].kind, b[i].kind);
       EXPECT_EQ(a[i].voxel, b[i].voxel);
       EXPECT_EQ(a[i].range, b[i].range);
+      hits += a[i].kind == RayHit::Kind::none ? 0U : 1U;
     }
-    rays += a.size();
   }
-  return rays;
+  return hits;
 }
 
 TEST(TracePaths, ListsAndBvhGiveTheSameBits) {
-  int cases = 0;
-  std::size_t rays = 0;
+  std::size_t hits = 0;
   for (const test::MapFamily family :
        {test::MapFamily::salt_and_pepper_01, test::MapFamily::salt_and_pepper_30,
         test::MapFamily::tiles_8, test::MapFamily::odd_and_far, test::MapFamily::rotated}) {
@@ -53,12 +52,10 @@ TEST(TracePaths, ListsAndBvhGiveTheSameBits) {
       test::Random random(100 + seed);
       const test::RandomMap map = test::random_map(family, random);
       const Sensor sensor = test::random_sensor(map.grid, random);
-      rays += compare(map.grid, sensor, test::random_poses(map, 12, random));
-      ++cases;
+      hits += compare(map.grid, sensor, test::random_poses(map, 12, random));
     }
   }
-  EXPECT_EQ(cases, 40);
-  EXPECT_GT(rays, 50'000U);
+  EXPECT_GT(hits, 50'000U);
 }
 
 // Rays that count from the camera on, where it touches the faces, edges and corners of voxels: what
@@ -90,7 +87,7 @@ TEST(TracePaths, CamerasThatTouchVoxelsSeeTheSameBits) {
       poses.push_back(turned);
     }
   }
-  EXPECT_EQ(compare(grid, sensor, poses), 320U * 21U * 17U);
+  EXPECT_GT(compare(grid, sensor, poses), 320U * 21U * 17U / 2);
 }
 
 // Cameras so far away that single precision moves a box by many hundredths of a voxel: neither way
@@ -148,7 +145,7 @@ TEST(TracePaths, ManyPrimitivesUnderCoarseBoxesGiveTheSameBits) {
   }
   poses.push_back(look_at({-6, -5, -4}, {2.2, 2.3, 2.1}));
   poses.push_back(look_at({9, 8, 2}, {2.2, 2.3, 2.1}));
-  EXPECT_EQ(compare(grid, sensor, poses), 8U * 61U * 47U);
+  EXPECT_GT(compare(grid, sensor, poses), 500U);
 }
 
 // More regions than are listed one by one: cells of 64³ voxels.
@@ -174,12 +171,7 @@ TEST(TracePaths, ManyRegionsGiveTheSameBits) {
     poses.push_back(look_at({middle * 1.02, middle * 0.97, middle * 1.05},
                             {middle * (1 + off), middle * 0.8, middle * 0.7}));
   }
-  EXPECT_EQ(compare(grid, sensor, poses), 4U * 61U * 47U);
-  std::size_t hits = 0;
-  for (const ViewGain& view : GainEvaluator(VoxelScene::build(grid), sensor).evaluate(poses)) {
-    hits += view.hits;
-  }
-  EXPECT_GT(hits, 100U);
+  EXPECT_GT(compare(grid, sensor, poses), 100U);
 }
 
 // A large unknown tile of which the workspace leaves no more than one block, among many primitives.
@@ -203,7 +195,7 @@ TEST(TracePaths, ABlockLeftOfALargeTileIsSeenAmongManyPrimitives) {
   sensor.camera.fx = sensor.camera.fy = 80;
   const double corner = (kCorner + 4) * grid.voxel_size();
   const Pose pose = look_at({corner + 1.5, corner + 1.4, corner + 1.3}, {corner, corner, corner});
-  EXPECT_EQ(compare(grid, sensor, {pose}), 61U * 47U);
+  EXPECT_GT(compare(grid, sensor, {pose}), 20U);
   std::size_t seen = 0;
   for (const RayHit& hit : GainEvaluator(VoxelScene::build(grid), sensor).trace(pose)) {
     const Index3& v = hit.voxel;

@@ -380,7 +380,8 @@ VG_API vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibili
                                        vg_feasibility** feasibility);
 
 /* Why each pose is not possible (VG_FEASIBLE: it is); the first reason in the order above counts.
-   `taken`: the poses of the views so far, 16 doubles each. On the calling thread. */
+   `taken`: the poses of the views so far, 16 doubles each. On all threads, which call
+   `reachable` at once. */
 VG_API vg_status vg_feasibility_check(const vg_feasibility* feasibility, const double* poses,
                                       size_t count, const double* taken, size_t taken_count,
                                       int32_t* reasons);

@@ -8,7 +8,9 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
+#include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/reach.hpp"
@@ -54,24 +56,42 @@ struct VIEWGAIN_EXPORT FeasibilityConfig {
 /// Says which camera poses are possible in a scene: body against its voxels that are not free, its
 /// obstacles and the support plane; reach; views taken. Outside the workspace nothing is known to
 /// block. Obstacle boxes and closed meshes are solid, an open mesh is a sheet; overlaps of less
-/// than a nanometre are touching. Costs some microseconds a pose near the map, under one away from
-/// it. Thread safety: check() is const and may run from many threads.
+/// than a nanometre are touching.
+///
+/// Thread safety: all const members may run from many threads at once on one checker.
 class VIEWGAIN_EXPORT FeasibilityChecker {
  public:
-  /// Throws Error(invalid_argument) for a null scene, a body without extent or with a mounting that
-  /// is no rigid transform, a negative clearance, a tolerance or plane that is not finite, or a
-  /// reach region that is not valid.
-  FeasibilityChecker(std::shared_ptr<const VoxelScene> scene, const FeasibilityConfig& config);
+  /// Undoes the lens distortion of config.sensor and sorts the obstacles once. exec.num_threads is
+  /// for batches; their threads start with the first one. Throws Error(invalid_argument) for a null
+  /// scene, a body without extent or with a mounting that is no rigid transform, a negative
+  /// clearance, a tolerance or plane that is not finite, a reach region that is not valid, or a
+  /// number of threads that thread_count() refuses.
+  FeasibilityChecker(std::shared_ptr<const VoxelScene> scene, const FeasibilityConfig& config,
+                     const ExecConfig& exec = {});
   ~FeasibilityChecker();
   FeasibilityChecker(FeasibilityChecker&&) noexcept;
   FeasibilityChecker& operator=(FeasibilityChecker&&) noexcept;
+
+  /// The same checker of another scene, for a map that grows. The lens, the threads and, if the
+  /// scene was made by VoxelScene::update from this one's, the obstacles are shared with this
+  /// checker, which stays as it is. What is left is a look at the scene's list of regions (cubes of
+  /// 32³ voxels) and tiles: some nanoseconds each. Throws Error(invalid_argument) for a null scene.
+  [[nodiscard]] FeasibilityChecker with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
   /// `taken`: T_world_camera of the views so far. Touching faces do not overlap.
   [[nodiscard]] Infeasibility check(const Pose& T_world_camera,
                                     std::span<const Pose> taken = {}) const;
 
+  /// The answers for a batch, result i for pose i, on all threads of the checker, which call the
+  /// reach region's predicate at once. What that throws ends the batch and is thrown again here.
+  [[nodiscard]] std::vector<Infeasibility> check(std::span<const Pose> T_world_camera,
+                                                 std::span<const Pose> taken = {}) const;
+
+  [[nodiscard]] const VoxelScene& scene() const noexcept;
+
  private:
   struct Impl;
+  explicit FeasibilityChecker(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -58,6 +58,8 @@ class VIEWGAIN_EXPORT VoxelScene {
   VoxelScene& operator=(const VoxelScene&) = delete;
 
   [[nodiscard]] const GridSnapshot& snapshot() const noexcept;
+  /// The same object in all scenes that update() has made from one.
+  [[nodiscard]] const Obstacles& obstacles() const noexcept;
 
   /// Which kernel traces this scene: "avx512", "avx2" or "sse4" ("baseline" off x86-64). Chosen
   /// when the scene is built: the best that the CPU has, lowered by the environment variable

@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Views that show what is too near to be measured, against the oracle's rays; batches, and checkers
+// that follow a map.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "oracle/rays.hpp"
+#include "raycast/scene_makers.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/raycast/feasibility.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::MapFamily;
+
+#ifdef __OPTIMIZE__
+constexpr int kMaps = 6;
+#else
+constexpr int kMaps = 3;
+#endif
+constexpr std::size_t kPoses = 30;
+
+/// As wide as its stride of 8 allows rays, with and without distortion.
+Sensor sensor_for(const BeliefGrid& grid, test::Random& random) {
+  Sensor sensor = test::random_sensor(grid, random);
+  sensor.camera.width = 121;
+  sensor.camera.height = 99;
+  sensor.camera.fx = test::uniform(random, 60, 140);
+  sensor.camera.fy = sensor.camera.fx;
+  sensor.camera.cx = 58;
+  sensor.camera.cy = 51;
+  sensor.min_range = test::uniform(random, 1, 12) * grid.voxel_size();
+  sensor.max_range = sensor.min_range + test::uniform(random, 2, 60) * grid.voxel_size();
+  sensor.working_distance = sensor.min_range + 0.5 * grid.voxel_size();
+  return sensor;
+}
+
+/// A body so small that only what the camera stands in counts.
+FeasibilityConfig config_for(const Sensor& sensor, double share) {
+  FeasibilityConfig config;
+  config.body.size = {1e-6, 1e-6, 1e-6};
+  config.sensor = sensor;
+  config.max_near_share = share;
+  return config;
+}
+
+Obstacles random_obstacles(const BeliefGrid& grid, test::Random& random) {
+  const double reach = 40 * grid.voxel_size();
+  const Eigen::Vector3d center =
+      grid.T_world_grid() *
+      Eigen::Vector3d(grid.voxel_size() * (grid.min_index().x + grid.dims().x / 2),
+                      grid.voxel_size() * (grid.min_index().y + grid.dims().y / 2),
+                      grid.voxel_size() * (grid.min_index().z + grid.dims().z / 2));
+  const auto near_it = [&](double scale) {
+    return Eigen::Vector3d(center + scale * reach * test::random_rigid(random, 1).translation());
+  };
+  Obstacles obstacles;
+  TriangleMesh sheets;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d a = near_it(0.7);
+    const Eigen::Vector3d size =
+        Eigen::Vector3d::Constant(0.02 * reach) +
+        0.2 * reach * test::random_rigid(random, 1).translation().cwiseAbs();
+    obstacles.boxes.push_back(
+        {{a.x(), a.y(), a.z()}, {a.x() + size.x(), a.y() + size.y(), a.z() + size.z()}});
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d p = near_it(0.7);
+      sheets.vertices.push_back({p.x(), p.y(), p.z()});
+    }
+    const auto first = static_cast<std::uint32_t>(3 * i);
+    sheets.triangles.push_back({first, first + 1, first + 2});
+  }
+  obstacles.meshes.push_back(sheets);
+  return obstacles;
+}
+
+TEST(Sight, IsWhatTheOraclesRaysSay) {
+  test::Random random(41);
+  std::size_t asked = 0, too_near = 0, some_near = 0, changed_by_obstacles = 0;
+  for (const MapFamily family :
+       {MapFamily::salt_and_pepper_01, MapFamily::salt_and_pepper_1, MapFamily::salt_and_pepper_30,
+        MapFamily::tiles_8, MapFamily::tiles_128, MapFamily::rotated}) {
+    for (int i = 0; i < kMaps; ++i) {
+      const test::RandomMap made = test::random_map(family, random);
+      const oracle::DenseMap map(made.grid);
+      const Sensor sensor = sensor_for(made.grid, random);
+      const Obstacles obstacles = i % 2 == 0 ? Obstacles{} : random_obstacles(made.grid, random);
+      const double share = i % 5 == 0 ? 0.0 : test::uniform(random, 0.02, 0.9);
+      const FeasibilityChecker checker(VoxelScene::build(made.grid, obstacles),
+                                       config_for(sensor, share));
+      const GainConfig from_the_lens{.pixel_stride = 8, .min_range = 0.0};
+      for (const Pose& pose : test::random_poses(made, kPoses, random)) {
+        const Infeasibility answer = checker.check(pose);
+        if (answer != Infeasibility::none && answer != Infeasibility::too_near) continue;
+        const auto counts = [&](const Obstacles& in_the_way) {
+          std::pair<std::size_t, std::size_t> near_and_all{0, 0};
+          for (const RayHit& hit : oracle::trace(map, sensor, from_the_lens, pose, in_the_way)) {
+            if (hit.kind != RayHit::Kind::unknown && hit.kind != RayHit::Kind::occupied) continue;
+            near_and_all.first += hit.range < sensor.min_range ? 1U : 0U;
+            ++near_and_all.second;
+          }
+          return near_and_all;
+        };
+        const auto is_near = [&](const std::pair<std::size_t, std::size_t>& near_and_all) {
+          return static_cast<double>(near_and_all.first) >
+                 share * static_cast<double>(near_and_all.second);
+        };
+        const auto told = counts(obstacles);
+        ASSERT_EQ(answer == Infeasibility::too_near, is_near(told))
+            << "family " << static_cast<int>(family) << ", map " << i << ", " << told.first
+            << " near of " << told.second << ", share " << share;
+        ++asked;
+        too_near += answer == Infeasibility::too_near ? 1U : 0U;
+        some_near += answer == Infeasibility::none && told.first > 0 ? 1U : 0U;
+        if (i % 2 == 1) changed_by_obstacles += is_near(counts({})) != is_near(told) ? 1U : 0U;
+      }
+    }
+  }
+  EXPECT_GT(asked, 6U * kMaps * kPoses / 3);
+  EXPECT_GT(too_near, asked / 10);
+  EXPECT_GT(some_near, asked / 20);
+  EXPECT_GT(changed_by_obstacles, asked / 500);
+}
+
+TEST(Sight, ABatchIsItsPosesOnAnyNumberOfThreads) {
+  test::Random random(42);
+  const test::RandomMap made = test::random_map(MapFamily::tiles_8, random);
+  const auto scene = VoxelScene::build(made.grid, random_obstacles(made.grid, random));
+  const FeasibilityConfig config = config_for(sensor_for(made.grid, random), 0.2);
+  std::vector<Pose> poses = test::random_poses(made, 500, random);
+  poses[7].m[3] = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Pose> taken{poses[100], poses[200]};
+  const FeasibilityChecker alone(scene, config, {.num_threads = 1});
+  std::vector<Infeasibility> expected;
+  std::map<Infeasibility, int> reasons;
+  for (const Pose& pose : poses) {
+    expected.push_back(alone.check(pose, taken));
+    ++reasons[expected.back()];
+  }
+  EXPECT_GE(reasons.size(), 5U);  // bad_pose, taken, collision, too_near, none
+  EXPECT_EQ(alone.check(poses, taken), expected);
+  const FeasibilityChecker together(scene, config, {.num_threads = 3});
+  for (int run = 0; run < 5; ++run) EXPECT_EQ(together.check(poses, taken), expected);
+  EXPECT_TRUE(together.check(std::span<const Pose>()).empty());
+  EXPECT_THROW(FeasibilityChecker(scene, config, {.num_threads = -1}), Error);
+
+  FeasibilityConfig throwing = config;
+  throwing.reach.predicate = [](const Pose&) -> bool { throw std::runtime_error("arm"); };
+  EXPECT_THROW((void)FeasibilityChecker(scene, throwing).check(poses), std::runtime_error);
+}
+
+TEST(Sight, ACheckerFollowsAMap) {
+  test::Random random(43);
+  test::RandomMap made = test::random_map(MapFamily::salt_and_pepper_1, random);
+  const Obstacles obstacles = random_obstacles(made.grid, random);
+  const FeasibilityConfig config = config_for(sensor_for(made.grid, random), 0.1);
+  auto scene = VoxelScene::build(made.grid, obstacles);
+  FeasibilityChecker checker(scene, config);
+  const FeasibilityChecker first = checker.with_scene(scene);
+  const std::vector<Pose> poses = test::random_poses(made, 200, random);
+  const std::vector<Infeasibility> before = checker.check(poses);
+  std::size_t steps = 0, changed = 0;
+  for (int i = 0; i < 10; ++i) {
+    for (int k = 0; k < 300; ++k) {
+      const Index3 min = made.grid.min_index(), dims = made.grid.dims();
+      made.grid.set({min.x + test::uniform_int(random, 0, dims.x - 1),
+                     min.y + test::uniform_int(random, 0, dims.y - 1),
+                     min.z + test::uniform_int(random, 0, dims.z - 1)},
+                    k % 2 == 0 ? 0.85F : -1.0F);
+    }
+    scene = VoxelScene::update(scene, made.grid);
+    EXPECT_EQ(&scene->obstacles(), &first.scene().obstacles());
+    checker = checker.with_scene(scene);
+    const std::vector<Infeasibility> now = checker.check(poses);
+    EXPECT_EQ(now,
+              FeasibilityChecker(VoxelScene::build(made.grid, obstacles), config).check(poses));
+    changed += now != before ? 1U : 0U;
+    ++steps;
+  }
+  EXPECT_EQ(steps, 10U);
+  EXPECT_EQ(changed, 10U);
+  EXPECT_EQ(first.check(poses), before);
+
+  // Other obstacles are looked at anew.
+  const FeasibilityChecker walled = checker.with_scene(
+      VoxelScene::build(made.grid, {{{{-1e3, -1e3, -1e3}, {1e3, 1e3, 1e3}}}, {}}));
+  for (const Infeasibility reason : walled.check(poses)) {
+    EXPECT_EQ(reason, Infeasibility::obstacle);
+  }
+  EXPECT_THROW((void)checker.with_scene(nullptr), Error);
+}
+
+}  // namespace
+}  // namespace viewgain

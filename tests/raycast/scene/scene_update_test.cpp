@@ -1,0 +1,269 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Scenes that follow a map through thirty changes are, bit for bit, those built anew, and meet the
+// oracle.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "grid/analytic_frames.hpp"
+#include "raycast/scene_makers.hpp"
+#include "raycast/trace/oracle_tally.hpp"
+#include "viewgain/grid/integrate.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr int kChanges = 30;
+constexpr std::size_t kPoses = 4;
+constexpr std::size_t kManyPrimitives = 4096;  ///< more than that are grouped into cells
+#ifdef __OPTIMIZE__
+constexpr int kFine = 176;
+#else
+constexpr int kFine = 144;
+#endif
+
+/// A map and what is done to it, one change after the other.
+class ChangingMap {
+ public:
+  /// With specks, one voxel of each block of 8³ is known from the start.
+  ChangingMap(const GridConfig& config, bool has_specks)
+      : random_(5), grid_(config), sensor_(test::small_sensor(48, 36)), integrator_(sensor_) {
+    if (!has_specks) return;
+    const Index3 min = grid_.min_index(), dims = grid_.dims();
+    for (int x = 0; x < dims.x; x += 8) {
+      for (int y = 0; y < dims.y; y += 8) {
+        for (int z = 0; z < dims.z; z += 8) grid_.set({min.x + x, min.y + y, min.z + z}, 0.85F);
+      }
+    }
+  }
+
+  [[nodiscard]] const BeliefGrid& grid() const { return grid_; }
+
+  void change(int i) {
+    switch (i % 6) {
+      case 0:
+      case 1:
+        see(i, test::three_spheres_in_a_room());
+        break;
+      case 2:
+        see(i, {test::three_spheres_in_a_room()[0], {{0, 0, 0}, 1.5}});  // two have gone
+        break;
+      case 3:
+        set_region(i, 1.0F, 0.05);
+        break;
+      case 4:
+        set_region(i - 1, -1.0F, 1.0);
+        break;
+      default:
+        grid_ = grid_.clone();  // and nothing else
+    }
+  }
+
+ private:
+  void see(int view, const std::vector<test::Sphere>& spheres) {
+    const Pose pose = test::ring_view(view);
+    integrator_.integrate(grid_, test::see_spheres(sensor_, pose, spheres), pose);
+  }
+
+  /// Some voxels of one of the cubes of 32³ that the workspace touches.
+  void set_region(int which, float log_odds, double share) {
+    const Index3 min = grid_.min_index(), dims = grid_.dims();
+    const auto begin = [&](int low, int n, int turn) {
+      const int cubes = ((low + n - 1) >> 5) - (low >> 5) + 1;
+      return ((low >> 5) + (which * turn) % cubes) << 5;
+    };
+    const Index3 at{begin(min.x, dims.x, 1), begin(min.y, dims.y, 2), begin(min.z, dims.z, 3)};
+    for (int n = 0; n < 1 << 15; ++n) {
+      const Index3 v{at.x + (n >> 10), at.y + (n >> 5 & 31), at.z + (n & 31)};
+      const bool is_inside = v.x >= min.x && v.y >= min.y && v.z >= min.z && v.x < min.x + dims.x &&
+                             v.y < min.y + dims.y && v.z < min.z + dims.z;
+      if (is_inside && test::uniform(random_, 0, 1) < share) grid_.set(v, log_odds);
+    }
+  }
+
+  test::Random random_;
+  BeliefGrid grid_;
+  Sensor sensor_;
+  FrameIntegrator integrator_;
+};
+
+/// What the changes of a map have come to.
+class Changes {
+ public:
+  void note(const GridSnapshot& snapshot) {
+    std::set<Block> leaves;
+    for (const SnapshotLeaf& leaf : snapshot.leaves) {
+      leaves.emplace(leaf.origin.x, leaf.origin.y, leaf.origin.z);
+    }
+    for (const Block& leaf : leaves) {
+      if (leaves_.contains(leaf)) continue;
+      leaves_of_tiles += is_in_tile(leaf) ? 1 : 0;
+      back_again += emptied_.contains(leaf) ? 1 : 0;
+    }
+    for (const Block& leaf : leaves_) {
+      if (!leaves.contains(leaf)) emptied_.insert(leaf);
+    }
+    emptied = emptied_.size();
+    std::map<std::uint64_t, bool> regions;
+    for (std::size_t r = 0; r < snapshot.regions.size(); ++r) {
+      const auto [leaf, leaf_end] = snapshot.leaves_of(r);
+      const auto [tile, tile_end] = snapshot.tiles_of(r);
+      regions[snapshot.regions[r].number] = leaf < leaf_end || tile < tile_end;
+    }
+    for (const auto& [number, is_used] : regions_) {
+      regions_emptied += is_used && regions.contains(number) && !regions[number] ? 1 : 0;
+    }
+    leaves_ = std::move(leaves);
+    tiles_ = snapshot.tiles;
+    regions_ = std::move(regions);
+  }
+
+  std::size_t leaves_of_tiles = 0;  ///< blocks that were unknown as a whole before
+  std::size_t emptied = 0;          ///< blocks in which all voxels have become free
+  std::size_t back_again = 0;       ///< such blocks in which some are occupied again
+  std::size_t regions_emptied = 0;
+
+ private:
+  using Block = std::tuple<int, int, int>;
+
+  [[nodiscard]] bool is_in_tile(const Block& block) const {
+    const auto& [x, y, z] = block;
+    return std::any_of(tiles_.begin(), tiles_.end(), [&](const VoxelBox& tile) {
+      return tile.min.x <= x && x < tile.max.x && tile.min.y <= y && y < tile.max.y &&
+             tile.min.z <= z && z < tile.max.z;
+    });
+  }
+
+  std::set<Block> leaves_, emptied_;
+  std::vector<VoxelBox> tiles_;
+  std::map<std::uint64_t, bool> regions_;
+};
+
+void expect_same_hits(const std::vector<RayHit>& a, const std::vector<RayHit>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].kind, b[i].kind);
+    ASSERT_EQ(a[i].voxel, b[i].voxel);
+    ASSERT_EQ(a[i].range, b[i].range);
+  }
+}
+
+struct Chain {
+  const char* name;
+  int voxels;                 ///< along 0.4 m
+  std::array<double, 6> cut;  ///< what is cut off the workspace, low and high ends [m]
+  bool has_distortion;        ///< such cameras' rays go through the BVH
+  bool has_obstacles;
+  bool has_cells;  ///< some scene has more primitives than are sorted one by one
+};
+
+class SceneUpdate : public testing::TestWithParam<Chain> {};
+
+TEST_P(SceneUpdate, AChainOfUpdatesIsWhatBuildsAre) {
+  const Chain& chain = GetParam();
+  GridConfig config = test::object_grid(chain.voxels);
+  for (std::size_t k = 0; k < 3; ++k) {
+    config.workspace.min[k] += chain.cut[k];
+    config.workspace.max[k] -= chain.cut[3 + k];
+  }
+  Obstacles obstacles;
+  if (chain.has_obstacles) obstacles.boxes.push_back({{0.1, 0.1, -0.3}, {0.12, 0.3, 0.3}});
+  ChangingMap map(config, chain.has_cells);
+  test::Random random(6);
+  Sensor sensor = test::random_sensor(map.grid(), random);
+  sensor.camera.distortion = {};
+  if (chain.has_distortion) sensor.camera.distortion = {-0.05, 0.01, 1e-3, -1e-3, 0};
+  sensor.min_range = 0.01;
+  sensor.max_range = 1.5;
+
+  const std::vector<std::string> isas = available_isas();
+  std::vector<std::shared_ptr<const VoxelScene>> scenes;
+  for (const std::string& isa : isas) {
+    const test::ScopedIsa scoped(isa);
+    scenes.push_back(VoxelScene::build(map.grid(), obstacles, {.num_threads = 1}));
+  }
+  std::vector<test::OracleTally> tallies(isas.size());
+  const auto kept = scenes.front();
+  const std::vector<Pose> first_poses =
+      test::random_poses({map.grid().clone(), map.grid().workspace()}, kPoses, random);
+  const std::vector<ViewGain> first_gains = GainEvaluator(kept, sensor).evaluate(first_poses);
+
+  Changes changes;
+  changes.note(map.grid().snapshot());
+  std::size_t compared = 0, gaining = 0, hits = 0, in_cells = 0;
+  for (int i = 0; i < kChanges; ++i) {
+    SCOPED_TRACE("change " + std::to_string(i));
+    map.change(i);
+    changes.note(map.grid().snapshot());
+    const std::vector<Pose> poses =
+        test::random_poses({map.grid().clone(), map.grid().workspace()}, kPoses, random);
+    const bool asks_oracle = i % 5 == 4 && !chain.has_obstacles;
+    const oracle::DenseMap dense(asks_oracle ? map.grid().clone()
+                                             : test::sparse_map({1, 1, 1}, {}));
+    std::vector<std::vector<RayHit>> expected;
+    if (asks_oracle) {
+      for (const Pose& pose : poses) expected.push_back(oracle::trace(dense, sensor, {}, pose));
+    }
+    for (std::size_t k = 0; k < isas.size(); ++k) {
+      SCOPED_TRACE(isas[k]);
+      const test::ScopedIsa scoped(isas[k]);
+      scenes[k] = VoxelScene::update(scenes[k], map.grid(), {.num_threads = 1});
+      const auto anew = VoxelScene::build(map.grid(), obstacles, {.num_threads = 1});
+      ASSERT_EQ(scenes[k]->isa(), isas[k]);
+      ASSERT_EQ(scenes[k]->primitive_count(), anew->primitive_count());
+      in_cells += anew->primitive_count() > kManyPrimitives ? 1U : 0U;
+      const GainEvaluator updated(scenes[k], sensor, {}, {.num_threads = 1});
+      const GainEvaluator built(anew, sensor, {}, {.num_threads = 1});
+      const std::vector<ViewGain> gains = updated.evaluate(poses);
+      ASSERT_TRUE(test::same_bits(gains, built.evaluate(poses)));
+      for (std::size_t p = 0; p < poses.size(); ++p) {
+        const std::vector<RayHit> own = updated.trace(poses[p]);
+        expect_same_hits(own, built.trace(poses[p]));
+        if (asks_oracle) tallies[k].add(dense, sensor, poses[p], expected[p], own);
+        gaining += gains[p].gain > 0 ? 1U : 0U;
+        hits += gains[p].hits;
+        ++compared;
+      }
+    }
+  }
+  EXPECT_EQ(compared, kChanges * kPoses * isas.size());
+  EXPECT_GT(gaining, compared / 3);
+  EXPECT_GT(hits, compared * 25);
+  EXPECT_EQ(in_cells > 5 * isas.size(), chain.has_cells) << in_cells;
+  if (!chain.has_cells) {
+    EXPECT_GT(changes.leaves_of_tiles, 100U);
+  }
+  EXPECT_GT(changes.emptied, 100U);
+  EXPECT_GT(changes.back_again, 30U);
+  EXPECT_GT(changes.regions_emptied, 2U);
+  if (!chain.has_obstacles) {
+    for (std::size_t k = 0; k < isas.size(); ++k) {
+      EXPECT_EQ(tallies[k].rays, kChanges / 5 * kPoses * 25 * 19) << isas[k];
+      EXPECT_TRUE(tallies[k].agrees(1000, 1e-3)) << isas[k];
+    }
+  }
+  // What a scene was made of stays as it was.
+  EXPECT_TRUE(test::same_bits(first_gains, GainEvaluator(kept, sensor).evaluate(first_poses)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Chains, SceneUpdate,
+    testing::Values(Chain{"Whole", 96, {}, false, false, false},
+                    Chain{"Clipped", 96, {0.057, 0, 0.113, 0, 0.049, 0.01}, false, false, false},
+                    Chain{
+                        "ThroughTheBvh", 96, {0.057, 0, 0.113, 0, 0.049, 0.01}, true, false, false},
+                    Chain{"WithAnObstacle", 96, {0, 0.03, 0, 0.07, 0, 0}, false, true, false},
+                    Chain{"Cells", kFine, {0.011, 0, 0, 0, 0.023, 0}, false, false, true}),
+    [](const auto& chosen) { return std::string(chosen.param.name); });
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Scenes of more primitives than are sorted one by one: boxes stand for cells of many. Rays and
+// gains against the oracle under each instruction set, for each size of cell.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <tuple>
+
+#include "oracle/gain.hpp"
+#include "oracle_tally.hpp"
+#include "raycast/scene_makers.hpp"
+
+namespace viewgain {
+namespace {
+
+/// So many boxes are sorted into a view's tiles; for more, cells twice as large are taken.
+constexpr std::size_t kMostBoxes = 4096;
+
+/// A map of free voxels and, in every cube of `cube` voxels an edge, some specks. Those of many
+/// cells are slabs of four voxels with a border of cells in their middle.
+struct Layout {
+  const char* name;
+  int cell;  ///< voxels an edge of the cells that its scene's primitives are grouped by
+  Index3 min, dims;
+  int cube;
+  int specks;
+};
+#ifdef __OPTIMIZE__
+constexpr std::size_t kPoses = 6;
+constexpr std::array kLayouts{Layout{"Cells32", 32, {-37, 5, -70}, {150, 141, 139}, 8, 1},
+                              Layout{"Cells64", 64, {-750, -750, -2}, {1500, 1500, 4}, 32, 2},
+                              Layout{"Cells128", 128, {-1472, -1472, -2}, {2944, 2944, 4}, 64, 8}};
+#else
+constexpr std::size_t kPoses = 2;
+constexpr std::array kLayouts{Layout{"Cells32", 32, {-37, 5, -70}, {150, 141, 139}, 8, 1},
+                              Layout{"Cells64", 64, {-750, -750, -1}, {1500, 1500, 2}, 32, 2}};
+#endif
+constexpr double kVoxel = 0.02;  // [m]
+
+/// Calls visit(low, high) for the cubes of the lattice, as far as they lie in the workspace.
+template <typename Visit>
+void for_each_cube(const Layout& layout, Visit&& visit) {
+  const std::array<int, 3> min{layout.min.x, layout.min.y, layout.min.z};
+  const std::array<int, 3> dims{layout.dims.x, layout.dims.y, layout.dims.z};
+  const auto below = [&](int v) { return v & ~(layout.cube - 1); };
+  std::array<int, 3> at{};
+  for (at[0] = below(min[0]); at[0] < min[0] + dims[0]; at[0] += layout.cube) {
+    for (at[1] = below(min[1]); at[1] < min[1] + dims[1]; at[1] += layout.cube) {
+      for (at[2] = below(min[2]); at[2] < min[2] + dims[2]; at[2] += layout.cube) {
+        std::array<int, 3> low{}, high{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          low[k] = std::max(at[k], min[k]);
+          high[k] = std::min(at[k] + layout.cube, min[k] + dims[k]);
+        }
+        visit(low, high);
+      }
+    }
+  }
+}
+
+BeliefGrid map_of(const Layout& layout, test::Random& random) {
+  const auto face = [](int i) { return kVoxel * i; };
+  const Index3 &min = layout.min, &dims = layout.dims;
+  const GridConfig config{
+      .voxel_size = kVoxel,
+      .workspace = {{face(min.x), face(min.y), face(min.z)},
+                    {face(min.x + dims.x), face(min.y + dims.y), face(min.z + dims.z)}},
+      .T_world_grid = test::random_rigid(random, 3),
+      .prior_sigma = 0.012};
+  std::vector<std::uint8_t> states(static_cast<std::size_t>(dims.x) *
+                                       static_cast<std::size_t>(dims.y) *
+                                       static_cast<std::size_t>(dims.z),
+                                   1);
+  for_each_cube(layout, [&](const std::array<int, 3>& low, const std::array<int, 3>& high) {
+    for (int i = 0; i < layout.specks; ++i) {
+      std::array<std::size_t, 3> at{};
+      const std::array<int, 3> origin{min.x, min.y, min.z};
+      for (std::size_t k = 0; k < 3; ++k) {
+        at[k] =
+            static_cast<std::size_t>(test::uniform_int(random, low[k], high[k] - 1) - origin[k]);
+      }
+      states[(at[0] * static_cast<std::size_t>(dims.y) + at[1]) * static_cast<std::size_t>(dims.z) +
+             at[2]] = test::uniform_int(random, 0, 1) == 0 ? 0 : 2;
+    }
+  });
+  return BeliefGrid::from_states(config, states);
+}
+
+/// Cubes of the lattice, this many voxels an edge, that have voxels that are not free.
+std::size_t cubes_in_use(const GridSnapshot& snapshot, int edge) {
+  std::set<std::tuple<int, int, int>> cubes;
+  const auto cube = [&](int v) { return (v & ~(edge - 1)) / edge; };
+  for (const SnapshotLeaf& leaf : snapshot.leaves) {
+    cubes.emplace(cube(leaf.origin.x), cube(leaf.origin.y), cube(leaf.origin.z));
+  }
+  return cubes.size();
+}
+
+/// Rays within some degrees of the grid's x-y plane in a slab, wider ones else.
+Sensor sensor_of(const Layout& layout) {
+  Sensor sensor = test::lattice_sensor(45, 33);
+  sensor.camera.fx = 40;
+  sensor.camera.fy = layout.dims.z < 10 ? 2000 : 40;
+  sensor.min_range = 1.5 * kVoxel;
+  sensor.max_range = kVoxel * (layout.dims.x + layout.dims.y);
+  sensor.noise = ConstantNoise{.sigma_axial = 0.01, .sigma_lateral = 0.004};
+  return sensor;
+}
+
+/// Poses in turn inside the workspace and a little outside, looking across it, image up along z.
+std::vector<Pose> poses_of(const BeliefGrid& grid, std::size_t count, test::Random& random) {
+  const Pose& T = grid.T_world_grid();
+  const Box box = grid.workspace();
+  const auto point = [&](double margin) {
+    Eigen::Vector3d p;
+    for (int k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      const double extent = box.max[i] - box.min[i];
+      p[k] = test::uniform(random, box.min[i] - margin * extent, box.max[i] + margin * extent);
+    }
+    return p;
+  };
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < count; ++i) {
+    Eigen::Vector3d eye = point(0);
+    if (i % 2 == 1) eye.x() = box.max[0] + 0.3;
+    poses.push_back(look_at(T * eye, T * point(0), T.rotation().col(2)));
+  }
+  return poses;
+}
+
+class CellsOracle : public testing::TestWithParam<Layout> {};
+
+TEST_P(CellsOracle, AgreesUnderEachInstructionSet) {
+  const Layout& layout = GetParam();
+  test::Random random(31);
+  const BeliefGrid grid = map_of(layout, random);
+  const GridSnapshot snapshot = grid.snapshot();
+  ASSERT_GT(snapshot.leaves.size(), kMostBoxes);
+  if (layout.cell > 32) {
+    ASSERT_GT(cubes_in_use(snapshot, layout.cell / 2), kMostBoxes);
+  }
+  ASSERT_LE(cubes_in_use(snapshot, layout.cell), kMostBoxes);
+
+  const oracle::DenseMap map(grid);
+  const Sensor sensor = sensor_of(layout);
+  const std::vector<Pose> poses = poses_of(grid, kPoses, random);
+  // Single precision knows places in the workspace to half an ulp of its extent.
+  const double tolerance = std::max(1e-4, 0x1.0p-21 * std::max(layout.dims.x, layout.dims.y));
+  const std::vector<std::string> isas = available_isas();
+  std::vector<test::OracleTally> tallies(isas.size());
+  std::size_t gains = 0;
+  for (const Pose& pose : poses) {
+    const std::vector<RayHit> expected = oracle::trace(map, sensor, {}, pose);
+    for (std::size_t i = 0; i < isas.size(); ++i) {
+      SCOPED_TRACE(isas[i]);
+      const test::ScopedIsa scoped(isas[i]);
+      const auto scene = VoxelScene::build(snapshot, {}, {.num_threads = 1});
+      ASSERT_EQ(scene->isa(), isas[i]);
+      ASSERT_GT(scene->primitive_count(), kMostBoxes);
+      const GainEvaluator evaluator(scene, sensor, {}, {.num_threads = 1});
+      const std::vector<RayHit> own = evaluator.trace(pose);
+      tallies[i].add(map, sensor, pose, expected, own, tolerance);
+      const ViewGain gain = evaluator.evaluate(pose);
+      const ViewGain by_own = oracle::gain_of_hits(grid, sensor, {}, pose, own);
+      EXPECT_EQ(gain.status, by_own.status);
+      EXPECT_EQ(gain.hits, by_own.hits);
+      EXPECT_EQ(gain.unknown_voxels, by_own.unknown_voxels);
+      EXPECT_EQ(gain.occupied_voxels, by_own.occupied_voxels);
+      EXPECT_NEAR(gain.gain, by_own.gain, 1e-6 * by_own.gain);
+      gains += gain.gain > 0 ? 1U : 0U;
+    }
+  }
+  EXPECT_GT(gains, kPoses * isas.size() / 2);
+  for (std::size_t i = 0; i < isas.size(); ++i) {
+    EXPECT_EQ(tallies[i].rays, kPoses * 45 * 33) << isas[i];
+    EXPECT_TRUE(tallies[i].agrees(kPoses * 45 * 33 / 5, 30 * tolerance)) << isas[i];
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, CellsOracle, testing::ValuesIn(kLayouts),
+                         [](const auto& chosen) { return std::string(chosen.param.name); });
+
+}  // namespace
+}  // namespace viewgain
