@@ -170,7 +170,8 @@ void remove_leftovers(const fs::path& target) noexcept try {
   const fs::path resolved =
       fs::weakly_canonical(fs::absolute(target.has_filename() ? target : target.parent_path()));
   const auto prefix = [](const fs::path& stem) {
-    return "." + stem.string() + std::string(kTemporary);
+    std::string text(1, '.');
+    return text.append(stem.string()).append(kTemporary);
   };
   if (fs::is_directory(resolved)) {
     remove_leftovers_in(resolved, prefix(resolved.filename()), "");
