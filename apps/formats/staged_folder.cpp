@@ -9,24 +9,16 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
-#include <csignal>
 #include <mutex>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <system_error>
 
-#include "file_names.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-// As AtomicFile names its temporaries: .STEM.tmp-PROCESS-COUNTER.ENDING
-constexpr std::string_view kTemporary = ".tmp-";
 
 std::mutex list_mutex;
 std::vector<fs::path> staged;
@@ -35,49 +27,32 @@ std::vector<fs::path> staged;
   throw Error(ErrorCode::io, target.string() + ": " + what);
 }
 
-// Held as long as the folder is in use, -1 where the file system knows no locks.
-int lock_of(const fs::path& path) noexcept {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) != 0) {
-    ::close(file);
-    return -1;
-  }
-  return file;
+std::string hidden_prefix(const fs::path& target) {
+  std::string name(1, '.');
+  return name.append(target.filename().string()).append(".tmp-");
 }
 
-// The process that a temporary of this target belongs to, by its name.
-std::optional<pid_t> owner_of(std::string_view name, const std::string& prefix,
-                              const std::string& ending) {
-  if (!name.starts_with(prefix) || !name.ends_with(ending)) return std::nullopt;
-  name.remove_prefix(prefix.size());
-  name.remove_suffix(std::min(name.size(), ending.size()));
-  pid_t process = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
-  if (error != std::errc{} || process <= 0 || end == name.data() + name.size() || *end != '-') {
-    return std::nullopt;
-  }
-  const bool is_counter =
-      std::all_of(end + 1, name.data() + name.size(), [](char c) { return c >= '0' && c <= '9'; });
-  return is_counter ? std::optional(process) : std::nullopt;
+// A folder in use is locked by its process, wherever that runs. -1: it is locked, or not there.
+int lock_of(const fs::path& folder) {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  if (file < 0 || ::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return file;
+  ::close(file);
+  return -1;
 }
 
-// This process has written nothing yet: where its own number stands, an earlier one had it.
-bool has_ended(pid_t process) {
-  return process == ::getpid() || (::kill(process, 0) != 0 && errno == ESRCH);
-}
-
-void remove_leftovers_in(const fs::path& folder, const std::string& prefix,
-                         const std::string& ending) {
+void remove_leftovers(const fs::path& folder, const std::string& prefix) {
   std::vector<fs::path> found;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const auto owner = owner_of(entry.path().filename().string(), prefix, ending);
-    if (owner && has_ended(*owner) && !entry.is_symlink()) found.push_back(entry.path());
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(prefix) &&
+        name.find_first_not_of("0123456789-", prefix.size()) == std::string::npos) {
+      found.push_back(entry.path());
+    }
   }
   for (const fs::path& path : found) {
-    // The process may be one of another machine or container that sees this folder.
     const int lock = lock_of(path);
     if (lock < 0) continue;
-    std::error_code ignored;
     fs::remove_all(path, ignored);
     ::close(lock);
   }
@@ -95,21 +70,25 @@ StagedFolder::StagedFolder(const fs::path& target) {
   }
   target_ = fs::weakly_canonical(fs::absolute(target_), code);
   if (code) fail(target, "cannot be created: " + code.message());
-  std::string name(1, '.');
-  name += target_.filename().string();
-  name.append(kTemporary).append(std::to_string(::getpid())).append("-");
-  name += std::to_string(counter.fetch_add(1));
-  staging_ = (exists ? target_ : target_.parent_path()) / name;
-  for (fs::path p = staging_.parent_path(); !fs::exists(p, code) && p.has_relative_path();
-       p = p.parent_path()) {
+  const fs::path around = exists ? target_ : target_.parent_path();
+  const std::string prefix = hidden_prefix(target_);
+  remove_leftovers(target_, prefix);
+  remove_leftovers(target_.parent_path(), prefix);
+
+  const std::lock_guard guard(list_mutex);
+  for (fs::path p = around; !fs::exists(p, code) && p.has_relative_path(); p = p.parent_path()) {
     parents_.push_back(p);
   }
-  const std::lock_guard guard(list_mutex);
-  if (!fs::create_directories(staging_, code) || code) {
-    remove_parents();
-    fail(target, "cannot be created" + (code ? ": " + code.message() : ""));
+  while (lock_ < 0) {  // again if somebody took the folder for a leftover before it was locked
+    staging_ =
+        around / (prefix + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1)));
+    fs::create_directories(staging_, code);
+    if (code) {
+      remove_parents();
+      fail(target, "cannot be created: " + code.message());
+    }
+    lock_ = lock_of(staging_);
   }
-  lock_ = lock_of(staging_);
   staged.push_back(staging_);
 }
 
@@ -163,25 +142,6 @@ void remove_staged_folders() noexcept {
     for (int tries = 0; tries < 10 && fs::exists(folder, code); ++tries)
       fs::remove_all(folder, code);
   }
-}
-
-void remove_leftovers(const fs::path& target) noexcept try {
-  if (is_special_file(target)) return;
-  const fs::path resolved =
-      fs::weakly_canonical(fs::absolute(target.has_filename() ? target : target.parent_path()));
-  const auto prefix = [](const fs::path& stem) {
-    std::string text(1, '.');
-    return text.append(stem.string()).append(kTemporary);
-  };
-  if (fs::is_directory(resolved)) {
-    remove_leftovers_in(resolved, prefix(resolved.filename()), "");
-  }
-  if (!fs::is_directory(resolved.parent_path())) return;
-  remove_leftovers_in(resolved.parent_path(), prefix(resolved.filename()), "");
-  remove_leftovers_in(resolved.parent_path(), prefix(resolved.stem()),
-                      resolved.extension().string());
-} catch (const std::exception&) {
-  // What is left behind does no harm.
 }
 
 }  // namespace viewgain::app

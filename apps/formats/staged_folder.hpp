@@ -9,8 +9,9 @@ namespace viewgain::app {
 
 /// A folder of results that appears, or changes, only when all of them are written: they go into a
 /// hidden folder, beside the target where that is not there yet, else inside it, and commit() moves
-/// them. What else is in the target stays. Thread safety: distinct objects may be used from
-/// distinct threads.
+/// them. What else is in the target stays. The hidden folder is called .NAME.tmp-PROCESS-COUNTER;
+/// one that a killed process has left is removed by the next writer of the same target. Thread
+/// safety: distinct objects may be used from distinct threads.
 class StagedFolder {
  public:
   /// Creates the hidden folder, and the target's parents where they are missing. Throws Error(io).
@@ -41,10 +42,5 @@ class StagedFolder {
 /// Removes the hidden folders of all StagedFolder objects of this process, for a program that a
 /// signal ends. Not for a signal's handler itself: it takes a lock. The writers fail afterwards.
 void remove_staged_folders() noexcept;
-
-/// Removes what killed processes have left of writing this file or folder: temporaries of
-/// AtomicFile and StagedFolder whose process is no more. For a program that has not begun to write
-/// it. What cannot be removed stays.
-void remove_leftovers(const std::filesystem::path& target) noexcept;
 
 }  // namespace viewgain::app

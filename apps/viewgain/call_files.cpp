@@ -18,7 +18,6 @@
 #include "formats/reach_toml.hpp"
 #include "formats/run_folder.hpp"
 #include "formats/sensor_toml.hpp"
-#include "formats/staged_folder.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -152,11 +151,9 @@ void check_call(const CLI::App& subcommand) {
     check_not_read(file, files);
   }
   for (const NamedFile& file : files) {
-    if (!is_output(file.kind)) continue;
-    remove_leftovers(file.path);
-    // Known now rather than after the work.
-    if (file.kind == Kind::output || file.kind == Kind::picture)
-      const AtomicFile writable(file.path);
+    if (file.kind == Kind::output || file.kind == Kind::picture) {
+      const AtomicFile writable(file.path);  // known now rather than after the work
+    }
   }
 }
 

@@ -13,8 +13,7 @@ namespace viewgain::app {
 ///   twice; that includes the files in a folder of frames, those that a folder to be written
 ///   replaces, and the poses that a reach file names. Only `integrate --map` may name its --out: a
 ///   map is continued where it stands;
-/// - a file to be written can be written;
-/// - what a killed run has left beside the outputs goes.
+/// - a file to be written can be written.
 /// Throws Error, naming option and file.
 void check_call(const CLI::App& subcommand);
 

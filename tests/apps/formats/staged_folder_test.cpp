@@ -83,13 +83,19 @@ TEST_F(StagedFolderTest, ALeftoverInUseStays) {
     const StagedFolder staged(dir / "out");
     name = staged.path().filename().string();
     ASSERT_EQ(name, list(".").front());
-    remove_leftovers(dir / "out");  // its process is this one, but it is locked
-    EXPECT_EQ(list("."), Strings{name});
+    const StagedFolder another(dir / "out");
+    EXPECT_TRUE(fs::exists(dir / name));
+    EXPECT_EQ(list(".").size(), 2U);
   }
   EXPECT_EQ(list("."), Strings{});
-  fs::create_directory(dir / name);  // as an earlier process of this number has left it
-  remove_leftovers(dir / "out");
-  EXPECT_EQ(list("."), Strings{});
+  put(dir / name / "half.txt", "as a killed process has left it");
+  put(dir / ".out.tmp-mine/one.txt", "no temporary");
+  put(dir / ".other.tmp-1-0/one.txt", "of another folder");
+  write(".out.tmp-1-0", "no folder");
+  {
+    const StagedFolder next(dir / "out");
+  }
+  EXPECT_EQ(list("."), (Strings{".other.tmp-1-0", ".out.tmp-1-0", ".out.tmp-mine"}));
 }
 
 TEST_F(StagedFolderTest, FramesThatNobodySimulatedAreRefused) {

@@ -152,26 +152,17 @@ TEST_F(EndedCalls, AKilledRunLeavesTheOneBeforeWhole) {
 }
 
 TEST_F(EndedCalls, TheNextCallRemovesWhatKilledOnesLeft) {
-  ASSERT_EQ(run(simulate("frames")).exit_code, 0);
-  const pid_t ended = ::fork();  // a number that no process has any more
-  if (ended == 0) ::_exit(0);
-  ASSERT_EQ(::waitpid(ended, nullptr, 0), ended);
-  const std::string dead = std::to_string(ended), alive = std::to_string(::getppid());
-  write(".m.tmp-" + dead + "-1.vdb", "half");
-  write(".m.tmp-" + alive + "-1.vdb", "being written");
-  write(".m.tmp-" + dead + "-1.csv", "of another file");
-  write(".m.tmp-mine.vdb", "no temporary");
-  run_well({"integrate", "frames", "--voxel", "0.02", "--out", "m.vdb"});
-  EXPECT_FALSE(fs::exists(dir / (".m.tmp-" + dead + "-1.vdb")));
-  EXPECT_EQ(read(".m.tmp-" + alive + "-1.vdb"), "being written");
-  EXPECT_EQ(read(".m.tmp-" + dead + "-1.csv"), "of another file");
-  EXPECT_EQ(read(".m.tmp-mine.vdb"), "no temporary");
-  write(".new.tmp-" + dead + "-0/frame-000000.depth.png", "half");
-  write("frames/.frames.tmp-" + dead + "-0/frame-000000.depth.png", "half");
-  run_well(simulate("new"));
-  EXPECT_FALSE(fs::exists(dir / (".new.tmp-" + dead + "-0")));
+  const auto is_writing = [&] { return !hidden(".").empty(); };
+  (void)ended_by(simulate("frames", "1000"), SIGKILL, is_writing);
+  EXPECT_FALSE(hidden(".").empty());
   run_well(simulate("frames"));
-  EXPECT_FALSE(fs::exists(dir / ("frames/.frames.tmp-" + dead + "-0")));
+  EXPECT_TRUE(hidden(".").empty());
+  (void)ended_by(simulate("frames", "1000"), SIGKILL, [&] { return !hidden("frames").empty(); });
+  EXPECT_FALSE(hidden("frames").empty());
+  const auto before = read("frames/frame-000000.depth.png");
+  run_well(simulate("frames"));
+  EXPECT_TRUE(hidden("frames").empty());
+  EXPECT_EQ(read("frames/frame-000000.depth.png"), before);
 }
 
 TEST_F(EndedCalls, NamesThatAreNoUtf8) {
