@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <mutex>
 #include <string>
 #include <system_error>
@@ -32,10 +31,11 @@ std::string hidden_prefix(const fs::path& target) {
   return name.append(target.filename().string()).append(".tmp-");
 }
 
-// A folder in use is locked by its process, wherever that runs. -1: it is locked, or not there.
+// A folder in use is locked by its process, wherever that runs. -1: that one has the lock, the
+// folder is gone, or the file system has no locks.
 int lock_of(const fs::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-  if (file < 0 || ::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return file;
+  if (file < 0 || ::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
   ::close(file);
   return -1;
 }
@@ -79,7 +79,7 @@ StagedFolder::StagedFolder(const fs::path& target) {
   for (fs::path p = around; !fs::exists(p, code) && p.has_relative_path(); p = p.parent_path()) {
     parents_.push_back(p);
   }
-  while (lock_ < 0) {  // again if somebody took the folder for a leftover before it was locked
+  do {  // again if somebody took the folder for a leftover before it was locked
     staging_ =
         around / (prefix + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1)));
     fs::create_directories(staging_, code);
@@ -88,7 +88,7 @@ StagedFolder::StagedFolder(const fs::path& target) {
       fail(target, "cannot be created: " + code.message());
     }
     lock_ = lock_of(staging_);
-  }
+  } while (lock_ < 0 && !fs::exists(staging_, code));
   staged.push_back(staging_);
 }
 
