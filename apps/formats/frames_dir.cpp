@@ -200,7 +200,9 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
   }
   const bool has_sensor = fs::exists(dir / kSensor);
   FrameSequence frames;
-  frames.depth_scale = depth_scale.value_or(has_sensor ? kDepthUnit : kRecordedDepthUnit);
+  const bool has_poses = fs::exists(dir / kPoses);
+  frames.depth_scale =
+      depth_scale.value_or(has_sensor && has_poses ? kDepthUnit : kRecordedDepthUnit);
   if (!(frames.depth_scale > 0) || !std::isfinite(frames.depth_scale)) {
     throw Error(ErrorCode::invalid_argument, "--depth-scale must be positive and finite");
   }
@@ -209,7 +211,7 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
                 dir.string() + ": has no sensor.toml, so --sensor is needed");
   }
   frames.sensor = sensor.empty() ? read_sensor_toml(dir / kSensor) : load_sensor(sensor);
-  if (fs::exists(dir / kPoses)) {
+  if (has_poses) {
     open_own_layout(dir, frames);
   } else {
     open_recorded_layout(dir, frames);

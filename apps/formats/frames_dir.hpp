@@ -37,7 +37,8 @@ struct FrameSequence {
 
 /// Opens either layout: poses.txt + frame-NNNNNN.depth.png (line i is frame i) + sensor.toml, or
 /// frame-NNNNNN.depth.png + frame-NNNNNN.pose.txt + camera-intrinsics.txt, whose numbers may have
-/// gaps. Beside a depth image there may be a frame-NNNNNN.amplitude.png. `sensor`: preset or .toml
+/// gaps. The scale is, unless given, 1e-4 m a unit where there are poses.txt and sensor.toml, else
+/// 1e-3. Beside a depth image there may be a frame-NNNNNN.amplitude.png. `sensor`: preset or .toml
 /// file, empty for the folder's own. Throws Error naming the file that is missing or wrong.
 [[nodiscard]] FrameSequence open_frames(const std::filesystem::path& dir, const std::string& sensor,
                                         std::optional<double> depth_scale);

@@ -285,7 +285,8 @@ Command add_integrate(CLI::App& program) {
                       "ranges hold");
   app->add_option(
       "--depth-scale", options->depth_scale,
-      "metres a unit of the images; default: 1e-4 where there is a sensor.toml, else 1e-3");
+      "metres a unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
+      "sensor.toml), else 1e-3");
   app->add_option(
          "--out-of-range", options->out_of_range,
          "what 65535 says: carve (nothing up to the maximal range) or invalid (no reading)")

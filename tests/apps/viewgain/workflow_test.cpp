@@ -225,7 +225,9 @@ TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
     text << poses.poses[i].isometry().matrix() << "\n";
     write("recorded/frame-" + number + ".pose.txt", text.str());
   }
-  write("recorded/camera-intrinsics.txt", "\xef\xbb\xbf" "60 0 23.5\n0 60 17.5\n0 0 1\n");
+  write("recorded/camera-intrinsics.txt",
+        "\xef\xbb\xbf"
+        "60 0 23.5\n0 60 17.5\n0 0 1\n");
   std::string sensor = read("small.toml");
   for (const std::string wrong : {"fx = 60", "fy = 60", "cx = 23", "cy = 17"}) {
     sensor.replace(sensor.find(wrong) + 5, 2, "99");
@@ -235,7 +237,7 @@ TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
   EXPECT_EQ(hash("recorded.vdb"), hash("own.vdb"));
 
   // Without the scale the depths are ten times too long: all readings lie out of range. A sensor
-  // file beside the recording makes the scale that of simulated frames, and all too short.
+  // file of the user's beside the recording changes nothing about that.
   int cases = 0;
   const auto refuses = [&](const Strings& arguments, const std::string& word) {
     const auto result = run(arguments);
@@ -247,10 +249,14 @@ TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
   refuses({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02", "--workspace",
            "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "none.vdb"},
           "0.001 m a unit");
+  write("recorded/sensor.toml", read("wrong.toml"));
+  refuses({"integrate", "recorded", "--voxel", "0.02", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+           "--out", "none.vdb"},
+          "0.001 m a unit");
   refuses({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02", "--depth-scale",
            "1e-6", "--out", "none.vdb"},
           "1e-06 m a unit");
-  EXPECT_EQ(cases, 2);
+  EXPECT_EQ(cases, 3);
   EXPECT_NE(run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
                       "--depth-scale", "1e-4", "--out", "own.vdb"})
                 .find("depth images: 0.0001 m a unit"),
