@@ -156,26 +156,4 @@ std::string with_unit(double value) {
   return general_text(value, 3) + unit;
 }
 
-std::string with_commas(unsigned long long value) {
-  const std::string digits = std::to_string(value);
-  std::string text;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
-    text += digits[i];
-  }
-  return text;
-}
-
-std::string with_unit(double value) {
-  const char* unit = "";
-  for (const char* next : {" k", " M", " G"}) {
-    if (value < 1000) break;
-    value /= 1000;
-    unit = next;
-  }
-  std::array<char, 40> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.3g%s", value, unit);
-  return buffer.data();
-}
-
 }  // namespace viewgain::app
