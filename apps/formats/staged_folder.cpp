@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::mutex list_mutex;
-std::vector<fs::path> staged;
+std::vector<const StagedFolder*> alive;
 
 [[noreturn]] void fail(const fs::path& target, const std::string& what) {
   throw Error(ErrorCode::io, target.string() + ": " + what);
@@ -84,31 +84,28 @@ StagedFolder::StagedFolder(const fs::path& target) {
         around / (prefix + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1)));
     fs::create_directories(staging_, code);
     if (code) {
-      remove_parents();
+      remove();
       fail(target, "cannot be created: " + code.message());
     }
     lock_ = lock_of(staging_);
   } while (lock_ < 0 && !fs::exists(staging_, code));
-  staged.push_back(staging_);
+  alive.push_back(this);
 }
 
 StagedFolder::~StagedFolder() {
-  std::error_code ignored;
-  fs::remove_all(staging_, ignored);
-  release();
-  remove_parents();
-}
-
-void StagedFolder::remove_parents() noexcept {
-  std::error_code ignored;  // one that is not empty stays
-  for (const fs::path& parent : parents_) fs::remove(parent, ignored);
-}
-
-void StagedFolder::release() noexcept {
   const std::lock_guard guard(list_mutex);
-  std::erase(staged, staging_);
+  std::erase(alive, this);
+  remove();
   if (lock_ >= 0) ::close(lock_);
-  lock_ = -1;
+}
+
+void StagedFolder::remove() const noexcept {
+  std::error_code ignored;
+  // Another thread may be putting a file into it when a signal ends the program.
+  for (int tries = 0; tries < 10 && fs::exists(staging_, ignored); ++tries) {
+    fs::remove_all(staging_, ignored);
+  }
+  for (const fs::path& parent : parents_) fs::remove(parent, ignored);  // if empty
 }
 
 void StagedFolder::commit(const std::vector<fs::path>& earlier) {
@@ -136,12 +133,7 @@ void StagedFolder::commit(const std::vector<fs::path>& earlier) {
 
 void remove_staged_folders() noexcept {
   const std::lock_guard guard(list_mutex);
-  for (const fs::path& folder : staged) {
-    std::error_code code;
-    // Another thread may be putting a file into it.
-    for (int tries = 0; tries < 10 && fs::exists(folder, code); ++tries)
-      fs::remove_all(folder, code);
-  }
+  for (const StagedFolder* folder : alive) folder->remove();
 }
 
 }  // namespace viewgain::app

@@ -30,8 +30,8 @@ class StagedFolder {
   void commit(const std::vector<std::filesystem::path>& earlier);
 
  private:
-  void remove_parents() noexcept;
-  void release() noexcept;
+  friend void remove_staged_folders() noexcept;
+  void remove() const noexcept;
 
   std::filesystem::path target_;
   std::filesystem::path staging_;
@@ -39,8 +39,9 @@ class StagedFolder {
   int lock_ = -1;                               // of the hidden folder, while it is in use
 };
 
-/// Removes the hidden folders of all StagedFolder objects of this process, for a program that a
-/// signal ends. Not for a signal's handler itself: it takes a lock. The writers fail afterwards.
+/// Removes the hidden folders, and the parents made for them, of all StagedFolder objects of this
+/// process, for a program that a signal ends. Not for a signal's handler itself: it takes a lock.
+/// The writers fail afterwards.
 void remove_staged_folders() noexcept;
 
 }  // namespace viewgain::app
