@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frames_dir.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <string_view>
@@ -18,8 +16,10 @@
 
 #include "png_io.hpp"
 #include "sensor_toml.hpp"
+#include "values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
 #include "viewgain/core/pose_io.hpp"
 
 namespace viewgain::app {
@@ -31,6 +31,13 @@ constexpr std::string_view kFramePrefix = "frame-";
 constexpr std::string_view kDepthSuffix = ".depth.png";
 constexpr std::string_view kAmplitudeSuffix = ".amplitude.png";
 constexpr std::string_view kPoseSuffix = ".pose.txt";
+constexpr std::array kFrameSuffixes{kDepthSuffix, kAmplitudeSuffix, kPoseSuffix};
+constexpr const char* kPoses = "poses.txt";
+constexpr const char* kSensor = "sensor.toml";
+constexpr const char* kIntrinsics = "camera-intrinsics.txt";
+constexpr const char* kSimulated = "simulated.txt";
+constexpr std::array kNames{kPoses, kSensor, kIntrinsics, kSimulated};
+constexpr std::string_view kSimulatedText = "frames written by viewgain simulate: ";
 constexpr std::uint16_t kOutOfRangeValue = 65535;
 
 std::string frame_name(std::size_t index, std::string_view suffix) {
@@ -53,11 +60,10 @@ std::optional<std::string> frame_number(const std::string& name, std::string_vie
 }
 
 // Images of the folder by their number, as "frame-NNNNNN".
-std::map<std::uint64_t, std::string> list_frames(const fs::path& dir,
-                                                 std::string_view suffix = kDepthSuffix) {
+std::map<std::uint64_t, std::string> list_frames(const fs::path& dir) {
   std::map<std::uint64_t, std::string> frames;
   for (const auto& entry : fs::directory_iterator(dir)) {
-    if (const auto digits = frame_number(entry.path().filename().string(), suffix)) {
+    if (const auto digits = frame_number(entry.path().filename().string(), kDepthSuffix)) {
       frames.emplace(std::stoull(*digits), std::string(kFramePrefix) + *digits);
     }
   }
@@ -78,18 +84,35 @@ std::uint16_t saturated(double units) {
                    : std::uint16_t{0};
 }
 
+// Words between blanks, each a finite number; a byte order mark before them says nothing.
+std::vector<double> numbers_of(const fs::path& path, std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf", kBlanks = " \t\r\n\v\f";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  std::vector<double> numbers;
+  for (std::size_t begin = text.find_first_not_of(kBlanks); begin != std::string_view::npos;
+       begin = text.find_first_not_of(kBlanks)) {
+    text.remove_prefix(begin);
+    const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) {
+      throw Error(ErrorCode::format, path.string() + ": \"" + printable(word.substr(0, 32)) +
+                                         "\" is no finite number");
+    }
+    numbers.push_back(value);
+    text.remove_prefix(word.size());
+  }
+  return numbers;
+}
+
 // Nine numbers of a 3x3 matrix fx 0 cx / 0 fy cy / 0 0 1.
 void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
-  std::ifstream file(path);
-  if (!file) throw Error(ErrorCode::io, path.string() + ": cannot be opened");
-  std::array<double, 9> k{};
-  for (double& value : k) {
-    if (!(file >> value) || !std::isfinite(value)) {
-      throw Error(ErrorCode::format, path.string() + ": needs the nine numbers of a 3x3 matrix");
-    }
+  const std::vector<double> k = numbers_of(path, file_bytes(path));
+  if (k.size() != 9) {
+    throw Error(ErrorCode::format, path.string() +
+                                       ": needs the nine numbers of a 3x3 matrix, has " +
+                                       std::to_string(k.size()));
   }
-  std::string rest;
-  if (file >> rest) throw Error(ErrorCode::format, path.string() + ": more than nine numbers");
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
     throw Error(ErrorCode::format,
                 path.string() + ": must have the form fx 0 cx, 0 fy cy, 0 0 1 (no skew)");
@@ -98,13 +121,45 @@ void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
   camera.cx = k[2];
   camera.fy = k[4];
   camera.cy = k[5];
+  try {
+    camera.validate();
+  } catch (const Error& error) {
+    throw Error(ErrorCode::format, path.string() + ": " + error.what());
+  }
+}
+
+// What an earlier simulation left in the folder, which a new one may replace.
+std::vector<fs::path> simulated_files(const fs::path& dir) {
+  const std::vector<fs::path> files = frame_files(dir);
+  if (files.empty()) return files;
+  std::size_t count = 0;
+  if (fs::exists(dir / kSimulated)) {
+    const std::string text = file_bytes(dir / kSimulated);
+    if (text.starts_with(kSimulatedText)) {
+      std::from_chars(text.data() + kSimulatedText.size(), text.data() + text.size(), count);
+    }
+  }
+  for (const fs::path& file : files) {
+    const std::string name = file.string();
+    bool is_own = count > 0 && name != kIntrinsics && !name.ends_with(kPoseSuffix);
+    for (const std::string_view suffix : {kDepthSuffix, kAmplitudeSuffix}) {
+      const auto digits = frame_number(name, suffix);
+      if (digits) is_own = is_own && std::stoull(*digits) < count;
+    }
+    if (!is_own) {
+      throw Error(ErrorCode::invalid_argument, (dir / file).string() + ": no frames of simulate (" +
+                                                   kSimulated +
+                                                   " says which are); choose another folder");
+    }
+  }
+  return files;
 }
 
 void open_own_layout(const fs::path& dir, FrameSequence& frames) {
-  PoseList list = read_tum(dir / "poses.txt");
+  PoseList list = read_tum(dir / kPoses);
   const auto on_disk = list_frames(dir);
   if (on_disk.size() > list.poses.size()) {
-    throw Error(ErrorCode::format, (dir / "poses.txt").string() + ": has " +
+    throw Error(ErrorCode::format, (dir / kPoses).string() + ": has " +
                                        std::to_string(list.poses.size()) + " poses for " +
                                        std::to_string(on_disk.size()) + " frames");
   }
@@ -130,9 +185,8 @@ void open_recorded_layout(const fs::path& dir, FrameSequence& frames) {
   if (frames.images.empty()) {
     throw Error(ErrorCode::io, dir.string() + ": no poses.txt and no frame-NNNNNN.depth.png");
   }
-  if (fs::exists(dir / "camera-intrinsics.txt")) {
-    apply_intrinsics_file(dir / "camera-intrinsics.txt", frames.sensor.camera);
-    frames.sensor.validate();
+  if (fs::exists(dir / kIntrinsics)) {
+    apply_intrinsics_file(dir / kIntrinsics, frames.sensor.camera);
   }
 }
 
@@ -144,9 +198,11 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
   if (!fs::is_directory(dir, ignored)) {
     throw Error(ErrorCode::io, dir.string() + ": no such folder");
   }
-  const bool has_sensor = fs::exists(dir / "sensor.toml");
+  const bool has_sensor = fs::exists(dir / kSensor);
   FrameSequence frames;
-  frames.depth_scale = depth_scale.value_or(has_sensor ? kDepthUnit : kRecordedDepthUnit);
+  const bool has_poses = fs::exists(dir / kPoses);
+  frames.depth_scale =
+      depth_scale.value_or(has_sensor && has_poses ? kDepthUnit : kRecordedDepthUnit);
   if (!(frames.depth_scale > 0) || !std::isfinite(frames.depth_scale)) {
     throw Error(ErrorCode::invalid_argument, "--depth-scale must be positive and finite");
   }
@@ -154,8 +210,8 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
     throw Error(ErrorCode::invalid_argument,
                 dir.string() + ": has no sensor.toml, so --sensor is needed");
   }
-  frames.sensor = sensor.empty() ? read_sensor_toml(dir / "sensor.toml") : load_sensor(sensor);
-  if (fs::exists(dir / "poses.txt")) {
+  frames.sensor = sensor.empty() ? read_sensor_toml(dir / kSensor) : load_sensor(sensor);
+  if (has_poses) {
     open_own_layout(dir, frames);
   } else {
     open_recorded_layout(dir, frames);
@@ -182,29 +238,23 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRange
   return frame;
 }
 
-FramesWriter::FramesWriter(const fs::path& dir) : dir_(dir) {
-  if (!dir_.has_filename()) dir_ = dir_.parent_path();  // a slash at the end
-  std::error_code code;
-  if (dir_.empty() || (fs::exists(dir_, code) && !fs::is_directory(dir_, code))) {
-    throw Error(ErrorCode::io, dir.string() + ": not a folder");
+std::vector<fs::path> frame_files(const fs::path& dir) {
+  std::vector<fs::path> files;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(dir, ignored)) {
+    const fs::path name = entry.path().filename();
+    const bool is_frames = std::any_of(
+        kFrameSuffixes.begin(), kFrameSuffixes.end(),
+        [&](std::string_view suffix) { return frame_number(name.string(), suffix).has_value(); });
+    if (is_frames || std::find(kNames.begin(), kNames.end(), name.string()) != kNames.end()) {
+      files.push_back(name);
+    }
   }
-  const std::string suffix = ".viewgain-" + std::to_string(::getpid());
-  staging_ = fs::exists(dir_, code) ? dir_ / suffix : fs::path(dir_.string() + suffix);
-  const fs::path parent = fs::absolute(staging_, code).parent_path();
-  for (fs::path p = parent; !fs::exists(p, code) && p.has_relative_path(); p = p.parent_path()) {
-    created_parent_ = p;
-  }
-  if (!fs::create_directories(staging_, code) || code) {
-    if (!created_parent_.empty()) fs::remove_all(created_parent_, code);
-    throw Error(ErrorCode::io, dir.string() + ": cannot be created");
-  }
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
-FramesWriter::~FramesWriter() {
-  std::error_code ignored;
-  fs::remove_all(staging_, ignored);
-  if (!committed_ && !created_parent_.empty()) fs::remove_all(created_parent_, ignored);
-}
+FramesWriter::FramesWriter(const fs::path& dir) : earlier_(simulated_files(dir)), staged_(dir) {}
 
 void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
   GrayImage image{frame.width, frame.height, {}};
@@ -214,34 +264,21 @@ void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
     image.pixels.push_back(value < kOutOfRangeValue ? static_cast<std::uint16_t>(value)
                                                     : kOutOfRangeValue);
   }
-  write_png(staging_ / frame_name(index, kDepthSuffix), image);
+  write_png(staged_.path() / frame_name(index, kDepthSuffix), image);
   if (frame.amplitude.empty()) return;
   image.pixels.clear();
   for (const float amplitude : frame.amplitude) {
     image.pixels.push_back(saturated(static_cast<double>(amplitude) / kAmplitudeUnit));
   }
-  write_png(staging_ / frame_name(index, kAmplitudeSuffix), image);
+  write_png(staged_.path() / frame_name(index, kAmplitudeSuffix), image);
 }
 
 void FramesWriter::commit(const std::vector<Pose>& poses, const Sensor& sensor) {
-  write_tum(staging_ / "poses.txt", poses);
-  write_file_atomically(staging_ / "sensor.toml", sensor_toml(sensor));
-  std::error_code code;
-  if (!fs::exists(dir_)) {
-    fs::rename(staging_, dir_, code);
-  } else {
-    for (const std::string_view suffix : {kDepthSuffix, kAmplitudeSuffix}) {
-      for (const auto& [number, name] : list_frames(dir_, suffix)) {
-        fs::remove(dir_ / (name + std::string(suffix)), code);
-      }
-    }
-    const std::vector<fs::path> written{fs::directory_iterator(staging_), {}};
-    for (const fs::path& path : written) {
-      if (!code) fs::rename(path, dir_ / path.filename(), code);
-    }
-  }
-  if (code) throw Error(ErrorCode::io, dir_.string() + ": cannot be written: " + code.message());
-  committed_ = true;
+  write_tum(staged_.path() / kPoses, poses);
+  write_file_atomically(staged_.path() / kSensor, sensor_toml(sensor));
+  write_file_atomically(staged_.path() / kSimulated,
+                        std::string(kSimulatedText) + std::to_string(poses.size()) + "\n");
+  staged_.commit(earlier_);
 }
 
 }  // namespace viewgain::app

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "staged_folder.hpp"
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -36,7 +37,8 @@ struct FrameSequence {
 
 /// Opens either layout: poses.txt + frame-NNNNNN.depth.png (line i is frame i) + sensor.toml, or
 /// frame-NNNNNN.depth.png + frame-NNNNNN.pose.txt + camera-intrinsics.txt, whose numbers may have
-/// gaps. Beside a depth image there may be a frame-NNNNNN.amplitude.png. `sensor`: preset or .toml
+/// gaps. The scale is, unless given, 1e-4 m a unit where there are poses.txt and sensor.toml, else
+/// 1e-3. Beside a depth image there may be a frame-NNNNNN.amplitude.png. `sensor`: preset or .toml
 /// file, empty for the folder's own. Throws Error naming the file that is missing or wrong.
 [[nodiscard]] FrameSequence open_frames(const std::filesystem::path& dir, const std::string& sensor,
                                         std::optional<double> depth_scale);
@@ -45,28 +47,27 @@ struct FrameSequence {
 [[nodiscard]] DepthFrame load_frame(const FrameSequence& frames, std::size_t index,
                                     OutOfRangeMeaning meaning);
 
+/// The files of `dir` that make up frames of either layout, and what `simulate` leaves with them,
+/// relative to it; none if there is no such folder.
+[[nodiscard]] std::vector<std::filesystem::path> frame_files(const std::filesystem::path& dir);
+
 /// Writes frames in our own layout into a folder that appears, or changes, only when all is
-/// written.
+/// written. simulated.txt in it says how many frames are simulated; only those are ever replaced.
 class FramesWriter {
  public:
-  /// Creates a hidden folder beside or in `dir`. Throws Error(io).
+  /// Throws Error(io), and Error(invalid_argument) if the folder holds frames, poses or a sensor
+  /// that no FramesWriter has written.
   explicit FramesWriter(const std::filesystem::path& dir);
-  /// Removes what commit() has not moved.
-  ~FramesWriter();
-  FramesWriter(const FramesWriter&) = delete;
-  FramesWriter& operator=(const FramesWriter&) = delete;
 
   /// Writes the depth image, and an amplitude image if the frame has amplitudes.
   void write_frame(std::size_t index, const DepthFrame& frame);
 
-  /// Writes poses and sensor and moves all into place; frames of an earlier run in `dir` go.
+  /// Writes poses and sensor and puts all in the place of the frames of an earlier simulation.
   void commit(const std::vector<Pose>& poses, const Sensor& sensor);
 
  private:
-  std::filesystem::path dir_;
-  std::filesystem::path staging_;
-  std::filesystem::path created_parent_;  // topmost folder that was made for this; empty: none
-  bool committed_ = false;
+  std::vector<std::filesystem::path> earlier_;
+  StagedFolder staged_;
 };
 
 }  // namespace viewgain::app

@@ -2,29 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "map_file.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <string>
-#include <system_error>
 
+#include "file_names.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {
-namespace {
-
-/// The name's ending with capital letters made small.
-std::string ending(const std::filesystem::path& path) {
-  std::string text = path.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
-
-}  // namespace
-
 bool is_octomap(const std::filesystem::path& path) {
-  return ending(path) == ".ot" || ending(path) == ".bt";
+  return small_ending(path) == ".ot" || small_ending(path) == ".bt";
 }
 
 BeliefGrid load_map(const std::filesystem::path& path, const Sensor* sensor, OctomapConfig config) {
@@ -36,15 +22,12 @@ BeliefGrid load_map(const std::filesystem::path& path, const Sensor* sensor, Oct
 }
 
 void check_map_name(const std::filesystem::path& path) {
-  const std::string end = ending(path);
+  const std::string end = small_ending(path);
   if (end == ".bt") {
     throw Error(ErrorCode::invalid_argument,
                 path.string() + ": .bt files are read but not written; .ot ones are");
   }
-  if (end == ".vdb" || end == ".ot") return;
-  std::error_code code;
-  const std::filesystem::file_status status = std::filesystem::status(path, code);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) return;
+  if (end == ".vdb" || end == ".ot" || is_special_file(path)) return;
   throw Error(ErrorCode::invalid_argument,
               path.string() + ": the name of a map to write must end in .vdb or .ot");
 }

@@ -68,6 +68,12 @@ std::vector<Part> read_parts(TableReader& reader, std::string_view key,
 
 }  // namespace
 
+std::optional<std::filesystem::path> reach_poses_file(const std::filesystem::path& path) {
+  const auto name = read_toml(path)["poses"].value<std::string>();
+  if (!name) return std::nullopt;
+  return path.parent_path() / *name;
+}
+
 ReachRegion read_reach_toml(const std::filesystem::path& path) {
   const toml::table root = read_toml(path);
   TableReader reader(root, path.string(), "");

@@ -3,6 +3,7 @@
 #include "sensor_toml.hpp"
 
 #include <array>
+#include <cstdint>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -13,6 +14,9 @@
 
 namespace viewgain::app {
 namespace {
+
+// Ten times what depth cameras have; rays and images of more would fill a machine's memory.
+constexpr std::int64_t kMostPixels = std::int64_t{1} << 24U;
 
 template <typename Model>
 struct NoiseField {
@@ -85,6 +89,9 @@ PinholeCamera read_camera(TableReader reader) {
   PinholeCamera camera;
   camera.width = reader.whole_number("width");
   camera.height = reader.whole_number("height");
+  if (static_cast<std::int64_t>(camera.width) * camera.height > kMostPixels) {
+    reader.fail("width", "times height is over " + std::to_string(kMostPixels) + " pixels");
+  }
   camera.fx = reader.number("fx");
   camera.fy = reader.number("fy");
   camera.cx = reader.number("cx");
@@ -207,11 +214,13 @@ Sensor read_sensor_toml(const std::filesystem::path& path) {
   return sensor;
 }
 
+bool is_sensor_file(const std::string& preset_or_file) {
+  return std::filesystem::path(preset_or_file).extension() == ".toml";
+}
+
 Sensor load_sensor(const std::string& preset_or_file) {
-  if (std::filesystem::path(preset_or_file).extension() == ".toml") {
-    return read_sensor_toml(preset_or_file);
-  }
-  return sensor_preset(preset_or_file);
+  return is_sensor_file(preset_or_file) ? read_sensor_toml(preset_or_file)
+                                        : sensor_preset(preset_or_file);
 }
 
 }  // namespace viewgain::app

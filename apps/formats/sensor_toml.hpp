@@ -17,6 +17,9 @@ namespace viewgain::app {
 /// a key that is missing, unknown, of the wrong type or out of bounds.
 [[nodiscard]] Sensor read_sensor_toml(const std::filesystem::path& path);
 
+/// Whether load_sensor takes this for a file's name and not for a preset's.
+[[nodiscard]] bool is_sensor_file(const std::string& preset_or_file);
+
 /// A preset by its name, or a file that ends in .toml. Throws Error.
 [[nodiscard]] Sensor load_sensor(const std::string& preset_or_file);
 

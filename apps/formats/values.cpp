@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "values.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 
 #include "viewgain/core/error.hpp"
 
@@ -16,6 +16,33 @@ std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   return text;
+}
+
+std::string general_text(double value, int digits) {
+  if (std::isnan(value)) return "nan";
+  std::array<char, 40> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                          std::chars_format::general, digits);
+  return {buffer.data(), end};
+}
+
+// Bytes of the character at the front, 0 where that is no UTF-8.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xc2 && first <= 0xdf   ? 2
+                             : first >= 0xe0 && first <= 0xef ? 3
+                             : first >= 0xf0 && first <= 0xf4 ? 4
+                                                              : 0;
+  if (length == 0 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0U) != 0x80) return 0;
+  }
+  // Longer than needed, half of a surrogate pair, past the last code point.
+  const bool is_wrong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
+                        (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f);
+  return is_wrong ? 0 : length;
 }
 
 [[noreturn]] void fail(std::string_view flag, std::string_view text, const std::string& what) {
@@ -75,10 +102,29 @@ Box parse_box(std::string_view flag, std::string_view text) {
 }
 
 std::string describe(const Box& box) {
-  std::array<char, 200> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%g,%g,%g,%g,%g,%g", box.min[0], box.min[1],
-                box.min[2], box.max[0], box.max[1], box.max[2]);
-  return buffer.data();
+  std::string text;
+  for (const auto& corner : {box.min, box.max}) {
+    for (const double value : corner) {
+      text.append(text.empty() ? "" : ",").append(general_text(value, 6));
+    }
+  }
+  return text;
+}
+
+std::string printable(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const auto byte = static_cast<unsigned char>(text[0]);
+    if (length == 0 || byte < 0x20 || byte == 0x7f) {
+      result.append("\\x").append(1, kDigits[byte >> 4U]).append(1, kDigits[byte & 15U]);
+    } else {
+      result.append(text.substr(0, length));
+    }
+    text.remove_prefix(std::max(length, std::size_t{1}));
+  }
+  return result;
 }
 
 std::string with_commas(unsigned long long value) {
@@ -98,9 +144,7 @@ std::string with_unit(double value) {
     value /= 1000;
     unit = next;
   }
-  std::array<char, 40> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.3g%s", value, unit);
-  return buffer.data();
+  return general_text(value, 3) + unit;
 }
 
 }  // namespace viewgain::app

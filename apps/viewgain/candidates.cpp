@@ -16,7 +16,6 @@
 #include "planner/candidate_generation.hpp"
 #include "planner/model.hpp"
 #include "planner/planning_options.hpp"
-#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 
@@ -71,13 +70,23 @@ nlohmann::ordered_json candidate_json(const Candidate& candidate, const Estimate
   return json;
 }
 
+// A file without a pose would be of no use to anybody.
+void refuse_none(const Options& options, const Proposal& proposal) {
+  if (!proposal.candidates.empty()) return;
+  std::string reasons;
+  for (const auto& [reason, count] : proposal.dropped) {
+    reasons.append(reasons.empty() ? "; dropped: " : ", ").append(std::to_string(count));
+    reasons.append(" ").append(reason);
+  }
+  throw Error(ErrorCode::invalid_argument, options.map + ": no candidate of --generator " +
+                                               options.generator + " is feasible" + reasons +
+                                               "; no poses are written");
+}
+
 void candidates(const Options& options) {
   const ExecConfig exec{options.common.threads};
   const Sensor sensor = load_sensor(options.sensor);
   const ReachRegion reach = options.reach.empty() ? ReachRegion{} : read_reach_toml(options.reach);
-  {
-    const AtomicFile writable(options.out);
-  }  // known now rather than after the work
   BeliefGrid grid = load_map(options.map, &sensor);
   GenerationConfig config;
   config.boundary = options.generator == "boundary";
@@ -103,7 +112,7 @@ void candidates(const Options& options) {
   const Proposal proposal = generation.generate({});
   std::vector<Pose> poses;
   for (const Candidate& candidate : proposal.candidates) poses.push_back(candidate.T_world_camera);
-  write_tum(options.out, poses);
+  if (!poses.empty()) write_tum(options.out, poses);
 
   const EstimatedViews& estimated = generation.estimated();
   if (options.common.json) {
@@ -129,8 +138,9 @@ void candidates(const Options& options) {
       json["per_dropped"].back()["reason"] = infeasibility_name(dropped.reason);
     }
     print_json(json);
-    return;
+    return refuse_none(options, proposal);
   }
+  refuse_none(options, proposal);
   std::map<std::string, std::size_t> classes;
   for (const Candidate& candidate : proposal.candidates) ++classes[candidate.boundary_class];
   std::printf("%zu candidates (%s)", poses.size(), options.generator.c_str());
@@ -173,7 +183,7 @@ Command add_candidates(CLI::App& program) {
                   "x,y,z that poses look at, world [m]; default: the workspace's centre");
   app->add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
   app->add_option("--support-plane", o.support_plane, "height z of a table [m]");
-  app->add_option("--seed", o.seed, "of the shell")->capture_default_str();
+  add_seed_option(*app, o.seed, "of the shell");
   app->add_option("--out", o.out, "TUM file of camera-to-world poses")->required();
   add_common_options(*app, o.common);
   return {app, [options] { candidates(*options); }};

@@ -3,9 +3,14 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 
+#include "formats/values.hpp"
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/pose.hpp"
 
@@ -52,8 +57,29 @@ inline constexpr const char* kSensorHelp =
           {0.0, 0.0, 0.0, 1.0}};
 }
 
+/// With every text made printable: a file name may be any bytes, JSON is UTF-8.
+[[nodiscard]] inline nlohmann::ordered_json with_printable_text(nlohmann::ordered_json json) {
+  if (json.is_string()) return printable(json.get_ref<const std::string&>());
+  if (json.is_structured()) {
+    for (nlohmann::ordered_json& part : json) part = with_printable_text(std::move(part));
+  }
+  return json;
+}
+
+/// What run.json and --json hold.
+[[nodiscard]] inline std::string json_text(const nlohmann::ordered_json& json) {
+  return with_printable_text(json).dump(2) + "\n";
+}
+
 inline void print_json(const nlohmann::ordered_json& json) {
-  std::printf("%s\n", json.dump(2).c_str());
+  std::fputs(json_text(json).c_str(), stdout);
+}
+
+/// --seed, the same bounds in every subcommand.
+inline void add_seed_option(CLI::App& app, std::uint64_t& seed, const char* of_what) {
+  app.add_option("--seed", seed, of_what)
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number"))
+      ->capture_default_str();
 }
 
 }  // namespace viewgain::app

@@ -10,7 +10,6 @@
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
 #include "planner/stopwatch.hpp"
-#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {
@@ -44,9 +43,6 @@ void check(const Options& options) {
 void convert(const Options& options) {
   const Stopwatch watch;
   check(options);
-  {
-    const AtomicFile writable(options.out);
-  }  // known now rather than after the work
   OctomapConfig config;
   if (!options.workspace.empty()) config.workspace = parse_box("--workspace", options.workspace);
   config.prior_sigma = options.prior_sigma;

@@ -18,7 +18,6 @@
 #include "planner/stopwatch.hpp"
 #include "progress.hpp"
 #include "reading_source.hpp"
-#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
@@ -34,6 +33,12 @@ void check_voxel(double voxel) {
     throw Error(ErrorCode::invalid_argument,
                 "--voxel " + short_text(voxel) + ": the voxel size must be positive and finite");
   }
+}
+
+// What a wrong scale would explain.
+std::string scale_text(const ReadingSource& source) {
+  const std::optional<double> scale = source.depth_scale();
+  return scale ? " at " + short_text(*scale) + " m a unit of the depth images (--depth-scale)" : "";
 }
 
 // What the frames see, half a voxel more on each side: a reading on the face of the box would lie
@@ -57,7 +62,7 @@ Box seen_workspace(ReadingSource& source, const Options& options, double voxel) 
   if (!any) {
     throw Error(ErrorCode::invalid_argument,
                 (options.clouds.empty() ? options.frames + ": no frame" : std::string("no cloud")) +
-                    " has a reading, so --workspace is needed");
+                    " has a reading" + scale_text(source));
   }
   return seen;
 }
@@ -170,6 +175,9 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   std::printf("workspace %s m: %d x %d x %d voxels of %g m, prior sigma %g m\n",
               describe(grid.workspace()).c_str(), dims.x, dims.y, dims.z, grid.voxel_size(),
               grid.prior_sigma());
+  if (const auto scale = source.depth_scale()) {
+    std::printf("depth images: %s m a unit\n", short_text(*scale).c_str());
+  }
   std::printf(
       "%zu %ss (%s), %s readings, %s of them in the workspace; %s out of range, %s invalid\n",
       source.size(), part_name(options), source.sensor().name.c_str(),
@@ -218,6 +226,15 @@ void check_flags(const Options& options, const CLI::App& app) {
   }
 }
 
+// A new map without a reading comes of a wrong scale, sensor or workspace.
+void refuse_empty(const Options& options, const ReadingSource& source, const Totals& totals) {
+  if (!options.map.empty() || totals.sum.readings_inside + totals.sum.plane_readings > 0) return;
+  throw Error(ErrorCode::invalid_argument,
+              (options.clouds.empty() ? options.frames : options.clouds.front()) + ": none of " +
+                  with_commas(totals.sum.readings) + " readings lies in the workspace" +
+                  scale_text(source));
+}
+
 void integrate(const Options& options, const CLI::App& app) {
   const Stopwatch watch;
   check_flags(options, app);
@@ -226,14 +243,11 @@ void integrate(const Options& options, const CLI::App& app) {
     throw Error(ErrorCode::invalid_argument,
                 "--with-covariance with " + options.out + ": a tree has no place for covariances");
   }
-  const std::unique_ptr<ReadingSource> source =
-      options.clouds.empty() ? open_frame_source(options) : open_cloud_source(options);
-  {
-    const AtomicFile writable(options.out);
-  }  // known now rather than after the work
+  const std::unique_ptr<ReadingSource> source = open_reading_source(options);
   BeliefGrid grid =
       options.map.empty() ? new_map(*source, options) : continued_map(source->sensor(), options);
   const Totals totals = integrate_all(*source, options, grid);
+  refuse_empty(options, *source, totals);
   const LostInTree lost = save_map(grid, options.out, {options.with_covariance});
   print_summary(options, *source, grid, totals, lost, watch.seconds());
 }
@@ -271,7 +285,8 @@ Command add_integrate(CLI::App& program) {
                       "ranges hold");
   app->add_option(
       "--depth-scale", options->depth_scale,
-      "metres a unit of the images; default: 1e-4 where there is a sensor.toml, else 1e-3");
+      "metres a unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
+      "sensor.toml), else 1e-3");
   app->add_option(
          "--out-of-range", options->out_of_range,
          "what 65535 says: carve (nothing up to the maximal range) or invalid (no reading)")

@@ -2,49 +2,74 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "interrupt.hpp"
 
-#include <chrono>
-#include <csignal>
+#include <unistd.h>
 
+#include <csignal>
+#include <mutex>
+#include <thread>
+
+#include "formats/staged_folder.hpp"
 #include "viewgain/core/atomic_file.hpp"
 
 namespace viewgain::app {
 namespace {
 
-volatile std::sig_atomic_t pending = 0;
+std::mutex mutex;
+std::stop_source* guarded = nullptr;  // of the InterruptGuard that lives
+bool ended = false;
 
-void end(int signal) {
-  remove_temporary_files();
-  std::signal(signal, SIG_DFL);
-  std::raise(signal);
+// Whether the signal was only a wish to stop.
+bool asks_for_a_stop(int signal) {
+  const std::lock_guard lock(mutex);
+  if (guarded != nullptr && signal != SIGQUIT && guarded->request_stop()) return true;
+  ended = true;
+  return false;
 }
 
-void on_signal(int signal) {
-  pending = 1;
-  std::signal(signal, end);
+// A thread waits for the signals that all threads block: unlike a handler it may take locks.
+void watch(const sigset_t& signals) {
+  int signal = 0;
+  while (::sigwait(&signals, &signal) != 0 || asks_for_a_stop(signal)) {
+  }
+  remove_temporary_files();
+  remove_staged_folders();
+  std::signal(signal, SIG_DFL);
+  ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  std::raise(signal);
 }
 
 }  // namespace
 
 void clean_up_when_ended() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  sigset_t signals;
+  ::sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+    struct sigaction action{};
     // Programs in the background and under nohup are started with some ignored.
-    if (std::signal(signal, end) == SIG_IGN) std::signal(signal, SIG_IGN);
+    if (::sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
+      ::sigaddset(&signals, signal);
+    }
   }
+  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::thread(watch, signals).detach();
 }
 
-InterruptGuard::InterruptGuard()
-    : old_interrupt_((pending = 0, std::signal(SIGINT, on_signal))),
-      old_terminate_(std::signal(SIGTERM, on_signal)),
-      watcher_([this](const std::stop_token& ended) {
-        while (!ended.stop_requested() && pending == 0) {
-          std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        }
-        if (pending != 0) source_.request_stop();
-      }) {}
+void wait_if_ended() {
+  const bool is_ended = [] {
+    const std::lock_guard lock(mutex);
+    return ended;
+  }();
+  while (is_ended) ::pause();
+}
+
+InterruptGuard::InterruptGuard() {
+  const std::lock_guard lock(mutex);
+  guarded = &source_;
+}
 
 InterruptGuard::~InterruptGuard() {
-  std::signal(SIGINT, old_interrupt_);
-  std::signal(SIGTERM, old_terminate_);
+  const std::lock_guard lock(mutex);
+  guarded = nullptr;
 }
 
 }  // namespace viewgain::app

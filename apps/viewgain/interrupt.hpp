@@ -3,16 +3,20 @@
 #pragma once
 
 #include <stop_token>
-#include <thread>
 
 namespace viewgain::app {
 
-/// From now on Ctrl-C (SIGINT), SIGTERM and SIGHUP, where they are not ignored, remove the
-/// temporary files of maps and reports being written before they end the program.
+/// From now on Ctrl-C (SIGINT), SIGTERM, SIGHUP and SIGQUIT remove what is half-written before they
+/// end the program; those that were ignored when it was started stay so. To be called once, before
+/// any other thread is started.
 void clean_up_when_ended();
 
-/// While it lives, Ctrl-C (SIGINT) and SIGTERM ask for a stop instead of ending the program; a
-/// second one ends it. One at a time.
+/// Returns at once, unless a signal is ending the program: then not at all, so that what fails for
+/// that reason is not reported as an error.
+void wait_if_ended();
+
+/// While it lives, the first of SIGINT, SIGTERM and SIGHUP asks for a stop instead of ending the
+/// program. One at a time.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -23,10 +27,7 @@ class InterruptGuard {
   [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
 
  private:
-  using Handler = void (*)(int);
   std::stop_source source_;
-  Handler old_interrupt_, old_terminate_;
-  std::jthread watcher_;  // a handler may not take the locks of a stop_source
 };
 
 }  // namespace viewgain::app

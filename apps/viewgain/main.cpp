@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <string>
 #include <vector>
 
+#include "call_files.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "viewgain/core/error.hpp"
@@ -18,11 +20,30 @@ constexpr int kBadInput = 2;
 
 // One line, whatever a message or a file name holds.
 int report(std::string message, int exit_code) {
+  viewgain::app::wait_if_ended();
   for (char& c : message) {
     if (c == '\n' || c == '\r') c = ' ';
   }
   std::fprintf(stderr, "viewgain: %s\n", message.c_str());
   return exit_code;
+}
+
+// What --help prints through std::cout, all else through stdout.
+int end_of_output() {
+  if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    return report("cannot write to the standard output", kInternalError);
+  }
+  return 0;
+}
+
+// CLI11 says only that there is no subcommand.
+std::string explain(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first.empty() || first[0] == '-') return error.what();
+  for (const CLI::App* subcommand : program.get_subcommands({})) {
+    if (subcommand->get_name() == first) return error.what();
+  }
+  return first + ": no such subcommand";
 }
 
 int run(int argc, char** argv) {
@@ -42,16 +63,18 @@ int run(int argc, char** argv) {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
-      return program.exit(error);  // --help, --version
+      program.exit(error);  // prints --help or --version
+      return end_of_output();
     }
-    return report(std::string(error.what()) + " (see --help)", kBadInput);
+    return report(explain(program, error, argc, argv) + " (see --help)", kBadInput);
   }
   for (const viewgain::app::Command& command : commands) {
-    if (command.app->parsed()) command.run();
+    if (!command.app->parsed()) continue;
+    viewgain::app::check_call(*command.app);
+    command.run();
   }
-  if (std::fflush(stdout) != 0)
-    return report("cannot write to the standard output", kInternalError);
-  return 0;
+  viewgain::app::wait_if_ended();
+  return end_of_output();
 }
 
 }  // namespace

@@ -63,8 +63,7 @@ class ReadingSource {
   [[nodiscard]] virtual std::optional<double> depth_scale() const { return std::nullopt; }
 };
 
-/// Throw Error for what is wrong with flags or files.
-[[nodiscard]] std::unique_ptr<ReadingSource> open_frame_source(const IntegrateOptions& options);
-[[nodiscard]] std::unique_ptr<ReadingSource> open_cloud_source(const IntegrateOptions& options);
+/// Throws Error for what is wrong with flags or files.
+[[nodiscard]] std::unique_ptr<ReadingSource> open_reading_source(const IntegrateOptions& options);
 
 }  // namespace viewgain::app

@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "formats/reach_toml.hpp"
+#include "formats/run_folder.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
 #include "interrupt.hpp"
@@ -25,7 +26,6 @@
 #include "planner/stopwatch.hpp"
 #include "planner/truth.hpp"
 #include "reconstruct_options.hpp"
-#include "run_folder.hpp"
 #include "run_report.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
@@ -262,7 +262,6 @@ void reconstruct(const ReconstructOptions& options) {
   std::vector<Pose> views;
   const PlanningResult result = active_view_planning(
       start, acquisition, model, generation, decision, planning, [&](const ViewRecord& record) {
-        folder.begin();
         views.push_back(record.T_world_camera);
         if (options.save_maps) save_vdb(model.grid(), folder.map(record.index));
         if (!options.no_pictures) {
@@ -285,8 +284,8 @@ void reconstruct(const ReconstructOptions& options) {
       {"seed", options.sensing.seed},
       {"map_hash", model.grid().content_hash()}};
   run.update(json);
-  write_file_atomically(folder.file("run.json"), run.dump(2) + "\n");
-  folder.keep();
+  write_file_atomically(folder.file("run.json"), json_text(run));
+  folder.commit();
   if (options.common.json) {
     print_json(json);
   } else {

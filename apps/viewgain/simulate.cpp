@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -9,6 +11,7 @@
 
 #include "commands.hpp"
 #include "formats/frames_dir.hpp"
+#include "formats/mesh_file.hpp"
 #include "formats/pose_source.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
@@ -17,7 +20,6 @@
 #include "progress.hpp"
 #include "sensing_flags.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 
@@ -67,14 +69,36 @@ MeshPlacement placement_of(const Options& options) {
   return placement;
 }
 
+// Whether a pixel looks at the mesh, and not all of them at the room alone.
+bool sees_mesh(const SurfaceScene& scene, const Sensor& sensor,
+               const std::vector<Eigen::Vector3d>& rays, const Pose& T_world_camera) {
+  const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
+  return std::any_of(rays.begin(), rays.end(), [&](const Eigen::Vector3d& ray) {
+    return ray.allFinite() && scene.intersect(T_world_camera.translation(),
+                                              (R_world_camera * ray).normalized(), sensor.max_range)
+                                      .range <= sensor.max_range;
+  });
+}
+
+void check_view(const Options& options, const SurfaceScene& scene, const Sensor& sensor,
+                const std::vector<Pose>& poses) {
+  const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
+  if (std::none_of(poses.begin(), poses.end(),
+                   [&](const Pose& pose) { return sees_mesh(scene, sensor, rays, pose); })) {
+    throw Error(ErrorCode::invalid_argument,
+                options.mesh + ": no pose has the mesh in view and in range");
+  }
+}
+
 void simulate(const Options& options) {
   const ExecConfig exec{options.common.threads};
   const Sensor sensor = load_sensor(options.sensor);
   sensor.validate();
   const PoseSource source = make_poses(options.poses);
-  TriangleMesh mesh = placed(read_mesh(options.mesh), placement_of(options));
+  TriangleMesh mesh = load_mesh(options.mesh, placement_of(options));
   const std::size_t triangles = mesh.triangles.size();
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
+  check_view(options, *scene, sensor, source.poses);
   const SimulatedSensor camera(scene, sensor, simulation_config(options.sensing, sensor), exec);
   std::vector<Pose> poses;  // one a frame
   for (const Pose& pose : source.poses) poses.insert(poses.end(), options.frames_per_view, pose);
@@ -166,8 +190,9 @@ Command add_simulate(CLI::App& program) {
   app->add_option("--amplitude", options->amplitude,
                   "write amplitude images; default: on for sensors with shot noise")
       ->check(CLI::IsMember({"off", "on"}));
-  app->add_option("--out", options->out,
-                  "folder to write; frames of an earlier run in it are replaced")
+  app->add_option(
+         "--out", options->out,
+         "folder to write; frames that simulate has left in it are replaced, others are refused")
       ->required();
   add_common_options(*app, options->common);
   return {app, [options] { simulate(*options); }};

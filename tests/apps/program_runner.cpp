@@ -33,7 +33,12 @@ ProgramTest::ProgramTest() {
 ProgramTest::~ProgramTest() { fs::remove_all(dir.parent_path()); }
 
 pid_t ProgramTest::start(const std::vector<std::string>& arguments) const {
-  const fs::path out = dir.parent_path() / "stdout", err = dir.parent_path() / "stderr";
+  return start_into(dir.parent_path() / "stdout", arguments);
+}
+
+pid_t ProgramTest::start_into(const fs::path& out,
+                              const std::vector<std::string>& arguments) const {
+  const fs::path err = dir.parent_path() / "stderr";
   std::vector<char*> argv{const_cast<char*>("viewgain")};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
@@ -53,14 +58,20 @@ pid_t ProgramTest::start(const std::vector<std::string>& arguments) const {
 }
 
 ProgramResult ProgramTest::run(const std::vector<std::string>& arguments) const {
-  const fs::path out = dir.parent_path() / "stdout", err = dir.parent_path() / "stderr";
-  const pid_t child = start(arguments);
+  const fs::path out = dir.parent_path() / "stdout";
+  ProgramResult result = run_into(out, arguments);
+  result.out = read_file(out);
+  return result;
+}
+
+ProgramResult ProgramTest::run_into(const fs::path& out,
+                                    const std::vector<std::string>& arguments) const {
+  const pid_t child = start_into(out, arguments);
   ProgramResult result;
   int status = 0;
   EXPECT_EQ(::waitpid(child, &status, 0), child);
   if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
-  result.out = read_file(out);
-  result.err = read_file(err);
+  result.err = read_file(dir.parent_path() / "stderr");
   return result;
 }
 
@@ -85,6 +96,19 @@ std::vector<std::string> ProgramTest::list(const std::string& name) const {
   }
   std::sort(names.begin(), names.end());
   return names;
+}
+
+std::map<std::string, std::string> ProgramTest::contents(const std::string& name) const {
+  std::map<std::string, std::string> found;
+  for (const auto& entry : fs::recursive_directory_iterator(dir / name)) {
+    const std::string path = entry.path().lexically_relative(dir / name).string();
+    if (entry.is_symlink()) {
+      found[path] = "-> " + fs::read_symlink(entry.path()).string();
+    } else {
+      found[path] = entry.is_directory() ? "a folder" : read_file(entry.path());
+    }
+  }
+  return found;
 }
 
 void ProgramTest::write_cube() const {

@@ -6,6 +6,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,10 @@ class ProgramTest : public testing::Test {
   /// Runs viewgain with these arguments, the test's folder as working directory.
   [[nodiscard]] ProgramResult run(const std::vector<std::string>& arguments) const;
 
+  /// As run(), with this file as standard output; `out` of the result is empty.
+  [[nodiscard]] ProgramResult run_into(const std::filesystem::path& out,
+                                       const std::vector<std::string>& arguments) const;
+
   /// Starts viewgain as run() does and does not wait for it; returns the process's number.
   [[nodiscard]] pid_t start(const std::vector<std::string>& arguments) const;
 
@@ -39,6 +44,9 @@ class ProgramTest : public testing::Test {
   /// Names in the folder (of its subfolder `name`), sorted, hidden ones too.
   [[nodiscard]] std::vector<std::string> list(const std::string& name = ".") const;
 
+  /// Everything in the folder by its path: a file's bytes, where a link goes; hidden ones too.
+  [[nodiscard]] std::map<std::string, std::string> contents(const std::string& name = ".") const;
+
   /// A cube of side 2 round (1, 1, 1) with quadrilateral faces: cube.off.
   void write_cube() const;
 
@@ -49,6 +57,10 @@ class ProgramTest : public testing::Test {
   void write_half_sensor() const;
 
   std::filesystem::path dir;
+
+ private:
+  [[nodiscard]] pid_t start_into(const std::filesystem::path& out,
+                                 const std::vector<std::string>& arguments) const;
 };
 
 }  // namespace viewgain::test

@@ -170,7 +170,7 @@ TEST_F(Files, FramesReadBackInTenthsOfAMillimetre) {
   }
   EXPECT_EQ(list("frames"),
             (std::vector<std::string>{"frame-000000.depth.png", "frame-000001.depth.png",
-                                      "poses.txt", "sensor.toml"}));
+                                      "poses.txt", "sensor.toml", "simulated.txt"}));
   const FrameSequence frames = open_frames(dir / "frames", "", std::nullopt);
   EXPECT_TRUE(equal(frames.sensor, sensor));
   EXPECT_EQ(frames.depth_scale, 1e-4);
@@ -186,13 +186,13 @@ TEST_F(Files, FramesReadBackInTenthsOfAMillimetre) {
     FramesWriter failing(dir / "frames");
     failing.write_frame(0, frame);
   }
-  EXPECT_EQ(list("frames").size(), 4U);
+  EXPECT_EQ(list("frames").size(), 5U);
   {
     FramesWriter writer(dir / "frames");
     writer.write_frame(0, frame);
     writer.commit({poses[0]}, sensor);
   }
-  EXPECT_EQ(list("frames").size(), 3U);
+  EXPECT_EQ(list("frames").size(), 4U);
   {
     FramesWriter failing(dir / "a" / "b" / "c");
   }
@@ -219,7 +219,8 @@ TEST_F(Files, AmplitudesReadBackInThousandths) {
   }
   EXPECT_EQ(list("frames"),
             (std::vector<std::string>{"frame-000000.amplitude.png", "frame-000000.depth.png",
-                                      "frame-000001.depth.png", "poses.txt", "sensor.toml"}));
+                                      "frame-000001.depth.png", "poses.txt", "sensor.toml",
+                                      "simulated.txt"}));
   const FrameSequence frames = open_frames(dir / "frames", "", std::nullopt);
   const std::vector<float> expected{0.0F, 0.010F, 0.011F, 65.535F, 65.535F, 0.0F, 0.0F, 1.0F};
   EXPECT_EQ(load_frame(frames, 0, OutOfRangeMeaning::carve).amplitude, expected);
@@ -231,7 +232,7 @@ TEST_F(Files, AmplitudesReadBackInThousandths) {
     writer.write_frame(0, without);
     writer.commit({poses[0]}, sensor);
   }
-  EXPECT_EQ(list("frames").size(), 3U);
+  EXPECT_EQ(list("frames").size(), 4U);
 }
 
 TEST(Values, NumbersAndBoxes) {

@@ -72,8 +72,9 @@ TEST_F(Workflow, JsonHasTheDocumentedKeys) {
   EXPECT_EQ(simulated.at("readings").get<int>() + simulated.at("out_of_range").get<int>() +
                 simulated.at("invalid").get<int>(),
             3 * 48 * 36);
-  EXPECT_EQ(list("frames"), (Strings{"frame-000000.depth.png", "frame-000001.depth.png",
-                                     "frame-000002.depth.png", "poses.txt", "sensor.toml"}));
+  EXPECT_EQ(list("frames"),
+            (Strings{"frame-000000.depth.png", "frame-000001.depth.png", "frame-000002.depth.png",
+                     "poses.txt", "sensor.toml", "simulated.txt"}));
 
   const json integrated =
       json::parse(run_well({"integrate", "frames", "--voxel", "0.02", "--workspace",
@@ -224,7 +225,9 @@ TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
     text << poses.poses[i].isometry().matrix() << "\n";
     write("recorded/frame-" + number + ".pose.txt", text.str());
   }
-  write("recorded/camera-intrinsics.txt", "60 0 23.5\n0 60 17.5\n0 0 1\n");
+  write("recorded/camera-intrinsics.txt",
+        "\xef\xbb\xbf"
+        "60 0 23.5\n0 60 17.5\n0 0 1\n");
   std::string sensor = read("small.toml");
   for (const std::string wrong : {"fx = 60", "fy = 60", "cx = 23", "cy = 17"}) {
     sensor.replace(sensor.find(wrong) + 5, 2, "99");
@@ -233,12 +236,31 @@ TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
   integrate("recorded", "recorded.vdb", {"--sensor", "wrong.toml", "--depth-scale", "1e-4"});
   EXPECT_EQ(hash("recorded.vdb"), hash("own.vdb"));
 
-  // Without the scale the depths are ten times too long: all readings lie out of range.
-  const json far = json::parse(
-      run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02", "--workspace",
-                "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "far.vdb", "--json"}));
-  EXPECT_EQ(far.at("depth_scale"), 1e-3);
-  EXPECT_EQ(far.at("occupied"), 0);
+  // Without the scale the depths are ten times too long: all readings lie out of range. A sensor
+  // file of the user's beside the recording changes nothing about that.
+  int cases = 0;
+  const auto refuses = [&](const Strings& arguments, const std::string& word) {
+    const auto result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(dir / "none.vdb"));
+    ++cases;
+  };
+  refuses({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02", "--workspace",
+           "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "none.vdb"},
+          "0.001 m a unit");
+  write("recorded/sensor.toml", read("wrong.toml"));
+  refuses({"integrate", "recorded", "--voxel", "0.02", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+           "--out", "none.vdb"},
+          "0.001 m a unit");
+  refuses({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02", "--depth-scale",
+           "1e-6", "--out", "none.vdb"},
+          "1e-06 m a unit");
+  EXPECT_EQ(cases, 3);
+  EXPECT_NE(run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
+                      "--depth-scale", "1e-4", "--out", "own.vdb"})
+                .find("depth images: 0.0001 m a unit"),
+            std::string::npos);
 
   // A rotation that is off by 1e-4 is mended and said; another map than with the exact one.
   std::string pose = read("recorded/frame-000050.pose.txt");

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "run_folder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
+
+namespace viewgain::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kFiles{"run.json", "views.txt", "map.vdb", "surface.ply", "points.ply"};
+
+std::string numbered(std::size_t index, const char* ending) {
+  std::array<char, 32> number{};
+  std::snprintf(number.data(), number.size(), "%02zu", index);
+  return std::string(number.data()) + ending;
+}
+
+// NN + ending, as numbered() writes it: nobody else's file is touched.
+bool is_numbered(const std::string& name, const char* ending) {
+  const std::size_t digits = name.find_first_not_of("0123456789");
+  return digits != std::string::npos && digits >= 2 && name.substr(digits) == ending;
+}
+
+// An earlier run's files, which a new run may replace.
+std::vector<fs::path> files_of_earlier_run(const fs::path& dir) {
+  std::vector<fs::path> files = run_files(dir);
+  if (files.empty()) return files;
+  const fs::path report = dir / "run.json";
+  if (!fs::is_regular_file(report) ||
+      file_bytes(report).find("\"map_hash\"") == std::string::npos) {
+    throw Error(ErrorCode::invalid_argument,
+                dir.string() + ": holds " + files.front().string() +
+                    " but no run.json of a run that left it; choose another folder");
+  }
+  return files;
+}
+
+}  // namespace
+
+std::vector<fs::path> run_files(const fs::path& dir) {
+  std::vector<fs::path> files;
+  std::error_code ignored;
+  for (const char* name : kFiles) {
+    if (fs::exists(dir / name, ignored)) files.emplace_back(name);
+  }
+  for (const auto& [folder, endings] :
+       {std::pair{"views", std::vector<const char*>{".png", ".amplitude.png"}},
+        std::pair{"maps", std::vector<const char*>{".vdb"}}}) {
+    for (const auto& entry : fs::directory_iterator(dir / folder, ignored)) {
+      const fs::path name = entry.path().filename();
+      if (std::any_of(endings.begin(), endings.end(),
+                      [&](const char* ending) { return is_numbered(name.string(), ending); })) {
+        files.push_back(folder / name);
+      }
+    }
+  }
+  return files;
+}
+
+RunFolder::RunFolder(const fs::path& dir) : earlier_(files_of_earlier_run(dir)), staged_(dir) {}
+
+fs::path RunFolder::view(std::size_t index, const char* ending) const {
+  std::error_code ignored;
+  fs::create_directories(file("views"), ignored);  // a failure shows when the picture is written
+  return file("views") / numbered(index, ending);
+}
+
+fs::path RunFolder::map(std::size_t index) const {
+  std::error_code ignored;
+  fs::create_directories(file("maps"), ignored);  // a failure shows when the map is written
+  return file("maps") / numbered(index, ".vdb");
+}
+
+}  // namespace viewgain::app

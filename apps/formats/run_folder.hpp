@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "staged_folder.hpp"
+
+namespace viewgain::app {
+
+/// The files of `dir` whose names `reconstruct` writes, relative to it; none if there is no such
+/// folder.
+[[nodiscard]] std::vector<std::filesystem::path> run_files(const std::filesystem::path& dir);
+
+/// The folder that `reconstruct` leaves: run.json, views.txt, map.vdb, surface.ply, points.ply,
+/// views/NN.png, views/NN.amplitude.png, maps/NN.vdb. Nothing is in it, and an earlier run is as it
+/// was, until commit().
+class RunFolder {
+ public:
+  /// Throws Error(io), and Error(invalid_argument) if the folder holds files of these names without
+  /// an earlier run's run.json.
+  explicit RunFolder(const std::filesystem::path& dir);
+
+  /// Where to write.
+  [[nodiscard]] std::filesystem::path file(const char* name) const { return staged_.path() / name; }
+  [[nodiscard]] std::filesystem::path view(std::size_t index, const char* ending) const;
+  [[nodiscard]] std::filesystem::path map(std::size_t index) const;
+
+  /// Puts the run in the place of an earlier one. Throws Error(io).
+  void commit() { staged_.commit(earlier_); }
+
+ private:
+  std::vector<std::filesystem::path> earlier_;
+  StagedFolder staged_;
+};
+
+}  // namespace viewgain::app

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace viewgain::app {
+
+/// A folder of results that appears, or changes, only when all of them are written: they go into a
+/// hidden folder, beside the target where that is not there yet, else inside it, and commit() moves
+/// them. What else is in the target stays. The hidden folder is called .NAME.tmp-PROCESS-COUNTER;
+/// one that a killed process has left is removed by the next writer of the same target. Thread
+/// safety: distinct objects may be used from distinct threads.
+class StagedFolder {
+ public:
+  /// Creates the hidden folder, and the target's parents where they are missing. Throws Error(io).
+  explicit StagedFolder(const std::filesystem::path& target);
+  /// Removes what commit() has not moved, and those parents, unless something else is in them now.
+  ~StagedFolder();
+  StagedFolder(const StagedFolder&) = delete;
+  StagedFolder& operator=(const StagedFolder&) = delete;
+
+  /// Where to write.
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return staging_; }
+
+  /// Moves every file over the one of its name, so that each name has its old or its new contents
+  /// at any time; then removes those of `earlier` (relative to the target) that were not written
+  /// anew, and the folders that this leaves empty. Throws Error(io).
+  void commit(const std::vector<std::filesystem::path>& earlier);
+
+ private:
+  friend void remove_staged_folders() noexcept;
+  void remove() const noexcept;
+
+  std::filesystem::path target_;
+  std::filesystem::path staging_;
+  std::vector<std::filesystem::path> parents_;  // made for this one, the innermost first
+  int lock_ = -1;                               // of the hidden folder, while it is in use
+};
+
+/// Removes the hidden folders, and the parents made for them, of all StagedFolder objects of this
+/// process, for a program that a signal ends. Not for a signal's handler itself: it takes a lock.
+/// The writers fail afterwards.
+void remove_staged_folders() noexcept;
+
+}  // namespace viewgain::app

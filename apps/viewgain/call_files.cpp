@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "call_files.hpp"
+
+#include <sys/stat.h>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "formats/file_names.hpp"
+#include "formats/frames_dir.hpp"
+#include "formats/reach_toml.hpp"
+#include "formats/run_folder.hpp"
+#include "formats/sensor_toml.hpp"
+#include "viewgain/core/atomic_file.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What the value of an option names.
+enum class Kind { input, reach, frames, output, picture, frames_output, run_output };
+struct FileOption {
+  std::string_view name;
+  Kind kind;
+};
+constexpr std::array kFileOptions{
+    FileOption{"MESH", Kind::input},        FileOption{"MAP", Kind::input},
+    FileOption{"IN", Kind::input},          FileOption{"--map", Kind::input},
+    FileOption{"--cloud", Kind::input},     FileOption{"--poses", Kind::input},
+    FileOption{"--sensor", Kind::input},    FileOption{"--reach", Kind::reach},
+    FileOption{"FRAMES_DIR", Kind::frames}, FileOption{"OUT", Kind::output},
+    FileOption{"--picture", Kind::picture}, FileOption{"--out", Kind::output}};
+
+bool is_output(Kind kind) { return kind >= Kind::output; }
+
+struct NamedFile {
+  std::string option;
+  fs::path path;
+  Kind kind;
+};
+
+[[noreturn]] void refuse(const std::string& option, const std::string& value,
+                         const std::string& what) {
+  throw Error(ErrorCode::invalid_argument, option + " " + value + ": " + what);
+}
+
+Kind kind_of(const FileOption& option, const std::string& subcommand) {
+  if (option.name != "--out") return option.kind;
+  if (subcommand == "simulate") return Kind::frames_output;
+  return subcommand == "reconstruct" ? Kind::run_output : option.kind;
+}
+
+void check_values(const CLI::App& subcommand) {
+  for (const CLI::Option* option : subcommand.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (value.empty()) {
+        throw Error(ErrorCode::invalid_argument, option->get_name() + ": the value is empty");
+      }
+    }
+  }
+  for (const CLI::App* group : subcommand.get_subcommands({})) check_values(*group);
+}
+
+std::vector<NamedFile> named_files(const CLI::App& subcommand) {
+  std::vector<NamedFile> files;
+  for (const FileOption& file_option : kFileOptions) {
+    const CLI::Option* option = subcommand.get_option_no_throw(std::string(file_option.name));
+    if (option == nullptr) continue;
+    for (const std::string& value : option->results()) {
+      if (file_option.name == "--sensor" && !is_sensor_file(value)) continue;
+      files.push_back(
+          {std::string(file_option.name), value, kind_of(file_option, subcommand.get_name())});
+    }
+  }
+  return files;
+}
+
+// A file by what it is and not by what it is called.
+struct Identity {
+  fs::path path;
+  std::optional<std::pair<dev_t, ino_t>> node{};  // of what is there
+
+  explicit Identity(const fs::path& given) {
+    std::error_code ignored;
+    path = fs::weakly_canonical(fs::absolute(given, ignored), ignored);
+    struct stat status{};
+    if (::stat(given.c_str(), &status) == 0) node = std::pair(status.st_dev, status.st_ino);
+  }
+  [[nodiscard]] bool is(const Identity& other) const {
+    return node && other.node ? *node == *other.node : path == other.path;
+  }
+};
+
+// The files that a name stands for: a folder for those in it that are read or replaced.
+std::vector<Identity> identities(const NamedFile& file) {
+  std::vector<Identity> found{Identity(file.path)};
+  std::vector<fs::path> inside;
+  if (file.kind == Kind::frames || file.kind == Kind::frames_output)
+    inside = frame_files(file.path);
+  if (file.kind == Kind::run_output) inside = run_files(file.path);
+  for (const fs::path& name : inside) found.emplace_back(file.path / name);
+  if (file.kind == Kind::reach && !is_special_file(file.path)) {  // a pipe can be read only once
+    if (const auto poses = reach_poses_file(file.path)) found.emplace_back(*poses);
+  }
+  return found;
+}
+
+bool have_a_common_file(const NamedFile& a, const NamedFile& b) {
+  const std::vector<Identity> of_b = identities(b);
+  for (const Identity& file : identities(a)) {
+    for (const Identity& other : of_b) {
+      if (file.is(other)) return true;
+    }
+  }
+  return false;
+}
+
+void check_not_read(const NamedFile& output, const std::vector<NamedFile>& files) {
+  if (is_special_file(output.path)) return;  // written to, not replaced
+  for (const NamedFile& other : files) {
+    const bool is_continued = other.option == "--map";
+    if (&other == &output || is_continued || !have_a_common_file(output, other)) continue;
+    refuse(output.option, output.path.string(),
+           "is, or holds, a file of " + other.option + " " + other.path.string());
+  }
+}
+
+}  // namespace
+
+void check_call(const CLI::App& subcommand) {
+  check_values(subcommand);
+  const std::vector<NamedFile> files = named_files(subcommand);
+  for (const NamedFile& file : files) {
+    if (!is_output(file.kind)) continue;
+    if (file.path == "-") {
+      refuse(file.option, "-", "is no file's name; /dev/stdout writes to the standard output");
+    }
+    if (file.kind == Kind::picture && small_ending(file.path) != ".png" &&
+        !is_special_file(file.path)) {
+      refuse(file.option, file.path.string(), "the name of a picture must end in .png");
+    }
+    check_not_read(file, files);
+  }
+  for (const NamedFile& file : files) {
+    if (file.kind == Kind::output || file.kind == Kind::picture) {
+      const AtomicFile writable(file.path);  // known now rather than after the work
+    }
+  }
+}
+
+}  // namespace viewgain::app

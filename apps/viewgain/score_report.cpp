@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "score_report.hpp"
+
+#include <array>
+#include <cstdio>
+
+#include "commands.hpp"
+#include "formats/values.hpp"
+
+namespace viewgain::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string csv_rows(const ScoredViews& views) {
+  std::string csv =
+      "index,gain,exploration,refinement,posterior_entropy,rays,hits,unknown_voxels,"
+      "occupied_voxels,status\n";
+  for (std::size_t i = 0; i < views.gains.size(); ++i) {
+    const ViewGain& r = views.gains[i];
+    csv += std::to_string(views.indices[i]);
+    for (const double value : {r.gain, r.exploration, r.refinement, r.posterior_entropy}) {
+      csv += ',' + exact_text(value);
+    }
+    for (const std::uint32_t value : {r.rays, r.hits, r.unknown_voxels, r.occupied_voxels}) {
+      csv += ',' + std::to_string(value);
+    }
+    csv += ',';
+    csv += view_status_name(r.status);
+    csv += '\n';
+  }
+  return csv;
+}
+
+std::string csv_rows(const Estimates& estimates) {
+  std::string csv = "index,gain,standard_error\n";
+  for (std::size_t i = 0; i < estimates.gains.size(); ++i) {
+    csv += std::to_string(i) + ',' + exact_text(estimates.gains[i].gain) + ',' +
+           exact_text(estimates.gains[i].standard_error) + '\n';
+  }
+  return csv;
+}
+
+ordered_json entries(const ScoredViews& views, const std::vector<Pose>& poses) {
+  ordered_json list = ordered_json::array();
+  for (std::size_t rank = 0; rank < views.indices.size(); ++rank) {
+    const ViewGain& r = views.gains[rank];
+    list.push_back({{"index", views.indices[rank]},
+                    {"gain", r.gain},  // a NaN becomes null
+                    {"exploration", r.exploration},
+                    {"refinement", r.refinement},
+                    {"posterior_entropy", r.posterior_entropy},
+                    {"rays", r.rays},
+                    {"hits", r.hits},
+                    {"unknown_voxels", r.unknown_voxels},
+                    {"occupied_voxels", r.occupied_voxels},
+                    {"status", view_status_name(r.status)},
+                    {"T_world_camera", to_json(poses[views.indices[rank]])}});
+  }
+  return list;
+}
+
+ordered_json entries(const Estimates& estimates, const std::vector<Pose>& poses) {
+  ordered_json list = ordered_json::array();
+  for (const std::size_t i : estimates.best) {
+    list.push_back({{"index", i},
+                    {"gain", estimates.gains[i].gain},
+                    {"standard_error", estimates.gains[i].standard_error},
+                    {"T_world_camera", to_json(poses[i])}});
+  }
+  return list;
+}
+
+void print_rows(const ScoredViews& views, const std::vector<Pose>& poses) {
+  std::printf("%4s %8s %12s %12s %12s %8s %9s %9s  %-26s %s\n", "rank", "index", "gain",
+              "exploration", "refinement", "hits", "unknown", "occupied", "eye x y z [m]",
+              "status");
+  for (std::size_t rank = 0; rank < views.indices.size(); ++rank) {
+    const std::size_t i = views.indices[rank];
+    const ViewGain& r = views.gains[rank];
+    const Eigen::Vector3d eye = poses[i].translation();
+    std::array<char, 80> position{};
+    std::snprintf(position.data(), position.size(), "%8.3f %8.3f %8.3f", eye.x(), eye.y(), eye.z());
+    std::printf("%4zu %8zu %12.6g %12.6g %12.6g %8u %9u %9u  %-26s %s\n", rank + 1, i, r.gain,
+                r.exploration, r.refinement, r.hits, r.unknown_voxels, r.occupied_voxels,
+                position.data(), std::string(view_status_name(r.status)).c_str());
+  }
+}
+
+void print_rows(const Estimates& estimates) {
+  std::printf("%4s %8s %12s %14s\n", "rank", "index", "gain", "standard error");
+  for (std::size_t rank = 0; rank < estimates.best.size(); ++rank) {
+    const ApproximateGain& r = estimates.gains[estimates.best[rank]];
+    std::printf("%4zu %8zu %12.6g %14.3g\n", rank + 1, estimates.best[rank], r.gain,
+                r.standard_error);
+  }
+}
+
+// The poses whose every ray was traced; for people and files, nothing of estimates.
+const ScoredViews& scored_in_full(const Scores& scores) {
+  static const ScoredViews none;
+  if (const auto* ranking = std::get_if<Ranking>(&scores.found)) return ranking->scored;
+  if (const auto* joint = std::get_if<JointViews>(&scores.found)) return joint->views;
+  return none;
+}
+
+}  // namespace
+
+const std::size_t* Scores::winner() const {
+  const std::vector<std::size_t>* best = nullptr;
+  if (const auto* ranking = std::get_if<Ranking>(&found)) best = &ranking->best.indices;
+  if (const auto* joint = std::get_if<JointViews>(&found)) best = &joint->views.indices;
+  if (const auto* estimates = std::get_if<Estimates>(&found)) best = &estimates->best;
+  return best->empty() ? nullptr : best->data();
+}
+
+std::string csv_of(const Scores& scores) {
+  const auto* estimates = std::get_if<Estimates>(&scores.found);
+  return estimates != nullptr ? csv_rows(*estimates) : csv_rows(scored_in_full(scores));
+}
+
+void ScoreReport::print_json() const {
+  ordered_json json{{"poses", source.poses.size()},
+                    {"poses_scored", scored_in_full(scores).gains.size()},
+                    {"rays_traced", scores.rays_traced},
+                    {"rays_per_pose", evaluator.rays_per_pose()},
+                    {"threads", evaluator.num_threads()},
+                    {"isa", evaluator.scene().isa()},
+                    {"voxel_size", grid.voxel_size()},
+                    {"voxels", grid.voxel_count()},
+                    {"sensor", sensor.name},
+                    {"criterion", criterion},
+                    {"prior_sigma", evaluator.prior_sigma()},
+                    {"orthonormalized_poses", source.orthonormalized},
+                    {"seconds", seconds},
+                    {"poses_per_second", static_cast<double>(source.poses.size()) / seconds},
+                    {"rays_per_second", static_cast<double>(scores.rays_traced) / seconds}};
+  if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
+    json["best"] = entries(ranking->best, source.poses);
+  } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
+    json["best"] = entries(joint->views, source.poses);
+    json["set_gain"] = joint->gain;
+  } else {
+    json["best"] = entries(std::get<Estimates>(scores.found), source.poses);
+  }
+  app::print_json(json);
+}
+
+void ScoreReport::print_table() const {
+  std::printf("%s, sensor %s, prior sigma %.4g m, gains in %s\n", criterion.c_str(),
+              sensor.name.c_str(), evaluator.prior_sigma(), criterion == "trace" ? "m^2" : "nat");
+  if (source.orthonormalized > 0) {
+    std::printf("rotations that were off and were orthonormalised: %zu of %zu\n",
+                source.orthonormalized, source.poses.size());
+  }
+  if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
+    print_rows(ranking->best, source.poses);
+  } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
+    print_rows(joint->views, source.poses);
+    std::printf("together: %.6g\n", joint->gain);
+  } else {
+    print_rows(std::get<Estimates>(scores.found));
+  }
+  const std::size_t poses = source.poses.size(), in_full = scored_in_full(scores).gains.size();
+  const int threads = evaluator.num_threads();
+  std::printf(
+      "%s poses in %.3f s: %.0f poses/s, %s rays/s, %s rays per pose, %s voxels, %d %s, %s\n",
+      with_commas(poses).c_str(), seconds, static_cast<double>(poses) / seconds,
+      with_unit(static_cast<double>(scores.rays_traced) / seconds).c_str(),
+      with_commas(evaluator.rays_per_pose()).c_str(), with_commas(grid.voxel_count()).c_str(),
+      threads, threads == 1 ? "thread" : "threads", std::string(evaluator.scene().isa()).c_str());
+  if (in_full < poses) {
+    std::printf("%s scored in full, %s rays traced\n", with_commas(in_full).c_str(),
+                with_commas(scores.rays_traced).c_str());
+  }
+}
+
+}  // namespace viewgain::app

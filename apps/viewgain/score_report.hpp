@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "formats/pose_source.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::app {
+
+/// Some of the poses, each with its gain.
+struct ScoredViews {
+  std::vector<std::size_t> indices;  ///< of the poses
+  std::vector<ViewGain> gains;       ///< of those
+};
+
+/// Every pose, or those that a race traced with all their rays.
+struct Ranking {
+  ScoredViews scored;  ///< in input order
+  ScoredViews best;    ///< best first
+};
+
+/// Views that are good together.
+struct JointViews {
+  ScoredViews views;  ///< in the set's order, each with what it adds to those before
+  double gain = 0;    ///< of all
+};
+
+/// Gains from a share of the rays.
+struct Estimates {
+  std::vector<ApproximateGain> gains;  ///< of all poses
+  std::vector<std::size_t> best;       ///< of the poses, best first
+};
+
+/// What scoring came to, by the way that was asked for.
+struct Scores {
+  std::variant<Ranking, JointViews, Estimates> found;
+  std::uint64_t rays_traced = 0;
+
+  /// Index of the best pose; nothing if none was to be printed.
+  [[nodiscard]] const std::size_t* winner() const;
+};
+
+/// The contents of the file of `score --out`; apps/README.md names the columns.
+[[nodiscard]] std::string csv_of(const Scores& scores);
+
+/// What was asked and what came out, for the two ways of printing.
+struct ScoreReport {
+  const std::string& criterion;
+  const BeliefGrid& grid;
+  const Sensor& sensor;
+  const PoseSource& source;
+  const GainEvaluator& evaluator;
+  const Scores& scores;
+  double seconds = 0;
+
+  /// One JSON object; apps/README.md names the keys.
+  void print_json() const;
+  /// For people.
+  void print_table() const;
+};
+
+}  // namespace viewgain::app

@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/staged_folder.hpp"
+
+#include <clocale>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/program_runner.hpp"
+#include "formats/frames_dir.hpp"
+#include "formats/run_folder.hpp"
+#include "formats/sensor_toml.hpp"
+#include "formats/values.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Strings = std::vector<std::string>;
+
+class StagedFolderTest : public test::ProgramTest {
+ protected:
+  static void put(const fs::path& file, const std::string& text) {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+  }
+};
+
+TEST_F(StagedFolderTest, NothingShowsUntilAllIsThere) {
+  {
+    StagedFolder staged(dir / "a/b");
+    put(staged.path() / "one.txt", "new");
+    EXPECT_FALSE(fs::exists(dir / "a/b"));
+    staged.commit({});
+  }
+  EXPECT_EQ(list("a"), Strings{"b"});
+  EXPECT_EQ(read("a/b/one.txt"), "new");
+}
+
+TEST_F(StagedFolderTest, OldNamesGoAndForeignOnesStay) {
+  write("run/one.txt", "old");
+  write("run/maps/00.vdb", "old");
+  write("run/maps/01.vdb", "old");
+  write("run/views/00.png", "old");
+  write("run/mine.txt", "mine");
+  {
+    StagedFolder staged(dir / "run");
+    put(staged.path() / "one.txt", "new");
+    put(staged.path() / "maps/00.vdb", "new");
+    EXPECT_EQ(read("run/one.txt"), "old");
+    staged.commit({"one.txt", "maps/00.vdb", "maps/01.vdb", "views/00.png"});
+  }
+  EXPECT_EQ(
+      contents("run"),
+      (std::map<std::string, std::string>{
+          {"one.txt", "new"}, {"maps", "a folder"}, {"maps/00.vdb", "new"}, {"mine.txt", "mine"}}));
+}
+
+TEST_F(StagedFolderTest, AFailureLeavesAnothersResultsInTheParentItMade) {
+  auto first = std::make_optional<StagedFolder>(dir / "runs/a");
+  {
+    StagedFolder second(dir / "runs/b");
+    put(second.path() / "one.txt", "new");
+    second.commit({});
+  }
+  first.reset();  // fails: runs/ is its own, but not only its own any more
+  EXPECT_EQ(list("runs"), Strings{"b"});
+  EXPECT_EQ(read("runs/b/one.txt"), "new");
+  {
+    const StagedFolder alone(dir / "made/for/this");
+  }
+  EXPECT_FALSE(fs::exists(dir / "made"));
+}
+
+TEST_F(StagedFolderTest, ALeftoverInUseStays) {
+  std::string name;
+  {
+    const StagedFolder staged(dir / "out");
+    name = staged.path().filename().string();
+    ASSERT_EQ(name, list(".").front());
+    const StagedFolder another(dir / "out");
+    EXPECT_TRUE(fs::exists(dir / name));
+    EXPECT_EQ(list(".").size(), 2U);
+  }
+  EXPECT_EQ(list("."), Strings{});
+  put(dir / name / "half.txt", "as a killed process has left it");
+  put(dir / ".out.tmp-mine/one.txt", "no temporary");
+  put(dir / ".other.tmp-1-0/one.txt", "of another folder");
+  write(".out.tmp-1-0", "no folder");
+  {
+    const StagedFolder next(dir / "out");
+  }
+  EXPECT_EQ(list("."), (Strings{".other.tmp-1-0", ".out.tmp-1-0", ".out.tmp-mine"}));
+}
+
+TEST_F(StagedFolderTest, FramesThatNobodySimulatedAreRefused) {
+  std::size_t cases = 0;
+  for (const char* name :
+       {"frame-000000.depth.png", "frame-000000.amplitude.png", "frame-000000.pose.txt",
+        "camera-intrinsics.txt", "poses.txt", "sensor.toml", "simulated.txt"}) {
+    const std::string folder = "recording" + std::to_string(cases);
+    write(folder + "/" + name, "mine");
+    EXPECT_THROW(FramesWriter writer(dir / folder), Error) << name;
+    EXPECT_EQ(list(folder), Strings{name});
+    ++cases;
+  }
+  EXPECT_EQ(cases, 7U);
+
+  const Sensor sensor = sensor_preset("laser_line");
+  const auto pixels = static_cast<std::size_t>(sensor.camera.width * sensor.camera.height);
+  const DepthFrame frame{sensor.camera.width, sensor.camera.height,
+                         std::vector<float>(pixels, 1.0F)};
+  const auto write_frames = [&](std::size_t count) {
+    FramesWriter writer(dir / "frames");
+    for (std::size_t i = 0; i < count; ++i) writer.write_frame(i, frame);
+    writer.commit(std::vector<Pose>(count), sensor);
+  };
+  write_frames(3);
+  write("frames/mine.txt", "mine");
+  write_frames(2);
+  EXPECT_EQ(list("frames"), (Strings{"frame-000000.depth.png", "frame-000001.depth.png", "mine.txt",
+                                     "poses.txt", "sensor.toml", "simulated.txt"}));
+  write("frames/frame-000002.depth.png", "mine");
+  EXPECT_THROW(write_frames(3), Error);
+  EXPECT_EQ(read("frames/frame-000002.depth.png"), "mine");
+}
+
+TEST_F(StagedFolderTest, RunsThatNobodyLeftAreRefused) {
+  std::size_t cases = 0;
+  for (const char* name : {"run.json", "views.txt", "map.vdb", "surface.ply", "points.ply",
+                           "views/00.png", "views/01.amplitude.png", "maps/00.vdb"}) {
+    const std::string folder = "foreign" + std::to_string(cases);
+    write(folder + "/" + name, "mine");
+    EXPECT_THROW(RunFolder run(dir / folder), Error) << name;
+    EXPECT_EQ(read(folder + "/" + name), "mine");
+    ++cases;
+  }
+  EXPECT_EQ(cases, 8U);
+}
+
+TEST(PrintableText, BytesThatAreNoUtf8AreShown) {
+  const std::vector<std::pair<std::string, std::string>> texts{
+      {"map.vdb", "map.vdb"},
+      {"gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x99\x82",
+       "gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x99\x82"},
+      {"lat\xe9.off", "lat\\xE9.off"},
+      {"\xc3", "\\xC3"},                             // cut
+      {"\xc0\xaf", "\\xC0\\xAF"},                    // longer than needed
+      {"\xe0\x80\xaf", "\\xE0\\x80\\xAF"},           // longer than needed
+      {"\xed\xa0\x80", "\\xED\\xA0\\x80"},           // half of a surrogate pair
+      {"\xf4\x90\x80\x80", "\\xF4\\x90\\x80\\x80"},  // past the last code point
+      {"a\nb", "a\\x0Ab"}};
+  std::size_t cases = 0;
+  for (const auto& [bytes, text] : texts) {
+    EXPECT_EQ(printable(bytes), text);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 9U);
+}
+
+// A program that a host has told to speak German writes the same files.
+TEST_F(StagedFolderTest, NumbersHaveADecimalPointInEveryLocale) {
+  const std::string make =
+      "localedef -i de_DE -f UTF-8 '" + (dir / "de_DE.UTF-8").string() + "' >/dev/null 2>&1";
+  if (std::system(make.c_str()) != 0) GTEST_SKIP() << "no localedef, or no de_DE";
+  ::setenv("LOCPATH", dir.c_str(), 1);
+  ASSERT_NE(std::setlocale(LC_NUMERIC, "de_DE.UTF-8"), nullptr);
+  const std::string exact = exact_text(0.1), brief = describe({{0.5, 0, 0}, {1, 1, 1.25}}),
+                    unit = with_unit(83.2e6);
+  std::setlocale(LC_NUMERIC, "C");
+  ::unsetenv("LOCPATH");
+  EXPECT_EQ(exact, "0.10000000000000001");
+  EXPECT_EQ(brief, "0.5,0,0,1,1,1.25");
+  EXPECT_EQ(unit, "83.2 M");
+}
+
+}  // namespace
+}  // namespace viewgain::app
