@@ -1,5 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
+import functools
 import os
 import pathlib
 
@@ -17,7 +18,8 @@ def test_labels_come_back(labels, grid):
     statistics = grid.statistics()
     for state, name in enumerate(("unknown", "free", "occupied")):
         assert statistics[name] == np.count_nonzero(labels == state)
-    turned = viewgain.BeliefGrid.from_labels(labels.transpose(2, 1, 0), voxel_size=0.3, origin=(0.1, 7, 2))
+    turned = viewgain.BeliefGrid.from_labels(
+        labels.transpose(2, 1, 0), voxel_size=0.3, origin=(0.1, 7, 2), prior_sigma=0.15)
     assert np.array_equal(turned.states(), labels.transpose(2, 1, 0))
 
 
@@ -28,7 +30,7 @@ def test_any_extent_and_origin_keeps_every_label():
         shape = rng.integers(1, 20, 3)
         array = rng.integers(0, 3, shape).astype(np.uint8)
         grid = viewgain.BeliefGrid.from_labels(
-            array, voxel_size=rng.uniform(1e-3, 2), origin=rng.normal(size=3))
+            array, voxel_size=rng.uniform(1e-3, 2), origin=rng.normal(size=3), prior_sigma=0.1)
         assert np.array_equal(grid.states(), array)
         cases += 1
     assert cases == 50
@@ -39,7 +41,7 @@ def test_octomap_files(tmp_path, grid, sensor):
     grid.save_octomap(path)
     # A tree lies in the world's frame.
     workspace = np.array([[0, 0, 0], [0.32, 0.32, 0.32]]) + grid.T_world_grid[:3, 3]
-    again = viewgain.BeliefGrid.load_octomap(path, workspace=workspace)
+    again = viewgain.BeliefGrid.load_octomap(path, workspace=workspace, prior_sigma=0.005)
     assert again.prior_sigma == 0.005 and again.voxel_size == 0.01
     assert np.array_equal(again.states(), grid.states())
     of_sensor = viewgain.BeliefGrid.load_octomap(str(path), sensor=sensor)
@@ -47,7 +49,7 @@ def test_octomap_files(tmp_path, grid, sensor):
     assert np.count_nonzero(of_sensor.states() == 2) == np.count_nonzero(grid.states() == 2)
     path.write_bytes(path.read_bytes()[:200])
     with pytest.raises(viewgain.Error, match="map.ot"):
-        viewgain.BeliefGrid.load_octomap(path)
+        viewgain.BeliefGrid.load_octomap(path, sensor=sensor)
     with pytest.raises(FileNotFoundError):
         viewgain.BeliefGrid.load_octomap(tmp_path / "none.ot")
     with pytest.raises(ValueError, match=r"\(2,\)"):
@@ -108,11 +110,11 @@ def test_limits_are_looked_at_before_labels_are_copied():
     # 256 TiB if it were.
     labels = np.broadcast_to(np.uint8(0), (65536, 65536, 65536))
     with pytest.raises(viewgain.Error, match="voxels"):
-        viewgain.BeliefGrid.from_labels(labels, voxel_size=0.01)
+        viewgain.BeliefGrid.from_labels(labels, voxel_size=0.01, prior_sigma=0.01)
 
 
 def test_wrong_labels_and_layouts_are_named(labels):
-    make = viewgain.BeliefGrid.from_labels
+    make = functools.partial(viewgain.BeliefGrid.from_labels, prior_sigma=0.1)
     for wrong, text in [(labels[0], r"\(32, 32\)"), (labels.astype(np.int32), "int32"),
                         (labels.astype(bool), "bool"), ("labels", "uint8")]:
         with pytest.raises(ValueError, match=text):
@@ -131,7 +133,7 @@ def test_wrong_labels_and_layouts_are_named(labels):
     with pytest.raises(ValueError, match=r"\(3,\)"):
         viewgain.BeliefGrid(voxel_size=0.1, workspace=[0, 1, 2])
     with pytest.raises(viewgain.Error):
-        viewgain.BeliefGrid(voxel_size=1e-4, workspace=[[0, 0, 0], [9, 9, 9]])
+        viewgain.BeliefGrid(voxel_size=1e-4, workspace=[[0, 0, 0], [9, 9, 9]], prior_sigma=0.1)
 
 
 def test_frames_make_a_map(sensor):
