@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -141,6 +142,33 @@ vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count) {
              std::to_string(grid->grid.voxel_count()) + " voxels");
     }
     grid->grid.copy_states({states, count});
+  });
+}
+
+vg_status vg_grid_index_of(const vg_grid* grid, const double* points, size_t count,
+                           int32_t* voxels) {
+  return guarded([&] {
+    require(grid, "grid");
+    require_array(points, count, "points");
+    require_array(voxels, count, "voxels");
+    for (std::size_t i = 0; i < 3 * count; i += 3) {
+      const std::optional<Index3> voxel = grid->grid.index_of(vector_of(points + i));
+      const Index3 at = voxel.value_or(Index3{VG_NO_VOXEL, VG_NO_VOXEL, VG_NO_VOXEL});
+      std::copy_n(std::array{at.x, at.y, at.z}.data(), 3, voxels + i);
+    }
+  });
+}
+
+vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size_t count,
+                         double* centers) {
+  return guarded([&] {
+    require(grid, "grid");
+    require_array(voxels, count, "voxels");
+    require_array(centers, count, "centers");
+    for (std::size_t i = 0; i < 3 * count; i += 3) {
+      const Eigen::Vector3d center = grid->grid.center({voxels[i], voxels[i + 1], voxels[i + 2]});
+      std::copy_n(center.data(), 3, centers + i);
+    }
   });
 }
 

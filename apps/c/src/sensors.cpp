@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <string>
 
 #include "convert.hpp"
@@ -123,9 +122,6 @@ vg_status vg_sensor_preset(const char* name, vg_sensor* sensor) {
 vg_status vg_default_prior_sigma(double voxel_size, const vg_sensor* sensor, double* sigma) {
   return guarded([&] {
     require(sigma, "sigma");
-    if (!(voxel_size > 0 && std::isfinite(voxel_size))) {
-      reject("voxel_size is " + std::to_string(voxel_size) + " m; it must be positive and finite");
-    }
     const Sensor camera = sensor_of(sensor);
     camera.validate();
     *sigma = default_prior_sigma(voxel_size, camera);

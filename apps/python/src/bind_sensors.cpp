@@ -13,7 +13,6 @@
 #include "bindings.hpp"
 #include "classes.hpp"
 #include "fields.hpp"
-#include "map/prior.hpp"
 #include "viewgain/core/sensor.hpp"
 
 namespace viewgain::python {
@@ -213,7 +212,7 @@ Sensor)");
   module.def(
       "sensor_preset_names", [] { return sensor_preset_names(); },
       "The names that ``sensor_preset`` takes.\n\nReturns\n-------\nlist of str");
-  module.def("default_prior_sigma", &checked_prior_sigma, py::arg("voxel_size"), py::arg("sensor"),
+  module.def("default_prior_sigma", &default_prior_sigma, py::arg("voxel_size"), py::arg("sensor"),
              R"(Standard deviation of an unknown voxel's position, when the map does not say [m].
 
 ``max(voxel_size / 2, 2 * axial sigma at the working distance)``: unknown is never surer than one

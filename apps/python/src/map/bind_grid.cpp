@@ -162,6 +162,7 @@ Error
     More than 65,536 voxels along an axis or 2**40 in all.)");
   refuse_pickling(grid_class);
   bind_grid_files(grid_class);
+  bind_voxels(grid_class);
   grid_class
       .def(py::init([](double voxel_size, const py::object& workspace,
                        std::optional<double> prior_sigma, const Sensor* sensor,

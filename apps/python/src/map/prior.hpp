@@ -2,23 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
 #include <optional>
-#include <string>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/sensor.hpp"
 
 namespace viewgain::python {
-
-/// default_prior_sigma() [m]; throws Error(invalid_argument) for a voxel size that is none.
-[[nodiscard]] inline double checked_prior_sigma(double voxel_size, const Sensor& sensor) {
-  if (!(voxel_size > 0 && std::isfinite(voxel_size))) {
-    throw Error(ErrorCode::invalid_argument, "voxel_size is " + std::to_string(voxel_size) +
-                                                 " m; it must be positive and finite");
-  }
-  return default_prior_sigma(voxel_size, sensor);
-}
 
 /// Throws Error(invalid_argument) if there is neither. A default of half a voxel would make unknown
 /// voxels more certain than a reading where voxels are finer than the noise.
@@ -34,7 +23,7 @@ inline void require_prior(std::optional<double> prior_sigma, const Sensor* senso
 [[nodiscard]] inline double prior_of(std::optional<double> prior_sigma, const Sensor* sensor,
                                      double voxel_size) {
   require_prior(prior_sigma, sensor);
-  return prior_sigma ? *prior_sigma : checked_prior_sigma(voxel_size, *sensor);
+  return prior_sigma ? *prior_sigma : default_prior_sigma(voxel_size, *sensor);
 }
 
 }  // namespace viewgain::python

@@ -13,7 +13,6 @@
 #include "classes.hpp"
 #include "gil.hpp"
 #include "map/depth_images.hpp"
-#include "map/prior.hpp"
 #include "map/shared_grid.hpp"
 #include "mesh/bindings.hpp"
 #include "planner/candidate_generation.hpp"
@@ -128,7 +127,7 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
   app::ModelConfig model_config;
   model_config.grid.voxel_size = voxel_size;
   model_config.grid.workspace = box(workspace, "workspace");
-  model_config.grid.prior_sigma = checked_prior_sigma(voxel_size, sensor);
+  model_config.grid.prior_sigma = default_prior_sigma(voxel_size, sensor);
   model_config.integration.support_plane = support_plane;
   if (jump_edges) model_config.jump_edges.emplace();
   model_config.criterion = parse_criterion(criterion);
