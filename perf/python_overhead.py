@@ -29,7 +29,8 @@ grid = viewgain.BeliefGrid.from_labels(labels, voxel_size=0.005, origin=[-0.16] 
 poses = viewgain.sphere_poses(count, 0.6)
 evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor)
 nowhere = viewgain.GainEvaluator(
-    viewgain.VoxelScene(viewgain.BeliefGrid.from_labels(np.ones((1, 1, 1), np.uint8), voxel_size=0.005)),
+    viewgain.VoxelScene(viewgain.BeliefGrid.from_labels(
+        np.ones((1, 1, 1), np.uint8), voxel_size=0.005, sensor=sensor)),
     sensor, pixel_stride=100)
 
 with tempfile.TemporaryDirectory() as name:

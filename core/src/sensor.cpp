@@ -137,6 +137,10 @@ Sensor sensor_preset(std::string_view name) {
 }
 
 double default_prior_sigma(double voxel_size, const Sensor& sensor) {
+  if (!(voxel_size > 0 && std::isfinite(voxel_size))) {
+    throw Error(ErrorCode::invalid_argument,
+                "voxel_size is " + short_text(voxel_size) + " m; it must be positive and finite");
+  }
   return std::max(voxel_size / 2.0, 2.0 * sensor.sigmas(sensor.working_distance).axial);
 }
 

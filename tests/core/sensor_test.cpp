@@ -138,6 +138,9 @@ TEST(Sensor, DefaultPriorIsNeverSurerThanTwoReadings) {
   const Sensor s = sensor_preset("sr4000");
   EXPECT_EQ(default_prior_sigma(3.125e-3, s), 2 * s.sigmas(0.4).axial);
   EXPECT_EQ(default_prior_sigma(0.02, s), 0.01);
+  for (const double voxel_size : {0.0, -0.01, std::nan(""), HUGE_VAL}) {
+    EXPECT_THROW(static_cast<void>(default_prior_sigma(voxel_size, s)), Error) << voxel_size;
+  }
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ void write_pose(const Pose& pose, double* matrix);
 void write_poses(std::span<const Pose> poses, double* matrices);
 
 /// Throws Error(invalid_argument) for null, another size, or a noise model that does not exist.
-[[nodiscard]] Sensor sensor_of(const vg_sensor* sensor);
+[[nodiscard]] Sensor sensor_of(const vg_sensor* given);
 
 [[nodiscard]] inline Eigen::Vector3d vector_of(const double* xyz) {
   return {xyz[0], xyz[1], xyz[2]};

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,15 +26,15 @@ static_assert(VG_HIT_OBSTACLE == static_cast<int>(RayHit::Kind::obstacle));
 /// A caller's vg_watch for the length of one call.
 class Watcher {
  public:
-  Watcher(const vg_watch* watch, std::size_t total) : watch_(watch), total_(total) {
+  Watcher(const vg_watch* watch, std::size_t total) : total_(total) {
     if (watch == nullptr) return;
-    require_struct(watch, "vg_watch");
-    if (watch->poll == nullptr) reject("poll of vg_watch is null");
+    watch_ = read_struct(watch, "vg_watch");
+    if (watch_->poll == nullptr) reject("poll of vg_watch is null");
   }
 
   /// To be used while this lives.
   [[nodiscard]] BatchControl control() {
-    if (watch_ == nullptr) return {};
+    if (!watch_) return {};
     BatchControl control;
     control.progress = [this](std::size_t done, std::size_t) {
       const std::lock_guard lock(mutex_);
@@ -48,7 +49,7 @@ class Watcher {
 
   /// At the end of the call. Throws Stopped unless all was done.
   void finish(bool complete) {
-    if (watch_ == nullptr) return;
+    if (!watch_) return;
     if (!complete) {
       throw Stopped("stopped by poll after " + std::to_string(done_) + " of " +
                     std::to_string(total_) + " poses");
@@ -57,7 +58,7 @@ class Watcher {
   }
 
  private:
-  const vg_watch* watch_;
+  std::optional<vg_watch> watch_;
   std::size_t total_;
   std::size_t done_ = 0;
   std::mutex mutex_;
@@ -120,31 +121,34 @@ void hand_over(std::span<const std::size_t> chosen, std::span<const ViewGain> vi
 
 }  // namespace
 
-void vg_watch_init(vg_watch* watch, size_t struct_size) { initialise(watch, struct_size, {}); }
+template <>
+vg_evaluator_config viewgain::c_api::defaults() noexcept {
+  vg_evaluator_config config{};
+  config.pixel_stride = 1;
+  config.prior_sigma = config.min_range = config.max_range = kNone;
+  return config;
+}
+
+void vg_watch_init(vg_watch* watch, size_t struct_size) { initialise(watch, struct_size); }
 
 void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_size) {
-  vg_evaluator_config defaults{};
-  defaults.pixel_stride = 1;
-  defaults.prior_sigma = defaults.min_range = defaults.max_range = kNone;
-  initialise(config, struct_size, defaults);
+  initialise(config, struct_size);
 }
 
 vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
                               const vg_evaluator_config* config, vg_evaluator** evaluator) {
   return make_handle(evaluator, "evaluator", [&] {
     require(scene, "scene");
-    const Sensor camera = sensor_of(sensor);
-    if (config == nullptr) return GainEvaluator(scene->scene, camera);
-    require_struct(config, "vg_evaluator_config");
-    return GainEvaluator(scene->scene, camera, settings_of(*config),
-                         {.num_threads = config->num_threads});
+    const vg_evaluator_config chosen = read_config(config, "vg_evaluator_config");
+    return GainEvaluator(scene->scene, sensor_of(sensor), settings_of(chosen),
+                         {.num_threads = chosen.num_threads});
   });
 }
 
 void vg_evaluator_release(vg_evaluator* evaluator) { delete evaluator; }
 
 void vg_evaluator_info_init(vg_evaluator_info* info, size_t struct_size) {
-  initialise(info, struct_size, {});
+  initialise(info, struct_size);
 }
 
 vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluator_info* info) {
@@ -154,12 +158,12 @@ vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluator_info
     const GainEvaluator& own = evaluator->evaluator;
     const PinholeCamera& camera = own.camera();
     const int stride = own.pixel_stride();
-    *info = {.struct_size = info->struct_size,
-             .image_width = (camera.width - 1) / stride + 1,
-             .image_height = (camera.height - 1) / stride + 1,
-             .rays_per_pose = own.rays_per_pose(),
-             .num_threads = own.num_threads(),
-             .prior_sigma = own.prior_sigma()};
+    write_struct(info, {.struct_size = 0,
+                        .image_width = (camera.width - 1) / stride + 1,
+                        .image_height = (camera.height - 1) / stride + 1,
+                        .rays_per_pose = own.rays_per_pose(),
+                        .num_threads = own.num_threads(),
+                        .prior_sigma = own.prior_sigma()});
   });
 }
 
@@ -183,13 +187,13 @@ vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* poses, 
   return guarded([&] {
     require(evaluator, "evaluator");
     require_array(views, count, "views");
-    require_size(view_size, sizeof(vg_view_gain), "vg_view_gain (view_size)");
+    require_known_size(view_size, Sizes<vg_view_gain>::known, "vg_view_gain (view_size)");
     Watcher watcher(watch, count);
     const std::vector<Pose> candidates = poses_of(poses, count);
     std::vector<ViewGain> own(count);
     const bool complete =
         score(evaluator->evaluator, candidates, own, watch != nullptr, watcher.control());
-    std::transform(own.begin(), own.end(), views, written);
+    write_items(std::span<const ViewGain>(own), views, view_size, written);
     watcher.finish(complete);
   });
 }
@@ -259,7 +263,8 @@ vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_c
     require(T_world_camera, "T_world_camera");
     require_array(contributions, capacity, "contributions");
     require(found, "found");
-    require_size(contribution_size, sizeof(vg_contribution), "vg_contribution (contribution_size)");
+    require_known_size(contribution_size, Sizes<vg_contribution>::known,
+                       "vg_contribution (contribution_size)");
     const Pose pose = rigid_pose_of(T_world_camera);
     const std::vector<VoxelContribution> own = evaluator->evaluator.contributions(pose);
     if (own.empty() && evaluator->evaluator.evaluate(pose).status == ViewStatus::bad_pose) {
@@ -267,12 +272,12 @@ vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_c
              "; 1e-3 is allowed");
     }
     *found = own.size();
-    for (std::size_t i = 0; i < std::min(capacity, own.size()); ++i) {
-      const VoxelContribution& part = own[i];
-      contributions[i] = {.voxel = {part.voxel.x, part.voxel.y, part.voxel.z},
-                          .state = static_cast<std::int32_t>(part.state),
-                          .rays = part.rays,
-                          .gain = part.gain};
-    }
+    const std::span<const VoxelContribution> wanted(own.data(), std::min(capacity, own.size()));
+    write_items(wanted, contributions, contribution_size, [](const VoxelContribution& part) {
+      return vg_contribution{.voxel = {part.voxel.x, part.voxel.y, part.voxel.z},
+                             .state = static_cast<std::int32_t>(part.state),
+                             .rays = part.rays,
+                             .gain = part.gain};
+    });
   });
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -13,20 +14,31 @@
 using namespace viewgain;
 using namespace viewgain::c_api;
 
+template <>
+vg_grid_config viewgain::c_api::defaults() noexcept {
+  vg_grid_config config{};
+  write_pose(Pose{}, config.T_world_grid);
+  return config;
+}
+
+template <>
+vg_integrator_config viewgain::c_api::defaults() noexcept {
+  vg_integrator_config config{};
+  config.support_plane = kNone;
+  return config;
+}
+
 void vg_grid_config_init(vg_grid_config* config, size_t struct_size) {
-  vg_grid_config defaults{};
-  write_pose(Pose{}, defaults.T_world_grid);
-  initialise(config, struct_size, defaults);
+  initialise(config, struct_size);
 }
 
 vg_status vg_grid_create(const vg_grid_config* config, vg_grid** grid) {
   return make_handle(grid, "grid", [&] {
-    require_struct(config, "vg_grid_config");
-    return BeliefGrid(
-        {.voxel_size = config->voxel_size,
-         .workspace = {std::to_array(config->box_min), std::to_array(config->box_max)},
-         .T_world_grid = rigid_pose_of(config->T_world_grid),
-         .prior_sigma = config->prior_sigma});
+    const vg_grid_config chosen = read_struct(config, "vg_grid_config");
+    return BeliefGrid({.voxel_size = chosen.voxel_size,
+                       .workspace = {std::to_array(chosen.box_min), std::to_array(chosen.box_max)},
+                       .T_world_grid = rigid_pose_of(chosen.T_world_grid),
+                       .prior_sigma = chosen.prior_sigma});
   });
 }
 
@@ -95,9 +107,7 @@ vg_status vg_grid_clone(const vg_grid* grid, vg_grid** copy) {
 
 void vg_grid_release(vg_grid* grid) { delete grid; }
 
-void vg_grid_info_init(vg_grid_info* info, size_t struct_size) {
-  initialise(info, struct_size, {});
-}
+void vg_grid_info_init(vg_grid_info* info, size_t struct_size) { initialise(info, struct_size); }
 
 vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info) {
   return guarded([&] {
@@ -106,19 +116,20 @@ vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info) {
     const BeliefGrid& map = grid->grid;
     const GridStatistics statistics = map.statistics();
     const Index3 base = map.min_index(), dims = map.dims();
-    *info = {.struct_size = info->struct_size,
-             .min_index = {base.x, base.y, base.z},
-             .dims = {dims.x, dims.y, dims.z},
-             .voxel_size = map.voxel_size(),
-             .prior_sigma = map.prior_sigma(),
-             .T_world_grid = {},
-             .unknown = statistics.unknown,
-             .free = statistics.free,
-             .occupied = statistics.occupied,
-             .views = map.views().size(),
-             .bytes = statistics.bytes,
-             .entropy_removed = statistics.entropy_removed};
-    write_pose(map.T_world_grid(), info->T_world_grid);
+    vg_grid_info whole{.struct_size = 0,
+                       .min_index = {base.x, base.y, base.z},
+                       .dims = {dims.x, dims.y, dims.z},
+                       .voxel_size = map.voxel_size(),
+                       .prior_sigma = map.prior_sigma(),
+                       .T_world_grid = {},
+                       .unknown = statistics.unknown,
+                       .free = statistics.free,
+                       .occupied = statistics.occupied,
+                       .views = map.views().size(),
+                       .bytes = statistics.bytes,
+                       .entropy_removed = statistics.entropy_removed};
+    write_pose(map.T_world_grid(), whole.T_world_grid);
+    write_struct(info, whole);
   });
 }
 
@@ -134,6 +145,33 @@ vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count) {
   });
 }
 
+vg_status vg_grid_index_of(const vg_grid* grid, const double* points, size_t count,
+                           int32_t* voxels) {
+  return guarded([&] {
+    require(grid, "grid");
+    require_array(points, count, "points");
+    require_array(voxels, count, "voxels");
+    for (std::size_t i = 0; i < 3 * count; i += 3) {
+      const std::optional<Index3> voxel = grid->grid.index_of(vector_of(points + i));
+      const Index3 at = voxel.value_or(Index3{VG_NO_VOXEL, VG_NO_VOXEL, VG_NO_VOXEL});
+      std::copy_n(std::array{at.x, at.y, at.z}.data(), 3, voxels + i);
+    }
+  });
+}
+
+vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size_t count,
+                         double* centers) {
+  return guarded([&] {
+    require(grid, "grid");
+    require_array(voxels, count, "voxels");
+    require_array(centers, count, "centers");
+    for (std::size_t i = 0; i < 3 * count; i += 3) {
+      const Eigen::Vector3d center = grid->grid.center({voxels[i], voxels[i + 1], voxels[i + 2]});
+      std::copy_n(center.data(), 3, centers + i);
+    }
+  });
+}
+
 vg_status vg_grid_hash(const vg_grid* grid, char hash[17]) {
   return guarded([&] {
     require(grid, "grid");
@@ -144,37 +182,31 @@ vg_status vg_grid_hash(const vg_grid* grid, char hash[17]) {
 }
 
 void vg_integrator_config_init(vg_integrator_config* config, size_t struct_size) {
-  vg_integrator_config defaults{};
-  defaults.support_plane = kNone;
-  initialise(config, struct_size, defaults);
+  initialise(config, struct_size);
 }
 
 void vg_integration_report_init(vg_integration_report* report, size_t struct_size) {
-  initialise(report, struct_size, {});
+  initialise(report, struct_size);
 }
 
 vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_config* config,
                                vg_integrator** integrator) {
   return make_handle(integrator, "integrator", [&] {
     const Sensor camera = sensor_of(sensor);
-    IntegrationConfig settings;
-    ExecConfig exec;
-    if (config != nullptr) {
-      require_struct(config, "vg_integrator_config");
-      if (config->carve != VG_CARVE_CONES && config->carve != VG_CARVE_LINES) {
-        reject("carve is " + std::to_string(config->carve) + "; it must be 0 or 1 (VG_CARVE_)");
-      }
-      if (config->occupancy != VG_OCCUPANCY_PROBABILISTIC &&
-          config->occupancy != VG_OCCUPANCY_LITERAL) {
-        reject("occupancy is " + std::to_string(config->occupancy) +
-               "; it must be 0 or 1 (VG_OCCUPANCY_)");
-      }
-      settings = {static_cast<Carve>(config->carve), static_cast<Occupancy>(config->occupancy),
-                  given(config->support_plane)};
-      exec.num_threads = config->num_threads;
+    const vg_integrator_config chosen = read_config(config, "vg_integrator_config");
+    if (chosen.carve != VG_CARVE_CONES && chosen.carve != VG_CARVE_LINES) {
+      reject("carve is " + std::to_string(chosen.carve) + "; it must be 0 or 1 (VG_CARVE_)");
     }
-    return vg_integrator{FrameIntegrator(camera, settings, exec), camera.camera.width,
-                         camera.camera.height};
+    if (chosen.occupancy != VG_OCCUPANCY_PROBABILISTIC &&
+        chosen.occupancy != VG_OCCUPANCY_LITERAL) {
+      reject("occupancy is " + std::to_string(chosen.occupancy) +
+             "; it must be 0 or 1 (VG_OCCUPANCY_)");
+    }
+    const IntegrationConfig settings{static_cast<Carve>(chosen.carve),
+                                     static_cast<Occupancy>(chosen.occupancy),
+                                     given(chosen.support_plane)};
+    return vg_integrator{FrameIntegrator(camera, settings, {.num_threads = chosen.num_threads}),
+                         camera.camera.width, camera.camera.height};
   });
 }
 
@@ -197,14 +229,14 @@ vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* de
     const IntegrationReport counts =
         integrator->integrator.integrate(grid->grid, frame, rigid_pose_of(T_world_camera));
     if (report == nullptr) return;
-    *report = {.struct_size = report->struct_size,
-               .readings = counts.readings,
-               .plane_readings = counts.plane_readings,
-               .out_of_range = counts.out_of_range,
-               .invalid = counts.invalid,
-               .readings_inside = counts.readings_inside,
-               .voxels_hit = counts.voxels_hit,
-               .voxels_crossed = counts.voxels_crossed};
+    write_struct(report, {.struct_size = 0,
+                          .readings = counts.readings,
+                          .plane_readings = counts.plane_readings,
+                          .out_of_range = counts.out_of_range,
+                          .invalid = counts.invalid,
+                          .readings_inside = counts.readings_inside,
+                          .voxels_hit = counts.voxels_hit,
+                          .voxels_crossed = counts.voxels_crossed});
   });
 }
 

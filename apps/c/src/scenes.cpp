@@ -66,17 +66,29 @@ FeasibilityConfig settings_of(const vg_feasibility_config& config) {
 
 }  // namespace
 
+template <>
+vg_feasibility_config viewgain::c_api::defaults() noexcept {
+  const FeasibilityConfig own;
+  vg_feasibility_config config{};
+  std::copy(own.body.size.begin(), own.body.size.end(), config.body_size);
+  write_pose(Pose{}, config.T_flange_camera);
+  config.clearance = own.clearance;
+  config.support_plane = kNone;
+  config.taken_distance = own.taken_tolerance.distance;
+  config.taken_angle = own.taken_tolerance.angle;
+  config.max_near_share = own.max_near_share;
+  return config;
+}
+
 void vg_scene_config_init(vg_scene_config* config, size_t struct_size) {
-  initialise(config, struct_size, {});
+  initialise(config, struct_size);
 }
 
 vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config, vg_scene** scene) {
   return make_handle(scene, "scene", [&] {
     require(grid, "grid");
-    if (config == nullptr) return VoxelScene::build(grid->grid);
-    require_struct(config, "vg_scene_config");
-    return VoxelScene::build(grid->grid, obstacles_of(*config),
-                             {.num_threads = config->num_threads});
+    const vg_scene_config chosen = read_config(config, "vg_scene_config");
+    return VoxelScene::build(grid->grid, obstacles_of(chosen), {.num_threads = chosen.num_threads});
   });
 }
 
@@ -92,25 +104,15 @@ vg_status vg_scene_update(const vg_scene* before, const vg_grid* grid, int32_t n
 void vg_scene_release(vg_scene* scene) { delete scene; }
 
 void vg_feasibility_config_init(vg_feasibility_config* config, size_t struct_size) {
-  const FeasibilityConfig own;
-  vg_feasibility_config defaults{};
-  std::copy(own.body.size.begin(), own.body.size.end(), defaults.body_size);
-  write_pose(Pose{}, defaults.T_flange_camera);
-  defaults.clearance = own.clearance;
-  defaults.support_plane = kNone;
-  defaults.taken_distance = own.taken_tolerance.distance;
-  defaults.taken_angle = own.taken_tolerance.angle;
-  defaults.max_near_share = own.max_near_share;
-  initialise(config, struct_size, defaults);
+  initialise(config, struct_size);
 }
 
 vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibility_config* config,
                                 vg_feasibility** feasibility) {
   return make_handle(feasibility, "feasibility", [&] {
     require(scene, "scene");
-    if (config == nullptr) return FeasibilityChecker(scene->scene, {});
-    require_struct(config, "vg_feasibility_config");
-    return FeasibilityChecker(scene->scene, settings_of(*config));
+    return FeasibilityChecker(scene->scene,
+                              settings_of(read_config(config, "vg_feasibility_config")));
   });
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <string>
 
 #include "convert.hpp"
@@ -74,20 +73,20 @@ NoiseModel noise_of(std::int32_t model, const Parameters& p) {
 
 }  // namespace
 
-Sensor sensor_of(const vg_sensor* sensor) {
-  require_struct(sensor, "vg_sensor");
+Sensor sensor_of(const vg_sensor* given) {
+  const vg_sensor sensor = read_struct(given, "vg_sensor");
   Sensor result;
-  result.camera = {.width = sensor->width,
-                   .height = sensor->height,
-                   .fx = sensor->fx,
-                   .fy = sensor->fy,
-                   .cx = sensor->cx,
-                   .cy = sensor->cy,
-                   .distortion = std::to_array(sensor->distortion)};
-  result.min_range = sensor->min_range;
-  result.max_range = sensor->max_range;
-  result.working_distance = sensor->working_distance;
-  result.noise = noise_of(sensor->noise_model, std::to_array(sensor->noise));
+  result.camera = {.width = sensor.width,
+                   .height = sensor.height,
+                   .fx = sensor.fx,
+                   .fy = sensor.fy,
+                   .cx = sensor.cx,
+                   .cy = sensor.cy,
+                   .distortion = std::to_array(sensor.distortion)};
+  result.min_range = sensor.min_range;
+  result.max_range = sensor.max_range;
+  result.working_distance = sensor.working_distance;
+  result.noise = noise_of(sensor.noise_model, std::to_array(sensor.noise));
   return result;
 }
 
@@ -96,35 +95,34 @@ Sensor sensor_of(const vg_sensor* sensor) {
 using namespace viewgain;
 using namespace viewgain::c_api;
 
-void vg_sensor_init(vg_sensor* sensor, size_t struct_size) { initialise(sensor, struct_size, {}); }
+void vg_sensor_init(vg_sensor* sensor, size_t struct_size) { initialise(sensor, struct_size); }
 
 vg_status vg_sensor_preset(const char* name, vg_sensor* sensor) {
   return guarded([&] {
     require(name, "name");
     require_struct(sensor, "vg_sensor");
     const Sensor preset = sensor_preset(name);
-    sensor->width = preset.camera.width;
-    sensor->height = preset.camera.height;
-    sensor->fx = preset.camera.fx;
-    sensor->fy = preset.camera.fy;
-    sensor->cx = preset.camera.cx;
-    sensor->cy = preset.camera.cy;
-    std::copy(preset.camera.distortion.begin(), preset.camera.distortion.end(), sensor->distortion);
-    sensor->min_range = preset.min_range;
-    sensor->max_range = preset.max_range;
-    sensor->working_distance = preset.working_distance;
+    vg_sensor whole{};
+    whole.width = preset.camera.width;
+    whole.height = preset.camera.height;
+    whole.fx = preset.camera.fx;
+    whole.fy = preset.camera.fy;
+    whole.cx = preset.camera.cx;
+    whole.cy = preset.camera.cy;
+    std::copy(preset.camera.distortion.begin(), preset.camera.distortion.end(), whole.distortion);
+    whole.min_range = preset.min_range;
+    whole.max_range = preset.max_range;
+    whole.working_distance = preset.working_distance;
     const Noise noise = std::visit(Writer{}, preset.noise);
-    sensor->noise_model = noise.model;
-    std::copy(noise.p.begin(), noise.p.end(), sensor->noise);
+    whole.noise_model = noise.model;
+    std::copy(noise.p.begin(), noise.p.end(), whole.noise);
+    write_struct(sensor, whole);
   });
 }
 
 vg_status vg_default_prior_sigma(double voxel_size, const vg_sensor* sensor, double* sigma) {
   return guarded([&] {
     require(sigma, "sigma");
-    if (!(voxel_size > 0 && std::isfinite(voxel_size))) {
-      reject("voxel_size is " + short_text(voxel_size) + " m; it must be positive and finite");
-    }
     const Sensor camera = sensor_of(sensor);
     camera.validate();
     *sigma = default_prior_sigma(voxel_size, camera);

@@ -32,6 +32,9 @@ std::string wanted_text(const Shape& wanted) {
                         shape_text(array));
 }
 
+// What numpy makes of [], whatever it is a list of.
+bool is_empty_list(const py::array& array) { return array.ndim() == 1 && array.shape(0) == 0; }
+
 // The pose of 16 numbers; NaN if its last row is none.
 Pose pose_of(const double* m) {
   Pose pose;
@@ -96,7 +99,21 @@ py::array any_array(const py::handle& value, const std::string& refusal) {
   }
 }
 
+bool is_masked_array(const py::handle& value) {
+  if (Py_TYPE(value.ptr()) == py::detail::npy_api::get().PyArray_Type_) return false;
+  return py::isinstance(value, py::module_::import("numpy.ma").attr("MaskedArray"));
+}
+
+py::object nan_where_masked(const py::object& value) {
+  if (!is_masked_array(value)) return value;
+  return value.attr("astype")("float64").attr("filled")(std::numeric_limits<double>::quiet_NaN());
+}
+
 Doubles doubles(const py::handle& value, const char* name) {
+  if (is_masked_array(value) && value.attr("mask").attr("any")().cast<bool>()) {
+    throw py::value_error(std::string(name) +
+                          " has masked entries; drop them or fill them in (numpy.ma.filled)");
+  }
   const py::array any = any_array(value, std::string(name) + " must be an array of numbers");
   const char kind = any.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u') {
@@ -108,6 +125,11 @@ Doubles doubles(const py::handle& value, const char* name) {
 
 Doubles doubles(const py::handle& value, const char* name, const Shape& wanted) {
   Doubles array = doubles(value, name);
+  if (is_empty_list(array) && wanted.front() < 0) {
+    Shape none(wanted);
+    none.front() = 0;
+    return Doubles(none);
+  }
   bool same = array.ndim() == static_cast<py::ssize_t>(wanted.size());
   for (std::size_t i = 0; same && i < wanted.size(); ++i) {
     same = wanted[i] < 0 || wanted[i] == array.shape(static_cast<py::ssize_t>(i));
@@ -116,14 +138,30 @@ Doubles doubles(const py::handle& value, const char* name, const Shape& wanted) 
   return array;
 }
 
-PoseBatch pose_batch(const py::handle& value, const char* name, bool strict) {
-  const Doubles array = doubles(value, name);
-  const py::ssize_t axes = array.ndim();
-  if (axes < 2 || array.shape(axes - 1) != 4 || array.shape(axes - 2) != 4) {
-    reject_shape(name, "(..., 4, 4)", array);
+Doubles items(const py::handle& value, const char* name, const Shape& item) {
+  Doubles array = doubles(value, name);
+  if (is_empty_list(array)) {
+    Shape none(item);
+    none.insert(none.begin(), 0);
+    return Doubles(none);
   }
+  const py::ssize_t axes = array.ndim(), last = static_cast<py::ssize_t>(item.size());
+  if (axes < last || !std::equal(item.begin(), item.end(), array.shape() + (axes - last))) {
+    std::string wanted = "(...";
+    for (const py::ssize_t extent : item) wanted += ", " + std::to_string(extent);
+    reject_shape(name, wanted + ")", array);
+  }
+  return array;
+}
+
+Shape leading_shape(const py::array& array, py::ssize_t last_axes) {
+  return Shape(array.shape(), array.shape() + (array.ndim() - last_axes));
+}
+
+PoseBatch pose_batch(const py::handle& value, const char* name, bool strict) {
+  const Doubles array = items(value, name, {4, 4});
   PoseBatch batch;
-  batch.shape.assign(array.shape(), array.shape() + (axes - 2));
+  batch.shape = leading_shape(array, 2);
   const auto count = static_cast<std::size_t>(array.size() / 16);
   batch.poses.reserve(count);
   const double* m = array.data();
@@ -203,6 +241,17 @@ Box box(const py::handle& value, const char* name) {
   return result;
 }
 
+std::vector<Box> optional_boxes(const py::object& value, const char* name) {
+  if (value.is_none()) return {};
+  const Doubles array = doubles(value, name, {-1, 2, 3});
+  std::vector<Box> boxes;
+  const double* x = array.data();
+  for (py::ssize_t i = 0; i < array.shape(0); ++i, x += 6) {
+    boxes.push_back({{x[0], x[1], x[2]}, {x[3], x[4], x[5]}});
+  }
+  return boxes;
+}
+
 TriangleMesh triangle_mesh(const py::handle& vertices, const py::handle& triangles) {
   TriangleMesh mesh;
   mesh.vertices = points(vertices, "vertices");
@@ -222,14 +271,6 @@ TriangleMesh triangle_mesh(const py::handle& vertices, const py::handle& triangl
     }
   }
   return mesh;
-}
-
-std::vector<float> image(const py::handle& value, const char* name, int height, int width) {
-  const Doubles array = doubles(value, name, {height, width});
-  std::vector<float> pixels(static_cast<std::size_t>(array.size()));
-  std::transform(array.data(), array.data() + array.size(), pixels.begin(),
-                 [](double x) { return static_cast<float>(x); });
-  return pixels;
 }
 
 py::object scalar_or_array(const py::array& array) {

@@ -35,12 +35,23 @@ using Shape = std::vector<py::ssize_t>;
 /// with the text `refusal`; others pass, MemoryError and KeyboardInterrupt among them.
 [[nodiscard]] py::array any_array(const py::handle& value, const std::string& refusal);
 
+/// Whether the value is one of numpy.ma's arrays, whose masks any_array() drops.
+[[nodiscard]] bool is_masked_array(const py::handle& value);
+/// The value; if it is a masked array, a float64 copy with NaN in the masked places.
+[[nodiscard]] py::object nan_where_masked(const py::object& value);
+
 /// Real numbers as C-contiguous float64: the caller's own memory if they are that already, else
-/// converted once.
+/// converted once. Masked entries are refused.
 [[nodiscard]] Doubles doubles(const py::handle& value, const char* name);
 
-/// The same for a wanted shape; -1 stands for any extent.
+/// The same for a wanted shape; -1 stands for any extent. Where the first axis has any extent, []
+/// is an array without rows.
 [[nodiscard]] Doubles doubles(const py::handle& value, const char* name, const Shape& wanted);
+
+/// The same for the shape (..., *item); [] is an array without items.
+[[nodiscard]] Doubles items(const py::handle& value, const char* name, const Shape& item);
+/// The shape of an array without its last axes.
+[[nodiscard]] Shape leading_shape(const py::array& array, py::ssize_t last_axes);
 
 /// Poses and the shape of the array without its last two axes.
 struct PoseBatch {
@@ -66,12 +77,10 @@ struct PoseBatch {
 [[nodiscard]] std::vector<std::array<double, 3>> points(const py::handle& value, const char* name);
 /// (2, 3): lowest and highest corner.
 [[nodiscard]] Box box(const py::handle& value, const char* name);
+/// (n, 2, 3); none for None.
+[[nodiscard]] std::vector<Box> optional_boxes(const py::object& value, const char* name);
 /// A pair of vertices (n, 3) and triangles (m, 3).
 [[nodiscard]] TriangleMesh triangle_mesh(const py::handle& vertices, const py::handle& triangles);
-
-/// Single precision (height, width), row by row.
-[[nodiscard]] std::vector<float> image(const py::handle& value, const char* name, int height,
-                                       int width);
 
 /// A copy of `values` as an array of one axis.
 template <typename T>

@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "bindings.hpp"
+#include "classes.hpp"
 #include "gil.hpp"
-#include "pickling.hpp"
 
 namespace viewgain::python {
 namespace {
@@ -113,7 +113,7 @@ void run_batch(Control* control, const std::function<void(const BatchControl&)>&
 }
 
 void bind_control(py::module_& module) {
-  py::class_<Control> type(module, "BatchControl", R"(Watches or ends a long call.
+  auto type = bound_class<Control>(module, "BatchControl", R"(Watches or ends a long call.
 
 Parameters
 ----------

@@ -17,9 +17,10 @@
 #include "arrays.hpp"
 #include "batch_call.hpp"
 #include "bindings.hpp"
+#include "classes.hpp"
 #include "evaluator.hpp"
 #include "gil.hpp"
-#include "pickling.hpp"
+#include "scene.hpp"
 
 namespace viewgain::python {
 
@@ -29,7 +30,7 @@ namespace {
 // than they do.
 constexpr std::size_t kFewPoses = 8;
 
-std::unique_ptr<Evaluator> make(std::shared_ptr<VoxelScene> scene, const Sensor& sensor,
+std::unique_ptr<Evaluator> make(const Scene& scene, const Sensor& sensor,
                                 const std::string& criterion, int pixel_stride,
                                 std::optional<double> prior_sigma, std::optional<double> min_range,
                                 std::optional<double> max_range, const py::iterable& weights,
@@ -48,9 +49,10 @@ std::unique_ptr<Evaluator> make(std::shared_ptr<VoxelScene> scene, const Sensor&
     const py::object region = pair[0], weight = pair[1];
     config.weights.push_back({box(region, "weights' box"), number(weight, "weights' weight")});
   }
-  GainEvaluator evaluator(scene, sensor, config, ExecConfig{num_threads});
+  GainEvaluator evaluator(scene.scene, sensor, config, ExecConfig{num_threads});
   return std::unique_ptr<Evaluator>(
-      new Evaluator{std::move(scene), sensor, criterion, pixel_stride, std::move(evaluator)});
+      new Evaluator{py::cast(scene, py::return_value_policy::reference), sensor, criterion,
+                    pixel_stride, std::move(evaluator)});
 }
 
 void score(const Evaluator& self, std::span<const Pose> poses, std::span<ViewGain> results,
@@ -164,9 +166,9 @@ void bind_evaluator(py::module_& module) {
 
   const RaceConfig race_defaults;
   const ApproximateConfig approximate_defaults;
-  py::class_<Evaluator> evaluator(
-      module, "GainEvaluator",
-      R"(Scores camera poses against a scene by expected information gain.
+  auto evaluator =
+      bound_class<Evaluator>(module, "GainEvaluator",
+                             R"(Scores camera poses against a scene by expected information gain.
 
 All methods may run in many threads at once and leave the GIL while they work. Results are the same
 bits for any number of threads, and the same as from C++. Ctrl-C ends a batch. Poses are

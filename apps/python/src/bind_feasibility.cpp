@@ -13,9 +13,10 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "classes.hpp"
 #include "gil.hpp"
-#include "pickling.hpp"
 #include "python_call.hpp"
+#include "scene.hpp"
 #include "viewgain/core/reach.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 
@@ -23,7 +24,7 @@ namespace viewgain::python {
 namespace {
 
 struct Checker {
-  std::shared_ptr<VoxelScene> scene;
+  std::shared_ptr<const VoxelScene> scene;
   FeasibilityChecker checker;
 };
 
@@ -31,13 +32,7 @@ ReachRegion region_of(const py::object& boxes, const py::object& shells,
                       const py::object& half_spaces, const py::object& poses, double distance,
                       double angle, const py::object& predicate) {
   ReachRegion region;
-  if (!boxes.is_none()) {
-    const Doubles array = doubles(boxes, "boxes", {-1, 2, 3});
-    const double* x = array.data();
-    for (py::ssize_t i = 0; i < array.shape(0); ++i, x += 6) {
-      region.boxes.push_back({{x[0], x[1], x[2]}, {x[3], x[4], x[5]}});
-    }
-  }
+  region.boxes = optional_boxes(boxes, "boxes");
   if (!shells.is_none()) {
     const Doubles array = doubles(shells, "shells", {-1, 5});
     const double* x = array.data();
@@ -86,8 +81,8 @@ py::array_t<std::uint8_t> codes_of(const Checker& self, const py::object& T_worl
 
 void bind_reach(py::module_& module) {
   const PoseTolerance tolerance;
-  py::class_<ReachRegion> type(module, "ReachRegion",
-                               R"(Where a robot can put the camera, world frame.
+  auto type = bound_class<ReachRegion>(module, "ReachRegion",
+                                       R"(Where a robot can put the camera, world frame.
 
 A pose is reachable if its centre lies in at least one of the boxes (where there are any), in at least
 one of the shells (where there are any) and in every half-space, if it is among the poses (where there
@@ -154,8 +149,8 @@ void bind_feasibility(py::module_& module) {
   module.attr("INFEASIBILITY_NAMES") = py::tuple(names);
 
   const FeasibilityConfig defaults;
-  py::class_<Checker> type(module, "FeasibilityChecker",
-                           R"(Says which camera poses are possible in a scene.
+  auto type = bound_class<Checker>(module, "FeasibilityChecker",
+                                   R"(Says which camera poses are possible in a scene.
 
 The sensor's housing, a box, must not overlap voxels that are not free, obstacles or the support plane;
 the pose must be reachable and not taken already. Outside the workspace nothing is known to block.
@@ -177,7 +172,7 @@ sensor : Sensor, optional
 max_near_share : float
     How much: share of the rays that end in the map.)");
   refuse_pickling(type);
-  type.def(py::init([](std::shared_ptr<VoxelScene> scene, const py::object& body_size,
+  type.def(py::init([](const Scene& scene, const py::object& body_size,
                        const py::object& T_flange_camera, double clearance,
                        const ReachRegion* reach, std::optional<double> support_plane,
                        const Sensor* sensor, double max_near_share) {
@@ -190,8 +185,8 @@ max_near_share : float
              config.support_plane = support_plane;
              if (sensor != nullptr) config.sensor = *sensor;
              config.max_near_share = max_near_share;
-             FeasibilityChecker checker(scene, config);
-             return std::unique_ptr<Checker>(new Checker{std::move(scene), std::move(checker)});
+             return std::unique_ptr<Checker>(
+                 new Checker{scene.scene, FeasibilityChecker(scene.scene, config)});
            }),
            py::arg("scene"), py::kw_only(), py::arg("body_size") = defaults.body.size,
            py::arg("T_flange_camera") = py::none(), py::arg("clearance") = defaults.clearance,

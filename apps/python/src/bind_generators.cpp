@@ -20,12 +20,9 @@ py::array_t<double> pose_array(const std::vector<Pose>& poses) {
 
 py::array_t<double> look_at_all(const py::object& eyes, const py::object& target,
                                 const py::object& up) {
-  const Doubles eye = doubles(eyes, "eyes");
+  const Doubles eye = items(eyes, "eyes", {3});
   const Doubles goal = doubles(target, "target");
   const py::ssize_t axes = eye.ndim();
-  if (axes < 1 || eye.shape(axes - 1) != 3) {
-    throw py::value_error("eyes must have the shape (..., 3), not " + shape_text(eye));
-  }
   const bool one_target = goal.ndim() == 1 && goal.shape(0) == 3;
   if (!one_target &&
       !(goal.ndim() == axes && std::equal(eye.shape(), eye.shape() + axes, goal.shape()))) {
@@ -41,7 +38,7 @@ py::array_t<double> look_at_all(const py::object& eyes, const py::object& target
     const double* t = goal.data() + (one_target ? 0 : 3 * i);
     poses.push_back(look_at({e[0], e[1], e[2]}, {t[0], t[1], t[2]}, up_vector));
   }
-  return to_array(poses, Shape(eye.shape(), eye.shape() + (axes - 1)));
+  return to_array(poses, leading_shape(eye, 1));
 }
 
 }  // namespace

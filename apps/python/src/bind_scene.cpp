@@ -2,33 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
-#include <memory>
 #include <sstream>
 #include <string>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "pickling.hpp"
-#include "shared_grid.hpp"
-#include "viewgain/raycast/voxel_scene.hpp"
+#include "classes.hpp"
+#include "map/shared_grid.hpp"
+#include "scene.hpp"
 
 namespace viewgain::python {
 namespace {
 
-// pybind11 holds no pointers to const; Python has no member that would change a scene.
-std::shared_ptr<VoxelScene> held(const std::shared_ptr<const VoxelScene>& scene) {
-  return std::const_pointer_cast<VoxelScene>(scene);
-}
-
 Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes) {
   Obstacles obstacles;
-  if (!boxes.is_none()) {
-    const Doubles array = doubles(boxes, "boxes", {-1, 2, 3});
-    const double* x = array.data();
-    for (py::ssize_t i = 0; i < array.shape(0); ++i, x += 6) {
-      obstacles.boxes.push_back({{x[0], x[1], x[2]}, {x[3], x[4], x[5]}});
-    }
-  }
+  obstacles.boxes = optional_boxes(boxes, "boxes");
   for (const py::handle mesh : meshes) {
     if (!py::isinstance<py::sequence>(mesh) || py::len(mesh) != 2) {
       throw py::value_error("each of meshes must be a pair (vertices, triangles)");
@@ -43,9 +31,8 @@ Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes) {
 }  // namespace
 
 void bind_scene(py::module_& module) {
-  py::class_<VoxelScene, std::shared_ptr<VoxelScene>> type(
-      module, "VoxelScene",
-      R"(An immutable snapshot of a grid, to be traced.
+  auto type = bound_class<Scene>(module, "VoxelScene",
+                                 R"(An immutable snapshot of a grid, to be traced.
 
 The grid may change or go afterwards. May be shared by any number of evaluators and threads.
 
@@ -68,16 +55,16 @@ ValueError
                        int num_threads) {
              const Obstacles obstacles = obstacles_of(boxes, meshes);
              return grid.read([&](const BeliefGrid& g) {
-               return held(VoxelScene::build(g, obstacles, ExecConfig{num_threads}));
+               return Scene{VoxelScene::build(g, obstacles, ExecConfig{num_threads})};
              });
            }),
            py::arg("grid"), py::kw_only(), py::arg("boxes") = py::none(),
            py::arg("meshes") = py::tuple(), py::arg("num_threads") = 0)
       .def(
           "update",
-          [](const std::shared_ptr<VoxelScene>& scene, const SharedGrid& grid, int num_threads) {
+          [](const Scene& self, const SharedGrid& grid, int num_threads) {
             return grid.read([&](const BeliefGrid& g) {
-              return held(VoxelScene::update(scene, g, ExecConfig{num_threads}));
+              return Scene{VoxelScene::update(self.scene, g, ExecConfig{num_threads})};
             });
           },
           py::arg("grid"), py::kw_only(), py::arg("num_threads") = 0,
@@ -89,15 +76,16 @@ Returns
 -------
 VoxelScene)")
       .def_property_readonly(
-          "isa", [](const VoxelScene& scene) { return std::string(scene.isa()); },
+          "isa", [](const Scene& self) { return std::string(self.scene->isa()); },
           "str: the instruction set that traces it")
       .def_property_readonly(
-          "primitive_count", [](const VoxelScene& scene) { return scene.primitive_count(); },
+          "primitive_count", [](const Scene& self) { return self.scene->primitive_count(); },
           "int: blocks of voxels that are not free")
       .def_property_readonly(
-          "bytes", [](const VoxelScene& scene) { return scene.bytes(); },
+          "bytes", [](const Scene& self) { return self.scene->bytes(); },
           "int: memory of the scene, without the snapshot and Embree's own")
-      .def("__repr__", [](const VoxelScene& scene) {
+      .def("__repr__", [](const Scene& self) {
+        const VoxelScene& scene = *self.scene;
         const Index3& dims = scene.snapshot().dims;
         std::ostringstream text;
         text << "<VoxelScene " << dims.x << "x" << dims.y << "x" << dims.z << " voxels of "

@@ -11,17 +11,16 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "classes.hpp"
 #include "fields.hpp"
-#include "pickling.hpp"
-#include "prior.hpp"
 #include "viewgain/core/sensor.hpp"
 
 namespace viewgain::python {
 namespace {
 
 void bind_camera(py::module_& module) {
-  py::class_<PinholeCamera> type(module, "PinholeCamera",
-                                 R"(Pinhole camera with OpenCV's distortion model.
+  auto type = bound_class<PinholeCamera>(module, "PinholeCamera",
+                                         R"(Pinhole camera with OpenCV's distortion model.
 
 The optical frame has x right, y down, z forward; pixel (0, 0) has its centre at (0, 0).
 
@@ -74,13 +73,9 @@ ndarray, (height, width, 3), float64
       .def(
           "project",
           [](const PinholeCamera& camera, const py::object& points_camera) {
-            const Doubles points = doubles(points_camera, "points");
-            if (points.ndim() < 1 || points.shape(points.ndim() - 1) != 3) {
-              throw py::value_error("points must have the shape (..., 3), not " +
-                                    shape_text(points));
-            }
-            Shape shape(points.shape(), points.shape() + points.ndim());
-            shape.back() = 2;
+            const Doubles points = items(points_camera, "points", {3});
+            Shape shape = leading_shape(points, 1);
+            shape.push_back(2);
             py::array_t<double> pixels(shape);
             const double* p = points.data();
             double* out = pixels.mutable_data();
@@ -122,8 +117,8 @@ ndarray, (..., 2), float64
 
 void bind_sensors(py::module_& module) {
   bind_camera(module);
-  py::class_<Sensor> type(module, "Sensor",
-                          R"(A depth camera: intrinsics, range limits, noise. Immutable.
+  auto type = bound_class<Sensor>(module, "Sensor",
+                                  R"(A depth camera: intrinsics, range limits, noise. Immutable.
 
 Parameters
 ----------
@@ -217,7 +212,7 @@ Sensor)");
   module.def(
       "sensor_preset_names", [] { return sensor_preset_names(); },
       "The names that ``sensor_preset`` takes.\n\nReturns\n-------\nlist of str");
-  module.def("default_prior_sigma", &checked_prior_sigma, py::arg("voxel_size"), py::arg("sensor"),
+  module.def("default_prior_sigma", &default_prior_sigma, py::arg("voxel_size"), py::arg("sensor"),
              R"(Standard deviation of an unknown voxel's position, when the map does not say [m].
 
 ``max(voxel_size / 2, 2 * axial sigma at the working distance)``: unknown is never surer than one

@@ -10,9 +10,9 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "depth_images.hpp"
+#include "classes.hpp"
 #include "gil.hpp"
-#include "pickling.hpp"
+#include "map/depth_images.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain::python {
@@ -27,8 +27,8 @@ struct Simulation {
 
 void bind_simulation(py::module_& module) {
   const SimulationConfig defaults;
-  py::class_<Simulation> type(module, "SimulatedSensor",
-                              R"(A depth camera in front of a triangle mesh.
+  auto type = bound_class<Simulation>(module, "SimulatedSensor",
+                                      R"(A depth camera in front of a triangle mesh.
 
 Parameters
 ----------

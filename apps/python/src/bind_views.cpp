@@ -11,9 +11,9 @@
 
 #include "arrays.hpp"
 #include "batch_call.hpp"
-#include "depth_images.hpp"
 #include "evaluator.hpp"
 #include "gil.hpp"
+#include "map/depth_images.hpp"
 #include "python_call.hpp"
 #include "viewgain/raycast/depth_image.hpp"
 

@@ -4,7 +4,6 @@
 
 #include <pybind11/pybind11.h>
 
-#include <memory>
 #include <string>
 
 #include "viewgain/core/sensor.hpp"
@@ -14,7 +13,7 @@ namespace viewgain::python {
 
 /// Python's GainEvaluator.
 struct Evaluator {
-  std::shared_ptr<VoxelScene> scene;
+  pybind11::object scene;  ///< the VoxelScene that it was made with
   Sensor sensor;
   std::string criterion;
   int pixel_stride = 1;

@@ -15,5 +15,10 @@ frame (x right, y down, z forward) to the world; lengths are metres, gains nats.
 reconstruction loop are in ``viewgain.mesh``, which is GPL-3.0-or-later.
 """
 
+try:
+    import numpy as _numpy  # here, so that the extension does not fail without saying why
+except ImportError as error:
+    raise ImportError(f"viewgain needs numpy, which cannot be imported: {error}") from error
+
 from ._viewgain import *
 from ._viewgain import __version__

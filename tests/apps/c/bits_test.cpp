@@ -137,6 +137,45 @@ TEST(CApi, GainsAreThoseOfCppToTheLastBit) {
   EXPECT_GT(gained, 100U);
 }
 
+TEST(CApi, VoxelsAndPointsAreThoseOfCpp) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.path() / "map.vdb";
+  test::Random random(3);
+  const test::RandomMap map = test::random_map(test::MapFamily::rotated, random);
+  save_vdb(map.grid, path);
+  Handles own;
+  ASSERT_EQ(vg_grid_load(path.c_str(), &own.grid), VG_OK) << vg_last_error();
+  constexpr std::size_t count = 500;
+  const Index3 low = map.grid.min_index(), dims = map.grid.dims();
+  std::vector<double> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto at = [&](std::int32_t from, std::int32_t extent) {
+      return from + static_cast<std::int32_t>(test::uniform(random, -0.1, 1.1) * extent);
+    };
+    const Eigen::Vector3d p =
+        map.grid.center({at(low.x, dims.x), at(low.y, dims.y), at(low.z, dims.z)});
+    points.insert(points.end(), p.data(), p.data() + 3);
+  }
+  points[4] = std::numeric_limits<double>::infinity();
+  std::vector<std::int32_t> voxels(3 * count);
+  ASSERT_EQ(vg_grid_index_of(own.grid, points.data(), count, voxels.data()), VG_OK);
+  std::vector<double> centers(3 * count);
+  ASSERT_EQ(vg_grid_center(own.grid, voxels.data(), count, centers.data()), VG_OK);
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < 3 * count; i += 3) {
+    const Index3 got{voxels[i], voxels[i + 1], voxels[i + 2]};
+    const auto expected = map.grid.index_of({points[i], points[i + 1], points[i + 2]});
+    EXPECT_EQ(got, expected.value_or(Index3{VG_NO_VOXEL, VG_NO_VOXEL, VG_NO_VOXEL})) << i;
+    const Eigen::Vector3d center = map.grid.center(got);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(bits(centers[i + k]), bits(center[static_cast<Eigen::Index>(k)])) << i;
+    }
+    inside += expected.has_value() ? 1 : 0;
+  }
+  EXPECT_GT(inside, count / 4);
+  EXPECT_LT(inside, count);
+}
+
 TEST(CApi, MessagesAreTheThreadsOwn) {
   ASSERT_EQ(vg_grid_clone(nullptr, nullptr), VG_INVALID_ARGUMENT);
   const std::string own = vg_last_error();

@@ -43,6 +43,8 @@ static void of_grids(const char* folder) {
   vg_grid_config config;
   vg_grid_info info;
   uint8_t states[8];
+  int32_t voxel[3];
+  double point[3];
   char path[1024], hash[17];
   FILE* file;
 
@@ -109,6 +111,12 @@ static void of_grids(const char* folder) {
   CHECK_FAILS(vg_grid_states(map, states, 8), VG_INVALID_ARGUMENT, "8 states");
   CHECK_FAILS(vg_grid_states(map, NULL, MAP_VOXELS), VG_INVALID_ARGUMENT, "states is null");
   CHECK_FAILS(vg_grid_states(NULL, states, 8), VG_INVALID_ARGUMENT, "grid is null");
+  CHECK_FAILS(vg_grid_index_of(NULL, origin, 1, voxel), VG_INVALID_ARGUMENT, "grid is null");
+  CHECK_FAILS(vg_grid_index_of(map, NULL, 1, voxel), VG_INVALID_ARGUMENT, "points is null");
+  CHECK_FAILS(vg_grid_index_of(map, origin, 1, NULL), VG_INVALID_ARGUMENT, "voxels is null");
+  CHECK_FAILS(vg_grid_center(NULL, dims, 1, point), VG_INVALID_ARGUMENT, "grid is null");
+  CHECK_FAILS(vg_grid_center(map, NULL, 1, point), VG_INVALID_ARGUMENT, "voxels is null");
+  CHECK_FAILS(vg_grid_center(map, dims, 1, NULL), VG_INVALID_ARGUMENT, "centers is null");
   CHECK_FAILS(vg_grid_hash(NULL, hash), VG_INVALID_ARGUMENT, "grid is null");
   CHECK_FAILS(vg_grid_hash(map, NULL), VG_INVALID_ARGUMENT, "hash is null");
   vg_grid_release(map);

@@ -25,7 +25,9 @@ static void sensors_and_grids(const char* folder) {
   vg_grid *grid = test_map(), *copy = NULL, *loaded = NULL, *empty = NULL;
   uint8_t* states = malloc(MAP_VOXELS);
   char path[1024], hash[17], loaded_hash[17];
-  double sigma = 0;
+  double sigma = 0, center[3];
+  const double points[2][3] = {{-0.19, 0.19, -0.0875}, {1, 0, 0}};
+  int32_t voxels[2][3];
 
   vg_sensor_init(&sensor, sizeof sensor);
   CHECK(sensor.struct_size == sizeof sensor && sensor.width == 0);
@@ -44,6 +46,12 @@ static void sensors_and_grids(const char* folder) {
   CHECK(info.T_world_grid[3] == -0.2 && info.T_world_grid[15] == 1 && info.voxel_size == 0.025);
   CHECK_OK(vg_grid_states(grid, states, MAP_VOXELS));
   CHECK(states[3] == 0 && states[4] == 2 && states[5] == 1);
+  CHECK_OK(vg_grid_index_of(grid, points[0], 2, voxels[0]));
+  CHECK(voxels[0][0] == 0 && voxels[0][1] == 15 && voxels[0][2] == 4);
+  CHECK(voxels[1][0] == VG_NO_VOXEL && voxels[1][1] == VG_NO_VOXEL && voxels[1][2] == VG_NO_VOXEL);
+  CHECK_OK(vg_grid_center(grid, voxels[0], 1, center));
+  CHECK(fabs(center[0] + 0.1875) < 1e-12 && fabs(center[2] + 0.0875) < 1e-12);
+  CHECK_OK(vg_grid_index_of(grid, NULL, 0, NULL));
 
   CHECK_OK(vg_grid_hash(grid, hash));
   CHECK(strlen(hash) == 16);

@@ -142,7 +142,7 @@ def test_wrong_settings_are_named(grid, sensor, evaluator, poses):
         viewgain.GainEvaluator(grid, sensor)
     with pytest.raises(TypeError):
         viewgain.GainEvaluator(None, "sr4000")
-    with pytest.raises(ValueError, match="scene"):
+    with pytest.raises(TypeError, match="scene"):
         viewgain.GainEvaluator(None, sensor)
     with pytest.raises(ValueError, match="keep"):
         evaluator.race(poses, keep=7.0)

@@ -1,5 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
+import functools
 import os
 import pathlib
 
@@ -17,7 +18,8 @@ def test_labels_come_back(labels, grid):
     statistics = grid.statistics()
     for state, name in enumerate(("unknown", "free", "occupied")):
         assert statistics[name] == np.count_nonzero(labels == state)
-    turned = viewgain.BeliefGrid.from_labels(labels.transpose(2, 1, 0), voxel_size=0.3, origin=(0.1, 7, 2))
+    turned = viewgain.BeliefGrid.from_labels(
+        labels.transpose(2, 1, 0), voxel_size=0.3, origin=(0.1, 7, 2), prior_sigma=0.15)
     assert np.array_equal(turned.states(), labels.transpose(2, 1, 0))
 
 
@@ -28,7 +30,7 @@ def test_any_extent_and_origin_keeps_every_label():
         shape = rng.integers(1, 20, 3)
         array = rng.integers(0, 3, shape).astype(np.uint8)
         grid = viewgain.BeliefGrid.from_labels(
-            array, voxel_size=rng.uniform(1e-3, 2), origin=rng.normal(size=3))
+            array, voxel_size=rng.uniform(1e-3, 2), origin=rng.normal(size=3), prior_sigma=0.1)
         assert np.array_equal(grid.states(), array)
         cases += 1
     assert cases == 50
@@ -39,7 +41,7 @@ def test_octomap_files(tmp_path, grid, sensor):
     grid.save_octomap(path)
     # A tree lies in the world's frame.
     workspace = np.array([[0, 0, 0], [0.32, 0.32, 0.32]]) + grid.T_world_grid[:3, 3]
-    again = viewgain.BeliefGrid.load_octomap(path, workspace=workspace)
+    again = viewgain.BeliefGrid.load_octomap(path, workspace=workspace, prior_sigma=0.005)
     assert again.prior_sigma == 0.005 and again.voxel_size == 0.01
     assert np.array_equal(again.states(), grid.states())
     of_sensor = viewgain.BeliefGrid.load_octomap(str(path), sensor=sensor)
@@ -47,7 +49,7 @@ def test_octomap_files(tmp_path, grid, sensor):
     assert np.count_nonzero(of_sensor.states() == 2) == np.count_nonzero(grid.states() == 2)
     path.write_bytes(path.read_bytes()[:200])
     with pytest.raises(viewgain.Error, match="map.ot"):
-        viewgain.BeliefGrid.load_octomap(path)
+        viewgain.BeliefGrid.load_octomap(path, sensor=sensor)
     with pytest.raises(FileNotFoundError):
         viewgain.BeliefGrid.load_octomap(tmp_path / "none.ot")
     with pytest.raises(ValueError, match=r"\(2,\)"):
@@ -108,11 +110,11 @@ def test_limits_are_looked_at_before_labels_are_copied():
     # 256 TiB if it were.
     labels = np.broadcast_to(np.uint8(0), (65536, 65536, 65536))
     with pytest.raises(viewgain.Error, match="voxels"):
-        viewgain.BeliefGrid.from_labels(labels, voxel_size=0.01)
+        viewgain.BeliefGrid.from_labels(labels, voxel_size=0.01, prior_sigma=0.01)
 
 
 def test_wrong_labels_and_layouts_are_named(labels):
-    make = viewgain.BeliefGrid.from_labels
+    make = functools.partial(viewgain.BeliefGrid.from_labels, prior_sigma=0.1)
     for wrong, text in [(labels[0], r"\(32, 32\)"), (labels.astype(np.int32), "int32"),
                         (labels.astype(bool), "bool"), ("labels", "uint8")]:
         with pytest.raises(ValueError, match=text):
@@ -131,7 +133,7 @@ def test_wrong_labels_and_layouts_are_named(labels):
     with pytest.raises(ValueError, match=r"\(3,\)"):
         viewgain.BeliefGrid(voxel_size=0.1, workspace=[0, 1, 2])
     with pytest.raises(viewgain.Error):
-        viewgain.BeliefGrid(voxel_size=1e-4, workspace=[[0, 0, 0], [9, 9, 9]])
+        viewgain.BeliefGrid(voxel_size=1e-4, workspace=[[0, 0, 0], [9, 9, 9]], prior_sigma=0.1)
 
 
 def test_frames_make_a_map(sensor):
@@ -184,6 +186,44 @@ def test_frames_make_a_map(sensor):
     of_fresh = viewgain.GainEvaluator(fresh, sensor).evaluate(candidates)
     assert np.array_equal(of_fresh, viewgain.GainEvaluator(updated, sensor).evaluate(candidates))
     assert not np.array_equal(of_fresh, viewgain.GainEvaluator(scene, sensor).evaluate(candidates))
+
+
+def test_voxels_and_points(labels, sensor):
+    grid = viewgain.BeliefGrid(voxel_size=0.03, workspace=[[-0.2, 0.1, 0.3], [0.4, 0.5, 0.9]], sensor=sensor,
+                               T_world_grid=viewgain.look_at([0.3, 0.1, 0.7], [0, 0, 0]))
+    low = np.array(grid.min_index)
+    voxels = np.stack(np.meshgrid(*map(np.arange, grid.shape), indexing="ij"), axis=-1) + low
+    centers = grid.center(voxels)
+    assert centers.shape == (*grid.shape, 3) and centers.dtype == np.float64
+    T = grid.T_world_grid
+    assert np.allclose(centers, (voxels + 0.5) * 0.03 @ T[:3, :3].T + T[:3, 3], atol=1e-12)
+    index = grid.index_of(centers)
+    assert index.dtype == np.int32 and np.array_equal(index, voxels)
+    points = np.random.default_rng(7).uniform(-1.5, 1.5, (4, 500, 3))
+    points[0, :2] = [[np.nan, 0, 0], [0, np.inf, 0]]
+    index = grid.index_of(points)
+    one_by_one = np.array([grid.index_of(point) for point in points.reshape(-1, 3)])
+    assert index.shape == points.shape and np.array_equal(index.reshape(-1, 3), one_by_one)
+    none = (index == -(2**31)).any(axis=-1)
+    at = np.floor((points - T[:3, 3]) @ T[:3, :3] / 0.03)
+    inside = ((at >= low) & (at < low + grid.shape)).all(axis=-1)
+    assert np.array_equal(none, ~inside) and np.all(index[none] == -(2**31)) and none[0, :2].all()
+    assert np.array_equal(index[inside], at[inside]) and 50 < np.count_nonzero(inside) < 1950
+    with pytest.raises(IndexError):
+        grid.states()[tuple(index[0, 0] - low)]
+    of_loop = np.array([grid.center(voxel) for voxel in voxels[0, 0]])
+    assert np.array_equal(of_loop, centers[0, 0]) and len(of_loop) > 10
+    # A grid whose lattice begins at 0: indices are those of arrays.
+    of_labels = viewgain.BeliefGrid.from_labels(labels, voxel_size=0.01, sensor=sensor)
+    at = of_labels.index_of([[0.085, 0.155, 0.231], [0.001, 0.319, 0.001]])
+    assert np.array_equal(of_labels.states()[tuple(at.T)], [labels[8, 15, 23], labels[0, 31, 0]])
+    assert grid.index_of([]).shape == grid.center([]).shape == (0, 3)
+    for wrong, text in [([1, 2], r"\(\.\.\., 3\), not \(2,\)"), ([0, 0, 0.5], "holds 0.5"),
+                        ([0, 0, 2.0**31], "holds 2.1474"), (index[0, 0], "holds -2.1474"), ("x", "real numbers")]:
+        with pytest.raises(ValueError, match=text):
+            grid.center(wrong)
+    with pytest.raises(ValueError, match=r"points.*\(2,\)"):
+        grid.index_of([1, 2])
 
 
 def test_obstacles_block(grid, sensor, poses):

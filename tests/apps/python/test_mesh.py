@@ -61,6 +61,23 @@ def test_candidates_of_ones_own_and_reach(camera, sensor, start):
     assert result.views[0]["dropped"]["unreachable"] > 10
 
 
+def test_policies_with_a_set_of_their_own_leave_boundaries_out(camera, sensor, start):
+    candidates = viewgain.sphere_poses(9, 0.5)[::2]
+    settings = {"candidates": candidates, "stop_gain": 0.0, "idle_views": 0}
+    turned = reconstruct(camera, sensor, start, policy="sequence", **settings)
+    taken = np.array([view["T_world_camera"] for view in turned.views[1:]])
+    assert len(taken) == 3 and np.array_equal(taken, candidates[:3])
+    for policy in ("random", "sequence"):
+        views = reconstruct(camera, sensor, start, policy=policy, max_views=3, **settings).views
+        assert [view["generator"] for view in views] == ["start", "candidates", "candidates"]
+        with pytest.raises(ValueError, match=f'give candidates.*"{policy}"'):
+            reconstruct(camera, sensor, start, policy=policy)
+    both = reconstruct(camera, sensor, start, policy="sequence", boundary=True, max_views=2, **settings)
+    assert both.views[1]["generator"] == "boundary"
+    with pytest.raises(ValueError, match="give candidates"):
+        reconstruct(camera, sensor, start, boundary=False)
+
+
 def test_what_the_camera_returns_is_checked(camera, sensor, start):
     depth, amplitude = camera.acquire(start)
     moved = start.copy()
@@ -70,7 +87,8 @@ def test_what_the_camera_returns_is_checked(camera, sensor, start):
         assert result.reason == "max_views" and len(result.views) == 1
     assert np.allclose(result.grid.views()[0], moved)
     for answer, text in [(depth[1:], r"\(143, 176\)"), ((depth, amplitude, moved, 1), "tuple of 4"),
-                         (None, "depth"), ((depth, amplitude, 0 * moved), "T_world_camera"),
+                         (None, "depth"), ((1000 * depth).astype(np.uint16), "dtype uint16"),
+                         (1000 * depth, "metres"), ((depth, amplitude, 0 * moved), "T_world_camera"),
                          (np.zeros_like(depth), "no reading")]:
         with pytest.raises(ValueError, match=text):
             reconstruct(camera, sensor, start, acquire=lambda pose: answer)

@@ -94,7 +94,7 @@ def with_little_memory(call):
         resource.setrlimit(resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
 
 many = np.broadcast_to(np.uint8(0), (2048, 2048, 1024))
-with_little_memory(lambda: viewgain.BeliefGrid.from_labels(many, voxel_size=0.01))
+with_little_memory(lambda: viewgain.BeliefGrid.from_labels(many, voxel_size=0.01, prior_sigma=0.01))
 eyes = np.broadcast_to(np.eye(4, dtype=np.float32), (2**27, 4, 4))
 with_little_memory(lambda: evaluator.evaluate(eyes))
 """

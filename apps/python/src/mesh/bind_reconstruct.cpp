@@ -10,16 +10,15 @@
 
 #include "arrays.hpp"
 #include "batch_call.hpp"
-#include "depth_images.hpp"
+#include "classes.hpp"
 #include "gil.hpp"
+#include "map/depth_images.hpp"
+#include "map/shared_grid.hpp"
 #include "mesh/bindings.hpp"
-#include "pickling.hpp"
 #include "planner/candidate_generation.hpp"
 #include "planner/model.hpp"
 #include "planner/planning_options.hpp"
 #include "planner/policies.hpp"
-#include "prior.hpp"
-#include "shared_grid.hpp"
 #include "viewgain/core/planning.hpp"
 
 namespace viewgain::python {
@@ -89,6 +88,11 @@ py::dict dict_of(const ViewRecord& record) {
   return view;
 }
 
+// Whether a policy chooses among boundary candidates by itself; others have a set of their own.
+bool is_of_boundaries(app::Policy policy) {
+  return policy != app::Policy::sequence && policy != app::Policy::random;
+}
+
 app::GenerationConfig generation_config(const Sensor& sensor, double voxel_size, bool boundary,
                                         const py::object& candidates, const ReachRegion* reach,
                                         std::optional<double> support_plane) {
@@ -108,11 +112,12 @@ app::GenerationConfig generation_config(const Sensor& sensor, double voxel_size,
 
 Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, const py::object& start,
                            double voxel_size, const py::object& workspace,
-                           const std::string& criterion, const std::string& policy, bool boundary,
-                           const py::object& candidates, const ReachRegion* reach,
-                           std::optional<double> support_plane, bool jump_edges,
-                           std::size_t max_views, double stop_gain, std::size_t idle_views,
-                           const py::object& observer, Control* control, int num_threads) {
+                           const std::string& criterion, const std::string& policy,
+                           std::optional<bool> boundary, const py::object& candidates,
+                           const ReachRegion* reach, std::optional<double> support_plane,
+                           bool jump_edges, std::size_t max_views, double stop_gain,
+                           std::size_t idle_views, const py::object& observer, Control* control,
+                           int num_threads) {
   if (PyCallable_Check(acquire.ptr()) == 0) throw py::type_error("acquire must be callable");
   if (!observer.is_none() && PyCallable_Check(observer.ptr()) == 0) {
     throw py::type_error("observer must be callable");
@@ -122,14 +127,19 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
   app::ModelConfig model_config;
   model_config.grid.voxel_size = voxel_size;
   model_config.grid.workspace = box(workspace, "workspace");
-  model_config.grid.prior_sigma = checked_prior_sigma(voxel_size, sensor);
+  model_config.grid.prior_sigma = default_prior_sigma(voxel_size, sensor);
   model_config.integration.support_plane = support_plane;
   if (jump_edges) model_config.jump_edges.emplace();
   model_config.criterion = parse_criterion(criterion);
-  const app::GenerationConfig generation_settings =
-      generation_config(sensor, voxel_size, boundary, candidates, reach, support_plane);
   app::PolicyConfig policy_config;
   policy_config.policy = app::parse_policy(policy);
+  const app::GenerationConfig generation_settings = generation_config(
+      sensor, voxel_size, boundary.value_or(is_of_boundaries(policy_config.policy)), candidates,
+      reach, support_plane);
+  if (!generation_settings.boundary && candidates.is_none()) {
+    throw py::value_error("give candidates: without boundary, policy \"" + policy +
+                          "\" has nothing to choose from");
+  }
   policy_config.criterion = model_config.criterion;
   PlanningConfig planning;
   planning.max_views = max_views;
@@ -166,7 +176,7 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
 }  // namespace
 
 void bind_reconstruct(py::module_& module) {
-  py::class_<Reconstruction> type(
+  auto type = bound_class<Reconstruction>(
       module, "Reconstruction",
       "What ``reconstruct`` came to: its views, why it ended, the surface and the map.");
   refuse_pickling(type);
@@ -185,7 +195,7 @@ void bind_reconstruct(py::module_& module) {
   module.def("reconstruct", &reconstruct, py::arg("acquire"), py::arg("sensor"), py::arg("start"),
              py::kw_only(), py::arg("voxel_size"), py::arg("workspace"),
              py::arg("criterion") = "log_diagonal", py::arg("policy") = "gain",
-             py::arg("boundary") = true, py::arg("candidates") = py::none(),
+             py::arg("boundary") = py::none(), py::arg("candidates") = py::none(),
              py::arg("reach") = py::none(), py::arg("support_plane") = py::none(),
              py::arg("jump_edges") = true, py::arg("max_views") = defaults.max_views,
              py::arg("stop_gain") = defaults.stop_gain, py::arg("idle_views") = defaults.idle_views,
@@ -199,8 +209,8 @@ Parameters
 ----------
 acquire : callable
     Given T_world_camera (4, 4) of the wanted view, moves the camera there and returns depth
-    (height, width) along the optical axis [m] (0 or NaN: nothing known, inf: nothing up to
-    max_range), or (depth, amplitude), or (depth, amplitude, T_world_camera) with the pose it really
+    (height, width), floating point, along the optical axis [m] (0, NaN or masked: nothing known, inf:
+    nothing up to max_range), or (depth, amplitude), or (depth, amplitude, T_world_camera) with the pose it really
     got to; amplitude may be None. Called on the calling thread; what it raises ends the loop and
     passes through.
 sensor : viewgain.Sensor
@@ -213,10 +223,11 @@ workspace : array_like, (2, 3)
 criterion : {"log_diagonal", "log_determinant", "trace"}
 policy : {"gain", "kriegel", "random", "frontier", "sequence"}
     How the next view is chosen; "sequence" takes the candidates in their order.
-boundary : bool
-    Propose views at the surface's open boundaries.
+boundary : bool, optional
+    Propose views at the surface's open boundaries, before the candidates. Default: not for the
+    policies "sequence" and "random".
 candidates : array_like, (n, 4, 4), optional
-    Further poses, proposed after every view.
+    Further poses, proposed after every view; needed without boundary.
 reach : viewgain.ReachRegion, optional
     Where the camera can be put.
 support_plane : float, optional

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "classes.hpp"
 #include "gil.hpp"
+#include "map/shared_grid.hpp"
 #include "mesh/bindings.hpp"
-#include "pickling.hpp"
 #include "planner/model.hpp"
 #include "planner/planning_options.hpp"
-#include "shared_grid.hpp"
 #include "viewgain/core/text.hpp"
 #include "viewgain/mesh/boundary.hpp"
 #include "viewgain/mesh/surface.hpp"
@@ -113,7 +113,7 @@ void bind_surface(py::module_& module) {
   }
   module.attr("BOUNDARY_CLASS_NAMES") = py::tuple(classes);
 
-  py::class_<SurfaceMesh> type(
+  auto type = bound_class<SurfaceMesh>(
       module, "Surface",
       R"(An open, oriented triangle surface. Made by ``reconstruct_surface``,
 ``surface_of_grid`` and ``reconstruct``.

@@ -64,7 +64,7 @@ def reconstruct(
     workspace: ArrayLike,
     criterion: Literal["log_diagonal", "log_determinant", "trace"] = "log_diagonal",
     policy: Literal["gain", "kriegel", "random", "frontier", "sequence"] = "gain",
-    boundary: bool = True,
+    boundary: bool | None = None,
     candidates: ArrayLike | None = None,
     reach: ReachRegion | None = None,
     support_plane: float | None = None,

@@ -11,9 +11,9 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "classes.hpp"
 #include "gil.hpp"
-#include "grid_files.hpp"
-#include "pickling.hpp"
+#include "grid_class.hpp"
 #include "prior.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -45,7 +45,8 @@ std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_s
                                         const py::object& origin, const py::object& T_world_grid,
                                         std::optional<double> prior_sigma, const Sensor* sensor) {
   const std::string wanted = "labels must be uint8 with the shape (nx, ny, nz)";
-  const py::array any = any_array(labels, wanted);
+  const py::array any =
+      any_array(is_masked_array(labels) ? labels.attr("filled")(0) : labels, wanted);
   if (any.dtype().kind() != 'u' || any.itemsize() != 1 || any.ndim() != 3) {
     throw py::value_error(wanted + ", not " + py::str(any.dtype()).cast<std::string>() + " " +
                           shape_text(any));
@@ -127,8 +128,9 @@ void bind_grid(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(BeliefRow, voxel, hits, information, information_vector);
   PYBIND11_NUMPY_DTYPE(PointRow, position, covariance, toward_free, hits);
 
-  GridClass grid_class(module, "BeliefGrid",
-                       R"(What is known of a workspace, voxel by voxel.
+  GridClass grid_class = bound_class<SharedGrid, std::shared_ptr<SharedGrid>>(
+      module, "BeliefGrid",
+      R"(What is known of a workspace, voxel by voxel.
 
 Voxel (i, j, k) is [i, i+1) x [j, j+1) x [k, k+1) times the voxel size in the grid's frame. A new
 grid is unknown throughout. Threads of Python may share one: they wait for each other.
@@ -140,21 +142,22 @@ voxel_size : float
 workspace : array_like, (2, 3)
     Lowest and highest corner, grid frame [m]; grown outward to whole voxels.
 prior_sigma : float, optional
-    Standard deviation of an unknown voxel's position [m]. Default: ``default_prior_sigma`` of the
-    sensor where one is given, else half a voxel; give the sensor where voxels are finer than its
-    noise, or unknown would be surer than a reading.
+    Standard deviation of an unknown voxel's position [m].
 sensor : Sensor, optional
+    Whose frames the map is for; needed unless ``prior_sigma`` is given, which is then
+    ``default_prior_sigma`` of the sensor.
 T_world_grid : array_like, (4, 4), optional
     Places the grid's frame in the world.
 
 Raises
 ------
 ValueError
-    Names the value that is out of its bounds.
+    Names the value that is out of its bounds; neither sensor nor prior_sigma.
 Error
     More than 65,536 voxels along an axis or 2**40 in all.)");
   refuse_pickling(grid_class);
   bind_grid_files(grid_class);
+  bind_voxels(grid_class);
   grid_class
       .def(py::init([](double voxel_size, const py::object& workspace,
                        std::optional<double> prior_sigma, const Sensor* sensor,
@@ -178,7 +181,7 @@ Error
 Parameters
 ----------
 labels : ndarray, (nx, ny, nz), uint8
-    0 unknown, 1 free, 2 occupied.
+    0 unknown, 1 free, 2 occupied. Masked entries of a masked array are unknown.
 voxel_size : float
     [m]
 origin : array_like, (3,)
@@ -186,7 +189,7 @@ origin : array_like, (3,)
 T_world_grid : array_like, (4, 4), optional
     Places that corner and the axes; takes the place of origin.
 prior_sigma, sensor
-    As for a new grid.
+    As for a new grid: one of the two is needed.
 
 Returns
 -------
@@ -195,7 +198,8 @@ BeliefGrid
 Raises
 ------
 ValueError
-    Another dtype or shape, a state over 2, or an origin that is not finite.
+    Another dtype or shape, a state over 2, an origin that is not finite, or neither sensor nor
+    prior_sigma.
 Error
     More voxels than a grid can hold.)")
       .def(

@@ -2,17 +2,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "arrays.hpp"
 #include "gil.hpp"
-#include "grid_files.hpp"
+#include "grid_class.hpp"
+#include "prior.hpp"
+#include "viewgain/core/error.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain::python {
+
+namespace {
+
+// A .ot that holds OpenVDB's data would be refused by all that read OctoMap's files.
+void refuse_octomap_name(const std::string& file) {
+  std::string end = std::filesystem::path(file).extension().string();
+  for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  if (end != ".ot" && end != ".bt") return;
+  throw Error(ErrorCode::invalid_argument,
+              file + ": save writes OpenVDB; for an OctoMap .ot call save_octomap");
+}
+
+}  // namespace
 
 void bind_grid_files(GridClass& grid_class) {
   grid_class
@@ -51,8 +67,9 @@ Error
             if (!workspace.is_none()) config.workspace = box(workspace, "workspace");
             config.occupied_from = static_cast<float>(occupied_from);
             config.prior_sigma = prior_sigma;
+            require_prior(prior_sigma, sensor);
             const WithoutGil without_gil;
-            if (!prior_sigma && sensor != nullptr) {
+            if (!prior_sigma) {
               config.prior_sigma = default_prior_sigma(octomap_resolution(file), *sensor);
             }
             return std::make_shared<SharedGrid>(load_octomap(file, config));
@@ -68,7 +85,7 @@ path : path-like
 workspace : array_like, (2, 3), optional
     Lowest and highest corner [m], in the tree's frame; default: the box of its known voxels.
 prior_sigma, sensor
-    As for a new grid.
+    As for a new grid: one of the two is needed.
 occupied_from : float
     Log-odds from which a voxel of a .ot is occupied.
 
@@ -80,6 +97,8 @@ Raises
 ------
 FileNotFoundError, OSError
     It cannot be opened.
+ValueError
+    Neither sensor nor prior_sigma.
 Error
     It is no tree or it is damaged.)")
       .def(
@@ -105,6 +124,7 @@ FileNotFoundError, OSError
           "save",
           [](const SharedGrid& grid, const py::object& path, bool with_covariance) {
             const std::string file = file_path(path);
+            refuse_octomap_name(file);
             require_writable(file);
             grid.read([&](const BeliefGrid& g) { save_vdb(g, file, {with_covariance}); });
           },
@@ -114,11 +134,14 @@ FileNotFoundError, OSError
 Parameters
 ----------
 path : path-like
+    Any name that does not end in .ot or .bt; ``save_octomap`` writes those.
 with_covariance : bool
     Adds covariances and positions, for viewers.
 
 Raises
 ------
+ValueError
+    The name is that of an OctoMap file.
 FileNotFoundError, OSError
     It cannot be written.)");
 }

@@ -4,17 +4,19 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "classes.hpp"
+#include "depth_images.hpp"
 #include "gil.hpp"
 #include "integration.hpp"
-#include "pickling.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/cloud_io.hpp"
@@ -25,41 +27,37 @@ namespace {
 
 using Cloud = std::vector<std::array<double, 3>>;
 
-// Python's CloudIntegrator; one call at a time.
-struct SharedCloudIntegrator {
-  Sensor sensor;
-  CloudIntegrator integrator;
-  std::mutex mutex;
-};
+using Integrator = SharedIntegrator<CloudIntegrator>;
 
-void move_to_world(Cloud& cloud, const Pose& pose) {
+// The points of a cloud in the world, masked ones NaN.
+Cloud cloud_in_world(const Sensor& sensor, const py::object& points_sensor, const Pose& pose) {
+  Cloud cloud = points(nan_where_masked(points_sensor), "points");
+  const WithoutGil without_gil;
   const Pose T_world_sensor = orthonormalized(pose);
+  double nearest = std::numeric_limits<double>::infinity();
   for (auto& point : cloud) {
-    const Eigen::Vector3d p = T_world_sensor * Eigen::Vector3d(point[0], point[1], point[2]);
-    point = {p.x(), p.y(), p.z()};
+    const Eigen::Vector3d p_sensor(point[0], point[1], point[2]);
+    nearest = std::fmin(nearest, p_sensor.norm());
+    const Eigen::Vector3d p_world = T_world_sensor * p_sensor;
+    point = {p_world.x(), p_world.y(), p_world.z()};
   }
+  require_metres(nearest, sensor, "points");
+  return cloud;
 }
 
-py::dict integrate(SharedCloudIntegrator& self, SharedGrid& grid, const py::object& points_sensor,
+py::dict integrate(Integrator& self, SharedGrid& grid, const py::object& points_sensor,
                    const py::object& T_world_sensor) {
-  Cloud cloud = points(points_sensor, "points");
   const Pose pose = one_pose(T_world_sensor, "T_world_sensor");
-  const IntegrationReport report = grid.write([&](BeliefGrid& g) {
-    const std::lock_guard lock(self.mutex);
-    move_to_world(cloud, pose);
-    return self.integrator.integrate(g, cloud, pose);
-  });
-  return dict_of(report);
+  return self.integrate(grid, cloud_in_world(self.sensor, points_sensor, pose), pose);
 }
 
 py::object bounds(const Sensor& sensor, const py::object& points_sensor,
                   const py::object& T_world_sensor, std::optional<double> support_plane) {
-  Cloud cloud = points(points_sensor, "points");
   const Pose pose = one_pose(T_world_sensor, "T_world_sensor");
+  const Cloud cloud = cloud_in_world(sensor, points_sensor, pose);
   std::optional<Box> box;
   {
     const WithoutGil without_gil;
-    move_to_world(cloud, pose);
     box = reading_bounds(sensor, cloud, pose, {}, support_plane);
   }
   if (!box) return py::none();
@@ -82,8 +80,7 @@ py::tuple load(const py::object& path) {
 }  // namespace
 
 void bind_cloud(py::module_& module) {
-  py::class_<SharedCloudIntegrator> type(module, "CloudIntegrator",
-                                         R"(Puts point clouds of one sensor into a belief grid.
+  const std::string doc = std::string(R"(Puts point clouds of one sensor into a belief grid.
 
 Each point is a reading along the line from the sensor's origin: it carves the voxels that the line
 passes through and hits the one that holds the point, with the sensor's noise at that range and frontal
@@ -93,52 +90,38 @@ Parameters
 ----------
 sensor : Sensor
     Only its noise, fx (where the noise across the ray is a pixel's footprint) and range limits matter.
-occupancy : {"probabilistic", "literal"}
-    Log-odds once a voxel a cloud, or crossed -> free and hit -> occupied.
-support_plane : float, optional
-    Height z [m] of the table that the object stands on; its readings carve but do not hit.
-num_threads : int
-    0: all hardware threads. Never changes the map.)");
-  refuse_pickling(type);
-  type.def(py::init([](const Sensor& sensor, const std::string& occupancy,
-                       std::optional<double> support_plane, int num_threads) {
-             const CloudIntegrationConfig config{parse_occupancy(occupancy), support_plane};
-             return std::unique_ptr<SharedCloudIntegrator>(new SharedCloudIntegrator{
-                 sensor, CloudIntegrator(sensor, config, ExecConfig{num_threads}), {}});
-           }),
-           py::arg("sensor"), py::kw_only(), py::arg("occupancy") = "probabilistic",
-           py::arg("support_plane") = py::none(), py::arg("num_threads") = 0)
-      .def("integrate", &integrate, py::arg("grid"), py::arg("points"), py::arg("T_world_sensor"),
-           R"(Updates the grid by one cloud.
+)") + kIntegratorSettings;
+  const std::string integrate_doc = std::string(R"(Updates the grid by one cloud.
 
 Parameters
 ----------
 grid : BeliefGrid
 points : array_like, (n, 3)
-    In the sensor's frame [m]; any axes do, its origin is where the rays start. Points that are not
-    finite, or nearer than min_range, say nothing; beyond max_range they carve as far as that.
+    In the sensor's frame [m]; any axes do, its origin is where the rays start. Points that are masked
+    or not finite, or nearer than min_range, say nothing; beyond max_range they carve as far as that.
 T_world_sensor : array_like, (4, 4)
     Rotations that are off by up to 1e-3 are orthonormalised.
 
-Returns
--------
-dict
-    Counts: readings, plane_readings, out_of_range, invalid, readings_inside (points), voxels_hit,
-    voxels_crossed.
-
-Raises
-------
-ValueError
-    Names the shape, or what is wrong with the pose; the grid is unchanged then.)")
-      .def("__repr__", [](const SharedCloudIntegrator& self) {
-        return "<CloudIntegrator of " + self.sensor.name + ">";
-      });
+)") + kIntegrateReturns;
+  auto type = bound_class<Integrator>(module, "CloudIntegrator", doc.c_str());
+  refuse_pickling(type);
+  type.def(py::init([](const Sensor& sensor, const std::string& occupancy,
+                       std::optional<double> support_plane, int num_threads) {
+             const CloudIntegrationConfig config{parse_occupancy(occupancy), support_plane};
+             return std::make_unique<Integrator>(sensor, config, num_threads);
+           }),
+           py::arg("sensor"), py::kw_only(), py::arg("occupancy") = "probabilistic",
+           py::arg("support_plane") = py::none(), py::arg("num_threads") = 0)
+      .def("integrate", &integrate, py::arg("grid"), py::arg("points"), py::arg("T_world_sensor"),
+           integrate_doc.c_str())
+      .def("__repr__",
+           [](const Integrator& self) { return "<CloudIntegrator of " + self.sensor.name + ">"; });
 
   module.def("cloud_bounds", &bounds, py::arg("sensor"), py::arg("points"),
              py::arg("T_world_sensor"), py::kw_only(), py::arg("support_plane") = py::none(),
              R"(The box that holds every reading of a cloud, for choosing a workspace.
 
-Parameters are those of ``CloudIntegrator``.
+Parameters are those of ``CloudIntegrator`` and its ``integrate``.
 
 Returns
 -------

@@ -14,5 +14,7 @@ using GridClass = pybind11::class_<SharedGrid, std::shared_ptr<SharedGrid>>;
 
 /// Adds reading and writing of files.
 void bind_grid_files(GridClass& grid_class);
+/// Adds what is about single voxels.
+void bind_voxels(GridClass& grid_class);
 
 }  // namespace viewgain::python

@@ -1,0 +1,210 @@
+/* SPDX-FileCopyrightText: 2026 The viewgain authors
+   SPDX-License-Identifier: Apache-2.0 */
+#ifndef VIEWGAIN_C_GAIN_H
+#define VIEWGAIN_C_GAIN_H
+
+/* Part of viewgain/viewgain.h: scenes, the expected gain of poses, which are possible, poses. */
+
+#include "viewgain/c/map.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Scenes ---- */
+
+/* An immutable snapshot of a grid, made for tracing, and known obstacles. */
+typedef struct vg_scene vg_scene;
+
+typedef struct vg_scene_config {
+  size_t struct_size;
+  int32_t num_threads; /* of the build; 0: all */
+  const double* boxes; /* obstacles, world: 6 numbers each, min x y z, max x y z */
+  size_t box_count;
+  const double* vertices; /* an obstacle mesh, world: 3 numbers each */
+  size_t vertex_count;
+  const uint32_t* triangles; /* 3 vertex indices each */
+  size_t triangle_count;
+} vg_scene_config;
+VG_API void vg_scene_config_init(vg_scene_config* config, size_t struct_size);
+
+/* config null: no obstacles. */
+VG_API vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config,
+                                vg_scene** scene);
+
+/* The scene of what `grid` is now, with the obstacles of `before`; takes over what has not changed.
+ */
+VG_API vg_status vg_scene_update(const vg_scene* before, const vg_grid* grid, int32_t num_threads,
+                                 vg_scene** scene);
+VG_API void vg_scene_release(vg_scene* scene);
+
+/* ---- Expected gain ---- */
+
+typedef struct vg_evaluator vg_evaluator;
+
+enum { VG_LOG_DIAGONAL = 0, VG_LOG_DETERMINANT = 1, VG_TRACE = 2 };
+
+/* A task weight for a part of the workspace. */
+typedef struct vg_weight_region {
+  double box_min[3], box_max[3]; /* grid frame [m]; the last region that holds a voxel counts */
+  double weight;                 /* >= 0; 1 outside all regions */
+} vg_weight_region;
+
+typedef struct vg_evaluator_config {
+  size_t struct_size;
+  int32_t criterion;           /* VG_LOG_DIAGONAL */
+  int32_t pixel_stride;        /* 1: every pixel; s: every s-th of every s-th row */
+  int32_t num_threads;         /* 0: all; 1: the caller alone; never changes a gain */
+  double prior_sigma;          /* [m]; NaN (the default): the map's */
+  double min_range, max_range; /* along the ray [m]; NaN (the default): the sensor's */
+  const vg_weight_region* weights;
+  size_t weight_count;
+} vg_evaluator_config;
+VG_API void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_size);
+
+/* config null: the defaults. */
+VG_API vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
+                                     const vg_evaluator_config* config, vg_evaluator** evaluator);
+VG_API void vg_evaluator_release(vg_evaluator* evaluator);
+
+typedef struct vg_evaluator_info {
+  size_t struct_size;
+  int32_t image_width, image_height; /* of depth images: the sensor's by the stride [px] */
+  uint64_t rays_per_pose;
+  int32_t num_threads;
+  double prior_sigma; /* [m] */
+} vg_evaluator_info;
+VG_API void vg_evaluator_info_init(vg_evaluator_info* info, size_t struct_size);
+VG_API vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluator_info* info);
+
+enum { VG_VIEW_OK = 0, VG_VIEW_BAD_POSE = 1, VG_VIEW_CAMERA_IN_OCCUPIED = 2 };
+
+/* What a view is expected to bring; gains in nats, in m^2 for VG_TRACE. */
+typedef struct vg_view_gain {
+  double gain;                    /* exploration + refinement; NaN: a bad pose */
+  double exploration, refinement; /* share of unknown and of occupied voxels */
+  double posterior_entropy;       /* the paper's eq. (6), lengths in metres */
+  uint32_t rays, hits;
+  uint32_t unknown_voxels, occupied_voxels; /* distinct */
+  int32_t status;                           /* VG_VIEW_ */
+} vg_view_gain;
+
+/* The expected gain of every pose, on all threads of the evaluator: poses are count times 16
+   doubles; a single one without a watch is traced on all threads together. A bad pose has gain NaN
+   and spoils no other; a camera in an occupied voxel has 0. watch or null. VG_STOPPED: the gains
+   not reached are NaN. */
+VG_API vg_status vg_evaluate(const vg_evaluator* evaluator, const double* poses, size_t count,
+                             double* gains, const vg_watch* watch);
+
+/* The same with all that is known of each view; view_size is sizeof(vg_view_gain). */
+VG_API vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* poses, size_t count,
+                                   vg_view_gain* views, size_t view_size, const vg_watch* watch);
+
+/* ---- Choosing views ---- */
+
+/* The k best poses, exactly those of the largest gains, best first, ties to the lower index, NaN
+   last; all poses are scored. `indices` and `gains` (null: not wanted) have room for
+   k, *found says how many there are (fewer than k if there are fewer poses). VG_STOPPED: the best
+   of those scored so far, which *found counts. */
+VG_API vg_status vg_best(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
+                         size_t* indices, double* gains, size_t* found, const vg_watch* watch);
+
+/* The k best poses, very probably, faster: poses are compared by random parts of their images, the
+   survivors scored in full. The same for a seed and any number of threads. */
+VG_API vg_status vg_race(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
+                         uint64_t seed, size_t* indices, double* gains, size_t* found,
+                         const vg_watch* watch);
+
+/* Up to k poses that are good together, in the order of their choice; gains: what each adds to
+   those before it. VG_STOPPED: those chosen so far. */
+VG_API vg_status vg_best_set(const vg_evaluator* evaluator, const double* poses, size_t count,
+                             size_t k, size_t* indices, double* gains, size_t* found,
+                             const vg_watch* watch);
+
+/* ---- Looking at a view ---- */
+
+enum { VG_HIT_NONE = 0, VG_HIT_UNKNOWN = 1, VG_HIT_OCCUPIED = 2, VG_HIT_OBSTACLE = 3 };
+
+/* Where the rays of a pose end: depth along the optical axis [m], +infinity where a ray meets
+   nothing, and what it meets (VG_HIT_; null: not wanted). count must be image_width *
+   image_height. A bad pose is VG_INVALID_ARGUMENT. */
+VG_API vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_world_camera[16],
+                                float* depth, uint8_t* labels, size_t count);
+
+/* What one voxel adds to the gain of a view. */
+typedef struct vg_contribution {
+  int32_t voxel[3]; /* on the grid's lattice */
+  int32_t state;    /* 0 unknown, 2 occupied */
+  uint32_t rays;    /* that end in it */
+  double gain;      /* [nat, or m^2] */
+} vg_contribution;
+
+/* Why a view is good: one entry a voxel in which rays end, the largest gain first; the gains add up
+   to the view's. Fills at most `capacity` of them and says in *found how many there are; never more
+   than rays_per_pose. contribution_size is sizeof(vg_contribution). None for a camera in an
+   occupied voxel; a bad pose is VG_INVALID_ARGUMENT. */
+VG_API vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_camera[16],
+                                  vg_contribution* contributions, size_t contribution_size,
+                                  size_t capacity, size_t* found);
+
+/* ---- Which poses are possible ---- */
+
+typedef struct vg_feasibility vg_feasibility;
+
+enum {
+  VG_FEASIBLE = 0,
+  VG_INFEASIBLE_BAD_POSE = 1,
+  VG_INFEASIBLE_UNREACHABLE = 2, /* `reachable` says no */
+  VG_INFEASIBLE_TAKEN = 3,       /* a view was taken there already */
+  VG_INFEASIBLE_PLANE = 4,       /* the body would touch the support plane or be under it */
+  VG_INFEASIBLE_OBSTACLE = 5,    /* the body would overlap a known obstacle */
+  VG_INFEASIBLE_COLLISION = 6,   /* the body would overlap voxels that are not free */
+  VG_INFEASIBLE_TOO_NEAR = 7     /* much of the image would be nearer than the sensor can measure */
+};
+
+typedef struct vg_feasibility_config {
+  size_t struct_size;
+  double body_size[3];        /* width, height, depth of the housing [m]; 0.065 0.065 0.076 */
+  int32_t has_flange;         /* nonzero: T_flange_camera counts; else the camera is in the */
+  double T_flange_camera[16]; /* middle of the body's front face */
+  double clearance;           /* the body is grown by this on each side [m]; 0 */
+  double support_plane;       /* its height, world z [m]; NaN (the default): none */
+  double taken_distance;      /* views this near ... [m]; 0.010 */
+  double taken_angle;         /* ... and this much alike are the same [rad]; 2 degrees */
+  const vg_sensor* sensor;    /* null (the default): nothing is too near; read during create */
+  double max_near_share;      /* of the rays; 0.2 */
+  /* Whether the robot can put the camera there: nonzero, yes. Null (the default): everywhere. Must
+     be thread safe, and must not throw or jump out. */
+  int32_t (*reachable)(const double T_world_camera[16], void* user);
+  void* user; /* may be null */
+} vg_feasibility_config;
+VG_API void vg_feasibility_config_init(vg_feasibility_config* config, size_t struct_size);
+
+/* config null: the defaults. */
+VG_API vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibility_config* config,
+                                       vg_feasibility** feasibility);
+
+/* Why each pose is not possible (VG_FEASIBLE: it is); the first reason in the order above counts.
+   `taken`: the poses of the views so far, 16 doubles each. On all threads, which call
+   `reachable` at once. */
+VG_API vg_status vg_feasibility_check(const vg_feasibility* feasibility, const double* poses,
+                                      size_t count, const double* taken, size_t taken_count,
+                                      int32_t* reasons);
+VG_API void vg_feasibility_release(vg_feasibility* feasibility);
+
+/* ---- Poses ---- */
+
+/* count poses evenly on a sphere round `center`, looking at it, image up = world up (+z). */
+VG_API vg_status vg_sphere_poses(size_t count, double radius, const double center[3],
+                                 double* poses);
+/* The same on its upper half. */
+VG_API vg_status vg_dome_poses(size_t count, double radius, const double center[3], double* poses);
+
+/* A camera at `eye` that looks at `target`, image up as near to `up` as can be (null: +z). */
+VG_API vg_status vg_look_at(const double eye[3], const double target[3], const double up[3],
+                            double T_world_camera[16]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

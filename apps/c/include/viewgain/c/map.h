@@ -1,0 +1,155 @@
+/* SPDX-FileCopyrightText: 2026 The viewgain authors
+   SPDX-License-Identifier: Apache-2.0 */
+#ifndef VIEWGAIN_C_MAP_H
+#define VIEWGAIN_C_MAP_H
+
+/* Part of viewgain/viewgain.h: sensors, belief grids and what changes them. */
+
+#include "viewgain/c/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Sensors ---- */
+
+/* Standard deviations of a reading at range t, along the ray and across it; see core's noise.hpp.
+   The parameters are those of vg_sensor.noise, in this order. */
+enum {
+  VG_NOISE_SHOT = 0,             /* time of flight: reference_sigma, reference_range,
+                                    reference_integration_time, integration_time,
+                                    modulation_frequency, min_amplitude */
+  VG_NOISE_STRUCTURED_LIGHT = 1, /* offset, quadratic, vertex, grazing, lateral_px,
+                                    lateral_grazing_px */
+  VG_NOISE_STEREO = 2,           /* subpixel, focal (0: fx), baseline */
+  VG_NOISE_QUADRATIC = 3,        /* offset, quadratic */
+  VG_NOISE_CONSTANT = 4          /* sigma_axial, sigma_lateral */
+};
+
+/* A depth camera. Pixel (0,0) has its centre at (0,0), as in OpenCV. */
+typedef struct vg_sensor {
+  size_t struct_size;
+  int32_t width, height;       /* [px] */
+  double fx, fy, cx, cy;       /* [px] */
+  double distortion[5];        /* k1 k2 p1 p2 k3 */
+  double min_range, max_range; /* along the ray [m] */
+  double working_distance;     /* where it is meant to be used [m] */
+  int32_t noise_model;         /* VG_NOISE_ */
+  double noise[6];             /* the model's parameters; those beyond must be 0 */
+} vg_sensor;
+VG_API void vg_sensor_init(vg_sensor* sensor, size_t struct_size); /* all 0: nothing is valid yet */
+
+/* Fills a sensor that vg_sensor_init has seen: "sr4000", "azure_kinect_nfov", "kinect_v1", "d435"
+   or "laser_line". */
+VG_API vg_status vg_sensor_preset(const char* name, vg_sensor* sensor);
+
+/* The prior sigma [m] that suits a voxel size and a sensor: max(voxel / 2, 2 sigma_ax at the
+   working distance). */
+VG_API vg_status vg_default_prior_sigma(double voxel_size, const vg_sensor* sensor, double* sigma);
+
+/* ---- Belief grids ---- */
+
+typedef struct vg_grid vg_grid;
+
+typedef struct vg_grid_config {
+  size_t struct_size;
+  double voxel_size;             /* [m] */
+  double box_min[3], box_max[3]; /* the workspace, in the grid's frame; grown to whole voxels */
+  double T_world_grid[16];       /* identity */
+  double prior_sigma;            /* of an unknown voxel [m] */
+} vg_grid_config;
+VG_API void vg_grid_config_init(vg_grid_config* config, size_t struct_size);
+
+/* An empty map: every voxel of the workspace is unknown. */
+VG_API vg_status vg_grid_create(const vg_grid_config* config, vg_grid** grid);
+
+/* A map from a dense array of states. The corner of voxel (0,0,0) is at `origin`, world: the grid's
+   frame is moved there, its axes are the world's. */
+VG_API vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3],
+                                     const double origin[3], double voxel_size, double prior_sigma,
+                                     vg_grid** grid);
+
+VG_API vg_status vg_grid_load(const char* path, vg_grid** grid); /* a .vdb file of viewgain */
+VG_API vg_status vg_grid_save(const vg_grid* grid, const char* path);
+
+/* OctoMap's .ot and .bt: the states, and a .ot's log-odds; the workspace is the box of the known
+   voxels. prior_sigma [m], 0: half a voxel. Saving writes a .ot, in the world's frame where
+   T_world_grid is a shift by whole voxels, else in the grid's own. */
+VG_API vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** grid);
+VG_API vg_status vg_grid_save_octomap(const vg_grid* grid, const char* path);
+VG_API vg_status vg_grid_clone(const vg_grid* grid, vg_grid** copy);
+VG_API void vg_grid_release(vg_grid* grid);
+
+typedef struct vg_grid_info {
+  size_t struct_size;
+  int32_t min_index[3]; /* lowest voxel of the workspace on the grid's lattice */
+  int32_t dims[3];      /* voxels along x, y, z */
+  double voxel_size;    /* [m] */
+  double prior_sigma;   /* [m] */
+  double T_world_grid[16];
+  uint64_t unknown, free, occupied; /* voxels */
+  uint64_t views;                   /* frames integrated */
+  uint64_t bytes;                   /* memory */
+  double entropy_removed;           /* how far the map is, by log_diagonal [nat] */
+} vg_grid_info;
+VG_API void vg_grid_info_init(vg_grid_info* info, size_t struct_size);
+VG_API vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info);
+
+/* The dense array of states; count must be dims[0] * dims[1] * dims[2]. */
+VG_API vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count);
+
+/* In all three places where there is no voxel. */
+enum { VG_NO_VOXEL = INT32_MIN };
+
+/* The voxels that hold points of the world, 3 numbers each [m]: 3 indices each, on the lattice
+   (minus min_index for arrays), or VG_NO_VOXEL for a point outside the workspace or not finite. */
+VG_API vg_status vg_grid_index_of(const vg_grid* grid, const double* points, size_t count,
+                                  int32_t* voxels);
+
+/* Centres of voxels in the world [m]; the voxels need not lie in the workspace. */
+VG_API vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size_t count,
+                                double* centers);
+
+/* 16 hexadecimal digits and a 0 over all that the map holds; the same for equal maps. */
+VG_API vg_status vg_grid_hash(const vg_grid* grid, char hash[17]);
+
+/* ---- Depth frames ---- */
+
+typedef struct vg_integrator vg_integrator;
+
+enum { VG_CARVE_CONES = 0, VG_CARVE_LINES = 1 };
+enum { VG_OCCUPANCY_PROBABILISTIC = 0, VG_OCCUPANCY_LITERAL = 1 };
+
+typedef struct vg_integrator_config {
+  size_t struct_size;
+  int32_t carve;        /* VG_CARVE_CONES */
+  int32_t occupancy;    /* VG_OCCUPANCY_PROBABILISTIC */
+  int32_t num_threads;  /* 0: all; 1: the caller alone; never changes the map */
+  double support_plane; /* height of the table, world z [m]; NaN (the default): none */
+} vg_integrator_config;
+VG_API void vg_integrator_config_init(vg_integrator_config* config, size_t struct_size);
+
+/* Counts of one frame. */
+typedef struct vg_integration_report {
+  size_t struct_size;
+  uint64_t readings, plane_readings, out_of_range, invalid, readings_inside;
+  uint64_t voxels_hit, voxels_crossed;
+} vg_integration_report;
+VG_API void vg_integration_report_init(vg_integration_report* report, size_t struct_size);
+
+/* Puts frames of one sensor into maps. config null: the defaults. */
+VG_API vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_config* config,
+                                      vg_integrator** integrator);
+
+/* Integrates one frame: `depth` along the optical axis [m], row by row, width * height values, 0
+   invalid, +infinity out of range; `amplitude` [1/m^2] of the same size, or null; `report` or null.
+   A bad pose is VG_INVALID_ARGUMENT, and the map is unchanged. */
+VG_API vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* depth,
+                              const float* amplitude, const double T_world_camera[16],
+                              vg_integration_report* report);
+VG_API void vg_integrator_release(vg_integrator* integrator);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

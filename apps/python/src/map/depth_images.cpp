@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "depth_images.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <sstream>
+#include <string>
+
+namespace viewgain::python {
+namespace {
+
+// Single precision, row by row; NaN where masked. `unit` says what an image of integers is not.
+std::vector<float> image(const py::object& value, const std::string& name, const std::string& unit,
+                         int height, int width) {
+  const py::dtype type = any_array(value, name + " must be an array of numbers").dtype();
+  if (type.kind() == 'i' || type.kind() == 'u' || type.kind() == 'b') {
+    throw py::value_error(name + " must be floating point " + unit + ", not dtype " +
+                          py::str(py::handle(type)).cast<std::string>());
+  }
+  const Doubles array = doubles(nan_where_masked(value), name.c_str(), {height, width});
+  std::vector<float> pixels(static_cast<std::size_t>(array.size()));
+  std::transform(array.data(), array.data() + array.size(), pixels.begin(),
+                 [](double x) { return static_cast<float>(x); });
+  return pixels;
+}
+
+}  // namespace
+
+DepthFrame depth_frame(const Sensor& sensor, const py::object& depth, const py::object& amplitude) {
+  const int width = sensor.camera.width, height = sensor.camera.height;
+  DepthFrame frame{width, height,
+                   image(depth, "depth", "[m] (millimetres: depth.astype(numpy.float32) / 1000)",
+                         height, width)};
+  float nearest = std::numeric_limits<float>::infinity();
+  for (float& z : frame.depth) {
+    if (z > 0) {
+      nearest = std::min(nearest, z);
+    } else {
+      z = DepthFrame::kInvalid;
+    }
+  }
+  require_metres(nearest, sensor, "depth");
+  if (!amplitude.is_none()) {
+    frame.amplitude = image(amplitude, "amplitude", "[1/m**2]", height, width);
+  }
+  return frame;
+}
+
+void require_metres(double nearest, const Sensor& sensor, const char* name) {
+  if (!(std::isfinite(nearest) && nearest > 10 * sensor.max_range)) return;
+  std::ostringstream text;
+  text << name << " must be in metres: its nearest reading is at " << nearest
+       << ", beyond 10 times the sensor's max_range of " << sensor.max_range
+       << " m (where there is nothing up to max_range a depth is inf)";
+  throw py::value_error(text.str());
+}
+
+py::array_t<float> image_array(const std::vector<float>& pixels, int height, int width) {
+  return py::array_t<float>(Shape{height, width}, pixels.data());
+}
+
+}  // namespace viewgain::python

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "shared_grid.hpp"
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/integrate.hpp"
+
+namespace viewgain::python {
+
+// What the integrators of frames and of clouds have in common.
+
+/// Of the docstrings: parameters of the constructors.
+inline constexpr const char* kIntegratorSettings =
+    R"(occupancy : {"probabilistic", "literal"}
+    Log-odds, changed once per voxel and call, or crossed -> free and hit -> occupied.
+support_plane : float, optional
+    Height z [m] of the table that the object stands on; its readings carve but do not hit.
+num_threads : int
+    0: all hardware threads. Never changes the map.)";
+
+/// Of the docstrings: what integrate() returns and raises.
+inline constexpr const char* kIntegrateReturns =
+    R"(Returns
+-------
+dict
+    Counts: readings, plane_readings, out_of_range, invalid, readings_inside (of pixels or points),
+    voxels_hit, voxels_crossed.
+
+Raises
+------
+ValueError
+    Names the shape or dtype, or what is wrong with the pose; or the nearest of all readings is beyond
+    10 times max_range, as where they are in millimetres. The grid is unchanged then.)";
+
+[[nodiscard]] inline Occupancy parse_occupancy(const std::string& name) {
+  if (name == "probabilistic") return Occupancy::probabilistic;
+  if (name == "literal") return Occupancy::literal;
+  throw pybind11::value_error("occupancy is \"" + name + "\"; valid are probabilistic literal");
+}
+
+[[nodiscard]] inline pybind11::dict dict_of(const IntegrationReport& report) {
+  pybind11::dict result;
+  result["readings"] = report.readings;
+  result["plane_readings"] = report.plane_readings;
+  result["out_of_range"] = report.out_of_range;
+  result["invalid"] = report.invalid;
+  result["readings_inside"] = report.readings_inside;
+  result["voxels_hit"] = report.voxels_hit;
+  result["voxels_crossed"] = report.voxels_crossed;
+  return result;
+}
+
+/// Python's integrators; one call at a time.
+template <typename Integrator>
+struct SharedIntegrator {
+  Sensor sensor;
+  Integrator integrator;
+  std::mutex mutex{};
+
+  template <typename Config>
+  SharedIntegrator(const Sensor& of, const Config& config, int num_threads)
+      : sensor(of), integrator(of, config, ExecConfig{num_threads}) {}
+
+  /// Call with the GIL.
+  template <typename Readings>
+  pybind11::dict integrate(SharedGrid& grid, const Readings& readings, const Pose& T_world_sensor) {
+    return dict_of(grid.write([&](BeliefGrid& g) {
+      const std::lock_guard lock(mutex);
+      return integrator.integrate(g, readings, T_world_sensor);
+    }));
+  }
+};
+
+}  // namespace viewgain::python

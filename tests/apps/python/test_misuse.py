@@ -1,0 +1,272 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""Objects that were never initialised, images in other units, masks, empty lists, what is missing."""
+import ast
+import copy
+import importlib
+import inspect
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import box_mesh
+from test_package import MODULES, stub_of
+
+import viewgain
+
+WORKSPACE = np.array([[-0.2] * 3, [0.2] * 3])
+UNINITIALISED = "has not been called on this object"
+
+
+def nothing_for(function):
+    """Arguments that the stub's method needs: None each, as the object is looked at first."""
+    arguments = function.args
+    positional = arguments.args[1:len(arguments.args) - len(arguments.defaults)]
+    keywords = [argument.arg for argument, default in zip(arguments.kwonlyargs, arguments.kw_defaults)
+                if default is None]
+    return [None] * len(positional), dict.fromkeys(keywords)
+
+
+def uses_of(owner, node):
+    """What can be done with an object of a class, by name."""
+    uses = {"repr": repr}
+    for function in node.body:
+        decorated = {ast.unparse(decorator) for decorator in function.decorator_list}
+        if function.name == "__init__" or "staticmethod" in decorated:
+            continue
+        if "property" in decorated:
+            uses[function.name] = lambda one, name=function.name: getattr(one, name)
+        else:
+            positional, keywords = nothing_for(function)
+            uses[function.name] = (lambda one, name=function.name, p=positional, k=keywords:
+                                   getattr(one, name)(*p, **k))
+    if "__eq__" in vars(owner):
+        uses["=="] = lambda one: one == one
+    return uses
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_what_was_never_initialised_raises_wherever_it_is_used(name):
+    module = importlib.import_module(name)
+    stubs = {node.name: node for node in stub_of(module).body if isinstance(node, ast.ClassDef)}
+    classes = [one for one in vars(module).values()
+               if inspect.isclass(one) and not issubclass(one, Exception)]
+    tried = 0
+    for one in classes:
+        uses = uses_of(one, stubs[one.__name__])
+        raw = one.__new__(one)
+        for what, use in uses.items():
+            with pytest.raises(TypeError, match=f"{one.__name__}.__init__ {UNINITIALISED}"):
+                use(raw)
+                pytest.fail(f"{one.__name__}: {what}")
+            tried += 1
+        with pytest.raises(TypeError):
+            copy.copy(raw)
+
+        class Early(one):
+            def __init__(self, messages):
+                for use in uses.values():
+                    try:
+                        use(self)
+                    except TypeError as error:
+                        messages.append(str(error))
+
+        messages = []
+        with pytest.raises(TypeError, match="__init__"):
+            Early(messages)
+        assert len(messages) == len(uses) and all(UNINITIALISED in text for text in messages)
+    assert len(classes) == (16 if name == MODULES[0] else 2)
+    assert tried >= (110 if name == MODULES[0] else 10)
+
+
+def test_what_was_never_initialised_is_no_argument(grid, sensor, evaluator, poses):
+    def raw(name):
+        one = getattr(viewgain, name)
+        return one.__new__(one)
+
+    scene, depth = evaluator.scene, np.ones((144, 176))
+    frames, clouds = viewgain.FrameIntegrator(sensor), viewgain.CloudIntegrator(sensor)
+    limits = {"min_range": 0.2, "max_range": 2.0, "working_distance": 0.5}
+    calls = [lambda: viewgain.VoxelScene(raw("BeliefGrid")), lambda: scene.update(raw("BeliefGrid")),
+             lambda: frames.integrate(raw("BeliefGrid"), depth, poses[0]),
+             lambda: clouds.integrate(raw("BeliefGrid"), np.ones((1, 3)), poses[0]),
+             lambda: viewgain.GainEvaluator(raw("VoxelScene"), sensor),
+             lambda: viewgain.GainEvaluator(scene, raw("Sensor")),
+             lambda: viewgain.FeasibilityChecker(raw("VoxelScene")),
+             lambda: viewgain.FeasibilityChecker(scene, reach=raw("ReachRegion")),
+             lambda: viewgain.FrameIntegrator(raw("Sensor")),
+             lambda: viewgain.BeliefGrid(voxel_size=0.1, workspace=WORKSPACE, sensor=raw("Sensor")),
+             lambda: viewgain.Sensor(raw("PinholeCamera"), noise=viewgain.ConstantNoise(), **limits),
+             lambda: viewgain.Sensor(sensor.camera, noise=raw("StereoNoise"), **limits),
+             lambda: evaluator.evaluate(poses, control=raw("BatchControl")),
+             lambda: sensor.camera == raw("PinholeCamera")]
+    for call in calls:
+        with pytest.raises(TypeError, match=UNINITIALISED):
+            call()
+    assert len(calls) == 14
+
+
+@pytest.fixture(scope="module")
+def frame(sensor):
+    """A pose, the depth from there and the amplitude."""
+    camera = viewgain.SimulatedSensor(*box_mesh([-0.1] * 3, [0.1] * 3), sensor, background_radius=1.5)
+    pose = viewgain.look_at([0.45, 0.2, 0.25], [0, 0, 0])
+    return pose, *camera.acquire(pose)
+
+
+def hash_after(sensor, pose, depth, **amplitude):
+    grid = viewgain.BeliefGrid(voxel_size=0.01, workspace=WORKSPACE, sensor=sensor)
+    viewgain.FrameIntegrator(sensor).integrate(grid, depth, pose, **amplitude)
+    return grid.content_hash()
+
+
+def hash_after_cloud(sensor, pose, points):
+    grid = viewgain.BeliefGrid(voxel_size=0.01, workspace=WORKSPACE, sensor=sensor)
+    viewgain.CloudIntegrator(sensor).integrate(grid, points, pose)
+    return grid.content_hash()
+
+
+def test_images_in_millimetres_are_refused(sensor, frame):
+    pose, depth, amplitude = frame
+    millimetres = 1000 * depth
+    integrator = viewgain.FrameIntegrator(sensor)
+    grid = viewgain.BeliefGrid(voxel_size=0.01, workspace=WORKSPACE, sensor=sensor)
+    before = grid.content_hash()
+    cases = [(millimetres.astype(dtype), f"depth must be floating point.*/ 1000.*{np.dtype(dtype)}")
+             for dtype in (np.uint16, np.int32, np.uint8, bool)]
+    cases += [(millimetres, "depth must be in metres: its nearest reading is at [345]..*max_range of 5 m"),
+              (np.where(millimetres < 600, millimetres, np.inf), "depth must be in metres"),
+              (np.where(millimetres < 600, millimetres, np.nan).tolist(), "depth must be in metres")]
+    for image, text in cases:
+        with pytest.raises(ValueError, match=text):
+            integrator.integrate(grid, image, pose)
+        with pytest.raises(ValueError, match=text):
+            viewgain.reading_bounds(sensor, image, pose)
+    assert len(cases) == 7
+    with pytest.raises(ValueError, match=r"amplitude must be floating point \[1/m\*\*2\], not dtype uint16"):
+        integrator.integrate(grid, depth, pose, amplitude=amplitude.astype(np.uint16))
+    assert grid.content_hash() == before
+    # Some readings far away, or none at all, are no reason.
+    far = np.where(np.arange(depth.size).reshape(depth.shape) % 2 == 0, depth, 65.535)
+    assert integrator.integrate(grid, far, pose)["out_of_range"] == depth.size // 2
+    assert integrator.integrate(grid, np.full_like(depth, np.inf), pose)["out_of_range"] == depth.size
+
+
+def test_clouds_in_millimetres_are_refused(sensor, frame):
+    pose, depth, _ = frame
+    points = (sensor.camera.rays() * depth[..., None]).reshape(-1, 3)
+    for call in (lambda: hash_after_cloud(sensor, pose, 1000 * points),
+                 lambda: viewgain.cloud_bounds(sensor, 1000 * points, pose)):
+        with pytest.raises(ValueError, match="points must be in metres"):
+            call()
+    points[::2] *= 1000
+    assert viewgain.cloud_bounds(sensor, points, pose) is not None
+
+
+def test_masked_pixels_and_points_say_nothing(sensor, frame):
+    pose, depth, amplitude = frame
+    mask = np.zeros(depth.shape, bool)
+    mask[60:90, 70:110] = True
+    masked, gaps = np.ma.array(depth, mask=mask), np.where(mask, np.nan, depth)
+    whole = hash_after(sensor, pose, depth)
+    assert hash_after(sensor, pose, masked) == hash_after(sensor, pose, gaps) != whole
+    assert hash_after(sensor, pose, np.ma.array(depth)) == whole
+    of_masked = hash_after(sensor, pose, depth, amplitude=np.ma.array(amplitude, mask=mask))
+    assert of_masked == hash_after(sensor, pose, depth, amplitude=np.where(mask, np.nan, amplitude))
+    assert of_masked != hash_after(sensor, pose, depth, amplitude=amplitude)
+    inside = np.ma.array(depth, mask=~mask)
+    assert np.array_equal(viewgain.reading_bounds(sensor, inside, pose),
+                          viewgain.reading_bounds(sensor, np.where(mask, depth, 0), pose))
+
+    points = (sensor.camera.rays() * depth[..., None]).reshape(-1, 3)
+    rows = np.repeat(mask.reshape(-1, 1), 3, axis=1)
+    of_masked = hash_after_cloud(sensor, pose, np.ma.array(points, mask=rows))
+    assert of_masked == hash_after_cloud(sensor, pose, points[~mask.ravel()])
+    assert of_masked != hash_after_cloud(sensor, pose, points)
+
+
+def test_masks_elsewhere(labels, sensor, evaluator, poses):
+    mask = np.zeros(labels.shape, bool)
+    mask[5:9] = True
+    grid = viewgain.BeliefGrid.from_labels(
+        np.ma.array(labels, mask=mask), voxel_size=0.01, sensor=sensor)
+    assert np.array_equal(grid.states(), np.where(mask, 0, labels))
+    assert np.array_equal(evaluator.evaluate(np.ma.array(poses)), evaluator.evaluate(poses))
+    hidden = np.ma.array(poses, mask=np.zeros(poses.shape, bool))
+    hidden[3] = np.ma.masked
+    for call in (evaluator.evaluate, evaluator.best, viewgain.ReachRegion().contains,
+                 lambda masked: viewgain.ReachRegion(poses=masked)):
+        with pytest.raises(ValueError, match="masked entries"):
+            call(hidden)
+
+
+def test_empty_lists_are_empty(grid, sensor, evaluator, poses):
+    scene, checker = evaluator.scene, viewgain.FeasibilityChecker(evaluator.scene)
+    results = [evaluator.evaluate([]), evaluator.evaluate_detailed([]), evaluator.approximate([]),
+               evaluator.evaluate_own([], lambda pose, hits: 1.0), evaluator.best([], k=2),
+               evaluator.race([]), evaluator.best_set([], 3), checker.feasible([]), checker.reasons([]),
+               viewgain.ReachRegion().contains([])]
+    for result in results:
+        assert result.shape == (0,)
+    assert len(results) == 10
+    assert viewgain.look_at([], [0, 0, 0]).shape == (0, 4, 4)
+    assert sensor.camera.project([]).shape == (0, 2)
+    assert np.array_equal(checker.reasons(poses, taken=[]), checker.reasons(poses))
+    region = viewgain.ReachRegion(boxes=[], shells=[], half_spaces=[], poses=[])
+    assert repr(region) == "<ReachRegion 0 boxes, 0 shells, 0 half-spaces, 0 poses>"
+    assert region.contains(poses).all()
+    bare = viewgain.VoxelScene(grid, boxes=[], meshes=[])
+    gains = viewgain.GainEvaluator(bare, sensor, pixel_stride=4, weights=[]).evaluate(poses)
+    assert np.array_equal(gains, evaluator.evaluate(poses))
+    assert bare.primitive_count == scene.primitive_count
+    map_of_nothing = viewgain.BeliefGrid(voxel_size=0.01, workspace=WORKSPACE, sensor=sensor)
+    report = viewgain.CloudIntegrator(sensor).integrate(map_of_nothing, [], poses[0])
+    assert set(report.values()) == {0}
+    assert viewgain.cloud_bounds(sensor, [], poses[0]) is None
+    for call in (lambda: evaluator.depth([]), lambda: viewgain.VoxelScene(grid, boxes=[[]]),
+                 lambda: viewgain.sphere_poses(3, 1.0, center=[])):
+        with pytest.raises(ValueError, match="shape"):
+            call()
+
+
+def test_saving_under_a_name_of_octomap_is_refused(tmp_path, grid):
+    names = ["map.ot", "map.bt", "map.OT", b"m\xff.ot"]
+    for name in names:
+        path = os.fsencode(tmp_path) + b"/" + os.fsencode(name)
+        with pytest.raises(ValueError, match="save_octomap"):
+            grid.save(path)
+    assert os.listdir(tmp_path) == [] and len(names) == 4
+    grid.save_octomap(tmp_path / "map.ot")
+    grid.save(tmp_path / "ot")
+    assert sorted(os.listdir(tmp_path)) == ["map.ot", "ot"]
+
+
+def test_the_prior_is_never_guessed(tmp_path, labels, grid, sensor):
+    path = tmp_path / "map.ot"
+    grid.save_octomap(path)
+    makers = [lambda **prior: viewgain.BeliefGrid.from_labels(labels, voxel_size=0.01, **prior),
+              lambda **prior: viewgain.BeliefGrid(voxel_size=0.01, workspace=WORKSPACE, **prior),
+              lambda **prior: viewgain.BeliefGrid.load_octomap(path, **prior)]
+    for make in makers:
+        with pytest.raises(ValueError, match="sensor.*prior_sigma"):
+            make()
+        assert make(prior_sigma=0.0125).prior_sigma == 0.0125
+        assert make(sensor=sensor).prior_sigma == viewgain.default_prior_sigma(0.01, sensor)
+        assert make(prior_sigma=0.0125, sensor=sensor).prior_sigma == 0.0125
+    assert len(makers) == 3
+
+
+def test_a_python_without_numpy_is_told_so():
+    program = """
+import sys
+sys.modules["numpy"] = None  # as if it were not there
+try:
+    import viewgain
+except ImportError as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0 and done.stderr == ""
+    assert done.stdout.startswith("viewgain needs numpy")
