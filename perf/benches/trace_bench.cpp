@@ -38,11 +38,14 @@ Json to_json(const TraceOptions& options, const TraceRun& run) {
     if (entry.is_embree()) json["embree_variants"][entry.name] = median(entry.rates);
   }
   for (const std::string ours : {"viewgain_gain", "viewgain_trace"}) {
+    const auto add_ratio = [&](const std::string& name, double rate) {
+      json["ratios"][ours + "/" + name] = run.rate(ours) / rate;
+    };
     for (const auto& [name, entry] : run.rows) {
-      if (name != ours) json["ratios"][ours + "/" + name] = run.rate(ours) / run.rate(name);
+      if (name != ours) add_ratio(name, run.rate(name));
+      if (name == "embree_quads") add_ratio("embree_quads_fast", run.fast_embree);
     }
   }
-  json["ratios"]["viewgain_gain/embree_quads_fast"] = run.rate("viewgain_gain") / run.fast_embree;
   for (const auto& [name, entry] : run.rows) {
     json["agreement"][name] = entry->agreement.share();
     json["ties"][name] = entry->agreement.ties;

@@ -12,6 +12,7 @@
 
 #include "boundary_edges.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/number_text.hpp"
 
 namespace viewgain {
 namespace {
@@ -213,7 +214,7 @@ void check_config(const BoundaryConfig& config) {
   const auto check = [](const char* name, double value, bool valid) {
     if (!valid) {
       throw Error(ErrorCode::invalid_argument,
-                  std::string("boundary: ") + name + " must not be " + std::to_string(value));
+                  std::string("boundary: ") + name + " must not be " + number_text(value));
     }
   };
   check("max_view_angle", config.max_view_angle,

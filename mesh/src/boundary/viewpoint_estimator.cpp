@@ -14,6 +14,7 @@
 #include "region_grower.hpp"
 #include "surface/surface_access.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/number_text.hpp"
 
 namespace viewgain {
 namespace {
@@ -29,7 +30,7 @@ constexpr std::size_t kMinPiecesOfClosedRun = 3;
 
 [[noreturn]] void refuse(const std::string& name, double value) {
   throw Error(ErrorCode::invalid_argument,
-              "viewpoint estimator: " + name + " must not be " + std::to_string(value));
+              "viewpoint estimator: " + name + " must not be " + number_text(value));
 }
 
 template <typename Valid>

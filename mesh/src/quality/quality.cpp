@@ -12,6 +12,7 @@
 #include "box_tree.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
+#include "viewgain/core/number_text.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain {
@@ -233,7 +234,7 @@ Consistency GroundTruth::consistency(std::span<const std::array<double, 3>> poin
     const double variance = n.dot(covariances[i] * n);
     if (!(variance > 0) || !std::isfinite(variance)) {
       throw Error(ErrorCode::invalid_argument, "the covariance of point " + std::to_string(i) +
-                                                   " has the variance " + std::to_string(variance) +
+                                                   " has the variance " + number_text(variance) +
                                                    " along the normal");
     }
     z2.push_back(distance * distance / variance);

@@ -15,6 +15,7 @@
 #include "point_cleaning.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
+#include "viewgain/core/number_text.hpp"
 
 namespace viewgain {
 namespace {
@@ -28,7 +29,7 @@ constexpr double kMinDistance = 0.25;  // of vertices after smoothing [spacings]
 
 void check(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
   const auto refuse = [](const std::string& what, double value) {
-    throw Error(ErrorCode::invalid_argument, what + ", not " + std::to_string(value));
+    throw Error(ErrorCode::invalid_argument, what + ", not " + number_text(value));
   };
   if (!std::isfinite(config.spacing) || config.spacing <= 0) {
     refuse("the spacing must be positive and finite", config.spacing);
