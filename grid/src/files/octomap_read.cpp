@@ -9,13 +9,13 @@
 #include <optional>
 #include <utility>
 
-#include "file_text.hpp"
 #include "map/grid_blocks.hpp"
 #include "map/log_odds_code.hpp"
 #include "octomap_format.hpp"
 #include "solid_voxels.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
+#include "viewgain/core/file_text.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 
 namespace viewgain {

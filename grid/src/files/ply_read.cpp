@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "cloud_formats.hpp"
-#include "file_text.hpp"
-#include "scalar_type.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/file_text.hpp"
+#include "viewgain/core/scalar_type.hpp"
 
 namespace viewgain::detail {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "file_text.hpp"
+#include "viewgain/core/file_text.hpp"
 
 #include <charconv>
 #include <system_error>

@@ -8,10 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain::detail {
 
 /// The lines of a file, or of a binary file's header, from the front. Failures name file and line.
-class LineReader {
+class VIEWGAIN_EXPORT LineReader {
  public:
   LineReader(std::string name, std::string_view bytes) : name_(std::move(name)), rest_(bytes) {}
 
@@ -40,6 +42,6 @@ class LineReader {
 };
 
 /// For a message: at most 32 characters, printable, in quotes.
-[[nodiscard]] std::string quoted(std::string_view word);
+[[nodiscard]] VIEWGAIN_EXPORT std::string quoted(std::string_view word);
 
 }  // namespace viewgain::detail
