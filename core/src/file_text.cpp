@@ -7,7 +7,7 @@
 
 #include "viewgain/core/error.hpp"
 
-namespace viewgain::detail {
+namespace viewgain {
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
@@ -73,4 +73,4 @@ std::uint64_t LineReader::count(std::size_t word, std::uint64_t most) const {
   return value;
 }
 
-}  // namespace viewgain::detail
+}  // namespace viewgain

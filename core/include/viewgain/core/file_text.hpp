@@ -10,7 +10,7 @@
 
 #include "viewgain/core/export.hpp"
 
-namespace viewgain::detail {
+namespace viewgain {
 
 /// The lines of a file, or of a binary file's header, from the front. Failures name file and line.
 class VIEWGAIN_EXPORT LineReader {
@@ -44,4 +44,4 @@ class VIEWGAIN_EXPORT LineReader {
 /// For a message: at most 32 characters, printable, in quotes.
 [[nodiscard]] VIEWGAIN_EXPORT std::string quoted(std::string_view word);
 
-}  // namespace viewgain::detail
+}  // namespace viewgain
