@@ -23,7 +23,7 @@ Stage set_stage(const StageConfig& config, const ExecConfig& exec) {
     throw Error(ErrorCode::invalid_argument,
                 "object size " + short_text(config.size) + " m is not positive and finite");
   }
-  TriangleMesh mesh = placed(read_mesh(config.mesh), {config.up, true, config.size});
+  TriangleMesh mesh = read_mesh(config.mesh, {config.up, true, config.size});
   Stage stage;
   if (config.support_plane) {
     double lowest = 0;  // the box is centred at the origin

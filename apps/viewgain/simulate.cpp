@@ -72,7 +72,7 @@ void simulate(const Options& options) {
   const Sensor sensor = load_sensor(options.sensor);
   sensor.validate();
   const PoseSource source = make_poses(options.poses);
-  TriangleMesh mesh = placed(read_mesh(options.mesh), placement_of(options));
+  TriangleMesh mesh = read_mesh(options.mesh, placement_of(options));
   const std::size_t triangles = mesh.triangles.size();
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
   const SimulatedSensor camera(scene, sensor, simulation_config(options.sensing, sensor), exec);
