@@ -7,10 +7,10 @@
 #include <numbers>
 #include <vector>
 
-#include "formats/mesh_file.hpp"
 #include "formats/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/mesh/mesh_io.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -24,7 +24,7 @@ Stage set_stage(const StageConfig& config, const ExecConfig& exec) {
     throw Error(ErrorCode::invalid_argument,
                 "object size " + short_text(config.size) + " m is not positive and finite");
   }
-  TriangleMesh mesh = load_mesh(config.mesh, {config.up, true, config.size});
+  TriangleMesh mesh = read_mesh(config.mesh, {config.up, true, config.size});
   Stage stage;
   if (config.support_plane) {
     double lowest = 0;  // the box is centred at the origin

@@ -11,7 +11,6 @@
 
 #include "commands.hpp"
 #include "formats/frames_dir.hpp"
-#include "formats/mesh_file.hpp"
 #include "formats/pose_source.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
@@ -20,6 +19,7 @@
 #include "progress.hpp"
 #include "sensing_flags.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 
@@ -95,7 +95,7 @@ void simulate(const Options& options) {
   const Sensor sensor = load_sensor(options.sensor);
   sensor.validate();
   const PoseSource source = make_poses(options.poses);
-  TriangleMesh mesh = load_mesh(options.mesh, placement_of(options));
+  TriangleMesh mesh = read_mesh(options.mesh, placement_of(options));
   const std::size_t triangles = mesh.triangles.size();
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
   check_view(options, *scene, sensor, source.poses);

@@ -38,8 +38,8 @@ struct Figure {
 /// have give no figures.
 using BarGroup = std::vector<Figure> (*)(const BarsOptions& options);
 
-/// One interleaved run of `trace`: gain_over_quads, gain_over_trace, floor_over_quads,
-/// trace_over_floor, gain_over_octomap, build_ms.
+/// One interleaved run of `trace`: gain_over_quads, gain_over_quads_fast, gain_over_trace,
+/// floor_over_quads, trace_over_floor, gain_over_octomap, build_ms.
 [[nodiscard]] std::vector<Figure> trace_figures(const BarsOptions& options);
 /// thread_scaling, cost_512_over_128.
 [[nodiscard]] std::vector<Figure> scaling_figures(const BarsOptions& options);

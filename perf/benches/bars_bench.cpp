@@ -27,14 +27,23 @@ struct Rule {
 };
 
 constexpr std::array kRules{
-    Rule{"gain_over_quads", 3.0, true},        Rule{"gain_over_trace", 0.88, true},
-    Rule{"floor_over_quads", 6.0, true},       Rule{"trace_over_floor", 0.45, true},
-    Rule{"gain_over_octomap", 1000.0, true},   Rule{"thread_scaling", 1.9, true},
-    Rule{"cost_512_over_128", 2.5, false},     Rule{"octomap_over_integrate", 100.0, true},
-    Rule{"update_over_build", 0.35, false},    Rule{"build_ms", 2.0, false},
-    Rule{"race_over_exhaustive", 0.15, false}, Rule{"latency_scaling", 0.6, false},
-    Rule{"memory_mb", 250.0, false},           Rule{"decision_ms_100", {}, false},
-    Rule{"decision_ms_500", {}, false},        Rule{"decision_ms_2000", {}, false},
+    Rule{"gain_over_quads", 3.0, true},
+    Rule{"gain_over_quads_fast", {}, true},
+    Rule{"gain_over_trace", 0.88, true},
+    Rule{"floor_over_quads", 6.0, true},
+    Rule{"trace_over_floor", 0.45, true},
+    Rule{"gain_over_octomap", 1000.0, true},
+    Rule{"thread_scaling", 1.9, true},
+    Rule{"cost_512_over_128", 2.5, false},
+    Rule{"octomap_over_integrate", 100.0, true},
+    Rule{"update_over_build", 0.35, false},
+    Rule{"build_ms", 2.0, false},
+    Rule{"race_over_exhaustive", 0.15, false},
+    Rule{"latency_scaling", 0.6, false},
+    Rule{"memory_mb", 250.0, false},
+    Rule{"decision_ms_100", {}, false},
+    Rule{"decision_ms_500", {}, false},
+    Rule{"decision_ms_2000", {}, false},
 };
 
 constexpr std::array kGroups{

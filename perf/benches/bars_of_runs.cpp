@@ -31,6 +31,7 @@ std::vector<Figure> trace_figures(const BarsOptions& options) {
   // All methods run on the same threads, one pose a thread: a ratio per thread is that of the
   // rates.
   return {{"gain_over_quads", gain / quads, agrees, note},
+          {"gain_over_quads_fast", gain / run.fast_embree},
           {"gain_over_trace", gain / ours, agrees, note},
           {"floor_over_quads", floor / quads, agrees, note},
           {"trace_over_floor", ours / floor, agrees, note},

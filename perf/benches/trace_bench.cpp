@@ -35,14 +35,19 @@ Json to_json(const TraceOptions& options, const TraceRun& run) {
   }
   json["embree_variant"] = run.embree->name;
   for (const TraceEntry& entry : run.entries) {
-    if (entry.is_embree()) json["embree_variants"][entry.name] = median(entry.rates);
+    if (!entry.is_embree()) continue;
+    json["embree_variants"][entry.name] = {{"rays_per_second", median(entry.rates)},
+                                           {"wrong", entry.agreement.wrong()}};
   }
   for (const std::string ours : {"viewgain_gain", "viewgain_trace"}) {
+    const auto add_ratio = [&](const std::string& name, double rate) {
+      json["ratios"][ours + "/" + name] = run.rate(ours) / rate;
+    };
     for (const auto& [name, entry] : run.rows) {
-      if (name != ours) json["ratios"][ours + "/" + name] = run.rate(ours) / run.rate(name);
+      if (name != ours) add_ratio(name, run.rate(name));
+      if (name == "embree_quads") add_ratio("embree_quads_fast", run.fast_embree);
     }
   }
-  json["ratios"]["viewgain_gain/embree_quads_fast"] = run.rate("viewgain_gain") / run.fast_embree;
   for (const auto& [name, entry] : run.rows) {
     json["agreement"][name] = entry->agreement.share();
     json["ties"][name] = entry->agreement.ties;
@@ -70,8 +75,9 @@ void print_table(const Json& json) {
   }
   std::printf("\nembree_quads is \"%s\", the best robust one of:\n",
               json["embree_variant"].get<std::string>().c_str());
-  for (const auto& [name, rate] : json["embree_variants"].items()) {
-    std::printf("  %-24s %8.3f\n", name.c_str(), rate.get<double>() / 1e6);
+  for (const auto& [name, variant] : json["embree_variants"].items()) {
+    std::printf("  %-24s %8.3f, %d wrong\n", name.c_str(),
+                variant["rays_per_second"].get<double>() / 1e6, variant["wrong"].get<int>());
   }
   std::printf("\n");
   for (const auto& [name, ratio] : json["ratios"].items()) {

@@ -7,9 +7,8 @@
 #include "measure.hpp"
 #include "methods/dense_dda.hpp"
 #include "methods/embree_quads.hpp"
-#include "methods/octomap_cast_ray.hpp"
-#include "methods/octomap_gain.hpp"
-#include "methods/openvdb_dda.hpp"
+#include "methods/octomap_methods.hpp"
+#include "methods/openvdb_methods.hpp"
 #include "methods/viewgain_methods.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/generators.hpp"
@@ -40,13 +39,12 @@ std::vector<TraceEntry> make_entries(const TraceTask& task, const ScenePointer& 
   for (auto& method : make_embree_quads(task)) entries.emplace_back(std::move(method), all);
   if (wants("dense")) entries.emplace_back(make_dense_dda(task), all);
   if (wants("openvdb")) {
-    entries.emplace_back(make_openvdb_dda(task), thinned(task.poses, 8, least));
+    const std::vector<Pose> some = thinned(task.poses, 8, least);
+    for (auto& method : make_openvdb_methods(task)) entries.emplace_back(std::move(method), some);
   }
   if (wants("octomap")) {
-    const std::shared_ptr<const octomap::OcTree> tree = octree_of(task.map);
     const std::vector<Pose> some = thinned(task.poses, 25, least);
-    entries.emplace_back(make_octomap_cast_ray(task, tree), some);
-    entries.emplace_back(make_octomap_gain(task, tree), some);
+    for (auto& method : make_octomap_methods(task)) entries.emplace_back(std::move(method), some);
   }
   return entries;
 }
@@ -89,7 +87,7 @@ void summarize(TraceRun& run) {
 
 bool TraceEntry::is_embree() const { return name.find("coherent") != std::string::npos; }
 
-bool TraceEntry::counts() const { return !is_embree() || name.rfind("robust", 0) == 0; }
+bool TraceEntry::counts() const { return !is_embree() || name.find("robust") != std::string::npos; }
 
 double TraceRun::rate(const std::string& name) const {
   const auto row =

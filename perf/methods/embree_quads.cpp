@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <type_traits>
 
 #include "exposed_quads.hpp"
@@ -18,12 +19,13 @@ namespace {
 /// The quads in a BVH; geometry number = axis that its quads are perpendicular to.
 class QuadScene {
  public:
-  QuadScene(const TraceTask& task, bool robust)
+  QuadScene(const TraceTask& task, bool merged, bool robust)
       : device_(detail::shared_device(select_isa())), scene_(rtcNewScene(device_)) {
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
     rtcSetSceneFlags(scene_.get(), robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::vector<Quad> quads = exposed_quads(task.map, static_cast<int>(axis));
+      const std::vector<Quad> quads = exposed_quads(
+          task.map, static_cast<int>(axis), merged ? std::numeric_limits<int>::max() / 2 : 1);
       attach(static_cast<unsigned>(axis), quads);
       for (const Quad& quad : quads) behind_[axis].push_back(voxels_behind(quad, axis));
     }
@@ -176,13 +178,16 @@ class EmbreeQuads final : public TraceMethod {
 
 std::vector<std::unique_ptr<TraceMethod>> make_embree_quads(const TraceTask& task) {
   std::vector<std::unique_ptr<TraceMethod>> methods;
-  for (const bool robust : {true, false}) {
-    const auto scene = std::make_shared<const QuadScene>(task, robust);
-    for (const bool coherent : {true, false}) {
-      const std::string kind =
-          std::string(robust ? "robust" : "fast") + (coherent ? " coherent" : " incoherent");
-      methods.push_back(std::make_unique<EmbreeQuads<8>>(kind + " 8", scene, task, coherent));
-      methods.push_back(std::make_unique<EmbreeQuads<16>>(kind + " 16", scene, task, coherent));
+  for (const bool merged : {false, true}) {
+    for (const bool robust : {true, false}) {
+      const auto scene = std::make_shared<const QuadScene>(task, merged, robust);
+      for (const bool coherent : {true, false}) {
+        const std::string kind = std::string(merged ? "merged" : "single") +
+                                 (robust ? " robust" : " fast") +
+                                 (coherent ? " coherent" : " incoherent");
+        methods.push_back(std::make_unique<EmbreeQuads<8>>(kind + " 8", scene, task, coherent));
+        methods.push_back(std::make_unique<EmbreeQuads<16>>(kind + " 16", scene, task, coherent));
+      }
     }
   }
   return methods;

@@ -20,16 +20,19 @@ class FacePlane {
                     static_cast<std::size_t>(column)];
   }
 
-  /// Takes the faces as rectangles: emit(row, column, rows, columns).
+  /// Takes the faces as rectangles of at most `most` faces a side: emit(row, column, rows,
+  /// columns).
   template <typename Emit>
-  void merge(Emit&& emit) {
+  void take(int most, Emit&& emit) {
     for (int row = 0; row < rows_; ++row) {
       for (int column = 0; column < columns_; ++column) {
         if (at(row, column) == 0) continue;
+        const int last_column = std::min(columns_, column + most);
+        const int last_row = std::min(rows_, row + most);
         int width = 1;
-        while (column + width < columns_ && at(row, column + width) != 0) ++width;
+        while (column + width < last_column && at(row, column + width) != 0) ++width;
         int height = 1;
-        while (row + height < rows_ && row_is_exposed(row + height, column, width)) ++height;
+        while (row + height < last_row && row_is_exposed(row + height, column, width)) ++height;
         for (int r = row; r < row + height; ++r) {
           std::fill_n(&at(r, column), width, std::uint8_t{0});
         }
@@ -51,7 +54,7 @@ class FacePlane {
 
 }  // namespace
 
-std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis) {
+std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis, int most) {
   const std::array<int, 3> dims{map.dims.x, map.dims.y, map.dims.z};
   const auto a = static_cast<std::size_t>(axis);
   const std::size_t b = (a + 1) % 3;
@@ -75,7 +78,7 @@ std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis) {
         faces.at(row, column) = exposed ? 1 : 0;
       }
     }
-    faces.merge([&](int row, int column, int rows, int columns) {
+    faces.take(most, [&](int row, int column, int rows, int columns) {
       const auto corner = [&](int r, int k) {
         std::array<float, 3> p{};
         p[a] = static_cast<float>(plane);

@@ -17,7 +17,8 @@ struct Quad {
 
 /// The faces perpendicular to `axis` by which a ray can enter a non-free voxel from a free one or
 /// from the outside, those on the voxels' lower side before those on the upper; the faces of a
-/// plane and a side are merged greedily, rows first, then equal rows.
-[[nodiscard]] std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis);
+/// plane and a side are merged greedily, rows first, then equal rows, into rectangles of at most
+/// `most` voxels a side.
+[[nodiscard]] std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis, int most);
 
 }  // namespace viewgain::bench

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "hit_boxes.hpp"
 #include "scene/scene_data.hpp"
 #include "trace/view_tracer.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -45,7 +46,7 @@ class ViewgainGain final : public TraceMethod {
   std::vector<ViewGain> results_;
 };
 
-/// Traces, and keeps where each ray ends.
+/// Traces alone.
 class ViewgainTrace : public TraceMethod {
  public:
   enum class Way : std::uint8_t { as_evaluator, bvh };
@@ -70,18 +71,11 @@ class ViewgainTrace : public TraceMethod {
     });
   }
 
+  /// Each tile's endings stay in its RayTile, which is where the gain takes them from.
   void run(std::span<const Pose> poses, ThreadPool& pool) override {
     pool.for_each_chunk(poses.size(), 1, [&](std::size_t begin, std::size_t end) {
-      // A voxel as the evaluator's sums know it: primitive and offset.
-      thread_local std::vector<std::uint64_t> voxels;
-      voxels.resize(tracer_.table().tile_count * detail::kTileRays);
-      for (std::size_t p = begin; p < end; ++p) {
-        for_each_tile(poses[p], [&](std::size_t number, const detail::RayTile& tile) {
-          std::uint64_t* out = &voxels[number * detail::kTileRays];
-          for (std::size_t lane = 0; lane < detail::kTileRays; ++lane) {
-            out[lane] = static_cast<std::uint64_t>(tile.primitive[lane]) << 32U | tile.offset[lane];
-          }
-        });
+      for (const Pose& pose : poses.subspan(begin, end - begin)) {
+        for_each_tile(pose, [](std::size_t, const detail::RayTile&) {});
       }
     });
   }
@@ -122,7 +116,8 @@ class ViewgainFloor final : public ViewgainTrace {
     for (std::size_t p = 0; p < poses_.size(); ++p) {
       tracer_.trace_bvh(frame_of(poses_[p]), tracer_.all_tiles(),
                         [&](std::size_t tile, const detail::RayTile& out) {
-                          add_way(out);
+                          const std::vector<detail::TileBox> way = hit_boxes(out);
+                          ways_.insert(ways_.end(), way.begin(), way.end());
                           begins_[p * tiles + tile + 1] = ways_.size();
                         });
     }
@@ -145,18 +140,6 @@ class ViewgainFloor final : public ViewgainTrace {
   }
 
  private:
-  /// Appends the distinct primitives that the tile's rays end in.
-  void add_way(const detail::RayTile& tile) {
-    const auto begin = static_cast<std::ptrdiff_t>(ways_.size());
-    for (std::size_t lane = 0; lane < detail::kTileRays; ++lane) {
-      if ((tile.hit >> lane & 1U) == 0) continue;
-      const auto is_same = [&](const detail::TileBox& b) { return b.box == tile.primitive[lane]; };
-      if (std::none_of(ways_.begin() + begin, ways_.end(), is_same)) {
-        ways_.push_back({tile.primitive[lane], 0.0F});
-      }
-    }
-  }
-
   std::span<const Pose> poses_;
   std::vector<detail::TileBox> ways_;
   std::vector<std::size_t> begins_;

@@ -15,7 +15,7 @@ using ScenePointer = std::shared_ptr<const VoxelScene>;
 [[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_gain(const TraceTask& task,
                                                               ScenePointer scene);
 
-/// Its tracing alone, the voxel's number kept for each ray.
+/// Its tracing alone: each tile's endings as the gain takes them.
 [[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task,
                                                                ScenePointer scene);
 

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "micro_scene.hpp"
 
-#include <algorithm>
-
+#include "hit_boxes.hpp"
 #include "scene/scene_data.hpp"
 #include "viewgain/core/generators.hpp"
 
@@ -28,19 +27,9 @@ MicroScene::MicroScene()
     view.frame = tracer.frame_of(pose).value();
     const auto note = [&](std::size_t number, const detail::RayTile& tile) {
       if (tile.hit == 0) return;
-      std::vector<detail::TileBox> leaves;
-      for (std::size_t lane = 0; lane < detail::kTileRays; ++lane) {
-        if ((tile.hit >> lane & 1U) == 0) continue;
-        const auto is_same = [&](const detail::TileBox& b) {
-          return b.box == tile.primitive[lane];
-        };
-        if (std::none_of(leaves.begin(), leaves.end(), is_same)) {
-          leaves.push_back({tile.primitive[lane], 0.0F});
-        }
-      }
       view.tiles.push_back(tile);
       view.numbers.push_back(number);
-      view.leaves.push_back(std::move(leaves));
+      view.leaves.push_back(hit_boxes(tile));
     };
     tracer.trace_bvh(view.frame, tracer.all_tiles(), note);
     views.push_back(std::move(view));

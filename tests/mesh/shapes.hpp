@@ -9,23 +9,22 @@
 #include <numbers>
 #include <vector>
 
+#include "viewgain/core/mix64.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/mesh/surface.hpp"
 
 namespace viewgain::test {
 
-/// Numbers that are the same on every machine: SplitMix64 of a counter.
+/// Numbers that are the same on every machine.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : state_(seed * 0xD1B54A32D192ED03ULL) {}
 
   /// In (0, 1).
   double uniform() {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    std::uint64_t h = state_;
-    h = (h ^ (h >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    h = (h ^ (h >> 27U)) * 0x94D049BB133111EBULL;
-    return (static_cast<double>((h ^ (h >> 31U)) >> 11U) + 0.5) * 0x1.0p-53;
+    const std::uint64_t h = mix64(state_);
+    state_ += kMixStep;
+    return (static_cast<double>(h >> 11U) + 0.5) * 0x1.0p-53;
   }
   /// Standard normal, by Box and Muller.
   double normal() {

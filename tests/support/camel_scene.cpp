@@ -20,7 +20,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;  ///< [rad]
 std::filesystem::path camel_mesh_path() { return VIEWGAIN_CAMEL_MESH; }
 
 TriangleMesh camel_mesh(const std::filesystem::path& path) {
-  return placed(read_mesh(path), {.up = UpAxis::z, .center = true, .longest_side = 0.35});
+  return read_mesh(path, {.up = UpAxis::z, .center = true, .longest_side = 0.35});
 }
 
 std::vector<CamelView> camel_views(std::size_t count, const std::filesystem::path& path) {

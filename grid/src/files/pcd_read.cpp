@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "cloud_formats.hpp"
-#include "scalar_type.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/scalar_type.hpp"
 #include "viewgain/core/text.hpp"
 
 namespace viewgain::detail {

@@ -13,17 +13,18 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "mesh_builder.hpp"
 #include "mesh_file_checks.hpp"
+#include "ply_mesh.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/text.hpp"
+#include "viewgain/core/file_bytes.hpp"
 
 namespace viewgain {
 namespace {
@@ -64,21 +65,6 @@ struct GuardedPolygons : std::vector<Polygon> {
   }
 };
 
-std::string read_bytes(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) throw Error(ErrorCode::io, name + ": no such file");
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw Error(ErrorCode::io, name + ": not a regular file");
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  if (!file) throw Error(ErrorCode::io, name + ": cannot be opened");
-  if (file.peek() != std::ifstream::traits_type::eof()) bytes << file.rdbuf();
-  if (file.bad() || !bytes) throw Error(ErrorCode::io, name + ": cannot be read");
-  return std::move(bytes).str();
-}
-
 std::string lower_case_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -96,11 +82,6 @@ bool read_soup(const std::string& extension, std::string bytes, const std::strin
     detail::check_off(bytes, name);
     std::istringstream stream(std::move(bytes));
     return CGAL::IO::read_OFF(stream, points, polygons, quiet);
-  }
-  if (extension == ".ply") {
-    detail::check_ply(bytes, name);
-    std::istringstream stream(std::move(bytes));
-    return CGAL::IO::read_PLY(stream, points, polygons, quiet);
   }
   if (extension == ".stl") {
     detail::check_stl(bytes, name);
@@ -129,40 +110,25 @@ std::string parse_failure(const std::string& bytes, const std::string& extension
          "range";
 }
 
-TriangleMesh triangulated(const GuardedPoints& points, const GuardedPolygons& polygons,
-                          const std::string& name) {
-  if (points.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw Error(ErrorCode::format, name + ": more than 2^32 vertices");
+// What CGAL reads.
+TriangleMesh soup_mesh(const std::string& extension, const std::string& bytes,
+                       const std::string& name) {
+  GuardedPoints points;
+  GuardedPolygons polygons;
+  bool parsed = false;
+  try {
+    parsed = read_soup(extension, bytes, name, points, polygons);
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    throw Error(error.code(), what.starts_with(name) ? what : name + ": " + what);
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::format, name + ": cannot be parsed: " + error.what());
   }
-  TriangleMesh mesh;
-  mesh.vertices.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::array<double, 3> p{points[i].x(), points[i].y(), points[i].z()};
-    for (const double x : p) {
-      if (!std::isfinite(x)) {
-        throw Error(ErrorCode::format,
-                    name + ": a coordinate of vertex " + std::to_string(i) + " is not finite");
-      }
-    }
-    mesh.vertices.push_back(p);
-  }
-  for (std::size_t f = 0; f < polygons.size(); ++f) {
-    const Polygon& polygon = polygons[f];
-    for (const std::size_t index : polygon) {
-      if (index >= points.size()) {
-        throw Error(ErrorCode::format, name + ": face " + std::to_string(f) +
-                                           " has an index out of range, the file has " +
-                                           std::to_string(points.size()) + " vertices");
-      }
-    }
-    for (std::size_t i = 2; i < polygon.size(); ++i) {
-      mesh.triangles.push_back({static_cast<std::uint32_t>(polygon[0]),
-                                static_cast<std::uint32_t>(polygon[i - 1]),
-                                static_cast<std::uint32_t>(polygon[i])});
-    }
-  }
-  if (mesh.triangles.empty()) throw Error(ErrorCode::format, name + ": the mesh has no faces");
-  return mesh;
+  if (!parsed) throw Error(ErrorCode::format, name + ": " + parse_failure(bytes, extension));
+  detail::MeshBuilder mesh(name, points.size());
+  for (const Point& p : points) mesh.add_vertex({p.x(), p.y(), p.z()});
+  for (const Polygon& polygon : polygons) mesh.add_face(polygon);
+  return std::move(mesh).finish();
 }
 
 struct Bounds {
@@ -189,22 +155,20 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
   if (extension != ".off" && extension != ".obj" && extension != ".stl" && extension != ".ply") {
     throw Error(ErrorCode::format, name + ": not a mesh file (.off, .obj, .stl, .ply)");
   }
-  const std::string bytes = read_bytes(path);
+  std::string bytes = file_bytes(path);
+  // Some editors put a byte order mark before text; no format of ours begins with one.
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
   if (bytes.empty()) throw Error(ErrorCode::format, name + ": the file is empty");
+  return extension == ".ply" ? detail::ply_mesh(bytes, name) : soup_mesh(extension, bytes, name);
+}
 
-  GuardedPoints points;
-  GuardedPolygons polygons;
-  bool parsed = false;
+TriangleMesh read_mesh(const std::filesystem::path& path, const MeshPlacement& placement) {
+  TriangleMesh mesh = read_mesh(path);
   try {
-    parsed = read_soup(extension, bytes, name, points, polygons);
+    return placed(std::move(mesh), placement);
   } catch (const Error& error) {
-    const std::string what = error.what();
-    throw Error(error.code(), what.starts_with(name) ? what : name + ": " + what);
-  } catch (const std::exception& error) {
-    throw Error(ErrorCode::format, name + ": cannot be parsed: " + error.what());
+    throw Error(error.code(), path.string() + ": " + error.what());
   }
-  if (!parsed) throw Error(ErrorCode::format, name + ": " + parse_failure(bytes, extension));
-  return triangulated(points, polygons, name);
 }
 
 TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement) {

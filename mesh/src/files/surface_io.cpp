@@ -19,18 +19,18 @@ void append(std::string& bytes, Value value) {
   bytes.append(raw.data(), raw.size());
 }
 
-void check_count(std::size_t count, std::size_t points, const char* what) {
-  if (count != 0 && count != points) {
-    throw Error(ErrorCode::invalid_argument,
-                std::to_string(points) + " points but " + std::to_string(count) + " " + what);
-  }
-}
-
 void write_ply(const std::filesystem::path& path, std::span<const std::array<double, 3>> points,
                std::span<const std::array<double, 3>> normals, std::span<const float> sigma,
                std::span<const std::array<std::uint32_t, 3>> triangles) {
-  check_count(normals.size(), points.size(), "normals");
-  check_count(sigma.size(), points.size(), "sigmas");
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorCode::invalid_argument, path.string() + ": " + what);
+  };
+  const auto check_count = [&](std::size_t count, const char* what) {
+    if (count == 0 || count == points.size()) return;
+    refuse(std::to_string(points.size()) + " points but " + std::to_string(count) + " " + what);
+  };
+  check_count(normals.size(), "normals");
+  check_count(sigma.size(), "sigmas");
   constexpr bool kLittle = std::endian::native == std::endian::little;
   std::string bytes = std::string("ply\nformat binary_") + (kLittle ? "little" : "big") +
                       "_endian 1.0\nelement vertex " + std::to_string(points.size()) +
@@ -53,8 +53,8 @@ void write_ply(const std::filesystem::path& path, std::span<const std::array<dou
     append(bytes, std::uint8_t{3});
     for (const std::uint32_t v : triangle) {
       if (v >= points.size()) {
-        throw Error(ErrorCode::invalid_argument, "a triangle has vertex " + std::to_string(v) +
-                                                     " of " + std::to_string(points.size()));
+        refuse("a triangle has vertex " + std::to_string(v) + " of " +
+               std::to_string(points.size()));
       }
       append(bytes, static_cast<std::int32_t>(v));
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -49,12 +50,15 @@ class PointGrid {
   [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
 
  private:
+  static constexpr double kMost = 0x1p62;  // cells along an axis, either way
+
   struct Slot {
     std::uint64_t key = 0;
     std::uint32_t begin = 0, end = 0;  // into order_; equal: a free slot
   };
   [[nodiscard]] std::int64_t cell_of(double x) const {
-    return static_cast<std::int64_t>(std::floor(x * inverse_cell_size_));
+    // What lies beyond the numbers of cells shares the last cell.
+    return static_cast<std::int64_t>(std::clamp(std::floor(x * inverse_cell_size_), -kMost, kMost));
   }
   [[nodiscard]] static std::uint64_t key_of(std::int64_t x, std::int64_t y, std::int64_t z) {
     constexpr std::uint64_t kMask = (1U << 21U) - 1;

@@ -7,16 +7,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "viewgain/core/mix64.hpp"
+
 namespace viewgain::test {
 namespace {
-
-// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014).
-std::uint64_t mix(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15ULL;
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
-  return x ^ (x >> 31U);
-}
 
 std::uint32_t cells(double length, double spacing) {
   return static_cast<std::uint32_t>(std::max(1L, std::lround(length / spacing)));
@@ -25,7 +19,7 @@ std::uint32_t cells(double length, double spacing) {
 }  // namespace
 
 double hashed_uniform(std::uint64_t seed, std::uint64_t index) {
-  return static_cast<double>(mix(mix(seed) ^ index) >> 11U) * 0x1.0p-53;
+  return static_cast<double>(mix64(mix64(seed) ^ index) >> 11U) * 0x1.0p-53;
 }
 
 double hashed_normal(std::uint64_t seed, std::uint64_t index) {

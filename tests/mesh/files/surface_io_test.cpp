@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/expect_error.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
 
@@ -120,12 +121,16 @@ TEST_F(SurfaceIo, BadInputIsRefusedAndLeavesNoFile) {
   const auto path = folder_ / "surface.ply";
   SurfaceMesh mesh = tetrahedron();
   const std::vector<float> three(3, 0.5F);
-  EXPECT_THROW(write_surface_ply(path, mesh, three), Error);
+  const auto expect_refused = [&](const std::string& what, std::span<const float> sigma) {
+    test::expect_error(ErrorCode::invalid_argument, path.string() + ": " + what,
+                       [&] { write_surface_ply(path, mesh, sigma); });
+  };
+  expect_refused("4 points but 3 sigmas", three);
   mesh.triangles[3][1] = 4;
-  EXPECT_THROW(write_surface_ply(path, mesh, {}), Error);
+  expect_refused("a triangle has vertex 4 of 4", {});
   mesh = tetrahedron();
   mesh.normals.pop_back();
-  EXPECT_THROW(write_surface_ply(path, mesh, {}), Error);
+  expect_refused("4 points but 3 normals", {});
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
   try {
     write_surface_ply(folder_ / "no such folder" / "surface.ply", tetrahedron(), {});

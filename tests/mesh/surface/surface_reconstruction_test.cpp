@@ -306,6 +306,19 @@ TEST(SurfaceReconstruction, FarFromTheOriginAndInOtherUnits) {
   EXPECT_EQ(mesh.triangles.size(), reconstruct_surface(points, kConfig).triangles.size());
 }
 
+// Beyond what cells can be numbered for.
+TEST(SurfaceReconstruction, PointsFarOutOfRangeAreOutliers) {
+  auto points = sphere_points(kRadius, kSpacing);
+  const SurfaceMesh expected = reconstruct_surface(points, kConfig);
+  for (const double far : {1e18, 1e30, -1e300}) {
+    points.push_back({{far, far, 0}, {0, 0, 1}});
+    points.push_back({{0, far, 0}, {0, 0, 1}});
+  }
+  const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
+  EXPECT_EQ(mesh.vertices, expected.vertices);
+  EXPECT_EQ(mesh.triangles, expected.triangles);
+}
+
 TEST(SurfaceReconstruction, TooFewPointsGiveAnEmptyMesh) {
   const auto points = sphere_points(kRadius, kSpacing);
   std::size_t cases = 0;

@@ -11,10 +11,10 @@
 namespace viewgain {
 
 /// Reads OFF, OBJ, STL or PLY (ASCII and binary), chosen by the file name's ending; polygons are
-/// split into triangle fans. Throws Error(io) if the file cannot be opened and Error(format),
-/// naming the file, if it cannot be parsed, has no faces, a coordinate that is not finite, an index
-/// out of range, or a header that promises more than the file can hold. Reads through CGAL's
-/// polygon soup reader.
+/// split into triangle fans. A byte order mark is skipped; colours, normals and lines are not
+/// looked at. Throws Error(io) if the file cannot be read and Error(format), naming the file, if it
+/// cannot be parsed, has no faces, a coordinate that is not finite, an index out of range, or a
+/// header that promises more than the file holds. Thread safe.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path);
 
 /// Which axis of the mesh file points up.
@@ -32,5 +32,9 @@ struct VIEWGAIN_EXPORT MeshPlacement {
 /// longest_side is negative or not finite, or the mesh has no extent to scale.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh placed(TriangleMesh mesh,
                                                   const MeshPlacement& placement);
+
+/// Reads a mesh and places it; the errors of both name the file.
+[[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path,
+                                                     const MeshPlacement& placement);
 
 }  // namespace viewgain

@@ -1,17 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "scalar_type.hpp"
+#pragma once
 
 #include <bit>
+#include <cstddef>
+#include <cstdint>
 
 namespace viewgain::detail {
 
-bool ScalarType::is_known() const {
-  if (size == 4 || size == 8) return true;
-  return kind != Kind::floating && (size == 1 || size == 2);
-}
+/// A number in a binary file.
+struct ScalarType {
+  enum class Kind : std::uint8_t { floating, signed_integer, unsigned_integer };
+  Kind kind = Kind::floating;
+  std::size_t size = 4;  ///< 1, 2, 4 or 8 [bytes]; 4 or 8 where floating
 
-double decode(const char* bytes, ScalarType type, bool big_endian) {
+  /// Is it one of the types that decode() knows?
+  [[nodiscard]] bool is_known() const {
+    if (size == 4 || size == 8) return true;
+    return kind != Kind::floating && (size == 1 || size == 2);
+  }
+};
+
+/// The value of `type.size` bytes; 64-bit integers are rounded to double precision.
+[[nodiscard]] inline double decode(const char* bytes, ScalarType type, bool big_endian = false) {
   std::uint64_t word = 0;
   for (std::size_t i = 0; i < type.size; ++i) {
     const auto byte = static_cast<unsigned char>(bytes[big_endian ? type.size - 1 - i : i]);

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "trace_method.hpp"
+
+namespace viewgain::bench {
+
+/// Two walks over a MaskTree of the voxels that are not free, with a value accessor, from the ray's
+/// entry into the workspace. `openvdb_dda`: math::DDA, voxel by voxel. `openvdb_hdda`:
+/// math::VolumeHDDA through nodes and leaves to the next stretch of leaves and active tiles, there
+/// voxel by voxel.
+[[nodiscard]] std::vector<std::unique_ptr<TraceMethod>> make_openvdb_methods(const TraceTask& task);
+
+}  // namespace viewgain::bench
