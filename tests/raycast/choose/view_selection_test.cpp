@@ -157,8 +157,7 @@ TEST(BestViews, DoNotDependOnThreadsAndTakeOddRequests) {
   int asked = 0;
   const BestViews partly = one.best(some, 9, {.is_cancelled = [&] { return ++asked > 7; }});
   EXPECT_FALSE(partly.complete);
-  std::vector<ViewGain> reached = one.evaluate(std::span(some).first(7));
-  std::vector<std::size_t> order = best_indices(reached, 7);
+  std::vector<std::size_t> order = best_indices(one.evaluate(std::span(some).first(7)), 7);
   ASSERT_EQ(order.back(), 0U);
   order.pop_back();
   EXPECT_EQ(partly.indices, order);
