@@ -145,6 +145,15 @@ vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
   });
 }
 
+vg_status vg_evaluator_with_scene(const vg_evaluator* evaluator, const vg_scene* scene,
+                                  vg_evaluator** following) {
+  return make_handle(following, "following", [&] {
+    require(evaluator, "evaluator");
+    require(scene, "scene");
+    return evaluator->evaluator.with_scene(scene->scene);
+  });
+}
+
 void vg_evaluator_release(vg_evaluator* evaluator) { delete evaluator; }
 
 void vg_evaluator_info_init(vg_evaluator_info* info, size_t struct_size) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "convert.hpp"
 #include "handles.hpp"
@@ -169,6 +170,37 @@ vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size_t coun
       const Eigen::Vector3d center = grid->grid.center({voxels[i], voxels[i + 1], voxels[i + 2]});
       std::copy_n(center.data(), 3, centers + i);
     }
+  });
+}
+
+vg_status vg_grid_set(vg_grid* grid, const int32_t* voxels, const float* log_odds, size_t count) {
+  return guarded([&] {
+    require(grid, "grid");
+    require_array(voxels, count, "voxels");
+    require_array(log_odds, count, "log_odds");
+    std::vector<VoxelValue> changes(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int32_t* at = voxels + 3 * i;
+      changes[i] = {{at[0], at[1], at[2]}, log_odds[i], {}};
+    }
+    grid->grid.set(changes);
+  });
+}
+
+vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds, size_t capacity,
+                           size_t* found) {
+  return guarded([&] {
+    require(grid, "grid");
+    require_array(voxels, capacity, "voxels");
+    require(found, "found");
+    std::size_t count = 0;
+    grid->grid.for_each_occupied([&](const OccupiedVoxel& one) {
+      const std::size_t i = count++;
+      if (i >= capacity) return;
+      std::copy_n(std::array{one.voxel.x, one.voxel.y, one.voxel.z}.data(), 3, voxels + 3 * i);
+      if (log_odds != nullptr) log_odds[i] = one.log_odds;
+    });
+    *found = count;
   });
 }
 

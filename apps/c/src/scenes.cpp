@@ -111,8 +111,9 @@ vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibility_conf
                                 vg_feasibility** feasibility) {
   return make_handle(feasibility, "feasibility", [&] {
     require(scene, "scene");
-    return FeasibilityChecker(scene->scene,
-                              settings_of(read_config(config, "vg_feasibility_config")));
+    const vg_feasibility_config chosen = read_config(config, "vg_feasibility_config");
+    return FeasibilityChecker(scene->scene, settings_of(chosen),
+                              {.num_threads = chosen.num_threads});
   });
 }
 
@@ -126,6 +127,15 @@ vg_status vg_feasibility_check(const vg_feasibility* feasibility, const double* 
     const std::vector<Infeasibility> answers =
         feasibility->checker.check(poses_of(poses, count), views);
     for (std::size_t i = 0; i < count; ++i) reasons[i] = static_cast<std::int32_t>(answers[i]);
+  });
+}
+
+vg_status vg_feasibility_with_scene(const vg_feasibility* feasibility, const vg_scene* scene,
+                                    vg_feasibility** following) {
+  return make_handle(following, "following", [&] {
+    require(feasibility, "feasibility");
+    require(scene, "scene");
+    return feasibility->checker.with_scene(scene->scene);
   });
 }
 

@@ -57,6 +57,12 @@ struct Sizes {
   static constexpr std::array known{sizeof(Struct)};
 };
 
+template <>
+struct Sizes<vg_feasibility_config> {
+  static constexpr std::array known{offsetof(vg_feasibility_config, num_threads),
+                                    sizeof(vg_feasibility_config)};
+};
+
 /// What a struct's _init sets; zeros unless specialised.
 template <typename Struct>
 [[nodiscard]] Struct defaults() noexcept {

@@ -30,6 +30,14 @@ namespace {
 // than they do.
 constexpr std::size_t kFewPoses = 8;
 
+std::unique_ptr<Evaluator> held(const Scene& scene, const Sensor& sensor,
+                                const std::string& criterion, int pixel_stride,
+                                GainEvaluator evaluator) {
+  return std::unique_ptr<Evaluator>(
+      new Evaluator{py::cast(scene, py::return_value_policy::reference), sensor, criterion,
+                    pixel_stride, std::move(evaluator)});
+}
+
 std::unique_ptr<Evaluator> make(const Scene& scene, const Sensor& sensor,
                                 const std::string& criterion, int pixel_stride,
                                 std::optional<double> prior_sigma, std::optional<double> min_range,
@@ -49,10 +57,16 @@ std::unique_ptr<Evaluator> make(const Scene& scene, const Sensor& sensor,
     const py::object region = pair[0], weight = pair[1];
     config.weights.push_back({box(region, "weights' box"), number(weight, "weights' weight")});
   }
-  GainEvaluator evaluator(scene.scene, sensor, config, ExecConfig{num_threads});
-  return std::unique_ptr<Evaluator>(
-      new Evaluator{py::cast(scene, py::return_value_policy::reference), sensor, criterion,
-                    pixel_stride, std::move(evaluator)});
+  return held(scene, sensor, criterion, pixel_stride,
+              GainEvaluator(scene.scene, sensor, config, ExecConfig{num_threads}));
+}
+
+std::unique_ptr<Evaluator> with_scene(const Evaluator& self, const Scene& scene) {
+  const auto following = [&] {
+    const WithoutGil without_gil;
+    return self.evaluator.with_scene(scene.scene);
+  };
+  return held(scene, self.sensor, self.criterion, self.pixel_stride, following());
 }
 
 void score(const Evaluator& self, std::span<const Pose> poses, std::span<ViewGain> results,
@@ -206,6 +220,21 @@ TypeError
            py::arg("prior_sigma") = py::none(), py::arg("min_range") = py::none(),
            py::arg("max_range") = py::none(), py::arg("weights") = py::tuple(),
            py::arg("num_threads") = 0)
+      .def("with_scene", &with_scene, py::arg("scene"),
+           R"(The evaluator of another scene, for following a map as it grows.
+
+It has the sensor, the settings and the threads of this one, which stays as it is; nothing is computed
+anew, so that it takes microseconds. Its results are those of an evaluator made for that scene, whose
+map's ``prior_sigma`` counts unless one was given.
+
+Parameters
+----------
+scene : VoxelScene
+    Such as ``VoxelScene.update`` returns.
+
+Returns
+-------
+GainEvaluator)")
       .def("evaluate", &evaluate, py::arg("T_world_camera"), py::kw_only(),
            py::arg("strict") = false, py::arg("control") = py::none(),
            R"(The expected gains of poses.

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -22,11 +21,6 @@
 
 namespace viewgain::python {
 namespace {
-
-struct Checker {
-  std::shared_ptr<const VoxelScene> scene;
-  FeasibilityChecker checker;
-};
 
 ReachRegion region_of(const py::object& boxes, const py::object& shells,
                       const py::object& half_spaces, const py::object& poses, double distance,
@@ -65,7 +59,7 @@ ReachRegion region_of(const py::object& boxes, const py::object& shells,
 }
 
 // Codes of Infeasibility, one a pose.
-py::array_t<std::uint8_t> codes_of(const Checker& self, const py::object& T_world_camera,
+py::array_t<std::uint8_t> codes_of(const FeasibilityChecker& self, const py::object& T_world_camera,
                                    const py::object& taken) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
   const std::vector<Pose> before =
@@ -73,7 +67,7 @@ py::array_t<std::uint8_t> codes_of(const Checker& self, const py::object& T_worl
   py::array_t<std::uint8_t> codes(batch.shape);
   std::uint8_t* out = codes.mutable_data();
   const WithoutGil without_gil;
-  for (const Infeasibility reason : self.checker.check(batch.poses, before)) {
+  for (const Infeasibility reason : self.check(batch.poses, before)) {
     *out++ = static_cast<std::uint8_t>(reason);
   }
   return codes;
@@ -149,8 +143,8 @@ void bind_feasibility(py::module_& module) {
   module.attr("INFEASIBILITY_NAMES") = py::tuple(names);
 
   const FeasibilityConfig defaults;
-  auto type = bound_class<Checker>(module, "FeasibilityChecker",
-                                   R"(Says which camera poses are possible in a scene.
+  auto type = bound_class<FeasibilityChecker>(module, "FeasibilityChecker",
+                                              R"(Says which camera poses are possible in a scene.
 
 The sensor's housing, a box, must not overlap voxels that are not free, obstacles or the support plane;
 the pose must be reachable and not taken already. Outside the workspace nothing is known to block.
@@ -170,12 +164,14 @@ support_plane : float, optional
 sensor : Sensor, optional
     Views much of whose image would show what is nearer than the sensor's min_range are too near.
 max_near_share : float
-    How much: share of the rays that end in the map.)");
+    How much: share of the rays that end in the map.
+num_threads : int
+    For arrays of poses; 0: all hardware threads. They ask the predicate of ``reach`` one at a time.)");
   refuse_pickling(type);
   type.def(py::init([](const Scene& scene, const py::object& body_size,
                        const py::object& T_flange_camera, double clearance,
                        const ReachRegion* reach, std::optional<double> support_plane,
-                       const Sensor* sensor, double max_near_share) {
+                       const Sensor* sensor, double max_near_share, int num_threads) {
              FeasibilityConfig config;
              const Eigen::Vector3d size = vector3(body_size, "body_size");
              config.body.size = {size.x(), size.y(), size.z()};
@@ -185,16 +181,35 @@ max_near_share : float
              config.support_plane = support_plane;
              if (sensor != nullptr) config.sensor = *sensor;
              config.max_near_share = max_near_share;
-             return std::unique_ptr<Checker>(
-                 new Checker{scene.scene, FeasibilityChecker(scene.scene, config)});
+             return FeasibilityChecker(scene.scene, config, ExecConfig{num_threads});
            }),
            py::arg("scene"), py::kw_only(), py::arg("body_size") = defaults.body.size,
            py::arg("T_flange_camera") = py::none(), py::arg("clearance") = defaults.clearance,
            py::arg("reach") = py::none(), py::arg("support_plane") = py::none(),
-           py::arg("sensor") = py::none(), py::arg("max_near_share") = defaults.max_near_share)
+           py::arg("sensor") = py::none(), py::arg("max_near_share") = defaults.max_near_share,
+           py::arg("num_threads") = 0)
+      .def(
+          "with_scene",
+          [](const FeasibilityChecker& self, const Scene& scene) {
+            const WithoutGil without_gil;
+            return self.with_scene(scene.scene);
+          },
+          py::arg("scene"), R"(The same checker of another scene, for following a map as it grows.
+
+This one stays as it is. Takes microseconds.
+
+Parameters
+----------
+scene : VoxelScene
+    Such as ``VoxelScene.update`` returns.
+
+Returns
+-------
+FeasibilityChecker)")
       .def(
           "feasible",
-          [](const Checker& self, const py::object& T_world_camera, const py::object& taken) {
+          [](const FeasibilityChecker& self, const py::object& T_world_camera,
+             const py::object& taken) {
             const py::array_t<std::uint8_t> codes = codes_of(self, T_world_camera, taken);
             py::array_t<bool> good(Shape(codes.shape(), codes.shape() + codes.ndim()));
             for (py::ssize_t i = 0; i < codes.size(); ++i) {
@@ -216,7 +231,8 @@ ndarray, (...), bool
     A single pose gives a scalar.)")
       .def(
           "reasons",
-          [](const Checker& self, const py::object& T_world_camera, const py::object& taken) {
+          [](const FeasibilityChecker& self, const py::object& T_world_camera,
+             const py::object& taken) {
             return scalar_or_array(codes_of(self, T_world_camera, taken));
           },
           py::arg("T_world_camera"), py::arg("taken") = py::none(),
@@ -231,9 +247,9 @@ Returns
 -------
 ndarray, (...), uint8
     Indices into ``INFEASIBILITY_NAMES``; 0 is "none". A single pose gives a scalar.)")
-      .def("__repr__", [](const Checker& self) {
+      .def("__repr__", [](const FeasibilityChecker& self) {
         return "<FeasibilityChecker of a scene of " +
-               std::to_string(self.scene->primitive_count()) + " primitives>";
+               std::to_string(self.scene().primitive_count()) + " primitives>";
       });
 }
 

@@ -137,6 +137,43 @@ TEST(CApi, GainsAreThoseOfCppToTheLastBit) {
   EXPECT_GT(gained, 100U);
 }
 
+TEST(CApi, AnEvaluatorOfAnotherSceneHasTheBitsOfOneMadeForIt) {
+  std::size_t compared = 0;
+  for (const test::MapFamily family :
+       {test::MapFamily::salt_and_pepper_1, test::MapFamily::tiles_8}) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.path() / "map.vdb";
+    test::Random random(9);
+    const test::RandomMap before = test::random_map(family, random);
+    const test::RandomMap after = test::random_map(family, random);
+    const Sensor sensor = test::random_sensor(after.grid, random);
+    const ConstantNoise noise{.sigma_axial = 0.4 * after.grid.voxel_size(),
+                              .sigma_lateral = 0.2 * after.grid.voxel_size()};
+    const vg_sensor camera = sensor_of(sensor, noise);
+    const std::vector<double> matrices = matrices_of(test::random_poses(after, 40, random));
+    Handles first, second;
+    const auto load = [&](const BeliefGrid& map, Handles& own) {
+      save_vdb(map, path);
+      ASSERT_EQ(vg_grid_load(path.c_str(), &own.grid), VG_OK) << vg_last_error();
+      ASSERT_EQ(vg_scene_build(own.grid, nullptr, &own.scene), VG_OK) << vg_last_error();
+      ASSERT_EQ(vg_evaluator_create(own.scene, &camera, nullptr, &own.evaluator), VG_OK);
+    };
+    load(before.grid, first);
+    load(after.grid, second);
+    Handles following;
+    ASSERT_EQ(vg_evaluator_with_scene(first.evaluator, second.scene, &following.evaluator), VG_OK)
+        << vg_last_error();
+    std::vector<double> expected(40), gains(40);
+    ASSERT_EQ(vg_evaluate(second.evaluator, matrices.data(), 40, expected.data(), nullptr), VG_OK);
+    ASSERT_EQ(vg_evaluate(following.evaluator, matrices.data(), 40, gains.data(), nullptr), VG_OK);
+    for (std::size_t i = 0; i < 40; ++i) {
+      EXPECT_EQ(bits(gains[i]), bits(expected[i])) << i;
+      if (gains[i] > 0) ++compared;
+    }
+  }
+  EXPECT_GT(compared, 20U);
+}
+
 TEST(CApi, VoxelsAndPointsAreThoseOfCpp) {
   const test::TemporaryFolder folder;
   const std::string path = folder.path() / "map.vdb";

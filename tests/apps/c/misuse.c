@@ -44,6 +44,8 @@ static void of_grids(const char* folder) {
   vg_grid_info info;
   uint8_t states[8];
   int32_t voxel[3];
+  const float log_odds = 1;
+  size_t found;
   double point[3];
   char path[1024], hash[17];
   FILE* file;
@@ -117,6 +119,13 @@ static void of_grids(const char* folder) {
   CHECK_FAILS(vg_grid_center(NULL, dims, 1, point), VG_INVALID_ARGUMENT, "grid is null");
   CHECK_FAILS(vg_grid_center(map, NULL, 1, point), VG_INVALID_ARGUMENT, "voxels is null");
   CHECK_FAILS(vg_grid_center(map, dims, 1, NULL), VG_INVALID_ARGUMENT, "centers is null");
+  CHECK_FAILS(vg_grid_set(NULL, dims, &log_odds, 1), VG_INVALID_ARGUMENT, "grid is null");
+  CHECK_FAILS(vg_grid_set(map, NULL, &log_odds, 1), VG_INVALID_ARGUMENT, "voxels is null");
+  CHECK_FAILS(vg_grid_set(map, dims, NULL, 1), VG_INVALID_ARGUMENT, "log_odds is null");
+  CHECK_FAILS(vg_grid_set(map, vast, &log_odds, 1), VG_INVALID_ARGUMENT, "workspace");
+  CHECK_FAILS(vg_grid_occupied(NULL, voxel, NULL, 1, &found), VG_INVALID_ARGUMENT, "grid is null");
+  CHECK_FAILS(vg_grid_occupied(map, NULL, NULL, 1, &found), VG_INVALID_ARGUMENT, "voxels is null");
+  CHECK_FAILS(vg_grid_occupied(map, voxel, NULL, 1, NULL), VG_INVALID_ARGUMENT, "found is null");
   CHECK_FAILS(vg_grid_hash(NULL, hash), VG_INVALID_ARGUMENT, "grid is null");
   CHECK_FAILS(vg_grid_hash(map, NULL), VG_INVALID_ARGUMENT, "hash is null");
   vg_grid_release(map);
@@ -179,7 +188,7 @@ static void of_scenes(vg_grid* map, vg_scene* scene) {
   vg_scene_config config;
   vg_scene* other = NULL;
   vg_feasibility_config body;
-  vg_feasibility* checker = NULL;
+  vg_feasibility *checker = NULL, *other = NULL;
   int32_t reason;
   const double inside_out[6] = {1, 1, 1, 0, 0, 0};
   const double point[3] = {0, 0, 0};
@@ -218,6 +227,14 @@ static void of_scenes(vg_grid* map, vg_scene* scene) {
               "poses is null");
   CHECK_FAILS(vg_feasibility_check(checker, NULL, 0, NULL, 2, NULL), VG_INVALID_ARGUMENT,
               "taken is null");
+  CHECK_FAILS(vg_feasibility_with_scene(NULL, scene, &other), VG_INVALID_ARGUMENT,
+              "feasibility is null");
+  CHECK_FAILS(vg_feasibility_with_scene(checker, NULL, &other), VG_INVALID_ARGUMENT,
+              "scene is null");
+  CHECK_FAILS(vg_feasibility_with_scene(checker, scene, NULL), VG_INVALID_ARGUMENT,
+              "following is null");
+  CHECK_OK(vg_feasibility_with_scene(checker, scene, &other));
+  vg_feasibility_release(other);
   vg_feasibility_release(checker);
   vg_feasibility_release(NULL);
 }
@@ -225,7 +242,7 @@ static void of_scenes(vg_grid* map, vg_scene* scene) {
 static void of_evaluators(const vg_scene* scene) {
   vg_sensor sensor;
   vg_evaluator_config config;
-  vg_evaluator* evaluator = NULL;
+  vg_evaluator *evaluator = NULL, *other = NULL;
   vg_evaluator_info info;
   vg_watch watch;
   vg_view_gain view;
@@ -271,6 +288,12 @@ static void of_evaluators(const vg_scene* scene) {
   }
   CHECK_OK(vg_evaluator_create(scene, &sensor, NULL, &evaluator));
 
+  CHECK_FAILS(vg_evaluator_with_scene(NULL, scene, &other), VG_INVALID_ARGUMENT,
+              "evaluator is null");
+  CHECK_FAILS(vg_evaluator_with_scene(evaluator, NULL, &other), VG_INVALID_ARGUMENT,
+              "scene is null");
+  CHECK_FAILS(vg_evaluator_with_scene(evaluator, scene, NULL), VG_INVALID_ARGUMENT,
+              "following is null");
   CHECK_FAILS(vg_evaluate(NULL, pose, 1, &gain, NULL), VG_INVALID_ARGUMENT, "evaluator is null");
   CHECK_FAILS(vg_evaluate(evaluator, NULL, 1, &gain, NULL), VG_INVALID_ARGUMENT, "poses is null");
   CHECK_FAILS(vg_evaluate(evaluator, pose, 1, NULL, NULL), VG_INVALID_ARGUMENT, "gains is null");

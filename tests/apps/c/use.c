@@ -28,6 +28,8 @@ static void sensors_and_grids(const char* folder) {
   double sigma = 0, center[3];
   const double points[2][3] = {{-0.19, 0.19, -0.0875}, {1, 0, 0}};
   int32_t voxels[2][3];
+  float log_odds[2] = {2, 2};
+  size_t found = 0;
 
   vg_sensor_init(&sensor, sizeof sensor);
   CHECK(sensor.struct_size == sizeof sensor && sensor.width == 0);
@@ -52,6 +54,20 @@ static void sensors_and_grids(const char* folder) {
   CHECK_OK(vg_grid_center(grid, voxels[0], 1, center));
   CHECK(fabs(center[0] + 0.1875) < 1e-12 && fabs(center[2] + 0.0875) < 1e-12);
   CHECK_OK(vg_grid_index_of(grid, NULL, 0, NULL));
+  CHECK_OK(vg_grid_occupied(grid, NULL, NULL, 0, &found));
+  CHECK_OK(vg_grid_get_info(grid, &info));
+  CHECK(found == info.occupied && found > 50);
+  CHECK_OK(vg_grid_clone(grid, &copy));
+  CHECK_OK(vg_grid_set(copy, voxels[0], log_odds, 1));
+  CHECK_OK(vg_grid_states(copy, states, MAP_VOXELS));
+  CHECK(states[15 * MAP_EDGE + 4] == 2);
+  log_odds[0] = -1;
+  CHECK_OK(vg_grid_set(copy, voxels[0], log_odds, 1));
+  CHECK_OK(vg_grid_states(copy, states, MAP_VOXELS));
+  CHECK(states[15 * MAP_EDGE + 4] == 1);
+  CHECK_OK(vg_grid_occupied(copy, voxels[0], log_odds, 2, &found));
+  CHECK(voxels[0][2] == 4 && voxels[1][2] == 4 && log_odds[1] > 0.8F);
+  vg_grid_release(copy);
 
   CHECK_OK(vg_grid_hash(grid, hash));
   CHECK(strlen(hash) == 16);

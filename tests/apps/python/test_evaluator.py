@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import numpy as np
 import pytest
+from conftest import box_mesh
 
 import viewgain
 
@@ -221,6 +222,30 @@ def test_weights_ranges_and_prior(grid, sensor, poses):
     assert np.all(gains(weights=[(everything, 2.0), (everything, 0.0)]) == 0)
     assert np.all(gains(max_range=0.25) == 0)
     assert np.all(gains(prior_sigma=1.0) > plain)
+
+
+def test_an_evaluator_follows_a_map(sensor, poses):
+    camera = viewgain.SimulatedSensor(*box_mesh([-0.1] * 3, [0.1] * 3), sensor, background_radius=1.5)
+    grid = viewgain.BeliefGrid(voxel_size=0.01, workspace=[[-0.2] * 3, [0.2] * 3], sensor=sensor)
+    integrator = viewgain.FrameIntegrator(sensor)
+    scene = viewgain.VoxelScene(grid)
+    first = viewgain.GainEvaluator(scene, sensor, criterion="trace", pixel_stride=4, num_threads=2)
+    following, before = first, first.evaluate(poses)
+    frames = 0
+    for pose in viewgain.orbit_poses(4, 0.6, 0.4):
+        integrator.integrate(grid, camera.acquire(pose)[0], pose)
+        scene = scene.update(grid)
+        following = following.with_scene(scene)
+        fresh = viewgain.GainEvaluator(
+            viewgain.VoxelScene(grid), sensor, criterion="trace", pixel_stride=4, num_threads=2)
+        assert np.array_equal(following.evaluate(poses), fresh.evaluate(poses))
+        assert following.scene is scene and following.criterion == "trace" and following.pixel_stride == 4
+        frames += 1
+    assert frames == 4
+    assert np.array_equal(first.evaluate(poses), before)
+    assert not np.array_equal(following.evaluate(poses), before)
+    with pytest.raises(TypeError, match="scene"):
+        first.with_scene(None)
 
 
 def test_reprs_have_sizes(evaluator, grid, sensor):

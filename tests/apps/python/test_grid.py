@@ -226,6 +226,68 @@ def test_voxels_and_points(labels, sensor):
         grid.index_of([1, 2])
 
 
+def test_voxels_are_set_and_listed(sensor):
+    def empty():
+        return viewgain.BeliefGrid(voxel_size=0.02, workspace=[[-0.3, -0.2, 0.1], [0.3, 0.2, 0.6]], sensor=sensor)
+
+    rng = np.random.default_rng(11)
+    many, one_by_one = empty(), empty()
+    low = np.array(many.min_index)
+    voxels = rng.integers(low, low + many.shape, (3, 400, 3))
+    log_odds = rng.uniform(-2.5, 4, (3, 400))
+    many.set(voxels, log_odds)
+    for voxel, value in zip(voxels.reshape(-1, 3), log_odds.ravel()):
+        one_by_one.set(voxel, value)
+    assert many.content_hash() == one_by_one.content_hash() != empty().content_hash()
+    rows = many.occupied()
+    states = many.states()
+    assert len(rows) == np.count_nonzero(states == 2) > 300
+    assert np.all(states[tuple((rows["voxel"] - low).T)] == 2) and len(np.unique(rows["voxel"], axis=0)) == len(rows)
+    last = dict(zip(map(tuple, voxels.reshape(-1, 3).tolist()), log_odds.ravel()))  # of repeated ones the last counts
+    expected = np.array([last[tuple(voxel)] for voxel in rows["voxel"].tolist()])
+    assert np.allclose(rows["log_odds"], np.clip(expected, -2, 3.5), atol=0.0251) and np.all(rows["hits"] == 0)
+    many.set(voxels, -0.4)
+    assert len(many.occupied()) == 0 and many.statistics()["free"] == len(last)
+    before = many.content_hash()
+    many.set([], [])
+    outside = low - 1
+    for wrong, value, text in [([low, outside], 1.0, "workspace"), ([low, low], [1.0, np.nan], "NaN"),
+                               ([low, low], [1.0], r"\(1,\).*\(2, 3\)"), ([low], [[1.0]], r"\(1, 1\)"),
+                               (low + 0.5, 1.0, "whole number"), (low[:2], 1.0, r"\(2,\)")]:
+        with pytest.raises(ValueError, match=text):
+            many.set(wrong, value)
+    assert many.content_hash() == before
+
+
+def test_occupied_voxels_have_their_hits(sensor):
+    vertices, triangles = box_mesh([-0.1] * 3, [0.1] * 3)
+    camera = viewgain.SimulatedSensor(vertices, triangles, sensor, background_radius=1.5)
+    grid = viewgain.BeliefGrid(voxel_size=0.01, workspace=[[-0.2] * 3, [0.2] * 3], sensor=sensor)
+    pose = viewgain.look_at([0.45, 0.2, 0.25], [0, 0, 0])
+    viewgain.FrameIntegrator(sensor).integrate(grid, camera.acquire(pose)[0], pose)
+    rows, beliefs = grid.occupied(), grid.beliefs()
+    hits = dict(zip(map(tuple, beliefs["voxel"].tolist()), beliefs["hits"]))
+    assert len(rows) > 300
+    assert np.array_equal(rows["hits"], [hits[tuple(voxel)] for voxel in rows["voxel"].tolist()])
+
+
+def test_a_checker_follows_a_map(sensor):
+    grid = viewgain.BeliefGrid(voxel_size=0.02, workspace=[[-0.3] * 3, [0.3] * 3], sensor=sensor)
+    scene = viewgain.VoxelScene(grid, boxes=[[[0.4, -1, -1], [0.5, 1, 1]]])
+    first = viewgain.FeasibilityChecker(scene, sensor=sensor)
+    poses = viewgain.shell_poses(400, 0.1, 0.6)
+    before = first.reasons(poses)
+    depth = np.full((144, 176), np.inf)
+    viewgain.FrameIntegrator(sensor).integrate(grid, depth, viewgain.look_at([0.6, 0, 0], [0, 0, 0]))
+    scene = scene.update(grid)
+    following = first.with_scene(scene)
+    fresh = viewgain.FeasibilityChecker(scene, sensor=sensor)
+    assert np.array_equal(following.reasons(poses), fresh.reasons(poses))
+    assert np.array_equal(first.reasons(poses), before)
+    assert np.count_nonzero(following.reasons(poses) != before) > 5
+    assert {"none", "obstacle", "collision"} <= {viewgain.INFEASIBILITY_NAMES[code] for code in before}
+
+
 def test_obstacles_block(grid, sensor, poses):
     plain = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, pixel_stride=4)
     wall = np.array([[[0.3, -1, -1], [0.4, 1, 1]]])
@@ -274,6 +336,13 @@ def test_reach_and_collisions(grid, sensor):
     assert names[checker.reasons(poses)].tolist() == [
         "none", "unreachable", "collision", "unreachable"]
     assert "predicate" in repr(reach) and "primitives" in repr(checker)
+
+    candidates = viewgain.shell_poses(300, 0.1, 0.6)
+    codes = checker.reasons(candidates, taken=candidates[:3])
+    loop = [checker.reasons(pose, taken=candidates[:3]) for pose in candidates]
+    assert np.array_equal(codes, loop) and len(np.unique(codes)) >= 3
+    alone = viewgain.FeasibilityChecker(scene, reach=reach, sensor=sensor, support_plane=-0.5, num_threads=1)
+    assert np.array_equal(alone.reasons(candidates, taken=candidates[:3]), codes)
 
     def broken(T_world_camera):
         raise KeyError("robot")

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -14,6 +15,13 @@
 #include "shared_grid.hpp"
 
 namespace viewgain::python {
+
+/// A row of BeliefGrid.occupied().
+struct OccupiedRow {
+  std::array<std::int32_t, 3> voxel;
+  float log_odds;
+  std::uint32_t hits;
+};
 
 namespace {
 
@@ -70,9 +78,43 @@ py::array_t<double> center(const SharedGrid& grid, const py::object& voxels) {
   return centers;
 }
 
+void set(SharedGrid& grid, const py::object& voxels, const py::object& log_odds) {
+  const Doubles array = items(voxels, "voxels", {3});
+  const std::vector<Index3> indices = indices_of(array);
+  const Doubles values = doubles(log_odds, "log_odds");
+  const bool is_one = values.ndim() == 0;
+  const Shape wanted = leading_shape(array, 1);
+  if (!is_one &&
+      !std::equal(wanted.begin(), wanted.end(), values.shape(), values.shape() + values.ndim())) {
+    throw py::value_error(
+        "log_odds has the shape " + shape_text(values) +
+        "; it must be one number, or one for each of voxels, which has the shape " +
+        shape_text(array));
+  }
+  std::vector<VoxelValue> changes;
+  changes.reserve(indices.size());
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    changes.push_back({indices[i], static_cast<float>(values.data()[is_one ? 0 : i]), {}});
+  }
+  grid.write([&](BeliefGrid& g) { g.set(changes); });
+}
+
+py::array_t<OccupiedRow> occupied(const SharedGrid& grid) {
+  std::vector<OccupiedRow> rows;
+  grid.read([&](const BeliefGrid& g) {
+    g.for_each_occupied([&](const OccupiedVoxel& one) {
+      rows.push_back({{one.voxel.x, one.voxel.y, one.voxel.z},
+                      one.log_odds,
+                      one.belief != nullptr ? one.belief->hits : 0});
+    });
+  });
+  return to_array_1d<OccupiedRow>(rows);
+}
+
 }  // namespace
 
 void bind_voxels(GridClass& grid_class) {
+  PYBIND11_NUMPY_DTYPE(OccupiedRow, voxel, log_odds, hits);
   grid_class
       .def("index_of", &index_of, py::arg("points"),
            R"(The voxels that hold points.
@@ -103,7 +145,30 @@ ndarray, (..., 3), float64
 Raises
 ------
 ValueError
-    A number that is no index, such as those that ``index_of`` gives where there is no voxel.)");
+    A number that is no index, such as those that ``index_of`` gives where there is no voxel.)")
+      .def("set", &set, py::arg("voxels"), py::arg("log_odds"),
+           R"(Sets voxels of the workspace, in their order, all or none.
+
+Parameters
+----------
+voxels : array_like, (..., 3), whole numbers
+    On the lattice.
+log_odds : float or array_like, (...)
+    Occupied above 0, else free; rounded to the nearest step of 0.05 and clamped to -2..3.5. A voxel has
+    no belief afterwards.
+
+Raises
+------
+ValueError
+    A shape, a voxel outside the workspace or a log-odds that is NaN; the grid is unchanged then.)")
+      .def("occupied", &occupied,
+           R"(The occupied voxels; equal maps give the same order.
+
+Returns
+-------
+ndarray, (n,), structured
+    voxel (int32, 3; on the lattice, minus ``min_index`` for arrays), log_odds (float32), hits (readings
+    that ended in it).)");
 }
 
 }  // namespace viewgain::python

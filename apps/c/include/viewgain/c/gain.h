@@ -65,6 +65,12 @@ VG_API void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_
 /* config null: the defaults. */
 VG_API vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
                                      const vg_evaluator_config* config, vg_evaluator** evaluator);
+
+/* The evaluator of another scene, such as vg_scene_update makes, for following a map as it grows:
+   the sensor, settings and threads of `evaluator`, which stays as it is. Nothing is computed anew,
+   so that it takes microseconds; gains are those of an evaluator made for that scene. */
+VG_API vg_status vg_evaluator_with_scene(const vg_evaluator* evaluator, const vg_scene* scene,
+                                         vg_evaluator** following);
 VG_API void vg_evaluator_release(vg_evaluator* evaluator);
 
 typedef struct vg_evaluator_info {
@@ -176,7 +182,8 @@ typedef struct vg_feasibility_config {
   /* Whether the robot can put the camera there: nonzero, yes. Null (the default): everywhere. Must
      be thread safe, and must not throw or jump out. */
   int32_t (*reachable)(const double T_world_camera[16], void* user);
-  void* user; /* may be null */
+  void* user;          /* may be null */
+  int32_t num_threads; /* 0: all; 1: the caller alone; never changes a reason */
 } vg_feasibility_config;
 VG_API void vg_feasibility_config_init(vg_feasibility_config* config, size_t struct_size);
 
@@ -190,6 +197,11 @@ VG_API vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibili
 VG_API vg_status vg_feasibility_check(const vg_feasibility* feasibility, const double* poses,
                                       size_t count, const double* taken, size_t taken_count,
                                       int32_t* reasons);
+
+/* The same of another scene, such as vg_scene_update makes, for following a map as it grows;
+   `feasibility` stays as it is. Takes microseconds. */
+VG_API vg_status vg_feasibility_with_scene(const vg_feasibility* feasibility, const vg_scene* scene,
+                                           vg_feasibility** following);
 VG_API void vg_feasibility_release(vg_feasibility* feasibility);
 
 /* ---- Poses ---- */

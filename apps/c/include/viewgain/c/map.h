@@ -110,6 +110,18 @@ VG_API vg_status vg_grid_index_of(const vg_grid* grid, const double* points, siz
 VG_API vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size_t count,
                                 double* centers);
 
+/* Sets voxels of the workspace (3 indices each, on the lattice), in their order, all or none. A
+   log-odds above 0 makes a voxel occupied, another one free; it is rounded to the nearest step of
+   0.05 and clamped to -2..3.5. The voxels have no belief afterwards. VG_INVALID_ARGUMENT: a voxel
+   outside the workspace or a log-odds that is NaN. */
+VG_API vg_status vg_grid_set(vg_grid* grid, const int32_t* voxels, const float* log_odds,
+                             size_t count);
+
+/* The occupied voxels, 3 indices each, on the lattice; equal maps give the same order. Fills at
+   most `capacity` of them and says in *found how many there are. log_odds or null: not wanted. */
+VG_API vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds,
+                                  size_t capacity, size_t* found);
+
 /* 16 hexadecimal digits and a 0 over all that the map holds; the same for equal maps. */
 VG_API vg_status vg_grid_hash(const vg_grid* grid, char hash[17]);
 
