@@ -16,7 +16,7 @@ struct VIEWGAIN_EXPORT VdbWriteConfig {
 
 /// Writes the map as a plain OpenVDB file (active = known; grid/README.md has the layout), of types
 /// that OpenVDB's Python module reads. Atomic: a temporary file beside it is renamed. Throws
-/// Error(io). Needs about twice the file's size in memory; std::bad_alloc leaves the old file.
+/// Error(io). If memory runs out (std::bad_alloc), the file that was there stays.
 VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
                               const VdbWriteConfig& config = {});
 
