@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <locale>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -172,9 +173,8 @@ class Loader {
 
   [[nodiscard]] std::uint8_t checked_code(const Coord& at, float log_odds, float state) const {
     const auto where = [&at] {
-      std::ostringstream text;
-      text << " at voxel " << at;
-      return text.str();
+      return " at voxel [" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " +
+             std::to_string(at.z()) + "]";
     };
     if (!(log_odds > -2.001F && log_odds < 3.501F)) {
       fail("log_odds " + short_text(log_odds) + where() + " is not within -2 .. 3.5");
@@ -360,6 +360,7 @@ class Loader {
     const std::string fault = fault_of_belief(belief, voxel_size);
     if (!fault.empty()) {
       std::ostringstream text;
+      text.imbue(std::locale::classic());
       text << "belief at voxel " << at << ' ' << fault;
       fail(text.str());
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <locale>
 #include <sstream>
 
 namespace viewgain::detail {
@@ -14,6 +15,7 @@ namespace {
 template <typename Value>
 std::string has(const char* what, Value value) {
   std::ostringstream text;
+  text.imbue(std::locale::classic());
   text << "has " << what << value;
   return text.str();
 }

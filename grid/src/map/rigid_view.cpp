@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rigid_view.hpp"
 
+#include <locale>
 #include <sstream>
 
 #include "viewgain/core/error.hpp"
@@ -14,6 +15,7 @@ Pose rigid_view(const Pose& T_world_camera) {
   const double error = orthonormality_error(T_world_camera);
   if (!(error <= kTolerance)) {
     std::ostringstream text;
+    text.imbue(std::locale::classic());
     text << "camera pose is not rigid: its rotation is off by " << error;
     throw Error(ErrorCode::invalid_argument, text.str());
   }

@@ -7,12 +7,10 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <new>
 #include <string>
-#include <vector>
 
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
@@ -107,7 +105,6 @@ TEST(MemoryLimit, ASetOfPosesThatIsNotThereTakesNoMemory) {
   EXPECT_LT(peak_of(ask), 1'000'000);
 }
 
-// More threads of OpenVDB than one would make the counts depend on their schedule.
 TEST(MemoryLimit, SavingWithoutMemoryLeavesNothingBehind) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "map.vdb";
@@ -124,14 +121,14 @@ TEST(MemoryLimit, SavingWithoutMemoryLeavesNothingBehind) {
   ASSERT_GT(peak, 2'000'000);
   const std::string whole = read_all(path);
   int failed = 0, saved = 0;
-  for (int part = 0; part <= 120; ++part) {
+  for (int part = 0; part <= 120; part += 3) {
     ++(runs_within(peak * part / 100, save) ? saved : failed);
     EXPECT_EQ(folder.entries(), 1);
     EXPECT_EQ(load_vdb(path).content_hash(), grid.content_hash());
   }
-  EXPECT_GT(failed, 60);
+  EXPECT_GT(failed, 15);
   EXPECT_GT(saved, 0);
-  EXPECT_EQ(failed + saved, 121);
+  EXPECT_EQ(failed + saved, 41);
 }
 
 TEST(MemoryLimit, TheResolutionOfAnOctreeIsInItsHead) {

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdio>
+#include <locale>
 #include <random>
 #include <string>
 
@@ -175,6 +176,12 @@ TEST(VdbIo, VoxelsAreAsSmallAsCanBeSaved) {
     expect_error(ErrorCode::invalid_argument, "voxel size", [&] { (void)grid(voxel); });
     ++cases;
   }
+  struct CommaPunctuation : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+  };
+  const std::locale before = std::locale::global(std::locale(std::locale(), new CommaPunctuation));
+  expect_error(ErrorCode::invalid_argument, "voxel size 1.4e-05 m", [&] { (void)grid(1.4e-5); });
+  std::locale::global(before);
   for (const double voxel : {2e-5, 1e-4, 1.0, 1e3}) {
     const auto path = folder.path() / "map.vdb";
     BeliefGrid small = grid(voxel);

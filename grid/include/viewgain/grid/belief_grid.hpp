@@ -72,10 +72,11 @@ struct VIEWGAIN_EXPORT OccupiedVoxel {
 /// non-const member. Snapshots are independent of the grid once taken.
 class VIEWGAIN_EXPORT BeliefGrid {
  public:
-  /// Throws Error(invalid_argument) naming the value unless voxel_size and prior_sigma are positive
-  /// and finite, the workspace is finite and not inside out, T_world_grid is a rigid transform
-  /// (1e-9), and Error(capacity) if the workspace has more than 65,536 voxels along an axis, more
-  /// than 2^40 in all, or indices beyond +-2^30.
+  /// Throws Error(invalid_argument) naming the value unless voxel_size is at least 2e-5 m (smaller
+  /// ones have no OpenVDB transform), it and prior_sigma are positive and finite, the workspace is
+  /// finite and not inside out, T_world_grid is a rigid transform (1e-9), and Error(capacity) if
+  /// the workspace has more than 65,536 voxels along an axis, more than 2^40 in all, or indices
+  /// beyond +-2^30.
   explicit BeliefGrid(const GridConfig& config);
   ~BeliefGrid();
   BeliefGrid(BeliefGrid&&) noexcept;
