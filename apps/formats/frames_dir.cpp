@@ -16,11 +16,11 @@
 
 #include "png_io.hpp"
 #include "sensor_toml.hpp"
-#include "values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -84,30 +84,13 @@ std::uint16_t saturated(double units) {
                    : std::uint16_t{0};
 }
 
-// Words between blanks, each a finite number; a byte order mark before them says nothing.
-std::vector<double> numbers_of(const fs::path& path, std::string_view text) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf", kBlanks = " \t\r\n\v\f";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  std::vector<double> numbers;
-  for (std::size_t begin = text.find_first_not_of(kBlanks); begin != std::string_view::npos;
-       begin = text.find_first_not_of(kBlanks)) {
-    text.remove_prefix(begin);
-    const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) {
-      throw Error(ErrorCode::format, path.string() + ": \"" + printable(word.substr(0, 32)) +
-                                         "\" is no finite number");
-    }
-    numbers.push_back(value);
-    text.remove_prefix(word.size());
-  }
-  return numbers;
-}
-
 // Nine numbers of a 3x3 matrix fx 0 cx / 0 fy cy / 0 0 1.
 void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
-  const std::vector<double> k = numbers_of(path, file_bytes(path));
+  const std::string bytes = file_bytes(path);
+  std::vector<double> k;
+  for (LineReader lines(path.string(), bytes); lines.next();) {
+    for (std::size_t i = 0; i < lines.words().size(); ++i) k.push_back(lines.finite_number(i));
+  }
   if (k.size() != 9) {
     throw Error(ErrorCode::format, path.string() +
                                        ": needs the nine numbers of a 3x3 matrix, has " +
