@@ -87,7 +87,7 @@ void summarize(TraceRun& run) {
 
 bool TraceEntry::is_embree() const { return name.find("coherent") != std::string::npos; }
 
-bool TraceEntry::counts() const { return !is_embree() || name.find("robust") != std::string::npos; }
+bool TraceEntry::counts() const { return !is_embree() || name.starts_with("single robust"); }
 
 double TraceRun::rate(const std::string& name) const {
   const auto row =

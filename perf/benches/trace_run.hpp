@@ -25,8 +25,8 @@ struct TraceEntry {
 
   /// One of Embree's quad variants.
   [[nodiscard]] bool is_embree() const;
-  /// Embree without its robust flag lets a ray in some millions slip through the seam of two
-  /// triangles; those variants are timed for comparison, but do not count.
+  /// Embree's variants that are not watertight let a ray in some millions slip through; they are
+  /// timed for comparison, but do not count.
   [[nodiscard]] bool counts() const;
 };
 

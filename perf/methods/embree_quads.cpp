@@ -178,16 +178,17 @@ class EmbreeQuads final : public TraceMethod {
 
 std::vector<std::unique_ptr<TraceMethod>> make_embree_quads(const TraceTask& task) {
   std::vector<std::unique_ptr<TraceMethod>> methods;
-  for (const bool merged : {false, true}) {
-    for (const bool robust : {true, false}) {
-      const auto scene = std::make_shared<const QuadScene>(task, merged, robust);
-      for (const bool coherent : {true, false}) {
-        const std::string kind = std::string(merged ? "merged" : "single") +
-                                 (robust ? " robust" : " fast") +
-                                 (coherent ? " coherent" : " incoherent");
-        methods.push_back(std::make_unique<EmbreeQuads<8>>(kind + " 8", scene, task, coherent));
-        methods.push_back(std::make_unique<EmbreeQuads<16>>(kind + " 16", scene, task, coherent));
-      }
+  struct Kind {
+    const char* name;
+    bool merged, robust;
+  };
+  for (const Kind& kind : {Kind{"single robust", false, true}, Kind{"merged robust", true, true},
+                           Kind{"merged fast", true, false}}) {
+    const auto scene = std::make_shared<const QuadScene>(task, kind.merged, kind.robust);
+    for (const bool coherent : {true, false}) {
+      const std::string name = std::string(kind.name) + (coherent ? " coherent" : " incoherent");
+      methods.push_back(std::make_unique<EmbreeQuads<8>>(name + " 8", scene, task, coherent));
+      methods.push_back(std::make_unique<EmbreeQuads<16>>(name + " 16", scene, task, coherent));
     }
   }
   return methods;

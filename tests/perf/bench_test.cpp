@@ -72,6 +72,16 @@ TEST(Bench, AllWaysToTraceAgree) {
         "openvdb_dda", "openvdb_hdda", "octomap_cast_ray", "octomap_gain"}) {
     EXPECT_EQ(names.count(name), 1U) << name;
   }
+  EXPECT_EQ(json["embree_variants"].size(), 12U);
+  int watertight = 0;
+  for (const auto& [name, variant] : json["embree_variants"].items()) {
+    EXPECT_GT(variant["rays_per_second"].get<double>(), 0) << name;
+    EXPECT_LE(variant["wrong"].get<int>(), 1) << name;
+    if (!name.starts_with("single robust")) continue;
+    EXPECT_EQ(variant["wrong"], 0) << name;
+    ++watertight;
+  }
+  EXPECT_EQ(watertight, 4);
   for (const char* ratio : {"viewgain_gain/embree_quads", "viewgain_gain/embree_quads_fast",
                             "viewgain_gain/octomap_cast_ray", "viewgain_trace/embree_quads",
                             "viewgain_gain/viewgain_trace"}) {
