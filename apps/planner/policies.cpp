@@ -8,7 +8,6 @@
 #include <optional>
 #include <tuple>
 
-#include "stopwatch.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
 
@@ -41,21 +40,20 @@ Policy parse_policy(std::string_view name) {
 
 PolicyDecision::PolicyDecision(const Model& model, const CandidateGeneration& generation,
                                const Sensor& sensor, const PolicyConfig& config,
-                               const ExecConfig& exec, StageSeconds& seconds)
+                               const LoopExec& exec)
     : model_(model),
       generation_(generation),
       sensor_(sensor),
       config_(config),
-      exec_(exec),
-      seconds_(seconds) {}
+      exec_(exec) {}
 
 std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
                                                std::span<const Candidate> candidates) {
   if (candidates.empty()) return std::nullopt;
-  const Stopwatch watch;
-  evaluator_ =
-      evaluator_ ? evaluator_->with_scene(model_.scene())
-                 : GainEvaluator(model_.scene(), sensor_, {.criterion = config_.criterion}, exec_);
+  const auto measuring = exec_.measure("score");
+  evaluator_ = evaluator_ ? evaluator_->with_scene(model_.scene())
+                          : GainEvaluator(model_.scene(), sensor_, {.criterion = config_.criterion},
+                                          exec_.threads);
   const GainEvaluator& evaluator = *evaluator_;
   const bool by_gain = config_.policy == Policy::gain;
   const bool scored = by_gain || config_.policy == Policy::frontier;
@@ -75,7 +73,6 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
   const std::uint32_t touched = gain.unknown_voxels + gain.occupied_voxels;
   // A fixed order of views does not stop because one of them promises little.
   if (by_gain) decision.gain_per_voxel = touched > 0 ? gain.gain / touched : 0.0;
-  seconds_["score"] += watch.seconds();
   return decision;
 }
 
@@ -114,13 +111,12 @@ std::size_t PolicyDecision::choose(const Pose& T_world_camera,
 std::size_t PolicyDecision::choose_by_boundary(std::span<const Candidate> candidates) const {
   const EstimatedViews& estimated = generation_.estimated();
   const auto order = [&](const Candidate& candidate) {
-    const auto patch = static_cast<std::size_t>(candidate.source);
-    const BoundaryRun& run = estimated.runs[estimated.run_of_patch[patch]];
-    return std::tuple(run.boundary_class, -run.length, candidate.source);
+    const BoundaryCandidate& c = estimated.candidates[candidate.number.value()];
+    return std::tuple(c.boundary_class, -estimated.runs[c.run].length, c.patch);
   };
   std::optional<std::size_t> first;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (candidates[i].boundary_class.empty()) continue;  // a pose of the reachable list
+    if (!candidates[i].boundary_class) continue;  // a pose of the reachable list
     if (!first || order(candidates[i]) < order(candidates[*first])) first = i;
   }
   return first.value_or(0);

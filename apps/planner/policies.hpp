@@ -47,7 +47,7 @@ struct PolicyConfig {
 class PolicyDecision : public DecisionMaking {
  public:
   PolicyDecision(const Model& model, const CandidateGeneration& generation, const Sensor& sensor,
-                 const PolicyConfig& config, const ExecConfig& exec, StageSeconds& seconds);
+                 const PolicyConfig& config, const LoopExec& exec);
 
   std::optional<Decision> decide(const Pose& T_world_camera,
                                  std::span<const Candidate> candidates) override;
@@ -62,9 +62,8 @@ class PolicyDecision : public DecisionMaking {
   const CandidateGeneration& generation_;
   Sensor sensor_;
   PolicyConfig config_;
-  ExecConfig exec_;
+  LoopExec exec_;
   std::optional<GainEvaluator> evaluator_;  ///< of the last decision's scene
-  StageSeconds& seconds_;
 };
 
 }  // namespace viewgain::app

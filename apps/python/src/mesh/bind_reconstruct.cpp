@@ -17,7 +17,6 @@
 #include "mesh/bindings.hpp"
 #include "planner/candidate_generation.hpp"
 #include "planner/model.hpp"
-#include "planner/planning_options.hpp"
 #include "planner/policies.hpp"
 #include "viewgain/core/planning.hpp"
 
@@ -77,7 +76,9 @@ py::dict dict_of(const ViewRecord& record) {
   view["index"] = record.index;
   view["T_world_camera"] = to_array(record.T_world_camera);
   view["generator"] = record.chosen_as ? record.chosen_as->generator : "start";
-  view["boundary_class"] = record.chosen_as ? record.chosen_as->boundary_class : "";
+  const bool of_boundary = record.chosen_as && record.chosen_as->boundary_class;
+  view["boundary_class"] =
+      of_boundary ? boundary_class_name(*record.chosen_as->boundary_class) : std::string_view();
   view["predicted_gain"] = record.predicted_gain;
   view["realised_gain"] = record.realised_gain;
   view["entropy_removed"] = record.progress.entropy_removed;
@@ -96,17 +97,13 @@ bool is_of_boundaries(app::Policy policy) {
 app::GenerationConfig generation_config(const Sensor& sensor, double voxel_size, bool boundary,
                                         const py::object& candidates, const ReachRegion* reach,
                                         std::optional<double> support_plane) {
-  app::GenerationConfig config;
+  app::GenerationConfig config = app::default_generation(sensor, voxel_size);
   config.boundary = boundary;
-  config.estimator = app::default_estimator(voxel_size);
-  config.working_distance = sensor.working_distance;
   if (!candidates.is_none()) {
     config.sets.push_back({"candidates", pose_list(candidates, "candidates")});
   }
-  config.feasibility.body.T_flange_camera = sensor.T_flange_camera;
   if (reach != nullptr) config.feasibility.reach = *reach;
   config.feasibility.support_plane = support_plane;
-  config.feasibility.sensor = sensor;
   return config;
 }
 
@@ -141,17 +138,18 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
                           "\" has nothing to choose from");
   }
   policy_config.criterion = model_config.criterion;
+  const app::GenerationConfig generation_settings = generation_config(
+      sensor, voxel_size, boundary, candidates, reach, support_plane);
   PlanningConfig planning;
   planning.max_views = max_views;
   planning.stop_gain = stop_gain;
   planning.idle_views = idle_views;
   if (control != nullptr) planning.stop = control->stop.get_token();
 
-  app::StageSeconds seconds;
   PythonAcquisition acquisition(acquire, sensor);
-  app::Model model(sensor, model_config, exec, nullptr, seconds);
-  app::CandidateGeneration generation(model, sensor, generation_settings, exec, seconds);
-  app::PolicyDecision decision(model, generation, sensor, policy_config, exec, seconds);
+  app::Model model(sensor, model_config, nullptr, {exec});
+  app::CandidateGeneration generation(model, sensor, generation_settings, {exec});
+  app::PolicyDecision decision(model, generation, sensor, policy_config, {exec});
   Reconstruction result;
   const auto watch = [&](const ViewRecord& record) {
     with_gil([&] {
