@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "candidate_generation.hpp"
 
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "view_sight.hpp"
 
 namespace viewgain::app {
 
@@ -39,8 +41,14 @@ CandidateGeneration::CandidateGeneration(const Model& model, const Sensor& senso
 void CandidateGeneration::estimate(std::span<const Pose> views) {
   estimated_ = {};
   if (!config_.boundary) return;
+  std::optional<ViewSight> sight;
+  std::function<bool(std::size_t, const Eigen::Vector3d&)> sees;
+  if (config_.classes_by_sight) {
+    sight.emplace(model_.scene(), sensor_, views, exec_.threads);
+    sees = [&sight](std::size_t view, const Eigen::Vector3d& p) { return sight->sees(view, p); };
+  }
   estimated_ = estimate_views(model_.surface(), views, sensor_, config_.working_distance,
-                              config_.estimator);
+                              config_.estimator, sees);
 }
 
 std::vector<Candidate> CandidateGeneration::all_candidates() const {

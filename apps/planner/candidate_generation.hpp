@@ -19,6 +19,9 @@ struct GenerationConfig {
   bool boundary = true;  ///< candidates at the surface's open boundaries
   EstimatorConfig estimator{};
   double working_distance = 0;  ///< of boundary candidates from the surface [m]
+  /// A boundary is classed by the last view that has it in sight past the rest of the map, not only
+  /// in its image; a view is traced for that. Moves the ends of runs, and so the candidates.
+  bool classes_by_sight = false;
   std::vector<PoseSet> sets{};
   FeasibilityConfig feasibility{};
 };

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tuple>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
@@ -45,7 +44,8 @@ PolicyDecision::PolicyDecision(const Model& model, const CandidateGeneration& ge
       generation_(generation),
       sensor_(sensor),
       config_(config),
-      exec_(exec) {}
+      exec_(exec),
+      order_(0.5 * generation.config().estimator.patch_length) {}
 
 std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
                                                std::span<const Candidate> candidates) {
@@ -64,11 +64,12 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
     for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
     evaluator.evaluate(poses, gains);
   }
-  const std::size_t chosen = choose(T_world_camera, candidates, gains);
+  const std::optional<std::size_t> chosen = choose(T_world_camera, candidates, gains);
+  if (!chosen) return std::nullopt;
   const ViewGain gain =
-      scored ? gains[chosen] : evaluator.evaluate(candidates[chosen].T_world_camera);
+      scored ? gains[*chosen] : evaluator.evaluate(candidates[*chosen].T_world_camera);
   Decision decision;
-  decision.candidate = chosen;
+  decision.candidate = *chosen;
   decision.gain = gain.gain;
   const std::uint32_t touched = gain.unknown_voxels + gain.occupied_voxels;
   // A fixed order of views does not stop because one of them promises little.
@@ -76,9 +77,9 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
   return decision;
 }
 
-std::size_t PolicyDecision::choose(const Pose& T_world_camera,
-                                   std::span<const Candidate> candidates,
-                                   const std::vector<ViewGain>& gains) const {
+std::optional<std::size_t> PolicyDecision::choose(const Pose& T_world_camera,
+                                                  std::span<const Candidate> candidates,
+                                                  const std::vector<ViewGain>& gains) {
   const auto best_by = [&](auto&& worth) {
     std::size_t best = 0;
     double most = -std::numeric_limits<double>::infinity();
@@ -108,18 +109,13 @@ std::size_t PolicyDecision::choose(const Pose& T_world_camera,
   return 0;
 }
 
-std::size_t PolicyDecision::choose_by_boundary(std::span<const Candidate> candidates) const {
-  const EstimatedViews& estimated = generation_.estimated();
-  const auto order = [&](const Candidate& candidate) {
-    const BoundaryCandidate& c = estimated.candidates[candidate.number.value()];
-    return std::tuple(c.boundary_class, -estimated.runs[c.run].length, c.patch);
-  };
-  std::optional<std::size_t> first;
+std::optional<std::size_t> PolicyDecision::choose_by_boundary(
+    std::span<const Candidate> candidates) {
+  if (const auto next = order_.next(candidates, generation_.estimated())) return next;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!candidates[i].boundary_class) continue;  // a pose of the reachable list
-    if (!first || order(candidates[i]) < order(candidates[*first])) first = i;
+    if (!candidates[i].boundary_class) return i;  // a pose of the reachable list
   }
-  return first.value_or(0);
+  return std::nullopt;
 }
 
 }  // namespace viewgain::app

@@ -74,6 +74,8 @@ std::vector<std::string> generators(const ReconstructOptions& options, Policy po
 GenerationConfig generation_config(const ReconstructOptions& options, const RunSetup& setup) {
   GenerationConfig config = default_generation(setup.sensor, options.voxel);
   config.boundary = false;
+  // His choice is by class alone.
+  config.classes_by_sight = setup.policy.policy == Policy::kriegel;
   const PoseSetRequest request{setup.stage.center, setup.distance, options.sphere_poses,
                                options.sensing.seed, setup.start};
   for (const std::string& name : generators(options, setup.policy.policy)) {

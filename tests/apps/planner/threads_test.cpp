@@ -55,7 +55,8 @@ int threads_begun(int num_threads) {
   const auto truth = std::make_shared<const Truth>(mesh, sensor, visibility, exec.threads);
   Model model(sensor, test::model_config(sensor, 0.15, 0.005), truth, exec);
   (void)model.update(measurements);
-  const GenerationConfig config = default_generation(sensor, 0.005);
+  GenerationConfig config = default_generation(sensor, 0.005);
+  config.classes_by_sight = true;
   CandidateGeneration generation(model, sensor, config, exec);
   const Proposal proposal = generation.generate(view);
   EXPECT_FALSE(proposal.candidates.empty());

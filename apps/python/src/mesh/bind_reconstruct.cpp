@@ -96,9 +96,10 @@ bool is_of_boundaries(app::Policy policy) {
 
 app::GenerationConfig generation_config(const Sensor& sensor, double voxel_size, bool boundary,
                                         const py::object& candidates, const ReachRegion* reach,
-                                        std::optional<double> support_plane) {
+                                        std::optional<double> support_plane, app::Policy policy) {
   app::GenerationConfig config = app::default_generation(sensor, voxel_size);
   config.boundary = boundary;
+  config.classes_by_sight = policy == app::Policy::kriegel;
   if (!candidates.is_none()) {
     config.sets.push_back({"candidates", pose_list(candidates, "candidates")});
   }
@@ -132,14 +133,12 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
   policy_config.policy = app::parse_policy(policy);
   const app::GenerationConfig generation_settings = generation_config(
       sensor, voxel_size, boundary.value_or(is_of_boundaries(policy_config.policy)), candidates,
-      reach, support_plane);
+      reach, support_plane, policy_config.policy);
   if (!generation_settings.boundary && candidates.is_none()) {
     throw py::value_error("give candidates: without boundary, policy \"" + policy +
                           "\" has nothing to choose from");
   }
   policy_config.criterion = model_config.criterion;
-  const app::GenerationConfig generation_settings = generation_config(
-      sensor, voxel_size, boundary, candidates, reach, support_plane);
   PlanningConfig planning;
   planning.max_views = max_views;
   planning.stop_gain = stop_gain;
