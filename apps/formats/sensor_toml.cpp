@@ -170,6 +170,11 @@ std::string sensor_toml(const Sensor& sensor) {
     }
     text << "  [0.0, 0.0, 0.0, 1.0],\n]\n";
   }
+  if (sensor.body_size) {
+    const auto& size = *sensor.body_size;
+    text << "body = [" << toml_float(size[0]) << ", " << toml_float(size[1]) << ", "
+         << toml_float(size[2]) << "]  # width, height, depth [m]\n";
+  }
   const PinholeCamera& camera = sensor.camera;
   text << "\n[camera]  # pixel (0,0) has its centre at (0,0); [px]\n"
        << "width = " << camera.width << "\nheight = " << camera.height
@@ -202,6 +207,10 @@ Sensor read_sensor_toml(const std::filesystem::path& path) {
   sensor.working_distance = reader.number("working_distance");
   if (const toml::node* node = reader.find("T_flange_camera"); node != nullptr) {
     sensor.T_flange_camera = read_mounting(reader, *node);
+  }
+  if (const toml::node* node = reader.find("body"); node != nullptr) {
+    const std::vector<double> size = reader.numbers("body", *node, 3);
+    sensor.body_size = {size[0], size[1], size[2]};
   }
   sensor.camera = read_camera(reader.table("camera"));
   sensor.noise = read_noise(reader.table("noise"));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "values.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -99,6 +100,40 @@ Box box_of(std::string_view flag, const std::vector<double>& numbers) {
 
 Box parse_box(std::string_view flag, std::string_view text) {
   return box_of(flag, parse_numbers(flag, text, 6, 6));
+}
+
+std::array<double, 3> parse_size(std::string_view flag, std::string_view text) {
+  const std::vector<double> n = parse_numbers(flag, text, 3, 3);
+  for (const double length : n) {
+    if (!(length > 0)) fail(flag, text, "width, height and depth must be positive");
+  }
+  return {n[0], n[1], n[2]};
+}
+
+Pose parse_pose(std::string_view flag, std::string_view text) {
+  const std::vector<double> n = parse_numbers(flag, text, 7, 7);
+  const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);
+  if (!(std::abs(q.norm() - 1) < 1e-2)) {
+    fail(flag, text, "the quaternion qx,qy,qz,qw has the norm " + short_text(q.norm()));
+  }
+  return {q.normalized().toRotationMatrix(), Eigen::Vector3d(n[0], n[1], n[2])};
+}
+
+std::vector<std::string> parse_names(std::string_view flag, std::string_view text,
+                                     const std::vector<std::string>& valid) {
+  std::vector<std::string> names;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string name(text.substr(begin, end - begin));
+    if (std::find(valid.begin(), valid.end(), name) == valid.end()) {
+      std::string list;
+      for (const std::string& v : valid) list.append(" ").append(v);
+      fail(flag, text, "\"" + name + "\" is none of" + list);
+    }
+    names.push_back(name);
+    begin = end + 1;
+  }
+  return names;
 }
 
 std::string describe(const Box& box) {

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "viewgain/core/box.hpp"
+#include "viewgain/core/pose.hpp"
 #include "viewgain/core/text.hpp"
 
 namespace viewgain::app {
@@ -23,6 +25,18 @@ namespace viewgain::app {
 /// x0,y0,z0,x1,y1,z1 [m]. Throws Error(invalid_argument) if it is inside out or has no extent.
 [[nodiscard]] Box parse_box(std::string_view flag, std::string_view text);
 [[nodiscard]] Box box_of(std::string_view flag, const std::vector<double>& numbers);
+
+/// Width, height, depth of a box [m]. Throws Error(invalid_argument) naming the flag if one is not
+/// positive.
+[[nodiscard]] std::array<double, 3> parse_size(std::string_view flag, std::string_view text);
+
+/// tx,ty,tz,qx,qy,qz,qw. Throws Error(invalid_argument) naming the flag.
+[[nodiscard]] Pose parse_pose(std::string_view flag, std::string_view text);
+
+/// A list of names separated by commas. Throws Error(invalid_argument) naming the flag for an empty
+/// or unknown one.
+[[nodiscard]] std::vector<std::string> parse_names(std::string_view flag, std::string_view text,
+                                                   const std::vector<std::string>& valid);
 
 /// x0, y0, z0 .. x1, y1, z1 for people.
 [[nodiscard]] std::string describe(const Box& box);

@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "formats/png_io.hpp"
@@ -58,11 +58,8 @@ struct Paints {
     }
   }
 
-  [[nodiscard]] std::uint8_t candidate(std::string_view boundary_class) const {
-    for (std::size_t k = 0; k < of_class.size(); ++k) {
-      if (boundary_class == boundary_class_name(static_cast<BoundaryClass>(k))) return of_class[k];
-    }
-    return other;
+  [[nodiscard]] std::uint8_t candidate(std::optional<BoundaryClass> boundary_class) const {
+    return boundary_class ? of_class[static_cast<std::size_t>(*boundary_class)] : other;
   }
 
   std::uint8_t surface, outline, view, chosen, chosen_side, other;

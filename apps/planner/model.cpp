@@ -5,40 +5,37 @@
 #include <cmath>
 #include <utility>
 
-#include "stopwatch.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {
 
-SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double voxel_size) {
+SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double voxel_size,
+                       const ExecConfig& exec) {
   std::vector<OrientedPoint> oriented;
   oriented.reserve(points.size());
   for (const FusedPoint& point : points) oriented.push_back({point.position, point.toward_free});
   SurfaceConfig config;
   config.spacing = voxel_size;
-  return reconstruct_surface(oriented, config);
+  return reconstruct_surface(oriented, config, exec);
 }
 
-Model::Model(const Sensor& sensor, const ModelConfig& config, const ExecConfig& exec,
-             std::shared_ptr<const Truth> truth, StageSeconds& seconds)
+Model::Model(const Sensor& sensor, const ModelConfig& config, std::shared_ptr<const Truth> truth,
+             const LoopExec& exec)
     : sensor_(sensor),
       config_(config),
       exec_(exec),
       truth_(std::move(truth)),
-      seconds_(seconds),
       grid_(config.grid),
-      integrator_(sensor, config.integration, exec) {
+      integrator_(sensor, config.integration, exec.threads) {
   if (config.jump_edges) filter_.emplace(sensor.camera, *config.jump_edges);
 }
 
-Model::Model(BeliefGrid grid, const Sensor& sensor, const ModelConfig& config,
-             const ExecConfig& exec, StageSeconds& seconds)
+Model::Model(BeliefGrid grid, const Sensor& sensor, const ModelConfig& config, const LoopExec& exec)
     : sensor_(sensor),
       config_(config),
       exec_(exec),
-      seconds_(seconds),
       grid_(std::move(grid)),
-      integrator_(sensor, config.integration, exec) {
+      integrator_(sensor, config.integration, exec.threads) {
   derive();
 }
 
@@ -54,7 +51,20 @@ void Model::drop_known_readings(DepthFrame& frame, const Pose& T_world_camera) c
 }
 
 ModelProgress Model::update(const Measurements& measurements) {
-  const Stopwatch watch;
+  integrate(measurements);
+  derive();
+  if (truth_) {
+    const auto measuring = exec_.measure("quality");
+    quality_.push_back(truth_->figures(surface_, points_));
+  }
+  const GridStatistics statistics = grid_.statistics(config_.criterion);
+  ModelProgress progress{statistics.entropy_removed, statistics.unknown, std::nullopt};
+  if (truth_) progress.coverage = quality_.back().coverage_visible;
+  return progress;
+}
+
+void Model::integrate(const Measurements& measurements) {
+  const auto measuring = exec_.measure("integrate");
   std::vector<DepthFrame> frames = measurements.frames;
   for (DepthFrame& frame : frames) {
     if (filter_) filter_->apply(frame);
@@ -70,29 +80,16 @@ ModelProgress Model::update(const Measurements& measurements) {
                 "the first view has no reading in the workspace: the start pose looks away from it "
                 "or is out of range");
   }
-  seconds_["integrate"] += watch.seconds();
-  derive();
-  if (truth_) {
-    const Stopwatch quality_watch;
-    quality_.push_back(truth_->figures(surface_, points_));
-    seconds_["quality"] += quality_watch.seconds();
-  }
-  const GridStatistics statistics = grid_.statistics(config_.criterion);
-  ModelProgress progress{statistics.entropy_removed, statistics.unknown, std::nullopt};
-  if (truth_) progress.coverage = quality_.back().coverage_visible;
-  return progress;
 }
 
 void Model::derive() {
   {
-    const Stopwatch watch;
-    scene_ = VoxelScene::build(grid_, {}, exec_);
-    seconds_["snapshot"] += watch.seconds();
+    const auto measuring = exec_.measure("snapshot");
+    scene_ = VoxelScene::build(grid_, {}, exec_.threads);
   }
-  const Stopwatch watch;
-  points_ = fused_points(grid_, config_.points, exec_);
-  surface_ = surface_of(points_, grid_.voxel_size());
-  seconds_["surface"] += watch.seconds();
+  const auto measuring = exec_.measure("surface");
+  points_ = fused_points(grid_, config_.points, exec_.threads);
+  surface_ = surface_of(points_, grid_.voxel_size(), exec_.threads);
 }
 
 }  // namespace viewgain::app

@@ -2,16 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <functional>
-#include <map>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
+#include "loop_exec.hpp"
 #include "truth.hpp"
 #include "viewgain/core/criterion.hpp"
-#include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/grid/belief_grid.hpp"
@@ -21,9 +18,6 @@
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain::app {
-
-/// Wall time by stage [s]: acquire, integrate, snapshot, surface, candidates, score, quality.
-using StageSeconds = std::map<std::string, double>;
 
 /// What changes the model.
 struct ModelConfig {
@@ -37,19 +31,19 @@ struct ModelConfig {
 
 /// The surface through the points of a map with this voxel size [m]; vertex i comes from point
 /// source[i].
-[[nodiscard]] SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double voxel_size);
+[[nodiscard]] SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double voxel_size,
+                                     const ExecConfig& exec);
 
 /// The two representations of the scene, the belief grid and the surface seen so far
 /// (UPDATEREPRESENTATIONS of Algorithm 1), and what is derived from them after each view.
 class Model : public RepresentationUpdate {
  public:
-  /// `truth` may be null: then there is no quality. `seconds` is added to.
-  Model(const Sensor& sensor, const ModelConfig& config, const ExecConfig& exec,
-        std::shared_ptr<const Truth> truth, StageSeconds& seconds);
+  /// `truth` may be null: then there is no quality.
+  Model(const Sensor& sensor, const ModelConfig& config, std::shared_ptr<const Truth> truth,
+        const LoopExec& exec);
 
   /// From an existing map: its surface and scene, ready for candidates.
-  Model(BeliefGrid grid, const Sensor& sensor, const ModelConfig& config, const ExecConfig& exec,
-        StageSeconds& seconds);
+  Model(BeliefGrid grid, const Sensor& sensor, const ModelConfig& config, const LoopExec& exec);
 
   /// Throws Error(invalid_argument) if the first view has no reading in the workspace.
   ModelProgress update(const Measurements& measurements) override;
@@ -62,15 +56,15 @@ class Model : public RepresentationUpdate {
   [[nodiscard]] const std::vector<QualityFigures>& quality() const noexcept { return quality_; }
 
  private:
+  void integrate(const Measurements& measurements);
   void derive();
   /// Turns readings whose voxel was hit by an earlier view into invalid ones.
   void drop_known_readings(DepthFrame& frame, const Pose& T_world_camera) const;
 
   Sensor sensor_;
   ModelConfig config_;
-  ExecConfig exec_;
+  LoopExec exec_;
   std::shared_ptr<const Truth> truth_;
-  StageSeconds& seconds_;
   BeliefGrid grid_;
   std::optional<JumpEdgeFilter> filter_;
   FrameIntegrator integrator_;

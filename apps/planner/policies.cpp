@@ -6,9 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tuple>
 
-#include "stopwatch.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
 
@@ -41,21 +39,21 @@ Policy parse_policy(std::string_view name) {
 
 PolicyDecision::PolicyDecision(const Model& model, const CandidateGeneration& generation,
                                const Sensor& sensor, const PolicyConfig& config,
-                               const ExecConfig& exec, StageSeconds& seconds)
+                               const LoopExec& exec)
     : model_(model),
       generation_(generation),
       sensor_(sensor),
       config_(config),
       exec_(exec),
-      seconds_(seconds) {}
+      order_(0.5 * generation.config().estimator.patch_length) {}
 
 std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
                                                std::span<const Candidate> candidates) {
   if (candidates.empty()) return std::nullopt;
-  const Stopwatch watch;
-  evaluator_ =
-      evaluator_ ? evaluator_->with_scene(model_.scene())
-                 : GainEvaluator(model_.scene(), sensor_, {.criterion = config_.criterion}, exec_);
+  const auto measuring = exec_.measure("score");
+  evaluator_ = evaluator_ ? evaluator_->with_scene(model_.scene())
+                          : GainEvaluator(model_.scene(), sensor_, {.criterion = config_.criterion},
+                                          exec_.threads);
   const GainEvaluator& evaluator = *evaluator_;
   const bool by_gain = config_.policy == Policy::gain;
   const bool scored = by_gain || config_.policy == Policy::frontier;
@@ -66,22 +64,22 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
     for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
     evaluator.evaluate(poses, gains);
   }
-  const std::size_t chosen = choose(T_world_camera, candidates, gains);
+  const std::optional<std::size_t> chosen = choose(T_world_camera, candidates, gains);
+  if (!chosen) return std::nullopt;
   const ViewGain gain =
-      scored ? gains[chosen] : evaluator.evaluate(candidates[chosen].T_world_camera);
+      scored ? gains[*chosen] : evaluator.evaluate(candidates[*chosen].T_world_camera);
   Decision decision;
-  decision.candidate = chosen;
+  decision.candidate = *chosen;
   decision.gain = gain.gain;
   const std::uint32_t touched = gain.unknown_voxels + gain.occupied_voxels;
   // A fixed order of views does not stop because one of them promises little.
   if (by_gain) decision.gain_per_voxel = touched > 0 ? gain.gain / touched : 0.0;
-  seconds_["score"] += watch.seconds();
   return decision;
 }
 
-std::size_t PolicyDecision::choose(const Pose& T_world_camera,
-                                   std::span<const Candidate> candidates,
-                                   const std::vector<ViewGain>& gains) const {
+std::optional<std::size_t> PolicyDecision::choose(const Pose& T_world_camera,
+                                                  std::span<const Candidate> candidates,
+                                                  const std::vector<ViewGain>& gains) {
   const auto best_by = [&](auto&& worth) {
     std::size_t best = 0;
     double most = -std::numeric_limits<double>::infinity();
@@ -111,19 +109,13 @@ std::size_t PolicyDecision::choose(const Pose& T_world_camera,
   return 0;
 }
 
-std::size_t PolicyDecision::choose_by_boundary(std::span<const Candidate> candidates) const {
-  const EstimatedViews& estimated = generation_.estimated();
-  const auto order = [&](const Candidate& candidate) {
-    const auto patch = static_cast<std::size_t>(candidate.source);
-    const BoundaryRun& run = estimated.runs[estimated.run_of_patch[patch]];
-    return std::tuple(run.boundary_class, -run.length, candidate.source);
-  };
-  std::optional<std::size_t> first;
+std::optional<std::size_t> PolicyDecision::choose_by_boundary(
+    std::span<const Candidate> candidates) {
+  if (const auto next = order_.next(candidates, generation_.estimated())) return next;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (candidates[i].boundary_class.empty()) continue;  // a pose of the reachable list
-    if (!first || order(candidates[i]) < order(candidates[*first])) first = i;
+    if (!candidates[i].boundary_class) return i;  // a pose of the reachable list
   }
-  return first.value_or(0);
+  return std::nullopt;
 }
 
 }  // namespace viewgain::app

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "boundary_order.hpp"
 #include "candidate_generation.hpp"
 #include "model.hpp"
 #include "viewgain/core/planning.hpp"
@@ -19,7 +20,7 @@ namespace viewgain::app {
 /// How the next view is chosen among the feasible candidates.
 enum class Policy : std::uint8_t {
   gain,      ///< the largest expected gain
-  kriegel,   ///< boundary candidates in the order left, right, top, bottom; longest boundary first
+  kriegel,   ///< boundaries in the order left, right, top, bottom, each once: see BoundaryOrder
   sequence,  ///< a fixed set in its order: turntable of eight, then from above
   random,    ///< uniform over the feasible poses
   frontier,  ///< the most unknown voxels in view
@@ -47,24 +48,26 @@ struct PolicyConfig {
 class PolicyDecision : public DecisionMaking {
  public:
   PolicyDecision(const Model& model, const CandidateGeneration& generation, const Sensor& sensor,
-                 const PolicyConfig& config, const ExecConfig& exec, StageSeconds& seconds);
+                 const PolicyConfig& config, const LoopExec& exec);
 
+  /// Nothing if there are no candidates, and for kriegel if none of them is left to try.
   std::optional<Decision> decide(const Pose& T_world_camera,
                                  std::span<const Candidate> candidates) override;
 
  private:
-  [[nodiscard]] std::size_t choose(const Pose& T_world_camera,
-                                   std::span<const Candidate> candidates,
-                                   const std::vector<ViewGain>& gains) const;
-  [[nodiscard]] std::size_t choose_by_boundary(std::span<const Candidate> candidates) const;
+  [[nodiscard]] std::optional<std::size_t> choose(const Pose& T_world_camera,
+                                                  std::span<const Candidate> candidates,
+                                                  const std::vector<ViewGain>& gains);
+  [[nodiscard]] std::optional<std::size_t> choose_by_boundary(
+      std::span<const Candidate> candidates);
 
   const Model& model_;
   const CandidateGeneration& generation_;
   Sensor sensor_;
   PolicyConfig config_;
-  ExecConfig exec_;
+  LoopExec exec_;
   std::optional<GainEvaluator> evaluator_;  ///< of the last decision's scene
-  StageSeconds& seconds_;
+  BoundaryOrder order_;
 };
 
 }  // namespace viewgain::app

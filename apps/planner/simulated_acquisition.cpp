@@ -2,19 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulated_acquisition.hpp"
 
-#include "stopwatch.hpp"
-
 namespace viewgain::app {
 
 Measurements SimulatedAcquisition::acquire(const Pose& T_world_camera, std::size_t view) {
-  const Stopwatch watch;
+  const auto measuring = exec_.measure("acquire");
   Measurements measurements{T_world_camera, {}};
   for (std::size_t i = 0; i < frames_per_view_; ++i) {
     measurements.frames.push_back(camera_.acquire(T_world_camera, view * frames_per_view_ + i));
     if (stop_.stop_requested()) break;
   }
   last_frame_ = measurements.frames.front();
-  seconds_ += watch.seconds();
   return measurements;
 }
 

@@ -6,6 +6,7 @@
 #include <stop_token>
 #include <utility>
 
+#include "loop_exec.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
@@ -17,11 +18,11 @@ namespace viewgain::app {
 class SimulatedAcquisition : public DataAcquisition {
  public:
   SimulatedAcquisition(SimulatedSensor camera, std::size_t frames_per_view, std::stop_token stop,
-                       double& seconds)
+                       const LoopExec& exec = {})
       : camera_(std::move(camera)),
         frames_per_view_(frames_per_view),
         stop_(std::move(stop)),
-        seconds_(seconds) {}
+        exec_(exec) {}
 
   Measurements acquire(const Pose& T_world_camera, std::size_t view) override;
 
@@ -32,7 +33,7 @@ class SimulatedAcquisition : public DataAcquisition {
   SimulatedSensor camera_;
   std::size_t frames_per_view_;
   std::stop_token stop_;
-  double& seconds_;
+  LoopExec exec_;
   DepthFrame last_frame_;
 };
 

@@ -2,28 +2,74 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "truth.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
+#include "point_arrays.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain::app {
 namespace {
 
-constexpr std::size_t kPoses = 2562;
+constexpr std::size_t kPoses = 2562, kSamples = 10'000;
+constexpr std::uint64_t kSeed = 1;  // of the samples
 const double kMinCosine = std::cos(80.0 * std::numbers::pi / 180);
 constexpr double kNear = 5e-3, kNearer = 2.5e-3;  // [m]
+constexpr double kStep = 2.5e-3;                  // between distances that are looked at [m]
 
-std::vector<Pose> looking_poses(const VisibilityConfig& config) {
-  std::vector<Pose> poses = sphere_poses(kPoses, config.distance, config.center);
-  std::erase_if(poses, [&](const Pose& pose) {
-    return !config.reach.contains(pose) ||
-           (config.support_plane && pose.translation().z() <= *config.support_plane);
-  });
-  poses.push_back(config.start);
-  // Reach by a list of poses: a lattice all but never meets it.
-  poses.insert(poses.end(), config.reach.poses.begin(), config.reach.poses.end());
+// The pose at another distance from the centre [m].
+Pose moved(const Pose& pose, const Eigen::Vector3d& center, double distance) {
+  const Eigen::Vector3d away = (pose.translation() - center).normalized();
+  return {pose.rotation(), center + distance * away};
+}
+
+// The distances that a camera may have, the wanted one and then the others, nearest to it first.
+std::vector<double> distances_by_nearness(double wanted, double least, double most) {
+  std::vector<double> distances{wanted};
+  for (int k = 1; wanted + k * kStep <= most || wanted - k * kStep >= least; ++k) {
+    if (wanted + k * kStep <= most) distances.push_back(wanted + k * kStep);
+    if (wanted - k * kStep >= least) distances.push_back(wanted - k * kStep);
+  }
+  return distances;
+}
+
+double radius_round(const TriangleMesh& mesh, const Eigen::Vector3d& center) {
+  double radius = 0;
+  for (const auto& v : mesh.vertices) {
+    radius = std::max(radius, (Eigen::Vector3d(v[0], v[1], v[2]) - center).norm());
+  }
+  return radius;
+}
+
+// Where the camera can be to look at the object.
+std::vector<Pose> looking_poses(const VisibilityConfig& config, const Sensor& sensor,
+                                const TriangleMesh& mesh) {
+  const auto possible = [&](const Pose& pose) {
+    return config.reach.contains(pose) &&
+           !(config.support_plane && pose.translation().z() <= *config.support_plane);
+  };
+  std::vector<Pose> poses{config.start};
+  if (!config.reach.poses.empty()) {  // a lattice all but never meets a list
+    std::copy_if(config.reach.poses.begin(), config.reach.poses.end(), std::back_inserter(poses),
+                 possible);
+    return poses;
+  }
+  const double radius = radius_round(mesh, config.center);
+  const std::vector<double> distances =
+      distances_by_nearness(config.distance, radius, radius + sensor.max_range);
+  for (const Pose& pose : sphere_poses(kPoses, config.distance, config.center)) {
+    if (possible(pose)) {
+      poses.push_back(pose);
+    } else if (!config.reach.contains(pose)) {
+      const auto in_reach = std::find_if(distances.begin(), distances.end(), [&](double distance) {
+        return possible(moved(pose, config.center, distance));
+      });
+      if (in_reach != distances.end()) poses.push_back(moved(pose, config.center, *in_reach));
+    }
+  }
   return poses;
 }
 
@@ -49,8 +95,8 @@ bool sees(const SurfaceScene& scene, const Sensor& sensor, const Pose& T_world_c
 
 Truth::Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
              const VisibilityConfig& config, const ExecConfig& exec)
-    : truth_(scene->mesh()) {
-  const std::vector<Pose> poses = looking_poses(config);
+    : truth_(scene->mesh(), kSamples, kSeed, exec) {
+  const std::vector<Pose> poses = looking_poses(config, sensor, scene->mesh());
   const std::vector<SurfaceSample>& samples = truth_.samples();
   visible_.resize(samples.size());
   ThreadPool pool(exec.num_threads);
@@ -67,22 +113,15 @@ Truth::Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
 
 QualityFigures Truth::figures(const SurfaceMesh& surface,
                               std::span<const FusedPoint> points) const {
-  std::vector<std::array<double, 3>> positions;
-  std::vector<SymmetricMatrix3> covariances;
-  positions.reserve(points.size());
-  covariances.reserve(points.size());
-  for (const FusedPoint& point : points) {
-    positions.push_back(point.position);
-    covariances.push_back(point.covariance);
-  }
+  const PointArrays arrays = arrays_of(points);
   const std::vector<double> distances = truth_.distances_to(surface.vertices);
   QualityFigures figures;
   figures.coverage = coverage(distances, kNear);
   figures.coverage_visible = coverage(distances, kNear, visible_);
   figures.coverage_2_5mm = coverage(distances, kNearer);
   figures.surface_error = truth_.error(surface.vertices);
-  figures.points_error = truth_.error(positions);
-  figures.consistency = truth_.consistency(positions, covariances);
+  figures.points_error = truth_.error(arrays.positions);
+  figures.consistency = truth_.consistency(arrays.positions, arrays.covariances);
   return figures;
 }
 

@@ -15,7 +15,7 @@
 #include "formats/values.hpp"
 #include "planner/candidate_generation.hpp"
 #include "planner/model.hpp"
-#include "planner/planning_options.hpp"
+#include "planner/pose_sets.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 
@@ -31,6 +31,7 @@ struct Options {
   std::optional<double> distance;
   std::string center;
   std::string reach;
+  std::string body;
   std::optional<double> support_plane;
   std::uint64_t seed = 1;
   std::string out;
@@ -58,10 +59,11 @@ double distance_of(const Options& options, const Sensor& sensor, const BeliefGri
 nlohmann::ordered_json candidate_json(const Candidate& candidate, const EstimatedViews& estimated) {
   nlohmann::ordered_json json{{"generator", candidate.generator},
                               {"T_world_camera", to_json(candidate.T_world_camera)}};
-  if (!candidate.boundary_class.empty()) {
-    const auto patch = static_cast<std::size_t>(candidate.source);
-    json["class"] = candidate.boundary_class;
-    json["run"] = estimated.run_of_patch[patch];
+  if (candidate.boundary_class) {
+    const BoundaryCandidate& proposed = estimated.candidates[candidate.number.value()];
+    const std::uint32_t patch = proposed.patch;
+    json["class"] = boundary_class_name(proposed.boundary_class);
+    json["run"] = proposed.run;
     json["patch"] = patch;
     json["region_vertices"] = estimated.regions[patch].size();
     json["patch_planar"] = estimated.patches[patch].planar;
@@ -85,17 +87,15 @@ void refuse_none(const Options& options, const Proposal& proposal) {
 
 void candidates(const Options& options) {
   const ExecConfig exec{options.common.threads};
-  const Sensor sensor = load_sensor(options.sensor);
+  Sensor sensor = load_sensor(options.sensor);
+  if (!options.body.empty()) sensor.body_size = parse_size("--body", options.body);
   const ReachRegion reach = options.reach.empty() ? ReachRegion{} : read_reach_toml(options.reach);
   BeliefGrid grid = load_map(options.map, &sensor);
-  GenerationConfig config;
+  GenerationConfig config = default_generation(sensor, grid.voxel_size());
   config.boundary = options.generator == "boundary";
-  config.estimator = default_estimator(grid.voxel_size());
-  config.working_distance = options.distance.value_or(sensor.working_distance);
-  config.feasibility.body.T_flange_camera = sensor.T_flange_camera;
+  if (options.distance) config.working_distance = *options.distance;
   config.feasibility.reach = reach;
   config.feasibility.support_plane = options.support_plane;
-  config.feasibility.sensor = sensor;
   if (config.boundary && grid.views().empty()) {
     throw Error(ErrorCode::invalid_argument,
                 options.map + ": has no views, which boundary candidates need");
@@ -106,9 +106,8 @@ void candidates(const Options& options) {
                             options.count, options.seed, std::nullopt}));
   }
 
-  StageSeconds seconds;
-  const Model model(std::move(grid), sensor, {}, exec, seconds);
-  CandidateGeneration generation(model, sensor, config, exec, seconds);
+  const Model model(std::move(grid), sensor, {}, {exec});
+  CandidateGeneration generation(model, sensor, config, {exec});
   const Proposal proposal = generation.generate({});
   std::vector<Pose> poses;
   for (const Candidate& candidate : proposal.candidates) poses.push_back(candidate.T_world_camera);
@@ -141,11 +140,13 @@ void candidates(const Options& options) {
     return refuse_none(options, proposal);
   }
   refuse_none(options, proposal);
-  std::map<std::string, std::size_t> classes;
-  for (const Candidate& candidate : proposal.candidates) ++classes[candidate.boundary_class];
+  std::map<BoundaryClass, std::size_t> classes;
+  for (const Candidate& candidate : proposal.candidates) {
+    if (candidate.boundary_class) ++classes[*candidate.boundary_class];
+  }
   std::printf("%zu candidates (%s)", poses.size(), options.generator.c_str());
-  for (const auto& [name, count] : classes) {
-    if (!name.empty()) std::printf(", %zu %s", count, name.c_str());
+  for (const auto& [boundary_class, count] : classes) {
+    std::printf(", %zu %s", count, boundary_class_name(boundary_class).data());
   }
   std::printf("\n");
   for (const auto& [reason, count] : proposal.dropped) {
@@ -182,6 +183,7 @@ Command add_candidates(CLI::App& program) {
   app->add_option("--center", o.center,
                   "x,y,z that poses look at, world [m]; default: the workspace's centre");
   app->add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
+  app->add_option("--body", o.body, kBodyHelp);
   app->add_option("--support-plane", o.support_plane, "height z of a table [m]");
   add_seed_option(*app, o.seed, "of the shell");
   app->add_option("--out", o.out, "TUM file of camera-to-world poses")->required();

@@ -45,6 +45,10 @@ inline void add_common_options(CLI::App& app, CommonOptions& options) {
 inline constexpr const char* kSensorHelp =
     "preset (sr4000, azure_kinect_nfov, kinect_v1, d435, laser_line) or a .toml file";
 
+inline constexpr const char* kBodyHelp =
+    "x,y,z: width, height, depth of the sensor's housing [m]; default: the sensor's own, else the "
+    "SR4000's";
+
 [[nodiscard]] inline nlohmann::ordered_json to_json(const Box& box) {
   return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
 }

@@ -14,66 +14,99 @@ namespace {
 
 constexpr std::size_t kMaxCount = 1'000'000;
 
+auto counted(std::size_t least, std::size_t most) {
+  return [=](CLI::Option& option) { option.check(CLI::Range(least, most, "count")); };
+}
+
+auto counted_with_default(std::size_t least, std::size_t most) {
+  return [=](CLI::Option& option) {
+    counted(least, most)(option);
+    shows_default(option);
+  };
+}
+
+// Each option once, in the order of run.json's settings. `Options` is ReconstructOptions or const.
+template <typename Options, typename Visitor>
+void describe(Options& o, Visitor& visit) {
+  visit.option("mesh", "MESH", o.mesh, "OFF, OBJ, STL or PLY; scaled and centred", needed);
+  visit.option("sensor", "--sensor", o.sensor, kSensorHelp, needed);
+  visit.option("voxel", "--voxel", o.voxel, "voxel size [m]", needed);
+  visit.option("size", "--size", o.size, "longest side of the object [m]", shows_default);
+  visit.option("workspace", "--workspace", o.workspace,
+               "x0,y0,z0,x1,y1,z1 [m]; default: a cube of size * 0.4/0.35 around the object",
+               as_it_is);
+  visit.derived("prior_sigma");
+  visit.option("up", "--up", o.up, "axis of the mesh file that points up", [](CLI::Option& option) {
+    option.check(CLI::IsMember({"x", "y", "z"}))->capture_default_str();
+  });
+  visit.option("start", "--start", o.start,
+               "first camera pose tx,ty,tz,qx,qy,qz,qw [m]; default: 27 deg "
+               "above the object at an azimuth that depends on the seed",
+               as_it_is);
+  visit.option("distance", "--distance", o.distance,
+               "of the start and of poses round the object from its centre [m]; default: the "
+               "object fills the view, at least the sensor's working distance",
+               as_it_is);
+  visit.option("policy", "--policy", o.policy,
+               "gain, kriegel (left, right, top, bottom), sequence (turntable of 8, then top), "
+               "random, frontier (most unknown voxels in view)",
+               shows_default);
+  visit.option("generators", "--generator", o.generator,
+               "where candidates come from: boundary, sphere, dome, rings, shell, sequence, or "
+               "several with commas; default: boundary (random: sphere, sequence: sequence)",
+               as_it_is);
+  visit.option("sphere_poses", "--sphere-poses", o.sphere_poses,
+               "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
+               "(default 48)",
+               counted(1, kMaxCount));
+  visit.option("criterion", "--criterion", o.criterion,
+               "log_diagonal, log_determinant [nat] or trace [m^2]", shows_default);
+  visit.option("max_views", "--max-views", o.max_views, "view budget",
+               counted_with_default(1, kMaxCount));
+  visit.option("stop_gain", "--stop-gain", o.stop_gain,
+               "stop when the best view gains less per touched voxel [nat, m^2]; default: 1.2 "
+               "(trace: 0.01 of the first view's)",
+               as_it_is);
+  visit.derived("stop_gain_is_relative");
+  visit.option("stop_idle", "--stop-idle", o.stop_idle,
+               "stop after so many views in a row that change entropy and unknown voxels by "
+               "less than 0.1 %; 0: never",
+               counted_with_default(0, kMaxCount));
+  visit.option("stop_coverage", "--stop-coverage", o.stop_coverage,
+               "stop at this coverage of the visible surface, 0..1", as_it_is);
+  visit.option("travel_cost", "--travel-cost", o.travel_cost, "rank by gain - L * distance [nat/m]",
+               shows_default);
+  visit.option("travel_speed", "--travel-speed", o.travel_speed,
+               "rank by gain / (1 s + distance / speed) instead [m/s]", as_it_is);
+  visit.option("reach", "--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach",
+               as_it_is);
+  // Recorded as a part of the sensor.
+  visit.option(nullptr, "--body", o.body, kBodyHelp, as_it_is);
+  describe_sensing(o.sensing, visit);
+  visit.option("frames_per_view", "--frames-per-view", o.frames_per_view, "frames from each pose",
+               counted_with_default(1, 1000));
+  visit.option("jump_edge_filter", "--jump-edge-filter", o.jump_edge_filter,
+               "angle of the filter [deg], or off", shows_default);
+  visit.flag("refine", "--no-refine", o.no_refine, "the first reading of a voxel wins");
+  visit.flag(nullptr, "--save-maps", o.save_maps, "keep maps/NN.vdb after each view");
+  visit.flag(nullptr, "--no-pictures", o.no_pictures, "do not draw views/NN.png");
+  visit.option(nullptr, "--out", o.out, "folder to write", needed);
+}
+
 }  // namespace
 
 void add_options(CLI::App& app, ReconstructOptions& o) {
-  const CLI::Range count(std::size_t{1}, kMaxCount, "count");
   o.sensing.noise = "on";
-  app.add_option("MESH", o.mesh, "OFF, OBJ, STL or PLY; scaled and centred")->required();
-  app.add_option("--sensor", o.sensor, kSensorHelp)->required();
-  app.add_option("--voxel", o.voxel, "voxel size [m]")->required();
-  app.add_option("--size", o.size, "longest side of the object [m]")->capture_default_str();
-  app.add_option("--workspace", o.workspace,
-                 "x0,y0,z0,x1,y1,z1 [m]; default: a cube of size * 0.4/0.35 around the object");
-  app.add_option("--up", o.up, "axis of the mesh file that points up")
-      ->check(CLI::IsMember({"x", "y", "z"}))
-      ->capture_default_str();
-  app.add_option("--start", o.start,
-                 "first camera pose tx,ty,tz,qx,qy,qz,qw [m]; default: 27 deg "
-                 "above the object at an azimuth that depends on the seed");
-  app.add_option("--distance", o.distance,
-                 "of the start and of poses round the object from its centre [m]; default: the "
-                 "object fills the view, at least the sensor's working distance");
-  app.add_option("--policy", o.policy,
-                 "gain, kriegel (left, right, top, bottom), sequence (turntable of 8, then top), "
-                 "random, frontier (most unknown voxels in view)")
-      ->capture_default_str();
-  app.add_option("--generator", o.generator,
-                 "where candidates come from: boundary, sphere, dome, rings, shell, sequence, or "
-                 "several with commas; default: boundary (random: sphere, sequence: sequence)");
-  app.add_option("--sphere-poses", o.sphere_poses,
-                 "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
-                 "(default 48)")
-      ->check(count);
-  app.add_option("--criterion", o.criterion, "log_diagonal, log_determinant [nat] or trace [m^2]")
-      ->capture_default_str();
-  app.add_option("--max-views", o.max_views, "view budget")->check(count)->capture_default_str();
-  app.add_option("--stop-gain", o.stop_gain,
-                 "stop when the best view gains less per touched voxel [nat, m^2]; default: 1.2 "
-                 "(trace: 0.01 of the first view's)");
-  app.add_option("--stop-idle", o.stop_idle,
-                 "stop after so many views in a row that change entropy and unknown voxels by "
-                 "less than 0.1 %; 0: never")
-      ->check(CLI::Range(std::size_t{0}, kMaxCount, "count"))
-      ->capture_default_str();
-  app.add_option("--stop-coverage", o.stop_coverage,
-                 "stop at this coverage of the visible surface, 0..1");
-  app.add_option("--travel-cost", o.travel_cost, "rank by gain - L * distance [nat/m]")
-      ->capture_default_str();
-  app.add_option("--travel-speed", o.travel_speed,
-                 "rank by gain / (1 s + distance / speed) instead [m/s]");
-  app.add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
-  add_sensing_options(app, o.sensing);
-  app.add_option("--frames-per-view", o.frames_per_view, "frames from each pose")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000}, "count"))
-      ->capture_default_str();
-  app.add_option("--jump-edge-filter", o.jump_edge_filter, "angle of the filter [deg], or off")
-      ->capture_default_str();
-  app.add_flag("--no-refine", o.no_refine, "the first reading of a voxel wins");
-  app.add_flag("--save-maps", o.save_maps, "keep maps/NN.vdb after each view");
-  app.add_flag("--no-pictures", o.no_pictures, "do not draw views/NN.png");
-  app.add_option("--out", o.out, "folder to write")->required();
+  const OptionDeclaration declaration(app);
+  describe(o, declaration);
   add_common_options(app, o.common);
+}
+
+nlohmann::ordered_json settings_json(const ReconstructOptions& options,
+                                     const nlohmann::ordered_json& resolved) {
+  OptionRecord record(resolved);
+  describe(options, record);
+  return record.json();
 }
 
 void check(const ReconstructOptions& options) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -32,6 +33,7 @@ struct ReconstructOptions {
   double travel_cost = 0;
   std::optional<double> travel_speed;
   std::string reach;
+  std::string body;
   std::string up = "z";
   SensingOptions sensing;
   std::size_t frames_per_view = 1;
@@ -44,6 +46,11 @@ struct ReconstructOptions {
 
 /// Declares the flags, with o's values as defaults.
 void add_options(CLI::App& app, ReconstructOptions& o);
+
+/// What can change the answer, for run.json: each such flag under its key; `resolved` has what the
+/// run made of a flag, and what follows from several. Not in it: threads and where results go.
+[[nodiscard]] nlohmann::ordered_json settings_json(const ReconstructOptions& options,
+                                                   const nlohmann::ordered_json& resolved);
 
 /// Throws Error(invalid_argument), naming the flag, for numbers that no run can have.
 void check(const ReconstructOptions& options);

@@ -90,8 +90,8 @@ std::string RunReport::progress_line() const {
       formatted("view %2zu  %6.2f %% visible at 5 mm, RMS %.2f mm, unknown %s, +%.4g",
                 e.record.index, 100 * e.quality.coverage_visible, 1e3 * e.quality.surface_error.rms,
                 with_commas(e.record.progress.unknown_voxels).c_str(), e.record.realised_gain);
-  if (e.record.chosen_as && !e.record.chosen_as->boundary_class.empty()) {
-    text.append("  ").append(e.record.chosen_as->boundary_class);
+  if (e.record.chosen_as && e.record.chosen_as->boundary_class) {
+    text.append("  ").append(boundary_class_name(*e.record.chosen_as->boundary_class));
   }
   const std::size_t candidates = e.record.proposal.candidates.size();
   if (e.record.decision) {
@@ -105,8 +105,10 @@ ordered_json RunReport::entry_json(std::size_t index) const {
   const Entry& e = views_[index];
   ordered_json json{{"index", e.record.index}, {"pose", app::to_json(e.record.T_world_camera)}};
   const bool chosen = e.record.chosen_as.has_value();
-  const bool of_boundary = chosen && !e.record.chosen_as->boundary_class.empty();
-  json["class"] = of_boundary ? ordered_json(e.record.chosen_as->boundary_class) : ordered_json();
+  const bool of_boundary = chosen && e.record.chosen_as->boundary_class;
+  json["class"] = of_boundary
+                      ? ordered_json(boundary_class_name(*e.record.chosen_as->boundary_class))
+                      : ordered_json();
   json["generator"] = chosen ? ordered_json(e.record.chosen_as->generator) : ordered_json("start");
   // The proposal that this view was chosen from came after the view before it.
   const Proposal empty;

@@ -3,36 +3,47 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 
+#include "described_options.hpp"
 #include "planner/sensing.hpp"
 
 namespace viewgain::app {
 
-/// The flags of SensingOptions, the same in every subcommand that simulates a camera.
+/// The flags of SensingOptions, the same in every subcommand that simulates a camera. `Options` is
+/// SensingOptions or const; described_options.hpp says what a visitor is.
+template <typename Options, typename Visitor>
+void describe_sensing(Options& o, Visitor& visit) {
+  const auto on_or_off = [](CLI::Option& option) { option.check(CLI::IsMember({"off", "on"})); };
+  const auto on_or_off_shown = [&](CLI::Option& option) {
+    on_or_off(option);
+    shows_default(option);
+  };
+  visit.option("support_plane", "--support-plane", o.support_plane,
+               "height z of a table without end that occludes [m]; default: none", as_it_is);
+  visit.option("noise", "--noise", o.noise,
+               "Gaussian noise along the ray and across it by the sensor's model", on_or_off_shown);
+  visit.option("flying_pixels", "--flying-pixels", o.flying_pixels,
+               "mix the returns of 3x3 rays in a pixel, in sensors with a modulation frequency; "
+               "default: as --noise",
+               on_or_off);
+  visit.option("background", "--background", o.background,
+               "radius of a sphere round the origin that stands for the room [m]; 0: none",
+               shows_default);
+  visit.option("wiggling", "--wiggling", o.wiggling,
+               "amplitude A of the systematic error A sin(4 phase) [m]", shows_default);
+  visit.option("calibrated", "--calibrate", o.calibrate,
+               "measure the systematic error on a plane beforehand and subtract it",
+               on_or_off_shown);
+  visit.option(nullptr, "--seed", o.seed, "of the noise", [](CLI::Option& option) {
+    option.check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number"))
+        ->capture_default_str();
+  });
+}
+
 inline void add_sensing_options(CLI::App& app, SensingOptions& options) {
-  app.add_option("--background", options.background,
-                 "radius of a sphere round the origin that stands for the room [m]; 0: none")
-      ->capture_default_str();
-  app.add_option("--support-plane", options.support_plane,
-                 "height z of a table without end that occludes [m]; default: none");
-  app.add_option("--noise", options.noise,
-                 "Gaussian noise along the ray and across it by the sensor's model")
-      ->check(CLI::IsMember({"off", "on"}))
-      ->capture_default_str();
-  app.add_option("--flying-pixels", options.flying_pixels,
-                 "mix the returns of 3x3 rays in a pixel, in sensors with a modulation frequency; "
-                 "default: as --noise")
-      ->check(CLI::IsMember({"off", "on"}));
-  app.add_option("--seed", options.seed, "of the noise")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number"))
-      ->capture_default_str();
-  app.add_option("--wiggling", options.wiggling,
-                 "amplitude A of the systematic error A sin(4 phase) [m]")
-      ->capture_default_str();
-  app.add_option("--calibrate", options.calibrate,
-                 "measure the systematic error on a plane beforehand and subtract it")
-      ->check(CLI::IsMember({"off", "on"}))
-      ->capture_default_str();
+  const OptionDeclaration declaration(app);
+  describe_sensing(options, declaration);
 }
 
 }  // namespace viewgain::app

@@ -71,6 +71,11 @@ Sensor make_sensor(std::string_view name, const PinholeCamera& camera, double mi
   return sensor;
 }
 
+Sensor with_body(Sensor sensor, const std::array<double, 3>& size) {
+  sensor.body_size = size;
+  return sensor;
+}
+
 PinholeCamera make_camera(int width, int height, double fx, double fy, double cx, double cy) {
   return {
       .width = width, .height = height, .fx = fx, .fy = fy, .cx = cx, .cy = cy, .distortion = {}};
@@ -81,12 +86,15 @@ const std::vector<Sensor>& presets() {
   static const std::vector<Sensor> sensors{
       make_sensor("sr4000", make_camera(176, 144, 220.0, 231.2, 87.5, 71.5), 0.2, 5.0, 0.4,
                   ShotNoise{}),
-      make_sensor("azure_kinect_nfov", make_camera(640, 576, 417.0, 452.1, 319.5, 287.5), 0.5, 3.86,
-                  1.0, QuadraticNoise{}),
-      make_sensor("kinect_v1", make_camera(640, 480, 585.0, 585.0, 319.5, 239.5), 0.5, 4.5, 1.0,
-                  StructuredLightNoise{}),
-      make_sensor("d435", make_camera(640, 480, 447.0, 447.0, 319.5, 239.5), 0.2, 3.0, 0.5,
-                  StereoNoise{}),
+      with_body(make_sensor("azure_kinect_nfov", make_camera(640, 576, 417.0, 452.1, 319.5, 287.5),
+                            0.5, 3.86, 1.0, QuadraticNoise{}),
+                {0.103, 0.039, 0.126}),
+      with_body(make_sensor("kinect_v1", make_camera(640, 480, 585.0, 585.0, 319.5, 239.5), 0.5,
+                            4.5, 1.0, StructuredLightNoise{}),
+                {0.28, 0.066, 0.066}),
+      with_body(make_sensor("d435", make_camera(640, 480, 447.0, 447.0, 319.5, 239.5), 0.2, 3.0,
+                            0.5, StereoNoise{}),
+                {0.090, 0.025, 0.025}),
       // A line scanner of one row, for comparison with sure sensors.
       make_sensor("laser_line", make_camera(640, 1, 800.0, 800.0, 319.5, 0.0), 0.1, 1.0, 0.4,
                   ConstantNoise{.sigma_axial = 0.2e-3, .sigma_lateral = 0.2e-3}),
@@ -114,6 +122,13 @@ void Sensor::validate() const {
   std::visit([](const auto& model) { validate_noise(model); }, noise);
   if (T_flange_camera && !(orthonormality_error(*T_flange_camera) <= 1e-3)) {
     fail("T_flange_camera is not a rigid transform");
+  }
+  if (body_size) {
+    for (const double length : *body_size) {
+      if (!(std::isfinite(length) && length > 0)) {
+        fail("body_size must be positive and finite, not " + std::to_string(length));
+      }
+    }
   }
 }
 

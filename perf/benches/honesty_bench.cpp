@@ -13,6 +13,7 @@
 #include "measure.hpp"
 #include "model_scene.hpp"
 #include "planner/model.hpp"
+#include "planner/point_arrays.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/mesh/quality.hpp"
@@ -27,13 +28,8 @@ constexpr std::array kRepeats{1, 2, 5, 10};
 constexpr double kDistance = 0.45;  // of the camera from the object's centre [m]
 
 Consistency consistency_of(const GroundTruth& truth, const std::vector<FusedPoint>& points) {
-  std::vector<std::array<double, 3>> positions;
-  std::vector<SymmetricMatrix3> covariances;
-  for (const FusedPoint& point : points) {
-    positions.push_back(point.position);
-    covariances.push_back(point.covariance);
-  }
-  return truth.consistency(positions, covariances);
+  const app::PointArrays arrays = app::arrays_of(points);
+  return truth.consistency(arrays.positions, arrays.covariances);
 }
 
 double mean_hits(const std::vector<FusedPoint>& points) {
@@ -110,12 +106,11 @@ Json refinement(const ModelScene& scene, const GroundTruth& truth, const ExecCon
   for (int repeat = 1; repeat <= kTimes; ++repeat) {
     for (const Pose& view : views) integrator.integrate(grid, scene.acquire(view, frame++), view);
     const std::vector<FusedPoint> points = fused_points(grid, {}, exec);
-    std::vector<std::array<double, 3>> positions;
-    for (const FusedPoint& point : points) positions.push_back(point.position);
-    const SurfaceMesh surface = app::surface_of(points, kVoxel);
+    const SurfaceMesh surface = app::surface_of(points, kVoxel, exec);
     json.push_back({{"repeats", repeat},
                     {"rms_surface", truth.error(seen_by(scene, views[0], surface.vertices)).rms},
-                    {"rms_points", truth.error(seen_by(scene, views[0], positions)).rms}});
+                    {"rms_points",
+                     truth.error(seen_by(scene, views[0], app::arrays_of(points).positions)).rms}});
   }
   return json;
 }
@@ -146,7 +141,7 @@ void print(const Json& json) {
 int run_honesty(const HonestyOptions& options) {
   const ExecConfig exec{ThreadPool(options.num_threads).num_threads()};
   const ModelScene scene(options.mesh, 1, exec);
-  const GroundTruth truth(scene.stage().scene->mesh());
+  const GroundTruth truth(scene.stage().scene->mesh(), 10'000, 1, exec);
   Json json{{"mesh", options.mesh.string()}, {"views", options.views}};
   add_environment(json, exec.num_threads);
   json["consistency"] = consistency_rows(scene, truth, options, exec);

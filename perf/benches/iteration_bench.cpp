@@ -12,8 +12,9 @@
 #include "environment.hpp"
 #include "measure.hpp"
 #include "model_scene.hpp"
+#include "planner/candidate_generation.hpp"
 #include "planner/model.hpp"
-#include "planner/planning_options.hpp"
+#include "planner/pose_sets.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/feasibility.hpp"
@@ -64,7 +65,7 @@ int run_iteration(const IterationOptions& options) {
     now["surface"] = seconds_of([&] {
       const std::vector<FusedPoint> fused = fused_points(grid, {}, exec);
       points = fused.size();
-      surface = app::surface_of(fused, voxel);
+      surface = app::surface_of(fused, voxel, exec);
     });
     vertices = surface.vertices.size();
     now["candidates"] = seconds_of([&] {

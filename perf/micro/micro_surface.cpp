@@ -6,8 +6,8 @@
 
 #include "micro_benchmarks.hpp"
 #include "micro_scene.hpp"
+#include "planner/candidate_generation.hpp"
 #include "planner/model.hpp"
-#include "planner/planning_options.hpp"
 #include "viewgain/core/generators.hpp"
 
 namespace viewgain::bench {
@@ -30,7 +30,8 @@ void surface(benchmark::State& state) {
   const MicroScene& micro = MicroScene::get();
   const std::vector<FusedPoint> fused = fused_points(micro.grid, {}, {.num_threads = 1});
   for (auto _ : state) {
-    benchmark::DoNotOptimize(app::surface_of(fused, micro.grid.voxel_size()).vertices.size());
+    benchmark::DoNotOptimize(
+        app::surface_of(fused, micro.grid.voxel_size(), {.num_threads = 1}).vertices.size());
   }
   count(state, "points", fused.size());
 }
@@ -38,7 +39,8 @@ void surface(benchmark::State& state) {
 void candidates(benchmark::State& state) {
   const MicroScene& micro = MicroScene::get();
   const double voxel = micro.grid.voxel_size();
-  const SurfaceMesh mesh = app::surface_of(fused_points(micro.grid, {}, {.num_threads = 1}), voxel);
+  const SurfaceMesh mesh =
+      app::surface_of(fused_points(micro.grid, {}, {.num_threads = 1}), voxel, {.num_threads = 1});
   std::size_t n = 0;
   for (auto _ : state) {
     n = estimate_views(mesh, micro.grid.views(), micro.sensor, micro.sensor.working_distance,

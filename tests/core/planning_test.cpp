@@ -20,7 +20,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Pose at(double x) { return {Eigen::Matrix3d::Identity(), {x, 0, 0}}; }
 
-Candidate candidate(double x) { return {at(x), "script", "left", 7}; }
+Candidate candidate(double x) { return {at(x), "script", BoundaryClass::left, 7}; }
 
 /// The four parts, played from a script: one entry a view, the last one for all later views.
 class Script : public DataAcquisition,
@@ -139,8 +139,8 @@ TEST(Planning, RecordsWhatHappened) {
 
   EXPECT_EQ(second.T_world_camera, at(3));
   ASSERT_TRUE(second.chosen_as);
-  EXPECT_EQ(second.chosen_as->source, 7);
-  EXPECT_EQ(second.chosen_as->boundary_class, "left");
+  EXPECT_EQ(second.chosen_as->number, 7U);
+  EXPECT_EQ(second.chosen_as->boundary_class, BoundaryClass::left);
   EXPECT_EQ(second.predicted_gain, 12);
   EXPECT_EQ(second.realised_gain, 30);
   EXPECT_EQ(second.progress.unknown_voxels, 800U);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -36,6 +37,19 @@ TEST(SensorPresets, AreAllValid) {
                "unknown sensor 'sr3000', valid are sr4000, azure_kinect_nfov, kinect_v1, d435, "
                "laser_line",
                [] { (void)sensor_preset("sr3000"); });
+}
+
+TEST(SensorPresets, MakersHousingsDiffer) {
+  EXPECT_FALSE(sensor_preset("sr4000").body_size);  // what SensorBody has
+  EXPECT_EQ(sensor_preset("d435").body_size, (std::array<double, 3>{0.090, 0.025, 0.025}));
+  int cases = 0;
+  for (const double wrong : {0.0, -0.1, std::nan("")}) {
+    Sensor sensor = sensor_preset("d435");
+    sensor.body_size = {0.1, wrong, 0.1};
+    EXPECT_THROW(sensor.validate(), Error);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
 }
 
 TEST(SensorPresets, Sr4000) {

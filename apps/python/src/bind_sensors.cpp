@@ -132,29 +132,33 @@ name : str, optional
     For reports.
 T_flange_camera : array_like, (4, 4), optional
     Mounting on the robot's flange.
+body_size : array_like, (3,), optional
+    Width, height, depth of the housing [m].
 
 Raises
 ------
 ValueError
     Names the field that is out of its bounds.)");
   pickle_as_call(type, {"camera", "min_range", "max_range", "working_distance", "noise", "name",
-                        "T_flange_camera"});
+                        "T_flange_camera", "body_size"});
   type.def(py::init([](const PinholeCamera& camera, double min_range, double max_range,
                        double working_distance, const NoiseModel& noise, std::string name,
-                       const py::object& T_flange_camera) {
+                       const py::object& T_flange_camera,
+                       std::optional<std::array<double, 3>> body_size) {
              Sensor sensor{std::move(name),
                            camera,
                            min_range,
                            max_range,
                            working_distance,
                            noise,
-                           optional_pose(T_flange_camera, "T_flange_camera")};
+                           optional_pose(T_flange_camera, "T_flange_camera"),
+                           body_size};
              sensor.validate();
              return sensor;
            }),
            py::arg("camera"), py::kw_only(), py::arg("min_range"), py::arg("max_range"),
            py::arg("working_distance"), py::arg("noise"), py::arg("name") = "custom",
-           py::arg("T_flange_camera") = py::none())
+           py::arg("T_flange_camera") = py::none(), py::arg("body_size") = py::none())
       .def_readonly("name", &Sensor::name, "str")
       .def_property_readonly(
           "camera", [](const Sensor& sensor) { return sensor.camera; }, "PinholeCamera")
@@ -170,6 +174,7 @@ ValueError
             return to_array(*sensor.T_flange_camera);
           },
           "ndarray, (4, 4), or None")
+      .def_readonly("body_size", &Sensor::body_size, "list of 3 float, [m], or None")
       .def(
           "sigmas",
           [](const Sensor& sensor, double t, double cos_incidence) {

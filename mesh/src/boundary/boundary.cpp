@@ -227,11 +227,6 @@ void check_config(const BoundaryConfig& config) {
 
 }  // namespace
 
-std::string_view boundary_class_name(BoundaryClass boundary_class) {
-  constexpr std::array<std::string_view, 4> kNames{"left", "right", "top", "bottom"};
-  return kNames.at(static_cast<std::size_t>(boundary_class));
-}
-
 std::vector<BoundaryRun> boundary_runs(
     const SurfaceMesh& surface, std::span<const BoundaryLoop> loops, std::span<const Pose> views,
     const Sensor& sensor, const BoundaryConfig& config,

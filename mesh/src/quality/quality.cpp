@@ -145,10 +145,12 @@ struct GroundTruth::Impl {
   std::vector<SurfaceSample> samples;
   mutable ThreadPool pool;
 
-  Impl(const TriangleMesh& mesh, std::size_t sample_count, std::uint64_t seed)
+  Impl(const TriangleMesh& mesh, std::size_t sample_count, std::uint64_t seed,
+       const ExecConfig& exec)
       : triangles(triangles_of(mesh)),
         tree(boxes_of(triangles)),
-        samples(sample(triangles, sample_count, seed)) {}
+        samples(sample(triangles, sample_count, seed)),
+        pool(exec.num_threads) {}
 
   // From the nearest point of the surface to the point, and the normal there.
   struct Offset {
@@ -172,8 +174,9 @@ struct GroundTruth::Impl {
   }
 };
 
-GroundTruth::GroundTruth(const TriangleMesh& mesh, std::size_t sample_count, std::uint64_t seed)
-    : impl_(std::make_unique<Impl>(mesh, sample_count, seed)) {}
+GroundTruth::GroundTruth(const TriangleMesh& mesh, std::size_t sample_count, std::uint64_t seed,
+                         const ExecConfig& exec)
+    : impl_(std::make_unique<Impl>(mesh, sample_count, seed, exec)) {}
 GroundTruth::~GroundTruth() = default;
 GroundTruth::GroundTruth(GroundTruth&&) noexcept = default;
 GroundTruth& GroundTruth::operator=(GroundTruth&&) noexcept = default;

@@ -36,7 +36,7 @@ class Files : public test::ProgramTest {
 bool equal(const Sensor& a, const Sensor& b) {
   return a.name == b.name && a.camera == b.camera && a.min_range == b.min_range &&
          a.max_range == b.max_range && a.working_distance == b.working_distance &&
-         a.noise == b.noise && a.T_flange_camera == b.T_flange_camera;
+         a.noise == b.noise && a.T_flange_camera == b.T_flange_camera && a.body_size == b.body_size;
 }
 
 TEST_F(Files, SensorsReadBackEqual) {
@@ -65,6 +65,7 @@ TEST_F(Files, SensorsReadBackEqual) {
     sensor.noise = models[i % 5];
     sensor.T_flange_camera =
         look_at({unit(random), -unit(random), unit(random)}, {unit(random), 1.5, -unit(random)});
+    if (i % 2 == 0) sensor.body_size = {unit(random), 0.1, 1e-3 * unit(random)};
     write("sensor.toml", sensor_toml(sensor));
     EXPECT_TRUE(equal(read_sensor_toml(dir / "sensor.toml"), sensor)) << sensor_toml(sensor);
     ++cases;
@@ -113,6 +114,8 @@ TEST_F(Files, SensorErrorsNameTheKey) {
       {with("[camera]", "T_flange_camera = [[1,0,0,0],[0,1,0,0],[0,0,3,0],[0,0,0,1]]\n[camera]"),
        "\"T_flange_camera\" is no rigid transform"},
       {with("[camera]", "T_flange_camera = [1, 2]\n[camera]"), "\"T_flange_camera\""},
+      {with("body = [0.09", "body = [-0.09"), "body_size must be positive"},
+      {with("body = [0.09, ", "body = ["), "\"body\""},
       {with("[camera]", "[camera"), "line "},
       {"", "\"name\" is missing"}};
   int count = 0;

@@ -183,18 +183,20 @@ TEST_F(ViewPictureTest, EachClassHasItsColor) {
 
 TEST_F(ViewPictureTest, CandidatesHaveTheColorOfTheirClass) {
   // Many more than are shown, the classes one after the other: an even subset shows them all.
-  const std::vector<std::string> classes{"left", "right", "top", "bottom", ""};
+  const std::vector<std::optional<BoundaryClass>> classes{BoundaryClass::left, BoundaryClass::right,
+                                                          BoundaryClass::top, BoundaryClass::bottom,
+                                                          std::nullopt};
   std::vector<Candidate> candidates;
   for (const Pose& pose : sphere_poses(1500, 0.5)) {
-    candidates.push_back({pose, "test", classes[candidates.size() / 300], -1});
+    candidates.push_back({pose, "test", classes[candidates.size() / 300], {}});
   }
   ASSERT_EQ(candidates.size(), 1500U);
   const Image image = drawn(picture({}, {}, candidates));
-  for (std::size_t c = 0; c < 4; ++c) EXPECT_GT(image.count(kIsOfClass[c]), 300) << classes[c];
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_GT(image.count(kIsOfClass[c]), 300) << c;
 
   // Those without a class bring none of the colors.
   const Image grey = drawn(picture({}, {}, {candidates.begin() + 1200, candidates.end()}));
-  for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(grey.count(kIsOfClass[c]), 0) << classes[c];
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(grey.count(kIsOfClass[c]), 0) << c;
 }
 
 TEST_F(ViewPictureTest, TheChosenViewBringsItsRays) {
@@ -208,7 +210,7 @@ TEST_F(ViewPictureTest, TheChosenViewBringsItsRays) {
   ASSERT_GT(occupied, 1000);
 
   // The chosen one stands in the list of candidates too, and is not drawn as one of them.
-  const std::vector<Candidate> candidates{{chosen(), "test", "left", -1}};
+  const std::vector<Candidate> candidates{{chosen(), "test", BoundaryClass::left}};
   const Sheet sheet = make_sheet();
   const Image with = drawn(picture(sheet.surface, {}, candidates, chosen()));
   EXPECT_EQ(with.width, 1280);
@@ -232,7 +234,7 @@ TEST_F(ViewPictureTest, SamePictureForAnyNumberOfThreads) {
   const Sheet sheet = make_sheet();
   EstimatedViews estimated;
   estimated.runs.assign(sheet.runs.begin(), sheet.runs.end());
-  const std::vector<Candidate> candidates{{look_at({0.5, -0.3, 0.2}, {0, 0, 0}), "test", "", -1}};
+  const std::vector<Candidate> candidates{{look_at({0.5, -0.3, 0.2}, {0, 0, 0}), "test"}};
   const ViewPicture parts = picture(sheet.surface, estimated, candidates, chosen());
   (void)drawn(parts, 1);
   const std::string one = bytes();
@@ -279,7 +281,7 @@ TEST_F(ViewPictureTest, RefusesWhatItCannotDraw) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 
   // A candidate that is no pose is left out.
-  const std::vector<Candidate> candidates{{bad, "test", "left", -1}};
+  const std::vector<Candidate> candidates{{bad, "test", BoundaryClass::left}};
   EXPECT_EQ(drawn(picture(nothing, none, candidates)).count(kIsOfClass[0]), 0);
 }
 

@@ -79,10 +79,27 @@ TEST_F(Candidates, BoundaryOnesSayWhyTheyExistAndCanBeScored) {
   EXPECT_EQ(scores["poses"], result["candidates"]);
 }
 
+TEST_F(Candidates, TheBodyIsTheSensorsOrTheUsers) {
+  const auto collisions = [&](const std::string& sensor, const Strings& more) {
+    Strings arguments{"candidates", "run/map.vdb", "--generator", "sphere",    "--distance", "0.15",
+                      "--sensor",   sensor,        "--out",       "poses.txt", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json::parse(run_well(arguments))["dropped"].value("collision", 0);
+  };
+  write("wide.toml", "body = [0.4, 0.4, 0.2]\n" + read("tof.toml"));
+  const int of_default = collisions("tof.toml", {});
+  const int of_file = collisions("wide.toml", {});
+  EXPECT_GT(of_file, of_default);
+  EXPECT_EQ(collisions("tof.toml", {"--body", "0.4,0.4,0.2"}), of_file);
+  EXPECT_EQ(collisions("wide.toml", {"--body", "0.065,0.065,0.076"}), of_default);
+}
+
 TEST_F(Candidates, RefusesWhatCannotBe) {
   const std::vector<std::pair<Strings, std::string>> inputs{
       {{"--generator", "rings", "--count", "50"}, "50"},
       {{"--generator", "cone"}, "cone"},
+      {{"--generator", "sphere", "--body", "0.1,0,0.1"}, "--body"},
+      {{"--generator", "sphere", "--body", "0.1,0.1"}, "--body"},
       {{"--generator", "sphere", "--reach", "missing.toml"}, "missing.toml"},
   };
   std::size_t cases = 0;

@@ -4,6 +4,7 @@
 // The whole loop as a user would run it, on small objects: what it leaves, that it ends well on
 // degenerate ones, that a run can be repeated, that bad input is refused.
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -119,6 +120,31 @@ TEST_F(Reconstruct, LeavesAConsistentFolder) {
     entropy += view["realised_gain"].get<double>();
     EXPECT_NEAR(entropy, view["entropy_removed"].get<double>(), 1e-6 * entropy);
   }
+}
+
+TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
+  (void)reconstruct("cube.off", {"--max-views", "1", "--no-pictures", "--size", "0.2"});
+  const json run_file = json::parse(read("run/run.json"));
+  const std::map<std::string, std::string> renamed{
+      {"generator", "generators"}, {"calibrate", "calibrated"}, {"no_refine", "refine"}};
+  // Where results go, how fast; the seed is beside the settings, the body in the sensor.
+  const std::set<std::string> elsewhere{"help",      "json",        "threads", "out",
+                                        "save_maps", "no_pictures", "seed",    "body"};
+  std::istringstream help(run_well({"reconstruct", "--help"}));
+  std::size_t flags = 0;
+  for (std::string line; std::getline(help, line);) {
+    const std::size_t begin = line.find_first_not_of(' ');
+    if (begin == std::string::npos || line[begin] != '-') continue;
+    const std::size_t dashes = line.find("--");
+    std::string name = line.substr(dashes + 2, line.find_first_of(" ,", dashes) - dashes - 2);
+    std::replace(name.begin(), name.end(), '-', '_');
+    if (elsewhere.contains(name)) continue;
+    if (renamed.contains(name)) name = renamed.at(name);
+    EXPECT_TRUE(run_file["settings"].contains(name)) << line;
+    ++flags;
+  }
+  // The mesh has no flag; two settings follow from others.
+  EXPECT_EQ(flags + 3, run_file["settings"].size());
 }
 
 TEST_F(Reconstruct, SameSeedSameRunForAnyNumberOfThreads) {
@@ -242,6 +268,7 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       // Looks away from the object.
       {arguments("cube.off", {"--start", "0,0,1,0,0,0,1", "--background", "0"}), "start pose"},
       {arguments("cube.off", {"--reach", "missing.toml"}), "missing.toml"},
+      {arguments("cube.off", {"--body", "0.1,-0.1,0.1"}), "--body"},
       {arguments("cube.off", {"--reach", "bad_reach.toml"}), "sphere"},
       {arguments("cube.off", {"--reach", "no_reach.toml"}), "reach"},
       {arguments("cube.off", {"--generator", "boundary,cone"}), "cone"},

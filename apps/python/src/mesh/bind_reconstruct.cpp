@@ -17,7 +17,6 @@
 #include "mesh/bindings.hpp"
 #include "planner/candidate_generation.hpp"
 #include "planner/model.hpp"
-#include "planner/planning_options.hpp"
 #include "planner/policies.hpp"
 #include "viewgain/core/planning.hpp"
 
@@ -77,7 +76,9 @@ py::dict dict_of(const ViewRecord& record) {
   view["index"] = record.index;
   view["T_world_camera"] = to_array(record.T_world_camera);
   view["generator"] = record.chosen_as ? record.chosen_as->generator : "start";
-  view["boundary_class"] = record.chosen_as ? record.chosen_as->boundary_class : "";
+  const bool of_boundary = record.chosen_as && record.chosen_as->boundary_class;
+  view["boundary_class"] =
+      of_boundary ? boundary_class_name(*record.chosen_as->boundary_class) : std::string_view();
   view["predicted_gain"] = record.predicted_gain;
   view["realised_gain"] = record.realised_gain;
   view["entropy_removed"] = record.progress.entropy_removed;
@@ -95,18 +96,15 @@ bool is_of_boundaries(app::Policy policy) {
 
 app::GenerationConfig generation_config(const Sensor& sensor, double voxel_size, bool boundary,
                                         const py::object& candidates, const ReachRegion* reach,
-                                        std::optional<double> support_plane) {
-  app::GenerationConfig config;
+                                        std::optional<double> support_plane, app::Policy policy) {
+  app::GenerationConfig config = app::default_generation(sensor, voxel_size);
   config.boundary = boundary;
-  config.estimator = app::default_estimator(voxel_size);
-  config.working_distance = sensor.working_distance;
+  config.classes_by_sight = policy == app::Policy::kriegel;
   if (!candidates.is_none()) {
     config.sets.push_back({"candidates", pose_list(candidates, "candidates")});
   }
-  config.feasibility.body.T_flange_camera = sensor.T_flange_camera;
   if (reach != nullptr) config.feasibility.reach = *reach;
   config.feasibility.support_plane = support_plane;
-  config.feasibility.sensor = sensor;
   return config;
 }
 
@@ -135,7 +133,7 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
   policy_config.policy = app::parse_policy(policy);
   const app::GenerationConfig generation_settings = generation_config(
       sensor, voxel_size, boundary.value_or(is_of_boundaries(policy_config.policy)), candidates,
-      reach, support_plane);
+      reach, support_plane, policy_config.policy);
   if (!generation_settings.boundary && candidates.is_none()) {
     throw py::value_error("give candidates: without boundary, policy \"" + policy +
                           "\" has nothing to choose from");
@@ -147,11 +145,10 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
   planning.idle_views = idle_views;
   if (control != nullptr) planning.stop = control->stop.get_token();
 
-  app::StageSeconds seconds;
   PythonAcquisition acquisition(acquire, sensor);
-  app::Model model(sensor, model_config, exec, nullptr, seconds);
-  app::CandidateGeneration generation(model, sensor, generation_settings, exec, seconds);
-  app::PolicyDecision decision(model, generation, sensor, policy_config, exec, seconds);
+  app::Model model(sensor, model_config, nullptr, {exec});
+  app::CandidateGeneration generation(model, sensor, generation_settings, {exec});
+  app::PolicyDecision decision(model, generation, sensor, policy_config, {exec});
   Reconstruction result;
   const auto watch = [&](const ViewRecord& record) {
     with_gil([&] {

@@ -13,8 +13,8 @@
 #include "gil.hpp"
 #include "map/shared_grid.hpp"
 #include "mesh/bindings.hpp"
+#include "planner/candidate_generation.hpp"
 #include "planner/model.hpp"
-#include "planner/planning_options.hpp"
 #include "viewgain/core/text.hpp"
 #include "viewgain/mesh/boundary.hpp"
 #include "viewgain/mesh/surface.hpp"
@@ -58,7 +58,8 @@ SurfaceMesh surface_of_grid(const SharedGrid& grid, std::uint32_t min_hits, int 
   FusedPointsConfig config;
   config.min_hits = min_hits;
   return grid.read([&](const BeliefGrid& g) {
-    return app::surface_of(fused_points(g, config, ExecConfig{num_threads}), g.voxel_size());
+    const ExecConfig exec{num_threads};
+    return app::surface_of(fused_points(g, config, exec), g.voxel_size(), exec);
   });
 }
 

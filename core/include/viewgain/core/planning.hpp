@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "viewgain/core/boundary_class.hpp"
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
@@ -53,9 +54,9 @@ class VIEWGAIN_EXPORT RepresentationUpdate {
 /// A pose that could be the next view.
 struct VIEWGAIN_EXPORT Candidate {
   Pose T_world_camera;
-  std::string generator;       ///< who proposed it
-  std::string boundary_class;  ///< left, right, top, bottom; empty where there is no boundary
-  std::int64_t source = -1;    ///< the generator's own number for why (a boundary run), or -1
+  std::string generator;                          ///< who proposed it
+  std::optional<BoundaryClass> boundary_class{};  ///< of the boundary that it looks beyond, if any
+  std::optional<std::size_t> number{};            ///< the generator's own number for it, if any
 };
 
 /// c_m: the feasible candidates, and how many were dropped and why.

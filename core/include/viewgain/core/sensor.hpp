@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +24,9 @@ struct VIEWGAIN_EXPORT Sensor {
   double working_distance = 0;  ///< where it is meant to be used [m]
   NoiseModel noise;
   std::optional<Pose> T_flange_camera;  ///< mounting on the robot's flange, if known
+  /// Width, height, depth of the housing [m], if known; see SensorBody in raycast/feasibility.hpp,
+  /// which takes the SR4000's otherwise.
+  std::optional<std::array<double, 3>> body_size{};
 
   /// Standard deviations at range t [m]; see sigmas() in noise.hpp.
   [[nodiscard]] MeasurementSigmas sigmas(double t, double cos_incidence = 1.0) const {
@@ -32,12 +36,14 @@ struct VIEWGAIN_EXPORT Sensor {
   /// Throws Error(invalid_argument), naming the field: camera as in PinholeCamera::validate(),
   /// 0 <= min_range < max_range, working_distance > 0 and within them, all noise parameters
   /// positive and finite (modulation frequency and least amplitude may be 0), T_flange_camera
-  /// rigid (1e-3).
+  /// rigid (1e-3), body_size positive and finite.
   void validate() const;
 };
 
 /// The presets of DESIGN.md section 4: sr4000, azure_kinect_nfov, kinect_v1, d435; and laser_line,
-/// a scanner of one line a pose (640x1 px, 0.2 mm in each direction, 0.1-1.0 m).
+/// a scanner of one line a pose (640x1 px, 0.2 mm in each direction, 0.1-1.0 m). Those of a maker
+/// have the size of his housing (kinect_v1: about, without its foot), the SR4000 as SensorBody has
+/// it.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& sensor_preset_names();
 
 /// Throws Error(invalid_argument) that lists the valid names.

@@ -7,19 +7,15 @@
 #include <functional>
 #include <numbers>
 #include <span>
-#include <string_view>
 #include <vector>
 
+#include "viewgain/core/boundary_class.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/mesh/surface.hpp"
 
 namespace viewgain {
-
-/// Towards which side of the image the surface ends, in the axes of the view that saw it last.
-enum class BoundaryClass : std::uint8_t { left, right, top, bottom };
-[[nodiscard]] VIEWGAIN_EXPORT std::string_view boundary_class_name(BoundaryClass boundary_class);
 
 /// A closed chain of border edges. Consecutive vertices follow the *face's* halfedges, so that the
 /// surface lies to the left of the direction of travel seen from outside and t × n points out of

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "viewgain/core/covariance.hpp"
+#include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 
@@ -42,10 +43,11 @@ struct VIEWGAIN_EXPORT Consistency {
 /// from many threads.
 class VIEWGAIN_EXPORT GroundTruth {
  public:
-  /// Area-weighted samples, the same for the same seed. Throws Error(invalid_argument) for a mesh
+  /// Area-weighted samples, the same for the same seed. `exec` says on how many threads the members
+  /// below run. Throws Error(invalid_argument) for a mesh
   /// without area, an index out of range, or a vertex that is not finite.
   explicit GroundTruth(const TriangleMesh& mesh, std::size_t sample_count = 10'000,
-                       std::uint64_t seed = 1);
+                       std::uint64_t seed = 1, const ExecConfig& exec = {});
   ~GroundTruth();
   GroundTruth(GroundTruth&&) noexcept;
   GroundTruth& operator=(GroundTruth&&) noexcept;

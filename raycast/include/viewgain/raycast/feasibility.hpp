@@ -23,7 +23,8 @@ namespace viewgain {
 /// z = 0 to its depth; T_flange_camera places the camera on the flange. Without one the camera's
 /// centre is the middle of the box's front face, looking out of it.
 struct VIEWGAIN_EXPORT SensorBody {
-  std::array<double, 3> size{0.065, 0.065, 0.076};  ///< width, height, depth [m]
+  /// Width, height, depth [m]; the SR4000's. Sensor::body_size has another sensor's.
+  std::array<double, 3> size{0.065, 0.065, 0.076};
   std::optional<Pose> T_flange_camera{};
 };
 

@@ -1,19 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "candidate_generation.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 
 namespace viewgain::app {
+
+/// A fixed set of poses with a name: sphere, dome, rings, sequence, file.
+struct PoseSet {
+  std::string generator;
+  std::vector<Pose> poses;  ///< T_world_camera
+};
 
 /// The names that --generator takes: boundary, sphere, dome, rings, shell, sequence.
 [[nodiscard]] const std::vector<std::string>& generator_names();
@@ -35,17 +41,5 @@ struct PoseSetRequest {
 /// Distance from which a sphere of this radius [m] fills the smaller side of the image; at least
 /// the sensor's working distance.
 [[nodiscard]] double filling_distance(const Sensor& sensor, double radius);
-
-/// A number of variants that makes a large batch: two distances, tilts of 15° to four sides, two
-/// rolls; two fifths of a view overlap with what is known.
-[[nodiscard]] EstimatorConfig default_estimator(double voxel_size);
-
-/// tx,ty,tz,qx,qy,qz,qw. Throws Error(invalid_argument) naming the flag.
-[[nodiscard]] Pose parse_pose(std::string_view flag, std::string_view text);
-
-/// A list of names separated by commas. Throws Error(invalid_argument) naming the flag for an empty
-/// or unknown one.
-[[nodiscard]] std::vector<std::string> parse_names(std::string_view flag, std::string_view text,
-                                                   const std::vector<std::string>& valid);
 
 }  // namespace viewgain::app

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "planning_options.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "pose_sets.hpp"
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "formats/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
 
@@ -15,11 +14,6 @@ namespace viewgain::app {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-
-[[noreturn]] void fail(std::string_view flag, std::string_view text, const std::string& what) {
-  throw Error(ErrorCode::invalid_argument,
-              std::string(flag).append(" ").append(text).append(": ").append(what));
-}
 
 std::vector<Pose> sequence_poses(const PoseSetRequest& request) {
   const Eigen::Vector3d start = request.start
@@ -58,7 +52,8 @@ PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request)
   } else if (generator == "sequence") {
     set.poses = sequence_poses(request);
   } else {
-    fail("--generator", generator, "no such set of poses");
+    throw Error(ErrorCode::invalid_argument,
+                "generator \"" + std::string(generator) + "\": no such set of poses");
   }
   return set;
 }
@@ -69,43 +64,6 @@ double filling_distance(const Sensor& sensor, double radius) {
   const double half_x = std::atan(0.5 * camera.width / camera.fx);
   const double half_y = camera.height > 1 ? std::atan(0.5 * camera.height / camera.fy) : half_x;
   return std::max(sensor.working_distance, radius / std::sin(std::min(half_x, half_y)));
-}
-
-EstimatorConfig default_estimator(double voxel_size) {
-  EstimatorConfig config;
-  config.boundary.min_run_length = 8 * voxel_size;
-  config.boundary.min_loop_length = 8 * voxel_size;
-  config.overlap = 0.4;
-  config.distances = {1.0, 1.15};
-  config.tilts = {0.0, 15 * kDegree, -15 * kDegree};
-  config.rolls = {0.0, 90 * kDegree};
-  return config;
-}
-
-Pose parse_pose(std::string_view flag, std::string_view text) {
-  const std::vector<double> n = parse_numbers(flag, text, 7, 7);
-  const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);
-  if (!(std::abs(q.norm() - 1) < 1e-2)) {
-    fail(flag, text, "the quaternion qx,qy,qz,qw has the norm " + short_text(q.norm()));
-  }
-  return {q.normalized().toRotationMatrix(), Eigen::Vector3d(n[0], n[1], n[2])};
-}
-
-std::vector<std::string> parse_names(std::string_view flag, std::string_view text,
-                                     const std::vector<std::string>& valid) {
-  std::vector<std::string> names;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string name(text.substr(begin, end - begin));
-    if (std::find(valid.begin(), valid.end(), name) == valid.end()) {
-      std::string list;
-      for (const std::string& v : valid) list.append(" ").append(v);
-      fail(flag, text, "\"" + name + "\" is none of" + list);
-    }
-    names.push_back(name);
-    begin = end + 1;
-  }
-  return names;
 }
 
 }  // namespace viewgain::app

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "planner/candidate_generation.hpp"
+#include "planner/model.hpp"
+#include "planner/policies.hpp"
+#include "planner/stage.hpp"
+#include "planner/truth.hpp"
+#include "reconstruct_options.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/reach.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/simulated_sensor.hpp"
+
+namespace viewgain::app {
+
+/// What the flags of a run come to.
+struct RunSetup {
+  Sensor sensor;
+  ReachRegion reach{};
+  Stage stage{};
+  double distance = 0;  ///< of the start and of sets of poses from the object's centre [m]
+  Pose start;
+  VisibilityConfig visibility{};
+  SimulationConfig simulation{};
+  ModelConfig model{};
+  GenerationConfig generation{};
+  PolicyConfig policy{};
+  PlanningConfig planning{};
+  nlohmann::ordered_json settings;  ///< of run.json
+};
+
+/// Reads the files that the options name and checks everything. Throws Error.
+[[nodiscard]] RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec);
+
+}  // namespace viewgain::app

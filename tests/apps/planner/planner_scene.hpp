@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "planner/model.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/core/triangle_mesh.hpp"
+#include "viewgain/raycast/simulated_sensor.hpp"
+#include "viewgain/raycast/surface_scene.hpp"
+
+namespace viewgain::test {
+
+/// Adds a rectangle that looks up, at height z, from (-x, -y) to (x, y) [m].
+inline void add_plate(TriangleMesh& mesh, double x, double y, double z) {
+  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const auto& [sx, sy] :
+       {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)}) {
+    mesh.vertices.push_back({sx * x, sy * y, z});
+  }
+  mesh.triangles.push_back({base, base + 1, base + 2});
+  mesh.triangles.push_back({base, base + 2, base + 3});
+}
+
+/// An axis-aligned box round the origin, faces outward.
+inline TriangleMesh box_mesh(double half) {
+  TriangleMesh mesh;
+  for (int k = 0; k < 8; ++k) {
+    mesh.vertices.push_back(
+        {(k & 1) != 0 ? half : -half, (k & 2) != 0 ? half : -half, (k & 4) != 0 ? half : -half});
+  }
+  for (const std::array<std::uint32_t, 4>& f : {std::array<std::uint32_t, 4>{0, 2, 3, 1},
+                                                {4, 5, 7, 6},
+                                                {0, 1, 5, 4},
+                                                {2, 6, 7, 3},
+                                                {0, 4, 6, 2},
+                                                {1, 3, 7, 5}}) {
+    mesh.triangles.push_back({f[0], f[1], f[2]});
+    mesh.triangles.push_back({f[0], f[2], f[3]});
+  }
+  return mesh;
+}
+
+/// An SR4000 at half its resolution.
+inline Sensor half_sr4000() {
+  Sensor sensor = sensor_preset("sr4000");
+  PinholeCamera& c = sensor.camera;
+  c.width /= 2, c.height /= 2, c.fx /= 2, c.fy /= 2;
+  c.cx = 0.5 * (c.width - 1), c.cy = 0.5 * (c.height - 1);
+  return sensor;
+}
+
+inline app::ModelConfig model_config(const Sensor& sensor, double half_workspace, double voxel) {
+  app::ModelConfig config;
+  config.grid.voxel_size = voxel;
+  for (std::size_t a = 0; a < 3; ++a) {
+    config.grid.workspace.min[a] = -half_workspace;
+    config.grid.workspace.max[a] = half_workspace;
+  }
+  config.grid.prior_sigma = default_prior_sigma(voxel, sensor);
+  return config;
+}
+
+}  // namespace viewgain::test

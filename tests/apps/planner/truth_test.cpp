@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// What counts as visible under limits of reach.
+#include "planner/truth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "apps/planner/planner_scene.hpp"
+#include "viewgain/core/generators.hpp"
+
+namespace viewgain::app {
+namespace {
+
+constexpr double kHalf = 0.1;  // of the box [m]
+
+// A surface that is the box's face at +x alone.
+SurfaceMesh seen_face() {
+  SurfaceMesh surface;
+  for (int i = -33; i <= 33; ++i) {
+    for (int j = -33; j <= 33; ++j) surface.vertices.push_back({kHalf, 0.003 * i, 0.003 * j});
+  }
+  return surface;
+}
+
+VisibilityConfig from_the_side(const ReachRegion& reach) {
+  VisibilityConfig config;
+  config.distance = 0.4;
+  config.start = look_at({0.5, 0, 0}, {0, 0, 0});
+  config.reach = reach;
+  return config;
+}
+
+// The share of the visible surface that the face is.
+double share_of_the_face(const VisibilityConfig& config) {
+  const auto scene = std::make_shared<const SurfaceScene>(test::box_mesh(kHalf));
+  const Truth truth(scene, sensor_preset("sr4000"), config, {});
+  return truth.figures(seen_face(), {}).coverage_visible;
+}
+
+TEST(Truth, ShellsThatLeaveOutTheWorkingDistanceShowWhatTheyShow) {
+  ReachRegion farther, nearer, thin;
+  farther.shells.push_back({{0, 0, 0}, 0.6, 0.9});
+  nearer.shells.push_back({{0, 0, 0}, 0.25, 0.3});
+  thin.shells.push_back({{0, 0, 0}, 0.7, 0.703});
+  int cases = 0;
+  for (const ReachRegion& reach : {ReachRegion{}, farther, nearer, thin}) {
+    // A sixth; samples near edges are nearer than 5 mm to it too.
+    EXPECT_NEAR(share_of_the_face(from_the_side(reach)), 1.0 / 6, 0.03);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 4);
+}
+
+TEST(Truth, HalfSpacesLeaveOutTheOtherSide) {
+  // From the upper half nothing sees the underside; the lowest poses are left out or moved up.
+  ReachRegion upper;
+  upper.half_spaces.push_back({{0, 0, 1}, 0.05});
+  EXPECT_NEAR(share_of_the_face(from_the_side(upper)), 1.0 / 5, 0.03);
+}
+
+TEST(Truth, NothingInReachLeavesWhatTheStartSees) {
+  ReachRegion nowhere;
+  nowhere.shells.push_back({{50, 0, 0}, 0, 1});
+  EXPECT_NEAR(share_of_the_face(from_the_side(nowhere)), 1, 1e-9);
+}
+
+TEST(Truth, AListOfPosesCountsWhereItIsInReach) {
+  ReachRegion list;
+  list.poses = {look_at({-0.5, 0, 0}, {0, 0, 0})};
+  EXPECT_NEAR(share_of_the_face(from_the_side(list)), 0.5, 0.02);
+  list.boxes.push_back({{0, -1, -1}, {1, 1, 1}});  // not there
+  EXPECT_NEAR(share_of_the_face(from_the_side(list)), 1, 1e-9);
+}
+
+}  // namespace
+}  // namespace viewgain::app

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Boundaries are classed by views that see them: what is hidden from a view counts for nothing.
+#include "planner/view_sight.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "apps/planner/planner_scene.hpp"
+#include "planner/candidate_generation.hpp"
+#include "viewgain/core/generators.hpp"
+
+namespace viewgain::app {
+namespace {
+
+constexpr double kVoxel = 0.008;
+constexpr std::size_t kFrames = 3;  // from each pose, so that points have enough hits
+constexpr double kRoof = 0.2;       // height of what hides the plate from above [m]
+
+// A plate under a larger one. View 0 looks at it from the side, view 1 from above.
+class HiddenPlate : public testing::Test {
+ protected:
+  HiddenPlate()
+      : sensor(sensor_preset("sr4000")),
+        views{look_at({0.5, 0, 0.3}, {0, 0, 0}), look_at({0, 0, 0.62}, {0, 0, 0})},
+        model(sensor, test::model_config(sensor, 0.25, kVoxel), nullptr, {}) {
+    TriangleMesh mesh;
+    test::add_plate(mesh, 0.1, 0.1, 0);
+    test::add_plate(mesh, 0.15, 0.15, kRoof);
+    const SimulatedSensor camera(std::make_shared<const SurfaceScene>(mesh), sensor, {});
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const DepthFrame frame = camera.acquire(views[i], i);
+      (void)model.update({views[i], std::vector<DepthFrame>(kFrames, frame)});
+    }
+  }
+
+  // Of the runs at the plate, and not at the roof, how many are classed by each pose's frames.
+  [[nodiscard]] std::array<int, 2> views_of_plate_runs(bool by_sight) const {
+    GenerationConfig config = default_generation(sensor, kVoxel);
+    config.classes_by_sight = by_sight;
+    CandidateGeneration generation(model, sensor, config, {});
+    (void)generation.generate(views.back());
+    std::array<int, 2> count{};
+    for (const BoundaryRun& run : generation.estimated().runs) {
+      if (model.surface().vertices[run.vertices[0]][2] < 0.5 * kRoof)
+        ++count.at(run.view / kFrames);
+    }
+    return count;
+  }
+
+  Sensor sensor;
+  std::vector<Pose> views;
+  Model model;
+};
+
+TEST_F(HiddenPlate, IsSeenFromTheSideAlone) {
+  ViewSight sight(model.scene(), sensor, views, {});
+  int points = 0;
+  for (const double x : {-0.09, 0.0, 0.09}) {
+    for (const double y : {-0.09, 0.0, 0.09}) {
+      EXPECT_TRUE(sight.sees(0, {x, y, 0})) << x << ' ' << y;
+      EXPECT_FALSE(sight.sees(1, {x, y, 0})) << x << ' ' << y;
+      EXPECT_TRUE(sight.sees(1, {x, y, kRoof})) << x << ' ' << y;
+      ++points;
+    }
+  }
+  EXPECT_EQ(points, 9);
+  EXPECT_FALSE(sight.sees(1, {0, 0, 0.7}));  // behind the camera
+  EXPECT_FALSE(sight.sees(1, {5, 0, 0}));    // outside the image
+}
+
+TEST_F(HiddenPlate, ItsBoundariesAreClassedByTheViewThatSeesThem) {
+  const std::array<int, 2> by_image = views_of_plate_runs(false);
+  const std::array<int, 2> by_sight = views_of_plate_runs(true);
+  EXPECT_GT(by_image[1], 0);
+  EXPECT_GT(by_sight[0], 0);
+  EXPECT_EQ(by_sight[1], 0);
+}
+
+}  // namespace
+}  // namespace viewgain::app
