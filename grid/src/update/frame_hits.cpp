@@ -6,6 +6,8 @@
 #include <array>
 #include <optional>
 
+#include "map/log_odds_code.hpp"
+
 namespace viewgain::detail {
 namespace {
 
