@@ -36,9 +36,7 @@ void check(const ApproximateConfig& config, std::size_t poses, std::size_t resul
     reject(std::string("number of groups is ") + std::to_string(config.groups) +
            "; it must be in 2..64");
   }
-  if (poses != results) {
-    reject(std::to_string(poses) + " poses but room for " + std::to_string(results) + " results");
-  }
+  detail::check_room(poses, results);
 }
 
 // Groups of tiles, and their sums as estimates of a view's gain.

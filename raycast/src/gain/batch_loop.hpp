@@ -6,11 +6,20 @@
 #include <atomic>
 #include <cstddef>
 #include <mutex>
+#include <string>
 
 #include "view_driver.hpp"
+#include "viewgain/core/error.hpp"
 #include "viewgain/core/exec_config.hpp"
 
 namespace viewgain::detail {
+
+/// Throws Error(invalid_argument) if there is not one result for each pose.
+inline void check_room(std::size_t poses, std::size_t results) {
+  if (poses == results) return;
+  throw Error(ErrorCode::invalid_argument, std::to_string(poses) + " poses but room for " +
+                                               std::to_string(results) + " results");
+}
 
 /// Calls work(i, lease) for every i below count on all threads; ends early if a stop is requested
 /// or the call cancelled. Returns whether all was done.

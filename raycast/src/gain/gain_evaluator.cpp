@@ -3,7 +3,6 @@
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include "batch_loop.hpp"
@@ -83,11 +82,7 @@ ViewGain GainEvaluator::evaluate(const Pose& T_world_camera) const {
 std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera,
                                     std::span<ViewGain> results,
                                     const BatchControl& control) const {
-  if (T_world_camera.size() != results.size()) {
-    throw Error(ErrorCode::invalid_argument, std::to_string(T_world_camera.size()) +
-                                                 " poses but room for " +
-                                                 std::to_string(results.size()) + " results");
-  }
+  detail::check_room(T_world_camera.size(), results.size());
   std::fill(results.begin(), results.end(), ViewGain{});
   return detail::for_each_pose(impl_->driver, results.size(), control,
                                [&](std::size_t i, ViewDriver::Lease& lease) {

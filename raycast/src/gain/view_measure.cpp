@@ -6,11 +6,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <string>
 
 #include "batch_loop.hpp"
 #include "gain_evaluator_impl.hpp"
-#include "viewgain/core/error.hpp"
 
 namespace viewgain {
 namespace {
@@ -50,11 +48,7 @@ ViewMeasure::~ViewMeasure() = default;
 std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera,
                                     const ViewMeasure& measure, std::span<double> results,
                                     const BatchControl& control) const {
-  if (T_world_camera.size() != results.size()) {
-    throw Error(ErrorCode::invalid_argument, std::to_string(T_world_camera.size()) +
-                                                 " poses but room for " +
-                                                 std::to_string(results.size()) + " results");
-  }
+  detail::check_room(T_world_camera.size(), results.size());
   std::fill(results.begin(), results.end(), std::numeric_limits<double>::quiet_NaN());
   const detail::ViewDriver& driver = impl_->driver;
   const Eigen::Matrix3d R_world_grid = driver.scene().snapshot.T_world_grid.rotation();
