@@ -49,7 +49,8 @@ void follow(benchmark::State& state) {
 
 void register_feasible_benchmarks() {
   for (const int obstacles : {0, 2}) {
-    const std::string count = "/" + std::to_string(obstacles) + "_obstacles";
+    const std::string count =
+        std::string(1, '/').append(std::to_string(obstacles)).append("_obstacles");
     const auto add = [&](const std::string& name, bool with_sight, double radius) {
       benchmark::RegisterBenchmark((name + count).c_str(), check, with_sight, radius, obstacles)
           ->Unit(benchmark::kMicrosecond);
