@@ -188,7 +188,7 @@ static void of_scenes(vg_grid* map, vg_scene* scene) {
   vg_scene_config config;
   vg_scene* other = NULL;
   vg_feasibility_config body;
-  vg_feasibility *checker = NULL, *other = NULL;
+  vg_feasibility *checker = NULL, *following = NULL;
   int32_t reason;
   const double inside_out[6] = {1, 1, 1, 0, 0, 0};
   const double point[3] = {0, 0, 0};
@@ -227,14 +227,14 @@ static void of_scenes(vg_grid* map, vg_scene* scene) {
               "poses is null");
   CHECK_FAILS(vg_feasibility_check(checker, NULL, 0, NULL, 2, NULL), VG_INVALID_ARGUMENT,
               "taken is null");
-  CHECK_FAILS(vg_feasibility_with_scene(NULL, scene, &other), VG_INVALID_ARGUMENT,
+  CHECK_FAILS(vg_feasibility_with_scene(NULL, scene, &following), VG_INVALID_ARGUMENT,
               "feasibility is null");
-  CHECK_FAILS(vg_feasibility_with_scene(checker, NULL, &other), VG_INVALID_ARGUMENT,
+  CHECK_FAILS(vg_feasibility_with_scene(checker, NULL, &following), VG_INVALID_ARGUMENT,
               "scene is null");
   CHECK_FAILS(vg_feasibility_with_scene(checker, scene, NULL), VG_INVALID_ARGUMENT,
               "following is null");
-  CHECK_OK(vg_feasibility_with_scene(checker, scene, &other));
-  vg_feasibility_release(other);
+  CHECK_OK(vg_feasibility_with_scene(checker, scene, &following));
+  vg_feasibility_release(following);
   vg_feasibility_release(checker);
   vg_feasibility_release(NULL);
 }

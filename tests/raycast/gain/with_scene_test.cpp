@@ -29,7 +29,9 @@ std::size_t expect_same(const GainEvaluator& followed, const GainEvaluator& fres
   for (std::size_t i = 0; i < poses.size(); ++i) {
     EXPECT_TRUE(test::same_bits(followed.evaluate(poses[i]), fresh.evaluate(poses[i])));
     EXPECT_EQ(std::isnan(a[i].gain), std::isnan(b[i].gain));
-    if (!std::isnan(a[i].gain)) EXPECT_EQ(a[i].gain, b[i].gain);
+    if (!std::isnan(a[i].gain)) {
+      EXPECT_EQ(a[i].gain, b[i].gain);
+    }
     const std::vector<RayHit> x = followed.trace(poses[i]), y = fresh.trace(poses[i]);
     EXPECT_EQ(x.size(), y.size());
     for (std::size_t r = 0; r < x.size(); ++r) {

@@ -73,7 +73,7 @@ TEST(Umbrella, HasTheFilesOfTheGridToo) {
        .T_world_grid = Pose(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
                             Eigen::Vector3d::Zero())})));
   EXPECT_TRUE(PointCloud{}.points.empty());
-  EXPECT_EQ(reading_bounds(sensor_preset("sr4000"), {}, Pose{}), std::nullopt);
+  EXPECT_EQ(reading_bounds(sensor_preset("sr4000"), PointCloud{}.points, Pose{}), std::nullopt);
 }
 
 }  // namespace
