@@ -126,7 +126,7 @@ TEST(Sight, IsWhatTheOraclesRaysSay) {
   }
   EXPECT_GT(asked, 6U * kMaps * kPoses / 3);
   EXPECT_GT(too_near, asked / 10);
-  EXPECT_GT(some_near, asked / 20);
+  EXPECT_GT(some_near, asked / 50);
   EXPECT_GT(changed_by_obstacles, asked / 500);
 }
 
