@@ -100,7 +100,9 @@ TEST(ForEachOccupied, VisitsEachOnceInAnOrderOfItsOwn) {
     ASSERT_EQ(grid.log_odds(v.voxel), v.log_odds);
     const std::optional<Belief> belief = grid.belief(v.voxel);
     ASSERT_EQ(belief.has_value(), v.belief != nullptr);
-    if (belief) ASSERT_EQ(*belief, *v.belief);
+    if (belief) {
+      ASSERT_EQ(*belief, *v.belief);
+    }
     with_belief += v.belief != nullptr;
   });
   EXPECT_EQ(visited.size(), grid.statistics().occupied);

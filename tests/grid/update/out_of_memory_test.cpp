@@ -24,13 +24,14 @@ std::atomic<long> allocations_left{-1};
 
 }  // namespace
 
-void* operator new(std::size_t size) {
+// Not inlined: GCC would see memory of operator new given to free().
+[[gnu::noinline]] void* operator new(std::size_t size) {
   if (allocations_left.load() >= 0 && allocations_left.fetch_sub(1) <= 0) throw std::bad_alloc();
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace viewgain {
 namespace {
