@@ -24,7 +24,7 @@ std::atomic<long> allocations_left{-1};
 
 }  // namespace
 
-// Not inlined: GCC would see memory of operator new given to free().
+// Not inlined, else GCC sees free() called on what its own operator new gave.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   if (allocations_left.load() >= 0 && allocations_left.fetch_sub(1) <= 0) throw std::bad_alloc();
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;

@@ -73,8 +73,7 @@ TEST(Umbrella, HasTheFilesOfTheGridToo) {
        .T_world_grid = Pose(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
                             Eigen::Vector3d::Zero())})));
   EXPECT_TRUE(PointCloud{}.points.empty());
-  const std::span<const std::array<double, 3>> no_points;
-  EXPECT_EQ(reading_bounds(sensor_preset("sr4000"), no_points, Pose{}), std::nullopt);
+  EXPECT_EQ(reading_bounds(sensor_preset("sr4000"), PointCloud{}.points, Pose{}), std::nullopt);
 }
 
 }  // namespace
