@@ -307,7 +307,7 @@ TEST(Planning, EndsBetweenTheStepsWhenAsked) {
     EXPECT_EQ(result.views.back().decision.has_value(), c.has_decision);
     ++count;
   }
-  EXPECT_EQ(count, 9U);
+  EXPECT_EQ(count, 6U);
 }
 
 // All rules that could hold do; taking the first away shows the next.

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <memory>
+#include <new>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -178,13 +179,16 @@ void put_beliefs(const GridStorage& s, GridSet& set, bool with_covariance) {
 /// leaves, and where there is none for that the process ends.
 class Reserve {
  public:
-  explicit Reserve(std::size_t leaves)
-      : bytes_(std::make_unique_for_overwrite<char[]>(kAlways + kPerLeaf * leaves)) {}
+  // Not by a new expression: a compiler may leave one out whose memory nobody uses.
+  explicit Reserve(std::size_t leaves) : bytes_(::operator new(kAlways + kPerLeaf * leaves)) {}
 
  private:
+  struct Free {
+    void operator()(void* bytes) const { ::operator delete(bytes); }
+  };
   static constexpr std::size_t kAlways = std::size_t{1} << 20U;
   static constexpr std::size_t kPerLeaf = 4 * sizeof(void*);  // a list that grows by doubling
-  std::unique_ptr<char[]> bytes_;
+  std::unique_ptr<void, Free> bytes_;
 };
 
 }  // namespace

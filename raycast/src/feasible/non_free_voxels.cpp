@@ -342,12 +342,14 @@ double NonFreeVoxels::first_along(const HalfLine& line, double begin, double end
         voxel = walk.voxel();
         continue;
       }
-      LeafMask all;  // a block that is unknown as a whole
-      all.fill(~std::uint64_t{0});
-      if (walk.find_in_block(is_tile ? all : leaf_at(region, blocks, block).non_free)) {
-        return walk.from() <= out ? walk.from() : nearest;
+      const LeafMask* mask = is_tile ? nullptr : &leaf_at(region, blocks, block).non_free;
+      const Index3 corner = rounded_down(voxel, kBlock);
+      for (; rounded_down(voxel, kBlock) == corner; voxel = walk.voxel()) {
+        const double enter = walk.from();
+        const bool is_solid =
+            mask == nullptr ? workspace_.contains(voxel) : test_bit(*mask, offset_in_block(voxel));
+        if (walk.leave<1>() && is_solid) return enter <= out ? enter : nearest;
       }
-      voxel = walk.voxel();
     }
   }
   return nearest;

@@ -8,7 +8,6 @@
 #include <cstdint>
 
 #include "box_hierarchy.hpp"
-#include "viewgain/grid/belief.hpp"
 #include "viewgain/grid/voxel.hpp"
 
 namespace viewgain::detail {
@@ -26,9 +25,10 @@ class VoxelWalk {
   /// Where it has come in.
   [[nodiscard]] double from() const { return from_; }
 
-  /// Leaves the cube of this many voxels an edge that it is in.
+  /// Leaves the cube of this many voxels an edge that it is in; false if it was in there for no
+  /// length.
   template <std::int32_t size>
-  void leave() {
+  bool leave() {
     std::array<std::int32_t, 3> low{};
     std::array<double, 3> exit{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -41,40 +41,13 @@ class VoxelWalk {
     for (std::size_t k = 0; k < 3; ++k) {
       if (exit[k] == out) {
         voxel_[k] = is_rising(k) ? low[k] + size : low[k] - 1;
-      } else {
+      } else if constexpr (size > 1) {
         voxel_[k] = at(k, out, low[k], low[k] + size - 1);
       }
     }
+    const bool has_length = out > from_;
     from_ = std::max(from_, out);
-  }
-
-  /// Goes on in the block of 8³ voxels that it is in, to the first voxel of the mask that it is in
-  /// for some length; false if there is none, and then it has left the block. Without branches that
-  /// depend on the ray but for the end.
-  bool find_in_block(const LeafMask& mask) {
-    std::array<std::int32_t, 3> place{}, face{}, step{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      place[k] = voxel_[k] & 7;
-      step[k] = is_rising(k) ? 1 : -1;
-      face[k] = (voxel_[k] & ~7) + (is_rising(k) ? 1 : 0);
-    }
-    bool is_inside = true, is_found = false;
-    while (is_inside) {
-      std::array<double, 3> exit{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto axis = static_cast<Eigen::Index>(k);
-        exit[k] = (face[k] + place[k] - line_.origin[axis]) * line_.inverse[axis];
-      }
-      const double out = std::min(std::min(exit[0], exit[1]), exit[2]);
-      const auto bit = static_cast<unsigned>(place[1] << 3 | place[2]);
-      is_found = ((mask[static_cast<std::size_t>(place[0])] >> bit & 1U) != 0) & (out > from_);
-      if (is_found) break;
-      for (std::size_t k = 0; k < 3; ++k) place[k] += step[k] * static_cast<int>(exit[k] == out);
-      from_ = std::max(from_, out);
-      is_inside = ((place[0] | place[1] | place[2]) & ~7) == 0;
-    }
-    for (std::size_t k = 0; k < 3; ++k) voxel_[k] = (voxel_[k] & ~7) + place[k];
-    return is_found;
+    return has_length;
   }
 
  private:

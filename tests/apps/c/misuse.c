@@ -326,7 +326,7 @@ static void of_evaluators(const vg_scene* scene) {
   CHECK(isnan(gain));
   CHECK_FAILS(vg_depth_image(evaluator, pose, depth, NULL, 640), VG_INVALID_ARGUMENT, "off from");
   CHECK_FAILS(vg_contributions(evaluator, pose, &part, sizeof part, 1, &found), VG_INVALID_ARGUMENT,
-              "8.0");
+              "by 8;");
   pose[5] = 1;
   pose[12] = 1;
   CHECK_OK(vg_evaluate(evaluator, pose, 1, &gain, NULL));

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdio>
+#include <limits>
 #include <locale>
 #include <random>
 #include <string>
@@ -85,13 +86,14 @@ TEST(VdbIo, RoundTripsAreExact) {
     check(BeliefGrid::from_states(config, states));
   }
   // Every log-odds, extreme and empty beliefs, many views.
+  const float most = std::numeric_limits<float>::max();
   BeliefGrid grid(GridConfig{0.1, {{0, 0, 0}, {1, 1, 2}}, {}, 1e-3});
   for (int steps = -40; steps <= 70; ++steps) {
     const int n = steps + 40;
     const Index3 voxel{n % 10, n / 10 % 10, n / 100};
     grid.set(
         voxel, static_cast<float>(0.05 * steps),
-        Belief{{1e-30F, 3e38F, 0.0F, -0.0F, -1e20F, 1e-40F}, {-3e38F, -0.0F, 1.1F}, 2147483647U});
+        Belief{{1e-30F, most, 0.0F, -0.0F, -1e20F, 1e-40F}, {-3e38F, -0.0F, 1.1F}, 2147483647U});
     EXPECT_EQ(grid.log_odds(voxel).value(), static_cast<float>(0.05 * steps));
   }
   for (int i = 0; i < 100; ++i) grid.append_view(ring_view(i));

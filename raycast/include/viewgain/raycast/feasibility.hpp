@@ -59,6 +59,10 @@ struct VIEWGAIN_EXPORT FeasibilityConfig {
 /// block. Obstacle boxes and closed meshes are solid, an open mesh is a sheet; overlaps of less
 /// than a nanometre are touching.
 ///
+/// Costs 0.4-1 µs per pose and thread, with two obstacles as well. With a sensor it stays at 0.6 µs
+/// where no voxel is within min_range; else rays are traced until the answer is clear, which takes
+/// 10-40 µs for the 400 rays of an SR4000 and as much more as another sensor has more pixels.
+///
 /// Thread safety: all const members may run from many threads at once on one checker.
 class VIEWGAIN_EXPORT FeasibilityChecker {
  public:
@@ -76,7 +80,8 @@ class VIEWGAIN_EXPORT FeasibilityChecker {
   /// The same checker of another scene, for a map that grows. The lens, the threads and, if the
   /// scene was made by VoxelScene::update from this one's, the obstacles are shared with this
   /// checker, which stays as it is. What is left is a look at the scene's list of regions (cubes of
-  /// 32³ voxels) and tiles: some nanoseconds each. Throws Error(invalid_argument) for a null scene.
+  /// 32³ voxels) and of tiles larger than that: a microsecond for 6,000 leaves. Throws
+  /// Error(invalid_argument) for a null scene.
   [[nodiscard]] FeasibilityChecker with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
   /// `taken`: T_world_camera of the views so far. Touching faces do not overlap.
