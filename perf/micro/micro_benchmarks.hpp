@@ -2,7 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <benchmark/benchmark.h>
+
 namespace viewgain::bench {
+
+/// A counter of so many things per iteration, as a rate.
+inline void count(benchmark::State& state, const char* what, double per_iteration) {
+  state.counters[what] = benchmark::Counter(per_iteration * static_cast<double>(state.iterations()),
+                                            benchmark::Counter::kIsRate);
+}
 
 // Each registers the microbenchmarks of its source with Google Benchmark.
 void register_trace_benchmarks();

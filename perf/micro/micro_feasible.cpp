@@ -37,12 +37,14 @@ void check(benchmark::State& state, bool with_sight, double radius, int obstacle
   const std::vector<Pose> poses = sphere_poses(kPoses, radius);
   std::size_t next = 0;
   for (auto _ : state) benchmark::DoNotOptimize(checker.check(poses[next++ % poses.size()]));
+  count(state, "poses", 1);
 }
 
 void follow(benchmark::State& state) {
   const MicroScene& micro = MicroScene::get();
   const FeasibilityChecker checker(micro.scene, config_of(true), {.num_threads = 1});
   for (auto _ : state) benchmark::DoNotOptimize(&checker.with_scene(micro.scene).scene());
+  count(state, "scenes", 1);
 }
 
 }  // namespace

@@ -19,11 +19,6 @@ namespace {
 
 constexpr ExecConfig kOneThread{.num_threads = 1};
 
-void count(benchmark::State& state, const char* what, double per_iteration) {
-  state.counters[what] = benchmark::Counter(per_iteration * static_cast<double>(state.iterations()),
-                                            benchmark::Counter::kIsRate);
-}
-
 void scene_build(benchmark::State& state) {
   const BeliefGrid grid =
       test::camel_grid(static_cast<int>(state.range(0)),

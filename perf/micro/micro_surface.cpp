@@ -13,17 +13,11 @@
 namespace viewgain::bench {
 namespace {
 
-void count(benchmark::State& state, const char* what, std::size_t per_iteration) {
-  state.counters[what] = benchmark::Counter(
-      static_cast<double>(per_iteration) * static_cast<double>(state.iterations()),
-      benchmark::Counter::kIsRate);
-}
-
 void points(benchmark::State& state) {
   const MicroScene& micro = MicroScene::get();
   std::size_t n = 0;
   for (auto _ : state) n = fused_points(micro.grid, {}, {.num_threads = 1}).size();
-  count(state, "points", n);
+  count(state, "points", static_cast<double>(n));
 }
 
 void surface(benchmark::State& state) {
@@ -33,7 +27,7 @@ void surface(benchmark::State& state) {
     benchmark::DoNotOptimize(
         app::surface_of(fused, micro.grid.voxel_size(), {.num_threads = 1}).vertices.size());
   }
-  count(state, "points", fused.size());
+  count(state, "points", static_cast<double>(fused.size()));
 }
 
 void candidates(benchmark::State& state) {
@@ -47,7 +41,7 @@ void candidates(benchmark::State& state) {
                        app::default_estimator(voxel))
             .candidates.size();
   }
-  count(state, "candidates", n);
+  count(state, "candidates", static_cast<double>(n));
 }
 
 }  // namespace

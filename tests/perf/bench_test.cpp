@@ -237,12 +237,12 @@ TEST(Bench, MicrobenchmarksRunAndCount) {
     EXPECT_FALSE(benchmark.contains("error_occurred")) << name;
     int rates = 0;
     for (const char* counter : {"rays", "hits", "voxels", "primitives", "leaves", "pixels", "bytes",
-                                "points", "candidates"}) {
+                                "points", "candidates", "poses", "scenes"}) {
       if (benchmark.contains(counter) && benchmark[counter].get<double>() > 0) ++rates;
     }
     EXPECT_EQ(rates, 1) << name;
   }
-  EXPECT_EQ(parts.size(), 14U);
+  EXPECT_EQ(parts.size(), 15U);
 }
 
 TEST(Bench, OctomapAndOursMakeTheSameMap) {

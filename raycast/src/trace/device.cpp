@@ -50,7 +50,11 @@ RTCDevice shared_device(Isa isa) {
   static std::array<std::atomic<RTCDevice>, 4> devices{};  // by Isa
   std::atomic<RTCDevice>& kept = devices.at(static_cast<std::size_t>(isa));
   RTCDevice device = kept.load(std::memory_order_acquire);
-  if (device != nullptr) return device;
+  if (device != nullptr) {
+    // What an earlier failure of this thread left is nothing of its next call.
+    (void)rtcGetDeviceError(device);
+    return device;
+  }
   const std::string config = std::string("isa=") + embree_isa(isa);
   RTCDevice made = rtcNewDevice(config.c_str());
   if (made == nullptr) {

@@ -124,7 +124,7 @@ TEST_F(Files, SensorErrorsNameTheKey) {
     EXPECT_NE(message.find(wanted), std::string::npos) << message << " <- " << wanted;
     ++count;
   }
-  EXPECT_EQ(count, 16);
+  EXPECT_EQ(count, 18);
   EXPECT_THROW((void)load_sensor("none.toml"), Error);
   EXPECT_THROW((void)load_sensor("sr5000"), Error);
 }

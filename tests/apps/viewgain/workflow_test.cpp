@@ -391,12 +391,13 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--out --picture --json --threads =log_diagonal =10 [m]"},
       {"info", "MAP --hash --criterion --region --json --threads =log_diagonal"},
       {"candidates",
-       "MAP --generator --sensor --count --distance --center --reach --support-plane --seed --out "
+       "MAP --generator --sensor --count --distance --center --reach --body --support-plane --seed "
+       "--out "
        "--json --threads"},
       {"reconstruct",
        "MESH --sensor --voxel --size --workspace --up --start --distance --policy --generator "
        "--sphere-poses --criterion --max-views --stop-gain --stop-idle --stop-coverage "
-       "--travel-cost --travel-speed --reach --background --support-plane --noise "
+       "--travel-cost --travel-speed --reach --body --background --support-plane --noise "
        "--flying-pixels --seed --wiggling --calibrate --frames-per-view --jump-edge-filter "
        "--no-refine --save-maps --no-pictures --out --json --threads"}};
   const std::string top = run_well({"--help"});
@@ -424,7 +425,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 136);
+  EXPECT_EQ(words, 138);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

@@ -71,7 +71,8 @@ TEST(Umbrella, HasTheFilesOfTheGridToo) {
       {.voxel_size = 0.1,
        .workspace = {{0, 0, 0}, {1, 1, 1}},
        .T_world_grid = Pose(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
-                            Eigen::Vector3d::Zero())})));
+                            Eigen::Vector3d::Zero()),
+       .prior_sigma = 0.05})));
   EXPECT_TRUE(PointCloud{}.points.empty());
   EXPECT_EQ(reading_bounds(sensor_preset("sr4000"), PointCloud{}.points, Pose{}), std::nullopt);
 }
