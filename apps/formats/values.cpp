@@ -146,13 +146,13 @@ std::string describe(const Box& box) {
   return text;
 }
 
-std::string printable(std::string_view text) {
+std::string utf8_text(std::string_view text) {
   constexpr std::string_view kDigits = "0123456789ABCDEF";
   std::string result;
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);
     const auto byte = static_cast<unsigned char>(text[0]);
-    if (length == 0 || byte < 0x20 || byte == 0x7f) {
+    if (length == 0) {
       result.append("\\x").append(1, kDigits[byte >> 4U]).append(1, kDigits[byte & 15U]);
     } else {
       result.append(text.substr(0, length));

@@ -41,9 +41,9 @@ namespace viewgain::app {
 /// x0, y0, z0 .. x1, y1, z1 for people.
 [[nodiscard]] std::string describe(const Box& box);
 
-/// The text as UTF-8, in which a byte that is none stands as \xE9; control characters too. For file
-/// names, which may be any bytes, in JSON and in messages.
-[[nodiscard]] std::string printable(std::string_view text);
+/// The text as UTF-8, in which a byte that is none stands as \xE9. For file names, which may be any
+/// bytes, in JSON.
+[[nodiscard]] std::string utf8_text(std::string_view text);
 
 /// 2,097,152 for 2097152.
 [[nodiscard]] std::string with_commas(unsigned long long value);

@@ -61,18 +61,18 @@ inline constexpr const char* kBodyHelp =
           {0.0, 0.0, 0.0, 1.0}};
 }
 
-/// With every text made printable: a file name may be any bytes, JSON is UTF-8.
-[[nodiscard]] inline nlohmann::ordered_json with_printable_text(nlohmann::ordered_json json) {
-  if (json.is_string()) return printable(json.get_ref<const std::string&>());
+/// With every text made UTF-8: a file name may be any bytes.
+[[nodiscard]] inline nlohmann::ordered_json with_utf8_text(nlohmann::ordered_json json) {
+  if (json.is_string()) return utf8_text(json.get_ref<const std::string&>());
   if (json.is_structured()) {
-    for (nlohmann::ordered_json& part : json) part = with_printable_text(std::move(part));
+    for (nlohmann::ordered_json& part : json) part = with_utf8_text(std::move(part));
   }
   return json;
 }
 
 /// What run.json and --json hold.
 [[nodiscard]] inline std::string json_text(const nlohmann::ordered_json& json) {
-  return with_printable_text(json).dump(2) + "\n";
+  return with_utf8_text(json).dump(2) + "\n";
 }
 
 inline void print_json(const nlohmann::ordered_json& json) {
