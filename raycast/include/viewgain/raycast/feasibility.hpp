@@ -59,9 +59,9 @@ struct VIEWGAIN_EXPORT FeasibilityConfig {
 /// block. Obstacle boxes and closed meshes are solid, an open mesh is a sheet; overlaps of less
 /// than a nanometre are touching.
 ///
-/// Costs 0.4-1 µs per pose and thread, with two obstacles as well. With a sensor it stays at 0.6 µs
-/// where no voxel is within min_range; else rays are traced until the answer is clear, which takes
-/// 10-40 µs for the 400 rays of an SR4000 and as much more as another sensor has more pixels.
+/// Costs 0.5-1 µs per pose and thread, with two obstacles as well. With a sensor it stays under 1
+/// µs where no voxel is within min_range; else rays are traced until the answer is clear, which
+/// takes 10-50 µs for the 400 rays of an SR4000 and as much more as another sensor has more pixels.
 ///
 /// Thread safety: all const members may run from many threads at once on one checker.
 class VIEWGAIN_EXPORT FeasibilityChecker {
