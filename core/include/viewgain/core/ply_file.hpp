@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/core/scalar_type.hpp"
+#include "viewgain/core/text.hpp"
 
 // Inline throughout: the readers of clouds and of meshes stand in different libraries.
 namespace viewgain::detail {

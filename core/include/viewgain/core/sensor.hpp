@@ -50,7 +50,8 @@ struct VIEWGAIN_EXPORT Sensor {
 [[nodiscard]] VIEWGAIN_EXPORT Sensor sensor_preset(std::string_view name);
 
 /// sigma_0 [m] of an unknown voxel when the map does not say: max(voxel / 2, 2 sigma_ax at the
-/// working distance, frontal). Throws Error(invalid_argument) unless voxel_size is positive, finite.
+/// working distance, frontal). Throws Error(invalid_argument) unless voxel_size is positive,
+/// finite.
 [[nodiscard]] VIEWGAIN_EXPORT double default_prior_sigma(double voxel_size, const Sensor& sensor);
 
 }  // namespace viewgain

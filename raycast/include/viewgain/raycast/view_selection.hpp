@@ -32,8 +32,8 @@ struct VIEWGAIN_EXPORT RaceConfig {
   double interval = 2.25;         ///< half width of a pose's confidence interval [standard errors]
   double first_share = 1.0 / 40;  ///< of the tiles in the first round, in (0, 1]; then five times
                                   ///< as many, up to a quarter of all
-  double keep = 0.35;      ///< of the poses that a round leaves at most
-  std::uint64_t seed = 1;  ///< which tiles
+  double keep = 0.35;             ///< of the poses that a round leaves at most
+  std::uint64_t seed = 1;         ///< which tiles
 };
 
 /// Views that are good together, in the order of their choice; see GainEvaluator::best_set().
