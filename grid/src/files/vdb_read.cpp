@@ -39,9 +39,28 @@ using openvdb::Int32Grid;
 using openvdb::Vec3f;
 using openvdb::Vec3SGrid;
 
+/// What a file holds.
 struct Contents {
   openvdb::MetaMap::Ptr metadata;
   openvdb::GridPtrVecPtr grids;
+
+  Contents(openvdb::MetaMap::Ptr metadata_in, openvdb::GridPtrVecPtr grids_in)
+      : metadata(std::move(metadata_in)), grids(std::move(grids_in)) {}
+  Contents(const Contents&) = delete;
+  Contents& operator=(const Contents&) = delete;
+  ~Contents() {
+    for (const auto& grid : *grids) {
+      take_down_a<FloatGrid>(*grid);
+      take_down_a<Int32Grid>(*grid);
+      take_down_a<Vec3SGrid>(*grid);
+    }
+  }
+
+ private:
+  template <typename Grid>
+  static void take_down_a(openvdb::GridBase& grid) {
+    if (grid.isType<Grid>()) take_down(static_cast<Grid&>(grid).tree());
+  }
 };
 
 class Loader {
@@ -77,7 +96,7 @@ class Loader {
     stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
     try {
       openvdb::io::Stream archive(stream, /*delayLoad=*/false);
-      return {archive.getMetadata(), archive.getGrids()};
+      return Contents(archive.getMetadata(), archive.getGrids());
     } catch (const std::ios_base::failure&) {
       fail("is truncated or corrupt");
     } catch (const std::bad_alloc&) {

@@ -60,7 +60,10 @@ class GridSet {
 
   template <typename Grid>
   typename Grid::TreeType& add(const char* name) {
-    auto grid = Grid::create();
+    const typename Grid::Ptr grid(new Grid, [](Grid* last) {
+      take_down(last->tree());
+      delete last;
+    });
     grid->setName(name);
     grid->setCreator("viewgain");
     grid->setTransform(transform_);
@@ -175,22 +178,6 @@ void put_beliefs(const GridStorage& s, GridSet& set, bool with_covariance) {
   if (with_covariance) put_covariances(s, set);
 }
 
-/// Memory that is given back when memory runs out: to take down a tree OpenVDB makes a list of its
-/// leaves, and where there is none for that the process ends.
-class Reserve {
- public:
-  // Not by a new expression: a compiler may leave one out whose memory nobody uses.
-  explicit Reserve(std::size_t leaves) : bytes_(::operator new(kAlways + kPerLeaf * leaves)) {}
-
- private:
-  struct Free {
-    void operator()(void* bytes) const { ::operator delete(bytes); }
-  };
-  static constexpr std::size_t kAlways = std::size_t{1} << 20U;
-  static constexpr std::size_t kPerLeaf = 4 * sizeof(void*);  // a list that grows by doubling
-  std::unique_ptr<void, Free> bytes_;
-};
-
 }  // namespace
 
 void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
@@ -200,7 +187,6 @@ void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
     initialize_openvdb();
     const GridStorage& s = GridAccess::storage(grid);
     GridSet set(make_transform(s));
-    const Reserve reserve(s.tree.leafCount());  // behind the grids, so that it goes before them
     put_states(s, set);
     put_beliefs(s, set, config.with_covariance);
     const std::string image = MemoryArchive().image(set.grids(), make_metadata(s));

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -56,6 +57,42 @@ void check_value(const GridStorage& s, const VoxelValue& value) {
   if (!value.belief) return;
   const std::string fault = fault_of_belief(*value.belief, s.voxel_size);
   if (!fault.empty()) fail("belief " + fault);
+}
+
+/// A value and the key of its block.
+using KeyedValue = std::pair<std::uint64_t, const VoxelValue*>;
+
+/// Sets voxels of one block; of those given twice the last counts.
+void set_in_block(GridStorage& s, std::span<const KeyedValue> values) {
+  const std::uint64_t key = values.front().first;
+  s.mark_changed(key);
+  const BeliefBlock* block = s.find_beliefs(key);
+  LeafMask mask = block != nullptr ? block->mask : LeafMask{};
+  for (const auto& [_, value] : values) {
+    const std::uint8_t code = log_odds_code(value->log_odds);
+    if (is_non_free(code)) {
+      s.tree.setValueOn(to_coord(value->voxel), code);
+    } else {
+      s.tree.setValueOff(to_coord(value->voxel), code);
+    }
+    const unsigned offset = block_offset(value->voxel);
+    const std::uint64_t bit = std::uint64_t{1} << (offset & 63U);
+    std::uint64_t& word = mask[offset >> 6U];
+    word = value->belief ? word | bit : word & ~bit;
+  }
+  if (mask == LeafMask{}) {
+    s.beliefs.erase(key);
+    return;
+  }
+  auto changed = reshaped(block, mask);
+  for (const auto& [_, value] : values) {
+    const unsigned offset = block_offset(value->voxel);
+    // A later value of the same voxel may have none.
+    if (value->belief && test_bit(mask, offset)) {
+      changed->beliefs[changed->rank(offset)] = *value->belief;
+    }
+  }
+  s.beliefs[key] = std::move(changed);
 }
 
 }  // namespace
@@ -182,7 +219,10 @@ std::optional<Belief> BeliefGrid::belief(Index3 voxel) const {
 
 void BeliefGrid::set(Index3 voxel, float log_odds, const std::optional<Belief>& belief) {
   const VoxelValue value{voxel, log_odds, belief};
-  set(std::span(&value, 1));
+  check_value(*storage_, value);
+  const KeyedValue keyed(storage_->lattice.key(voxel), &value);
+  set_in_block(*storage_, std::span(&keyed, 1));
+  ++storage_->time;
 }
 
 void BeliefGrid::set(std::span<const VoxelValue> voxels) {
@@ -190,43 +230,15 @@ void BeliefGrid::set(std::span<const VoxelValue> voxels) {
   for (const VoxelValue& value : voxels) check_value(s, value);
 
   // Block by block, so that its beliefs are copied once.
-  std::vector<std::pair<std::uint64_t, const VoxelValue*>> by_block;
+  std::vector<KeyedValue> by_block;
   by_block.reserve(voxels.size());
   for (const VoxelValue& value : voxels) by_block.emplace_back(s.lattice.key(value.voxel), &value);
   std::stable_sort(by_block.begin(), by_block.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   for (auto first = by_block.begin(), last = first; first != by_block.end(); first = last) {
-    const std::uint64_t key = first->first;
-    last = std::find_if(first, by_block.end(), [&](const auto& v) { return v.first != key; });
-    s.mark_changed(key);
-    const BeliefBlock* block = s.find_beliefs(key);
-    LeafMask mask = block != nullptr ? block->mask : LeafMask{};
-    for (auto it = first; it != last; ++it) {
-      const VoxelValue& value = *it->second;
-      const std::uint8_t code = log_odds_code(value.log_odds);
-      if (is_non_free(code)) {
-        s.tree.setValueOn(to_coord(value.voxel), code);
-      } else {
-        s.tree.setValueOff(to_coord(value.voxel), code);
-      }
-      const unsigned offset = block_offset(value.voxel);
-      const std::uint64_t bit = std::uint64_t{1} << (offset & 63U);
-      std::uint64_t& word = mask[offset >> 6U];
-      word = value.belief ? word | bit : word & ~bit;
-    }
-    if (mask == LeafMask{}) {
-      s.beliefs.erase(key);
-      continue;
-    }
-    auto changed = reshaped(block, mask);
-    for (auto it = first; it != last; ++it) {
-      const unsigned offset = block_offset(it->second->voxel);
-      // A later value of the same voxel may have none.
-      if (it->second->belief && test_bit(mask, offset)) {
-        changed->beliefs[changed->rank(offset)] = *it->second->belief;
-      }
-    }
-    s.beliefs[key] = std::move(changed);
+    last = std::find_if(first, by_block.end(),
+                        [&](const auto& value) { return value.first != first->first; });
+    set_in_block(s, std::span(first, last));
   }
   ++s.time;
 }

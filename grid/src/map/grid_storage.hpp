@@ -43,6 +43,13 @@ inline constexpr openvdb::Index kNodeTileLevel = 2;
   return words;
 }
 
+/// Empties a tree in this thread. OpenVDB's own destructor first makes a list of the leaves and
+/// asks for threads to delete them, and where there is no memory for that the process ends.
+template <typename Tree>
+void take_down(Tree& tree) noexcept {
+  tree.root().clear();
+}
+
 /// What a BeliefGrid holds.
 struct GridStorage {
   double voxel_size = 0;
@@ -85,6 +92,7 @@ struct GridStorage {
   GridStorage(double voxel_size, const Pose& T_world_grid, double prior_sigma, Index3 min_index,
               Index3 dims);
   GridStorage(const GridStorage&) = default;
+  ~GridStorage() { take_down(tree); }
   [[nodiscard]] std::unique_ptr<GridStorage> copy() const;
 
   [[nodiscard]] const BeliefBlock* find_beliefs(std::uint64_t key) const {

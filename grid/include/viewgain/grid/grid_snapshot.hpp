@@ -29,7 +29,7 @@ struct VIEWGAIN_EXPORT SnapshotLeaf {
 struct VIEWGAIN_EXPORT SnapshotRegion {
   std::uint64_t number = 0;   ///< lists of regions rise in it; the same in all snapshots of a grid
   std::uint64_t changed = 0;  ///< when its voxels changed last
-  std::uint32_t first_leaf = 0;
+  std::uint32_t first_leaf = 0;  ///< a region's leaves rise in their origin's x, then y, then z
   std::uint32_t first_tile = 0;
 };
 
