@@ -118,6 +118,17 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
   best.scored_gains.resize(best.scored_indices.size());
   best.complete = detail::evaluate_some(driver, T_world_camera, best.scored_indices,
                                         best.scored_gains, control);
+  if (!best.complete) {
+    // Those that were not reached look like bad poses.
+    std::size_t kept = 0;
+    for (std::size_t j = 0; j < best.scored_gains.size(); ++j) {
+      if (std::isnan(best.scored_gains[j].gain)) continue;
+      best.scored_indices[kept] = best.scored_indices[j];
+      best.scored_gains[kept++] = best.scored_gains[j];
+    }
+    best.scored_indices.resize(kept);
+    best.scored_gains.resize(kept);
+  }
   best.rays_traced += best.scored_indices.size() * std::uint64_t{driver.core()->ray_count};
   for (const std::size_t j : best_indices(best.scored_gains, k)) {
     best.indices.push_back(best.scored_indices[j]);

@@ -52,7 +52,7 @@ std::vector<VoxelContribution> GainEvaluator::contributions(const Pose& T_world_
   detail::ViewDriver::Lease lease(impl_->driver);
   ContributionConsumer consumer{impl_->driver, lease.accumulator()};
   impl_->driver.view(T_world_camera, lease, consumer);
-  // Ascending; a gain beyond double precision comes last.
+  // The largest gain first; one beyond double precision comes last.
   const auto order = [](const VoxelContribution& c) {
     return std::tuple(std::isnan(c.gain) ? std::numeric_limits<double>::infinity() : -c.gain,
                       c.voxel.x, c.voxel.y, c.voxel.z);

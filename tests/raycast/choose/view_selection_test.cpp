@@ -206,6 +206,46 @@ TEST(Race, TakesOddRequestsAndRefusesBadOnes) {
   EXPECT_THROW((void)evaluator.race(poses, 1, {.keep = 2}), Error);
 }
 
+TEST(Race, StoppedInItsLastStageHasTheBestOfThoseScored) {
+  const GainEvaluator evaluator(VoxelScene::build(lump(3)), larger_sensor(), {},
+                                {.num_threads = 1});
+  const std::vector<Pose> poses = sphere_poses(200, 0.6);
+  int asked = 0;
+  const RacedViews whole = evaluator.race(poses, 5, {}, {.is_cancelled = [&] {
+                                            ++asked;
+                                            return false;
+                                          }});
+  const std::size_t survivors = whole.scored_indices.size();
+  ASSERT_GE(survivors, 20U);
+  const std::uint64_t rays = evaluator.rays_per_pose();
+  int cases = 0;
+  for (const std::size_t scored : {std::size_t{0}, std::size_t{3}, survivors - 1}) {
+    SCOPED_TRACE(scored);
+    // It is asked before each pose, and the last stage comes last.
+    const int allowed = asked - static_cast<int>(survivors - scored);
+    int again = 0;
+    const RacedViews part =
+        evaluator.race(poses, 5, {}, {.is_cancelled = [&] { return ++again > allowed; }});
+    EXPECT_FALSE(part.complete);
+    ASSERT_EQ(part.scored_indices.size(), scored);
+    ASSERT_EQ(part.scored_gains.size(), scored);
+    for (std::size_t j = 0; j < scored; ++j) {
+      EXPECT_EQ(part.scored_indices[j], whole.scored_indices[j]);
+      EXPECT_TRUE(test::same_bits(part.scored_gains[j], whole.scored_gains[j]));
+    }
+    ASSERT_EQ(part.indices.size(), std::min<std::size_t>(5, scored));
+    ASSERT_EQ(part.gains.size(), part.indices.size());
+    const std::vector<std::size_t> best = best_indices(part.scored_gains, 5);
+    for (std::size_t j = 0; j < best.size(); ++j) {
+      EXPECT_EQ(part.indices[j], part.scored_indices[best[j]]);
+      EXPECT_TRUE(test::same_bits(part.gains[j], part.scored_gains[best[j]]));
+    }
+    EXPECT_EQ(whole.rays_traced - part.rays_traced, (survivors - scored) * rays);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
 TEST(Race, HasARoundHoweverLargeItsFirstShare) {
   const GainEvaluator evaluator(VoxelScene::build(lump(3)), larger_sensor());
   const std::vector<Pose> poses = sphere_poses(200, 0.6);

@@ -144,9 +144,11 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// rest. The survivors (32 or 4 k at least) are scored in full, so gains reported are exact.
   /// Small bundles count rays of different tiles as if they never met in a voxel, which favours
   /// views from near by a little. Works with obstacles, weights and distortion. Deterministic for a
-  /// seed and any number of threads. Throws Error(invalid_argument), naming the value, for a config
-  /// out of range. control.progress counts poses that are out, after each round. Stopped in a
-  /// round, it returns nothing and is not `complete`.
+  /// seed and any number of threads. control.progress counts poses that are out, after each round.
+  /// Stopped in a round, it returns nothing, stopped while the survivors are scored the best of
+  /// those that were; either is not `complete`. Throws Error(invalid_argument), naming the value,
+  /// for a config out of range; Error(backend), Error(capacity) as VoxelScene::build(), if the
+  /// scene's BVH is wanted and not there yet.
   [[nodiscard]] RacedViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                 const RaceConfig& config = {},
                                 const BatchControl& control = {}) const;
@@ -172,7 +174,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// than each. Bad poses: NaN. Deterministic for a seed and any number of threads. Returns how
   /// many poses were estimated: fewer than all if a stop was requested; none if that was
   /// before the correction, which comes first, was known. Throws Error(invalid_argument) for a
-  /// config out of range or if the sizes differ.
+  /// config out of range or if the sizes differ; Error(backend), Error(capacity) as race().
   std::size_t approximate(std::span<const Pose> T_world_camera, std::span<ApproximateGain> results,
                           const ApproximateConfig& config = {},
                           const BatchControl& control = {}) const;

@@ -30,9 +30,10 @@ struct VIEWGAIN_EXPORT Obstacles {
 
 /// An immutable scene to trace: the voxels of a grid that are not free, sorted for lists of what a
 /// view's tiles can meet, and obstacles. Embree's BVH of all of it is built with the scene if there
-/// are obstacles, else with the first evaluator whose camera has lens distortion. Owns all that it
-/// reads; the grid may change or go. Copying a shared_ptr of it is how to share it. Thread safety:
-/// all members are const and may run from many threads.
+/// are obstacles, else with the first evaluator whose camera has lens distortion, or by the first
+/// race() or approximate() that traces a small share of a view's tiles. Owns all that it reads; the
+/// grid may change or go. Copying a shared_ptr of it is how to share it. Thread safety: all members
+/// are const and may run from many threads.
 class VIEWGAIN_EXPORT VoxelScene {
  public:
   /// Takes a snapshot of the grid and sorts it (about 0.2 ms per 1,000 leaves; with a BVH 0.5 ms).
