@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <clocale>
 #include <limits>
-#include <locale>
 #include <string>
 
+#include "comma_locale.hpp"
 #include "expect_error.hpp"
 #include "temporary_folder.hpp"
 #include "viewgain/core/pose_io.hpp"
@@ -16,36 +15,13 @@
 namespace viewgain {
 namespace {
 
-struct CommaPunctuation : std::numpunct<char> {
-  char do_decimal_point() const override { return ','; }
-  char do_thousands_sep() const override { return '.'; }
-  std::string do_grouping() const override { return "\3"; }
-};
-
-/// Commas for decimals in C++ streams always, in the C library where such a locale is installed.
-class CommaLocale {
- public:
-  CommaLocale() : old_(std::locale::global(std::locale(std::locale(), new CommaPunctuation))) {
-    for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8"}) {
-      if (std::setlocale(LC_NUMERIC, name) != nullptr) break;
-    }
-  }
-  ~CommaLocale() {
-    std::locale::global(old_);
-    std::setlocale(LC_NUMERIC, "C");
-  }
-
- private:
-  std::locale old_;
-};
-
 TEST(Locale, DoesNotReachPoseFiles) {
   const test::TemporaryFolder folder;
   std::vector<Pose> poses(1500);  // indices with a thousands separator, if one crept in
   for (std::size_t i = 0; i < poses.size(); ++i) poses[i].m[3] = 1234.5 + static_cast<double>(i);
   write_tum(folder.path() / "plain.txt", poses);
   {
-    const CommaLocale locale;
+    const test::CommaLocale locale;
     write_tum(folder.path() / "comma.txt", poses);
     const PoseList list = read_tum(folder.path() / "plain.txt");
     EXPECT_EQ(list.poses, poses);
@@ -60,7 +36,7 @@ TEST(Locale, DoesNotReachPoseFiles) {
 TEST(Locale, DoesNotReachMessages) {
   Sensor sensor = sensor_preset("sr4000");
   sensor.min_range = -1234.5;
-  const CommaLocale locale;
+  const test::CommaLocale locale;
   test::expect_error(ErrorCode::invalid_argument, "not -1234.5", [&] { sensor.validate(); });
   EXPECT_EQ(short_text(0.1), "0.1");
   EXPECT_EQ(short_text(1.52F), "1.52");

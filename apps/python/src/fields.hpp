@@ -2,28 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sstream>
 #include <string>
+
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::python {
 
 /// The text of a repr(): name=value, name=value.
 class Fields {
  public:
-  template <typename T>
-  Fields& add(const char* name, const T& value) {
-    if (!first_) text_ << ", ";
-    first_ = false;
-    text_ << name << '=' << value;
+  Fields& add(const char* name, double value) {
+    if (!text_.empty()) text_ += ", ";
+    text_.append(name).append("=").append(short_text(value));
     return *this;
   }
   [[nodiscard]] std::string in(const char* type) const {
-    return std::string(type) + "(" + text_.str() + ")";
+    return std::string(type) + "(" + text_ + ")";
   }
 
  private:
-  std::ostringstream text_;
-  bool first_ = true;
+  std::string text_;
 };
 
 }  // namespace viewgain::python

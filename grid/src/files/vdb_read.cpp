@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <locale>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -378,10 +377,8 @@ class Loader {
     belief.hits = hits;
     const std::string fault = fault_of_belief(belief, voxel_size);
     if (!fault.empty()) {
-      std::ostringstream text;
-      text.imbue(std::locale::classic());
-      text << "belief at voxel " << at << ' ' << fault;
-      fail(text.str());
+      fail("belief at voxel [" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " +
+           std::to_string(at.z()) + "] " + fault);
     }
     return belief;
   }

@@ -6,18 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <locale>
-#include <sstream>
+#include <string>
+
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::detail {
 namespace {
 
-template <typename Value>
-std::string has(const char* what, Value value) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << "has " << what << value;
-  return text.str();
+std::string has(const char* what, const std::string& value) {
+  return std::string("has ") + what + value;
 }
 
 /// Bound on how far the sum of `hits` readings may be from positive semidefinite, its information
@@ -35,15 +32,16 @@ std::string fault_of_belief(const Belief& belief, double voxel_size) {
   bool is_clamped = false;
   for (std::size_t i = 0; i < 6; ++i) {
     const float value = belief.information[i];
-    if (!std::isfinite(value) || (i < 3 && value < 0)) return has("an information of ", value);
+    if (!std::isfinite(value) || (i < 3 && value < 0))
+      return has("an information of ", short_text(value));
     is_clamped = is_clamped || std::abs(value) == kMost;
   }
   for (const float value : belief.information_vector) {
-    if (!std::isfinite(value)) return has("an information vector of ", value);
+    if (!std::isfinite(value)) return has("an information vector of ", short_text(value));
     is_clamped = is_clamped || std::abs(value) == kMost;
   }
   if (belief.hits > static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max())) {
-    return has("more than 2147483647 hits: ", belief.hits);
+    return has("more than 2147483647 hits: ", std::to_string(belief.hits));
   }
   // Sums that would overflow stay where they are; no more can be said of them.
   if (is_clamped) return {};
@@ -67,7 +65,8 @@ std::string fault_of_belief(const Belief& belief, double voxel_size) {
   const Eigen::Vector3d offset =
       scale.cwiseProduct(factors.solve(scale.cwiseProduct(vector))) / voxel_size;
   const double farthest = offset.cwiseAbs().maxCoeff();
-  if (!(farthest <= kFarthest)) return has("a place that many voxels off its own: ", farthest);
+  if (!(farthest <= kFarthest))
+    return has("a place that many voxels off its own: ", short_text(farthest));
   return {};
 }
 

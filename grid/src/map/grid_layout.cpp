@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <locale>
-#include <sstream>
+#include <string>
 #include <utility>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -20,12 +20,14 @@ constexpr std::int32_t kMaxDim = 65536;
 constexpr double kMaxVoxels = 1099511627776.0;  // 2^40
 constexpr double kMaxIndex = 1073741824.0;      // 2^30
 
+std::string text_of(const char* words) { return words; }
+std::string text_of(char letter) { return std::string(1, letter); }
+std::string text_of(double value) { return short_text(value); }
+std::string text_of(std::int32_t value) { return std::to_string(value); }
+
 template <typename... Parts>
 [[noreturn]] void fail(ErrorCode code, const Parts&... parts) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  (text << ... << parts);
-  throw Error(code, text.str());
+  throw Error(code, (... + text_of(parts)));
 }
 
 void check_positive(const char* name, double value) {

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rigid_view.hpp"
 
-#include <locale>
-#include <sstream>
+#include <string>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::detail {
 
@@ -14,10 +14,8 @@ Pose rigid_view(const Pose& T_world_camera) {
   constexpr double kOrthonormal = 1e-12;  // rotations nearer to orthonormal are taken as they are
   const double error = orthonormality_error(T_world_camera);
   if (!(error <= kTolerance)) {
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text << "camera pose is not rigid: its rotation is off by " << error;
-    throw Error(ErrorCode::invalid_argument, text.str());
+    throw Error(ErrorCode::invalid_argument,
+                "camera pose is not rigid: its rotation is off by " + short_text(error));
   }
   return error <= kOrthonormal ? T_world_camera : orthonormalized(T_world_camera);
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <sstream>
+#include <string>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/text.hpp"
@@ -26,10 +26,10 @@ RangeCalibration measure_calibration(const Sensor& sensor, const SimulationConfi
   sensor.validate();
   if (!(count >= 2 && min_range > 0 && min_range < max_range && min_range >= sensor.min_range &&
         max_range <= sensor.max_range && max_range < unambiguous_range(sensor.noise))) {
-    std::ostringstream text;
-    text << "cannot calibrate " << sensor.name << " at " << count << " ranges from " << min_range
-         << " to " << max_range << " m";
-    throw Error(ErrorCode::invalid_argument, text.str());
+    throw Error(ErrorCode::invalid_argument, "cannot calibrate " + sensor.name + " at " +
+                                                 std::to_string(count) + " ranges from " +
+                                                 short_text(min_range) + " to " +
+                                                 short_text(max_range) + " m");
   }
   // One pixel that looks straight ahead, and that reads on where the error leaves the range limits.
   Sensor probe = sensor;

@@ -3,10 +3,11 @@
 #include "viewgain/raycast/depth_image.hpp"
 
 #include <limits>
-#include <sstream>
+#include <string>
 
 #include "trace/ray_tile.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 
@@ -15,10 +16,9 @@ DepthImage depth_image(const GainEvaluator& evaluator, const Pose& T_world_camer
   const int stride = evaluator.pixel_stride();
   const std::vector<RayHit> hits = evaluator.trace(T_world_camera);
   if (hits.empty()) {
-    std::ostringstream text;
-    text << "the pose of a depth image is off from a rigid transform by "
-         << orthonormality_error(T_world_camera) << "; 1e-3 is allowed";
-    throw Error(ErrorCode::invalid_argument, text.str());
+    throw Error(ErrorCode::invalid_argument,
+                "the pose of a depth image is off from a rigid transform by " +
+                    short_text(orthonormality_error(T_world_camera)) + "; 1e-3 is allowed");
   }
   DepthImage image;
   image.width = detail::strided(camera.width, stride);

@@ -4,7 +4,6 @@
 
 #include <bit>
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include "viewgain/core/error.hpp"
@@ -46,10 +45,9 @@ void check(const GainConfig& config, const Sensor& sensor) {
     const MeasurementSigmas sigma = sensor.sigmas(t);
     const double ratio = sigma.axial / sigma.lateral;
     if (!(ratio <= kMaxSigmaRatio && ratio >= 1 / kMaxSigmaRatio)) {
-      std::ostringstream text;
-      text << "the sensor's sigmas at " << t << " m, " << sigma.axial << " m along the ray and "
-           << sigma.lateral << " m across, differ by more than a factor of " << kMaxSigmaRatio;
-      reject(text.str());
+      reject("the sensor's sigmas at " + short_text(t) + " m, " + short_text(sigma.axial) +
+             " m along the ray and " + short_text(sigma.lateral) +
+             " m across, differ by more than a factor of " + short_text(kMaxSigmaRatio));
     }
   }
   for (const WeightRegion& region : config.weights) {
@@ -88,10 +86,8 @@ EvaluatorCore::EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config
 double EvaluatorCore::prior_sigma_in(const VoxelScene& scene) const {
   const double prior_sigma = config.prior_sigma.value_or(scene.snapshot().prior_sigma);
   if (!(prior_sigma >= kMinPriorSigma && prior_sigma <= kMaxPriorSigma)) {
-    std::ostringstream text;
-    text << "prior sigma is " << prior_sigma << " m; it must be in " << kMinPriorSigma << ".."
-         << kMaxPriorSigma << " m";
-    reject(text.str());
+    reject("prior sigma is " + short_text(prior_sigma) + " m; it must be in " +
+           short_text(kMinPriorSigma) + ".." + short_text(kMaxPriorSigma) + " m");
   }
   return prior_sigma;
 }

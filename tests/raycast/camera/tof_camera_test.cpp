@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "core/comma_locale.hpp"
+#include "core/expect_error.hpp"
 #include "surface_makers.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
@@ -227,6 +229,11 @@ TEST(TofCamera, RefusesBadConfigurations) {
   refused(sensor, {.calibration = {{{2, 0}, {1, 0}}}}, "rise");
   refused(sensor, {.support_plane = std::nan("")}, "nan");
   EXPECT_THROW((void)measure_calibration(sensor, {}, 0.5, 1.0, 1), Error);
+  {
+    const test::CommaLocale locale;
+    test::expect_error(ErrorCode::invalid_argument, " at 1234 ranges from 1.5 to 0.5 m",
+                       [&] { (void)measure_calibration(sensor, {}, 1.5, 0.5, 1234); });
+  }
   EXPECT_THROW((void)measure_calibration(sensor, {}, 1.0, 0.5, 9), Error);
   EXPECT_THROW((void)measure_calibration(sensor, {}, 0.1, 1.0, 9), Error);
   EXPECT_THROW((void)measure_calibration(sensor, {}, 0.5, 4.999, 9), Error);

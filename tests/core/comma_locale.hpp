@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <clocale>
+#include <locale>
+#include <string>
+
+namespace viewgain::test {
+
+struct CommaPunctuation : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+/// Commas for decimals in C++ streams always, in the C library where such a locale is installed.
+class CommaLocale {
+ public:
+  CommaLocale() : old_(std::locale::global(std::locale(std::locale(), new CommaPunctuation))) {
+    for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8"}) {
+      if (std::setlocale(LC_NUMERIC, name) != nullptr) break;
+    }
+  }
+  ~CommaLocale() {
+    std::locale::global(old_);
+    std::setlocale(LC_NUMERIC, "C");
+  }
+
+ private:
+  std::locale old_;
+};
+
+}  // namespace viewgain::test
