@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
 
 #include "point_arrays.hpp"
 #include "viewgain/core/generators.hpp"
@@ -19,6 +20,7 @@ constexpr std::uint64_t kSeed = 1;  // of the samples
 const double kMinCosine = std::cos(80.0 * std::numbers::pi / 180);
 constexpr double kNear = 5e-3, kNearer = 2.5e-3;  // [m]
 constexpr double kStep = 2.5e-3;                  // between distances that are looked at [m]
+constexpr int kMostSteps = 20'000;                // each way, 50 m
 
 // The pose at another distance from the centre [m].
 Pose moved(const Pose& pose, const Eigen::Vector3d& center, double distance) {
@@ -26,14 +28,20 @@ Pose moved(const Pose& pose, const Eigen::Vector3d& center, double distance) {
   return {pose.rotation(), center + distance * away};
 }
 
-// The distances that a camera may have, the wanted one and then the others, nearest to it first.
-std::vector<double> distances_by_nearness(double wanted, double least, double most) {
-  std::vector<double> distances{wanted};
-  for (int k = 1; wanted + k * kStep <= most || wanted - k * kStep >= least; ++k) {
-    if (wanted + k * kStep <= most) distances.push_back(wanted + k * kStep);
-    if (wanted - k * kStep >= least) distances.push_back(wanted - k * kStep);
+// The pose at the possible distance from the centre that is nearest to the wanted one.
+template <typename Possible>
+std::optional<Pose> moved_into_reach(const Pose& pose, const VisibilityConfig& config, double least,
+                                     double most, const Possible& possible) {
+  for (int k = 1; k <= kMostSteps; ++k) {
+    const double farther = config.distance + k * kStep, nearer = config.distance - k * kStep;
+    if (farther > most && nearer < least) break;
+    for (const double distance : {farther, nearer}) {
+      if (distance > most || distance < least) continue;
+      const Pose there = moved(pose, config.center, distance);
+      if (possible(there)) return there;
+    }
   }
-  return distances;
+  return std::nullopt;
 }
 
 double radius_round(const TriangleMesh& mesh, const Eigen::Vector3d& center) {
@@ -58,16 +66,13 @@ std::vector<Pose> looking_poses(const VisibilityConfig& config, const Sensor& se
     return poses;
   }
   const double radius = radius_round(mesh, config.center);
-  const std::vector<double> distances =
-      distances_by_nearness(config.distance, radius, radius + sensor.max_range);
   for (const Pose& pose : sphere_poses(kPoses, config.distance, config.center)) {
     if (possible(pose)) {
       poses.push_back(pose);
     } else if (!config.reach.contains(pose)) {
-      const auto in_reach = std::find_if(distances.begin(), distances.end(), [&](double distance) {
-        return possible(moved(pose, config.center, distance));
-      });
-      if (in_reach != distances.end()) poses.push_back(moved(pose, config.center, *in_reach));
+      const std::optional<Pose> in_reach =
+          moved_into_reach(pose, config, radius, radius + sensor.max_range, possible);
+      if (in_reach) poses.push_back(*in_reach);
     }
   }
   return poses;
@@ -81,12 +86,7 @@ bool sees(const SurfaceScene& scene, const Sensor& sensor, const Pose& T_world_c
   if (!(range > sensor.min_range && range < sensor.max_range)) return false;
   if (std::abs(sight.dot(sample.normal)) < kMinCosine * range) return false;
   const Eigen::Vector3d p_camera = T_world_camera.inverse() * sample.position;
-  if (!(p_camera.z() > 0)) return false;
-  const Eigen::Vector2d pixel = sensor.camera.project(p_camera);
-  if (!(pixel.x() >= -0.5 && pixel.x() <= sensor.camera.width - 0.5 && pixel.y() >= -0.5 &&
-        pixel.y() <= sensor.camera.height - 0.5)) {
-    return false;
-  }
+  if (!sensor.camera.sees(p_camera)) return false;
   const double slack = 1e-4 * range;  // the sample's own triangle does not hide it
   return scene.intersect(eye, sight / range, range).range >= range - slack;
 }

@@ -42,8 +42,8 @@ struct VisibilityConfig {
 /// A ground-truth mesh and which of its samples a camera can see: unoccluded, inside the image and
 /// the range limits, at under 80°, from the start or one of 2,562 Fibonacci poses. A pose that is
 /// out of reach moves along its line of sight to the reachable distance that is nearest to the
-/// wanted one, in steps of 2.5 mm, outside of the sphere round the mesh; it is left out if there is
-/// none. Where the reachable region has a list of poses, those count instead.
+/// wanted one, in steps of 2.5 mm, at most 50 m and outside of the sphere round the mesh; it is
+/// left out if there is none. Where the reachable region has a list of poses, those count instead.
 class Truth {
  public:
   Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,

@@ -18,11 +18,9 @@ ViewSight::ViewSight(std::shared_ptr<const VoxelScene> scene, const Sensor& sens
 
 bool ViewSight::sees(std::size_t view, const Eigen::Vector3d& point) {
   const Eigen::Vector3d p_camera = views_[view].inverse() * point;
-  if (!(p_camera.z() > 0)) return false;
   const PinholeCamera& camera = sensor_.camera;
+  if (!camera.sees(p_camera)) return false;
   const Eigen::Vector2d pixel = camera.project(p_camera);
-  const auto in = [](double x, int size) { return x >= -0.5 && x < size - 0.5; };
-  if (!in(pixel.x(), camera.width) || !in(pixel.y(), camera.height)) return false;
 
   if (!traced_[view]) traced_[view] = evaluator_.trace(views_[view]);
   const std::vector<RayHit>& hits = *traced_[view];

@@ -134,6 +134,14 @@ void PinholeCamera::project(const Eigen::Vector3d& p_camera, double& u, double& 
   v = fy * p.y() + cy;
 }
 
+bool PinholeCamera::sees(const Eigen::Vector3d& p_camera) const {
+  constexpr double kSameRay = 1e-6;  // of normalised coordinates
+  double u = 0, v = 0;
+  project(p_camera, u, v);
+  if (!(u >= -0.5 && u < width - 0.5 && v >= -0.5 && v < height - 0.5)) return false;
+  return !has_distortion() || (ray(u, v) - p_camera / p_camera.z()).norm() < kSameRay;
+}
+
 std::vector<Eigen::Vector3d> PinholeCamera::ray_table() const {
   std::vector<Eigen::Vector3d> table;
   table.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

@@ -179,6 +179,38 @@ TEST(PinholeCamera, FollowsTheBranchUpToTheFold) {
   EXPECT_EQ(cases, 120);
 }
 
+TEST(PinholeCamera, SeesWhatIsInFrontAndWithinTheOuterEdgesOfThePixels) {
+  const PinholeCamera camera = {
+      .width = 64, .height = 48, .fx = 64, .fy = 64, .cx = 31.5, .cy = 23.5, .distortion = {}};
+  const auto at = [&](double u, double v) {
+    return Eigen::Vector3d(2 * (u - camera.cx) / camera.fx, 2 * (v - camera.cy) / camera.fy, 2);
+  };
+  EXPECT_TRUE(camera.sees(at(-0.5, -0.5)));
+  EXPECT_TRUE(camera.sees(at(63.4375, 47.4375)));
+  EXPECT_FALSE(camera.sees(at(63.5, 20)));
+  EXPECT_FALSE(camera.sees(at(20, 47.5)));
+  EXPECT_FALSE(camera.sees(at(-0.5625, 20)));
+  EXPECT_FALSE(camera.sees(at(20, -0.5625)));
+  EXPECT_FALSE(camera.sees({0, 0, 0}));
+  EXPECT_FALSE(camera.sees({0, 0, -1}));
+  EXPECT_FALSE(camera.sees({std::numeric_limits<double>::quiet_NaN(), 0, 1}));
+}
+
+TEST(PinholeCamera, DoesNotSeeWhatTheLensFoldsIntoTheImage) {
+  // r (1 - 0.6 r²) turns at r = 0.745 and is 0 again at 1.291.
+  const PinholeCamera camera = small_camera({-0.6, 0, 0, 0, 0});
+  int seen = 0, folded = 0;
+  for (int i = 0; i <= 150; ++i) {
+    const double r = 0.01 * i;
+    const Eigen::Vector2d pixel = camera.project({0, r, 1});
+    if (!(pixel.y() >= -0.5 && pixel.y() < camera.height - 0.5)) continue;
+    EXPECT_EQ(camera.sees(Eigen::Vector3d(0, r, 1) * 3), r < 0.74) << r;
+    ++(r < 0.74 ? seen : folded);
+  }
+  EXPECT_GT(seen, 40);
+  EXPECT_GT(folded, 20);
+}
+
 TEST(PinholeCamera, ProjectBehindTheCameraIsNan) {
   EXPECT_TRUE(std::isnan(small_camera().project({1, 1, 0}).x()));
   EXPECT_TRUE(std::isnan(small_camera().project({1, 1, -1}).y()));

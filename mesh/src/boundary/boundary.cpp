@@ -75,14 +75,7 @@ class EdgeClassifier {
     const Eigen::Vector3d p = view.T_camera_world * p_world;
     const double range = p.norm();
     if (!(range >= sensor_.min_range && range <= sensor_.max_range)) return false;
-    const PinholeCamera& camera = sensor_.camera;
-    const Eigen::Vector2d pixel = camera.project(p);
-    if (!(pixel.x() >= -0.5 && pixel.x() < camera.width - 0.5 && pixel.y() >= -0.5 &&
-          pixel.y() < camera.height - 0.5)) {
-      return false;
-    }
-    // Distortion may fold a point from far outside into the image.
-    return !camera.has_distortion() || (camera.ray(pixel.x(), pixel.y()) - p / p.z()).norm() < 1e-6;
+    return sensor_.camera.sees(p);
   }
 
   const Sensor& sensor_;

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "apps/planner/planner_scene.hpp"
@@ -66,6 +68,41 @@ TEST(Truth, NothingInReachLeavesWhatTheStartSees) {
   ReachRegion nowhere;
   nowhere.shells.push_back({{50, 0, 0}, 0, 1});
   EXPECT_NEAR(share_of_the_face(from_the_side(nowhere)), 1, 1e-9);
+}
+
+TEST(Truth, ASensorThatSeesFarTakesNoMoreMemoryAndNoLonger) {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.max_range = 3e6;
+  const auto scene = std::make_shared<const SurfaceScene>(test::box_mesh(kHalf));
+  ReachRegion nowhere, farther;
+  nowhere.shells.push_back({{5000, 0, 0}, 0, 1});
+  farther.shells.push_back({{0, 0, 0}, 40, 41});
+  int cases = 0;
+  for (const auto& [reach, share] :
+       {std::pair(ReachRegion{}, 1.0 / 6), std::pair(nowhere, 1.0), std::pair(farther, 1.0 / 6)}) {
+    const Truth truth(scene, sensor, from_the_side(reach), {});
+    EXPECT_NEAR(truth.figures(seen_face(), {}).coverage_visible, share, 0.03);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
+// A lens whose model turns back at 37° folds what lies beyond into the image.
+TEST(Truth, WhatALensFoldsIntoTheImageIsNotVisible) {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera.distortion = {-0.6, 0, 0, 0, 0};
+  // The start alone counts. It looks past the box, which is at 51° from the axis and is folded to
+  // where 6° are.
+  VisibilityConfig config = from_the_side({});
+  config.start = look_at({0.5, 0, 0}, {0, 0.62, 0});
+  config.reach.shells.push_back({{50, 0, 0}, 0, 1});
+  const Eigen::Vector3d face = config.start.inverse() * Eigen::Vector3d(kHalf, 0, 0);
+  ASSERT_LT(sensor.camera.project(face).x(), sensor.camera.width);
+  ASSERT_GT(sensor.camera.project(face).x(), 0);
+  const auto scene = std::make_shared<const SurfaceScene>(test::box_mesh(kHalf));
+  const Truth truth(scene, sensor, config, {});
+  const double nothing = truth.figures(seen_face(), {}).coverage_visible;
+  EXPECT_TRUE(std::isnan(nothing) || nothing == 0) << nothing;
 }
 
 TEST(Truth, AListOfPosesCountsWhereItIsInReach) {

@@ -22,8 +22,8 @@ struct VIEWGAIN_EXPORT PinholeCamera {
   [[nodiscard]] bool has_distortion() const { return distortion != std::array<double, 5>{}; }
 
   /// Throws Error(invalid_argument), naming the field, unless sizes are in 1..16384 and make at
-  /// most 2^24 pixels (a table of rays takes 24 bytes a pixel), focal lengths are positive and all
-  /// numbers are finite.
+  /// most 2^24 pixels (a table of rays takes 24 bytes per pixel), focal lengths are positive and
+  /// all numbers are finite.
   void validate() const;
 
   /// Direction (x, y, 1) in the camera frame of the ray through pixel coordinates (u, v) [px],
@@ -41,6 +41,12 @@ struct VIEWGAIN_EXPORT PinholeCamera {
   }
   /// The same into u and v.
   void project(const Eigen::Vector3d& p_camera, double& u, double& v) const;
+
+  /// Whether the camera-frame point p [m] is in the image: p.z > 0, its pixel coordinates are in
+  /// [-0.5, width - 0.5) x [-0.5, height - 0.5), and it lies on the ray of those. With distortion
+  /// that last leaves out what is folded into the image from far outside the view. What is in
+  /// between, and the sensor's range limits, are not looked at.
+  [[nodiscard]] bool sees(const Eigen::Vector3d& p_camera) const;
 
   /// ray() of every pixel centre, row by row: directions (x, y, 1), width * height of them.
   [[nodiscard]] std::vector<Eigen::Vector3d> ray_table() const;
