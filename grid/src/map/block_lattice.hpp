@@ -102,10 +102,6 @@ struct BlockLattice : VoxelBox {
   return lattice.intersection(VoxelBox::from_dims(origin, {size, size, size}));
 }
 
-/// Offset of a voxel in its 8³ block: x << 6 | y << 3 | z.
-[[nodiscard]] inline unsigned block_offset(Index3 v) {
-  return static_cast<unsigned>((v.x & 7) << 6 | (v.y & 7) << 3 | (v.z & 7));
-}
 [[nodiscard]] inline Index3 block_origin(Index3 v) { return {v.x & ~7, v.y & ~7, v.z & ~7}; }
 
 [[nodiscard]] inline std::uint64_t count_bits(const LeafMask& mask) {

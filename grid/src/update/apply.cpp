@@ -134,7 +134,7 @@ class RegionUpdate {
     LeafMask mask{};
     for (const Hit& hit : hits_.of(hit_block)) {
       deltas[hit.offset] = kHitDelta;  // beats a crossing
-      mask[hit.offset >> 6U] |= std::uint64_t{1} << (hit.offset & 63U);
+      set_bit(mask, hit.offset);
     }
     result.counts.hit += count_bits(mask);
     *hit_block.beliefs = with_hits(hit_block.beliefs->get(), hits_.of(hit_block), frame_.readings,
@@ -191,7 +191,7 @@ void drop_beliefs_of_unknown(const GridStorage& s, Index3 origin, const BeliefBl
   LeafMask unknown{};
   for_each_bit(made.mask, [&](unsigned offset) {
     if (s.tree.getValue(to_coord(offset_voxel(origin, offset))) == kUnknownCode) {
-      unknown[offset >> 6U] |= std::uint64_t{1} << (offset & 63U);
+      set_bit(unknown, offset);
     }
   });
   if (unknown == LeafMask{}) return;

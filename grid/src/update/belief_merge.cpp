@@ -22,7 +22,7 @@ std::shared_ptr<const BeliefBlock> with_hits(const BeliefBlock* block, std::span
                                              const Readings& pixels, const Pose& T_grid_readings,
                                              Index3 origin, double voxel_size) {
   LeafMask mask = block != nullptr ? block->mask : LeafMask{};
-  for (const Hit& hit : hits) mask[hit.offset >> 6U] |= std::uint64_t{1} << (hit.offset & 63U);
+  for (const Hit& hit : hits) set_bit(mask, hit.offset);
   auto result = reshaped(block, mask);
 
   const Eigen::Matrix3d R_grid_readings = T_grid_readings.rotation();

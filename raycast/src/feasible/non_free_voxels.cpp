@@ -69,10 +69,6 @@ Index3 cube_at(const Index3& origin, std::int32_t size, unsigned number) {
   return {origin.x + part(4), origin.y + part(2), origin.z + part(0)};
 }
 
-unsigned offset_in_block(const Index3& v) {
-  return static_cast<unsigned>((v.x & 7) << 6 | (v.y & 7) << 3 | (v.z & 7));
-}
-
 bool voxels_overlap(const OrientedBox& body, const Box& range, const SnapshotLeaf& leaf,
                     const OrientedBox::Limits& limits) {
   const Eigen::Vector3d origin = vector(leaf.origin);
@@ -284,7 +280,7 @@ bool NonFreeVoxels::contains(const Index3& voxel) const {
   const unsigned block = place_in_four(voxel, kBlock);
   if ((blocks.tiles >> block & 1U) != 0) return true;
   return (blocks.leaves >> block & 1U) != 0 &&
-         test_bit(leaf_at(node->place(region), blocks, block).non_free, offset_in_block(voxel));
+         test_bit(leaf_at(node->place(region), blocks, block).non_free, block_offset(voxel));
 }
 
 bool NonFreeVoxels::enclose(const Eigen::Vector3d& point, double touch) const {
@@ -347,7 +343,7 @@ double NonFreeVoxels::first_along(const HalfLine& line, double begin, double end
       for (; rounded_down(voxel, kBlock) == corner; voxel = walk.voxel()) {
         const double enter = walk.from();
         const bool is_solid =
-            mask == nullptr ? workspace_.contains(voxel) : test_bit(*mask, offset_in_block(voxel));
+            mask == nullptr ? workspace_.contains(voxel) : test_bit(*mask, block_offset(voxel));
         if (walk.leave<1>() && is_solid) return enter <= out ? enter : nearest;
       }
     }

@@ -38,9 +38,7 @@ bool ViewDriver::is_in_occupied(const PoseFrame& frame) const {
   const Index3& base = snapshot.min_index;
   const Index3 at{base.x + voxel[0], base.y + voxel[1], base.z + voxel[2]};
   const SnapshotLeaf* leaf = snapshot.find_leaf(at);
-  return leaf != nullptr &&
-         test_bit(leaf->occupied,
-                  static_cast<unsigned>((at.x & 7) << 6 | (at.y & 7) << 3 | (at.z & 7)));
+  return leaf != nullptr && test_bit(leaf->occupied, block_offset(at));
 }
 
 std::optional<PoseFrame> ViewDriver::open(const Pose& T_world_camera, ViewGain& result,

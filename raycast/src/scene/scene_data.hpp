@@ -71,8 +71,7 @@ struct SceneData {
   [[nodiscard]] std::uint64_t voxel_key(std::int32_t x, std::int32_t y, std::int32_t z) const {
     const std::int32_t gx = x + snapshot.min_index.x, gy = y + snapshot.min_index.y,
                        gz = z + snapshot.min_index.z;
-    return block_of(gx >> 3, gy >> 3, gz >> 3) << 9U |
-           static_cast<std::uint64_t>((gx & 7) << 6 | (gy & 7) << 3 | (gz & 7));
+    return block_of(gx >> 3, gy >> 3, gz >> 3) << 9U | block_offset({gx, gy, gz});
   }
 
   /// Blocks that n voxels from min on touch.

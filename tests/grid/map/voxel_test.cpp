@@ -12,6 +12,7 @@
 #include <limits>
 #include <random>
 
+#include "viewgain/grid/belief.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain {
@@ -63,6 +64,23 @@ TEST(Voxel, WorldToVoxelAndBack) {
     EXPECT_EQ(grid.index_of({0.4, bad, 2.0}), std::nullopt) << bad;
     EXPECT_EQ(snapshot.index_of({0.4, bad, 2.0}), std::nullopt) << bad;
   }
+}
+
+TEST(Voxel, OffsetsInALeafAndBack) {
+  int cases = 0;
+  for (const Index3 origin : {Index3{0, 0, 0}, Index3{-8, 16, -1048576}}) {
+    LeafMask mask{};
+    for (unsigned offset = 0; offset < 512; ++offset) {
+      ASSERT_EQ(block_offset(offset_voxel(origin, offset)), offset);
+      ASSERT_FALSE(test_bit(mask, offset));
+      set_bit(mask, offset);
+      ASSERT_TRUE(test_bit(mask, offset));
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 1024);
+  EXPECT_EQ(block_offset({1, 2, 3}), 64U + 16 + 3);
+  EXPECT_EQ(block_offset({-1, -8, -7}), 7 * 64U + 1);
 }
 
 TEST(Voxel, BoxesAreHalfOpen) {

@@ -35,11 +35,20 @@ struct VIEWGAIN_EXPORT Belief {
           origin.z + static_cast<std::int32_t>(offset & 7U)};
 }
 
-/// One bit a voxel of an 8³ leaf: word x, bit y << 3 | z (OpenVDB's order).
+/// The offset (x << 6 | y << 3 | z) of a voxel of the grid in its 8³ leaf.
+[[nodiscard]] inline unsigned block_offset(Index3 voxel) {
+  return static_cast<unsigned>((voxel.x & 7) << 6 | (voxel.y & 7) << 3 | (voxel.z & 7));
+}
+
+/// One bit per voxel of an 8³ leaf: word x, bit y << 3 | z (OpenVDB's order).
 using LeafMask = std::array<std::uint64_t, 8>;
 
 [[nodiscard]] inline bool test_bit(const LeafMask& mask, unsigned offset) {
   return ((mask[offset >> 6U] >> (offset & 63U)) & 1U) != 0;
+}
+
+inline void set_bit(LeafMask& mask, unsigned offset) {
+  mask[offset >> 6U] |= std::uint64_t{1} << (offset & 63U);
 }
 
 /// Calls f(offset) for every set bit, in rising order.
