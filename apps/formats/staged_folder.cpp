@@ -11,6 +11,7 @@
 #include <mutex>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "viewgain/core/error.hpp"
 
@@ -56,6 +57,11 @@ void remove_leftovers(const fs::path& folder, const std::string& prefix) {
     fs::remove_all(path, ignored);
     ::close(lock);
   }
+}
+
+// What says that the other files are there comes after them.
+bool is_record(const fs::path& file) {
+  return file == "run.json" || file == "poses.txt" || file == "simulated.txt";
 }
 
 }  // namespace
@@ -119,6 +125,9 @@ void StagedFolder::commit(const std::vector<fs::path>& earlier) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(staging_, code)) {
     if (!entry.is_directory()) written.push_back(entry.path().lexically_relative(staging_));
   }
+  std::sort(written.begin(), written.end(), [](const fs::path& a, const fs::path& b) {
+    return std::pair(is_record(a), a) < std::pair(is_record(b), b);
+  });
   for (const fs::path& file : written) {
     if (!code) fs::create_directories((target_ / file).parent_path(), code);
     if (!code) fs::rename(staging_ / file, target_ / file, code);

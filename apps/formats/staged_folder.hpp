@@ -7,11 +7,11 @@
 
 namespace viewgain::app {
 
-/// A folder of results that appears, or changes, only when all of them are written: they go into a
-/// hidden folder, beside the target where that is not there yet, else inside it, and commit() moves
-/// them. What else is in the target stays. The hidden folder is called .NAME.tmp-PROCESS-COUNTER;
-/// one that a killed process has left is removed by the next writer of the same target. Thread
-/// safety: distinct objects may be used from distinct threads.
+/// A folder of results that appears, or begins to change, only when all of them are written: they
+/// go into a hidden folder, beside the target where that is not there yet, else inside it, and
+/// commit() moves them. What else is in the target stays. The hidden folder is called
+/// .NAME.tmp-PROCESS-COUNTER; one that a killed process has left is removed by the next writer of
+/// the same target. Thread safety: distinct objects may be used from distinct threads.
 class StagedFolder {
  public:
   /// Creates the hidden folder, and the target's parents where they are missing. Throws Error(io).
@@ -24,9 +24,11 @@ class StagedFolder {
   /// Where to write.
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return staging_; }
 
-  /// Moves every file over the one of its name, so that each name has its old or its new contents
-  /// at any time; then removes those of `earlier` (relative to the target) that were not written
-  /// anew, and the folders that this leaves empty. Throws Error(io).
+  /// Moves the folder as a whole where there is no target yet. Else moves every file over the one
+  /// of its name, so that each name has its old or its new contents at any time, run.json,
+  /// poses.txt and simulated.txt last: new ones stand beside new files. Then removes those of
+  /// `earlier` (relative to the target) that were not written anew, and the folders that this
+  /// leaves empty. Throws Error(io).
   void commit(const std::vector<std::filesystem::path>& earlier);
 
  private:

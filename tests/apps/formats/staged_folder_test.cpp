@@ -61,6 +61,32 @@ TEST_F(StagedFolderTest, OldNamesGoAndForeignOnesStay) {
           {"one.txt", "new"}, {"maps", "a folder"}, {"maps/00.vdb", "new"}, {"mine.txt", "mine"}}));
 }
 
+TEST_F(StagedFolderTest, RecordsOfWhatIsThereAreMovedLast) {
+  const Strings files{"frame-000000.depth.png",
+                      "maps/00.vdb",
+                      "map.vdb",
+                      "points.ply",
+                      "sensor.toml",
+                      "surface.ply",
+                      "views.txt"};
+  const Strings records{"poses.txt", "run.json", "simulated.txt"};
+  int cases = 0;
+  for (const std::string& blocked : files) {
+    const std::string folder = "run" + std::to_string(cases);
+    for (const std::string& record : records) write(folder + "/" + record, "old");
+    write(folder + "/" + blocked + "/in the way", "");
+    StagedFolder staged(dir / folder);
+    for (const std::string& name : files) put(staged.path() / name, "new");
+    for (const std::string& name : records) put(staged.path() / name, "new");
+    EXPECT_THROW(staged.commit({}), Error);
+    for (const std::string& record : records) {
+      EXPECT_EQ(read(folder + "/" + record), "old") << record << " beside " << blocked;
+    }
+    ++cases;
+  }
+  EXPECT_EQ(cases, 7);
+}
+
 TEST_F(StagedFolderTest, AFailureLeavesAnothersResultsInTheParentItMade) {
   auto first = std::make_optional<StagedFolder>(dir / "runs/a");
   {
