@@ -7,6 +7,7 @@
 
 #include "file_names.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
 
 namespace viewgain::app {
 bool is_octomap(const std::filesystem::path& path) {
@@ -15,10 +16,12 @@ bool is_octomap(const std::filesystem::path& path) {
 
 BeliefGrid load_map(const std::filesystem::path& path, const Sensor* sensor, OctomapConfig config) {
   if (!is_octomap(path)) return load_vdb(path);
+  const std::string bytes = file_bytes(path);  // once: a pipe cannot be opened again
   if (sensor != nullptr && !config.prior_sigma) {
-    config.prior_sigma = default_prior_sigma(octomap_resolution(path), *sensor);
+    config.prior_sigma =
+        default_prior_sigma(octomap_resolution_of_bytes(bytes, path.string()), *sensor);
   }
-  return load_octomap(path, config);
+  return grid_from_octomap_bytes(bytes, config, path.string());
 }
 
 void check_map_name(const std::filesystem::path& path) {

@@ -22,7 +22,8 @@ template <typename Model>
 struct NoiseField {
   const char* key;
   double Model::* member;
-  bool optional = false;  // then the model's default holds
+  bool optional = false;     // then the model's default holds
+  bool unsaid_at_0 = false;  // 0 is no value of its own, and not written
 };
 
 // One list a model: what it is called in a file and its parameters. Reader and writer share them.
@@ -55,7 +56,7 @@ struct NoiseLayout<StereoNoise> {
   static constexpr const char* kName = "stereo";
   static constexpr std::array<NoiseField<StereoNoise>, 3> kFields{
       {{"subpixel", &StereoNoise::subpixel},
-       {"focal", &StereoNoise::focal},
+       {"focal", &StereoNoise::focal, true, true},
        {"baseline", &StereoNoise::baseline}}};
 };
 template <>
@@ -177,10 +178,10 @@ std::string sensor_toml(const Sensor& sensor) {
   }
   const PinholeCamera& camera = sensor.camera;
   text << "\n[camera]  # pixel (0,0) has its centre at (0,0); [px]\n"
-       << "width = " << camera.width << "\nheight = " << camera.height
-       << "\nfx = " << toml_float(camera.fx) << "\nfy = " << toml_float(camera.fy)
-       << "\ncx = " << toml_float(camera.cx) << "\ncy = " << toml_float(camera.cy)
-       << "\ndistortion = [";
+       << "width = " << std::to_string(camera.width)
+       << "\nheight = " << std::to_string(camera.height) << "\nfx = " << toml_float(camera.fx)
+       << "\nfy = " << toml_float(camera.fy) << "\ncx = " << toml_float(camera.cx)
+       << "\ncy = " << toml_float(camera.cy) << "\ndistortion = [";
   for (std::size_t k = 0; k < camera.distortion.size(); ++k) {
     text << (k > 0 ? ", " : "") << toml_float(camera.distortion[k]);
   }
@@ -189,7 +190,9 @@ std::string sensor_toml(const Sensor& sensor) {
       [&text]<typename Model>(const Model& model) {
         text << "model = \"" << NoiseLayout<Model>::kName << "\"\n";
         for (const auto& field : NoiseLayout<Model>::kFields) {
-          text << field.key << " = " << toml_float(model.*field.member) << "\n";
+          const double value = model.*field.member;
+          if (field.unsaid_at_0 && value == 0) continue;
+          text << field.key << " = " << toml_float(value) << "\n";
         }
       },
       sensor.noise);

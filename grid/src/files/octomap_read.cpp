@@ -286,7 +286,11 @@ BeliefGrid load_octomap(const std::filesystem::path& path, const OctomapConfig& 
 
 double octomap_resolution(const std::filesystem::path& path) {
   constexpr std::size_t kMostHeader = std::size_t{1} << 16U;  // [bytes]; OctoMap's has some 100
-  return read_header(file_head(path, kMostHeader), path.string()).resolution;
+  return octomap_resolution_of_bytes(file_head(path, kMostHeader), path.string());
+}
+
+double octomap_resolution_of_bytes(std::string_view bytes, const std::string& name) {
+  return read_header(bytes, name).resolution;
 }
 
 }  // namespace viewgain

@@ -1,17 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include <sys/stat.h>
+
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <random>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "apps/program_runner.hpp"
+#include "core/comma_locale.hpp"
 #include "formats/frames_dir.hpp"
+#include "formats/map_file.hpp"
 #include "formats/png_io.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/grid/octomap_io.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -32,6 +40,15 @@ class Files : public test::ProgramTest {
     return {};
   }
 };
+
+BeliefGrid octree_map() {
+  GridConfig config;
+  config.voxel_size = 0.05;
+  config.workspace = {{-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4}};
+  config.prior_sigma = 0.01;
+  const std::vector<std::uint8_t> states(16 * 16 * 16, 2);
+  return BeliefGrid::from_states(config, states);
+}
 
 bool equal(const Sensor& a, const Sensor& b) {
   return a.name == b.name && a.camera == b.camera && a.min_range == b.min_range &&
@@ -88,6 +105,47 @@ TEST_F(Files, SensorsOfBeforeHaveTheDefaultFrequencyAndLeastAmplitude) {
   EXPECT_EQ(cases, 2);
   EXPECT_NE(sensor_error(text + "modulation_frequency = -1.0\n").find("modulation_frequency"),
             std::string::npos);
+}
+
+TEST_F(Files, SensorsAreWrittenAlikeInEveryLocale) {
+  Sensor sensor = sensor_preset("d435");
+  sensor.camera.width = 1280;  // with a thousands separator, if one crept in
+  sensor.camera.cx = 639.25;
+  const std::string text = sensor_toml(sensor);
+  const test::CommaLocale locale;
+  EXPECT_EQ(sensor_toml(sensor), text);
+  write("sensor.toml", text);
+  EXPECT_TRUE(equal(read_sensor_toml(dir / "sensor.toml"), sensor)) << text;
+}
+
+TEST_F(Files, StereoWithoutAFocalLengthGoesByTheCameras) {
+  Sensor sensor = sensor_preset("d435");
+  StereoNoise noise;
+  noise.focal = 0;
+  sensor.noise = noise;
+  const std::string text = sensor_toml(sensor);
+  EXPECT_EQ(text.find("focal"), std::string::npos) << text;
+  write("sensor.toml", text);
+  const Sensor read = read_sensor_toml(dir / "sensor.toml");
+  EXPECT_TRUE(equal(read, sensor)) << text;
+  sensor.noise = StereoNoise{noise.subpixel, sensor.camera.fx, noise.baseline};
+  EXPECT_EQ(read.sigmas(1.0).axial, sensor.sigmas(1.0).axial);
+  EXPECT_NE(sensor_error(text + "focal = -1.0\n").find("focal"), std::string::npos);
+}
+
+TEST_F(Files, ATreeIsReadFromAPipeAsFromAFile) {
+  write("tree.ot", octomap_bytes(octree_map()));
+  const Sensor sensor = sensor_preset("sr4000");
+  const BeliefGrid from_file = load_map(dir / "tree.ot", &sensor);
+  const std::filesystem::path pipe = dir / "pipe.ot";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(pipe, std::ios::binary) << read("tree.ot"); });
+  std::optional<BeliefGrid> from_pipe;
+  EXPECT_NO_THROW(from_pipe.emplace(load_map(pipe, &sensor)));
+  writer.join();
+  ASSERT_TRUE(from_pipe);
+  EXPECT_EQ(from_pipe->content_hash(), from_file.content_hash());
+  EXPECT_EQ(from_pipe->prior_sigma(), default_prior_sigma(0.05, sensor));
 }
 
 TEST_F(Files, SensorErrorsNameTheKey) {

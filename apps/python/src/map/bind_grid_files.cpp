@@ -11,6 +11,7 @@
 #include "grid_class.hpp"
 #include "prior.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
@@ -69,10 +70,12 @@ Error
             config.prior_sigma = prior_sigma;
             require_prior(prior_sigma, sensor);
             const WithoutGil without_gil;
+            const std::string bytes = file_bytes(file);  // once: a pipe cannot be opened again
             if (!prior_sigma) {
-              config.prior_sigma = default_prior_sigma(octomap_resolution(file), *sensor);
+              config.prior_sigma =
+                  default_prior_sigma(octomap_resolution_of_bytes(bytes, file), *sensor);
             }
-            return std::make_shared<SharedGrid>(load_octomap(file, config));
+            return std::make_shared<SharedGrid>(grid_from_octomap_bytes(bytes, config, file));
           },
           py::arg("path"), py::kw_only(), py::arg("workspace") = py::none(),
           py::arg("prior_sigma") = py::none(), py::arg("sensor") = py::none(),

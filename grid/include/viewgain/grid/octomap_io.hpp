@@ -47,6 +47,10 @@ struct VIEWGAIN_EXPORT OctomapConfig {
 
 /// The resolution of an OctoMap file [m], from its header alone. Throws as load_octomap.
 [[nodiscard]] VIEWGAIN_EXPORT double octomap_resolution(const std::filesystem::path& path);
+/// The same of a file's contents, or of the first part of them; `name` stands for the file in
+/// messages.
+[[nodiscard]] VIEWGAIN_EXPORT double octomap_resolution_of_bytes(
+    std::string_view bytes, const std::string& name = "octree");
 
 /// Writes a `.ot` that OctoMap and load_octomap read, pruned: states and log-odds, in the world's
 /// frame where octomap_keeps_frame(grid), else in the grid's. A tree has no place for beliefs,
