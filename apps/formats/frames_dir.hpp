@@ -28,7 +28,7 @@ enum class OutOfRangeMeaning {
 /// A folder of depth frames, opened but not read.
 struct FrameSequence {
   Sensor sensor;           ///< with the folder's own intrinsics, where it has them
-  double depth_scale = 0;  ///< [m] a unit
+  double depth_scale = 0;  ///< [m] per unit
   bool recorded = false;   ///< a pose file a frame, instead of poses.txt
   std::vector<std::filesystem::path> images;
   std::vector<Pose> poses;  ///< T_world_camera, one an image
@@ -37,9 +37,9 @@ struct FrameSequence {
 
 /// Opens either layout: poses.txt + frame-NNNNNN.depth.png (line i is frame i) + sensor.toml, or
 /// frame-NNNNNN.depth.png + frame-NNNNNN.pose.txt + camera-intrinsics.txt, whose numbers may have
-/// gaps. The scale is, unless given, 1e-4 m a unit where there are poses.txt and sensor.toml, else
-/// 1e-3. Beside a depth image there may be a frame-NNNNNN.amplitude.png. `sensor`: preset or .toml
-/// file, empty for the folder's own. Throws Error naming the file that is missing or wrong.
+/// gaps. The scale is, unless given, 1e-4 m per unit where there are poses.txt and sensor.toml,
+/// else 1e-3. Beside a depth image there may be a frame-NNNNNN.amplitude.png. `sensor`: preset or
+/// .toml file, empty for the folder's own. Throws Error naming the file that is missing or wrong.
 [[nodiscard]] FrameSequence open_frames(const std::filesystem::path& dir, const std::string& sensor,
                                         std::optional<double> depth_scale);
 

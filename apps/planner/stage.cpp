@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
-#include "formats/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
 
 namespace viewgain::app {

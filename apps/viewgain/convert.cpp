@@ -9,6 +9,7 @@
 #include "formats/map_file.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
+#include "map_json.hpp"
 #include "planner/stopwatch.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -53,20 +54,14 @@ void convert(const Options& options) {
   const GridStatistics statistics = grid.statistics();
   const Index3 dims = grid.dims();
   if (options.common.json) {
-    print_json({{"in", options.in},
-                {"out", options.out},
-                {"voxel_size", grid.voxel_size()},
-                {"workspace", to_json(grid.workspace())},
-                {"dims", {dims.x, dims.y, dims.z}},
-                {"prior_sigma", grid.prior_sigma()},
-                {"unknown", statistics.unknown},
-                {"free", statistics.free},
-                {"occupied", statistics.occupied},
-                {"lost_beliefs", lost.beliefs},
-                {"lost_views", lost.views},
-                {"lost_T_world_grid", lost.T_world_grid},
-                {"hash", grid.content_hash()},
-                {"seconds", watch.seconds()}});
+    nlohmann::ordered_json json = {{"in", options.in}, {"out", options.out}};
+    json.update(map_json(grid, statistics));
+    json.update({{"lost_beliefs", lost.beliefs},
+                 {"lost_views", lost.views},
+                 {"lost_T_world_grid", lost.T_world_grid},
+                 {"hash", grid.content_hash()},
+                 {"seconds", watch.seconds()}});
+    print_json(json);
     return;
   }
   std::printf("workspace %s m: %d x %d x %d voxels of %g m\n", describe(grid.workspace()).c_str(),

@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "formats/map_file.hpp"
 #include "formats/values.hpp"
+#include "map_json.hpp"
 #include "planner/stopwatch.hpp"
 #include "progress.hpp"
 #include "reading_source.hpp"
@@ -38,7 +39,8 @@ void check_voxel(double voxel) {
 // What a wrong scale would explain.
 std::string scale_text(const ReadingSource& source) {
   const std::optional<double> scale = source.depth_scale();
-  return scale ? " at " + short_text(*scale) + " m a unit of the depth images (--depth-scale)" : "";
+  return scale ? " at " + short_text(*scale) + " m per unit of the depth images (--depth-scale)"
+               : "";
 }
 
 // What the frames see, half a voxel more on each side: a reading on the face of the box would lie
@@ -147,36 +149,32 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   const double frame_seconds = median(totals.seconds);
   if (options.common.json) {
     const std::optional<double> scale = source.depth_scale();
-    print_json({{part_name(options) + std::string("s"), source.size()},
-                {"views", grid.views().size()},
-                {"readings", totals.sum.readings},
-                {"readings_inside", totals.sum.readings_inside},
-                {"plane_readings", totals.sum.plane_readings},
-                {"jump_edge_removed", totals.jump_edge_removed},
-                {"out_of_range", totals.sum.out_of_range},
-                {"invalid", totals.sum.invalid},
-                {"orthonormalized_poses", source.orthonormalized()},
-                {"sensor", source.sensor().name},
-                {"depth_scale", scale ? nlohmann::ordered_json(*scale) : nullptr},
-                {"voxel_size", grid.voxel_size()},
-                {"workspace", to_json(grid.workspace())},
-                {"dims", {dims.x, dims.y, dims.z}},
-                {"prior_sigma", grid.prior_sigma()},
-                {"unknown", statistics.unknown},
-                {"free", statistics.free},
-                {"occupied", statistics.occupied},
-                {"lost_T_world_grid", lost.T_world_grid},
-                {"hash", grid.content_hash()},
-                {"out", options.out},
-                {"seconds", seconds},
-                {"seconds_per_frame", frame_seconds}});
+    nlohmann::ordered_json json = {
+        {part_name(options) + std::string("s"), source.size()},
+        {"views", grid.views().size()},
+        {"readings", totals.sum.readings},
+        {"readings_inside", totals.sum.readings_inside},
+        {"plane_readings", totals.sum.plane_readings},
+        {"jump_edge_removed", totals.jump_edge_removed},
+        {"out_of_range", totals.sum.out_of_range},
+        {"invalid", totals.sum.invalid},
+        {"orthonormalized_poses", source.orthonormalized()},
+        {"sensor", source.sensor().name},
+        {"depth_scale", scale ? nlohmann::ordered_json(*scale) : nullptr}};
+    json.update(map_json(grid, statistics));
+    json.update({{"lost_T_world_grid", lost.T_world_grid},
+                 {"hash", grid.content_hash()},
+                 {"out", options.out},
+                 {"seconds", seconds},
+                 {"seconds_per_frame", frame_seconds}});
+    print_json(json);
     return;
   }
   std::printf("workspace %s m: %d x %d x %d voxels of %g m, prior sigma %g m\n",
               describe(grid.workspace()).c_str(), dims.x, dims.y, dims.z, grid.voxel_size(),
               grid.prior_sigma());
   if (const auto scale = source.depth_scale()) {
-    std::printf("depth images: %s m a unit\n", short_text(*scale).c_str());
+    std::printf("depth images: %s m per unit\n", short_text(*scale).c_str());
   }
   std::printf(
       "%zu %ss (%s), %s readings, %s of them in the workspace; %s out of range, %s invalid\n",
@@ -199,8 +197,8 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
               with_commas(statistics.unknown).c_str(),
               100 * static_cast<double>(statistics.unknown) / voxels,
               with_commas(statistics.free).c_str(), with_commas(statistics.occupied).c_str());
-  std::printf("%.2f s in all; into the map: %.1f ms a %s (median)\n", seconds, 1e3 * frame_seconds,
-              part_name(options));
+  std::printf("%.2f s in all; into the map: %.1f ms per %s (median)\n", seconds,
+              1e3 * frame_seconds, part_name(options));
   std::printf("%s: hash %s\n", options.out.c_str(), grid.content_hash().c_str());
 }
 
@@ -285,7 +283,7 @@ Command add_integrate(CLI::App& program) {
                       "ranges hold");
   app->add_option(
       "--depth-scale", options->depth_scale,
-      "metres a unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
+      "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
       "sensor.toml), else 1e-3");
   app->add_option(
          "--out-of-range", options->out_of_range,

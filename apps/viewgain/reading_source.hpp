@@ -59,7 +59,7 @@ class ReadingSource {
   virtual IntegrationReport integrate(BeliefGrid& grid) = 0;
   /// Readings of the loaded part that the jump-edge filter took.
   [[nodiscard]] virtual std::uint64_t jump_edge_removed() const { return 0; }
-  /// Metres a unit of depth images; nothing for clouds.
+  /// Metres per unit of depth images; nothing for clouds.
   [[nodiscard]] virtual std::optional<double> depth_scale() const { return std::nullopt; }
 };
 

@@ -171,7 +171,7 @@ TEST_F(RefusedCalls, LeaveEveryByteAsItWas) {
        // Files that say nothing, or too much.
        {integrate("recorded", "new.vdb"), "--depth-scale"},
        {{"integrate", "recorded", "--voxel", "0.05", "--depth-scale", "1e-9", "--out", "new.vdb"},
-        "1e-09 m a unit"},
+        "1e-09 m per unit"},
        {integrate("negative", "new.vdb"), "negative/camera-intrinsics.txt: camera: fx"},
        {integrate("word", "new.vdb"), "word/camera-intrinsics.txt:2"},
        {joined(simulate("point.off", "new"), {"--orbit", "1,0.6,27"}), "point.off"},

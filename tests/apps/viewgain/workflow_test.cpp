@@ -248,18 +248,18 @@ TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
   };
   refuses({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02", "--workspace",
            "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "none.vdb"},
-          "0.001 m a unit");
+          "0.001 m per unit");
   write("recorded/sensor.toml", read("wrong.toml"));
   refuses({"integrate", "recorded", "--voxel", "0.02", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
            "--out", "none.vdb"},
-          "0.001 m a unit");
+          "0.001 m per unit");
   refuses({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02", "--depth-scale",
            "1e-6", "--out", "none.vdb"},
-          "1e-06 m a unit");
+          "1e-06 m per unit");
   EXPECT_EQ(cases, 3);
   EXPECT_NE(run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
                       "--depth-scale", "1e-4", "--out", "own.vdb"})
-                .find("depth images: 1e-04 m a unit"),
+                .find("depth images: 1e-04 m per unit"),
             std::string::npos);
 
   // A rotation that is off by 1e-4 is mended and said; another map than with the exact one.

@@ -180,7 +180,7 @@ void bind_reconstruct(py::module_& module) {
   type.def_readonly("reason", &Reconstruction::reason,
                     "str: why it ended: gain, no_candidates, unreachable, idle, max_views, "
                     "interrupted")
-      .def_readonly("views", &Reconstruction::views, "list of dict: one a view, see reconstruct")
+      .def_readonly("views", &Reconstruction::views, "list of dict: one per view, see reconstruct")
       .def_readonly("grid", &Reconstruction::grid, "viewgain.BeliefGrid")
       .def_readonly("surface", &Reconstruction::surface, "Surface")
       .def("__repr__", [](const Reconstruction& r) {

@@ -15,13 +15,13 @@ namespace viewgain {
 /// Poses of a file and what the reader had to mend.
 struct VIEWGAIN_EXPORT PoseList {
   std::vector<Pose> poses;         ///< T_world_camera, in file order
-  std::vector<double> timestamps;  ///< [s], one a pose
+  std::vector<double> timestamps;  ///< [s], one per pose
   /// Poses whose rotation (quaternion's norm) was off by more than 1e-9 and was mended.
   std::size_t orthonormalized = 0;
 };
 
-/// Reads the TUM format: one pose a line, "timestamp tx ty tz qx qy qz qw" ([s], [m], quaternion of
-/// T_world_camera); empty lines, lines that begin with # and a byte order mark are skipped. A
+/// Reads the TUM format: one pose per line, "timestamp tx ty tz qx qy qz qw" ([s], [m], quaternion
+/// of T_world_camera); empty lines, lines that begin with # and a byte order mark are skipped. A
 /// quaternion whose norm is within 1e-2 of 1 is normalised. Throws Error(io) if the file cannot be
 /// read and Error(format), naming the file and the line, for anything else that is wrong, also for
 /// a file without a pose; Error(capacity) beyond 1 GiB.

@@ -145,7 +145,7 @@ typedef struct vg_contribution {
   double gain;      /* [nat, or m^2] */
 } vg_contribution;
 
-/* Why a view is good: one entry a voxel in which rays end, the largest gain first; the gains add up
+/* Why a view is good: one entry per voxel in which rays end, the largest gain first; the gains add up
    to the view's. Fills at most `capacity` of them and says in *found how many there are; never more
    than rays_per_pose. contribution_size is sizeof(vg_contribution). None for a camera in an
    occupied voxel; a bad pose is VG_INVALID_ARGUMENT. */
