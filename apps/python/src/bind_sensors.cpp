@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "classes.hpp"
 #include "fields.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::python {
 namespace {
@@ -101,15 +101,13 @@ ndarray, (..., 2), float64
           "__eq__", [](const PinholeCamera& a, const PinholeCamera& b) { return a == b; },
           py::is_operator())
       .def("__repr__", [](const PinholeCamera& c) {
-        std::ostringstream text;
-        text << "PinholeCamera(" << c.width << ", " << c.height << ", ";
         const std::string rest =
             Fields().add("fx", c.fx).add("fy", c.fy).add("cx", c.cx).add("cy", c.cy).in("");
-        text << rest.substr(1);
-        if (!c.has_distortion()) return text.str();
-        std::string with = text.str();
-        with.pop_back();
-        return with + ", distortion=" + py::repr(py::cast(c.distortion)).cast<std::string>() + ")";
+        std::string text = "PinholeCamera(" + std::to_string(c.width) + ", " +
+                           std::to_string(c.height) + ", " + rest.substr(1);
+        if (!c.has_distortion()) return text;
+        text.pop_back();
+        return text + ", distortion=" + py::repr(py::cast(c.distortion)).cast<std::string>() + ")";
       });
 }
 
@@ -196,10 +194,9 @@ Returns
 axial, lateral : float
     [m])")
       .def("__repr__", [](const Sensor& s) {
-        std::ostringstream text;
-        text << "<Sensor " << s.name << ", " << s.camera.width << "x" << s.camera.height << " px, "
-             << s.min_range << "-" << s.max_range << " m>";
-        return text.str();
+        return "<Sensor " + s.name + ", " + std::to_string(s.camera.width) + "x" +
+               std::to_string(s.camera.height) + " px, " + short_text(s.min_range) + "-" +
+               short_text(s.max_range) + " m>";
       });
 
   module.def(

@@ -3,6 +3,7 @@
 import functools
 import os
 import pathlib
+import threading
 
 import numpy as np
 import pytest
@@ -47,6 +48,13 @@ def test_octomap_files(tmp_path, grid, sensor):
     of_sensor = viewgain.BeliefGrid.load_octomap(str(path), sensor=sensor)
     assert of_sensor.prior_sigma == grid.prior_sigma
     assert np.count_nonzero(of_sensor.states() == 2) == np.count_nonzero(grid.states() == 2)
+    pipe = tmp_path / "pipe.ot"
+    os.mkfifo(pipe)
+    writer = threading.Thread(target=lambda: pipe.write_bytes(path.read_bytes()))
+    writer.start()
+    of_pipe = viewgain.BeliefGrid.load_octomap(pipe, sensor=sensor)
+    writer.join()
+    assert of_pipe.content_hash() == of_sensor.content_hash()
     path.write_bytes(path.read_bytes()[:200])
     with pytest.raises(viewgain.Error, match="map.ot"):
         viewgain.BeliefGrid.load_octomap(path, sensor=sensor)
