@@ -51,11 +51,17 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
                                                std::span<const Candidate> candidates) {
   if (candidates.empty()) return std::nullopt;
   const auto measuring = exec_.measure("score");
-  evaluator_ = evaluator_ ? evaluator_->with_scene(model_.scene())
-                          : GainEvaluator(model_.scene(), sensor_, {.criterion = config_.criterion},
-                                          exec_.threads);
-  const GainEvaluator& evaluator = *evaluator_;
   const bool by_gain = config_.policy == Policy::gain;
+  if (evaluator_) {
+    evaluator_ = evaluator_->with_scene(model_.scene());
+  } else {
+    GainConfig gain;
+    gain.criterion = config_.criterion;
+    gain.support_plane = config_.support_plane;
+    if (by_gain) gain.model = config_.model;
+    evaluator_.emplace(model_.scene(), sensor_, gain, exec_.threads);
+  }
+  const GainEvaluator& evaluator = *evaluator_;
   const bool scored = by_gain || config_.policy == Policy::frontier;
   std::vector<ViewGain> gains(candidates.size());
   if (scored) {

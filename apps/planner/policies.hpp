@@ -31,7 +31,7 @@ enum class Policy : std::uint8_t {
 
 /// What moving costs; at most one of the two.
 struct TravelCost {
-  double per_metre = 0;  ///< gain - per_metre · distance [nat/m]
+  double per_metre = 0;  ///< gain - per_metre · distance [the gain's unit per m]
   /// gain / (seconds_per_view + distance / speed), where a speed is given [m/s].
   std::optional<double> speed{};
   double seconds_per_view = 1.0;  ///< [s]
@@ -39,7 +39,9 @@ struct TravelCost {
 
 struct PolicyConfig {
   Policy policy = Policy::gain;
+  GainModel model = GainModel::paper;  ///< of Policy::gain
   Criterion criterion = Criterion::log_diagonal;
+  std::optional<double> support_plane{};  ///< height [m], at which rays end
   TravelCost travel{};
   std::uint64_t seed = 1;
 };

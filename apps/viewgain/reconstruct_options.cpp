@@ -59,6 +59,17 @@ void describe(Options& o, Visitor& visit) {
                "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
                "(default 48)",
                counted(1, kMaxCount));
+  visit.option("gain", "--gain", o.gain,
+               "of --policy gain: paper (entropy removed), surface (new surface to be expected) or "
+               "combined",
+               shows_default);
+  visit.option("overlap", "--overlap", o.overlap,
+               "share of a boundary candidate's view that is to show known surface, 0..1",
+               shows_default);
+  visit.option(
+      "region_depth", "--region-depth", o.region_depth,
+      "how far inward from a boundary the surface is fitted that candidates go on from [m]",
+      shows_default);
   visit.option("criterion", "--criterion", o.criterion,
                "log_diagonal, log_determinant [nat] or trace [m^2]", shows_default);
   visit.option("max_views", "--max-views", o.max_views, "view budget",
@@ -133,6 +144,14 @@ void check(const ReconstructOptions& options) {
   }
   if (options.sensing.support_plane && !std::isfinite(*options.sensing.support_plane)) {
     throw Error(ErrorCode::invalid_argument, "--support-plane must be finite");
+  }
+  if (!(options.overlap > 0 && options.overlap < 1)) {
+    throw Error(ErrorCode::invalid_argument,
+                "--overlap " + short_text(options.overlap) + " must be between 0 and 1");
+  }
+  if (!(options.region_depth > 0 && std::isfinite(options.region_depth))) {
+    throw Error(ErrorCode::invalid_argument, "--region-depth " + short_text(options.region_depth) +
+                                                 " must be positive and finite");
   }
   if (options.stop_coverage && !(*options.stop_coverage >= 0 && *options.stop_coverage <= 1)) {
     throw Error(ErrorCode::invalid_argument,

@@ -73,6 +73,8 @@ std::vector<std::string> generators(const ReconstructOptions& options, Policy po
 
 GenerationConfig generation_config(const ReconstructOptions& options, const RunSetup& setup) {
   GenerationConfig config = default_generation(setup.sensor, options.voxel);
+  config.estimator.overlap = options.overlap;
+  config.estimator.region_depth = options.region_depth;
   config.boundary = false;
   // His choice is by class alone.
   config.classes_by_sight = setup.policy.policy == Policy::kriegel;
@@ -148,6 +150,8 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   setup.simulation = simulation_config(options.sensing, setup.sensor);
   setup.model = model_config(options, setup.sensor, setup.stage);
   setup.policy.criterion = setup.model.criterion;
+  setup.policy.model = parse_gain_model(options.gain);
+  setup.policy.support_plane = options.sensing.support_plane;
   setup.generation = generation_config(options, setup);
   setup.planning = planning_config(options);
   setup.settings = settings_json(options, resolved_settings(options, setup));

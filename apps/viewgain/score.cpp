@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <numeric>
@@ -29,6 +30,8 @@ struct Options {
   std::string map;
   PoseOptions poses;
   std::string sensor;
+  std::string gain = "paper";
+  std::optional<double> refinement_weight, object_size, hazard, support_plane;
   std::string criterion = "log_diagonal";
   int stride = 1;
   std::vector<std::string> weights;
@@ -44,6 +47,17 @@ struct Options {
 
 GainConfig gain_config(const Options& options) {
   GainConfig config;
+  config.model = parse_gain_model(options.gain);
+  if (config.model == GainModel::paper &&
+      (options.object_size || options.hazard || options.support_plane)) {
+    throw Error(ErrorCode::invalid_argument,
+                "--object-size, --hazard and --support-plane go with --gain surface or combined");
+  }
+  if (config.model != GainModel::combined && options.refinement_weight) {
+    throw Error(ErrorCode::invalid_argument, "--refinement-weight goes with --gain combined");
+  }
+  config.refinement_weight = options.refinement_weight.value_or(config.refinement_weight);
+  config.support_plane = options.support_plane;
   config.criterion = parse_criterion(options.criterion);
   config.pixel_stride = options.stride;
   config.prior_sigma = options.prior_sigma;
@@ -52,6 +66,18 @@ GainConfig gain_config(const Options& options) {
   for (const std::string& text : options.weights) {
     const std::vector<double> numbers = parse_numbers("--weight", text, 7, 7);
     config.weights.push_back({box_of("--weight", numbers), numbers[6]});
+  }
+  return config;
+}
+
+HazardConfig hazard_config(const Options& options, const BeliefGrid& grid) {
+  HazardConfig config;
+  config.object_size = options.object_size;
+  if (options.hazard) {
+    const Box box = grid.workspace();
+    const double longest =
+        std::max({box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]});
+    config.model = HazardModel::constant(*options.hazard, options.object_size.value_or(longest));
   }
   return config;
 }
@@ -126,7 +152,8 @@ void score(const Options& options) {
   const Sensor sensor = load_sensor(options.sensor);
   const PoseSource source = make_poses(options.poses);
   const BeliefGrid grid = load_map(options.map, &sensor);
-  const GainEvaluator evaluator(VoxelScene::build(grid, {}, exec), sensor, config, exec);
+  const GainEvaluator evaluator(VoxelScene::build(grid, {}, exec, hazard_config(options, grid)),
+                                sensor, config, exec);
 
   Scores scores;
   double seconds = 0;
@@ -147,8 +174,9 @@ void score(const Options& options) {
         winner != nullptr ? *winner : evaluator.race(source.poses).indices.at(0);
     write_picture(options.picture, evaluator, sensor, source.poses[shown], exec);
   }
-  if (!options.out.empty()) write_file_atomically(options.out, csv_of(scores));
-  const ScoreReport report{options.criterion, grid, sensor, source, evaluator, scores, seconds};
+  if (!options.out.empty()) write_file_atomically(options.out, csv_of(scores, config.model));
+  const ScoreReport report{config.model, options.criterion, grid,   sensor,
+                           source,       evaluator,         scores, seconds};
   if (options.common.json) {
     report.print_json();
   } else {
@@ -181,6 +209,20 @@ Command add_score(CLI::App& program) {
                     "centre [m]");
   poses->require_option(1);
   app->add_option("--sensor", options->sensor, kSensorHelp)->required();
+  app->add_option("--gain", options->gain,
+                  "paper (entropy removed) [nat], surface (new surface to be expected) [m^2] or "
+                  "combined (both) [nat]")
+      ->capture_default_str();
+  app->add_option("--refinement-weight", options->refinement_weight,
+                  "combined: of refining known surface against finding new; default: 0.3");
+  app->add_option("--object-size", options->object_size,
+                  "surface, combined: longest side of the object [m]; default: that of what is "
+                  "seen of it");
+  app->add_option("--hazard", options->hazard,
+                  "surface, combined: rate at which rays meet the surface in unknown voxels, the "
+                  "same everywhere [1/m]; default: by the distance from what is seen");
+  app->add_option("--support-plane", options->support_plane,
+                  "surface, combined: height z of a table at which rays end [m]; default: none");
   app->add_option("--criterion", options->criterion,
                   "log_diagonal (the paper's), log_determinant [nat] or trace [m^2]")
       ->capture_default_str();

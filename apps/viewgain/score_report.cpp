@@ -13,10 +13,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string csv_rows(const ScoredViews& views) {
+std::string csv_rows(const ScoredViews& views, GainModel model) {
+  const bool has_area = model != GainModel::paper;
   std::string csv =
       "index,gain,exploration,refinement,posterior_entropy,rays,hits,unknown_voxels,"
-      "occupied_voxels,status\n";
+      "occupied_voxels,status";
+  csv += has_area ? ",area,refinement_saturated\n" : "\n";
   for (std::size_t i = 0; i < views.gains.size(); ++i) {
     const ViewGain& r = views.gains[i];
     csv += std::to_string(views.indices[i]);
@@ -28,6 +30,7 @@ std::string csv_rows(const ScoredViews& views) {
     }
     csv += ',';
     csv += view_status_name(r.status);
+    if (has_area) csv += ',' + exact_text(r.area) + ',' + exact_text(r.refinement_saturated);
     csv += '\n';
   }
   return csv;
@@ -51,6 +54,8 @@ ordered_json entries(const ScoredViews& views, const std::vector<Pose>& poses) {
                     {"exploration", r.exploration},
                     {"refinement", r.refinement},
                     {"posterior_entropy", r.posterior_entropy},
+                    {"area", r.area},
+                    {"refinement_saturated", r.refinement_saturated},
                     {"rays", r.rays},
                     {"hits", r.hits},
                     {"unknown_voxels", r.unknown_voxels},
@@ -70,6 +75,11 @@ ordered_json entries(const Estimates& estimates, const std::vector<Pose>& poses)
                     {"T_world_camera", to_json(poses[i])}});
   }
   return list;
+}
+
+std::string_view gain_unit(GainModel model, std::string_view criterion) {
+  return model == GainModel::surface || (model == GainModel::paper && criterion == "trace") ? "m^2"
+                                                                                            : "nat";
 }
 
 void print_rows(const ScoredViews& views, const std::vector<Pose>& poses) {
@@ -115,9 +125,9 @@ const std::size_t* Scores::winner() const {
   return best->empty() ? nullptr : best->data();
 }
 
-std::string csv_of(const Scores& scores) {
+std::string csv_of(const Scores& scores, GainModel model) {
   const auto* estimates = std::get_if<Estimates>(&scores.found);
-  return estimates != nullptr ? csv_rows(*estimates) : csv_rows(scored_in_full(scores));
+  return estimates != nullptr ? csv_rows(*estimates) : csv_rows(scored_in_full(scores), model);
 }
 
 void ScoreReport::print_json() const {
@@ -130,6 +140,8 @@ void ScoreReport::print_json() const {
                     {"voxel_size", grid.voxel_size()},
                     {"voxels", grid.voxel_count()},
                     {"sensor", sensor.name},
+                    {"gain_model", gain_model_name(model)},
+                    {"gain_unit", gain_unit(model, criterion)},
                     {"criterion", criterion},
                     {"prior_sigma", evaluator.prior_sigma()},
                     {"orthonormalized_poses", source.orthonormalized},
@@ -148,8 +160,9 @@ void ScoreReport::print_json() const {
 }
 
 void ScoreReport::print_table() const {
-  std::printf("%s, sensor %s, prior sigma %.4g m, gains in %s\n", criterion.c_str(),
-              sensor.name.c_str(), evaluator.prior_sigma(), criterion == "trace" ? "m^2" : "nat");
+  std::printf("%s gain, %s, sensor %s, prior sigma %.4g m, gains in %s\n",
+              std::string(gain_model_name(model)).c_str(), criterion.c_str(), sensor.name.c_str(),
+              evaluator.prior_sigma(), std::string(gain_unit(model, criterion)).c_str());
   if (source.orthonormalized > 0) {
     std::printf("rotations that were off and were orthonormalised: %zu of %zu\n",
                 source.orthonormalized, source.poses.size());

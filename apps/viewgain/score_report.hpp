@@ -48,10 +48,11 @@ struct Scores {
 };
 
 /// The contents of the file of `score --out`; apps/README.md names the columns.
-[[nodiscard]] std::string csv_of(const Scores& scores);
+[[nodiscard]] std::string csv_of(const Scores& scores, GainModel model);
 
 /// What was asked and what came out, for the two ways of printing.
 struct ScoreReport {
+  GainModel model;
   const std::string& criterion;
   const BeliefGrid& grid;
   const Sensor& sensor;

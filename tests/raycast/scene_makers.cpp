@@ -278,7 +278,8 @@ bool same_bits(const ViewGain& a, const ViewGain& b) {
   const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
   return bits(a.gain) == bits(b.gain) && bits(a.exploration) == bits(b.exploration) &&
          bits(a.refinement) == bits(b.refinement) &&
-         bits(a.posterior_entropy) == bits(b.posterior_entropy) && a.rays == b.rays &&
+         bits(a.posterior_entropy) == bits(b.posterior_entropy) && bits(a.area) == bits(b.area) &&
+         bits(a.refinement_saturated) == bits(b.refinement_saturated) && a.rays == b.rays &&
          a.hits == b.hits && a.unknown_voxels == b.unknown_voxels &&
          a.occupied_voxels == b.occupied_voxels && a.status == b.status;
 }

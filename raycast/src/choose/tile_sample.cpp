@@ -69,6 +69,14 @@ void sample(const ViewDriver& driver, const Pose& T_world_camera,
             std::span<const std::vector<std::uint32_t>> groups, std::span<double> gains,
             ViewDriver::Lease& lease) {
   ViewGain result;
+  if (const SurfaceView* surface = driver.surface()) {
+    if (const auto frame = driver.open(T_world_camera, result)) {
+      surface->sample(*frame, groups, lease.workspace(), gains);
+    } else {
+      std::fill(gains.begin(), gains.end(), result.gain);
+    }
+    return;
+  }
   GroupConsumer consumer{{lease.accumulator()}, gains.data()};
   if (!driver.groups(T_world_camera, groups, lease, result, consumer)) {
     std::fill(gains.begin(), gains.end(), result.gain);

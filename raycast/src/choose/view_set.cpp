@@ -4,11 +4,13 @@
 // Views that are good together, chosen greedily on a frozen map.
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <unordered_map>
 
 #include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
 #include "viewgain/core/criterion.hpp"
+#include "viewgain/core/error.hpp"
 
 namespace viewgain {
 namespace {
@@ -67,6 +69,11 @@ struct ChosenConsumer : detail::GainConsumer {
 
 ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                 const BatchControl& control) const {
+  if (impl_->driver.surface() != nullptr) {
+    throw Error(ErrorCode::invalid_argument,
+                "sets of views are chosen by the paper's gain, not by " +
+                    std::string(gain_model_name(impl_->driver.core()->config.model)));
+  }
   const std::size_t count = T_world_camera.size();
   k = std::min(k, count);
   ViewSet set;

@@ -41,6 +41,16 @@ void check(const GainConfig& config, const Sensor& sensor) {
     reject("min_range " + short_text(min_range) + " m is not below max_range " +
            short_text(max_range) + " m");
   }
+  if (config.model == GainModel::combined && config.criterion == Criterion::trace) {
+    reject("the combined gain is in nats: it goes with a logarithmic criterion, not with trace");
+  }
+  if (!std::isfinite(config.refinement_weight) || config.refinement_weight < 0) {
+    reject("refinement weight is " + short_text(config.refinement_weight) +
+           "; it must be >= 0 and finite");
+  }
+  if (config.support_plane && !std::isfinite(*config.support_plane)) {
+    reject("the support plane's height must be finite");
+  }
   for (const double t : {min_range, sensor.working_distance, max_range}) {
     const MeasurementSigmas sigma = sensor.sigmas(t);
     const double ratio = sigma.axial / sigma.lateral;
@@ -74,6 +84,7 @@ EvaluatorCore::EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config
                              const ExecConfig& exec)
     : config(gain_config),
       sigmas(frontal_sigmas(checked(sensor, gain_config))),
+      working_distance(sensor.working_distance),
       min_range(gain_config.min_range.value_or(sensor.min_range)),
       max_range(gain_config.max_range.value_or(sensor.max_range)),
       rays(std::make_shared<const SensorRays>(sensor.camera, gain_config.pixel_stride)),

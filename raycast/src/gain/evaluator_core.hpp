@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -10,6 +11,8 @@
 
 #include "gain_accumulator.hpp"
 #include "idle_list.hpp"
+#include "occupied_sums.hpp"
+#include "trace/ordered_walk.hpp"
 #include "trace/sensor_rays.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/thread_pool.hpp"
@@ -17,10 +20,22 @@
 
 namespace viewgain::detail {
 
+/// A voxel that a ray may end in, and what the ray would show there.
+struct SurfaceShare {
+  Index3 voxel;
+  bool is_occupied;
+  double probability;              ///< P; occupied: T
+  double area;                     ///< P min(ω t², cap) w_v where surface is new, else 0 [m²]
+  SymmetricMatrix3 information{};  ///< occupied, combined: T Λ_r [m⁻²]
+};
+
 /// What a thread needs for a view. Serves the views of any scene, one after another.
 struct Workspace {
   TileBins bins;
-  std::vector<ViewHit> view_hits;              ///< for a gain of the user's own
+  std::vector<ViewHit> view_hits;  ///< for a gain of the user's own
+  OccupiedSums occupied;           ///< these three for the surface gain
+  std::vector<VoxelVisit> visits;
+  std::vector<SurfaceShare> shares;
   std::optional<GainAccumulator> accumulator;  ///< made when first needed
   std::uint64_t bound_to = 0;                  ///< number of the driver whose scene it sums for
 };
@@ -38,6 +53,7 @@ struct TileGroups {
 struct EvaluatorCore {
   GainConfig config;
   FrontalSigmas sigmas;
+  double working_distance;      ///< the sensor's [m]
   double min_range, max_range;  ///< along the ray [m]
   std::shared_ptr<const SensorRays> rays;
   std::uint32_t ray_count = 0;  ///< of the rays that a lens has
@@ -48,6 +64,13 @@ struct EvaluatorCore {
 
   /// Throws Error(invalid_argument), naming the value, as GainEvaluator's constructor.
   EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config, const ExecConfig& exec);
+
+  /// The sensor's sigmas at range t [m], frontal.
+  [[nodiscard]] MeasurementSigmas frontal(double t) const {
+    t = std::max(t, kMinNoiseRange);
+    return {sigmas.a0 + sigmas.a1 * t + sigmas.a2 * (t - sigmas.v) * (t - sigmas.v),
+            sigmas.l0 + sigmas.l1 * t};
+  }
 
   /// sigma_0 [m] in a scene. Throws Error(invalid_argument) unless it is in 1e-6..1e3.
   [[nodiscard]] double prior_sigma_in(const VoxelScene& scene) const;

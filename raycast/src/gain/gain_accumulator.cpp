@@ -7,6 +7,7 @@
 #include <cmath>
 #include <variant>
 
+#include "task_weight.hpp"
 #include "trace/scene_tracing.hpp"
 
 namespace viewgain::detail {
@@ -201,12 +202,8 @@ void GainAccumulator::look_up() {
 }
 
 double GainAccumulator::weight(std::uint32_t code) const {
-  const Index3 voxel = scene_->voxel_at(blocks_[code >> 9U].key | (code & 511U));
-  const Eigen::Vector3d center = voxel_center(voxel, scene_->snapshot.voxel_size);
-  for (auto region = settings_->weights.rbegin(); region != settings_->weights.rend(); ++region) {
-    if (region->box.contains(center.x(), center.y(), center.z())) return region->weight;
-  }
-  return 1.0;
+  return task_weight(settings_->weights, scene_->voxel_at(blocks_[code >> 9U].key | (code & 511U)),
+                     scene_->snapshot.voxel_size);
 }
 
 GainAccumulator::ClassGain GainAccumulator::finish_class(std::span<const std::uint32_t> members,

@@ -58,6 +58,26 @@ std::string_view view_status_name(ViewStatus status) {
   return "bad_pose";
 }
 
+const std::vector<std::string>& gain_model_names() {
+  static const std::vector<std::string> names{"paper", "surface", "combined"};
+  return names;
+}
+
+std::string_view gain_model_name(GainModel model) {
+  return gain_model_names()[static_cast<std::size_t>(model)];
+}
+
+GainModel parse_gain_model(std::string_view name) {
+  const std::vector<std::string>& names = gain_model_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    std::string text = "unknown gain \"" + std::string(name) + "\"; valid are";
+    for (const std::string& valid : names) text.append(" ").append(valid);
+    throw Error(ErrorCode::invalid_argument, text);
+  }
+  return static_cast<GainModel>(found - names.begin());
+}
+
 GainEvaluator::GainEvaluator(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
                              const GainConfig& config, const ExecConfig& exec)
     : impl_(std::make_unique<Impl>(checked(std::move(scene)),
@@ -74,7 +94,8 @@ GainEvaluator GainEvaluator::with_scene(std::shared_ptr<const VoxelScene> scene)
 }
 
 ViewGain GainEvaluator::evaluate(const Pose& T_world_camera) const {
-  if (num_threads() > 1) return detail::evaluate_together(impl_->driver, T_world_camera);
+  if (num_threads() > 1 && impl_->driver.surface() == nullptr)
+    return detail::evaluate_together(impl_->driver, T_world_camera);
   ViewDriver::Lease lease(impl_->driver);
   return impl_->driver.evaluate(T_world_camera, lease);
 }

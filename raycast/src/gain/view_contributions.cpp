@@ -41,17 +41,62 @@ struct ContributionConsumer {
           weight * entropy_reduction(before, detail::matrix_of(sum), settings.criterion);
       contributions.push_back({driver.scene().voxel_at(key),
                                known ? VoxelState::occupied : VoxelState::unknown, rays[key],
-                               gain});
+                               static_cast<double>(rays[key]), gain});
     });
   }
 };
+
+// The shares of a view that may show new surface, added up by voxel.
+std::vector<VoxelContribution> surface_contributions(const detail::ViewDriver& driver,
+                                                     const detail::SurfaceView& surface,
+                                                     const Pose& T_world_camera,
+                                                     detail::Workspace& workspace) {
+  ViewGain ignored;
+  const auto frame = driver.open(T_world_camera, ignored);
+  if (!frame) return {};
+  const GainConfig& config = driver.core()->config;
+  const bool refines = config.model == GainModel::combined;
+  const double per_area = refines ? surface.nats_per_area() : 1.0;
+  std::unordered_map<std::uint64_t, std::size_t> places;
+  std::vector<VoxelContribution> parts;
+  std::vector<SymmetricMatrix3> information;  // of parts
+  const Index3& base = driver.scene().snapshot.min_index;
+  const auto tiles = driver.tracer().all_tiles();
+  driver.tracer().prepare(*frame, tiles.size(), workspace.bins);
+  surface.for_each_share(*frame, tiles, workspace, [&](const detail::SurfaceShare& share) {
+    if (share.is_occupied && !refines) return;
+    const Index3& v = share.voxel;
+    const auto [found, is_new] = places.try_emplace(
+        driver.scene().voxel_key(v.x - base.x, v.y - base.y, v.z - base.z), parts.size());
+    if (is_new) {
+      parts.push_back({v, share.is_occupied ? VoxelState::occupied : VoxelState::unknown});
+      information.emplace_back();
+    }
+    VoxelContribution& part = parts[found->second];
+    ++part.rays;
+    part.expected_rays += share.probability;
+    part.gain += per_area * share.area;
+    information[found->second] += share.information;
+  });
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i].state != VoxelState::occupied) continue;
+    parts[i].gain =
+        config.refinement_weight * surface.saturated_gain(parts[i].voxel, information[i]);
+  }
+  return parts;
+}
 
 }  // namespace
 
 std::vector<VoxelContribution> GainEvaluator::contributions(const Pose& T_world_camera) const {
   detail::ViewDriver::Lease lease(impl_->driver);
   ContributionConsumer consumer{impl_->driver, lease.accumulator()};
-  impl_->driver.view(T_world_camera, lease, consumer);
+  if (const detail::SurfaceView* surface = impl_->driver.surface()) {
+    consumer.contributions =
+        surface_contributions(impl_->driver, *surface, T_world_camera, lease.workspace());
+  } else {
+    impl_->driver.view(T_world_camera, lease, consumer);
+  }
   // The largest gain first; one beyond double precision comes last.
   const auto order = [](const VoxelContribution& c) {
     return std::tuple(std::isnan(c.gain) ? std::numeric_limits<double>::infinity() : -c.gain,

@@ -14,7 +14,11 @@ ViewDriver::ViewDriver(const VoxelScene& scene, std::shared_ptr<EvaluatorCore> c
       settings_{core_->config.criterion, 1.0 / (prior_sigma_ * prior_sigma_), core_->sigmas,
                 core_->config.weights},
       tracer_(scene_, core_->rays, core_->min_range, core_->max_range),
-      number_(++core_->drivers) {}
+      number_(++core_->drivers) {
+  if (core_->config.model != GainModel::paper) {
+    surface_.emplace(scene_, *core_, tracer_, prior_sigma_);
+  }
+}
 
 void ViewDriver::bind(Workspace& workspace) const {
   workspace.bound_to = 0;  // in case memory runs out
@@ -47,7 +51,14 @@ std::optional<PoseFrame> ViewDriver::open(const Pose& T_world_camera, ViewGain& 
   if (!frame) return std::nullopt;
   result.rays = core_->ray_count;
   if (from == From::outside_occupied && is_in_occupied(*frame)) {
-    result.gain = result.exploration = result.refinement = result.posterior_entropy = 0;
+    const GainModel model = core_->config.model;
+    result.gain = 0;
+    if (model == GainModel::paper) {
+      result.exploration = result.refinement = result.posterior_entropy = 0;
+    } else {
+      result.area = 0;
+      if (model == GainModel::combined) result.refinement_saturated = 0;
+    }
     result.status = ViewStatus::camera_in_occupied;
     return std::nullopt;
   }
@@ -55,7 +66,13 @@ std::optional<PoseFrame> ViewDriver::open(const Pose& T_world_camera, ViewGain& 
 }
 
 ViewGain ViewDriver::evaluate(const Pose& T_world_camera, Lease& lease) const {
-  return view(T_world_camera, lease, GainConsumer{lease.accumulator()});
+  if (!surface_) return view(T_world_camera, lease, GainConsumer{lease.accumulator()});
+  ViewGain result;
+  if (const auto frame = open(T_world_camera, result)) {
+    surface_->evaluate(*frame, lease.workspace(), result);
+    result.status = ViewStatus::ok;
+  }
+  return result;
 }
 
 }  // namespace viewgain::detail

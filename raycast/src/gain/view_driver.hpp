@@ -11,6 +11,7 @@
 
 #include "evaluator_core.hpp"
 #include "scene/scene_data.hpp"
+#include "surface_view.hpp"
 #include "trace/view_tracer.hpp"
 
 namespace viewgain::detail {
@@ -97,6 +98,8 @@ class ViewDriver {
   [[nodiscard]] const GainSettings& settings() const { return settings_; }
   [[nodiscard]] const ViewTracer& tracer() const { return tracer_; }
   [[nodiscard]] double prior_sigma() const { return prior_sigma_; }
+  /// Null for the paper's gain.
+  [[nodiscard]] const SurfaceView* surface() const { return surface_ ? &*surface_ : nullptr; }
 
  private:
   template <typename Tiles, typename Consumer>
@@ -115,6 +118,7 @@ class ViewDriver {
   double prior_sigma_;  // [m]
   GainSettings settings_;
   ViewTracer tracer_;
+  std::optional<SurfaceView> surface_;
   std::uint64_t number_;  // among the core's, from 1 on
 };
 

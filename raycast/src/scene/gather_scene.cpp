@@ -42,12 +42,14 @@ void check_obstacles(const Obstacles& obstacles) {
 
 std::unique_ptr<SceneData> gather_scene(GridSnapshot snapshot,
                                         std::shared_ptr<const Obstacles> obstacles,
+                                        std::shared_ptr<const HazardConfig> hazard,
                                         const SceneData* before) {
   auto data = std::make_unique<SceneData>();
   data->snapshot = std::move(snapshot);
   gather_primitives(*data, before);
   data->has_obstacles = !obstacles->boxes.empty() || !obstacles->meshes.empty();
   data->obstacles = std::move(obstacles);
+  data->hazard = std::move(hazard);
   return data;
 }
 

@@ -17,6 +17,7 @@ void check_obstacles(const Obstacles& obstacles);
 /// there. Throws Error(capacity).
 [[nodiscard]] std::unique_ptr<SceneData> gather_scene(GridSnapshot snapshot,
                                                       std::shared_ptr<const Obstacles> obstacles,
+                                                      std::shared_ptr<const HazardConfig> hazard,
                                                       const SceneData* before);
 
 }  // namespace viewgain::detail

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene_boxes.hpp"
+#include "viewgain/grid/hazard.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain::detail {
@@ -63,7 +64,8 @@ struct SceneData {
   std::vector<SceneRegion> regions;
   std::shared_ptr<const Obstacles> obstacles;  ///< never null; shared by the scenes of a map
   bool has_obstacles = false;
-  std::optional<SceneBoxes> scene_boxes;  ///< for sorting into the tiles of a view
+  std::shared_ptr<const HazardConfig> hazard;  ///< never null; shared by the scenes of a map
+  std::optional<SceneBoxes> scene_boxes;       ///< for sorting into the tiles of a view
   /// Kernels and BVH: what the room trace keeps with a scene; opaque here.
   std::shared_ptr<const SceneTracing> tracing;
 

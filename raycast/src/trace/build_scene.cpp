@@ -32,17 +32,21 @@ std::shared_ptr<const VoxelScene> make_traceable(std::unique_ptr<detail::SceneDa
 
 std::shared_ptr<const VoxelScene> VoxelScene::build(const BeliefGrid& grid,
                                                     const Obstacles& obstacles,
-                                                    const ExecConfig& exec) {
-  return build(grid.snapshot(), obstacles, exec);
+                                                    const ExecConfig& exec,
+                                                    const HazardConfig& hazard) {
+  return build(grid.snapshot(), obstacles, exec, hazard);
 }
 
 std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
                                                     const Obstacles& obstacles,
-                                                    const ExecConfig& exec) {
+                                                    const ExecConfig& exec,
+                                                    const HazardConfig& hazard) {
   (void)thread_count(exec.num_threads);
   detail::check_obstacles(obstacles);
-  return make_traceable(detail::gather_scene(
-      std::move(snapshot), std::make_shared<const Obstacles>(obstacles), nullptr));
+  hazard.validate();
+  return make_traceable(
+      detail::gather_scene(std::move(snapshot), std::make_shared<const Obstacles>(obstacles),
+                           std::make_shared<const HazardConfig>(hazard), nullptr));
 }
 
 std::shared_ptr<const VoxelScene> VoxelScene::update(
@@ -51,7 +55,8 @@ std::shared_ptr<const VoxelScene> VoxelScene::update(
   if (!before) throw Error(ErrorCode::invalid_argument, "there is no scene to update");
   (void)thread_count(exec.num_threads);
   const detail::SceneData& data = SceneAccess::data(*before);
-  return make_traceable(detail::gather_scene(grid.snapshot(data.snapshot), data.obstacles, &data));
+  return make_traceable(
+      detail::gather_scene(grid.snapshot(data.snapshot), data.obstacles, data.hazard, &data));
 }
 
 std::string_view VoxelScene::isa() const noexcept { return isa_name(data_->tracing->kernels.isa); }

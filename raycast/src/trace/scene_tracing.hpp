@@ -4,9 +4,11 @@
 
 #include <array>
 #include <mutex>
+#include <optional>
 
 #include "device.hpp"
 #include "leaf_traversal.hpp"
+#include "scene/brick_table.hpp"
 #include "scene/scene_data.hpp"
 #include "trace_choice.hpp"
 
@@ -23,6 +25,13 @@ class SceneTracing {
   /// Error(backend), Error(capacity).
   [[nodiscard]] RTCScene bvh(int margin_level) const;
 
+  /// Obstacles alone; the scene has some. As bvh().
+  [[nodiscard]] RTCScene obstacle_bvh() const;
+
+  /// For rays that go on through unknown voxels; built when first asked for. Thread safe. Throws
+  /// Error(capacity).
+  [[nodiscard]] const BrickTable& bricks() const;
+
   const TraceKernels& kernels;
 
  private:
@@ -32,6 +41,9 @@ class SceneTracing {
   };
   const SceneData& data_;
   mutable std::array<Bvh, kMarginLevels> bvhs_;
+  mutable Bvh obstacles_;
+  mutable std::once_flag bricks_once_;
+  mutable std::optional<BrickTable> bricks_;
 };
 
 }  // namespace viewgain::detail

@@ -101,10 +101,32 @@ ScenePtr build_bvh(const SceneData& data, const TraceKernels& kernels, float mar
   return bvh;
 }
 
+ScenePtr build_obstacle_bvh(const SceneData& data, const TraceKernels& kernels) {
+  RTCDevice device = shared_device(kernels.isa);
+  ScenePtr bvh(rtcNewScene(device));
+  rtcSetSceneBuildQuality(bvh.get(), RTC_BUILD_QUALITY_HIGH);
+  rtcSetSceneFlags(bvh.get(), RTC_SCENE_FLAG_ROBUST);
+  attach_obstacles(data, device, bvh.get());
+  commit_scene(device, bvh.get(), "building the obstacles");
+  return bvh;
+}
+
 RTCScene SceneTracing::bvh(int margin_level) const {
   Bvh& bvh = bvhs_.at(static_cast<std::size_t>(margin_level));
   std::call_once(bvh.once, [&] { bvh.scene = build_bvh(data_, kernels, margin_of(margin_level)); });
   return bvh.scene.get();
+}
+
+RTCScene SceneTracing::obstacle_bvh() const {
+  std::call_once(obstacles_.once, [&] { obstacles_.scene = build_obstacle_bvh(data_, kernels); });
+  return obstacles_.scene.get();
+}
+
+const BrickTable& SceneTracing::bricks() const {
+  std::call_once(bricks_once_, [&] {
+    bricks_.emplace(data_.snapshot, HazardField(data_.snapshot, *data_.hazard));
+  });
+  return *bricks_;
 }
 
 }  // namespace viewgain::detail

@@ -13,4 +13,7 @@ namespace viewgain::detail {
 /// Error(backend), Error(capacity).
 [[nodiscard]] ScenePtr build_bvh(const SceneData& data, const TraceKernels& kernels, float margin);
 
+/// Obstacles alone. Throws Error(backend), Error(capacity).
+[[nodiscard]] ScenePtr build_obstacle_bvh(const SceneData& data, const TraceKernels& kernels);
+
 }  // namespace viewgain::detail

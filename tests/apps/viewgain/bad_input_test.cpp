@@ -242,6 +242,13 @@ TEST_F(BadInputTest, Scores) {
                   {score({"--poses", "none.txt"}), "none.txt"},
                   {score({"--sphere", "10,0.6"}, "map.vdb", "sr5000"), "kinect_v1"},
                   {with({"--criterion", "entropy"}), "log_determinant"},
+                  {with({"--gain", "best"}), "combined"},
+                  {with({"--gain", "combined", "--criterion", "trace"}), "trace"},
+                  {with({"--gain", "surface", "--hazard", "-1"}), "hazard"},
+                  {with({"--gain", "surface", "--object-size", "0"}), "object size"},
+                  {with({"--gain", "surface", "--set", "2"}), "paper"},
+                  {with({"--gain", "surface", "--refinement-weight", "1"}), "combined"},
+                  {with({"--hazard", "1"}), "--gain"},
                   {with({"--stride", "0"}), "stride"},
                   {with({"--weight", "0,0,0,1,1,1"}), "--weight"},
                   {with({"--weight", "1,0,0,0,1,1,2"}), "inside out"},
@@ -252,7 +259,7 @@ TEST_F(BadInputTest, Scores) {
                   {{"score", "map.vdb", "--sensor", "small.toml", "--sphere", "10,0.6", "--out",
                     "no/such/scores.csv"},
                    "no/such/scores.csv"}},
-                 21);
+                 28);
 }
 
 }  // namespace

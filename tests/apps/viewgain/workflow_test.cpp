@@ -109,6 +109,8 @@ TEST_F(Workflow, JsonHasTheDocumentedKeys) {
   EXPECT_EQ(scored.at("rays_per_pose"), 24 * 18);
   EXPECT_EQ(scored.at("voxel_size"), 0.02);
   EXPECT_EQ(scored.at("criterion"), "log_diagonal");
+  EXPECT_EQ(scored.at("gain_model"), "paper");
+  EXPECT_EQ(scored.at("gain_unit"), "nat");
   EXPECT_EQ(scored.at("prior_sigma"), info.at("prior_sigma"));
   EXPECT_GE(scored.at("threads"), 1);
   for (const char* key : {"seconds", "poses_per_second", "rays_per_second"}) {
@@ -345,6 +347,23 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   EXPECT_NE(best({"--criterion", "trace"}).at("gain"), gain);
   EXPECT_LT(best({"--stride", "3"}).at("gain"), gain);
 
+  EXPECT_EQ(best({"--gain", "paper"}), best({}));
+  EXPECT_TRUE(best({}).at("area").is_null());
+  const json surface = best({"--gain", "surface"});
+  EXPECT_GT(surface.at("area"), 0.0);
+  EXPECT_EQ(surface.at("gain"), surface.at("area"));
+  EXPECT_TRUE(surface.at("exploration").is_null());
+  EXPECT_TRUE(surface.at("refinement_saturated").is_null());
+  const json combined = best({"--gain", "combined"});
+  EXPECT_GT(combined.at("refinement_saturated"), 0.0);
+  EXPECT_GT(combined.at("gain"),
+            best({"--gain", "combined", "--refinement-weight", "0"}).at("gain"));
+  EXPECT_GT(best({"--gain", "surface", "--hazard", "20"}).at("area"),
+            best({"--gain", "surface", "--hazard", "1"}).at("area"));
+  EXPECT_EQ(best({"--gain", "surface", "--hazard", "0"}).at("area"), 0.0);
+  EXPECT_EQ(best({"--gain", "surface", "--support-plane", "9"}).at("rays"), 48 * 36);
+  EXPECT_NE(best({"--gain", "surface", "--object-size", "1"}).at("area"), surface.at("area"));
+
   // --up and --center: a cube that stands off the origin is seen by the orbit only when centred.
   const auto readings = [this](const Strings& more) {
     Strings arguments{"simulate", "cube.off",     "--orbit", "2,0.6,20",
@@ -386,8 +405,9 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
       {"convert",
        "IN OUT --workspace --prior-sigma --sensor --with-covariance --json --threads .ot [m]"},
       {"score",
-       "MAP --poses --sphere --dome --rings --shell --sensor --criterion --stride --weight "
-       "--prior-sigma --min-range --max-range --top --race --approximate --set --seed "
+       "MAP --poses --sphere --dome --rings --shell --sensor --gain --refinement-weight "
+       "--object-size --hazard --support-plane --criterion --stride --weight --prior-sigma "
+       "--min-range --max-range --top --race --approximate --set --seed "
        "--out --picture --json --threads =log_diagonal =10 [m]"},
       {"info", "MAP --hash --criterion --region --json --threads =log_diagonal"},
       {"candidates",
@@ -396,7 +416,8 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--json --threads"},
       {"reconstruct",
        "MESH --sensor --voxel --size --workspace --up --start --distance --policy --generator "
-       "--sphere-poses --criterion --max-views --stop-gain --stop-idle --stop-coverage "
+       "--sphere-poses --gain --overlap --region-depth --criterion --max-views --stop-gain "
+       "--stop-idle --stop-coverage "
        "--travel-cost --travel-speed --reach --body --background --support-plane --noise "
        "--flying-pixels --seed --wiggling --calibrate --frames-per-view --jump-edge-filter "
        "--no-refine --save-maps --no-pictures --out --json --threads"}};
@@ -425,7 +446,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 138);
+  EXPECT_EQ(words, 146);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

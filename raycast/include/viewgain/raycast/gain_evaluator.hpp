@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -29,14 +30,29 @@ struct VIEWGAIN_EXPORT WeightRegion {
   double weight = 1;  ///< w_v >= 0; the last region that holds a voxel counts, 1 outside all
 };
 
+/// What a view's gain counts (DESIGN.md section 6).
+enum class GainModel : std::uint8_t {
+  paper,     ///< the paper's: entropy removed where rays first meet what is not free [nat]
+  surface,   ///< new surface to be expected, where rays go on through unknown voxels [m²]
+  combined,  ///< that in nats, and what refining known surface brings [nat]
+};
+[[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& gain_model_names();
+[[nodiscard]] VIEWGAIN_EXPORT std::string_view gain_model_name(GainModel model);
+/// Throws Error(invalid_argument) that lists the valid names.
+[[nodiscard]] VIEWGAIN_EXPORT GainModel parse_gain_model(std::string_view name);
+
 /// What changes the answer.
 struct VIEWGAIN_EXPORT GainConfig {
-  Criterion criterion = Criterion::log_diagonal;
+  GainModel model = GainModel::paper;
+  Criterion criterion = Criterion::log_diagonal;  ///< combined: a logarithmic one
   int pixel_stride = 1;                 ///< every s-th pixel of every s-th row, from pixel (0,0)
   std::optional<double> prior_sigma{};  ///< sigma_0 [m]; the map's unless given
   std::optional<double> min_range{};    ///< along the ray [m]; the sensor's unless given
   std::optional<double> max_range{};    ///< along the ray [m]; the sensor's unless given
   std::vector<WeightRegion> weights{};
+  double refinement_weight = 0.3;  ///< combined: w, of refining against finding new surface
+  /// Height z of a support plane in the world [m]: rays that go down end there (surface, combined).
+  std::optional<double> support_plane{};
 };
 
 enum class ViewStatus : std::uint8_t {
@@ -53,6 +69,10 @@ struct VIEWGAIN_EXPORT ViewGain {
   double gain = std::numeric_limits<double>::quiet_NaN();
   double exploration = std::numeric_limits<double>::quiet_NaN();  ///< share of unknown voxels
   double refinement = std::numeric_limits<double>::quiet_NaN();   ///< share of occupied voxels
+  /// surface, combined: new surface to be expected, measured across the rays [m²].
+  double area = std::numeric_limits<double>::quiet_NaN();
+  /// combined: entropy removed in occupied voxels, with a floor below which none is counted [nat].
+  double refinement_saturated = std::numeric_limits<double>::quiet_NaN();
   /// The paper's eq. (6) over the touched voxels: Σ_v Σ_k ln[(Λ_v + ΣΛ_r)⁻¹]_kk, lengths in metres.
   double posterior_entropy = std::numeric_limits<double>::quiet_NaN();
   std::uint32_t rays = 0;
@@ -123,8 +143,10 @@ class VIEWGAIN_EXPORT GainEvaluator {
 
   /// Why a view is good: one entry for each voxel in which rays of the pose end, the largest gain
   /// first, ties by the voxel's x, y, z. The gains add up to evaluate()'s gain to rounding (1e-9 of
-  /// it), the rays to its hits. Empty for a bad pose and for a camera in an occupied voxel. On the
-  /// calling thread; takes three times as long as evaluate().
+  /// it; surface, combined: 1e-5), the rays to its hits; for surface and combined there is an entry
+  /// for each unknown voxel that rays reach, however unlikely they end there. Empty for a bad pose
+  /// and for a camera in an occupied voxel. On the calling thread; takes three times as long as
+  /// evaluate().
   [[nodiscard]] std::vector<VoxelContribution> contributions(const Pose& T_world_camera) const;
 
   /// Where the rays of a pose end, in pixel order (row by row, strided); the hits that evaluate()
@@ -153,7 +175,8 @@ class VIEWGAIN_EXPORT GainEvaluator {
                                 const RaceConfig& config = {},
                                 const BatchControl& control = {}) const;
 
-  /// Up to k different poses that are good together on the map as it stands, greedily: each is the
+  /// Up to k different poses that are good together on the map as it stands, greedily, by the
+  /// paper's gain (Error(invalid_argument) with another): each is the
   /// one that adds most once the expected information ΣΛ_r of those before it is part of the
   /// voxels' (an unknown voxel goes on blocking rays as unknown). Ties go to the lower index, bad
   /// poses are never chosen, k is clamped. For log_determinant, which is submodular, poses whose

@@ -13,8 +13,11 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT VoxelContribution {
   Index3 voxel{};
   VoxelState state = VoxelState::unknown;  ///< unknown or occupied
-  std::uint32_t rays = 0;                  ///< that end in it
-  double gain = 0;                         ///< its task weight included [nat, or m² for trace]
+  std::uint32_t rays = 0;                  ///< that end in it; surface, combined: that reach it
+  /// Rays that are expected to end in it: as many as `rays` for the paper's gain, else the sum of
+  /// their chances.
+  double expected_rays = 0;
+  double gain = 0;  ///< its task weight included, in the gain's unit
 };
 
 }  // namespace viewgain

@@ -13,6 +13,7 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/hazard.hpp"
 
 namespace viewgain {
 
@@ -41,16 +42,20 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// Error(invalid_argument) if an obstacle has a vertex that is not finite, an index out of range
   /// or a box inside out, or for a number of threads out of range. Runs on the calling thread, and
   /// where a BVH is built on those that the process's TBB has: exec does not limit it.
+  /// The hazard of unknown voxels is found when an evaluator of the surface or combined gain first
+  /// wants it (some milliseconds); Error(invalid_argument) if it cannot be used.
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(const BeliefGrid& grid,
                                                                const Obstacles& obstacles = {},
-                                                               const ExecConfig& exec = {});
+                                                               const ExecConfig& exec = {},
+                                                               const HazardConfig& hazard = {});
   /// The same of a snapshot as BeliefGrid::snapshot() made it; its lists are not checked.
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(GridSnapshot snapshot,
                                                                const Obstacles& obstacles = {},
-                                                               const ExecConfig& exec = {});
-  /// The scene of what `grid` is now, with the obstacles of `before`, which stays as it is: as
-  /// build(), but regions that have not changed since a scene of the same grid are copied from it.
-  /// Throws Error(invalid_argument) for a null scene, and as build().
+                                                               const ExecConfig& exec = {},
+                                                               const HazardConfig& hazard = {});
+  /// The scene of what `grid` is now, with obstacles and hazard config of `before`, which stays as
+  /// it is: as build(), but regions that have not changed since a scene of the same grid are copied
+  /// from it. Throws Error(invalid_argument) for a null scene, and as build().
   [[nodiscard]] static std::shared_ptr<const VoxelScene> update(
       const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
       const ExecConfig& exec = {});

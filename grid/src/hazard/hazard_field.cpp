@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <string>
+
+#include "squared_distances.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
+#include "viewgain/grid/hazard.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr std::uint32_t kLeastHits = 3;  // of a voxel that is evidence of surface
+constexpr double kKnownDistance = 2.0;   // up to which surface is not new [voxels]
+
+void check(bool ok, const char* name, double value) {
+  if (!ok) {
+    throw Error(ErrorCode::invalid_argument,
+                "hazard: " + std::string(name) + " " + short_text(value) + " is out of bounds");
+  }
+}
+
+// The voxels that are evidence of surface.
+std::vector<Index3> evidence_in(const GridSnapshot& snapshot) {
+  std::vector<Index3> voxels;
+  for (const SnapshotLeaf& leaf : snapshot.leaves) {
+    if (!leaf.beliefs) continue;
+    std::size_t rank = 0;
+    for_each_bit(leaf.beliefs->mask, [&](unsigned offset) {
+      const Belief& belief = leaf.beliefs->beliefs[rank++];
+      if (belief.hits >= kLeastHits && test_bit(leaf.occupied, offset)) {
+        voxels.push_back(offset_voxel(leaf.origin, offset));
+      }
+    });
+  }
+  return voxels;
+}
+
+// Box of some voxels; empty if there are none.
+VoxelBox box_of(const std::vector<Index3>& voxels) {
+  if (voxels.empty()) return {};
+  VoxelBox box{voxels.front(), voxels.front()};
+  for (const Index3& v : voxels) {
+    box.min = {std::min(box.min.x, v.x), std::min(box.min.y, v.y), std::min(box.min.z, v.z)};
+    box.max = {std::max(box.max.x, v.x), std::max(box.max.y, v.y), std::max(box.max.z, v.z)};
+  }
+  return {box.min, {box.max.x + 1, box.max.y + 1, box.max.z + 1}};
+}
+
+int longest_side(const VoxelBox& box) {
+  return std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z});
+}
+
+// log2 of the hazard cells' edge [voxels].
+int shift_for(double decay_length, double voxel_size) {
+  const double wanted = std::log2(0.25 * decay_length / voxel_size);
+  return static_cast<int>(std::clamp(std::round(wanted), 0.0, 3.0));
+}
+
+}  // namespace
+
+void HazardConfig::validate() const {
+  const auto is_positive = [](double value) { return value > 0 && std::isfinite(value); };
+  const auto is_rate = [](double value) { return value >= 0 && std::isfinite(value); };
+  if (object_size) check(is_positive(*object_size), "object size", *object_size);
+  if (model) {
+    check(is_positive(model->decay_length), "decay length", model->decay_length);
+    check(is_rate(model->near_rate), "rate near the surface", model->near_rate);
+    check(is_rate(model->far_rate), "rate far from the surface", model->far_rate);
+  }
+  if (!volume) return;
+  if (volume->rates.size() != volume->box.volume()) {
+    throw Error(ErrorCode::invalid_argument, "hazard: " + std::to_string(volume->rates.size()) +
+                                                 " rates for a box of " +
+                                                 std::to_string(volume->box.volume()) + " voxels");
+  }
+  check(is_rate(double{volume->outside}), "rate outside the volume", double{volume->outside});
+  for (const float rate : volume->rates) check(is_rate(double{rate}), "rate", double{rate});
+}
+
+HazardField::HazardField(const GridSnapshot& snapshot, const HazardConfig& config)
+    : volume_(config.volume), voxel_size_(snapshot.voxel_size) {
+  config.validate();
+  const std::vector<Index3> evidence = evidence_in(snapshot);
+  const VoxelBox workspace = VoxelBox::from_dims(snapshot.min_index, snapshot.dims);
+  const VoxelBox seen = evidence.empty() ? workspace : box_of(evidence);
+  const double size = config.object_size.value_or(longest_side(seen) * voxel_size_);
+  model_ = config.model.value_or(HazardModel::for_size(size));
+  shift_ = shift_for(model_.decay_length, voxel_size_);
+  far_rate_ = static_cast<float>(model_.rate(std::numeric_limits<double>::infinity()));
+  find_distances(evidence, workspace);
+}
+
+void HazardField::find_distances(const std::vector<Index3>& evidence, const VoxelBox& workspace) {
+  if (evidence.empty()) return;
+  const int edge = 1 << shift_;
+  const double cell = voxel_size_ * edge;
+  const int reach =
+      std::clamp(static_cast<int>(HazardModel::kCut * model_.decay_length / cell), 1, kMaxReach);
+  const VoxelBox seen = box_of(evidence);
+  const auto shifted = [&](Index3 v, int by) {
+    return Index3{(v.x >> shift_) + by, (v.y >> shift_) + by, (v.z >> shift_) + by};
+  };
+  const auto last = [](Index3 v) { return Index3{v.x - 1, v.y - 1, v.z - 1}; };
+  const VoxelBox cells =
+      VoxelBox{shifted(seen.min, -reach), shifted(last(seen.max), reach + 1)}.intersection(
+          {shifted(workspace.min, 0), shifted(last(workspace.max), 1)});
+  low_cell_ = cells.min;
+  size_ = {static_cast<std::size_t>(cells.max.x - cells.min.x),
+           static_cast<std::size_t>(cells.max.y - cells.min.y),
+           static_cast<std::size_t>(cells.max.z - cells.min.z)};
+  near_box_ = {{cells.min.x * edge, cells.min.y * edge, cells.min.z * edge},
+               {cells.max.x * edge, cells.max.y * edge, cells.max.z * edge}};
+  squared_.assign(cells.volume(), detail::kNoDistance);
+  for (const Index3& v : evidence) {
+    const Index3 c = shifted(v, 0);
+    squared_[(static_cast<std::size_t>(c.x - low_cell_.x) * size_[1] +
+              static_cast<std::size_t>(c.y - low_cell_.y)) *
+                 size_[2] +
+             static_cast<std::size_t>(c.z - low_cell_.z)] = 0;
+  }
+  detail::find_squared_distances(squared_, size_, reach);
+  static_assert(kBeyond == detail::kNoDistance);
+
+  rates_.resize(static_cast<std::size_t>(reach * reach) + 1);
+  for (std::size_t i = 0; i < rates_.size(); ++i) {
+    const double distance = std::sqrt(static_cast<double>(i)) * cell;
+    rates_[i] = static_cast<float>(model_.rate(distance));
+  }
+  const double known = kKnownDistance / edge;  // [cells]
+  most_known_ = static_cast<std::uint32_t>(known * known);
+}
+
+float HazardField::volume_rate(Index3 v) const {
+  const VoxelBox& box = volume_->box;
+  if (!box.contains(v)) return volume_->outside;
+  const auto extent = [](std::int32_t from, std::int32_t to) {
+    return static_cast<std::size_t>(to - from);
+  };
+  return volume_
+      ->rates[(extent(box.min.x, v.x) * extent(box.min.y, box.max.y) + extent(box.min.y, v.y)) *
+                  extent(box.min.z, box.max.z) +
+              extent(box.min.z, v.z)];
+}
+
+}  // namespace viewgain

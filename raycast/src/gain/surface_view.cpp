@@ -1,0 +1,283 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "surface_view.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "task_weight.hpp"
+#include "trace/obstacle_ranges.hpp"
+#include "trace/scene_tracing.hpp"
+#include "view_driver.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+// A surface point is made of the readings within this radius of it [voxels], and of so many at
+// least (grid's fused points).
+constexpr double kSupportRadius = 1.0;
+constexpr double kLeastReadings = 3.0;
+// A ray comes to a surface from behind where it has passed so much unknown space before it [voxels]
+// and runs along the outward normal by this cosine: the surface must lie in between.
+constexpr float kLeastStretch = 2.0F;
+constexpr float kLeastCosineBehind = 0.2F;
+// Readings that a voxel of new surface is counted with.
+constexpr double kNewReadings = 3.0;
+
+// ½ Σ_k ln [Λ⁻¹ + F]_kk
+double entropy_with_floor(const SymmetricMatrix3& information, double floor_variance) {
+  const SymmetricMatrix3 sigma = information.inverse();
+  return 0.5 * std::log((sigma.xx + floor_variance) * (sigma.yy + floor_variance) *
+                        (sigma.zz + floor_variance));
+}
+
+// ΔH_new: what readings from the working distance take off a voxel of which nothing is known.
+double entropy_of_new_voxel(const EvaluatorCore& core, double prior_information,
+                            double floor_variance) {
+  const MeasurementSigmas sigmas = core.frontal(core.working_distance);
+  SymmetricMatrix3 seen = measurement_information(Eigen::Vector3d::UnitZ(), sigmas);
+  for (double* value : {&seen.xx, &seen.yy, &seen.zz}) *value *= kNewReadings;
+  const auto prior = SymmetricMatrix3::identity(prior_information);
+  return entropy_with_floor(prior, floor_variance) -
+         entropy_with_floor(prior + seen, floor_variance);
+}
+
+}  // namespace
+
+SurfaceView::SurfaceView(const SceneData& scene, const EvaluatorCore& core,
+                         const ViewTracer& tracer, double prior_sigma)
+    : scene_(scene),
+      core_(core),
+      tracer_(tracer),
+      bricks_(scene.tracing->bricks()),
+      walk_(walk_kernels(scene.tracing->kernels.isa)),
+      limits_(limits_of()),
+      prior_information_(1.0 / (prior_sigma * prior_sigma)) {
+  const double V = scene.snapshot.voxel_size;
+  const double stride = core.config.pixel_stride;
+  cap_ = static_cast<float>(stride * stride * std::numbers::pi * kSupportRadius * kSupportRadius /
+                            kLeastReadings);
+  floor_variance_ = V * V;
+  nats_per_area_ = entropy_of_new_voxel(core, prior_information_, floor_variance_) / (V * V);
+  if (scene.has_obstacles) (void)scene.tracing->obstacle_bvh();
+}
+
+WalkLimits SurfaceView::limits_of() const {
+  const GridSnapshot& snapshot = scene_.snapshot;
+  WalkLimits limits;
+  limits.workspace = {static_cast<float>(snapshot.dims.x), static_cast<float>(snapshot.dims.y),
+                      static_cast<float>(snapshot.dims.z)};
+  if (!core_.config.support_plane) return limits;
+  const Pose T_grid_world = snapshot.T_world_grid.inverse();
+  const Eigen::Vector3d normal = T_grid_world.rotation() * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d base(snapshot.min_index.x, snapshot.min_index.y, snapshot.min_index.z);
+  const Eigen::Vector3d on_plane =
+      T_grid_world * Eigen::Vector3d(0, 0, *core_.config.support_plane) / snapshot.voxel_size -
+      base;
+  limits.has_plane = true;
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    limits.normal[static_cast<std::size_t>(a)] = static_cast<float>(normal[a]);
+  }
+  limits.height = static_cast<float>(normal.dot(on_plane));
+  return limits;
+}
+
+void SurfaceView::find_ends(const PoseFrame& frame, const RayTile& rays, float* far) const {
+  std::copy(rays.range, rays.range + kTileRays, far);
+  if (scene_.has_obstacles) cut_at_obstacles(scene_.tracing->obstacle_bvh(), frame, rays, far);
+}
+
+Index3 SurfaceView::voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) const {
+  const Index3& base = scene_.snapshot.min_index;
+  return {x - bricks_.offset[0] + base.x, y - bricks_.offset[1] + base.y,
+          z - bricks_.offset[2] + base.z};
+}
+
+SymmetricMatrix3 SurfaceView::information(const RayTile& rays, int lane, float range) const {
+  const Eigen::Vector3d d(rays.dx[lane], rays.dy[lane], rays.dz[lane]);
+  return measurement_information(
+      d.normalized(), core_.frontal(static_cast<double>(range) * scene_.snapshot.voxel_size));
+}
+
+bool SurfaceView::is_behind(const RayTile& rays, int lane, Index3 at) const {
+  const Eigen::Vector3f normal = bricks_.normal_at(at.x, at.y, at.z);
+  return normal.x() * rays.dx[lane] + normal.y() * rays.dy[lane] + normal.z() * rays.dz[lane] >
+         kLeastCosineBehind;
+}
+
+double SurfaceView::area_of(const RayTile& rays, WalkedTile& tile) const {
+  for_each_lane(tile.occupied, [&](int lane) {
+    if (!(tile.stretch_length[lane] >= kLeastStretch)) return;
+    if (!is_behind(rays, lane, {tile.x[lane], tile.y[lane], tile.z[lane]})) return;
+    const float held = 1.0F - tile.passed[lane] / tile.stretch_passed[lane];
+    if (held > 0) tile.area[lane] += tile.stretch_area[lane] * (1.0F / held - 1.0F);
+    tile.passed[lane] = 0;
+  });
+  double sum = 0;
+  for_each_lane(rays.valid, [&](int lane) { sum += static_cast<double>(tile.area[lane]); });
+  return sum;
+}
+
+void SurfaceView::evaluate(const PoseFrame& frame, Workspace& workspace, ViewGain& result) const {
+  const auto tiles = tracer_.all_tiles();
+  tracer_.prepare(frame, tiles.size(), workspace.bins);
+  evaluate(frame, tiles, workspace, result);
+}
+
+void SurfaceView::sample(const PoseFrame& frame, std::span<const std::vector<std::uint32_t>> groups,
+                         Workspace& workspace, std::span<double> gains) const {
+  std::size_t tile_count = 0;
+  for (const auto& group : groups) tile_count += group.size();
+  tracer_.prepare(frame, tile_count, workspace.bins);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    ViewGain result;
+    evaluate(frame, groups[i], workspace, result);
+    gains[i] = result.gain;
+  }
+}
+
+template <typename Tiles>
+void SurfaceView::evaluate(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
+                           ViewGain& result) const {
+  const bool refines = core_.config.model == GainModel::combined;
+  const std::vector<WeightRegion>& weights = core_.config.weights;
+  const double V = scene_.snapshot.voxel_size;
+  OccupiedSums& occupied = workspace.occupied;
+  occupied.begin();
+  double area = 0;  // [m²]
+  result.hits = 0;
+  if (!weights.empty()) {
+    for_each_share(frame, tiles, workspace, [&](const SurfaceShare& share) {
+      area += share.area;
+      if (!share.is_occupied) return;
+      ++result.hits;
+      if (refines) occupied.add(share.voxel, share.information);
+    });
+  } else {
+    double sum = 0;  // [voxels²]
+    tracer_.set_up(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
+      alignas(64) float far[kTileRays];
+      find_ends(frame, rays, far);
+      WalkedTile walked;
+      walk_.area(bricks_, frame, limits_, rays, far,
+                 &tracer_.table().solid_angle[number * kTileRays], cap_, walked);
+      sum += area_of(rays, walked);
+      result.hits += static_cast<std::uint32_t>(std::popcount(walked.occupied));
+      if (!refines) return;
+      for_each_lane(walked.occupied, [&](int lane) {
+        SymmetricMatrix3 added = information(rays, lane, walked.range[lane]);
+        const auto passed = static_cast<double>(walked.passed[lane]);
+        for (double* value : {&added.xx, &added.yy, &added.zz, &added.xy, &added.xz, &added.yz}) {
+          *value *= passed;
+        }
+        occupied.add(voxel_at(walked.x[lane], walked.y[lane], walked.z[lane]), added);
+      });
+    });
+    area = sum * V * V;
+  }
+  result.area = result.gain = area;
+  if (!refines) return;
+  double saturated = 0;
+  for (const OccupiedSums::Entry& entry : occupied.entries()) {
+    saturated += saturated_gain(entry.voxel, entry.information);
+  }
+  result.occupied_voxels = static_cast<std::uint32_t>(occupied.entries().size());
+  result.refinement_saturated = saturated;
+  result.gain = nats_per_area_ * area + core_.config.refinement_weight * saturated;
+}
+
+double SurfaceView::saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const {
+  SymmetricMatrix3 before = SymmetricMatrix3::identity(prior_information_);
+  const SnapshotLeaf* leaf = scene_.snapshot.find_leaf(voxel);
+  if (leaf != nullptr && leaf->beliefs) {
+    if (const Belief* belief = leaf->beliefs->find(block_offset(voxel)))
+      before += belief->information_matrix();
+  }
+  const std::vector<WeightRegion>& weights = core_.config.weights;
+  const double weight =
+      weights.empty() ? 1.0 : task_weight(weights, voxel, scene_.snapshot.voxel_size);
+  return weight * (entropy_with_floor(before, floor_variance_) -
+                   entropy_with_floor(before + information, floor_variance_));
+}
+
+void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
+                              Workspace& workspace) const {
+  alignas(64) float far[kTileRays];
+  find_ends(frame, rays, far);
+  workspace.visits.clear();
+  walk_.visits(bricks_, frame, limits_, rays, far, workspace.visits);
+  const double V = scene_.snapshot.voxel_size;
+  const int shift = bricks_.rate_shift;
+  const std::vector<WeightRegion>& weights = core_.config.weights;
+  // A packet's rays take turns; each ray's visits are in order.
+  std::stable_sort(workspace.visits.begin(), workspace.visits.end(),
+                   [](const VoxelVisit& a, const VoxelVisit& b) { return a.lane < b.lane; });
+  double passed = 1.0;
+  // The stretch of unknown voxels that the ray is in: its first share, where it begins, T there.
+  std::size_t stretch = 0;
+  double stretch_begin = 0, stretch_passed = 1.0;
+  const auto same_run = [&](const VoxelVisit& a, const VoxelVisit& b) {
+    return a.lane == b.lane && a.state == b.state && a.end == b.begin &&
+           a.x >> shift == b.x >> shift && a.y >> shift == b.y >> shift &&
+           a.z >> shift == b.z >> shift;
+  };
+  const auto& visits = workspace.visits;
+  for (auto first = visits.begin(), last = first; first != visits.end(); first = last) {
+    const bool is_new_ray = first == visits.begin() || first->lane != (first - 1)->lane;
+    const bool follows_on = !is_new_ray && first->begin == (first - 1)->end;
+    if (is_new_ray) passed = 1.0;
+    last = first + 1;
+    const int lane = static_cast<int>(first->lane);
+    if (first->state == BrickTable::kOccupiedVoxel) {
+      const double length = static_cast<double>(first->begin) - stretch_begin;
+      if (follows_on && length >= static_cast<double>(kLeastStretch) &&
+          is_behind(rays, lane, {first->x, first->y, first->z})) {
+        const double held = 1.0 - passed / stretch_passed;
+        for (std::size_t i = stretch; held > 0 && i < workspace.shares.size(); ++i) {
+          workspace.shares[i].probability /= held;
+          workspace.shares[i].area /= held;
+        }
+        passed = 0;
+      }
+      SurfaceShare share{voxel_at(first->x, first->y, first->z), true, passed, 0.0};
+      if (core_.config.model == GainModel::combined) {
+        share.information = information(rays, lane, first->begin);
+        for (double* value :
+             {&share.information.xx, &share.information.yy, &share.information.zz,
+              &share.information.xy, &share.information.xz, &share.information.yz}) {
+          *value *= passed;
+        }
+      }
+      workspace.shares.push_back(share);
+      continue;
+    }
+    if (!follows_on) {
+      stretch = workspace.shares.size();
+      stretch_begin = static_cast<double>(first->begin);
+      stretch_passed = passed;
+    }
+    while (last != visits.end() && same_run(*(last - 1), *last)) ++last;
+    const double begin = static_cast<double>(first->begin),
+                 end = static_cast<double>((last - 1)->end);
+    const double share = -std::expm1(-std::abs(static_cast<double>(first->rate)) * (end - begin));
+    const double P = passed * share;
+    const double t = 0.5 * (begin + end);
+    const double across = std::min(
+        static_cast<double>(tracer_.table().solid_angle[number * kTileRays + first->lane]) * t * t,
+        static_cast<double>(cap_));
+    for (auto visit = first; visit != last; ++visit) {
+      const Index3 voxel = voxel_at(visit->x, visit->y, visit->z);
+      const double part =
+          P * (static_cast<double>(visit->end) - static_cast<double>(visit->begin)) / (end - begin);
+      const double weight = weights.empty() ? 1.0 : task_weight(weights, voxel, V);
+      const bool is_new = !std::signbit(visit->rate);
+      workspace.shares.push_back(
+          {voxel, false, part, is_new ? part * across * weight * V * V : 0.0});
+    }
+    passed -= P;
+  }
+}
+
+}  // namespace viewgain::detail

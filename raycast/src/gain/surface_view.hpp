@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "evaluator_core.hpp"
+#include "scene/scene_data.hpp"
+#include "trace/ordered_walk.hpp"
+#include "trace/view_tracer.hpp"
+
+namespace viewgain::detail {
+
+/// The surface and the combined gain of views (DESIGN.md section 6, "what a view would show"), for
+/// the evaluator of one scene. Immutable; thread safe.
+class SurfaceView {
+ public:
+  /// Scene and tracer must outlive it. Finds the scene's hazard if it is not there yet. Throws
+  /// Error(capacity), Error(backend), Error(invalid_argument).
+  SurfaceView(const SceneData& scene, const EvaluatorCore& core, const ViewTracer& tracer,
+              double prior_sigma);
+
+  /// Fills in the gain of the view from an opened pose.
+  void evaluate(const PoseFrame& frame, Workspace& workspace, ViewGain& result) const;
+
+  /// The gain of some of the view's tiles by themselves, one a group.
+  void sample(const PoseFrame& frame, std::span<const std::vector<std::uint32_t>> groups,
+              Workspace& workspace, std::span<double> gains) const;
+
+  /// Calls visit(const SurfaceShare&) for all rays of some tiles, voxel by voxel; a run's share
+  /// is split by length. `workspace`'s bins are prepared for the view.
+  template <typename Tiles, typename Visit>
+  void for_each_share(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
+                      Visit&& visit) const {
+    tracer_.set_up(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
+      workspace.shares.clear();
+      find_shares(frame, number, rays, workspace);
+      for (const SurfaceShare& share : workspace.shares) visit(share);
+    });
+  }
+
+  /// Nats for one m² of new surface: ΔH_new / V².
+  [[nodiscard]] double nats_per_area() const { return nats_per_area_; }
+  /// w_v [H_F(Λ_0 + Λ_v) - H_F(Λ_0 + Λ_v + information)] of an occupied voxel.
+  [[nodiscard]] double saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const;
+
+ private:
+  template <typename Tiles>
+  void evaluate(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
+                ViewGain& result) const;
+  void find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
+                   Workspace& workspace) const;
+  [[nodiscard]] WalkLimits limits_of() const;
+  void find_ends(const PoseFrame& frame, const RayTile& rays, float* far) const;
+  [[nodiscard]] double area_of(const RayTile& rays, WalkedTile& tile) const;
+  /// Does the ray come to an occupied voxel, in table coordinates, from behind?
+  [[nodiscard]] bool is_behind(const RayTile& rays, int lane, Index3 at) const;
+  [[nodiscard]] SymmetricMatrix3 information(const RayTile& rays, int lane, float range) const;
+  [[nodiscard]] Index3 voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) const;
+
+  const SceneData& scene_;
+  const EvaluatorCore& core_;
+  const ViewTracer& tracer_;
+  const BrickTable& bricks_;
+  const WalkKernels& walk_;
+  WalkLimits limits_;
+  float cap_;  // the most that a ray counts for [voxels²]
+  double prior_information_, floor_variance_, nats_per_area_;
+};
+
+}  // namespace viewgain::detail

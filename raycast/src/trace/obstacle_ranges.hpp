@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "embree_compat.hpp"
+#include "ray_tile.hpp"
+
+namespace viewgain::detail {
+
+/// Shortens far[lane] [voxels] to where the tile's rays meet an obstacle.
+void cut_at_obstacles(RTCScene obstacles, const PoseFrame& frame, const RayTile& rays, float* far);
+
+}  // namespace viewgain::detail

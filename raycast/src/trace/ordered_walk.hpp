@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ray_tile.hpp"
+#include "scene/brick_table.hpp"
+#include "viewgain/core/isa.hpp"
+
+namespace viewgain::detail {
+
+/// Where the rays of a view may go: between these [voxels], beside the range limits of the frame.
+struct WalkLimits {
+  std::array<float, 3> workspace{};  ///< its size along x, y, z, from (0, 0, 0) on
+  bool has_plane = false;            ///< a support plane, at which rays that go down end
+  std::array<float, 3> normal{};     ///< of the plane, grid frame, unit length, upwards
+  float height = 0;                  ///< of the plane along the normal
+};
+
+/// What the rays of a tile meet, and where they end. Lengths in voxels, areas in voxels².
+struct alignas(64) WalkedTile {
+  /// What is left of the ray at its end: T, the chance that it gets there.
+  float passed[kTileRays];
+  /// Σ P min(ω t², cap) over its runs: the new surface to be expected, across the ray.
+  float area[kTileRays];
+  /// Of the last stretch of unknown voxels, without a free one in between: its share of the area,
+  /// T where it begins, its length.
+  float stretch_area[kTileRays], stretch_passed[kTileRays], stretch_length[kTileRays];
+  float range[kTileRays];                                 ///< where a ray ends that is `occupied`
+  std::int32_t x[kTileRays], y[kTileRays], z[kTileRays];  ///< its voxel, in table coordinates
+  std::uint32_t occupied = 0;                             ///< lanes that end in an occupied voxel
+};
+
+/// A voxel that a ray visits for a positive length.
+struct VoxelVisit {
+  std::uint32_t lane;
+  std::uint32_t state;   ///< as in BrickTable: unknown or occupied; free ones are left out
+  std::int32_t x, y, z;  ///< table coordinates
+  float begin, end;      ///< along the ray [voxels]
+  float rate;            ///< [1/voxel], as in BrickTable::rates; unknown voxels only
+};
+
+/// Walks rays through the bricks in order, through unknown voxels to the first occupied one or the
+/// end of what is to be seen.
+struct WalkKernels {
+  /// Of a tile whose rays are set up (TraceKernels::begin): `far` is where each ray must end
+  /// [voxels], `solid_angle` what each stands for [sr], `cap` the most that P is multiplied by.
+  void (*area)(const BrickTable& table, const PoseFrame& frame, const WalkLimits& limits,
+               const RayTile& rays, const float* far, const float* solid_angle, float cap,
+               WalkedTile& out);
+  /// The same voxel by voxel: appends what the rays visit, each ray's in order, and leaves the sums
+  /// alone.
+  void (*visits)(const BrickTable& table, const PoseFrame& frame, const WalkLimits& limits,
+                 const RayTile& rays, const float* far, std::vector<VoxelVisit>& out);
+};
+
+/// Kernels of an instruction set that the CPU supports.
+[[nodiscard]] const WalkKernels& walk_kernels(Isa isa);
+
+}  // namespace viewgain::detail

@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/surface.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+namespace viewgain::oracle {
+namespace {
+
+using Cell = std::tuple<int, int, int>;
+
+Cell cell_of(Index3 v, int shift) { return {v.x >> shift, v.y >> shift, v.z >> shift}; }
+
+double weight_of(const GainConfig& config, double voxel_size, Index3 v) {
+  double weight = 1;
+  for (const WeightRegion& region : config.weights) {
+    if (region.box.contains((v.x + 0.5) * voxel_size, (v.y + 0.5) * voxel_size,
+                            (v.z + 0.5) * voxel_size)) {
+      weight = region.weight;
+    }
+  }
+  return weight;
+}
+
+/// The solid angle between a pixel's edges, by the derivative of the rays, in steps of a thousandth
+/// of a pixel.
+double pixel_angle(const PinholeCamera& camera, int u, int v) {
+  constexpr double kStep = 1e-3;
+  const Eigen::Vector3d p = camera.ray(u, v);
+  const Eigen::Vector3d du = (camera.ray(u + kStep, v) - camera.ray(u - kStep, v)) / (2 * kStep);
+  const Eigen::Vector3d dv = (camera.ray(u, v + kStep) - camera.ray(u, v - kStep)) / (2 * kStep);
+  return std::abs(p.dot(du.cross(dv))) / std::pow(p.norm(), 3);
+}
+
+Eigen::Matrix3d information_of(const Sensor& sensor, const Eigen::Vector3d& d, double range) {
+  const MeasurementSigmas s = sensor.sigmas(range);
+  const Eigen::Matrix3d along = d * d.transpose();
+  return (s.lateral * s.lateral * (Eigen::Matrix3d::Identity() - along) + s.axial * s.axial * along)
+      .inverse();
+}
+
+double entropy_with_floor(const Eigen::Matrix3d& information, double floor) {
+  return 0.5 * (information.inverse().diagonal().array() + floor).log().sum();
+}
+
+/// From unknown to free voxels around the cube of 2³ of a voxel: Σ (free - unknown) δ over the 27
+/// cubes at δ in {-1, 0, 1}³; voxels outside the workspace are neither.
+Eigen::Vector3d outward(const DenseMap& map, Index3 voxel) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const Index3 low{(voxel.x >> 1) * 2 - 2, (voxel.y >> 1) * 2 - 2, (voxel.z >> 1) * 2 - 2};
+  for (int x = 0; x < 6; ++x) {
+    for (int y = 0; y < 6; ++y) {
+      for (int z = 0; z < 6; ++z) {
+        const Index3 v{low.x + x, low.y + y, low.z + z};
+        if (!map.inside(v)) continue;
+        const VoxelState state = map.state(v);
+        if (state == VoxelState::occupied) continue;
+        const Eigen::Vector3d at(x / 2 - 1, y / 2 - 1, z / 2 - 1);
+        sum += state == VoxelState::free ? at : -at;
+      }
+    }
+  }
+  return sum.norm() > 0 ? sum.normalized() : sum;
+}
+
+/// An unknown chord in one hazard cell.
+struct Run {
+  Cell cell;
+  double begin, end;    // [voxels]
+  double weighted = 0;  // Σ length w_v [voxels]
+  Index3 voxel;
+};
+
+}  // namespace
+
+SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const HazardField& hazard,
+                           const Sensor& sensor, const GainConfig& config,
+                           const Pose& T_world_camera, const Obstacles& obstacles) {
+  const double V = grid.voxel_size(), floor = V * V;
+  const double sigma_0 = config.prior_sigma.value_or(grid.prior_sigma());
+  const Eigen::Matrix3d prior = Eigen::Matrix3d::Identity() / (sigma_0 * sigma_0);
+  const double stride = config.pixel_stride;
+  const double cap = stride * stride * std::numbers::pi * V * V / 3.0;  // [m²]
+  SurfaceValue value;
+  std::map<Cell, Eigen::Matrix3d> refined;
+
+  const std::vector<Ray> rays =
+      view_rays(grid.T_world_grid(), V, sensor.camera, config.pixel_stride, T_world_camera);
+  const int columns = (sensor.camera.width - 1) / config.pixel_stride + 1;
+  RayLimits limits = limits_of(map, sensor, config);
+  int undecided = 0;
+  double undecided_area = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    if (!ray.direction.allFinite()) continue;
+    const int u = static_cast<int>(i) % columns * config.pixel_stride;
+    const int v = static_cast<int>(i) / columns * config.pixel_stride;
+    const double angle = stride * stride * pixel_angle(sensor.camera, u, v);
+    const double last = std::min(limits.max_range, obstacle_range(map, obstacles, ray));
+    double passed = 1;
+    std::optional<Run> run;
+    // The stretch of unknown voxels up to here.
+    bool in_stretch = false;
+    double stretch_begin = 0, stretch_passed = 1, stretch_area = 0, last_across = 0;
+    const auto close = [&] {
+      if (!run) return;
+      const double h = static_cast<double>(hazard.rate(run->voxel));
+      const double length = run->end - run->begin;
+      const double P = passed * (1 - std::exp(-h * length * V));
+      const double t = 0.5 * (run->begin + run->end) * V;
+      const double across = std::min(angle * t * t, cap);
+      value.pixel_area = std::max(value.pixel_area, across);
+      const double distance = hazard.distance(run->voxel);
+      last_across = across;
+      if (distance > 2 * V * (1 + 1e-9)) {
+        value.area += P * across * run->weighted / length;
+        stretch_area += P * across * run->weighted / length;
+      }
+      passed -= P;
+      run.reset();
+    };
+    walk(map, ray, [&](Index3 voxel, double t_in, double t_out) {
+      if (t_out <= limits.min_range) return false;
+      const double begin = std::max(t_in, limits.min_range), end = std::min(t_out, last);
+      if (begin >= end) return true;
+      switch (map.state(voxel)) {
+        case VoxelState::free:
+          close();
+          in_stretch = false;
+          return false;
+        case VoxelState::unknown: {
+          const Cell cell = cell_of(voxel, hazard.cell_shift());
+          if (run && (run->cell != cell || run->end != begin)) close();
+          if (!in_stretch) {
+            in_stretch = true;
+            stretch_begin = begin, stretch_passed = passed, stretch_area = 0;
+          }
+          if (!run) run = Run{cell, begin, end, 0, voxel};
+          run->end = end;
+          run->weighted += (end - begin) * weight_of(config, V, voxel);
+          return end >= last;
+        }
+        case VoxelState::occupied:
+          break;
+      }
+      close();
+      if (in_stretch) {
+        const double cosine = outward(map, voxel).dot(ray.direction);
+        const double length = begin - stretch_begin;
+        const double held = 1 - passed / stretch_passed;
+        if (cosine > 0.2 && length >= 2) {
+          if (held > 0) value.area += stretch_area * (1 / held - 1);
+          passed = 0;
+        }
+        if ((std::abs(cosine - 0.2) < 3e-3 && length > 1.99) ||
+            (std::abs(length - 2) < 1e-3 && cosine > 0.19)) {
+          ++undecided;
+          undecided_area += last_across;
+        }
+      }
+      const Eigen::Matrix3d added = passed * information_of(sensor, ray.direction, begin * V);
+      const auto [entry, is_first] =
+          refined.try_emplace(cell_of(voxel, 0), Eigen::Matrix3d::Zero());
+      entry->second += added;
+      const double most = entropy_with_floor(prior, floor) -
+                          entropy_with_floor(prior + added / std::max(passed, 1e-300), floor);
+      value.pixel_refinement = std::max(value.pixel_refinement, most);
+      return true;
+    });
+    close();
+  }
+  value.pixel_area += undecided_area;
+  value.pixel_refinement *= 1 + undecided;
+  for (const auto& [cell, added] : refined) {
+    const auto& [x, y, z] = cell;
+    const auto belief = grid.belief({x, y, z});
+    Eigen::Matrix3d before = prior;
+    if (belief) before += belief->information_matrix().matrix();
+    value.refinement_saturated +=
+        weight_of(config, V, {x, y, z}) *
+        (entropy_with_floor(before, floor) - entropy_with_floor(before + added, floor));
+  }
+  if (config.model == GainModel::surface) {
+    value.gain = value.area;
+  } else {
+    const Eigen::Matrix3d seen =
+        prior + 3 * information_of(sensor, Eigen::Vector3d::UnitZ(), sensor.working_distance);
+    const double each = entropy_with_floor(prior, floor) - entropy_with_floor(seen, floor);
+    value.gain =
+        value.area / (V * V) * each + config.refinement_weight * value.refinement_saturated;
+  }
+  return value;
+}
+
+double distance_to_evidence(const BeliefGrid& grid, int shift, Index3 voxel) {
+  const auto centre = [&](Index3 v) -> Eigen::Vector3d {
+    const double edge = 1 << shift;
+    return Eigen::Vector3d(std::floor(v.x / edge), std::floor(v.y / edge), std::floor(v.z / edge)) *
+           edge;
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const BeliefBlockAt& block : grid.belief_blocks()) {
+    block.for_each([&](Index3 v, const Belief& belief) {
+      if (belief.hits < 3 || grid.state(v) != VoxelState::occupied) return;
+      nearest = std::min(nearest, (centre(v) - centre(voxel)).norm() * grid.voxel_size());
+    });
+  }
+  return nearest;
+}
+
+}  // namespace viewgain::oracle

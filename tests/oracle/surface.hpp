@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "oracle/rays.hpp"
+#include "viewgain/grid/hazard.hpp"
+
+namespace viewgain::oracle {
+
+/// What a ray could bring that is there or not.
+struct SurfaceValue {
+  double area = 0;                  ///< [m²]
+  double refinement_saturated = 0;  ///< [nat]
+  double gain = 0;                  ///< of the configured model
+  /// The most that one pixel adds, and besides all that hangs on comparisons that rounding decides.
+  double pixel_area = 0;        ///< [m²]
+  double pixel_refinement = 0;  ///< [nat]
+};
+
+/// DESIGN.md section 6, "what a view would show", for one pose outside occupied voxels, without a
+/// support plane. Hazards come from `hazard`, which has tests of its own.
+[[nodiscard]] SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map,
+                                         const HazardField& hazard, const Sensor& sensor,
+                                         const GainConfig& config, const Pose& T_world_camera,
+                                         const Obstacles& obstacles = {});
+
+/// The distance between the centres of the cells (2^shift voxels an edge) of a voxel and of the
+/// nearest occupied voxel with three hits [m]; infinity if there is none.
+[[nodiscard]] double distance_to_evidence(const BeliefGrid& grid, int shift, Index3 voxel);
+
+}  // namespace viewgain::oracle

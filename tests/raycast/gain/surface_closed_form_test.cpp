@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Surface gains that can be worked out by hand: rays along x through slabs of unknown voxels.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "core/expect_error.hpp"
+#include "raycast/scene_makers.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::kExactVoxel;
+
+constexpr Index3 kDims{64, 16, 16};
+constexpr double kV2 = kExactVoxel * kExactVoxel;
+constexpr double kRate = 3.0;  // [1/m]
+// The most that one ray counts for: three readings within a voxel of the point.
+constexpr double kCap = std::numbers::pi * kV2 / 3;
+
+/// One pixel that stands for `angle` sr.
+Sensor one_ray(double angle) {
+  Sensor sensor = test::lattice_sensor(1, 1);
+  sensor.camera.fx = sensor.camera.fy = 1 / std::sqrt(angle);
+  return sensor;
+}
+
+/// Free, but for what `state_at(x)` says of each plane of voxels across x.
+BeliefGrid planes(const std::function<VoxelState(int)>& state_at) {
+  BeliefGrid grid = test::sparse_map(kDims, {});
+  std::vector<std::uint8_t> states;
+  for (int x = 0; x < kDims.x; ++x) {
+    states.insert(states.end(), static_cast<std::size_t>(kDims.y * kDims.z),
+                  static_cast<std::uint8_t>(state_at(x)));
+  }
+  GridConfig config;
+  config.voxel_size = kExactVoxel;
+  config.workspace = grid.workspace();
+  config.prior_sigma = 0.5 * kExactVoxel;
+  return BeliefGrid::from_states(config, states);
+}
+
+BeliefGrid slab(int begin, int end, int wall = 1000) {
+  return planes([=](int x) {
+    if (x == wall) return VoxelState::occupied;
+    return x >= begin && x < end ? VoxelState::unknown : VoxelState::free;
+  });
+}
+
+/// The same rate everywhere, in cells of 2^shift voxels.
+HazardConfig constant(int shift, double rate = kRate) {
+  return {.model = HazardModel::constant(rate, 4 * kExactVoxel * (1 << shift) / 0.07)};
+}
+
+ViewGain gain_of(const BeliefGrid& grid, const Sensor& sensor, const HazardConfig& hazard,
+                 GainConfig config = {},
+                 const Pose& pose = test::axis_pose({-30, 8.5, 8.5}, 0, true)) {
+  config.model = GainModel::surface;
+  const auto scene = VoxelScene::build(grid, {}, {}, hazard);
+  return GainEvaluator(scene, sensor, config).evaluate(pose);
+}
+
+/// Σ T (1 - e^(-h c)) min(ω t², cap) over the cells of a slab.
+double slab_area(int begin, int end, int edge, double angle, double eye, double rate = kRate) {
+  double area = 0, passed = 1;
+  for (int cell = begin / edge * edge; cell < end; cell += edge) {
+    const double from = std::max(cell, begin), to = std::min(cell + edge, end);
+    const double P = passed * -std::expm1(-rate * (to - from) * kExactVoxel);
+    const double t = (0.5 * (from + to) - eye) * kExactVoxel;
+    area += P * std::min(angle * t * t, kCap);
+    passed -= P;
+  }
+  return area;
+}
+
+TEST(SurfaceGain, OneSlabOfConstantHazard) {
+  int cases = 0;
+  for (int shift = 0; shift < 4; ++shift) {
+    for (const double angle : {1e-8, 1e-4, 1.0}) {
+      SCOPED_TRACE(std::to_string(shift) + ", " + std::to_string(angle));
+      const ViewGain gain = gain_of(slab(21, 43), one_ray(angle), constant(shift));
+      const double expected = slab_area(21, 43, 1 << shift, angle, -30);
+      EXPECT_NEAR(gain.gain, expected, 1e-5 * expected);
+      EXPECT_EQ(gain.area, gain.gain);
+      EXPECT_TRUE(std::isnan(gain.exploration));
+      EXPECT_EQ(gain.rays, 1U);
+      EXPECT_EQ(gain.hits, 0U);
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 12);
+  // Where the ray counts for the most there is, only how likely it is to end matters.
+  const double ends = -std::expm1(-kRate * 22 * kExactVoxel);
+  EXPECT_NEAR(gain_of(slab(21, 43), one_ray(1.0), constant(2)).gain, kCap * ends, 1e-5 * kCap);
+}
+
+TEST(SurfaceGain, AnEmptyBoxBringsNothing) {
+  const ViewGain gain = gain_of(slab(0, 0), one_ray(1.0), constant(0));
+  EXPECT_EQ(gain.status, ViewStatus::ok);
+  EXPECT_EQ(gain.gain, 0.0);
+  EXPECT_EQ(gain.area, 0.0);
+}
+
+TEST(SurfaceGain, NoHazardNoSurface) {
+  EXPECT_EQ(gain_of(slab(5, 60), one_ray(1.0), constant(1, 0.0)).gain, 0.0);
+}
+
+TEST(SurfaceGain, AWallEndsTheRay) {
+  // From the front: free voxels lie before the slab, unknown ones behind the wall.
+  const BeliefGrid grid = planes([](int x) {
+    if (x < 20) return VoxelState::free;
+    if (x == 30) return VoxelState::occupied;
+    return VoxelState::unknown;
+  });
+  const ViewGain gain = gain_of(grid, one_ray(1e-6), constant(1));
+  EXPECT_NEAR(gain.gain, slab_area(20, 30, 2, 1e-6, -30), 1e-5 * gain.gain);
+  EXPECT_EQ(gain.hits, 1U);
+}
+
+TEST(SurfaceGain, AWallSeenFromBehindIsInTheSlabBeforeIt) {
+  // Free voxels lie beyond the wall only: the surface looks away from the camera.
+  const auto thick = [](int from) {
+    return planes([=](int x) {
+      if (x == 30) return VoxelState::occupied;
+      return x >= from && x < 30 ? VoxelState::unknown : VoxelState::free;
+    });
+  };
+  for (const int from : {28, 25, 10}) {
+    EXPECT_NEAR(gain_of(thick(from), one_ray(1.0), constant(1)).gain, kCap, 1e-5 * kCap) << from;
+  }
+  // One voxel of unknown says little.
+  const double one = -std::expm1(-kRate * kExactVoxel);
+  EXPECT_NEAR(gain_of(thick(29), one_ray(1.0), constant(1)).gain, kCap * one, 1e-5 * kCap);
+  // A free voxel in between: only the stretch that reaches the wall is where the surface is.
+  const BeliefGrid parted = planes([](int x) {
+    if (x == 30) return VoxelState::occupied;
+    return x >= 10 && x < 30 && x != 20 ? VoxelState::unknown : VoxelState::free;
+  });
+  EXPECT_NEAR(gain_of(parted, one_ray(1.0), constant(1)).gain, kCap, 1e-5 * kCap);
+  const BeliefGrid apart = planes([](int x) {
+    if (x == 30) return VoxelState::occupied;
+    return x >= 10 && x < 29 ? VoxelState::unknown : VoxelState::free;
+  });
+  const double before = -std::expm1(-kRate * 19 * kExactVoxel);
+  EXPECT_NEAR(gain_of(apart, one_ray(1.0), constant(1)).gain, kCap * before, 1e-5 * kCap);
+}
+
+TEST(SurfaceGain, ARayInAFaceBelongsToTheLargerIndex) {
+  const BeliefGrid grid = slab(8, 40);
+  auto volume = std::make_shared<HazardVolume>();
+  volume->box = VoxelBox::from_dims({0, 0, 0}, kDims);
+  for (int i = 0; i < kDims.x * kDims.y * kDims.z; ++i) {
+    volume->rates.push_back(static_cast<float>(i / kDims.z % kDims.y));  // by y
+  }
+  int cases = 0;
+  for (const int face : {1, 5, 8, 12}) {
+    for (const bool forward : {true, false}) {
+      const Pose pose = test::axis_pose({forward ? -10.0 : 80.0, double(face), 7.5}, 0, forward);
+      const double ends = -std::expm1(-face * 32 * kExactVoxel);
+      EXPECT_NEAR(gain_of(grid, one_ray(1.0), {.volume = volume}, {}, pose).gain, kCap * ends,
+                  1e-5 * kCap);
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 8);
+}
+
+TEST(SurfaceGain, RangeLimitsWeightsAndThePlaneCutTheRay) {
+  const BeliefGrid grid = slab(20, 44);
+  const auto ends = [](double voxels) { return kCap * -std::expm1(-kRate * voxels * kExactVoxel); };
+  const auto at = [](double x) { return (x + 30) * kExactVoxel; };
+  const Sensor sensor = one_ray(1.0);
+  EXPECT_NEAR(gain_of(grid, sensor, constant(0), {.min_range = at(30.5)}).gain, ends(13.5),
+              1e-5 * kCap);
+  EXPECT_NEAR(gain_of(grid, sensor, constant(3), {.max_range = at(30.25)}).gain, ends(10.25),
+              1e-5 * kCap);
+  // Voxels of weight 0 take their share of the ray all the same.
+  Box first = grid.workspace();
+  first.max[0] = 24 * kExactVoxel;
+  EXPECT_NEAR(gain_of(grid, sensor, constant(3), {.weights = {{first, 0.0}}}).gain,
+              ends(24) - ends(4), 1e-5 * kCap);
+  // Down along z, onto a plane in the middle of the slab.
+  const BeliefGrid all = planes([](int) { return VoxelState::unknown; });
+  const Pose down = test::axis_pose({30.5, 8.5, 40}, 2, false);
+  EXPECT_NEAR(gain_of(all, sensor, constant(1), {.support_plane = 6.5 * kExactVoxel}, down).gain,
+              ends(9.5), 1e-5 * kCap);
+  const Pose up = test::axis_pose({30.5, 8.5, -40}, 2, true);
+  EXPECT_NEAR(gain_of(all, sensor, constant(1), {.support_plane = 6.5 * kExactVoxel}, up).gain,
+              ends(16), 1e-5 * kCap);
+}
+
+TEST(SurfaceGain, SurfaceNextToWhatIsSeenIsNotNew) {
+  BeliefGrid grid = slab(20, 44);
+  Belief belief;
+  belief.information = {1e6F, 1e6F, 1e6F, 0, 0, 0};
+  belief.hits = 3;
+  grid.set({32, 0, 8}, 1.0F, belief);  // 8 voxels off the ray along x at y = 8
+  const HazardConfig hazard = constant(0);
+  const double all = kCap * -std::expm1(-kRate * 24 * kExactVoxel);
+  EXPECT_NEAR(gain_of(grid, one_ray(1.0), hazard).gain, all, 1e-5 * kCap);
+  // Along y = 2.5 the voxels 32 (d = 2) is known; those at 31 and 33 are farther away.
+  const Pose near = test::axis_pose({-30, 2.5, 8.5}, 0, true);
+  const double before = -std::expm1(-kRate * 12 * kExactVoxel);
+  const double known = (1 - before) * -std::expm1(-kRate * kExactVoxel);
+  EXPECT_NEAR(gain_of(grid, one_ray(1.0), hazard, {}, near).gain, all - kCap * known, 1e-5 * kCap);
+}
+
+TEST(SurfaceGain, RefusesWhatCannotBeMeant) {
+  const auto scene = VoxelScene::build(slab(1, 2));
+  const auto refuses = [&](const char* what, const GainConfig& config) {
+    test::expect_error(ErrorCode::invalid_argument, what,
+                       [&] { (void)GainEvaluator(scene, one_ray(1.0), config); });
+  };
+  refuses("not with trace", {.model = GainModel::combined, .criterion = Criterion::trace});
+  refuses("refinement weight is -1", {.model = GainModel::combined, .refinement_weight = -1});
+  refuses("support plane", {.model = GainModel::surface, .support_plane = HUGE_VAL});
+  test::expect_error(ErrorCode::invalid_argument, "valid are paper surface combined",
+                     [] { (void)parse_gain_model("papers"); });
+}
+
+TEST(SurfaceGain, SameBitsForAnyNumberOfThreads) {
+  test::Random random(99);
+  std::size_t compared = 0;
+  for (const GainModel model : {GainModel::surface, GainModel::combined}) {
+    const test::RandomMap made = test::random_map(test::MapFamily::tiles_8, random);
+    const Sensor sensor = test::random_sensor(made.grid, random);
+    const std::vector<Pose> poses = test::random_poses(made, 40, random);
+    const auto scene = VoxelScene::build(made.grid);
+    const GainEvaluator one(scene, sensor, {.model = model}, {.num_threads = 1});
+    const std::vector<ViewGain> expected = one.evaluate(poses);
+    for (const int threads : {2, 3, 8}) {
+      const GainEvaluator many(scene, sensor, {.model = model}, {.num_threads = threads});
+      EXPECT_TRUE(test::same_bits(many.evaluate(poses), expected));
+      for (std::size_t i = 0; i < poses.size(); ++i) {
+        EXPECT_TRUE(test::same_bits(many.evaluate(poses[i]), expected[i]));
+        ++compared;
+      }
+    }
+  }
+  EXPECT_EQ(compared, 240U);
+}
+
+}  // namespace
+}  // namespace viewgain
