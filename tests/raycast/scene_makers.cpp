@@ -274,6 +274,13 @@ Pose axis_pose(const Eigen::Vector3d& origin, int axis, bool positive) {
   return {R, origin * kExactVoxel};
 }
 
+std::string family_name(const testing::TestParamInfo<MapFamily>& info) {
+  constexpr std::array<const char*, 7> kNames{
+      "SaltAndPepper01", "SaltAndPepper1", "SaltAndPepper30", "Tiles8",
+      "Tiles128",        "OddAndFar",      "Rotated"};
+  return kNames.at(static_cast<std::size_t>(info.param));
+}
+
 bool same_bits(const ViewGain& a, const ViewGain& b) {
   const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
   return bits(a.gain) == bits(b.gain) && bits(a.exploration) == bits(b.exploration) &&

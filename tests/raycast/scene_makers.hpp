@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <array>
 #include <optional>
 #include <random>
 #include <string>
@@ -41,6 +44,9 @@ enum class MapFamily {
   odd_and_far,         ///< no multiple of 8, far off the origin
   rotated,             ///< the same with a random T_world_grid
 };
+
+/// For tests with a family as parameter.
+[[nodiscard]] std::string family_name(const testing::TestParamInfo<MapFamily>& info);
 
 /// A map and the part of its workspace where cameras inside it are put (grid frame) [m].
 struct RandomMap {

@@ -19,6 +19,7 @@ using namespace viewgain::c_api;
 
 namespace {
 
+static_assert(VG_GAIN_COMBINED == static_cast<int>(GainModel::combined));
 static_assert(VG_TRACE == static_cast<int>(Criterion::trace));
 static_assert(VG_VIEW_CAMERA_IN_OCCUPIED == static_cast<int>(ViewStatus::camera_in_occupied));
 static_assert(VG_HIT_OBSTACLE == static_cast<int>(RayHit::Kind::obstacle));
@@ -69,11 +70,17 @@ GainConfig settings_of(const vg_evaluator_config& config) {
     reject("criterion is " + std::to_string(config.criterion) + "; the criteria are 0 to 2");
   }
   require_array(config.weights, config.weight_count, "weights");
-  GainConfig settings{.criterion = static_cast<Criterion>(config.criterion),
+  if (config.gain < VG_GAIN_PAPER || config.gain > VG_GAIN_COMBINED) {
+    reject("gain is " + std::to_string(config.gain) + "; the gains are 0 to 2");
+  }
+  GainConfig settings{.model = static_cast<GainModel>(config.gain),
+                      .criterion = static_cast<Criterion>(config.criterion),
                       .pixel_stride = config.pixel_stride,
                       .prior_sigma = given(config.prior_sigma),
                       .min_range = given(config.min_range),
-                      .max_range = given(config.max_range)};
+                      .max_range = given(config.max_range),
+                      .refinement_weight = config.refinement_weight,
+                      .support_plane = given(config.support_plane)};
   for (const vg_weight_region& region : std::span(config.weights, config.weight_count)) {
     settings.weights.push_back(
         {{std::to_array(region.box_min), std::to_array(region.box_max)}, region.weight});
@@ -100,7 +107,9 @@ vg_view_gain written(const ViewGain& view) {
           .hits = view.hits,
           .unknown_voxels = view.unknown_voxels,
           .occupied_voxels = view.occupied_voxels,
-          .status = static_cast<std::int32_t>(view.status)};
+          .status = static_cast<std::int32_t>(view.status),
+          .area = view.area,
+          .refinement_saturated = view.refinement_saturated};
 }
 
 void require_choice(const vg_evaluator* evaluator, std::size_t k, const std::size_t* indices,
@@ -125,7 +134,8 @@ template <>
 vg_evaluator_config viewgain::c_api::defaults() noexcept {
   vg_evaluator_config config{};
   config.pixel_stride = 1;
-  config.prior_sigma = config.min_range = config.max_range = kNone;
+  config.prior_sigma = config.min_range = config.max_range = config.support_plane = kNone;
+  config.refinement_weight = GainConfig{}.refinement_weight;
   return config;
 }
 
@@ -286,7 +296,8 @@ vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_c
       return vg_contribution{.voxel = {part.voxel.x, part.voxel.y, part.voxel.z},
                              .state = static_cast<std::int32_t>(part.state),
                              .rays = part.rays,
-                             .gain = part.gain};
+                             .gain = part.gain,
+                             .expected_rays = part.expected_rays};
     });
   });
 }

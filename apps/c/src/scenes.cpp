@@ -39,6 +39,17 @@ Obstacles obstacles_of(const vg_scene_config& config) {
   return obstacles;
 }
 
+HazardConfig hazard_of(const vg_scene_config& config, const BeliefGrid& grid) {
+  HazardConfig hazard;
+  hazard.object_size = given(config.object_size);
+  if (const auto rate = given(config.hazard_rate)) {
+    const Index3 dims = grid.dims();
+    const double longest = std::max({dims.x, dims.y, dims.z}) * grid.voxel_size();
+    hazard.model = HazardModel::constant(*rate, hazard.object_size.value_or(longest));
+  }
+  return hazard;
+}
+
 FeasibilityConfig settings_of(const vg_feasibility_config& config) {
   FeasibilityConfig settings;
   settings.body.size = std::to_array(config.body_size);
@@ -67,6 +78,13 @@ FeasibilityConfig settings_of(const vg_feasibility_config& config) {
 }  // namespace
 
 template <>
+vg_scene_config viewgain::c_api::defaults() noexcept {
+  vg_scene_config config{};
+  config.object_size = config.hazard_rate = kNone;
+  return config;
+}
+
+template <>
 vg_feasibility_config viewgain::c_api::defaults() noexcept {
   const FeasibilityConfig own;
   vg_feasibility_config config{};
@@ -88,7 +106,8 @@ vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config, vg_
   return make_handle(scene, "scene", [&] {
     require(grid, "grid");
     const vg_scene_config chosen = read_config(config, "vg_scene_config");
-    return VoxelScene::build(grid->grid, obstacles_of(chosen), {.num_threads = chosen.num_threads});
+    return VoxelScene::build(grid->grid, obstacles_of(chosen), {.num_threads = chosen.num_threads},
+                             hazard_of(chosen, grid->grid));
   });
 }
 

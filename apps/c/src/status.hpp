@@ -63,6 +63,29 @@ struct Sizes<vg_feasibility_config> {
                                     sizeof(vg_feasibility_config)};
 };
 
+template <>
+struct Sizes<vg_scene_config> {
+  static constexpr std::array known{offsetof(vg_scene_config, object_size),
+                                    sizeof(vg_scene_config)};
+};
+
+template <>
+struct Sizes<vg_evaluator_config> {
+  static constexpr std::array known{offsetof(vg_evaluator_config, refinement_weight),
+                                    sizeof(vg_evaluator_config)};
+};
+
+template <>
+struct Sizes<vg_view_gain> {
+  static constexpr std::array known{offsetof(vg_view_gain, area), sizeof(vg_view_gain)};
+};
+
+template <>
+struct Sizes<vg_contribution> {
+  static constexpr std::array known{offsetof(vg_contribution, expected_rays),
+                                    sizeof(vg_contribution)};
+};
+
 /// What a struct's _init sets; zeros unless specialised.
 template <typename Struct>
 [[nodiscard]] Struct defaults() noexcept {

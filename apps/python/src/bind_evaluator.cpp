@@ -38,12 +38,16 @@ std::unique_ptr<Evaluator> held(const Scene& scene, const Sensor& sensor,
                     pixel_stride, std::move(evaluator)});
 }
 
-std::unique_ptr<Evaluator> make(const Scene& scene, const Sensor& sensor,
+std::unique_ptr<Evaluator> make(const Scene& scene, const Sensor& sensor, const std::string& gain,
                                 const std::string& criterion, int pixel_stride,
                                 std::optional<double> prior_sigma, std::optional<double> min_range,
                                 std::optional<double> max_range, const py::iterable& weights,
+                                double refinement_weight, std::optional<double> support_plane,
                                 int num_threads) {
   GainConfig config;
+  config.model = parse_gain_model(gain);
+  config.refinement_weight = refinement_weight;
+  config.support_plane = support_plane;
   config.criterion = parse_criterion(criterion);
   config.pixel_stride = pixel_stride;
   config.prior_sigma = prior_sigma;
@@ -160,7 +164,7 @@ py::object approximate(const Evaluator& self, const py::object& T_world_camera, 
 
 void bind_rows() {
   PYBIND11_NUMPY_DTYPE(ViewGain, gain, exploration, refinement, posterior_entropy, rays, hits,
-                       unknown_voxels, occupied_voxels, status);
+                       unknown_voxels, occupied_voxels, status, area, refinement_saturated);
   PYBIND11_NUMPY_DTYPE(ApproximateGain, gain, standard_error);
 }
 
@@ -171,6 +175,9 @@ void bind_evaluator(py::module_& module) {
   module.def(
       "criterion_names", [] { return criterion_names(); },
       "The names that ``criterion`` takes.\n\nReturns\n-------\nlist of str");
+  module.def(
+      "gain_model_names", [] { return gain_model_names(); },
+      "The names that ``gain`` takes.\n\nReturns\n-------\nlist of str");
   py::list statuses;
   for (const ViewStatus status :
        {ViewStatus::ok, ViewStatus::bad_pose, ViewStatus::camera_in_occupied}) {
@@ -193,6 +200,9 @@ Parameters
 ----------
 scene : VoxelScene
 sensor : Sensor
+gain : {"paper", "surface", "combined"}
+    What a view's gain counts: the entropy that it removes [nat], the new surface that it is expected to
+    show [m**2], or that and refining known surface [nat].
 criterion : {"log_diagonal", "log_determinant", "trace"}
     How uncertainty is measured; gains are in nats, for trace in m**2.
 pixel_stride : int
@@ -204,6 +214,10 @@ min_range, max_range : float, optional
 weights : iterable of (box, weight), optional
     Task weights >= 0 of parts of the workspace: boxes (2, 3) in the grid's frame [m]. The last that
     holds a voxel's centre counts, 1 outside all.
+refinement_weight : float
+    Of refining against finding new surface, for "combined".
+support_plane : float, optional
+    Height z of a table at which rays end [m], for "surface" and "combined".
 num_threads : int
     0: all hardware threads.
 
@@ -216,10 +230,12 @@ TypeError
   refuse_pickling(evaluator);
   evaluator
       .def(py::init(&make), py::arg("scene"), py::arg("sensor"), py::kw_only(),
-           py::arg("criterion") = "log_diagonal", py::arg("pixel_stride") = 1,
-           py::arg("prior_sigma") = py::none(), py::arg("min_range") = py::none(),
-           py::arg("max_range") = py::none(), py::arg("weights") = py::tuple(),
-           py::arg("num_threads") = 0)
+           py::arg("gain") = "paper", py::arg("criterion") = "log_diagonal",
+           py::arg("pixel_stride") = 1, py::arg("prior_sigma") = py::none(),
+           py::arg("min_range") = py::none(), py::arg("max_range") = py::none(),
+           py::arg("weights") = py::tuple(),
+           py::arg("refinement_weight") = GainConfig{}.refinement_weight,
+           py::arg("support_plane") = py::none(), py::arg("num_threads") = 0)
       .def("with_scene", &with_scene, py::arg("scene"),
            R"(The evaluator of another scene, for following a map as it grows.
 

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -28,6 +32,33 @@ Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes) {
   return obstacles;
 }
 
+using Rates = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+// A number, the rate everywhere, or an array of a rate for each voxel of the workspace.
+HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_size,
+                       const py::object& hazard) {
+  HazardConfig config;
+  config.object_size = object_size;
+  if (hazard.is_none()) return config;
+  const BeliefGrid& grid = shared.layout();
+  const Index3 dims = grid.dims();
+  if (py::isinstance<py::float_>(hazard) || py::isinstance<py::int_>(hazard)) {
+    const double longest = std::max({dims.x, dims.y, dims.z}) * grid.voxel_size();
+    config.model = HazardModel::constant(hazard.cast<double>(), object_size.value_or(longest));
+    return config;
+  }
+  const auto rates = Rates::ensure(hazard);
+  if (!rates || rates.ndim() != 3 || rates.shape(0) != dims.x || rates.shape(1) != dims.y ||
+      rates.shape(2) != dims.z) {
+    throw py::value_error("hazard must be a number or an array of the grid's shape");
+  }
+  auto volume = std::make_shared<HazardVolume>();
+  volume->box = VoxelBox::from_dims(grid.min_index(), dims);
+  volume->rates.assign(rates.data(), rates.data() + rates.size());
+  config.volume = std::move(volume);
+  return config;
+}
+
 }  // namespace
 
 void bind_scene(py::module_& module) {
@@ -43,6 +74,11 @@ boxes : array_like, (n, 2, 3), optional
     Known obstacles, which block rays and gain nothing: lowest and highest corners, world frame [m].
 meshes : iterable of (vertices, triangles), optional
     The same as triangles: (n, 3) [m] and (m, 3) indices.
+object_size : float, optional
+    Longest side of the object [m], for the surface gain; that of what is seen unless given.
+hazard : float or array_like, the grid's shape, optional
+    Rate at which a ray in unknown voxels meets the surface [1/m], for the surface gain: the same
+    everywhere, or one for each voxel; by the distance from what is seen unless given.
 num_threads : int
     Of the build; 0: all hardware threads.
 
@@ -52,14 +88,17 @@ ValueError
     A shape, an index out of range, a box inside out.)");
   refuse_pickling(type);
   type.def(py::init([](const SharedGrid& grid, const py::object& boxes, const py::iterable& meshes,
+                       std::optional<double> object_size, const py::object& hazard,
                        int num_threads) {
              const Obstacles obstacles = obstacles_of(boxes, meshes);
+             const HazardConfig rates = hazard_of(grid, object_size, hazard);
              return grid.read([&](const BeliefGrid& g) {
-               return Scene{VoxelScene::build(g, obstacles, ExecConfig{num_threads})};
+               return Scene{VoxelScene::build(g, obstacles, ExecConfig{num_threads}, rates)};
              });
            }),
            py::arg("grid"), py::kw_only(), py::arg("boxes") = py::none(),
-           py::arg("meshes") = py::tuple(), py::arg("num_threads") = 0)
+           py::arg("meshes") = py::tuple(), py::arg("object_size") = py::none(),
+           py::arg("hazard") = py::none(), py::arg("num_threads") = 0)
       .def(
           "update",
           [](const Scene& self, const SharedGrid& grid, int num_threads) {

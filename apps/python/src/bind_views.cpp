@@ -32,6 +32,7 @@ struct ContributionRow {
   std::uint8_t state;
   std::uint32_t rays;
   double gain;
+  double expected_rays;
 };
 
 /// What a gain of the user's own sees of a ray.
@@ -80,8 +81,11 @@ py::array_t<ContributionRow> contributions(const Evaluator& self,
   {
     const WithoutGil without_gil;
     for (const VoxelContribution& c : self.evaluator.contributions(pose)) {
-      rows.push_back(
-          {{c.voxel.x, c.voxel.y, c.voxel.z}, static_cast<std::uint8_t>(c.state), c.rays, c.gain});
+      rows.push_back({{c.voxel.x, c.voxel.y, c.voxel.z},
+                      static_cast<std::uint8_t>(c.state),
+                      c.rays,
+                      c.gain,
+                      c.expected_rays});
     }
   }
   return to_array_1d<ContributionRow>(rows);
@@ -136,7 +140,7 @@ py::object evaluate_own(const Evaluator& self, const py::object& T_world_camera,
 
 void bind_views(py::module_& module, py::class_<Evaluator>& evaluator) {
   PYBIND11_NUMPY_DTYPE(HitRow, kind, voxel, range);
-  PYBIND11_NUMPY_DTYPE(ContributionRow, voxel, state, rays, gain);
+  PYBIND11_NUMPY_DTYPE(ContributionRow, voxel, state, rays, gain, expected_rays);
   PYBIND11_NUMPY_DTYPE(OwnHitRow, voxel, state, readings, information, ray, range, direction);
   module.attr("HIT_KIND_NAMES") = py::make_tuple("none", "unknown", "occupied", "obstacle");
   evaluator

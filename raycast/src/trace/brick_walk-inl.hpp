@@ -19,25 +19,13 @@
 
 #include <hwy/highway.h>
 
+#include "lanes-inl.hpp"
 #include "ordered_walk.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using DF = hn::CappedTag<float, kTileRays>;
-using DU = hn::RebindToUnsigned<DF>;
-using DI = hn::RebindToSigned<DF>;
-constexpr DF df;
-constexpr DU du;
-constexpr DI di;
-using VF = hn::Vec<DF>;
-using VU = hn::Vec<DU>;
-using VI = hn::Vec<DI>;
-using MF = hn::Mask<DF>;
-using MI = hn::Mask<DI>;
-constexpr int kWidth = static_cast<int>(hn::MaxLanes(df));
 
 HWY_INLINE VI set_i(std::int32_t v) { return hn::Set(di, v); }
 HWY_INLINE VU as_u(VI v) { return hn::BitCast(du, v); }

@@ -19,6 +19,7 @@
 
 #include <hwy/highway.h>
 
+#include "lanes-inl.hpp"
 #include "ray_tile.hpp"
 #include "scene/scene_data.hpp"
 
@@ -26,18 +27,6 @@ HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
-
-// At most 16 lanes: a tile. On x86 this is 16, 8 or 4, a constant.
-using DF = hn::CappedTag<float, kTileRays>;
-using DU = hn::RebindToUnsigned<DF>;
-using DI = hn::RebindToSigned<DF>;
-constexpr DF df;
-constexpr DU du;
-constexpr DI di;
-using VF = hn::Vec<DF>;
-using VU = hn::Vec<DU>;
-using MF = hn::Mask<DF>;
-constexpr int kWidth = static_cast<int>(hn::MaxLanes(df));
 
 // A primitive's box [lo, hi) relative to the origin of the rays.
 struct Slabs {

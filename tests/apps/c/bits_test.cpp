@@ -82,14 +82,20 @@ TEST(CApi, GainsAreThoseOfCppToTheLastBit) {
     const std::vector<double> matrices = matrices_of(poses);
     save_vdb(map.grid, path);
 
-    for (const Criterion criterion :
-         {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
-      const GainEvaluator evaluator(VoxelScene::build(map.grid), sensor, {.criterion = criterion});
+    for (const auto& [model, criterion] :
+         {std::pair(GainModel::paper, Criterion::log_diagonal),
+          std::pair(GainModel::paper, Criterion::log_determinant),
+          std::pair(GainModel::paper, Criterion::trace),
+          std::pair(GainModel::surface, Criterion::log_diagonal),
+          std::pair(GainModel::combined, Criterion::log_diagonal)}) {
+      const GainEvaluator evaluator(VoxelScene::build(map.grid), sensor,
+                                    {.model = model, .criterion = criterion});
       const std::vector<ViewGain> expected = evaluator.evaluate(poses);
       Handles own;
       const vg_sensor camera = sensor_of(sensor, noise);
       vg_evaluator_config config;
       vg_evaluator_config_init(&config, sizeof config);
+      config.gain = static_cast<std::int32_t>(model);
       config.criterion = static_cast<std::int32_t>(criterion);
       ASSERT_EQ(vg_grid_load(path.c_str(), &own.grid), VG_OK) << vg_last_error();
       ASSERT_EQ(vg_scene_build(own.grid, nullptr, &own.scene), VG_OK) << vg_last_error();
@@ -112,6 +118,8 @@ TEST(CApi, GainsAreThoseOfCppToTheLastBit) {
         EXPECT_EQ(bits(whole[i].exploration), bits(view.exploration));
         EXPECT_EQ(bits(whole[i].refinement), bits(view.refinement));
         EXPECT_EQ(bits(whole[i].posterior_entropy), bits(view.posterior_entropy));
+        EXPECT_EQ(bits(whole[i].area), bits(view.area));
+        EXPECT_EQ(bits(whole[i].refinement_saturated), bits(view.refinement_saturated));
         EXPECT_EQ(whole[i].rays, view.rays);
         EXPECT_EQ(whole[i].hits, view.hits);
         EXPECT_EQ(whole[i].unknown_voxels, view.unknown_voxels);
@@ -133,7 +141,7 @@ TEST(CApi, GainsAreThoseOfCppToTheLastBit) {
       EXPECT_EQ(depth, image.depth);
     }
   }
-  EXPECT_EQ(views, 3U * 3 * 40);
+  EXPECT_EQ(views, 3U * 5 * 40);
   EXPECT_GT(gained, 100U);
 }
 

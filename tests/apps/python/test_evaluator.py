@@ -256,3 +256,34 @@ def test_reprs_have_sizes(evaluator, grid, sensor):
     assert evaluator.criterion == "log_diagonal" and evaluator.pixel_stride == 4
     assert evaluator.prior_sigma == grid.prior_sigma
     assert evaluator.sensor.camera == sensor.camera
+
+
+def test_the_surface_gain_is_an_area_and_follows_the_hazard(grid, labels, sensor, poses):
+    def evaluator(gain, **scene):
+        return viewgain.GainEvaluator(viewgain.VoxelScene(grid, **scene), sensor, gain=gain)
+
+    assert viewgain.gain_model_names() == ["paper", "surface", "combined"]
+    views = evaluator("surface").evaluate_detailed(poses)
+    assert np.array_equal(views["gain"], views["area"])
+    assert views["area"].max() > 0 and np.isnan(views["exploration"]).all()
+    both = evaluator("combined").evaluate_detailed(poses)
+    assert np.array_equal(both["area"], views["area"])
+    assert np.nanmax(both["refinement_saturated"]) >= 0
+    paper = evaluator("paper").evaluate_detailed(poses)
+    assert np.isnan(paper["area"]).all()
+
+    parts = evaluator("surface").contributions(poses[0])
+    assert np.isclose(parts["gain"].sum(), views["gain"][0], rtol=1e-5)
+    assert (parts["expected_rays"] <= parts["rays"] + 1e-6).all()
+
+    same = evaluator("surface", hazard=5.0).evaluate(poses)
+    rates = np.full(labels.shape, 5.0)
+    assert np.allclose(evaluator("surface", hazard=rates).evaluate(poses), same, rtol=0.02)
+    assert (evaluator("surface", hazard=0).evaluate(poses) == 0).all()
+    assert (evaluator("surface", hazard=1.0).evaluate(poses) <= same).all()
+    with pytest.raises(ValueError, match="the grid's shape"):
+        evaluator("surface", hazard=rates[1:])
+    with pytest.raises(ValueError, match="hazard"):
+        evaluator("surface", hazard=-1.0)
+    with pytest.raises(ValueError, match="combined"):
+        evaluator("area")

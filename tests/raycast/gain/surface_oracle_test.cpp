@@ -133,20 +133,13 @@ TEST_P(SurfaceOracle, AgreesUnderEachInstructionSet) {
   EXPECT_GT(exact, checks / 2);
 }
 
-std::string family_name(const testing::TestParamInfo<MapFamily>& info) {
-  constexpr std::array<const char*, 7> kNames{
-      "SaltAndPepper01", "SaltAndPepper1", "SaltAndPepper30", "Tiles8",
-      "Tiles128",        "OddAndFar",      "Rotated"};
-  return kNames.at(static_cast<std::size_t>(info.param));
-}
-
 INSTANTIATE_TEST_SUITE_P(Maps, SurfaceOracle,
                          testing::Values(MapFamily::salt_and_pepper_01,
                                          MapFamily::salt_and_pepper_1,
                                          MapFamily::salt_and_pepper_30, MapFamily::tiles_8,
                                          MapFamily::tiles_128, MapFamily::odd_and_far,
                                          MapFamily::rotated),
-                         family_name);
+                         test::family_name);
 
 }  // namespace
 }  // namespace viewgain

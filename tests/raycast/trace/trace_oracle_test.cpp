@@ -110,33 +110,13 @@ TEST_P(TraceOracle, AgreesUnderEachInstructionSet) {
   }
 }
 
-std::string family_name(const testing::TestParamInfo<MapFamily>& info) {
-  switch (info.param) {
-    case MapFamily::salt_and_pepper_01:
-      return "SaltAndPepper01";
-    case MapFamily::salt_and_pepper_1:
-      return "SaltAndPepper1";
-    case MapFamily::salt_and_pepper_30:
-      return "SaltAndPepper30";
-    case MapFamily::tiles_8:
-      return "Tiles8";
-    case MapFamily::tiles_128:
-      return "Tiles128";
-    case MapFamily::odd_and_far:
-      return "OddAndFar";
-    case MapFamily::rotated:
-      break;
-  }
-  return "Rotated";
-}
-
 INSTANTIATE_TEST_SUITE_P(Maps, TraceOracle,
                          testing::Values(MapFamily::salt_and_pepper_01,
                                          MapFamily::salt_and_pepper_1,
                                          MapFamily::salt_and_pepper_30, MapFamily::tiles_8,
                                          MapFamily::tiles_128, MapFamily::odd_and_far,
                                          MapFamily::rotated),
-                         family_name);
+                         test::family_name);
 
 }  // namespace
 }  // namespace viewgain

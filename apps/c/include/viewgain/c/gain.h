@@ -25,6 +25,10 @@ typedef struct vg_scene_config {
   size_t vertex_count;
   const uint32_t* triangles; /* 3 vertex indices each */
   size_t triangle_count;
+  /* For the surface and the combined gain: longest side of the object [m], NaN (the default): that
+     of what is seen of it; rate at which a ray in unknown voxels meets the surface [1/m], the same
+     everywhere, NaN (the default): by the distance from what is seen. */
+  double object_size, hazard_rate;
 } vg_scene_config;
 VG_API void vg_scene_config_init(vg_scene_config* config, size_t struct_size);
 
@@ -44,6 +48,10 @@ typedef struct vg_evaluator vg_evaluator;
 
 enum { VG_LOG_DIAGONAL = 0, VG_LOG_DETERMINANT = 1, VG_TRACE = 2 };
 
+/* What a view's gain counts: entropy removed [nat], new surface to be expected [m^2], or that and
+   refining known surface [nat]. */
+enum { VG_GAIN_PAPER = 0, VG_GAIN_SURFACE = 1, VG_GAIN_COMBINED = 2 };
+
 /* A task weight for a part of the workspace. */
 typedef struct vg_weight_region {
   double box_min[3], box_max[3]; /* grid frame [m]; the last region that holds a voxel counts */
@@ -59,6 +67,10 @@ typedef struct vg_evaluator_config {
   double min_range, max_range; /* along the ray [m]; NaN (the default): the sensor's */
   const vg_weight_region* weights;
   size_t weight_count;
+  double refinement_weight; /* VG_GAIN_COMBINED: of refining against finding new surface (0.3) */
+  double support_plane; /* height z of a table at which rays end [m]; NaN (the default): none; not
+                           for VG_GAIN_PAPER */
+  int32_t gain;         /* VG_GAIN_PAPER */
 } vg_evaluator_config;
 VG_API void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_size);
 
@@ -93,6 +105,8 @@ typedef struct vg_view_gain {
   uint32_t rays, hits;
   uint32_t unknown_voxels, occupied_voxels; /* distinct */
   int32_t status;                           /* VG_VIEW_ */
+  double area;                 /* surface, combined: new surface to be expected [m^2]; else NaN */
+  double refinement_saturated; /* combined: of known surface [nat]; else NaN */
 } vg_view_gain;
 
 /* The expected gain of every pose, on all threads of the evaluator: poses are count times 16
@@ -139,16 +153,17 @@ VG_API vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_wo
 
 /* What one voxel adds to the gain of a view. */
 typedef struct vg_contribution {
-  int32_t voxel[3]; /* on the grid's lattice */
-  int32_t state;    /* 0 unknown, 2 occupied */
-  uint32_t rays;    /* that end in it */
-  double gain;      /* [nat, or m^2] */
+  int32_t voxel[3];     /* on the grid's lattice */
+  int32_t state;        /* 0 unknown, 2 occupied */
+  uint32_t rays;        /* that end in it */
+  double gain;          /* [nat, or m^2] */
+  double expected_rays; /* that are expected to end in it; not all, where they may go on */
 } vg_contribution;
 
-/* Why a view is good: one entry per voxel in which rays end, the largest gain first; the gains add up
-   to the view's. Fills at most `capacity` of them and says in *found how many there are; never more
-   than rays_per_pose. contribution_size is sizeof(vg_contribution). None for a camera in an
-   occupied voxel; a bad pose is VG_INVALID_ARGUMENT. */
+/* Why a view is good: one entry per voxel in which rays end, the largest gain first; the gains add
+   up to the view's. Fills at most `capacity` of them and says in *found how many there are; never
+   more than rays_per_pose with VG_GAIN_PAPER. contribution_size is sizeof(vg_contribution). None
+   for a camera in an occupied voxel; a bad pose is VG_INVALID_ARGUMENT. */
 VG_API vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_camera[16],
                                   vg_contribution* contributions, size_t contribution_size,
                                   size_t capacity, size_t* found);
