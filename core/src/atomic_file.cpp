@@ -191,20 +191,27 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(target) {
   if (fs::exists(status) && !fs::is_regular_file(status)) return;
   if (!resolved_.has_filename()) fail(target, EISDIR);
   remove_leftovers(resolved_);
+  // Listed for as long as the file may be there, and so from before on: a signal may come at any
+  // time.
   do {
     temporary_ = temporary_name(resolved_);
+    listed_ = list_temporary(temporary_);
     file_ = create_new(temporary_);
-  } while (file_ < 0 && errno == EEXIST);  // of a process that had the same number
-  if (file_ < 0) fail(target, errno);
-  listed_ = list_temporary(temporary_);
+    if (file_ >= 0) return;
+    const int error = errno;
+    unlist_temporary(listed_);
+    errno = error;
+  } while (errno == EEXIST);  // of a process that had the same number
+  fail(target, errno);
 }
 
 AtomicFile::~AtomicFile() {
-  unlist_temporary(listed_);
   if (file_ >= 0) ::close(file_);
-  if (committed_ || is_in_place()) return;
-  std::error_code ignored;
-  fs::remove(temporary_, ignored);
+  if (!committed_ && !is_in_place()) {
+    std::error_code ignored;
+    fs::remove(temporary_, ignored);
+  }
+  unlist_temporary(listed_);
 }
 
 void AtomicFile::write(std::string_view bytes) {
