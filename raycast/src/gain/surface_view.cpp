@@ -26,6 +26,10 @@ constexpr float kLeastCosineBehind = 0.2F;
 // Readings that a voxel of new surface is counted with.
 constexpr double kNewReadings = 3.0;
 
+SymmetricMatrix3 scaled(const SymmetricMatrix3& m, double factor) {
+  return {factor * m.xx, factor * m.yy, factor * m.zz, factor * m.xy, factor * m.xz, factor * m.yz};
+}
+
 // ½ Σ_k ln [Λ⁻¹ + F]_kk
 double entropy_with_floor(const SymmetricMatrix3& information, double floor_variance) {
   const SymmetricMatrix3 sigma = information.inverse();
@@ -37,8 +41,8 @@ double entropy_with_floor(const SymmetricMatrix3& information, double floor_vari
 double entropy_of_new_voxel(const EvaluatorCore& core, double prior_information,
                             double floor_variance) {
   const MeasurementSigmas sigmas = core.frontal(core.working_distance);
-  SymmetricMatrix3 seen = measurement_information(Eigen::Vector3d::UnitZ(), sigmas);
-  for (double* value : {&seen.xx, &seen.yy, &seen.zz}) *value *= kNewReadings;
+  const SymmetricMatrix3 seen =
+      scaled(measurement_information(Eigen::Vector3d::UnitZ(), sigmas), kNewReadings);
   const auto prior = SymmetricMatrix3::identity(prior_information);
   return entropy_with_floor(prior, floor_variance) -
          entropy_with_floor(prior + seen, floor_variance);
@@ -167,12 +171,9 @@ void SurfaceView::evaluate(const PoseFrame& frame, const Tiles& tiles, Workspace
       result.hits += static_cast<std::uint32_t>(std::popcount(walked.occupied));
       if (!refines) return;
       for_each_lane(walked.occupied, [&](int lane) {
-        SymmetricMatrix3 added = information(rays, lane, walked.range[lane]);
-        const auto passed = static_cast<double>(walked.passed[lane]);
-        for (double* value : {&added.xx, &added.yy, &added.zz, &added.xy, &added.xz, &added.yz}) {
-          *value *= passed;
-        }
-        occupied.add(voxel_at(walked.x[lane], walked.y[lane], walked.z[lane]), added);
+        occupied.add(voxel_at(walked.x[lane], walked.y[lane], walked.z[lane]),
+                     scaled(information(rays, lane, walked.range[lane]),
+                            static_cast<double>(walked.passed[lane])));
       });
     });
     area = sum * V * V;
@@ -243,12 +244,7 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
       }
       SurfaceShare share{voxel_at(first->x, first->y, first->z), true, passed, 0.0};
       if (core_.config.model == GainModel::combined) {
-        share.information = information(rays, lane, first->begin);
-        for (double* value :
-             {&share.information.xx, &share.information.yy, &share.information.zz,
-              &share.information.xy, &share.information.xz, &share.information.yz}) {
-          *value *= passed;
-        }
+        share.information = scaled(information(rays, lane, first->begin), passed);
       }
       workspace.shares.push_back(share);
       continue;
