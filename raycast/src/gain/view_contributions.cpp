@@ -9,6 +9,7 @@
 #include <limits>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "gain_evaluator_impl.hpp"
 #include "viewgain/core/criterion.hpp"
@@ -90,21 +91,23 @@ std::vector<VoxelContribution> surface_contributions(const detail::ViewDriver& d
 
 std::vector<VoxelContribution> GainEvaluator::contributions(const Pose& T_world_camera) const {
   detail::ViewDriver::Lease lease(impl_->driver);
-  ContributionConsumer consumer{impl_->driver, lease.accumulator()};
+  std::vector<VoxelContribution> contributions;
   if (const detail::SurfaceView* surface = impl_->driver.surface()) {
-    consumer.contributions =
+    contributions =
         surface_contributions(impl_->driver, *surface, T_world_camera, lease.workspace());
   } else {
+    ContributionConsumer consumer{impl_->driver, lease.accumulator()};
     impl_->driver.view(T_world_camera, lease, consumer);
+    contributions = std::move(consumer.contributions);
   }
   // The largest gain first; one beyond double precision comes last.
   const auto order = [](const VoxelContribution& c) {
     return std::tuple(std::isnan(c.gain) ? std::numeric_limits<double>::infinity() : -c.gain,
                       c.voxel.x, c.voxel.y, c.voxel.z);
   };
-  std::sort(consumer.contributions.begin(), consumer.contributions.end(),
+  std::sort(contributions.begin(), contributions.end(),
             [&](const auto& a, const auto& b) { return order(a) < order(b); });
-  return std::move(consumer.contributions);
+  return contributions;
 }
 
 }  // namespace viewgain

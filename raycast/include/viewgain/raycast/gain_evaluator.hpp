@@ -62,13 +62,15 @@ enum class ViewStatus : std::uint8_t {
 };
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view view_status_name(ViewStatus status);
 
-/// What a view is expected to bring. Gains in nats, in m² for the criterion trace.
+/// What a view is expected to bring. Gains in nats, in m² for the criterion trace and for the
+/// surface gain. Where a model has no such figure it is NaN, a count 0.
 struct VIEWGAIN_EXPORT ViewGain {
-  /// Exploration + refinement. NaN: a bad pose, or sensor sigmas beyond what double precision can
+  /// By GainConfig::model: exploration + refinement; area; or area · ΔH_new / voxel² + w ·
+  /// refinement_saturated. NaN: a bad pose, or sensor sigmas beyond what double precision can
   /// weigh.
   double gain = std::numeric_limits<double>::quiet_NaN();
-  double exploration = std::numeric_limits<double>::quiet_NaN();  ///< share of unknown voxels
-  double refinement = std::numeric_limits<double>::quiet_NaN();   ///< share of occupied voxels
+  double exploration = std::numeric_limits<double>::quiet_NaN();  ///< paper: unknown voxels' share
+  double refinement = std::numeric_limits<double>::quiet_NaN();   ///< paper: occupied voxels' share
   /// surface, combined: new surface to be expected, measured across the rays [m²].
   double area = std::numeric_limits<double>::quiet_NaN();
   /// combined: entropy removed in occupied voxels, with a floor below which none is counted [nat].
@@ -77,8 +79,8 @@ struct VIEWGAIN_EXPORT ViewGain {
   double posterior_entropy = std::numeric_limits<double>::quiet_NaN();
   std::uint32_t rays = 0;
   std::uint32_t hits = 0;             ///< rays that end in a voxel
-  std::uint32_t unknown_voxels = 0;   ///< distinct
-  std::uint32_t occupied_voxels = 0;  ///< distinct
+  std::uint32_t unknown_voxels = 0;   ///< distinct; paper
+  std::uint32_t occupied_voxels = 0;  ///< distinct; paper, combined
   ViewStatus status = ViewStatus::bad_pose;
 };
 
@@ -121,7 +123,8 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// 1e-6..1e3 m, Error(backend), Error(capacity) as VoxelScene::build().
   [[nodiscard]] GainEvaluator with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
-  /// The expected gain of one pose, on all threads of the evaluator.
+  /// The expected gain of one pose: the paper's on all threads of the evaluator, the others on the
+  /// calling one.
   [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera) const;
 
   /// The expected gains of a batch, result i for pose i, on all threads of the evaluator. A bad

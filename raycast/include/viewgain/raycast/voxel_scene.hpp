@@ -42,8 +42,8 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// Error(invalid_argument) if an obstacle has a vertex that is not finite, an index out of range
   /// or a box inside out, or for a number of threads out of range. Runs on the calling thread, and
   /// where a BVH is built on those that the process's TBB has: exec does not limit it.
-  /// The hazard of unknown voxels is found when an evaluator of the surface or combined gain first
-  /// wants it (some milliseconds); Error(invalid_argument) if it cannot be used.
+  /// Throws as HazardConfig::validate(), too. The hazard of unknown voxels is found when an
+  /// evaluator of the surface or combined gain first wants it (some milliseconds).
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(const BeliefGrid& grid,
                                                                const Obstacles& obstacles = {},
                                                                const ExecConfig& exec = {},
