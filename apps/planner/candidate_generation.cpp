@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "candidate_generation.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <numbers>
 #include <optional>
@@ -12,11 +13,11 @@
 
 namespace viewgain::app {
 
-EstimatorConfig default_estimator(double voxel_size) {
+EstimatorConfig default_estimator(double spacing) {
   constexpr double kDegree = std::numbers::pi / 180;
   EstimatorConfig config;
-  config.boundary.min_run_length = 8 * voxel_size;
-  config.boundary.min_loop_length = 8 * voxel_size;
+  config.boundary.min_run_length = 8 * spacing;
+  config.boundary.min_loop_length = 8 * spacing;
   config.overlap = 0.4;
   config.distances = {1.0, 1.15};
   config.tilts = {0.0, 15 * kDegree, -15 * kDegree};
@@ -26,7 +27,9 @@ EstimatorConfig default_estimator(double voxel_size) {
 
 GenerationConfig default_generation(const Sensor& sensor, double voxel_size) {
   GenerationConfig config;
-  config.estimator = default_estimator(voxel_size);
+  // As far apart as the points of the surface will be.
+  const double footprint = sigmas(sensor.noise, sensor.working_distance, sensor.camera.fx).lateral;
+  config.estimator = default_estimator(std::max(voxel_size, footprint));
   config.working_distance = sensor.working_distance;
   config.feasibility.body.T_flange_camera = sensor.T_flange_camera;
   if (sensor.body_size) config.feasibility.body.size = *sensor.body_size;

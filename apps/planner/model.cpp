@@ -9,13 +9,13 @@
 
 namespace viewgain::app {
 
-SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double voxel_size,
+SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double spacing,
                        const ExecConfig& exec) {
   std::vector<OrientedPoint> oriented;
   oriented.reserve(points.size());
   for (const FusedPoint& point : points) oriented.push_back({point.position, point.toward_free});
   SurfaceConfig config;
-  config.spacing = voxel_size;
+  config.spacing = spacing;
   return reconstruct_surface(oriented, config, exec);
 }
 
@@ -89,7 +89,7 @@ void Model::derive() {
   }
   const auto measuring = exec_.measure("surface");
   points_ = fused_points(grid_, config_.points, exec_.threads);
-  surface_ = surface_of(points_, grid_.voxel_size(), exec_.threads);
+  surface_ = surface_of(points_, pooling_of(scene_->snapshot()).length, exec_.threads);
 }
 
 }  // namespace viewgain::app

@@ -29,9 +29,9 @@ struct ModelConfig {
   bool refine = true;  ///< false: the first reading of a voxel wins, later ones are ignored
 };
 
-/// The surface through the points of a map with this voxel size [m]; vertex i comes from point
-/// source[i].
-[[nodiscard]] SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double voxel_size,
+/// The surface through the points of a map, `spacing` [m] apart (its pooling length); vertex i comes
+/// from point source[i].
+[[nodiscard]] SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double spacing,
                                      const ExecConfig& exec);
 
 /// The two representations of the scene, the belief grid and the surface seen so far

@@ -87,7 +87,8 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
   const double sigma_0 = config.prior_sigma.value_or(grid.prior_sigma());
   const Eigen::Matrix3d prior = Eigen::Matrix3d::Identity() / (sigma_0 * sigma_0);
   const double stride = config.pixel_stride;
-  const double cap = stride * stride * std::numbers::pi * V * V / 3.0;  // [m²]
+  const double cap =
+      stride * stride * std::numbers::pi * std::pow(hazard.pooling().length, 2) / 2;  // [m²]
   SurfaceValue value;
   std::map<Cell, Eigen::Matrix3d> refined;
 
@@ -119,7 +120,7 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
       value.pixel_area = std::max(value.pixel_area, across);
       const double distance = hazard.distance(run->voxel);
       last_across = across;
-      if (distance > 2 * V * (1 + 1e-9)) {
+      if (distance > 2 * hazard.pooling().length * (1 + 1e-9)) {
         value.area += P * across * run->weighted / length;
         stretch_area += P * across * run->weighted / length;
       }
@@ -199,19 +200,27 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
   return value;
 }
 
-double distance_to_evidence(const BeliefGrid& grid, int shift, Index3 voxel) {
+double distance_to_evidence(const BeliefGrid& grid, int shift, Index3 voxel, int pooling) {
   const auto centre = [&](Index3 v) -> Eigen::Vector3d {
     const double edge = 1 << shift;
     return Eigen::Vector3d(std::floor(v.x / edge), std::floor(v.y / edge), std::floor(v.z / edge)) *
            edge;
   };
+  std::map<Cell, std::uint64_t> hits;
+  const auto for_each_occupied = [&](auto&& visit) {
+    for (const BeliefBlockAt& block : grid.belief_blocks()) {
+      block.for_each([&](Index3 v, const Belief& belief) {
+        if (grid.state(v) == VoxelState::occupied) visit(v, belief);
+      });
+    }
+  };
+  for_each_occupied(
+      [&](Index3 v, const Belief& belief) { hits[cell_of(v, pooling)] += belief.hits; });
   double nearest = std::numeric_limits<double>::infinity();
-  for (const BeliefBlockAt& block : grid.belief_blocks()) {
-    block.for_each([&](Index3 v, const Belief& belief) {
-      if (belief.hits < 3 || grid.state(v) != VoxelState::occupied) return;
-      nearest = std::min(nearest, (centre(v) - centre(voxel)).norm() * grid.voxel_size());
-    });
-  }
+  for_each_occupied([&](Index3 v, const Belief&) {
+    if (hits[cell_of(v, pooling)] < 3) return;
+    nearest = std::min(nearest, (centre(v) - centre(voxel)).norm() * grid.voxel_size());
+  });
   return nearest;
 }
 

@@ -25,7 +25,9 @@ struct SurfaceValue {
                                          const Obstacles& obstacles = {});
 
 /// The distance between the centres of the cells (2^shift voxels an edge) of a voxel and of the
-/// nearest occupied voxel with three hits [m]; infinity if there is none.
-[[nodiscard]] double distance_to_evidence(const BeliefGrid& grid, int shift, Index3 voxel);
+/// nearest occupied voxel [m] in a cube of 2^pooling voxels whose occupied voxels have three hits
+/// between them; infinity if there is none.
+[[nodiscard]] double distance_to_evidence(const BeliefGrid& grid, int shift, Index3 voxel,
+                                          int pooling = 0);
 
 }  // namespace viewgain::oracle

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "squared_distances.hpp"
@@ -11,8 +12,8 @@
 namespace viewgain {
 namespace {
 
-constexpr std::uint32_t kLeastHits = 3;  // of a voxel that is evidence of surface
-constexpr double kKnownDistance = 2.0;   // up to which surface is not new [voxels]
+constexpr std::uint64_t kLeastHits = 3;  // of a voxel, or cube of voxels, with evidence of surface
+constexpr double kKnownDistance = 2.0;   // up to which surface is not new [pooling lengths]
 
 void check(bool ok, const char* name, double value) {
   if (!ok) {
@@ -21,18 +22,28 @@ void check(bool ok, const char* name, double value) {
   }
 }
 
-// The voxels that are evidence of surface.
-std::vector<Index3> evidence_in(const GridSnapshot& snapshot) {
+// The voxels that are evidence of surface: those of a cube of 2^shift voxels an edge count
+// together.
+std::vector<Index3> evidence_in(const GridSnapshot& snapshot, int shift) {
   std::vector<Index3> voxels;
+  std::vector<unsigned> occupied;
+  std::array<std::uint64_t, 512> hits{};  // by the offset of a cube's lowest voxel
   for (const SnapshotLeaf& leaf : snapshot.leaves) {
     if (!leaf.beliefs) continue;
+    const unsigned inside = ~((1U << shift) - 1U) & 7U;
+    const unsigned cube_of = inside << 6U | inside << 3U | inside;
+    occupied.clear();
     std::size_t rank = 0;
     for_each_bit(leaf.beliefs->mask, [&](unsigned offset) {
       const Belief& belief = leaf.beliefs->beliefs[rank++];
-      if (belief.hits >= kLeastHits && test_bit(leaf.occupied, offset)) {
-        voxels.push_back(offset_voxel(leaf.origin, offset));
-      }
+      if (!test_bit(leaf.occupied, offset)) return;
+      hits[offset & cube_of] += belief.hits;
+      occupied.push_back(offset);
     });
+    for (const unsigned offset : occupied) {
+      if (hits[offset & cube_of] >= kLeastHits) voxels.push_back(offset_voxel(leaf.origin, offset));
+    }
+    for (const unsigned offset : occupied) hits[offset & cube_of] = 0;
   }
   return voxels;
 }
@@ -80,9 +91,9 @@ void HazardConfig::validate() const {
 }
 
 HazardField::HazardField(const GridSnapshot& snapshot, const HazardConfig& config)
-    : volume_(config.volume), voxel_size_(snapshot.voxel_size) {
+    : volume_(config.volume), pooling_(pooling_of(snapshot)), voxel_size_(snapshot.voxel_size) {
   config.validate();
-  const std::vector<Index3> evidence = evidence_in(snapshot);
+  const std::vector<Index3> evidence = evidence_in(snapshot, pooling_.shift);
   const VoxelBox workspace = VoxelBox::from_dims(snapshot.min_index, snapshot.dims);
   const VoxelBox seen = evidence.empty() ? workspace : box_of(evidence);
   const double size = config.object_size.value_or(longest_side(seen) * voxel_size_);
@@ -128,7 +139,7 @@ void HazardField::find_distances(const std::vector<Index3>& evidence, const Voxe
     const double distance = std::sqrt(static_cast<double>(i)) * cell;
     rates_[i] = static_cast<float>(model_.rate(distance));
   }
-  const double known = kKnownDistance / edge;  // [cells]
+  const double known = kKnownDistance * pooling_.length / cell;  // [cells]
   most_known_ = static_cast<std::uint32_t>(known * known);
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "belief_bricks.hpp"
 
+#include <algorithm>
+
 namespace viewgain::detail {
 namespace {
 
@@ -26,36 +28,86 @@ bool is_in_one_cube(const VoxelBox& tile, unsigned shift) {
 
 }  // namespace
 
-BeliefBricks::BeliefBricks(const BeliefGrid& grid)
-    : workspace_(VoxelBox::from_dims(grid.min_index(), grid.dims())) {
-  const GridSnapshot snapshot = grid.snapshot();
-  const std::vector<BeliefBlockAt> blocks = grid.belief_blocks();
-  numbers_.reserve(snapshot.leaves.size() + blocks.size());
-  for (const SnapshotLeaf& leaf : snapshot.leaves) {
-    Brick& brick = bricks_[brick_at(leaf.origin)];
-    brick.non_free = leaf.non_free;
-    brick.occupied = leaf.occupied;
-  }
-  for (const BeliefBlockAt& block : blocks) {
-    Brick& brick = bricks_[brick_at(block.origin)];
-    std::size_t i = 0;
-    for_each_bit(block.beliefs->mask, [&](unsigned offset) {
-      const Belief& belief = block.beliefs->beliefs[i++];
-      if (belief.hits == 0) return;
-      brick.belief[offset] = static_cast<std::int32_t>(beliefs_.size());
-      const auto& v = belief.information_vector;
-      beliefs_.push_back(
-          {belief.information_matrix(), Eigen::Vector3d(v[0], v[1], v[2]), belief.hits});
-    });
-  }
+BeliefBricks::BeliefBricks(const GridSnapshot& snapshot, const std::vector<BeliefBlockAt>& blocks,
+                           int shift)
+    : workspace_(VoxelBox::from_dims(snapshot.min_index, snapshot.dims)), shift_(shift) {
   for (const VoxelBox& tile : snapshot.tiles) {
     std::size_t size = 0;
     while (size + 1 < kTileShifts.size() && !is_in_one_cube(tile, kTileShifts[size])) ++size;
     unknown_cubes_[size].insert(cube_number(tile.min, kTileShifts[size]));
   }
+  numbers_.reserve(snapshot.leaves.size() + blocks.size());
+  for (const SnapshotLeaf& leaf : snapshot.leaves) (void)brick_at(leaf.origin);
+  for (const BeliefBlockAt& block : blocks) add_beliefs(block, snapshot.voxel_size);
+  for (PlacedBelief& belief : beliefs_) {
+    belief.covariance = belief.information.inverse();
+    belief.mean = belief.covariance * belief.vector;
+  }
+  find_states(snapshot);
 }
 
-std::size_t BeliefBricks::brick_at(Index3 origin) {
+void BeliefBricks::add_beliefs(const BeliefBlockAt& block, double voxel_size) {
+  Brick& brick = bricks_[brick_at(block.origin)];
+  const int edge = 1 << shift_;
+  const auto from_middle = [&](std::int32_t v) {
+    return ((v & (edge - 1)) + 0.5 * (1 - edge)) * voxel_size;
+  };
+  block.for_each([&](Index3 voxel, const Belief& belief) {
+    if (belief.hits == 0) return;
+    std::int32_t& at = brick.belief[block_offset(cell_of(voxel))];
+    if (at == kNone) {
+      at = static_cast<std::int32_t>(beliefs_.size());
+      beliefs_.emplace_back();
+    }
+    // η about the cube's centre: readings lie (voxel's centre - cube's) further from it.
+    PlacedBelief& sum = beliefs_[static_cast<std::size_t>(at)];
+    const SymmetricMatrix3 information = belief.information_matrix();
+    const auto& v = belief.information_vector;
+    const Eigen::Vector3d d(from_middle(voxel.x), from_middle(voxel.y), from_middle(voxel.z));
+    sum.information += information;
+    sum.vector += Eigen::Vector3d(v[0], v[1], v[2]) + information * d;
+    sum.hits += belief.hits;
+  });
+}
+
+void BeliefBricks::find_states(const GridSnapshot& snapshot) {
+  std::unordered_map<std::uint64_t, const SnapshotLeaf*> leaves;
+  leaves.reserve(snapshot.leaves.size());
+  for (const SnapshotLeaf& leaf : snapshot.leaves) leaves[block_number(leaf.origin)] = &leaf;
+  const int edge = 1 << shift_;  // of a brick in leaves, too
+  for (Brick& brick : bricks_) {
+    LeafMask has_free{};
+    for (int i = 0; i < edge * edge * edge; ++i) {
+      const int x = i / (edge * edge), y = i / edge % edge, z = i % edge;
+      const Index3 origin{(brick.origin.x << shift_) + kBlockSize * x,
+                          (brick.origin.y << shift_) + kBlockSize * y,
+                          (brick.origin.z << shift_) + kBlockSize * z};
+      const auto found = leaves.find(block_number(origin));
+      LeafMask free{};
+      if (found != leaves.end()) {
+        for (std::size_t w = 0; w < free.size(); ++w) free[w] = ~found->second->non_free[w];
+        for_each_bit(found->second->occupied, [&](unsigned offset) {
+          set_bit(brick.occupied, block_offset(cell_of(offset_voxel(origin, offset))));
+        });
+      } else if (!is_unknown_voxel({std::max(origin.x, workspace_.min.x),
+                                    std::max(origin.y, workspace_.min.y),
+                                    std::max(origin.z, workspace_.min.z)})) {
+        free.fill(~std::uint64_t{0});
+      }
+      for_each_bit(free, [&](unsigned offset) {
+        set_bit(has_free, block_offset(cell_of(offset_voxel(origin, offset))));
+      });
+    }
+    for (std::size_t w = 0; w < has_free.size(); ++w) {
+      brick.non_free[w] = ~has_free[w] | brick.occupied[w];
+    }
+  }
+}
+
+std::size_t BeliefBricks::brick_at(Index3 leaf) {
+  const Index3 cell = cell_of(leaf);
+  const Index3 origin{cell.x & ~(kBlockSize - 1), cell.y & ~(kBlockSize - 1),
+                      cell.z & ~(kBlockSize - 1)};
   const auto [found, is_new] =
       numbers_.try_emplace(block_number(origin), static_cast<std::int32_t>(bricks_.size()));
   if (is_new) {
@@ -72,6 +124,10 @@ std::int32_t BeliefBricks::number(Index3 origin) const {
 }
 
 bool BeliefBricks::is_unknown_tile(Index3 v) const {
+  return is_unknown_voxel({v.x << shift_, v.y << shift_, v.z << shift_});
+}
+
+bool BeliefBricks::is_unknown_voxel(Index3 v) const {
   if (!workspace_.contains(v)) return false;
   for (std::size_t size = 0; size < kTileShifts.size(); ++size) {
     if (unknown_cubes_[size].contains(cube_number(v, kTileShifts[size]))) return true;
@@ -89,9 +145,7 @@ std::vector<std::pair<std::size_t, unsigned>> BeliefBricks::occupied_with_belief
   return result;
 }
 
-BrickNeighborhood::BrickNeighborhood(const BeliefBricks& bricks, std::size_t center)
-    : bricks_(bricks) {
-  const Index3 origin = bricks.origin(center);
+BrickNeighborhood::BrickNeighborhood(const BeliefBricks& bricks, Index3 origin) : bricks_(&bricks) {
   low_ = {(origin.x >> 3) - 1, (origin.y >> 3) - 1, (origin.z >> 3) - 1};
   for (int x = 0; x < 3; ++x) {
     for (int y = 0; y < 3; ++y) {
@@ -114,10 +168,10 @@ Eigen::Vector3d BrickNeighborhood::free_side(const Eigen::Vector3d& position) co
         const std::int32_t brick = brick_of(v);
         bool free, unknown;
         if (brick != BeliefBricks::kNone) {
-          free = bricks_.is_free(static_cast<std::size_t>(brick), block_offset(v));
-          unknown = bricks_.is_unknown(static_cast<std::size_t>(brick), block_offset(v));
+          free = bricks_->is_free(static_cast<std::size_t>(brick), block_offset(v));
+          unknown = bricks_->is_unknown(static_cast<std::size_t>(brick), block_offset(v));
         } else {
-          unknown = bricks_.is_unknown_tile(v);
+          unknown = bricks_->is_unknown_tile(v);
           free = !unknown;
         }
         const Eigen::Vector3d d(x, y, z);

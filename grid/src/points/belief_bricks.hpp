@@ -23,14 +23,18 @@ struct PlacedBelief {
   SymmetricMatrix3 information{};                    ///< Λ_v [m⁻²]
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();  ///< η_v [m⁻¹]
   std::uint32_t hits = 0;
+  SymmetricMatrix3 covariance{};                   ///< Λ_v⁻¹ [m²]
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< Λ_v⁻¹ η_v, from the voxel's centre [m]
 };
 
-/// The beliefs and states of a map by 8³ blocks, laid out for looking at a voxel's neighbours.
+/// The beliefs and states of a map, laid out for looking at a voxel's neighbours: by bricks of 8³
+/// voxels, or of 8³ cubes of 2^shift voxels an edge whose beliefs are added up. A cube is occupied
+/// if one of its voxels is, else free if one of its voxels is. Called voxels all the same.
 class BeliefBricks {
  public:
   static constexpr std::int32_t kNone = -1;
 
-  explicit BeliefBricks(const BeliefGrid& grid);
+  BeliefBricks(const GridSnapshot& snapshot, const std::vector<BeliefBlockAt>& blocks, int shift);
 
   /// Voxels that are occupied and have a belief: brick and offset, in a fixed order.
   [[nodiscard]] std::vector<std::pair<std::size_t, unsigned>> occupied_with_belief() const;
@@ -62,7 +66,15 @@ class BeliefBricks {
   /// Edges of a snapshot's tiles before they are clipped, as powers of two.
   static constexpr std::array<unsigned, 3> kTileShifts{3, 7, 11};
 
-  std::size_t brick_at(Index3 origin);
+  [[nodiscard]] Index3 cell_of(Index3 voxel) const {
+    return {voxel.x >> shift_, voxel.y >> shift_, voxel.z >> shift_};
+  }
+  /// Number of the brick that holds a leaf of the map, a new one if there is none.
+  std::size_t brick_at(Index3 leaf);
+  /// Of a voxel of the map in a leaf that is uniform.
+  [[nodiscard]] bool is_unknown_voxel(Index3 voxel) const;
+  void add_beliefs(const BeliefBlockAt& block, double voxel_size);
+  void find_states(const GridSnapshot& snapshot);
 
   std::vector<Brick> bricks_;
   std::vector<PlacedBelief> beliefs_;
@@ -70,6 +82,7 @@ class BeliefBricks {
   /// Cubes that are unknown as far as the workspace reaches, by the size of tile.
   std::array<std::unordered_set<std::uint64_t>, kTileShifts.size()> unknown_cubes_;
   VoxelBox workspace_;
+  int shift_;
 };
 
 /// A brick and its 26 neighbours.
@@ -78,7 +91,10 @@ class BrickNeighborhood {
   /// The greatest radius and half height of a search [voxels]: one brick further.
   static constexpr double kMaxReach = kBlockSize;
 
-  BrickNeighborhood(const BeliefBricks& bricks, std::size_t center);
+  BrickNeighborhood(const BeliefBricks& bricks, std::size_t center)
+      : BrickNeighborhood(bricks, bricks.origin(center)) {}
+  /// Round the place of a brick, whether there is one or not.
+  BrickNeighborhood(const BeliefBricks& bricks, Index3 origin);
 
   /// f(belief, from the centre of `voxel` to that of the belief's [voxels]) for the voxels
   /// whose centres are within `radius` [voxels]; the radius must be at most kMaxReach.
@@ -131,6 +147,12 @@ class BrickNeighborhood {
     }
   }
 
+  /// Lies the position [voxels] in the brick in the middle?
+  [[nodiscard]] bool is_centered_on(const Eigen::Vector3d& position) const {
+    const Index3 v = containing(position);
+    return v.x >> 3 == low_.x + 1 && v.y >> 3 == low_.y + 1 && v.z >> 3 == low_.z + 1;
+  }
+
   /// Can a search from `position` [voxels] find anything? Beyond this everything is out of the
   /// neighbourhood, and so far out that coordinates lose their digits, or are NaN.
   [[nodiscard]] bool is_near(const Eigen::Vector3d& position) const {
@@ -143,12 +165,13 @@ class BrickNeighborhood {
   /// ones are; zero if there is no difference. Not normalised.
   [[nodiscard]] Eigen::Vector3d free_side(const Eigen::Vector3d& position) const;
 
- private:
   [[nodiscard]] static Index3 containing(const Eigen::Vector3d& position) {
     return {static_cast<std::int32_t>(std::floor(position.x())),
             static_cast<std::int32_t>(std::floor(position.y())),
             static_cast<std::int32_t>(std::floor(position.z()))};
   }
+
+ private:
   /// Number of the brick of a voxel, kNone if there is none or it is not in the neighbourhood.
   [[nodiscard]] std::int32_t brick_of(Index3 v) const {
     const std::int32_t x = (v.x >> 3) - low_.x, y = (v.y >> 3) - low_.y, z = (v.z >> 3) - low_.z;
@@ -162,10 +185,10 @@ class BrickNeighborhood {
     const std::int32_t brick = brick_of(v);
     return brick == BeliefBricks::kNone
                ? nullptr
-               : bricks_.find(static_cast<std::size_t>(brick), block_offset(v));
+               : bricks_->find(static_cast<std::size_t>(brick), block_offset(v));
   }
 
-  const BeliefBricks& bricks_;
+  const BeliefBricks* bricks_;
   Index3 low_;  ///< lowest block, in blocks
   std::array<std::int32_t, 27> numbers_{};
 };

@@ -5,15 +5,18 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <string>
 
 #include "belief_bricks.hpp"
 #include "point_support.hpp"
 #include "point_thinning.hpp"
+#include "reading_sigma.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/text.hpp"
 #include "viewgain/core/thread_pool.hpp"
+#include "viewgain/grid/pooling.hpp"
 
 namespace viewgain {
 namespace {
@@ -21,7 +24,8 @@ namespace {
 using namespace detail;
 
 constexpr double kMaxReach = BrickNeighborhood::kMaxReach;
-constexpr double kSupportRadius = 4.0;  // voxels
+constexpr double kSupportRadius = 4.0;  // pooling lengths
+constexpr double kMostHeight = 6.0;     // half of a column's [voxels]
 constexpr int kSteps = 3;               // of a point towards its column's mean
 
 void check(const FusedPointsConfig& config) {
@@ -39,8 +43,8 @@ void check(const FusedPointsConfig& config) {
        config.column_sigmas);
   need(config.min_distance >= 0 && std::isfinite(config.min_distance), "min_distance",
        config.min_distance);
-  need(config.min_relative_hits >= 0 && config.min_relative_hits <= 1, "min_relative_hits",
-       config.min_relative_hits);
+  need(config.min_relative_evidence >= 0 && config.min_relative_evidence <= 1,
+       "min_relative_evidence", config.min_relative_evidence);
   if (config.floor_sigma) {
     need(*config.floor_sigma >= 0 && std::isfinite(*config.floor_sigma), "floor_sigma",
          *config.floor_sigma);
@@ -52,6 +56,7 @@ struct Seed {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   SymmetricMatrix3 information{};  ///< [m⁻²]
+  SymmetricMatrix3 covariance{};   ///< of the position [m²]
   std::uint32_t hits = 0;
   bool is_near = false;  ///< is the position in the voxel's neighbourhood?
 };
@@ -73,33 +78,52 @@ Eigen::Vector3d local_normal(const BrickNeighborhood& around, Index3 voxel, doub
   return solver.eigenvectors().col(0);
 }
 
+/// Lengths of the configuration in voxels of the bricks.
+struct Lengths {
+  double normal_radius, column_radius, min_distance, support_radius;
+};
+
 /// Moves the seed along its normal to the mean of its column and pools the column's beliefs.
-void pool_column(const BrickNeighborhood& around, double voxel_size, const PlacedBelief& own,
-                 const FusedPointsConfig& config, Seed& seed) {
+void pool_column(const BeliefBricks& bricks, BrickNeighborhood around, double voxel_size,
+                 const PlacedBelief& own, const FusedPointsConfig& config, double radius,
+                 Seed& seed) {
   // Sigma of one reading across the surface, in voxels, from the seed voxel's own belief.
   const Eigen::Vector3d n = seed.normal;
-  const double variance = own.hits * n.dot(own.information.inverse() * n);
+  const double variance = own.hits * n.dot(own.covariance * n);
   const double sigma = std::sqrt(std::max(variance, 0.0)) / voxel_size;
   const double half_height =
-      std::clamp(config.column_sigmas * sigma, 1.0, kMaxReach / 2);  // NaN: not for valid beliefs
+      std::clamp(config.column_sigmas * sigma, 1.0, kMostHeight);  // NaN: not for valid beliefs
   for (int step = 0; step < kSteps && around.is_near(seed.position); ++step) {
-    SymmetricMatrix3 information{};
-    Eigen::Vector3d vector = Eigen::Vector3d::Zero();  // Σ Λ (p - seed), lengths in voxels
-    std::uint32_t hits = 0;
-    around.for_each_in_column(seed.position, n, config.column_radius, half_height,
+    if (!around.is_centered_on(seed.position)) {
+      const Index3 v = BrickNeighborhood::containing(seed.position);
+      around = BrickNeighborhood(bricks, {v.x & ~7, v.y & ~7, v.z & ~7});
+    }
+    SymmetricMatrix3 information{}, covariance{};
+    double height = 0;  // Σ hits · height of the belief's mean over the seed [voxels]
+    double hits = 0;
+    around.for_each_in_column(seed.position, n, radius, half_height,
                               [&](const PlacedBelief& belief, const Eigen::Vector3d& from_axis) {
+                                const double weight = belief.hits;
                                 information += belief.information;
-                                vector +=
-                                    belief.information * from_axis + belief.vector / voxel_size;
-                                hits += belief.hits;
+                                covariance += belief.covariance * (weight * weight);
+                                height += weight * n.dot(from_axis + belief.mean / voxel_size);
+                                hits += weight;
                               });
     if (hits == 0) return;
-    // Only the part along the normal: across it the column is where the seed is.
-    const Eigen::Vector3d mean = information.inverse() * vector;
-    seed.position += n.dot(mean) * n;
+    // Only along the normal: across it the column is where the seed is. Each reading counts once:
+    // those that graze the surface look sharp across it, but where it bends their error along the
+    // ray leads off it, and weighted by information they blur thin parts.
+    seed.position += height / hits * n;
     seed.information = information;
-    seed.hits = hits;
+    seed.covariance = covariance * (1 / (hits * hits));
+    seed.hits = static_cast<std::uint32_t>(hits);
   }
+}
+
+/// How often the surface at a seed was seen, in frontal views: the areas on it that its readings
+/// stand for over that of its column. Whatever the range, one frontal view makes about 1.
+double evidence(const Seed& seed, double column_area) {
+  return seed.hits * lateral_variance(seed.information, seed.hits) / column_area;
 }
 
 }  // namespace
@@ -107,8 +131,15 @@ void pool_column(const BrickNeighborhood& around, double voxel_size, const Place
 std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsConfig& config,
                                      const ExecConfig& exec) {
   check(config);
-  const double V = grid.voxel_size();
-  const BeliefBricks bricks(grid);
+  const GridSnapshot snapshot = grid.snapshot();
+  const bool pooled = config.rule == PointRule::pooled;
+  const Pooling pooling = pooled ? pooling_of(snapshot) : Pooling{0, grid.voxel_size()};
+  const BeliefBricks bricks(snapshot, grid.belief_blocks(), pooling.shift);
+  const double V = std::ldexp(grid.voxel_size(), pooling.shift);
+  const double unit = pooling.length / V;
+  const Lengths lengths{std::min(config.normal_radius * unit, kMaxReach),
+                        config.column_radius * unit, config.min_distance * unit,
+                        kSupportRadius * unit};
   const std::vector<std::pair<std::size_t, unsigned>> occupied = bricks.occupied_with_belief();
 
   ThreadPool pool(exec.num_threads);
@@ -120,12 +151,13 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
       const Index3 voxel = offset_voxel(bricks.origin(brick), offset);
       const PlacedBelief& own = *bricks.find(brick, offset);
       Seed& seed = seeds[i];
-      seed.normal = local_normal(around, voxel, config.normal_radius);
+      seed.normal = local_normal(around, voxel, lengths.normal_radius);
       const Eigen::Vector3d center = Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5;
-      seed.position = center + own.information.inverse() * own.vector / V;
+      seed.position = center + own.mean / V;
       seed.information = own.information;
+      seed.covariance = own.covariance;
       seed.hits = own.hits;
-      if (config.rule == PointRule::pooled) pool_column(around, V, own, config, seed);
+      if (pooled) pool_column(bricks, around, V, own, config, lengths.column_radius, seed);
       seed.is_near = around.is_near(seed.position);
     }
   });
@@ -134,17 +166,20 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
   std::iota(kept.begin(), kept.end(), std::size_t{0});
   std::erase_if(
       kept, [&](std::size_t i) { return seeds[i].hits < config.min_hits || !seeds[i].is_near; });
-  if (config.rule == PointRule::pooled) {
+  if (pooled) {
     std::stable_sort(kept.begin(), kept.end(),
                      [&](std::size_t a, std::size_t b) { return seeds[a].hits > seeds[b].hits; });
-    PointThinning thinning(config.min_distance);
+    PointThinning thinning(lengths.min_distance);
     std::erase_if(kept, [&](std::size_t i) { return !thinning.accept(seeds[i].position); });
     std::sort(kept.begin(), kept.end());
     std::vector<SupportedPoint> support;
     support.reserve(kept.size());
-    for (const std::size_t i : kept) support.push_back({seeds[i].position, seeds[i].hits});
+    const double area = std::numbers::pi * std::pow(lengths.column_radius * V, 2);  // [m²]
+    for (const std::size_t i : kept) {
+      support.push_back({seeds[i].position, evidence(seeds[i], area)});
+    }
     const std::vector<bool> good =
-        well_supported(support, kSupportRadius, config.min_relative_hits);
+        well_supported(support, lengths.support_radius, config.min_relative_evidence);
     std::size_t next = 0;
     std::erase_if(kept, [&](std::size_t) { return !good[next++]; });
   }
@@ -166,7 +201,7 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
     const Eigen::Vector3d p = grid.T_world_grid() * (seed.position * V);
     const Eigen::Vector3d n = R * seed.normal;
     const Eigen::Matrix3d covariance =
-        R * seed.information.inverse().matrix() * R.transpose() +
+        R * seed.covariance.matrix() * R.transpose() +
         Eigen::Matrix3d(Eigen::Vector3d::Constant(floor * floor).asDiagonal());
     points.push_back({{p.x(), p.y(), p.z()},
                       SymmetricMatrix3::from(covariance),

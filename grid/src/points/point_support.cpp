@@ -13,17 +13,17 @@ std::vector<bool> well_supported(const std::vector<SupportedPoint>& points, doub
   PointCells<std::size_t> cells(radius);
   for (std::size_t i = 0; i < points.size(); ++i) cells.at(points[i].position).push_back(i);
   std::vector<bool> kept(points.size());
-  std::vector<std::uint32_t> around;
+  std::vector<double> around;
   for (std::size_t i = 0; i < points.size(); ++i) {
     around.clear();
     cells.for_each_near(points[i].position, [&](std::size_t j) {
       if ((points[j].position - points[i].position).squaredNorm() <= radius * radius) {
-        around.push_back(points[j].hits);
+        around.push_back(points[j].evidence);
       }
     });
     const auto quartile = around.begin() + static_cast<std::ptrdiff_t>(around.size() * 3 / 4);
     std::nth_element(around.begin(), quartile, around.end());
-    kept[i] = points[i].hits >= share * *quartile;
+    kept[i] = points[i].evidence >= share * *quartile;
   }
   return kept;
 }

@@ -3,18 +3,17 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <vector>
 
 namespace viewgain::detail {
 
-/// A point and how many readings support it.
+/// A point and what supports it.
 struct SupportedPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [voxels]
-  std::uint32_t hits = 0;
+  double evidence = 0;
 };
 
-/// For each point, whether it has at least `share` of the upper quartile of the support within
+/// For each point, whether it has at least `share` of the upper quartile of the evidence within
 /// `radius` [voxels], its own included. Silhouettes leave a halo of readings that lie beside the
 /// surface and are few compared with those on it. share 0 keeps all.
 [[nodiscard]] std::vector<bool> well_supported(const std::vector<SupportedPoint>& points,

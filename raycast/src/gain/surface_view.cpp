@@ -15,10 +15,9 @@
 namespace viewgain::detail {
 namespace {
 
-// A surface point is made of the readings within this radius of it [voxels], and of so many at
-// least (grid's fused points).
-constexpr double kSupportRadius = 1.0;
-constexpr double kLeastReadings = 3.0;
+// A surface point is made of the readings within a pooling length of it, and of so many at least
+// (grid's fused points).
+constexpr double kLeastReadings = 2.0;
 // A ray comes to a surface from behind where it has passed so much unknown space before it [voxels]
 // and runs along the outward normal by this cosine: the surface must lie in between.
 constexpr float kLeastStretch = 2.0F;
@@ -61,8 +60,8 @@ SurfaceView::SurfaceView(const SceneData& scene, const EvaluatorCore& core,
       prior_information_(1.0 / (prior_sigma * prior_sigma)) {
   const double V = scene.snapshot.voxel_size;
   const double stride = core.config.pixel_stride;
-  cap_ = static_cast<float>(stride * stride * std::numbers::pi * kSupportRadius * kSupportRadius /
-                            kLeastReadings);
+  const double radius = bricks_.pooling_length;
+  cap_ = static_cast<float>(stride * stride * std::numbers::pi * radius * radius / kLeastReadings);
   floor_variance_ = V * V;
   nats_per_area_ = entropy_of_new_voxel(core, prior_information_, floor_variance_) / (V * V);
   if (scene.has_obstacles) (void)scene.tracing->obstacle_bvh();

@@ -317,7 +317,8 @@ Eigen::Vector3f BrickTable::normal_at(std::int32_t x, std::int32_t y, std::int32
   return unpack_normal(normals[std::size_t{entry & kPayload} * 64 + cube_in_brick(x, y, z)]);
 }
 
-BrickTable::BrickTable(const GridSnapshot& snapshot, const HazardField& hazard) {
+BrickTable::BrickTable(const GridSnapshot& snapshot, const HazardField& hazard)
+    : pooling_length(hazard.pooling().length / snapshot.voxel_size) {
   BrickTableMaker(snapshot, hazard, *this).run();
 }
 

@@ -33,6 +33,7 @@ struct BrickTable {
 
   std::array<std::int32_t, 3> offset{};
   std::array<std::int32_t, 3> nodes{};      ///< along x, y, z
+  double pooling_length = 1;                ///< [voxels]: Pooling::length
   int rate_shift = 0;                       ///< rates are by cubes of 2^rate_shift voxels
   std::vector<std::uint32_t> node_entries;  ///< first entry of each node, x-major
   std::vector<std::uint32_t> entries;       ///< 4096 a node, x-major

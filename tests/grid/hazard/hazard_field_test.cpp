@@ -23,9 +23,11 @@ BeliefGrid grid_of(Index3 dims) {
   return BeliefGrid(config);
 }
 
-void put(BeliefGrid& grid, Index3 voxel, std::uint32_t hits) {
+// `hits` readings with this sigma [m].
+void put(BeliefGrid& grid, Index3 voxel, std::uint32_t hits, double sigma = 0.005) {
   Belief belief;
-  belief.information = {1e4F, 1e4F, 1e4F, 0, 0, 0};
+  const auto information = static_cast<float>(hits / (sigma * sigma));
+  belief.information = {information, information, information, 0, 0, 0};
   belief.hits = hits;
   grid.set(voxel, 1.0F, belief);
 }
@@ -69,6 +71,44 @@ TEST(HazardField, DistancesAreThoseOfBruteForce) {
   }
   EXPECT_EQ(checks, 8000U);
   EXPECT_GT(finite, 3000U);
+}
+
+TEST(HazardField, VoxelsFinerThanTheFootprintCountTogether) {
+  std::mt19937 random(17);
+  std::size_t checks = 0, finite = 0, single = 0;
+  for (int pooling = 0; pooling < 4; ++pooling) {
+    const double footprint = 1.2 * kVoxel * (1 << pooling);
+    BeliefGrid grid = grid_of({41, 29, 35});
+    const Index3 base = grid.min_index();
+    const auto any = [&](int size) {
+      return std::uniform_int_distribution<int>(0, size - 1)(random);
+    };
+    const auto voxel = [&] {
+      return Index3{base.x + any(grid.dims().x), base.y + any(grid.dims().y),
+                    base.z + any(grid.dims().z)};
+    };
+    for (int k = 0; k < 150; ++k) put(grid, voxel(), 1, footprint);
+    const HazardModel model{30.0, 8 * kVoxel, 0.5};
+    const HazardField field(grid.snapshot(), {.model = model});
+    ASSERT_EQ(field.pooling().shift, pooling);
+    for (int k = 0; k < 1000; ++k) {
+      const Index3 v = voxel();
+      const double expected =
+          oracle::distance_to_evidence(grid, field.cell_shift(), v, field.pooling().shift);
+      ++checks;
+      if (pooling == 0) single += std::isinf(expected);
+      if (expected > HazardModel::kCut * model.decay_length + 1e-9) {
+        EXPECT_TRUE(std::isinf(field.distance(v)));
+        continue;
+      }
+      ++finite;
+      EXPECT_NEAR(field.distance(v), expected, 1e-12);
+      EXPECT_EQ(field.is_new(v), expected > 2 * footprint + 1e-9);
+    }
+  }
+  EXPECT_EQ(checks, 4000U);
+  EXPECT_EQ(single, 1000U);  // one hit a voxel is no evidence by itself
+  EXPECT_GT(finite, 1500U);
 }
 
 TEST(HazardField, WithoutEvidenceEverythingIsFar) {

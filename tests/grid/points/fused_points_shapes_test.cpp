@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -153,6 +154,42 @@ TEST(FusedPointsShapes, BeliefsFarFromTheirVoxelMakeNoPoint) {
   }
   EXPECT_GE(cases, 4U);
   EXPECT_EQ(cases + refused, 18U);
+}
+
+// A well seen plate of 12 x 12 voxels and, 3 voxels beyond its rim, a row of 12 that was hit so
+// often by readings with this sigma [m].
+BeliefGrid plate_and_row(std::uint32_t hits_of_row, double sigma_of_row) {
+  BeliefGrid grid({0.01, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01});
+  const auto put = [&](std::int32_t x, std::int32_t y, std::uint32_t hits, double sigma) {
+    const auto information = static_cast<float>(hits / (sigma * sigma));
+    grid.set({x, y, 0}, 2.0F,
+             Belief{{information, information, information, 0, 0, 0}, {0, 0, 0}, hits});
+  };
+  for (std::int32_t x = -6; x < 6; ++x) {
+    for (std::int32_t y = -6; y < 6; ++y) put(x, y, 20, 0.003);
+    put(x, 8, hits_of_row, sigma_of_row);
+  }
+  return grid;
+}
+
+TEST(FusedPointsShapes, HaloBesideAWellSeenSurfaceIsLeftOut) {
+  const auto halo = [](const std::vector<FusedPoint>& points) {
+    return std::count_if(points.begin(), points.end(),
+                         [](const FusedPoint& p) { return p.position[1] > 0.075; });
+  };
+  const BeliefGrid grid = plate_and_row(3, 0.003);
+  FusedPointsConfig all;
+  all.min_relative_evidence = 0;
+  EXPECT_EQ(fused_points(grid, all).size(), 156U);
+  EXPECT_EQ(halo(fused_points(grid, all)), 12);
+  EXPECT_EQ(fused_points(grid).size(), 144U);
+  EXPECT_EQ(halo(fused_points(grid)), 0);
+}
+
+TEST(FusedPointsShapes, WhatWasSeenFromAfarStaysBesideWhatWasSeenFromNear) {
+  // Three times as far: a ninth of the readings, each of which stands for nine times the area. As
+  // few readings from near are the halo of the test above.
+  EXPECT_EQ(fused_points(plate_and_row(3, 0.009)).size(), 156U);
 }
 
 }  // namespace

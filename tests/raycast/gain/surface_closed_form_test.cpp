@@ -19,8 +19,9 @@ using test::kExactVoxel;
 constexpr Index3 kDims{64, 16, 16};
 constexpr double kV2 = kExactVoxel * kExactVoxel;
 constexpr double kRate = 3.0;  // [1/m]
-// The most that one ray counts for: three readings within a voxel of the point.
-constexpr double kCap = std::numbers::pi * kV2 / 3;
+// The most that one ray counts for: two readings within a pooling length, here a voxel, of the
+// point.
+constexpr double kCap = std::numbers::pi * kV2 / 2;
 
 /// One pixel that stands for `angle` sr.
 Sensor one_ray(double angle) {

@@ -280,7 +280,7 @@ ndarray, (n,), structured
             });
             return to_array_1d<PointRow>(rows);
           },
-          py::kw_only(), py::arg("min_hits") = 3, py::arg("num_threads") = 0,
+          py::kw_only(), py::arg("min_hits") = 2, py::arg("num_threads") = 0,
           R"(The points of the surface as the map knows it.
 
 Returns

@@ -59,7 +59,7 @@ SurfaceMesh surface_of_grid(const SharedGrid& grid, std::uint32_t min_hits, int 
   config.min_hits = min_hits;
   return grid.read([&](const BeliefGrid& g) {
     const ExecConfig exec{num_threads};
-    return app::surface_of(fused_points(g, config, exec), g.voxel_size(), exec);
+    return app::surface_of(fused_points(g, config, exec), pooling_of(g.snapshot()).length, exec);
   });
 }
 
@@ -166,7 +166,7 @@ Returns
 -------
 Surface)");
   module.def(
-      "surface_of_grid", &surface_of_grid, py::arg("grid"), py::kw_only(), py::arg("min_hits") = 3,
+      "surface_of_grid", &surface_of_grid, py::arg("grid"), py::kw_only(), py::arg("min_hits") = 2,
       py::arg("num_threads") = 0,
       "The surface through ``grid.points(min_hits=min_hits)``.\n\nReturns\n-------\nSurface");
   module.def("boundary_candidates", &boundary_candidates, py::arg("surface"), py::arg("views"),

@@ -36,6 +36,9 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
     return {xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),
             xz * v.x() + yz * v.y() + zz * v.z()};
   }
+  [[nodiscard]] SymmetricMatrix3 operator*(double s) const {
+    return {xx * s, yy * s, zz * s, xy * s, xz * s, yz * s};
+  }
   [[nodiscard]] double trace() const { return xx + yy + zz; }
   [[nodiscard]] double determinant() const {
     return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);

@@ -17,7 +17,7 @@ namespace viewgain {
 /// A point of the surface as the map knows it, world frame.
 struct VIEWGAIN_EXPORT FusedPoint {
   std::array<double, 3> position{};     ///< [m]
-  SymmetricMatrix3 covariance{};        ///< (ΣΛ_v)⁻¹ + F [m²]
+  SymmetricMatrix3 covariance{};        ///< of the position, with the floor F [m²]
   std::array<double, 3> toward_free{};  ///< unit surface normal on the side of free space
   std::uint32_t hits = 0;               ///< readings that support it
 };
@@ -30,29 +30,34 @@ enum class PointRule : std::uint8_t {
   per_voxel,  ///< the paper's literal rule: each occupied voxel is a point, centre + Λ_v⁻¹ η_v
 };
 
-/// Lengths are in voxels unless said otherwise.
+/// Lengths are in pooling lengths (pooling_of: a voxel, or the sensor's footprint where that is
+/// longer) unless said otherwise.
 struct VIEWGAIN_EXPORT FusedPointsConfig {
   PointRule rule = PointRule::pooled;
-  std::uint32_t min_hits = 3;  ///< points with less support are left out
-  /// Pooled points with less than this share of the upper quartile of the support within 4 voxels
-  /// are left out: the halo that silhouettes leave beside the surface. 0: none.
-  double min_relative_hits = 0.45;
-  double normal_radius = 4.0;  ///< of the ball whose beliefs give the surface normal; at most 8
-  double column_radius = 1.0;  ///< of the column whose beliefs are pooled
-  double column_sigmas = 2.0;  ///< its half height, in sigmas of one reading across the surface
-  double min_distance = 0.75;  ///< between two pooled points
+  std::uint32_t min_hits = 2;  ///< points with fewer readings are left out
+  /// Pooled points with less than this share of the upper quartile of the evidence within 4 lengths
+  /// are left out: the halo that silhouettes leave beside the surface. 0: none. Evidence is the
+  /// readings against those to be expected of one frontal view from where they were taken, so that
+  /// what was seen from afar stays beside what was seen from near.
+  double min_relative_evidence = 0.25;
+  double normal_radius = 5.0;   ///< of the ball whose beliefs give the surface normal; at most 8
+  double column_radius = 1.0;   ///< of the column whose beliefs are pooled
+  double column_sigmas = 1.75;  ///< its half height, in sigmas of one reading across the surface
+  double min_distance = 0.75;   ///< between two pooled points
   /// F = floor_sigma² I, the resolution floor that no number of readings takes away [m]; default
   /// voxel / √12 (DESIGN.md section 5).
   std::optional<double> floor_sigma{};
 };
 
 /// The surface points of a map, with honest covariances (DESIGN.md sections 5 and 8). A pooled
-/// point starts at each occupied voxel, moves along the local normal to the information-weighted
-/// mean of its column, beliefs of voxels that have turned free included (leaving them out would
-/// bias the mean away from the camera), and survives if no point with more support is within
-/// min_distance. A belief whose fused position is more than 24 voxels away from its voxel makes no
-/// point. Deterministic for any number of threads. Costs about 1 µs a voxel that was ever
-/// hit. Throws Error(invalid_argument) naming a setting that is negative, not finite or too large.
+/// point starts at each occupied voxel, or cube of voxels (pooling_of), moves along the local
+/// normal to the mean of the readings in its column, those of voxels that have turned free included
+/// (leaving them out would bias the mean away from the camera), and survives if no point with more
+/// readings is within min_distance. Its covariance is that of this mean, in which every reading
+/// counts once; a point of per_voxel has Λ_v⁻¹. Both with F. A belief whose fused position is more
+/// than 24 voxels away from its voxel makes no point. Deterministic for any number of threads.
+/// Costs about 1 µs a voxel that was ever hit. Throws Error(invalid_argument) naming a setting that
+/// is negative, not finite or too large.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<FusedPoint> fused_points(
     const BeliefGrid& grid, const FusedPointsConfig& config = {}, const ExecConfig& exec = {});
 

@@ -12,6 +12,7 @@
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
+#include "viewgain/grid/pooling.hpp"
 #include "viewgain/grid/voxel.hpp"
 
 namespace viewgain {
@@ -68,8 +69,8 @@ struct VIEWGAIN_EXPORT HazardConfig {
 ///
 /// Rates are constant in hazard cells: cubes of 1, 2, 4 or 8 voxels an edge on the lattice of the
 /// leaves, about a quarter of the decay length wide. Distances are between centres of such cells,
-/// to the nearest one with an occupied voxel of at least 3 hits. The rates of a volume are by
-/// voxel.
+/// to the nearest one with an occupied voxel of at least 3 hits; voxels that are finer than the
+/// sensor's footprint count in the cubes of pooling_of(). The rates of a volume are by voxel.
 class VIEWGAIN_EXPORT HazardField {
  public:
   /// Exact distances in 3 passes over the box of cells with evidence, widened by the cut: about
@@ -95,7 +96,8 @@ class VIEWGAIN_EXPORT HazardField {
     const std::uint16_t squared = squared_distance(voxel);
     return squared == kBeyond ? far_rate_ : rates_[squared];
   }
-  /// Does surface found in this voxel count as new? d > 2 voxels.
+  [[nodiscard]] const Pooling& pooling() const { return pooling_; }  ///< of the map
+  /// Does surface found in this voxel count as new? d > 2 pooling lengths.
   [[nodiscard]] bool is_new(Index3 voxel) const {
     const std::uint16_t squared = squared_distance(voxel);
     return squared == kBeyond || squared > most_known_;
@@ -122,6 +124,7 @@ class VIEWGAIN_EXPORT HazardField {
 
   HazardModel model_;
   std::shared_ptr<const HazardVolume> volume_;
+  Pooling pooling_;
   double voxel_size_;
   int shift_ = 0;  // of the cells that have a distance
   Index3 low_cell_{};

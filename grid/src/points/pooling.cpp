@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/grid/pooling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "reading_sigma.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr int kMostShift = 3;  // cubes stay within a leaf
+
+// Median sigma of a reading across its ray [m]; 0 if nothing was read.
+double footprint_in(const GridSnapshot& snapshot) {
+  std::vector<float> variances;
+  for (const SnapshotLeaf& leaf : snapshot.leaves) {
+    if (!leaf.beliefs) continue;
+    std::size_t rank = 0;
+    for_each_bit(leaf.beliefs->mask, [&](unsigned offset) {
+      const Belief& belief = leaf.beliefs->beliefs[rank++];
+      if (belief.hits == 0 || !test_bit(leaf.occupied, offset)) return;
+      variances.push_back(
+          static_cast<float>(detail::lateral_variance(belief.information_matrix(), belief.hits)));
+    });
+  }
+  if (variances.empty()) return 0;
+  const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
+  std::nth_element(variances.begin(), middle, variances.end());
+  return std::sqrt(static_cast<double>(*middle));
+}
+
+}  // namespace
+
+Pooling pooling_of(const GridSnapshot& snapshot) {
+  const double footprint = footprint_in(snapshot);
+  Pooling pooling{0, snapshot.voxel_size};
+  while (pooling.shift < kMostShift && pooling.length * std::numbers::sqrt2 < footprint) {
+    ++pooling.shift;
+    pooling.length *= 2;
+  }
+  pooling.length = std::max(pooling.length, footprint);
+  return pooling;
+}
+
+}  // namespace viewgain
