@@ -26,7 +26,8 @@ Model::Model(const Sensor& sensor, const ModelConfig& config, std::shared_ptr<co
       exec_(exec),
       truth_(std::move(truth)),
       grid_(config.grid),
-      integrator_(sensor, config.integration, exec.threads) {
+      integrator_(sensor, config.integration, exec.threads),
+      new_surface_(sensor, config.integration.support_plane) {
   if (config.jump_edges) filter_.emplace(sensor.camera, *config.jump_edges);
 }
 
@@ -35,7 +36,8 @@ Model::Model(BeliefGrid grid, const Sensor& sensor, const ModelConfig& config, c
       config_(config),
       exec_(exec),
       grid_(std::move(grid)),
-      integrator_(sensor, config.integration, exec.threads) {
+      integrator_(sensor, config.integration, exec.threads),
+      new_surface_(sensor, config.integration.support_plane) {
   derive();
 }
 
@@ -70,6 +72,8 @@ void Model::integrate(const Measurements& measurements) {
     if (filter_) filter_->apply(frame);
     if (!config_.refine) drop_known_readings(frame, measurements.T_world_camera);
   }
+  realised_area_ =
+      frames.empty() ? 0.0 : area_shown_by(frames.front(), measurements.T_world_camera);
   std::uint64_t inside = 0;
   const bool first = grid_.views().empty();
   for (const DepthFrame& frame : frames) {
@@ -80,6 +84,11 @@ void Model::integrate(const Measurements& measurements) {
                 "the first view has no reading in the workspace: the start pose looks away from it "
                 "or is out of range");
   }
+}
+
+double Model::area_shown_by(const DepthFrame& frame, const Pose& T_world_camera) const {
+  const HazardField* hazard = scene_ ? &scene_->hazard() : nullptr;
+  return new_surface_.of(frame, T_world_camera, grid_, hazard);
 }
 
 void Model::derive() {

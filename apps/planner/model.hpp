@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "loop_exec.hpp"
+#include "realised_area.hpp"
 #include "truth.hpp"
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
@@ -52,11 +53,14 @@ class Model : public RepresentationUpdate {
   [[nodiscard]] const std::shared_ptr<const VoxelScene>& scene() const noexcept { return scene_; }
   [[nodiscard]] const std::vector<FusedPoint>& points() const noexcept { return points_; }
   [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
+  /// New surface that the last view's first frame showed [m²]; see RealisedArea.
+  [[nodiscard]] double realised_area() const noexcept { return realised_area_; }
   /// After each view, where there is a truth.
   [[nodiscard]] const std::vector<QualityFigures>& quality() const noexcept { return quality_; }
 
  private:
   void integrate(const Measurements& measurements);
+  [[nodiscard]] double area_shown_by(const DepthFrame& frame, const Pose& T_world_camera) const;
   void derive();
   /// Turns readings whose voxel was hit by an earlier view into invalid ones.
   void drop_known_readings(DepthFrame& frame, const Pose& T_world_camera) const;
@@ -68,9 +72,11 @@ class Model : public RepresentationUpdate {
   BeliefGrid grid_;
   std::optional<JumpEdgeFilter> filter_;
   FrameIntegrator integrator_;
+  RealisedArea new_surface_;
   std::shared_ptr<const VoxelScene> scene_;
   std::vector<FusedPoint> points_;
   SurfaceMesh surface_;
+  double realised_area_ = 0;
   std::vector<QualityFigures> quality_;
 };
 

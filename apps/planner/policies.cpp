@@ -78,9 +78,23 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
   decision.candidate = *chosen;
   decision.gain = gain.gain;
   const std::uint32_t touched = gain.unknown_voxels + gain.occupied_voxels;
+  decision.area =
+      std::isnan(gain.area) ? expected_area(candidates[*chosen].T_world_camera) : gain.area;
   // A fixed order of views does not stop because one of them promises little.
   if (by_gain) decision.gain_per_voxel = touched > 0 ? gain.gain / touched : 0.0;
   return decision;
+}
+
+double PolicyDecision::expected_area(const Pose& T_world_camera) {
+  if (area_evaluator_) {
+    area_evaluator_ = area_evaluator_->with_scene(model_.scene());
+  } else {
+    GainConfig config;
+    config.model = GainModel::surface;
+    config.support_plane = config_.support_plane;
+    area_evaluator_.emplace(model_.scene(), sensor_, config, ExecConfig{1});
+  }
+  return area_evaluator_->evaluate(T_world_camera).area;
 }
 
 std::optional<std::size_t> PolicyDecision::choose(const Pose& T_world_camera,

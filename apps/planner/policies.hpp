@@ -68,7 +68,11 @@ class PolicyDecision : public DecisionMaking {
   Sensor sensor_;
   PolicyConfig config_;
   LoopExec exec_;
-  std::optional<GainEvaluator> evaluator_;  ///< of the last decision's scene
+  /// The new surface to be expected of a view [m²], where the policy's own gain does not say.
+  [[nodiscard]] double expected_area(const Pose& T_world_camera);
+
+  std::optional<GainEvaluator> evaluator_;       ///< of the last decision's scene
+  std::optional<GainEvaluator> area_evaluator_;  ///< likewise, by the surface gain
   BoundaryOrder order_;
 };
 

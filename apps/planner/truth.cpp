@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "mesh_area.hpp"
 #include "point_arrays.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/thread_pool.hpp"
@@ -95,7 +96,8 @@ bool sees(const SurfaceScene& scene, const Sensor& sensor, const Pose& T_world_c
 
 Truth::Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
              const VisibilityConfig& config, const ExecConfig& exec)
-    : truth_(scene->mesh(), kSamples, kSeed, exec) {
+    : truth_(scene->mesh(), kSamples, kSeed, exec),
+      area_per_sample_(mesh_area(scene->mesh()) / static_cast<double>(kSamples)) {
   const std::vector<Pose> poses = looking_poses(config, sensor, scene->mesh());
   const std::vector<SurfaceSample>& samples = truth_.samples();
   visible_.resize(samples.size());
@@ -119,6 +121,11 @@ QualityFigures Truth::figures(const SurfaceMesh& surface,
   figures.coverage = coverage(distances, kNear);
   figures.coverage_visible = coverage(distances, kNear, visible_);
   figures.coverage_2_5mm = coverage(distances, kNearer);
+  std::size_t covered = 0;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    if (visible_[i] != 0 && distances[i] <= kNear) ++covered;
+  }
+  figures.covered_area = static_cast<double>(covered) * area_per_sample_;
   figures.surface_error = truth_.error(surface.vertices);
   figures.points_error = truth_.error(arrays.positions);
   figures.consistency = truth_.consistency(arrays.positions, arrays.covariances);

@@ -25,6 +25,7 @@ struct QualityFigures {
   double coverage = 0;          ///< of all samples, 5 mm, surface
   double coverage_visible = 0;  ///< of the visible ones, 5 mm, surface
   double coverage_2_5mm = 0;    ///< of all samples, 2.5 mm, surface
+  double covered_area = 0;      ///< of the mesh, where visible samples are covered, 5 mm [m²]
   ErrorStatistics surface_error{};
   ErrorStatistics points_error{};
   Consistency consistency{};  ///< of the points
@@ -54,6 +55,7 @@ class Truth {
 
  private:
   GroundTruth truth_;
+  double area_per_sample_;  // [m²]
   std::vector<std::uint8_t> visible_;
 };
 

@@ -77,7 +77,8 @@ void reconstruct(const ReconstructOptions& options) {
   PolicyDecision decision(model, generation, setup.sensor, setup.policy, exec);
 
   RunFolder folder(options.out);
-  RunReport report;
+  const PolicyConfig& policy = setup.policy;
+  RunReport report(policy.policy == Policy::gain ? std::optional(policy.model) : std::nullopt);
   std::vector<Pose> views;
   const PlanningResult result = active_view_planning(
       setup.start, acquisition, model, generation, decision, setup.planning,
@@ -87,7 +88,7 @@ void reconstruct(const ReconstructOptions& options) {
         if (!options.no_pictures) {
           draw(folder, record, acquisition.last_frame(), model, generation, setup.sensor, exec);
         }
-        report.add_view(record, model.quality().back(), seconds);
+        report.add_view(record, model.quality().back(), model.realised_area(), seconds);
         std::fprintf(stderr, "%s\n", report.progress_line().c_str());
       });
 

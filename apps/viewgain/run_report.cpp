@@ -3,6 +3,7 @@
 #include "run_report.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 
@@ -74,14 +75,14 @@ std::string counts_text(const std::map<std::string, std::size_t>& counts) {
 }  // namespace
 
 void RunReport::add_view(const ViewRecord& record, const QualityFigures& quality,
-                         const StageSeconds& seconds) {
+                         double realised_area, const StageSeconds& seconds) {
   StageSeconds own = seconds;
   for (auto& [stage, value] : own) {
     const auto before = totals_.find(stage);
     if (before != totals_.end()) value -= before->second;
   }
   totals_ = seconds;
-  views_.push_back({record, quality, std::move(own)});
+  views_.push_back({record, quality, realised_area, std::move(own)});
 }
 
 std::string RunReport::progress_line() const {
@@ -90,6 +91,10 @@ std::string RunReport::progress_line() const {
       formatted("view %2zu  %6.2f %% visible at 5 mm, RMS %.2f mm, unknown %s, +%.4g",
                 e.record.index, 100 * e.quality.coverage_visible, 1e3 * e.quality.surface_error.rms,
                 with_commas(e.record.progress.unknown_voxels).c_str(), e.record.realised_gain);
+  text += formatted(", new %.0f cm^2", 1e4 * e.realised_area);
+  if (!std::isnan(e.record.predicted_area)) {
+    text += formatted(" of %.0f predicted", 1e4 * e.record.predicted_area);
+  }
   if (e.record.chosen_as && e.record.chosen_as->boundary_class) {
     text.append("  ").append(boundary_class_name(*e.record.chosen_as->boundary_class));
   }
@@ -117,6 +122,10 @@ ordered_json RunReport::entry_json(std::size_t index) const {
   json["dropped"] = to_json(from.dropped);
   json["predicted_gain"] = e.record.predicted_gain;
   json["realised_gain"] = e.record.realised_gain;
+  json["predicted_area"] = e.record.predicted_area;
+  json["realised_area"] = e.realised_area;
+  json["true_new_area"] =
+      e.quality.covered_area - (index > 0 ? views_[index - 1].quality.covered_area : 0.0);
   // What the stopping rule looks at: the best view there is now.
   json["next_gain_per_voxel"] =
       e.record.decision ? ordered_json(e.record.decision->gain_per_voxel) : ordered_json();
@@ -137,6 +146,7 @@ const Proposal& RunReport::last_proposal() const {
 ordered_json RunReport::json(StopReason reason) const {
   const Entry& last = views_.back();
   ordered_json json{{"stop_reason", stop_reason_name(reason)}, {"views", views_.size()}};
+  json["gain_model"] = ranked_by_ ? ordered_json(gain_model_name(*ranked_by_)) : ordered_json();
   put_figures(json, last.quality, last.record.progress);
   json["travelled"] = last.record.travelled;
   const Proposal& proposal = last_proposal();

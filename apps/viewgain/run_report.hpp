@@ -3,18 +3,25 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "planner/model.hpp"
 #include "viewgain/core/planning.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
 
 /// What a run came to, for run.json, --json and people. apps/README.md names the keys.
 class RunReport {
  public:
-  /// To be called once a view, in order. `seconds` are the totals so far.
-  void add_view(const ViewRecord& record, const QualityFigures& quality,
+  /// `ranked_by`: the gain that the policy ranks candidates by; nothing if it ranks by another
+  /// thing.
+  explicit RunReport(std::optional<GainModel> ranked_by) : ranked_by_(ranked_by) {}
+
+  /// To be called once a view, in order. `realised_area` is Model's [m²], `seconds` are the totals
+  /// so far.
+  void add_view(const ViewRecord& record, const QualityFigures& quality, double realised_area,
                 const StageSeconds& seconds);
 
   /// One line about the last view.
@@ -33,10 +40,12 @@ class RunReport {
   struct Entry {
     ViewRecord record;
     QualityFigures quality;
+    double realised_area;  ///< [m²]
     StageSeconds seconds;  ///< of this view alone
   };
   [[nodiscard]] nlohmann::ordered_json entry_json(std::size_t index) const;
 
+  std::optional<GainModel> ranked_by_;
   std::vector<Entry> views_;
   StageSeconds totals_;
 };

@@ -151,4 +151,41 @@ std::vector<Eigen::Vector3d> PinholeCamera::ray_table() const {
   return table;
 }
 
+std::vector<double> PinholeCamera::solid_angles(std::span<const Eigen::Vector3d> rays) const {
+  std::vector<double> angles(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  if (rays.size() != angles.size()) {
+    fail(std::to_string(rays.size()) + " rays for " + std::to_string(angles.size()) + " pixels");
+  }
+  const auto index = [this](int u, int v) {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(u);
+  };
+  const auto ray_of = [&](int u, int v) -> const Eigen::Vector3d* {
+    if (u < 0 || v < 0 || u >= width || v >= height) return nullptr;
+    const Eigen::Vector3d& found = rays[index(u, v)];
+    return found.allFinite() ? &found : nullptr;
+  };
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const Eigen::Vector3d* own = ray_of(u, v);
+      if (own == nullptr) continue;
+      const auto slope = [&](int du, int dv, const Eigen::Vector2d& ideal) -> Eigen::Vector2d {
+        const Eigen::Vector3d* before = ray_of(u - du, v - dv);
+        const Eigen::Vector3d* after = ray_of(u + du, v + dv);
+        const double steps = (before != nullptr ? 1 : 0) + (after != nullptr ? 1 : 0);
+        if (steps == 0) return ideal;
+        return ((after != nullptr ? *after : *own) - (before != nullptr ? *before : *own))
+                   .head<2>() /
+               steps;
+      };
+      const Eigen::Vector2d across = slope(1, 0, {1.0 / fx, 0.0});
+      const Eigen::Vector2d down = slope(0, 1, {0.0, 1.0 / fy});
+      const double cosine = 1.0 / own->norm();
+      angles[index(u, v)] =
+          cosine * cosine * cosine * std::abs(across.x() * down.y() - across.y() * down.x());
+    }
+  }
+  return angles;
+}
+
 }  // namespace viewgain

@@ -183,12 +183,13 @@ PlanningResult active_view_planning(const Pose& x_0, DataAcquisition& acquisitio
   PlanningResult result;
   Pose next = x_0;
   std::optional<Candidate> chosen;
-  double predicted_gain = std::numeric_limits<double>::quiet_NaN();
+  Decision choice{};  // of the view at hand; x_0 was not chosen
   for (;;) {
     ViewRecord record;
     record.index = result.views.size();
     record.chosen_as = std::move(chosen);
-    record.predicted_gain = predicted_gain;
+    record.predicted_gain = choice.gain;
+    record.predicted_area = choice.area;
     const ViewRecord* before = result.views.empty() ? nullptr : &result.views.back();
     planner.take_view(next, record, before);
     const std::optional<StopReason> reason = planner.plan_next(record, before);
@@ -198,8 +199,8 @@ PlanningResult active_view_planning(const Pose& x_0, DataAcquisition& acquisitio
       result.reason = *reason;
       return result;
     }
-    chosen = done.proposal.candidates[done.decision->candidate];
-    predicted_gain = done.decision->gain;
+    choice = *done.decision;
+    chosen = done.proposal.candidates[choice.candidate];
     next = chosen->T_world_camera;
   }
 }

@@ -226,6 +226,65 @@ TEST(PinholeCamera, TableIsRowByRow) {
   EXPECT_EQ(table.back(), camera.ray(63, 47));
 }
 
+TEST(PinholeCamera, SolidAnglesArePixelsSeenFromTheCamera) {
+  const PinholeCamera camera = small_camera();
+  const auto table = camera.ray_table();
+  const std::vector<double> angles = camera.solid_angles(table);
+  ASSERT_EQ(angles.size(), table.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double cosine = 1 / table[i].norm();
+    EXPECT_NEAR(angles[i], cosine * cosine * cosine / (50 * 52), 1e-15);
+    sum += angles[i];
+  }
+  // The image is a rectangle at distance 1, which has a closed form: of a corner at (x, y) on the
+  // optical axis atan(x y / sqrt(1 + x² + y²)).
+  const auto corner = [](double x, double y) {
+    return std::atan(x * y / std::sqrt(1 + x * x + y * y));
+  };
+  const double left = 31.7 / 50, right = 32.3 / 50, up = 24.4 / 52, down = 23.6 / 52;
+  const double whole =
+      corner(left, up) + corner(left, down) + corner(right, up) + corner(right, down);
+  EXPECT_NEAR(sum, whole, 1e-4 * whole);
+}
+
+TEST(PinholeCamera, SolidAnglesKnowTheLens) {
+  const PinholeCamera camera = small_camera({-0.2, 0.05, 0.003, -0.002, 0});
+  const auto table = camera.ray_table();
+  const std::vector<double> angles = camera.solid_angles(table);
+  int cases = 0;
+  for (int v = 2; v < 46; v += 7) {
+    for (int u = 2; u < 62; u += 9, ++cases) {
+      // The quadrilateral of the pixel's corners on the unit sphere.
+      const auto at = [&](double du, double dv) { return camera.ray(u + du, v + dv).normalized(); };
+      const Eigen::Vector3d a = at(-0.5, -0.5), b = at(0.5, -0.5), c = at(0.5, 0.5),
+                            d = at(-0.5, 0.5);
+      const double area = 0.5 * (c - a).cross(d - b).norm();
+      const auto i = static_cast<std::size_t>(v * 64 + u);
+      EXPECT_NEAR(angles[i], area, 1e-3 * area) << u << ' ' << v;
+    }
+  }
+  EXPECT_EQ(cases, 49);
+}
+
+TEST(PinholeCamera, SolidAnglesWhereThereIsNoRay) {
+  // Corners beyond the fold have no ray; their neighbours take one-sided differences.
+  const PinholeCamera camera = small_camera({-0.9, 0, 0, 0, 0});
+  const auto table = camera.ray_table();
+  const std::vector<double> angles = camera.solid_angles(table);
+  std::size_t without = 0;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    EXPECT_EQ(angles[i] > 0, table[i].allFinite()) << i;
+    EXPECT_TRUE(std::isfinite(angles[i]));
+    if (!table[i].allFinite()) ++without;
+  }
+  EXPECT_GT(without, 50U);
+  PinholeCamera pixel = small_camera();
+  pixel.width = pixel.height = 1, pixel.cx = pixel.cy = 0;
+  EXPECT_EQ(pixel.solid_angles(pixel.ray_table()), std::vector<double>{1.0 / 50 * (1.0 / 52)});
+  expect_error(ErrorCode::invalid_argument, "3072 rays", [&] { (void)pixel.solid_angles(table); });
+}
+
 TEST(PinholeCamera, ValidateNamesTheField) {
   const auto expect_bad = [](const char* field, const auto& spoil) {
     PinholeCamera camera = small_camera();

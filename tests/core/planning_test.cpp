@@ -122,7 +122,7 @@ TEST(Planning, RecordsWhatHappened) {
   Script script;
   script.progress = steps({{100, 1000}, {130, 800}, {125, 790}});
   script.proposals = {{{candidate(1), candidate(3)}, {{"taken", 2}}}, {{candidate(-1)}, {}}};
-  script.decisions = {Decision{1, 12, 3}, Decision{0, 4, 2}};
+  script.decisions = {Decision{1, 12, 3, 0.5}, Decision{0, 4, 2, 0.25}};
   const PlanningResult result = script.run(never_idle(3));
   ASSERT_EQ(result.views.size(), 3U);
   const auto& [first, second, third] = std::tie(result.views[0], result.views[1], result.views[2]);
@@ -130,6 +130,7 @@ TEST(Planning, RecordsWhatHappened) {
   EXPECT_EQ(first.T_world_camera, at(0));
   EXPECT_FALSE(first.chosen_as);
   EXPECT_TRUE(std::isnan(first.predicted_gain));
+  EXPECT_TRUE(std::isnan(first.predicted_area));
   EXPECT_EQ(first.realised_gain, 100);
   EXPECT_EQ(first.travelled, 0);
   EXPECT_EQ(first.proposal.candidates.size(), 2U);
@@ -142,12 +143,14 @@ TEST(Planning, RecordsWhatHappened) {
   EXPECT_EQ(second.chosen_as->number, 7U);
   EXPECT_EQ(second.chosen_as->boundary_class, BoundaryClass::left);
   EXPECT_EQ(second.predicted_gain, 12);
+  EXPECT_EQ(second.predicted_area, 0.5);
   EXPECT_EQ(second.realised_gain, 30);
   EXPECT_EQ(second.progress.unknown_voxels, 800U);
   EXPECT_EQ(second.travelled, 3);
 
   EXPECT_EQ(third.T_world_camera, at(-1));
   EXPECT_EQ(third.predicted_gain, 4);
+  EXPECT_EQ(third.predicted_area, 0.25);
   EXPECT_EQ(third.realised_gain, -5);
   EXPECT_EQ(third.travelled, 7);
 }

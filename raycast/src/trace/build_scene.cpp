@@ -59,6 +59,8 @@ std::shared_ptr<const VoxelScene> VoxelScene::update(
       detail::gather_scene(grid.snapshot(data.snapshot), data.obstacles, data.hazard, &data));
 }
 
+const HazardField& VoxelScene::hazard() const { return data_->tracing->hazard(); }
+
 std::string_view VoxelScene::isa() const noexcept { return isa_name(data_->tracing->kernels.isa); }
 
 std::vector<std::string> available_isas() {

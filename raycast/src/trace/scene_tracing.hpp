@@ -11,6 +11,7 @@
 #include "scene/brick_table.hpp"
 #include "scene/scene_data.hpp"
 #include "trace_choice.hpp"
+#include "viewgain/grid/hazard.hpp"
 
 namespace viewgain::detail {
 
@@ -28,6 +29,9 @@ class SceneTracing {
   /// Obstacles alone; the scene has some. As bvh().
   [[nodiscard]] RTCScene obstacle_bvh() const;
 
+  /// Of the scene's unknown voxels; found when first asked for. Thread safe.
+  [[nodiscard]] const HazardField& hazard() const;
+
   /// For rays that go on through unknown voxels; built when first asked for. Thread safe. Throws
   /// Error(capacity).
   [[nodiscard]] const BrickTable& bricks() const;
@@ -42,6 +46,8 @@ class SceneTracing {
   const SceneData& data_;
   mutable std::array<Bvh, kMarginLevels> bvhs_;
   mutable Bvh obstacles_;
+  mutable std::once_flag hazard_once_;
+  mutable std::optional<HazardField> hazard_;
   mutable std::once_flag bricks_once_;
   mutable std::optional<BrickTable> bricks_;
 };

@@ -122,10 +122,13 @@ RTCScene SceneTracing::obstacle_bvh() const {
   return obstacles_.scene.get();
 }
 
+const HazardField& SceneTracing::hazard() const {
+  std::call_once(hazard_once_, [&] { hazard_.emplace(data_.snapshot, *data_.hazard); });
+  return *hazard_;
+}
+
 const BrickTable& SceneTracing::bricks() const {
-  std::call_once(bricks_once_, [&] {
-    bricks_.emplace(data_.snapshot, HazardField(data_.snapshot, *data_.hazard));
-  });
+  std::call_once(bricks_once_, [&] { bricks_.emplace(data_.snapshot, hazard()); });
   return *bricks_;
 }
 

@@ -57,6 +57,15 @@ TEST(Truth, ShellsThatLeaveOutTheWorkingDistanceShowWhatTheyShow) {
   EXPECT_EQ(cases, 4);
 }
 
+TEST(Truth, CoveredAreaIsThatOfTheMesh) {
+  const auto scene = std::make_shared<const SurfaceScene>(test::box_mesh(kHalf));
+  const Truth truth(scene, sensor_preset("sr4000"), from_the_side({}), {});
+  // A face, and 5 mm of the four beside it.
+  const double edge = 2 * kHalf;
+  EXPECT_NEAR(truth.figures(seen_face(), {}).covered_area, edge * edge + 4 * edge * 5e-3, 1e-3);
+  EXPECT_EQ(truth.figures({}, {}).covered_area, 0);
+}
+
 TEST(Truth, HalfSpacesLeaveOutTheOtherSide) {
   // From the upper half nothing sees the underside; the lowest poses are left out or moved up.
   ReachRegion upper;

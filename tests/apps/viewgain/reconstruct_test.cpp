@@ -110,10 +110,22 @@ TEST_F(Reconstruct, LeavesAConsistentFolder) {
       EXPECT_EQ(view["generator"], "boundary");
       EXPECT_GT(view["candidates"].get<int>(), 0);
       EXPECT_GT(view["predicted_gain"].get<double>(), 0);
+      EXPECT_GT(view["predicted_area"].get<double>(), 0);
+      EXPECT_LT(view["predicted_area"].get<double>(), 6 * 0.2 * 0.2);
     }
+    EXPECT_GT(view["realised_area"].get<double>(), 0);
     EXPECT_NEAR(view["travelled"].get<double>(), travelled, 1e-9);
   }
   EXPECT_EQ(result["per_view"][0]["generator"], "start");
+  EXPECT_TRUE(result["per_view"][0]["predicted_area"].is_null());
+  EXPECT_EQ(result["gain_model"], "paper");
+  // New area adds up to what is covered, of which a cube of 0.2 m has 0.24 m².
+  double covered = 0;
+  for (const json& view : result["per_view"]) {
+    covered += view["true_new_area"].get<double>();
+    EXPECT_NEAR(covered, 0.24 * view["coverage_visible"].get<double>(), 1e-4);
+  }
+  EXPECT_GT(covered, 0.05);
   // What a view adds to entropy_removed is its realised gain.
   double entropy = 0;
   for (const json& view : result["per_view"]) {
@@ -176,6 +188,12 @@ TEST_F(Reconstruct, EveryPolicyGoesItsOwnWay) {
         reconstruct("cube.off", {"--policy", policy, "--max-views", "4", "--no-pictures", "--size",
                                  "0.2", "--noise", "off"});
     EXPECT_GE(result["views"].get<int>(), 2) << policy;
+    if (std::string(policy) == "gain") {
+      EXPECT_EQ(result["gain_model"], "paper");
+    } else {
+      EXPECT_TRUE(result["gain_model"].is_null()) << policy;
+    }
+    EXPECT_GT(result["per_view"][1]["predicted_area"].get<double>(), 0) << policy;
     EXPECT_GT(result["coverage_visible"].get<double>(), 0.3) << policy;
     EXPECT_LT(result["rms_error"].get<double>(), 0.005) << policy;
     views[policy] = read("run/views.txt");

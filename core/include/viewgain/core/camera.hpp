@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "viewgain/core/export.hpp"
@@ -50,6 +51,13 @@ struct VIEWGAIN_EXPORT PinholeCamera {
 
   /// ray() of every pixel centre, row by row: directions (x, y, 1), width * height of them.
   [[nodiscard]] std::vector<Eigen::Vector3d> ray_table() const;
+
+  /// The solid angle of every pixel [sr], row by row: cos³α / (fx fy) for a ray at α from the
+  /// optical axis, and with a lens cos³α |∂(x, y) / ∂(u, v)|; 0 where a pixel has no ray. The
+  /// derivatives are central differences between pixels, at the image's edge and beside pixels
+  /// without a ray one-sided. `rays` is ray_table(), which takes longer than this. Throws
+  /// Error(invalid_argument) for another number of rays.
+  [[nodiscard]] std::vector<double> solid_angles(std::span<const Eigen::Vector3d> rays) const;
 
   bool operator==(const PinholeCamera&) const = default;
 };

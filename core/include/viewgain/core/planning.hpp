@@ -83,6 +83,8 @@ struct VIEWGAIN_EXPORT Decision {
   /// Its expected gain per touched voxel, held against PlanningConfig::stop_gain; NaN: this policy
   /// has none and never stops for it.
   double gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
+  /// The new surface that it is expected to show [m²]; NaN: not known.
+  double area = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// DECISIONMAKER: picks x_{i+1}. Returns nothing if none of the candidates will do.
@@ -128,9 +130,10 @@ struct VIEWGAIN_EXPORT ViewRecord {
   std::optional<Candidate> chosen_as{};  ///< what this view was as a candidate; none for x_0
   double predicted_gain = std::numeric_limits<double>::quiet_NaN();  ///< when it was chosen
   double realised_gain = 0;  ///< what it added to entropy_removed
-  ModelProgress progress;    ///< after it
-  double travelled = 0;      ///< distance between camera centres so far [m]
-  Proposal proposal{};       ///< for the next view; empty if the run ended before it was asked for
+  double predicted_area = std::numeric_limits<double>::quiet_NaN();  ///< Decision::area, likewise
+  ModelProgress progress;                                            ///< after it
+  double travelled = 0;  ///< distance between camera centres so far [m]
+  Proposal proposal{};   ///< for the next view; empty if the run ended before it was asked for
   /// The next view; empty if there was none. With StopReason::gain it is the one that promised too
   /// little and is not taken.
   std::optional<Decision> decision{};

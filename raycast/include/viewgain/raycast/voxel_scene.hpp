@@ -67,13 +67,17 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// The same object in all scenes that update() has made from one.
   [[nodiscard]] const Obstacles& obstacles() const noexcept;
 
+  /// The hazard of unknown voxels and how far they are from known surface; found when first asked
+  /// for, in some milliseconds. Lives with the scene.
+  [[nodiscard]] const HazardField& hazard() const;
+
   /// Which kernel traces this scene: "avx512", "avx2" or "sse4" ("baseline" off x86-64). Chosen
   /// when the scene is built: the best that the CPU has, lowered by the environment variable
   /// VIEWGAIN_ISA.
   [[nodiscard]] std::string_view isa() const noexcept;
 
   /// Leaves and tiles, and the bytes that the scene adds to the snapshot's: primitives, boxes,
-  /// obstacles; Embree's BVH not counted.
+  /// obstacles; Embree's BVH and the hazard not counted.
   [[nodiscard]] std::size_t primitive_count() const noexcept;
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
