@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mesh_area.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {
@@ -60,18 +61,33 @@ ModelProgress Model::update(const Measurements& measurements) {
     quality_.push_back(truth_->figures(surface_, points_));
   }
   const GridStatistics statistics = grid_.statistics(config_.criterion);
-  ModelProgress progress{statistics.entropy_removed, statistics.unknown, std::nullopt};
+  ModelProgress progress{statistics.entropy_removed, statistics.unknown};
+  progress.surface_area = mesh_area(surface_);
   if (truth_) progress.coverage = quality_.back().coverage_visible;
   return progress;
 }
 
-void Model::integrate(const Measurements& measurements) {
-  const auto measuring = exec_.measure("integrate");
+std::vector<DepthFrame> Model::filtered(const Measurements& measurements) const {
   std::vector<DepthFrame> frames = measurements.frames;
   for (DepthFrame& frame : frames) {
     if (filter_) filter_->apply(frame);
     if (!config_.refine) drop_known_readings(frame, measurements.T_world_camera);
   }
+  return frames;
+}
+
+std::vector<FusedPoint> Model::points_after(const Measurements& measurements) const {
+  BeliefGrid grid = grid_.clone();
+  FrameIntegrator integrator(sensor_, config_.integration, exec_.threads);
+  for (const DepthFrame& frame : filtered(measurements)) {
+    integrator.integrate(grid, frame, measurements.T_world_camera);
+  }
+  return fused_points(grid, config_.points, exec_.threads);
+}
+
+void Model::integrate(const Measurements& measurements) {
+  const auto measuring = exec_.measure("integrate");
+  const std::vector<DepthFrame> frames = filtered(measurements);
   realised_area_ =
       frames.empty() ? 0.0 : area_shown_by(frames.front(), measurements.T_world_camera);
   std::uint64_t inside = 0;

@@ -49,6 +49,10 @@ class Model : public RepresentationUpdate {
   /// Throws Error(invalid_argument) if the first view has no reading in the workspace.
   ModelProgress update(const Measurements& measurements) override;
 
+  /// The points that the model would have after these measurements, which do not change it. Costs a
+  /// copy of the map beside what update() costs without a surface.
+  [[nodiscard]] std::vector<FusedPoint> points_after(const Measurements& measurements) const;
+
   [[nodiscard]] const BeliefGrid& grid() const noexcept { return grid_; }
   [[nodiscard]] const std::shared_ptr<const VoxelScene>& scene() const noexcept { return scene_; }
   [[nodiscard]] const std::vector<FusedPoint>& points() const noexcept { return points_; }
@@ -60,6 +64,8 @@ class Model : public RepresentationUpdate {
 
  private:
   void integrate(const Measurements& measurements);
+  /// The frames as they go into the map.
+  [[nodiscard]] std::vector<DepthFrame> filtered(const Measurements& measurements) const;
   [[nodiscard]] double area_shown_by(const DepthFrame& frame, const Pose& T_world_camera) const;
   void derive();
   /// Turns readings whose voxel was hit by an earlier view into invalid ones.

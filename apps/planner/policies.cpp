@@ -22,7 +22,8 @@ double utility(const TravelCost& cost, double gain, double distance) {
 }  // namespace
 
 const std::vector<std::string>& policy_names() {
-  static const std::vector<std::string> names{"gain", "kriegel", "sequence", "random", "frontier"};
+  static const std::vector<std::string> names{"gain",     "kriegel",   "sequence", "random",
+                                              "frontier", "fibonacci", "oracle"};
   return names;
 }
 
@@ -45,7 +46,9 @@ PolicyDecision::PolicyDecision(const Model& model, const CandidateGeneration& ge
       sensor_(sensor),
       config_(config),
       exec_(exec),
-      order_(0.5 * generation.config().estimator.patch_length) {}
+      order_(0.5 * generation.config().estimator.patch_length) {
+  if (config.policy == Policy::oracle) oracle_.emplace(model, sensor, config.object, exec);
+}
 
 std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
                                                std::span<const Candidate> candidates) {
@@ -81,7 +84,13 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
   decision.area =
       std::isnan(gain.area) ? expected_area(candidates[*chosen].T_world_camera) : gain.area;
   // A fixed order of views does not stop because one of them promises little.
-  if (by_gain) decision.gain_per_voxel = touched > 0 ? gain.gain / touched : 0.0;
+  if (!by_gain) return decision;
+  if (config_.model == GainModel::paper) {
+    decision.gain_per_voxel = touched > 0 ? gain.gain / touched : 0.0;
+  } else {
+    decision.best_area = 0;
+    for (const ViewGain& g : gains) decision.best_area = std::fmax(decision.best_area, g.area);
+  }
   return decision;
 }
 
@@ -123,7 +132,10 @@ std::optional<std::size_t> PolicyDecision::choose(const Pose& T_world_camera,
                                       candidates.size());
     case Policy::kriegel:
       return choose_by_boundary(candidates);
+    case Policy::oracle:
+      return oracle_->next(candidates);
     case Policy::sequence:
+    case Policy::fibonacci:
       break;
   }
   return 0;

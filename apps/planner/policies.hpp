@@ -12,6 +12,7 @@
 #include "boundary_order.hpp"
 #include "candidate_generation.hpp"
 #include "model.hpp"
+#include "oracle_choice.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
@@ -19,11 +20,13 @@ namespace viewgain::app {
 
 /// How the next view is chosen among the feasible candidates.
 enum class Policy : std::uint8_t {
-  gain,      ///< the largest expected gain
-  kriegel,   ///< boundaries in the order left, right, top, bottom, each once: see BoundaryOrder
-  sequence,  ///< a fixed set in its order: turntable of eight, then from above
-  random,    ///< uniform over the feasible poses
-  frontier,  ///< the most unknown voxels in view
+  gain,       ///< the largest expected gain
+  kriegel,    ///< boundaries in the order left, right, top, bottom, each once: see BoundaryOrder
+  sequence,   ///< a fixed set in its order: turntable of eight, then from above
+  random,     ///< uniform over the feasible poses
+  frontier,   ///< the most unknown voxels in view
+  fibonacci,  ///< a fixed set in its order: evenly round the object
+  oracle,     ///< knows the object, an upper reference: see OracleChoice
 };
 [[nodiscard]] const std::vector<std::string>& policy_names();
 /// Throws Error(invalid_argument) that lists the valid names.
@@ -43,12 +46,14 @@ struct PolicyConfig {
   Criterion criterion = Criterion::log_diagonal;
   std::optional<double> support_plane{};  ///< height [m], at which rays end
   TravelCost travel{};
+  KnownObject object{};  ///< of Policy::oracle
   std::uint64_t seed = 1;
 };
 
 /// DECISIONMAKER of Algorithm 1 for all policies.
 class PolicyDecision : public DecisionMaking {
  public:
+  /// Throws Error(invalid_argument) for an oracle without an object.
   PolicyDecision(const Model& model, const CandidateGeneration& generation, const Sensor& sensor,
                  const PolicyConfig& config, const LoopExec& exec);
 
@@ -74,6 +79,7 @@ class PolicyDecision : public DecisionMaking {
   std::optional<GainEvaluator> evaluator_;       ///< of the last decision's scene
   std::optional<GainEvaluator> area_evaluator_;  ///< likewise, by the surface gain
   BoundaryOrder order_;
+  std::optional<OracleChoice> oracle_;
 };
 
 }  // namespace viewgain::app

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
@@ -13,6 +14,7 @@
 namespace viewgain::app {
 namespace {
 
+constexpr std::size_t kMostSpreadOut = 20'000;  // the order takes time by their square
 constexpr double kDegree = std::numbers::pi / 180;
 
 std::vector<Pose> sequence_poses(const PoseSetRequest& request) {
@@ -29,17 +31,47 @@ std::vector<Pose> sequence_poses(const PoseSetRequest& request) {
   return poses;
 }
 
+Eigen::Vector3d direction_from(const Eigen::Vector3d& center, const Pose& pose) {
+  return (pose.translation() - center).normalized();
+}
+
+// Each pose the farthest, by angle, from the start's and from those before it.
+std::vector<Pose> spread_out(const std::vector<Pose>& poses, const PoseSetRequest& request) {
+  std::vector<double> nearest(poses.size(), -1);  // cosine of the angle to the nearest one taken
+  const auto take = [&](const Pose& pose) {
+    const Eigen::Vector3d taken = direction_from(request.center, pose);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      nearest[i] = std::max(nearest[i], direction_from(request.center, poses[i]).dot(taken));
+    }
+  };
+  if (request.start) take(*request.start);
+  std::vector<Pose> ordered;
+  ordered.reserve(poses.size());
+  std::vector<bool> is_taken(poses.size());
+  while (ordered.size() < poses.size()) {
+    std::size_t next = poses.size();
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (!is_taken[i] && (next == poses.size() || nearest[i] < nearest[next])) next = i;
+    }
+    is_taken[next] = true;
+    take(ordered.emplace_back(poses[next]));
+  }
+  return ordered;
+}
+
 }  // namespace
 
 const std::vector<std::string>& generator_names() {
-  static const std::vector<std::string> names{"boundary", "sphere", "dome",
-                                              "rings",    "shell",  "sequence"};
+  static const std::vector<std::string> names{"boundary", "sphere",   "dome",     "rings",
+                                              "shell",    "sequence", "fibonacci"};
   return names;
 }
 
 PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request) {
   PoseSet set{std::string(generator), {}};
-  const std::size_t count = request.count.value_or(generator == "rings" ? 48 : 500);
+  const std::size_t count = request.count.value_or(generator == "rings"       ? 48
+                                                   : generator == "fibonacci" ? 20
+                                                                              : 500);
   if (generator == "sphere") {
     set.poses = sphere_poses(count, request.distance, request.center);
   } else if (generator == "dome") {
@@ -49,6 +81,13 @@ PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request)
   } else if (generator == "shell") {
     set.poses = shell_poses(count, 0.8 * request.distance, 1.25 * request.distance, request.seed,
                             request.center);
+  } else if (generator == "fibonacci") {
+    if (count > kMostSpreadOut) {
+      throw Error(ErrorCode::invalid_argument, "generator \"fibonacci\" takes at most " +
+                                                   std::to_string(kMostSpreadOut) + " poses, not " +
+                                                   std::to_string(count));
+    }
+    set.poses = spread_out(sphere_poses(count, request.distance, request.center), request);
   } else if (generator == "sequence") {
     set.poses = sequence_poses(request);
   } else {

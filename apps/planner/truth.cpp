@@ -19,9 +19,9 @@ namespace {
 constexpr std::size_t kPoses = 2562, kSamples = 10'000;
 constexpr std::uint64_t kSeed = 1;  // of the samples
 const double kMinCosine = std::cos(80.0 * std::numbers::pi / 180);
-constexpr double kNear = 5e-3, kNearer = 2.5e-3;  // [m]
-constexpr double kStep = 2.5e-3;                  // between distances that are looked at [m]
-constexpr int kMostSteps = 20'000;                // each way, 50 m
+constexpr double kNearer = 2.5e-3;  // [m]
+constexpr double kStep = 2.5e-3;    // between distances that are looked at [m]
+constexpr int kMostSteps = 20'000;  // each way, 50 m
 
 // The pose at another distance from the centre [m].
 Pose moved(const Pose& pose, const Eigen::Vector3d& center, double distance) {
@@ -79,20 +79,20 @@ std::vector<Pose> looking_poses(const VisibilityConfig& config, const Sensor& se
   return poses;
 }
 
+}  // namespace
+
 bool sees(const SurfaceScene& scene, const Sensor& sensor, const Pose& T_world_camera,
-          const SurfaceSample& sample) {
+          const SurfaceSample& sample, double least_cosine) {
   const Eigen::Vector3d eye = T_world_camera.translation();
   const Eigen::Vector3d sight = sample.position - eye;
   const double range = sight.norm();
   if (!(range > sensor.min_range && range < sensor.max_range)) return false;
-  if (std::abs(sight.dot(sample.normal)) < kMinCosine * range) return false;
+  if (std::abs(sight.dot(sample.normal)) < least_cosine * range) return false;
   const Eigen::Vector3d p_camera = T_world_camera.inverse() * sample.position;
   if (!sensor.camera.sees(p_camera)) return false;
   const double slack = 1e-4 * range;  // the sample's own triangle does not hide it
   return scene.intersect(eye, sight / range, range).range >= range - slack;
 }
-
-}  // namespace
 
 Truth::Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
              const VisibilityConfig& config, const ExecConfig& exec)
@@ -105,7 +105,7 @@ Truth::Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
   pool.for_each_chunk(samples.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       for (const Pose& pose : poses) {
-        if (!sees(*scene, sensor, pose, samples[i])) continue;
+        if (!sees(*scene, sensor, pose, samples[i], kMinCosine)) continue;
         visible_[i] = 1;
         break;
       }
@@ -118,12 +118,12 @@ QualityFigures Truth::figures(const SurfaceMesh& surface,
   const PointArrays arrays = arrays_of(points);
   const std::vector<double> distances = truth_.distances_to(surface.vertices);
   QualityFigures figures;
-  figures.coverage = coverage(distances, kNear);
-  figures.coverage_visible = coverage(distances, kNear, visible_);
+  figures.coverage = coverage(distances, kCovered);
+  figures.coverage_visible = coverage(distances, kCovered, visible_);
   figures.coverage_2_5mm = coverage(distances, kNearer);
   std::size_t covered = 0;
   for (std::size_t i = 0; i < distances.size(); ++i) {
-    if (visible_[i] != 0 && distances[i] <= kNear) ++covered;
+    if (visible_[i] != 0 && distances[i] <= kCovered) ++covered;
   }
   figures.covered_area = static_cast<double>(covered) * area_per_sample_;
   figures.surface_error = truth_.error(surface.vertices);

@@ -40,6 +40,14 @@ struct VisibilityConfig {
   std::optional<double> support_plane{};  ///< nothing is seen from under it; world z [m]
 };
 
+/// Is a sample of the mesh seen from a pose: in the image and the range limits, unoccluded, and at
+/// no more than an angle of incidence whose cosine is `least_cosine`?
+[[nodiscard]] bool sees(const SurfaceScene& scene, const Sensor& sensor, const Pose& T_world_camera,
+                        const SurfaceSample& sample, double least_cosine);
+
+/// A sample is covered by a point that is within this of it [m].
+inline constexpr double kCovered = 5e-3;
+
 /// A ground-truth mesh and which of its samples a camera can see: unoccluded, inside the image and
 /// the range limits, at under 80°, from the start or one of 2,562 Fibonacci poses. A pose that is
 /// out of reach moves along its line of sight to the reachable distance that is nearest to the
@@ -52,6 +60,9 @@ class Truth {
 
   [[nodiscard]] QualityFigures figures(const SurfaceMesh& surface,
                                        std::span<const FusedPoint> points) const;
+
+  /// The samples, 10,000 of them.
+  [[nodiscard]] const GroundTruth& ground_truth() const noexcept { return truth_; }
 
  private:
   GroundTruth truth_;

@@ -168,7 +168,7 @@ Command add_candidates(CLI::App& program) {
   app->add_option(
          "--generator", o.generator,
          "boundary (open boundaries of the surface in the map), sphere, dome, rings, shell "
-         "or sequence")
+         "sequence or fibonacci")
       ->check(CLI::IsMember(generator_names()))
       ->required();
   app->add_option("--sensor", o.sensor, kSensorHelp)->required();

@@ -74,6 +74,7 @@ void reconstruct(const ReconstructOptions& options) {
       options.frames_per_view, setup.planning.stop, exec);
   Model model(setup.sensor, setup.model, truth, exec);
   CandidateGeneration generation(model, setup.sensor, setup.generation, exec);
+  setup.policy.object = {setup.stage.scene, truth, setup.simulation};
   PolicyDecision decision(model, generation, setup.sensor, setup.policy, exec);
 
   RunFolder folder(options.out);

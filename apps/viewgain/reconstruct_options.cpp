@@ -49,15 +49,17 @@ void describe(Options& o, Visitor& visit) {
                as_it_is);
   visit.option("policy", "--policy", o.policy,
                "gain, kriegel (left, right, top, bottom), sequence (turntable of 8, then top), "
-               "random, frontier (most unknown voxels in view)",
+               "random, frontier (most unknown voxels in view), fibonacci (evenly round the "
+               "object), oracle (knows the mesh: an upper reference)",
                shows_default);
   visit.option("generators", "--generator", o.generator,
-               "where candidates come from: boundary, sphere, dome, rings, shell, sequence, or "
-               "several with commas; default: boundary (random: sphere, sequence: sequence)",
+               "where candidates come from: boundary, sphere, dome, rings, shell, sequence, "
+               "fibonacci, or several with commas; default: boundary (random: sphere, sequence: "
+               "sequence, fibonacci: fibonacci)",
                as_it_is);
   visit.option("sphere_poses", "--sphere-poses", o.sphere_poses,
                "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
-               "(default 48)",
+               "(default 48); fibonacci (default: --max-views)",
                counted(1, kMaxCount));
   visit.option("gain", "--gain", o.gain,
                "of --policy gain: paper (entropy removed), surface (new surface to be expected) or "

@@ -68,6 +68,7 @@ std::vector<std::string> generators(const ReconstructOptions& options, Policy po
   }
   if (policy == Policy::random) return {"sphere"};
   if (policy == Policy::sequence) return {"sequence"};
+  if (policy == Policy::fibonacci) return {"fibonacci"};
   return {"boundary"};
 }
 
@@ -78,12 +79,14 @@ GenerationConfig generation_config(const ReconstructOptions& options, const RunS
   config.boundary = false;
   // His choice is by class alone.
   config.classes_by_sight = setup.policy.policy == Policy::kriegel;
-  const PoseSetRequest request{setup.stage.center, setup.distance, options.sphere_poses,
-                               options.sensing.seed, setup.start};
+  PoseSetRequest request{setup.stage.center, setup.distance, options.sphere_poses,
+                         options.sensing.seed, setup.start};
   for (const std::string& name : generators(options, setup.policy.policy)) {
     if (name == "boundary") {
       config.boundary = true;
     } else {
+      request.count = options.sphere_poses;
+      if (name == "fibonacci" && !request.count) request.count = options.max_views;
       config.sets.push_back(make_pose_set(name, request));
     }
   }

@@ -47,6 +47,7 @@ void put_figures(ordered_json& json, const QualityFigures& quality, const ModelP
   json["outliers"] = quality.consistency.outliers;
   json["entropy_removed"] = progress.entropy_removed;
   json["unknown_voxels"] = progress.unknown_voxels;
+  json["surface_area"] = progress.surface_area;
 }
 
 __attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...) {
@@ -126,9 +127,11 @@ ordered_json RunReport::entry_json(std::size_t index) const {
   json["realised_area"] = e.realised_area;
   json["true_new_area"] =
       e.quality.covered_area - (index > 0 ? views_[index - 1].quality.covered_area : 0.0);
-  // What the stopping rule looks at: the best view there is now.
+  // What the stopping rules look at: the best view there is now.
   json["next_gain_per_voxel"] =
       e.record.decision ? ordered_json(e.record.decision->gain_per_voxel) : ordered_json();
+  json["next_area"] =
+      e.record.decision ? ordered_json(e.record.decision->best_area) : ordered_json();
   put_figures(json, e.quality, e.record.progress);
   json["travelled"] = e.record.travelled;
   json["seconds"] = to_json(e.seconds);

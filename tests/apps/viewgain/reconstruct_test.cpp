@@ -183,7 +183,8 @@ TEST_F(Reconstruct, SameSeedSameRunForAnyNumberOfThreads) {
 TEST_F(Reconstruct, EveryPolicyGoesItsOwnWay) {
   std::map<std::string, std::string> views;
   std::set<std::string> different;
-  for (const char* policy : {"gain", "kriegel", "sequence", "random", "frontier"}) {
+  for (const char* policy :
+       {"gain", "kriegel", "sequence", "random", "frontier", "fibonacci", "oracle"}) {
     const json result =
         reconstruct("cube.off", {"--policy", policy, "--max-views", "4", "--no-pictures", "--size",
                                  "0.2", "--noise", "off"});
@@ -199,8 +200,22 @@ TEST_F(Reconstruct, EveryPolicyGoesItsOwnWay) {
     views[policy] = read("run/views.txt");
     different.insert(views[policy]);
   }
-  EXPECT_EQ(views.size(), 5U);
-  EXPECT_EQ(different.size(), 5U);
+  EXPECT_EQ(views.size(), 7U);
+  EXPECT_EQ(different.size(), 7U);
+}
+
+TEST_F(Reconstruct, FibonacciHasAsManyPosesAsViews) {
+  const json result =
+      reconstruct("cube.off", {"--policy", "fibonacci", "--max-views", "6", "--stop-idle", "0",
+                               "--no-pictures", "--size", "0.2", "--noise", "off"});
+  EXPECT_EQ(result["views"], 6);
+  // Those that were taken or neared are no candidates any more.
+  for (int i = 1; i < 6; ++i) {
+    const json& view = result["per_view"][i];
+    EXPECT_EQ(view["generator"], "fibonacci");
+    EXPECT_EQ(view["candidates"], 7 - i);
+  }
+  EXPECT_GT(result["coverage_visible"].get<double>(), 0.9);
 }
 
 TEST_F(Reconstruct, KriegelTakesReachablePosesOnlyWhenNoBoundaryIsLeft) {

@@ -131,6 +131,10 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
   model_config.criterion = parse_criterion(criterion);
   app::PolicyConfig policy_config;
   policy_config.policy = app::parse_policy(policy);
+  if (policy_config.policy == app::Policy::fibonacci) {
+    throw py::value_error(
+        "policy \"fibonacci\" is a set of poses: give them as candidates of policy \"sequence\"");
+  }
   const app::GenerationConfig generation_settings = generation_config(
       sensor, voxel_size, boundary.value_or(is_of_boundaries(policy_config.policy)), candidates,
       reach, support_plane, policy_config.policy);

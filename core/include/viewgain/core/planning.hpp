@@ -42,6 +42,7 @@ struct VIEWGAIN_EXPORT ModelProgress {
   double entropy_removed = 0;  ///< of the whole map [nat, or m² for trace]
   std::uint64_t unknown_voxels = 0;
   std::optional<double> coverage{};  ///< in [0, 1], where a ground truth is known
+  double surface_area = 0;           ///< of the model's surface [m²]
 };
 
 /// UPDATEREPRESENTATIONS: the model and the occupancy grid (the paper's M and O).
@@ -85,6 +86,8 @@ struct VIEWGAIN_EXPORT Decision {
   double gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
   /// The new surface that it is expected to show [m²]; NaN: not known.
   double area = std::numeric_limits<double>::quiet_NaN();
+  /// The most that any of the candidates is expected to show [m²]; NaN: not known.
+  double best_area = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// DECISIONMAKER: picks x_{i+1}. Returns nothing if none of the candidates will do.
