@@ -77,10 +77,14 @@ void describe(Options& o, Visitor& visit) {
   visit.option("max_views", "--max-views", o.max_views, "view budget",
                counted_with_default(1, kMaxCount));
   visit.option("stop_gain", "--stop-gain", o.stop_gain,
-               "stop when the best view gains less per touched voxel [nat, m^2]; default: 1.2 "
-               "(trace: 0.01 of the first view's)",
+               "of the paper's gain: stop when the best view gains less per touched voxel [nat, "
+               "m^2]; default: 1.2 (trace: 0.01 of the first view's)",
                as_it_is);
   visit.derived("stop_gain_is_relative");
+  visit.option("stop_area", "--stop-area", o.stop_area,
+               "of --gain surface and combined: stop when no candidate promises this share of the "
+               "surface so far as new surface, twice in a row; 0: never; default: 0.001",
+               as_it_is);
   visit.option("stop_idle", "--stop-idle", o.stop_idle,
                "stop after so many views in a row that change entropy and unknown voxels by "
                "less than 0.1 %; 0: never",
@@ -134,6 +138,10 @@ void check(const ReconstructOptions& options) {
   if (options.stop_gain && !(*options.stop_gain >= 0 && std::isfinite(*options.stop_gain))) {
     throw Error(ErrorCode::invalid_argument,
                 "--stop-gain " + short_text(*options.stop_gain) + " must be at least 0 and finite");
+  }
+  if (options.stop_area && !(*options.stop_area >= 0 && *options.stop_area < 1)) {
+    throw Error(ErrorCode::invalid_argument, "--stop-area " + short_text(*options.stop_area) +
+                                                 " must be at least 0 and less than 1");
   }
   const double travel[] = {options.travel_cost, options.travel_speed.value_or(1.0)};
   if (!(travel[0] >= 0 && std::isfinite(travel[0]) && travel[1] > 0 && std::isfinite(travel[1]))) {

@@ -31,6 +31,7 @@ struct ReconstructOptions {
   std::string criterion = "log_diagonal";
   std::size_t max_views = 20;
   std::optional<double> stop_gain;
+  std::optional<double> stop_area;
   std::size_t stop_idle = 3;
   std::optional<double> stop_coverage;
   double travel_cost = 0;

@@ -21,6 +21,9 @@ namespace {
 // the noise shell, and unknown ones behind it, for the first time.
 constexpr double kStopGain = 1.2;  // [nat]
 
+// Of the surface so far; apps/README.md says where the camel stops by it.
+constexpr double kStopArea = 1e-3;
+
 // A distance [m] from the centre at which nothing of an object of this size is.
 double outside(double size) { return 1.1 * 0.5 * std::sqrt(3.0) * size; }
 
@@ -97,13 +100,19 @@ GenerationConfig generation_config(const ReconstructOptions& options, const RunS
   return config;
 }
 
-PlanningConfig planning_config(const ReconstructOptions& options) {
+PlanningConfig planning_config(const ReconstructOptions& options, const PolicyConfig& policy) {
   PlanningConfig config;
   config.max_views = options.max_views;
   config.idle_views = options.stop_idle;
   config.stop_coverage = options.stop_coverage;
   config.stop_gain_is_relative = options.criterion == "trace" && !options.stop_gain;
   config.stop_gain = options.stop_gain.value_or(config.stop_gain_is_relative ? 0.01 : kStopGain);
+  const bool expects_area = policy.policy == Policy::gain && policy.model != GainModel::paper;
+  if (!expects_area && options.stop_area.value_or(0) > 0) {
+    throw Error(ErrorCode::invalid_argument,
+                "--stop-area goes with --policy gain and --gain surface or combined");
+  }
+  config.stop_area = options.stop_area.value_or(expects_area ? kStopArea : 0.0);
   return config;
 }
 
@@ -127,6 +136,7 @@ nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, cons
           {"generators", generators},
           {"stop_gain", setup.planning.stop_gain},
           {"stop_gain_is_relative", setup.planning.stop_gain_is_relative},
+          {"stop_area", setup.planning.stop_area},
           {"flying_pixels", options.sensing.has_flying_pixels(setup.sensor)},
           {"calibrated", options.sensing.calibrate == "on"},
           {"refine", !options.no_refine}};
@@ -156,7 +166,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   setup.policy.model = parse_gain_model(options.gain);
   setup.policy.support_plane = options.sensing.support_plane;
   setup.generation = generation_config(options, setup);
-  setup.planning = planning_config(options);
+  setup.planning = planning_config(options, setup.policy);
   setup.settings = settings_json(options, resolved_settings(options, setup));
   return setup;
 }

@@ -23,6 +23,7 @@ void check(const PlanningConfig& config) {
   };
   if (config.max_views == 0) fail("max_views is 0");
   check_finite("stop_gain", config.stop_gain);
+  check_finite("stop_area", config.stop_area);
   check_finite("idle_fraction", config.idle_fraction);
   if (config.stop_coverage) check_finite("stop_coverage", *config.stop_coverage);
 }
@@ -78,6 +79,22 @@ class GainRule {
   bool relative_;  ///< the limit is a share of the first gain, which has yet to come
 };
 
+// No candidate promises enough new surface, twice in a row.
+class AreaRule {
+ public:
+  explicit AreaRule(const PlanningConfig& config) : share_(config.stop_area) {}
+
+  // A decision whose areas are not known (NaN) is not under the limit.
+  bool stops_at(double best_area, double surface_area) {
+    const bool is_under = share_ > 0 && best_area < share_ * surface_area;
+    return std::exchange(was_under_, is_under) && is_under;
+  }
+
+ private:
+  double share_;
+  bool was_under_ = false;  // at the decision before
+};
+
 StopReason nowhere_to_go(const Proposal& proposal) {
   const auto found = proposal.dropped.find(std::string(kUnreachable));
   const bool out_of_reach = found != proposal.dropped.end() && found->second > 0;
@@ -94,7 +111,8 @@ class Planner {
         decision_(decision),
         config_(config),
         idle_(config),
-        gain_(config) {}
+        gain_(config),
+        area_(config) {}
 
   // Steps 1 and 2: measure, and put the measurements into the model. What was measured is never
   // thrown away, so nothing stops in between.
@@ -135,7 +153,9 @@ class Planner {
     record.decision = decision;
     if (interrupted()) return StopReason::interrupted;
     if (!decision) return nowhere_to_go(record.proposal);
+    const bool little_area = area_.stops_at(decision->best_area, record.progress.surface_area);
     if (gain_.stops_at(decision->gain_per_voxel)) return StopReason::gain;
+    if (little_area) return StopReason::area;
     return std::nullopt;
   }
 
@@ -149,6 +169,7 @@ class Planner {
   const PlanningConfig& config_;
   IdleRule idle_;
   GainRule gain_;
+  AreaRule area_;
 };
 
 }  // namespace
@@ -157,6 +178,8 @@ std::string_view stop_reason_name(StopReason reason) {
   switch (reason) {
     case StopReason::gain:
       return "gain";
+    case StopReason::area:
+      return "area";
     case StopReason::no_candidates:
       return "no_candidates";
     case StopReason::unreachable:

@@ -199,6 +199,47 @@ TEST(Planning, APolicyWithoutGainNeverStopsForIt) {
   }
 }
 
+TEST(Planning, StopsWhenNoCandidatePromisesEnoughAreaTwice) {
+  PlanningConfig config = never_idle(9);
+  config.stop_area = 0.25;
+  Script script;
+  // Of 2 m² of surface 0.5; the chosen one's own area does not count.
+  script.progress = {{100, 1000, {}, 2.0}};
+  const auto promises = [](double best) { return Decision{0, 9, kNan, 0.0, best}; };
+  script.decisions = {promises(0.499), promises(0.5),   promises(0.499),
+                      promises(kNan),  promises(0.499), promises(0.3)};
+  const PlanningResult result = script.run(config);
+  EXPECT_EQ(result.reason, StopReason::area);
+  EXPECT_EQ(result.views.size(), 6U);
+  ASSERT_TRUE(result.views.back().decision);
+  EXPECT_EQ(result.views.back().decision->best_area, 0.3);
+  // The limit goes with the surface.
+  script.acquired.clear();
+  script.observed = 0;
+  script.progress.push_back({100, 1000, {}, 1.0});
+  EXPECT_EQ(script.run(config).reason, StopReason::max_views);
+}
+
+TEST(Planning, NoShareOfTheSurfaceOrNoAreaNeverStops) {
+  int cases = 0;
+  for (const double share : {0.0, 0.5}) {
+    for (const double best : {0.0, kNan}) {
+      for (const double surface : {0.0, 2.0}) {
+        PlanningConfig config = never_idle(5);
+        config.stop_area = share;
+        Script script;
+        script.progress = {{100, 1000, {}, surface}};
+        script.decisions = {Decision{0, 9, kNan, kNan, best}};
+        const bool stops = share > 0 && best == 0.0 && surface > 0;
+        EXPECT_EQ(script.run(config).reason, stops ? StopReason::area : StopReason::max_views);
+        ++cases;
+      }
+    }
+  }
+  EXPECT_EQ(cases, 8);
+  EXPECT_EQ(PlanningConfig{}.stop_area, 0);
+}
+
 TEST(Planning, NoCandidatesOrOutOfReach) {
   int cases = 0;
   for (const bool some_left : {false, true}) {
@@ -342,7 +383,13 @@ TEST(Planning, TheOrderOfTheRules) {
   script.proposals.back().dropped.clear();
   EXPECT_EQ(reason_in_view_three(script, config), StopReason::no_candidates);
   script.proposals.back().candidates = {candidate(1)};
+  config.stop_area = 0.5;
+  for (ModelProgress& progress : script.progress) progress.surface_area = 1;
+  for (auto& decision : script.decisions) decision->best_area = 0.1;
+  script.decisions.front()->best_area = 1;
   EXPECT_EQ(reason_in_view_three(script, config), StopReason::gain);
+  script.decisions.back()->gain_per_voxel = 1;
+  EXPECT_EQ(reason_in_view_three(script, config), StopReason::area);
 }
 
 TEST(Planning, ExceptionsPassThrough) {
@@ -367,6 +414,7 @@ TEST(Planning, RefusesWhatMakesNoSense) {
   };
   refuse("max_views is 0", [](PlanningConfig& c) { c.max_views = 0; });
   refuse("stop_gain must be finite", [](PlanningConfig& c) { c.stop_gain = kNan; });
+  refuse("stop_area must be finite", [](PlanningConfig& c) { c.stop_area = INFINITY; });
   refuse("idle_fraction", [](PlanningConfig& c) { c.idle_fraction = INFINITY; });
   refuse("stop_coverage", [](PlanningConfig& c) { c.stop_coverage = kNan; });
   Script wrong;
@@ -378,12 +426,12 @@ TEST(Planning, RefusesWhatMakesNoSense) {
 TEST(Planning, ReasonsHaveNames) {
   std::set<std::string_view> names;
   for (const StopReason reason :
-       {StopReason::gain, StopReason::no_candidates, StopReason::unreachable, StopReason::idle,
-        StopReason::max_views, StopReason::coverage, StopReason::interrupted}) {
+       {StopReason::gain, StopReason::area, StopReason::no_candidates, StopReason::unreachable,
+        StopReason::idle, StopReason::max_views, StopReason::coverage, StopReason::interrupted}) {
     names.insert(stop_reason_name(reason));
   }
-  EXPECT_EQ(names, (std::set<std::string_view>{"gain", "no_candidates", "unreachable", "idle",
-                                               "max_views", "coverage", "interrupted"}));
+  EXPECT_EQ(names, (std::set<std::string_view>{"gain", "area", "no_candidates", "unreachable",
+                                               "idle", "max_views", "coverage", "interrupted"}));
 }
 
 }  // namespace

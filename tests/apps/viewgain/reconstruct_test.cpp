@@ -239,6 +239,50 @@ TEST_F(Reconstruct, ClosedBoxSeenFromAllSidesEnds) {
   EXPECT_GT(result["coverage_visible"].get<double>(), 0.9);
 }
 
+TEST_F(Reconstruct, StopsWhereLittleNewSurfaceIsToBeExpected) {
+  int cases = 0;
+  for (const char* gain : {"surface", "combined"}) {
+    const auto ended = [&](const char* share) {
+      return reconstruct("cube.off",
+                         {"--gain", gain, "--stop-area", share, "--max-views", "20", "--stop-idle",
+                          "0", "--no-pictures", "--size", "0.2", "--noise", "off"});
+    };
+    const json early = ended("0.2"), later = ended("0.02");
+    for (const auto& [result, share] : {std::pair(early, 0.2), std::pair(later, 0.02)}) {
+      EXPECT_EQ(result["stop_reason"], "area") << gain;
+      EXPECT_EQ(result["gain_model"], gain);
+      // Two decisions in a row are under the limit, and no two before them.
+      std::size_t under = 0;
+      const json& views = result["per_view"];
+      for (std::size_t i = 0; i < views.size(); ++i, ++cases) {
+        const double limit = share * views[i]["surface_area"].get<double>();
+        EXPECT_TRUE(views[i]["next_gain_per_voxel"].is_null());
+        EXPECT_GE(views[i]["next_area"].get<double>(),
+                  i + 1 < views.size() ? views[i + 1]["predicted_area"].get<double>() : 0.0);
+        under = views[i]["next_area"].get<double>() < limit ? under + 1 : 0;
+        EXPECT_EQ(under == 2, i + 1 == views.size()) << gain << ' ' << i;
+      }
+    }
+    EXPECT_LT(early["views"].get<int>(), later["views"].get<int>());
+    EXPECT_GT(later["coverage_visible"].get<double>(), 0.9);
+  }
+  EXPECT_GT(cases, 8);
+}
+
+TEST_F(Reconstruct, StopAreaIsThatOfTheGainsThatExpectIt) {
+  const auto setting = [&](const Strings& more) {
+    Strings flags{"--max-views", "1", "--no-pictures", "--size", "0.2"};
+    flags.insert(flags.end(), more.begin(), more.end());
+    (void)reconstruct("cube.off", flags);
+    return json::parse(read("run/run.json"))["settings"]["stop_area"].get<double>();
+  };
+  EXPECT_EQ(setting({}), 0);
+  EXPECT_EQ(setting({"--policy", "frontier", "--gain", "surface"}), 0);
+  EXPECT_EQ(setting({"--gain", "surface"}), 0.001);
+  EXPECT_EQ(setting({"--gain", "combined"}), 0.001);
+  EXPECT_EQ(setting({"--gain", "combined", "--stop-area", "0"}), 0);
+}
+
 TEST_F(Reconstruct, FlatPlateEnds) {
   Off plate;
   plate.vertices << "-1 0 -1\n1 0 -1\n1 0 1\n-1 0 1\n";
@@ -296,6 +340,11 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       {arguments("cube.off", {"--criterion", "entropy"}), "entropy"},
       {arguments("cube.off", {"--gain", "entropy"}), "surface"},
       {arguments("cube.off", {"--overlap", "1"}), "--overlap"},
+      {arguments("cube.off", {"--stop-area", "0.01"}), "--stop-area"},
+      {arguments("cube.off", {"--gain", "surface", "--stop-area", "1"}), "--stop-area"},
+      {arguments("cube.off", {"--gain", "surface", "--stop-area", "-0.1"}), "--stop-area"},
+      {arguments("cube.off", {"--gain", "surface", "--policy", "random", "--stop-area", "0.01"}),
+       "--stop-area"},
       {arguments("cube.off", {"--region-depth", "0"}), "--region-depth"},
       {arguments("cube.off", {"--max-views", "0"}), "max-views"},
       {arguments("cube.off", {"--workspace", "0,0,0,-1,1,1"}), "--workspace"},

@@ -86,7 +86,8 @@ struct VIEWGAIN_EXPORT Decision {
   double gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
   /// The new surface that it is expected to show [m²]; NaN: not known.
   double area = std::numeric_limits<double>::quiet_NaN();
-  /// The most that any of the candidates is expected to show [m²]; NaN: not known.
+  /// The most that any of the candidates is expected to show [m²], held against
+  /// PlanningConfig::stop_area; NaN: not known, and never stops for it.
   double best_area = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -105,6 +106,10 @@ struct VIEWGAIN_EXPORT PlanningConfig {
   double stop_gain = 0.15;
   /// stop_gain is a share of the first decision's gain per voxel instead (for trace: 0.01).
   bool stop_gain_is_relative = false;
+  /// Stop when the most that any candidate is expected to show (Decision::best_area) is under this
+  /// share of the model's surface (ModelProgress::surface_area) in two decisions in a row: one
+  /// alone may be low by chance. 0: never.
+  double stop_area = 0;
   std::size_t idle_views = 3;  ///< stop after so many views in a row that brought nothing; 0: never
   /// Nothing: the view adds less than this share to entropy_removed and takes less than this share
   /// off the unknown voxels (or nothing at all). The first view is never idle.
@@ -117,6 +122,7 @@ struct VIEWGAIN_EXPORT PlanningConfig {
 
 enum class StopReason : std::uint8_t {
   gain,           ///< the best candidate promises too little
+  area,           ///< no candidate promises enough new surface
   no_candidates,  ///< nothing is left to look at
   unreachable,    ///< candidates are left, all of them out of reach
   idle,           ///< views in a row brought nothing new
@@ -137,8 +143,8 @@ struct VIEWGAIN_EXPORT ViewRecord {
   ModelProgress progress;                                            ///< after it
   double travelled = 0;  ///< distance between camera centres so far [m]
   Proposal proposal{};   ///< for the next view; empty if the run ended before it was asked for
-  /// The next view; empty if there was none. With StopReason::gain it is the one that promised too
-  /// little and is not taken.
+  /// The next view; empty if there was none. With StopReason::gain and area it is the one
+  /// that promised too little and is not taken.
   std::optional<Decision> decision{};
 };
 
@@ -154,7 +160,7 @@ struct VIEWGAIN_EXPORT PlanningResult {
 ///
 /// Order of the rules after each view: interrupted; coverage; max_views; idle; then, with the
 /// candidates, no_candidates or unreachable (none left, or the decision maker took none, and some
-/// were dropped as unreachable); gain.
+/// were dropped as unreachable); gain; area.
 [[nodiscard]] VIEWGAIN_EXPORT PlanningResult active_view_planning(
     const Pose& x_0, DataAcquisition& acquisition, RepresentationUpdate& representation,
     ViewpointGeneration& generation, DecisionMaking& decision, const PlanningConfig& config = {},
