@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "proximity_measure.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
 
@@ -19,11 +20,18 @@ double utility(const TravelCost& cost, double gain, double distance) {
   return gain - cost.per_metre * distance;
 }
 
+std::vector<Pose> poses_of(std::span<const Candidate> candidates) {
+  std::vector<Pose> poses;
+  poses.reserve(candidates.size());
+  for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
+  return poses;
+}
+
 }  // namespace
 
 const std::vector<std::string>& policy_names() {
-  static const std::vector<std::string> names{"gain",     "kriegel",   "sequence", "random",
-                                              "frontier", "fibonacci", "oracle"};
+  static const std::vector<std::string> names{"gain",     "kriegel",   "sequence",  "random",
+                                              "frontier", "fibonacci", "proximity", "oracle"};
   return names;
 }
 
@@ -67,12 +75,7 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
   const GainEvaluator& evaluator = *evaluator_;
   const bool scored = by_gain || config_.policy == Policy::frontier;
   std::vector<ViewGain> gains(candidates.size());
-  if (scored) {
-    std::vector<Pose> poses;
-    poses.reserve(candidates.size());
-    for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
-    evaluator.evaluate(poses, gains);
-  }
+  if (scored) evaluator.evaluate(poses_of(candidates), gains);
   const std::optional<std::size_t> chosen = choose(T_world_camera, candidates, gains);
   if (!chosen) return std::nullopt;
   const ViewGain gain =
@@ -92,6 +95,24 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
     for (const ViewGain& g : gains) decision.best_area = std::fmax(decision.best_area, g.area);
   }
   return decision;
+}
+
+std::size_t PolicyDecision::most_proximity(std::span<const Candidate> candidates) {
+  if (coarse_) {
+    coarse_ = coarse_->with_scene(model_.scene());
+  } else {
+    GainConfig config;
+    config.pixel_stride = coarse_stride(sensor_.camera);
+    config.support_plane = config_.support_plane;
+    coarse_.emplace(model_.scene(), sensor_, config, exec_.threads);
+  }
+  std::vector<double> values(candidates.size());
+  coarse_->evaluate(poses_of(candidates), ProximityMeasure(model_.scene()->hazard()), values);
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] > values[best] || std::isnan(values[best])) best = i;
+  }
+  return best;
 }
 
 double PolicyDecision::expected_area(const Pose& T_world_camera) {
@@ -132,6 +153,8 @@ std::optional<std::size_t> PolicyDecision::choose(const Pose& T_world_camera,
                                       candidates.size());
     case Policy::kriegel:
       return choose_by_boundary(candidates);
+    case Policy::proximity:
+      return most_proximity(candidates);
     case Policy::oracle:
       return oracle_->next(candidates);
     case Policy::sequence:

@@ -26,6 +26,7 @@ enum class Policy : std::uint8_t {
   random,     ///< uniform over the feasible poses
   frontier,   ///< the most unknown voxels in view
   fibonacci,  ///< a fixed set in its order: evenly round the object
+  proximity,  ///< the most unknown voxels near known surface on its rays: see ProximityMeasure
   oracle,     ///< knows the object, an upper reference: see OracleChoice
 };
 [[nodiscard]] const std::vector<std::string>& policy_names();
@@ -73,11 +74,13 @@ class PolicyDecision : public DecisionMaking {
   Sensor sensor_;
   PolicyConfig config_;
   LoopExec exec_;
+  [[nodiscard]] std::size_t most_proximity(std::span<const Candidate> candidates);
   /// The new surface to be expected of a view [m²], where the policy's own gain does not say.
   [[nodiscard]] double expected_area(const Pose& T_world_camera);
 
   std::optional<GainEvaluator> evaluator_;       ///< of the last decision's scene
   std::optional<GainEvaluator> area_evaluator_;  ///< likewise, by the surface gain
+  std::optional<GainEvaluator> coarse_;          ///< likewise, of few rays
   BoundaryOrder order_;
   std::optional<OracleChoice> oracle_;
 };

@@ -50,7 +50,8 @@ void describe(Options& o, Visitor& visit) {
   visit.option("policy", "--policy", o.policy,
                "gain, kriegel (left, right, top, bottom), sequence (turntable of 8, then top), "
                "random, frontier (most unknown voxels in view), fibonacci (evenly round the "
-               "object), oracle (knows the mesh: an upper reference)",
+               "object), proximity (most unknown space near known surface on its rays), oracle "
+               "(knows the mesh: an upper reference)",
                shows_default);
   visit.option("generators", "--generator", o.generator,
                "where candidates come from: boundary, sphere, dome, rings, shell, sequence, "

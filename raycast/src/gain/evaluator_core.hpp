@@ -33,7 +33,8 @@ struct SurfaceShare {
 struct Workspace {
   TileBins bins;
   std::vector<ViewHit> view_hits;  ///< for a gain of the user's own
-  OccupiedSums occupied;           ///< these three for the surface gain
+  std::vector<ViewRun> view_runs;
+  OccupiedSums occupied;  ///< these three for the surface gain
   std::vector<VoxelVisit> visits;
   std::vector<SurfaceShare> shares;
   std::optional<GainAccumulator> accumulator;  ///< made when first needed

@@ -202,18 +202,23 @@ double SurfaceView::saturated_gain(Index3 voxel, const SymmetricMatrix3& informa
                    entropy_with_floor(before + information, floor_variance_));
 }
 
-void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
+void SurfaceView::find_visits(const PoseFrame& frame, const RayTile& rays,
                               Workspace& workspace) const {
   alignas(64) float far[kTileRays];
   find_ends(frame, rays, far);
   workspace.visits.clear();
   walk_.visits(bricks_, frame, limits_, rays, far, workspace.visits);
-  const double V = scene_.snapshot.voxel_size;
-  const int shift = bricks_.rate_shift;
-  const std::vector<WeightRegion>& weights = core_.config.weights;
   // A packet's rays take turns; each ray's visits are in order.
   std::stable_sort(workspace.visits.begin(), workspace.visits.end(),
                    [](const VoxelVisit& a, const VoxelVisit& b) { return a.lane < b.lane; });
+}
+
+void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
+                              Workspace& workspace) const {
+  find_visits(frame, rays, workspace);
+  const double V = scene_.snapshot.voxel_size;
+  const int shift = bricks_.rate_shift;
+  const std::vector<WeightRegion>& weights = core_.config.weights;
   double passed = 1.0;
   // The stretch of unknown voxels that the ray is in: its first share, where it begins, T there.
   std::size_t stretch = 0;

@@ -41,6 +41,19 @@ class SurfaceView {
     });
   }
 
+  /// Calls visit(tile number, rays, visits) for some tiles: what their rays visit, each ray's in
+  /// one piece and in order.
+  template <typename Tiles, typename Visit>
+  void for_each_visited(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
+                        Visit&& visit) const {
+    tracer_.set_up(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
+      find_visits(frame, rays, workspace);
+      visit(number, rays, workspace.visits);
+    });
+  }
+  /// The voxel at table coordinates.
+  [[nodiscard]] Index3 voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) const;
+
   /// Nats for one m² of new surface: ΔH_new / V².
   [[nodiscard]] double nats_per_area() const { return nats_per_area_; }
   /// w_v [H_F(Λ_0 + Λ_v) - H_F(Λ_0 + Λ_v + information)] of an occupied voxel.
@@ -50,6 +63,7 @@ class SurfaceView {
   template <typename Tiles>
   void evaluate(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
                 ViewGain& result) const;
+  void find_visits(const PoseFrame& frame, const RayTile& rays, Workspace& workspace) const;
   void find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                    Workspace& workspace) const;
   [[nodiscard]] WalkLimits limits_of() const;
@@ -58,7 +72,6 @@ class SurfaceView {
   /// Does the ray come to an occupied voxel, in table coordinates, from behind?
   [[nodiscard]] bool is_behind(const RayTile& rays, int lane, Index3 at) const;
   [[nodiscard]] SymmetricMatrix3 information(const RayTile& rays, int lane, float range) const;
-  [[nodiscard]] Index3 voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
   const SceneData& scene_;
   const EvaluatorCore& core_;

@@ -15,9 +15,12 @@ ViewDriver::ViewDriver(const VoxelScene& scene, std::shared_ptr<EvaluatorCore> c
                 core_->config.weights},
       tracer_(scene_, core_->rays, core_->min_range, core_->max_range),
       number_(++core_->drivers) {
-  if (core_->config.model != GainModel::paper) {
-    surface_.emplace(scene_, *core_, tracer_, prior_sigma_);
-  }
+  (void)surface();  // an evaluator that exists does not wait for it, nor throw
+}
+
+const SurfaceView& ViewDriver::ordered() const {
+  std::call_once(surface_once_, [&] { surface_.emplace(scene_, *core_, tracer_, prior_sigma_); });
+  return *surface_;
 }
 
 void ViewDriver::bind(Workspace& workspace) const {
@@ -66,10 +69,13 @@ std::optional<PoseFrame> ViewDriver::open(const Pose& T_world_camera, ViewGain& 
 }
 
 ViewGain ViewDriver::evaluate(const Pose& T_world_camera, Lease& lease) const {
-  if (!surface_) return view(T_world_camera, lease, GainConsumer{lease.accumulator()});
+  const SurfaceView* surface = this->surface();
+  if (surface == nullptr) {
+    return view(T_world_camera, lease, GainConsumer{lease.accumulator()});
+  }
   ViewGain result;
   if (const auto frame = open(T_world_camera, result)) {
-    surface_->evaluate(*frame, lease.workspace(), result);
+    surface->evaluate(*frame, lease.workspace(), result);
     result.status = ViewStatus::ok;
   }
   return result;

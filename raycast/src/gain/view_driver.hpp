@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -99,7 +100,12 @@ class ViewDriver {
   [[nodiscard]] const ViewTracer& tracer() const { return tracer_; }
   [[nodiscard]] double prior_sigma() const { return prior_sigma_; }
   /// Null for the paper's gain.
-  [[nodiscard]] const SurfaceView* surface() const { return surface_ ? &*surface_ : nullptr; }
+  [[nodiscard]] const SurfaceView* surface() const {
+    return core_->config.model != GainModel::paper ? &ordered() : nullptr;
+  }
+  /// Rays in order through unknown voxels, whatever the gain; made when first asked for. Thread
+  /// safe. Throws as SurfaceView's constructor.
+  [[nodiscard]] const SurfaceView& ordered() const;
 
  private:
   template <typename Tiles, typename Consumer>
@@ -118,7 +124,8 @@ class ViewDriver {
   double prior_sigma_;  // [m]
   GainSettings settings_;
   ViewTracer tracer_;
-  std::optional<SurfaceView> surface_;
+  mutable std::once_flag surface_once_;
+  mutable std::optional<SurfaceView> surface_;
   std::uint64_t number_;  // among the core's, from 1 on
 };
 

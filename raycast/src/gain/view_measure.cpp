@@ -5,7 +5,9 @@
 #include "viewgain/raycast/view_measure.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "batch_loop.hpp"
 #include "gain_evaluator_impl.hpp"
@@ -41,9 +43,50 @@ struct MeasureConsumer {
   void finish(ViewGain& result) { result.gain = measure.measure(T_world_camera, hits); }
 };
 
+// Lists what the rays of a view pass.
+void list_runs(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
+               const Eigen::Matrix3d& R_world_grid, detail::Workspace& workspace) {
+  const GridSnapshot& snapshot = driver.scene().snapshot;
+  const double V = snapshot.voxel_size;
+  const detail::SurfaceView& walk = driver.ordered();
+  const auto tiles = driver.tracer().all_tiles();
+  driver.tracer().prepare(frame, tiles.size(), workspace.bins);
+  std::vector<ViewRun>& runs = workspace.view_runs;
+  runs.clear();
+  walk.for_each_visited(
+      frame, tiles, workspace,
+      [&](std::size_t number, const detail::RayTile& rays,
+          const std::vector<detail::VoxelVisit>& visits) {
+        ViewRun run;
+        for (auto visit = visits.begin(); visit != visits.end(); ++visit) {
+          if (visit == visits.begin() || visit->lane != (visit - 1)->lane) {
+            const auto lane = static_cast<int>(visit->lane);
+            const Eigen::Vector3d d =
+                R_world_grid *
+                Eigen::Vector3d(rays.dx[lane], rays.dy[lane], rays.dz[lane]).normalized();
+            run.ray = driver.tracer().table().ray_index(number, lane);
+            run.direction = {d.x(), d.y(), d.z()};
+          }
+          const bool occupied = visit->state == detail::BrickTable::kOccupiedVoxel;
+          run.voxel = walk.voxel_at(visit->x, visit->y, visit->z);
+          run.state = occupied ? VoxelState::occupied : VoxelState::unknown;
+          run.begin = static_cast<double>(visit->begin) * V;
+          run.end = occupied ? run.begin : static_cast<double>(visit->end) * V;
+          // The sign says that surface there would not be new.
+          run.rate = occupied ? 0.0 : std::abs(static_cast<double>(visit->rate)) / V;
+          run.belief = nullptr;
+          if (const SnapshotLeaf* leaf = occupied ? snapshot.find_leaf(run.voxel) : nullptr) {
+            if (leaf->beliefs) run.belief = leaf->beliefs->find(block_offset(run.voxel));
+          }
+          runs.push_back(run);
+        }
+      });
+}
+
 }  // namespace
 
 ViewMeasure::~ViewMeasure() = default;
+RunMeasure::~RunMeasure() = default;
 
 std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera,
                                     const ViewMeasure& measure, std::span<double> results,
@@ -58,6 +101,24 @@ std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera,
                                                           measure, lease.workspace().view_hits};
                                  results[i] = driver.view(T_world_camera[i], lease, consumer).gain;
                                });
+}
+
+std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera, const RunMeasure& measure,
+                                    std::span<double> results, const BatchControl& control) const {
+  detail::check_room(T_world_camera.size(), results.size());
+  std::fill(results.begin(), results.end(), std::numeric_limits<double>::quiet_NaN());
+  const detail::ViewDriver& driver = impl_->driver;
+  (void)driver.ordered();  // its errors on this thread
+  const Eigen::Matrix3d R_world_grid = driver.scene().snapshot.T_world_grid.rotation();
+  return detail::for_each_pose(
+      driver, results.size(), control, [&](std::size_t i, detail::ViewDriver::Lease& lease) {
+        ViewGain result;
+        if (const auto frame = driver.open(T_world_camera[i], result)) {
+          list_runs(driver, *frame, R_world_grid, lease.workspace());
+          result.gain = measure.measure(T_world_camera[i], lease.workspace().view_runs);
+        }
+        results[i] = result.gain;
+      });
 }
 
 }  // namespace viewgain

@@ -184,7 +184,7 @@ TEST_F(Reconstruct, EveryPolicyGoesItsOwnWay) {
   std::map<std::string, std::string> views;
   std::set<std::string> different;
   for (const char* policy :
-       {"gain", "kriegel", "sequence", "random", "frontier", "fibonacci", "oracle"}) {
+       {"gain", "kriegel", "sequence", "random", "frontier", "fibonacci", "proximity", "oracle"}) {
     const json result =
         reconstruct("cube.off", {"--policy", policy, "--max-views", "4", "--no-pictures", "--size",
                                  "0.2", "--noise", "off"});
@@ -200,8 +200,8 @@ TEST_F(Reconstruct, EveryPolicyGoesItsOwnWay) {
     views[policy] = read("run/views.txt");
     different.insert(views[policy]);
   }
-  EXPECT_EQ(views.size(), 7U);
-  EXPECT_EQ(different.size(), 7U);
+  EXPECT_EQ(views.size(), 8U);
+  EXPECT_EQ(different.size(), 8U);
 }
 
 TEST_F(Reconstruct, FibonacciHasAsManyPosesAsViews) {

@@ -222,8 +222,9 @@ voxel_size : float
 workspace : array_like, (2, 3)
     Lowest and highest corner of what is mapped, world frame [m].
 criterion : {"log_diagonal", "log_determinant", "trace"}
-policy : {"gain", "kriegel", "random", "frontier", "sequence"}
-    How the next view is chosen; "sequence" takes the candidates in their order.
+policy : {"gain", "kriegel", "random", "frontier", "proximity", "sequence"}
+    How the next view is chosen; "frontier" counts unknown voxels in view, "proximity" those near
+    known surface that rays pass, "sequence" takes the candidates in their order.
 boundary : bool, optional
     Propose views at the surface's open boundaries, before the candidates. Default: not for the
     policies "sequence" and "random".

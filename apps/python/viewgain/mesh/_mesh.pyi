@@ -63,7 +63,7 @@ def reconstruct(
     voxel_size: float,
     workspace: ArrayLike,
     criterion: Literal["log_diagonal", "log_determinant", "trace"] = "log_diagonal",
-    policy: Literal["gain", "kriegel", "random", "frontier", "sequence"] = "gain",
+    policy: Literal["gain", "kriegel", "random", "frontier", "proximity", "sequence"] = "gain",
     boundary: bool | None = None,
     candidates: ArrayLike | None = None,
     reach: ReachRegion | None = None,

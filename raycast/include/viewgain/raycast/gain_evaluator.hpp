@@ -144,6 +144,13 @@ class VIEWGAIN_EXPORT GainEvaluator {
   std::size_t evaluate(std::span<const Pose> T_world_camera, const ViewMeasure& measure,
                        std::span<double> results, const BatchControl& control = {}) const;
 
+  /// The same for a measure that sees what rays pass on their way through unknown voxels, whatever
+  /// the evaluator's model. Lists take 80 bytes for each voxel that a ray of the view passes and
+  /// each thread, at full resolution up to 200 MB; a pixel stride makes them smaller. Costs some
+  /// times evaluate()'s surface gain. Throws Error(capacity) and Error(backend), too.
+  std::size_t evaluate(std::span<const Pose> T_world_camera, const RunMeasure& measure,
+                       std::span<double> results, const BatchControl& control = {}) const;
+
   /// Why a view is good: one entry for each voxel in which rays of the pose end, the largest gain
   /// first, ties by the voxel's x, y, z. The gains add up to evaluate()'s gain to rounding (1e-9 of
   /// it; surface, combined: 1e-5), the rays to its hits; for surface and combined there is an entry

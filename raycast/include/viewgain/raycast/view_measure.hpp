@@ -38,4 +38,32 @@ class VIEWGAIN_EXPORT ViewMeasure {
                                        std::span<const ViewHit> hits) const = 0;
 };
 
+/// What a ray of a view has of one voxel on its way through unknown space.
+struct VIEWGAIN_EXPORT ViewRun {
+  Index3 voxel{};
+  VoxelState state = VoxelState::unknown;  ///< unknown, or occupied: the ray ends there
+  const Belief* belief = nullptr;     ///< what is known of the voxel; null: nothing; lives with the
+                                      ///< scene
+  std::size_t ray = 0;                ///< pixel index, row by row, strided; as in trace()
+  double begin = 0, end = 0;          ///< ranges along the ray [m]; occupied: both where it enters
+  double rate = 0;                    ///< hazard [1/m]; occupied: 0
+  std::array<double, 3> direction{};  ///< of the ray, unit length, world frame
+};
+
+/// A gain of the user's own that looks at all that a view's rays might pass, in order: they go on
+/// through unknown voxels as for the surface gain, to the first occupied one, an obstacle, the
+/// support plane, the range limit or the workspace's edge.
+///
+/// Thread safety: measure() is called from many threads at once.
+class VIEWGAIN_EXPORT RunMeasure {
+ public:
+  virtual ~RunMeasure();
+
+  /// `runs`: of the rays by tiles of 4x4 pixels, each ray's in one piece and in order of range; its
+  /// unknown voxels and the occupied one that ends it, if any. In the same order for any number of
+  /// threads; valid during the call. What it throws ends the batch and reaches the caller.
+  [[nodiscard]] virtual double measure(const Pose& T_world_camera,
+                                       std::span<const ViewRun> runs) const = 0;
+};
+
 }  // namespace viewgain
