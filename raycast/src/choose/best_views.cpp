@@ -5,18 +5,65 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <vector>
 
+#include "costs.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain {
+namespace {
 
-std::vector<std::size_t> best_indices(std::span<const ViewGain> results, std::size_t k) {
-  std::vector<std::size_t> indices(results.size());
+// What poses are chosen by, and as gains where it is the evaluator's own.
+struct Scores {
+  std::vector<ViewGain> gains;
+  std::vector<double> worth;
+  std::size_t scored = 0;
+};
+
+Scores scores_of(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
+                 const BestConfig& config, const BatchControl& control) {
+  Scores scores;
+  scores.worth.resize(T_world_camera.size());
+  if (config.measure != nullptr) {
+    scores.scored = evaluator.evaluate(T_world_camera, *config.measure, scores.worth, control);
+  } else if (config.run_measure != nullptr) {
+    scores.scored = evaluator.evaluate(T_world_camera, *config.run_measure, scores.worth, control);
+  } else {
+    scores.gains.resize(T_world_camera.size());
+    scores.scored = evaluator.evaluate(T_world_camera, scores.gains, control);
+    for (std::size_t i = 0; i < scores.worth.size(); ++i) scores.worth[i] = scores.gains[i].gain;
+  }
+  for (std::size_t i = 0; i < config.costs.size(); ++i) scores.worth[i] -= config.costs[i];
+  return scores;
+}
+
+}  // namespace
+
+namespace detail {
+
+void check_costs(std::span<const double> costs, std::size_t poses) {
+  if (!costs.empty() && costs.size() != poses) {
+    throw Error(ErrorCode::invalid_argument,
+                std::to_string(costs.size()) + " costs for " + std::to_string(poses) + " poses");
+  }
+  for (const double cost : costs) {
+    if (!std::isfinite(cost)) {
+      throw Error(ErrorCode::invalid_argument, "a cost is " + short_text(cost) + ", not finite");
+    }
+  }
+}
+
+}  // namespace detail
+
+std::vector<std::size_t> best_indices(std::span<const double> values, std::size_t k) {
+  std::vector<std::size_t> indices(values.size());
   std::iota(indices.begin(), indices.end(), std::size_t{0});
   k = std::min(k, indices.size());
   const auto better = [&](std::size_t a, std::size_t b) {
-    const double ga = results[a].gain, gb = results[b].gain;
+    const double ga = values[a], gb = values[b];
     if (std::isnan(ga) || std::isnan(gb)) {
       return std::isnan(ga) == std::isnan(gb) ? a < b : std::isnan(gb);
     }
@@ -28,19 +75,32 @@ std::vector<std::size_t> best_indices(std::span<const ViewGain> results, std::si
   return indices;
 }
 
+std::vector<std::size_t> best_indices(std::span<const ViewGain> results, std::size_t k) {
+  std::vector<double> gains;
+  gains.reserve(results.size());
+  for (const ViewGain& result : results) gains.push_back(result.gain);
+  return best_indices(gains, k);
+}
+
 BestViews GainEvaluator::best(std::span<const Pose> T_world_camera, std::size_t k,
-                              const BatchControl& control) const {
+                              const BatchControl& control, const BestConfig& config) const {
+  detail::check_costs(config.costs, T_world_camera.size());
+  if (config.measure != nullptr && config.run_measure != nullptr) {
+    throw Error(ErrorCode::invalid_argument, "views are chosen by one measure, not by two");
+  }
   BestViews best;
   if (k == 0 || T_world_camera.empty()) return best;
-  std::vector<ViewGain> gains(T_world_camera.size());
-  const std::size_t scored = evaluate(T_world_camera, gains, control);
-  best.complete = scored == gains.size();
-  best.indices = best_indices(gains, k);
+  const Scores scores = scores_of(*this, T_world_camera, config, control);
+  best.complete = scores.scored == T_world_camera.size();
+  best.indices = best_indices(scores.worth, k);
   if (!best.complete) {
     // Those that were not reached look like bad poses, which come last.
-    std::erase_if(best.indices, [&](std::size_t i) { return std::isnan(gains[i].gain); });
+    std::erase_if(best.indices, [&](std::size_t i) { return std::isnan(scores.worth[i]); });
   }
-  for (const std::size_t i : best.indices) best.gains.push_back(gains[i]);
+  for (const std::size_t i : best.indices) {
+    if (!scores.gains.empty()) best.gains.push_back(scores.gains[i]);
+    best.worth.push_back(scores.worth[i]);
+  }
   return best;
 }
 

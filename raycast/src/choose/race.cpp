@@ -8,6 +8,7 @@
 #include <numeric>
 #include <string>
 
+#include "costs.hpp"
 #include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
 #include "tile_sample.hpp"
@@ -51,6 +52,7 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
                                const RaceConfig& config, const BatchControl& control) const {
   check(config);
   const std::size_t count = T_world_camera.size();
+  detail::check_costs(config.costs, count);
   k = std::min(k, count);
   RacedViews best;
   if (k == 0) return best;
@@ -73,6 +75,7 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
     const auto tiles = detail::random_tiles(table, kGroups, per_group, config.seed);
     std::uint64_t rays = 0;
     for (const auto& group : tiles) rays += detail::rays_of(table, group);
+    const double part = static_cast<double>(rays) / driver.core()->ray_count;
     best.complete = detail::for_each(
         driver, field.size(), control, [&](std::size_t j, detail::ViewDriver::Lease& lease) {
           std::array<double, kGroups> gains;
@@ -81,6 +84,7 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
           for (const double gain : gains) sum += gain, squares += gain * gain;
           constexpr auto n = static_cast<double>(kGroups);
           field[j].gain = sum;
+          if (!config.costs.empty()) field[j].gain -= part * config.costs[field[j].index];
           field[j].standard_error = std::sqrt(std::max(0.0, squares - sum * sum / n) * n / (n - 1));
         });
     if (!best.complete) return best;
@@ -130,9 +134,15 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
     best.scored_gains.resize(kept);
   }
   best.rays_traced += best.scored_indices.size() * std::uint64_t{driver.core()->ray_count};
-  for (const std::size_t j : best_indices(best.scored_gains, k)) {
+  std::vector<double> worth;
+  for (std::size_t j = 0; j < best.scored_gains.size(); ++j) {
+    const double cost = config.costs.empty() ? 0.0 : config.costs[best.scored_indices[j]];
+    worth.push_back(best.scored_gains[j].gain - cost);
+  }
+  for (const std::size_t j : best_indices(worth, k)) {
     best.indices.push_back(best.scored_indices[j]);
     best.gains.push_back(best.scored_gains[j]);
+    best.worth.push_back(worth[j]);
   }
   if (best.complete) report(count);
   return best;

@@ -11,6 +11,7 @@
 #include <stop_token>
 #include <tuple>
 
+#include "core/expect_error.hpp"
 #include "oracle/rays.hpp"
 #include "raycast/scene_makers.hpp"
 #include "viewgain/core/error.hpp"
@@ -189,6 +190,104 @@ TEST(Race, FindsTheBestOnNearlyAllMapsAndIsDeterministic) {
     EXPECT_EQ(again.rays_traced, race.rays_traced);
   }
   EXPECT_GE(right, 19) << "of " << kMaps;
+}
+
+// What the way to each pose costs: up to the largest gain.
+std::vector<double> random_costs(std::span<const ViewGain> gains, std::uint64_t seed) {
+  test::Random random(seed);
+  double most = 0;
+  for (const ViewGain& gain : gains) most = std::fmax(most, gain.gain);
+  std::vector<double> costs(gains.size());
+  for (double& cost : costs) cost = test::uniform(random, 0.0, most);
+  return costs;
+}
+
+TEST(BestViews, CostsAreSubtracted) {
+  int cases = 0, changed = 0;
+  for (const GainModel model : {GainModel::paper, GainModel::surface, GainModel::combined}) {
+    const GainEvaluator evaluator(VoxelScene::build(lump(8)), small_sensor(), {.model = model});
+    std::vector<Pose> poses = sphere_poses(150, 0.6);
+    poses[17].m[0] = std::nan("");
+    const std::vector<ViewGain> all = evaluator.evaluate(poses);
+    const std::vector<double> costs = random_costs(all, 3);
+    std::vector<double> worth;
+    for (std::size_t i = 0; i < all.size(); ++i) worth.push_back(all[i].gain - costs[i]);
+    const BestViews best = evaluator.best(poses, 6, {}, {.costs = costs});
+    ASSERT_EQ(best.indices, best_indices(worth, 6));
+    for (std::size_t j = 0; j < 6; ++j, ++cases) {
+      EXPECT_EQ(best.worth[j], worth[best.indices[j]]);
+      EXPECT_TRUE(test::same_bits(best.gains[j], all[best.indices[j]]));
+    }
+    const BestViews plain = evaluator.best(poses, 6);
+    changed += plain.indices != best.indices ? 1 : 0;
+    EXPECT_EQ(plain.worth[0], plain.gains[0].gain);
+    EXPECT_EQ(best_indices(worth, 150).back(), 17U);
+  }
+  EXPECT_EQ(cases, 18);
+  EXPECT_EQ(changed, 3);
+}
+
+// The farther the better; counts hits or runs besides.
+class Height : public ViewMeasure, public RunMeasure {
+ public:
+  double measure(const Pose& pose, std::span<const ViewHit> hits) const override {
+    return pose.translation().z() * static_cast<double>(hits.size());
+  }
+  double measure(const Pose& pose, std::span<const ViewRun> runs) const override {
+    return -pose.translation().z() * static_cast<double>(runs.size());
+  }
+};
+
+TEST(BestViews, AMeasureTakesTheGainsPlace) {
+  const GainEvaluator evaluator(VoxelScene::build(lump(8)), small_sensor(), {}, {.num_threads = 2});
+  const std::vector<Pose> poses = sphere_poses(100, 0.6);
+  const Height own;
+  std::vector<double> by_hits(poses.size()), by_runs(poses.size()), costs(poses.size(), 0.0);
+  evaluator.evaluate(poses, static_cast<const ViewMeasure&>(own), by_hits);
+  evaluator.evaluate(poses, static_cast<const RunMeasure&>(own), by_runs);
+  const BestViews hits = evaluator.best(poses, 5, {}, {.measure = &own});
+  const BestViews runs = evaluator.best(poses, 5, {}, {.run_measure = &own});
+  EXPECT_EQ(hits.indices, best_indices(by_hits, 5));
+  EXPECT_EQ(runs.indices, best_indices(by_runs, 5));
+  EXPECT_EQ(hits.worth[0], by_hits[hits.indices[0]]);
+  EXPECT_NE(hits.indices[0], runs.indices[0]);
+  EXPECT_TRUE(hits.gains.empty());
+  costs[hits.indices[0]] = 1e9;
+  const BestViews other = evaluator.best(poses, 4, {}, {.costs = costs, .measure = &own});
+  EXPECT_TRUE(std::equal(other.indices.begin(), other.indices.end(), hits.indices.begin() + 1));
+  test::expect_error(ErrorCode::invalid_argument, "two", [&] {
+    (void)evaluator.best(poses, 1, {}, {.measure = &own, .run_measure = &own});
+  });
+  costs[7] = INFINITY;
+  test::expect_error(ErrorCode::invalid_argument, "finite",
+                     [&] { (void)evaluator.best(poses, 1, {}, {.costs = costs}); });
+  costs.pop_back();
+  test::expect_error(ErrorCode::invalid_argument, "99 costs for 100 poses",
+                     [&] { (void)evaluator.best(poses, 1, {}, {.costs = costs}); });
+  test::expect_error(ErrorCode::invalid_argument, "99 costs for 100 poses",
+                     [&] { (void)evaluator.race(poses, 1, {.costs = costs}); });
+}
+
+TEST(Race, CostsAreSubtracted) {
+  int right = 0, others = 0;
+  constexpr int kMaps = 6;
+  for (int map = 0; map < kMaps; ++map) {
+    const GainModel model = map % 2 == 0 ? GainModel::surface : GainModel::paper;
+    const GainEvaluator evaluator(VoxelScene::build(lump(60 + static_cast<std::uint64_t>(map))),
+                                  larger_sensor(), {.model = model});
+    const std::vector<Pose> poses = sphere_poses(300, 0.6);
+    const std::vector<ViewGain> all = evaluator.evaluate(poses);
+    const std::vector<double> costs = random_costs(all, static_cast<std::uint64_t>(map));
+    RaceConfig config{.interval = 5, .first_share = 1.0 / 24, .keep = 0.5, .seed = 7};
+    others += evaluator.race(poses, 1, config).indices == evaluator.best(poses).indices ? 1 : 0;
+    config.costs = costs;
+    const RacedViews race = evaluator.race(poses, 1, config);
+    ASSERT_EQ(race.indices.size(), 1U);
+    EXPECT_EQ(race.worth[0], all[race.indices[0]].gain - costs[race.indices[0]]);
+    right += race.indices == evaluator.best(poses, 1, {}, {.costs = costs}).indices ? 1 : 0;
+  }
+  EXPECT_GE(right, kMaps - 1);
+  EXPECT_GE(others, kMaps - 2);
 }
 
 TEST(Race, TakesOddRequestsAndRefusesBadOnes) {

@@ -164,11 +164,14 @@ class VIEWGAIN_EXPORT GainEvaluator {
   [[nodiscard]] std::vector<RayHit> trace(const Pose& T_world_camera) const;
 
   /// The k best poses: best_indices() of evaluate()'s results and those results, ties to the lower
-  /// index, NaN last, k clamped; nothing for k = 0 or no poses. All poses are scored, so it costs
-  /// what evaluate() does. If a stop is requested the result is the best of those scored so far
-  /// that are not NaN, and not `complete`.
+  /// index, NaN last, k clamped; nothing for k = 0 or no poses. `config` may subtract costs and put
+  /// a measure of the user's own in the gain's place. All poses are scored, so it costs what
+  /// evaluate() does. If a stop is requested the result is the best of those scored so far that are
+  /// not NaN, and not `complete`. Throws Error(invalid_argument) if there are costs but not one a
+  /// pose, for one that is not finite and for two measures; and as evaluate() with the measure.
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
-                               const BatchControl& control = {}) const;
+                               const BatchControl& control = {},
+                               const BestConfig& config = {}) const;
 
   /// The k best poses, very probably: successive halving. Poses are compared by random sub-bundles
   /// of their tiles, nested and the same for all; each round drops those whose confidence interval
@@ -179,8 +182,8 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// seed and any number of threads. control.progress counts poses that are out, after each round.
   /// Stopped in a round, it returns nothing, stopped while the survivors are scored the best of
   /// those that were; either is not `complete`. Throws Error(invalid_argument), naming the value,
-  /// for a config out of range; Error(backend), Error(capacity) as VoxelScene::build(), if the
-  /// scene's BVH is wanted and not there yet.
+  /// for a config out of range and for costs as best(); Error(backend), Error(capacity) as
+  /// VoxelScene::build(), if the scene's BVH is wanted and not there yet.
   [[nodiscard]] RacedViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                 const RaceConfig& config = {},
                                 const BatchControl& control = {}) const;
@@ -229,5 +232,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
 /// clamped.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::size_t> best_indices(
     std::span<const ViewGain> results, std::size_t k);
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<std::size_t> best_indices(std::span<const double> values,
+                                                                    std::size_t k);
 
 }  // namespace viewgain

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "viewgain/core/export.hpp"
@@ -12,11 +13,22 @@
 namespace viewgain {
 
 struct ViewGain;
+class ViewMeasure;
+class RunMeasure;
+
+/// By what GainEvaluator::best() chooses.
+struct VIEWGAIN_EXPORT BestConfig {
+  /// One a pose, subtracted from its gain, in the gain's unit: say for the way there. Empty: none.
+  std::span<const double> costs{};
+  const ViewMeasure* measure = nullptr;     ///< instead of the evaluator's gain; may be null,
+  const RunMeasure* run_measure = nullptr;  ///< as may this, of which only one can be given
+};
 
 /// Views chosen from a batch of poses; see GainEvaluator::best().
 struct VIEWGAIN_EXPORT BestViews {
   std::vector<std::size_t> indices;  ///< into the poses, best first
-  std::vector<ViewGain> gains;       ///< of those, as evaluate() has them
+  std::vector<ViewGain> gains;       ///< of those, as evaluate() has them; empty with a measure
+  std::vector<double> worth;         ///< of those: the gain, or the measure, less the cost
   bool complete = true;  ///< false: a stop was requested, and this is the best of those scored
 };
 
@@ -34,6 +46,8 @@ struct VIEWGAIN_EXPORT RaceConfig {
                                   ///< as many, up to a quarter of all
   double keep = 0.35;             ///< of the poses that a round leaves at most
   std::uint64_t seed = 1;         ///< which tiles
+  /// As BestConfig::costs; a bundle's gain bears the cost by its share of the rays.
+  std::span<const double> costs{};
 };
 
 /// Views that are good together, in the order of their choice; see GainEvaluator::best_set().
