@@ -18,7 +18,8 @@ EstimatorConfig default_estimator(double spacing) {
   EstimatorConfig config;
   config.boundary.min_run_length = 8 * spacing;
   config.boundary.min_loop_length = 8 * spacing;
-  config.overlap = 0.4;
+  config.overlap = 0.25;
+  config.region_depth = 0.08;
   config.distances = {1.0, 1.15};
   config.tilts = {0.0, 15 * kDegree, -15 * kDegree};
   config.rolls = {0.0, 90 * kDegree};

@@ -27,7 +27,8 @@ struct GenerationConfig {
 };
 
 /// A number of variants that makes a large batch: two distances, tilts of 15° to four sides, two
-/// rolls; two fifths of a view overlap with what is known. `spacing` of the surface's points [m].
+/// rolls; a quarter of a view overlaps with what is known; regions of 80 mm. `spacing` of the
+/// surface's points [m].
 [[nodiscard]] EstimatorConfig default_estimator(double spacing);
 
 /// What every loop starts from: boundary candidates by default_estimator at the sensor's working

@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,14 +16,18 @@
 #include "formats/reach_toml.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
+#include "gain_unit.hpp"
 #include "planner/candidate_generation.hpp"
 #include "planner/model.hpp"
 #include "planner/pose_sets.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
 namespace {
+
+constexpr std::string_view kCriterion = "log_diagonal";  // of all gains here
 
 struct Options {
   CommonOptions common;
@@ -33,6 +40,9 @@ struct Options {
   std::string reach;
   std::string body;
   std::optional<double> support_plane;
+  std::string gain;
+  std::optional<double> overlap;
+  std::optional<double> region_depth;
   std::uint64_t seed = 1;
   std::string out;
 };
@@ -54,6 +64,57 @@ double distance_of(const Options& options, const Sensor& sensor, const BeliefGri
   double longest = 0;
   for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.max[a] - box.min[a]);
   return filling_distance(sensor, 0.5 * longest * 0.35 / 0.4);  // the object in its workspace
+}
+
+GenerationConfig generation_config(const Options& options, const Sensor& sensor,
+                                   const BeliefGrid& grid) {
+  GenerationConfig config = default_generation(sensor, grid.voxel_size());
+  config.boundary = options.generator == "boundary";
+  if (options.distance) config.working_distance = *options.distance;
+  if (options.overlap) config.estimator.overlap = *options.overlap;
+  if (options.region_depth) config.estimator.region_depth = *options.region_depth;
+  if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
+  config.feasibility.support_plane = options.support_plane;
+  if (config.boundary && grid.views().empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                options.map + ": has no views, which boundary candidates need");
+  }
+  if (!config.boundary) {
+    config.sets.push_back(make_pose_set(
+        options.generator, {center_of(options, grid), distance_of(options, sensor, grid),
+                            options.count, options.seed, std::nullopt}));
+  }
+  return config;
+}
+
+// What the candidates gain, and their order: as proposed or, where a gain is asked for, best first.
+struct Order {
+  std::vector<std::size_t> order;  // of the candidates
+  std::vector<ViewGain> gains;     // by candidate; empty where not asked for
+  GainModel model = GainModel::paper;
+};
+
+Order rank(const Options& options, const Model& model, const Sensor& sensor,
+           const std::vector<Candidate>& candidates, const ExecConfig& exec) {
+  Order ranking;
+  ranking.order.resize(candidates.size());
+  std::iota(ranking.order.begin(), ranking.order.end(), std::size_t{0});
+  if (options.gain.empty()) return ranking;
+  GainConfig config;
+  config.model = ranking.model = parse_gain_model(options.gain);
+  config.support_plane = options.support_plane;
+  std::vector<Pose> poses;
+  for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
+  ranking.gains.resize(poses.size());
+  GainEvaluator(model.scene(), sensor, config, exec).evaluate(poses, ranking.gains);
+  // NaN last, ties as proposed.
+  const auto worth = [&](std::size_t i) {
+    const double gain = ranking.gains[i].gain;
+    return std::isnan(gain) ? -std::numeric_limits<double>::infinity() : gain;
+  };
+  std::stable_sort(ranking.order.begin(), ranking.order.end(),
+                   [&](std::size_t a, std::size_t b) { return worth(a) > worth(b); });
+  return ranking;
 }
 
 nlohmann::ordered_json candidate_json(const Candidate& candidate, const EstimatedViews& estimated) {
@@ -89,39 +150,34 @@ void candidates(const Options& options) {
   const ExecConfig exec{options.common.threads};
   Sensor sensor = load_sensor(options.sensor);
   if (!options.body.empty()) sensor.body_size = parse_size("--body", options.body);
-  const ReachRegion reach = options.reach.empty() ? ReachRegion{} : read_reach_toml(options.reach);
   BeliefGrid grid = load_map(options.map, &sensor);
-  GenerationConfig config = default_generation(sensor, grid.voxel_size());
-  config.boundary = options.generator == "boundary";
-  if (options.distance) config.working_distance = *options.distance;
-  config.feasibility.reach = reach;
-  config.feasibility.support_plane = options.support_plane;
-  if (config.boundary && grid.views().empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                options.map + ": has no views, which boundary candidates need");
-  }
-  if (!config.boundary) {
-    config.sets.push_back(make_pose_set(
-        options.generator, {center_of(options, grid), distance_of(options, sensor, grid),
-                            options.count, options.seed, std::nullopt}));
-  }
+  const GenerationConfig config = generation_config(options, sensor, grid);
 
   const Model model(std::move(grid), sensor, {}, {exec});
   CandidateGeneration generation(model, sensor, config, {exec});
   const Proposal proposal = generation.generate({});
+  const Order ranking = rank(options, model, sensor, proposal.candidates, exec);
   std::vector<Pose> poses;
-  for (const Candidate& candidate : proposal.candidates) poses.push_back(candidate.T_world_camera);
+  for (const std::size_t i : ranking.order) {
+    poses.push_back(proposal.candidates[i].T_world_camera);
+  }
   if (!poses.empty()) write_tum(options.out, poses);
 
   const EstimatedViews& estimated = generation.estimated();
   if (options.common.json) {
     nlohmann::ordered_json json{{"generator", options.generator},
                                 {"candidates", poses.size()},
+                                {"gain_model", nullptr},
+                                {"gain_unit", nullptr},
                                 {"dropped", nlohmann::ordered_json::object()},
                                 {"runs", nlohmann::ordered_json::array()},
                                 {"per_candidate", nlohmann::ordered_json::array()},
                                 {"per_dropped", nlohmann::ordered_json::array()},
                                 {"out", options.out}};
+    if (!ranking.gains.empty()) {
+      json["gain_model"] = gain_model_name(ranking.model);
+      json["gain_unit"] = gain_unit(ranking.model, kCriterion);
+    }
     for (const auto& [reason, count] : proposal.dropped) json["dropped"][reason] = count;
     for (const BoundaryRun& run : estimated.runs) {
       json["runs"].push_back({{"class", boundary_class_name(run.boundary_class)},
@@ -129,8 +185,11 @@ void candidates(const Options& options) {
                               {"closed", run.closed},
                               {"view", run.view}});
     }
-    for (const Candidate& candidate : proposal.candidates) {
-      json["per_candidate"].push_back(candidate_json(candidate, estimated));
+    for (const std::size_t i : ranking.order) {
+      json["per_candidate"].push_back(candidate_json(proposal.candidates[i], estimated));
+      if (ranking.gains.empty()) continue;
+      json["per_candidate"].back()["gain"] = ranking.gains[i].gain;
+      json["per_candidate"].back()["area"] = ranking.gains[i].area;
     }
     for (const CandidateGeneration::Dropped& dropped : generation.dropped()) {
       json["per_dropped"].push_back(candidate_json(dropped.candidate, estimated));
@@ -151,6 +210,12 @@ void candidates(const Options& options) {
   std::printf("\n");
   for (const auto& [reason, count] : proposal.dropped) {
     std::printf("dropped: %zu %s\n", count, reason.c_str());
+  }
+  if (!ranking.gains.empty()) {
+    std::printf("best first by the %s gain: %.6g %s\n",
+                std::string(gain_model_name(ranking.model)).c_str(),
+                ranking.gains[ranking.order.front()].gain,
+                std::string(gain_unit(ranking.model, kCriterion)).c_str());
   }
   std::printf("poses in %s\n", options.out.c_str());
 }
@@ -185,6 +250,12 @@ Command add_candidates(CLI::App& program) {
   app->add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
   app->add_option("--body", o.body, kBodyHelp);
   app->add_option("--support-plane", o.support_plane, "height z of a table [m]");
+  app->add_option("--overlap", o.overlap, std::string(kOverlapHelp) + "; default: 0.25");
+  app->add_option("--region-depth", o.region_depth,
+                  std::string(kRegionDepthHelp) + "; default: 0.08");
+  app->add_option("--gain", o.gain,
+                  "paper, surface or combined, as in score: order the poses by it, best first")
+      ->check(CLI::IsMember(gain_model_names()));
   add_seed_option(*app, o.seed, "of the shell");
   app->add_option("--out", o.out, "TUM file of camera-to-world poses")->required();
   add_common_options(*app, o.common);

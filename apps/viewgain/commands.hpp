@@ -49,6 +49,12 @@ inline constexpr const char* kBodyHelp =
     "x,y,z: width, height, depth of the sensor's housing [m]; default: the sensor's own, else the "
     "SR4000's";
 
+inline constexpr const char* kOverlapHelp =
+    "share of a boundary candidate's view that is to show known surface, 0..1";
+
+inline constexpr const char* kRegionDepthHelp =
+    "how far inward from a boundary the surface is fitted that candidates go on from [m]";
+
 [[nodiscard]] inline nlohmann::ordered_json to_json(const Box& box) {
   return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
 }

@@ -66,13 +66,8 @@ void describe(Options& o, Visitor& visit) {
                "of --policy gain: paper (entropy removed), surface (new surface to be expected) or "
                "combined",
                shows_default);
-  visit.option("overlap", "--overlap", o.overlap,
-               "share of a boundary candidate's view that is to show known surface, 0..1",
-               shows_default);
-  visit.option(
-      "region_depth", "--region-depth", o.region_depth,
-      "how far inward from a boundary the surface is fitted that candidates go on from [m]",
-      shows_default);
+  visit.option("overlap", "--overlap", o.overlap, kOverlapHelp, shows_default);
+  visit.option("region_depth", "--region-depth", o.region_depth, kRegionDepthHelp, shows_default);
   visit.option("criterion", "--criterion", o.criterion,
                "log_diagonal, log_determinant [nat] or trace [m^2]", shows_default);
   visit.option("max_views", "--max-views", o.max_views, "view budget",

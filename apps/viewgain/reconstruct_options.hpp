@@ -25,9 +25,9 @@ struct ReconstructOptions {
   std::string policy = "gain";
   std::string generator;
   std::optional<std::size_t> sphere_poses;
-  std::string gain = "paper";
-  double overlap = 0.4;
-  double region_depth = 0.05;
+  std::string gain = "combined";
+  double overlap = 0.25;
+  double region_depth = 0.08;
   std::string criterion = "log_diagonal";
   std::size_t max_views = 20;
   std::optional<double> stop_gain;

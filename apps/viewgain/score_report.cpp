@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "formats/values.hpp"
+#include "gain_unit.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -75,11 +76,6 @@ ordered_json entries(const Estimates& estimates, const std::vector<Pose>& poses)
                     {"T_world_camera", to_json(poses[i])}});
   }
   return list;
-}
-
-std::string_view gain_unit(GainModel model, std::string_view criterion) {
-  return model == GainModel::surface || (model == GainModel::paper && criterion == "trace") ? "m^2"
-                                                                                            : "nat";
 }
 
 void print_rows(const ScoredViews& views, const std::vector<Pose>& poses) {

@@ -79,6 +79,47 @@ TEST_F(Candidates, BoundaryOnesSayWhyTheyExistAndCanBeScored) {
   EXPECT_EQ(scores["poses"], result["candidates"]);
 }
 
+TEST_F(Candidates, AreRankedByAGain) {
+  const json unranked = candidates("sphere");
+  EXPECT_TRUE(unranked["gain_model"].is_null());
+  EXPECT_TRUE(unranked["gain_unit"].is_null());
+  EXPECT_FALSE(unranked["per_candidate"][0].contains("gain"));
+  int cases = 0;
+  for (const auto& [model, unit] :
+       {std::pair{"paper", "nat"}, {"surface", "m^2"}, {"combined", "nat"}}) {
+    const json ranked = candidates("sphere", {"--gain", model});
+    EXPECT_EQ(ranked["gain_model"], model);
+    EXPECT_EQ(ranked["gain_unit"], unit);
+    EXPECT_EQ(ranked["candidates"], unranked["candidates"]);
+    // As score has them: same gains, in falling order.
+    const json scores =
+        json::parse(run_well({"score", "run/map.vdb", "--poses", "poses.txt", "--sensor",
+                              "tof.toml", "--gain", model, "--top", "1000", "--json"}));
+    const json& best = scores["best"];
+    ASSERT_EQ(best.size(), ranked["per_candidate"].size());
+    ASSERT_GT(best.size(), 100U);
+    for (std::size_t i = 0; i < best.size(); ++i) {
+      EXPECT_EQ(best[i]["gain"], ranked["per_candidate"][i]["gain"]) << model << i;
+      EXPECT_EQ(best[i]["T_world_camera"], ranked["per_candidate"][i]["T_world_camera"]);
+    }
+    EXPECT_EQ(ranked["per_candidate"][0]["area"].is_null(), std::string(model) == "paper");
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
+TEST_F(Candidates, OverlapAndRegionsMoveBoundaryCandidates) {
+  const json usual = candidates("boundary");
+  EXPECT_EQ(candidates("boundary", {"--overlap", "0.25", "--region-depth", "0.08"}), usual);
+  EXPECT_NE(candidates("boundary", {"--overlap", "0.5"})["per_candidate"], usual["per_candidate"]);
+  EXPECT_NE(candidates("boundary", {"--region-depth", "0.02"})["per_candidate"],
+            usual["per_candidate"]);
+  const auto refused = run({"candidates", "run/map.vdb", "--generator", "boundary", "--sensor",
+                            "tof.toml", "--out", "none.txt", "--overlap", "1.5"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("overlap 1.5"), std::string::npos) << refused.err;
+}
+
 TEST_F(Candidates, TheBodyIsTheSensorsOrTheUsers) {
   const auto collisions = [&](const std::string& sensor, const Strings& more) {
     Strings arguments{"candidates", "run/map.vdb", "--generator", "sphere",    "--distance", "0.15",
