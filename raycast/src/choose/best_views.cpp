@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "costs.hpp"
+#include "ranking.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/text.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -56,9 +56,7 @@ void check_costs(std::span<const double> costs, std::size_t poses) {
   }
 }
 
-}  // namespace detail
-
-std::vector<std::size_t> best_indices(std::span<const double> values, std::size_t k) {
+std::vector<std::size_t> largest(std::span<const double> values, std::size_t k) {
   std::vector<std::size_t> indices(values.size());
   std::iota(indices.begin(), indices.end(), std::size_t{0});
   k = std::min(k, indices.size());
@@ -75,11 +73,13 @@ std::vector<std::size_t> best_indices(std::span<const double> values, std::size_
   return indices;
 }
 
+}  // namespace detail
+
 std::vector<std::size_t> best_indices(std::span<const ViewGain> results, std::size_t k) {
   std::vector<double> gains;
   gains.reserve(results.size());
   for (const ViewGain& result : results) gains.push_back(result.gain);
-  return best_indices(gains, k);
+  return detail::largest(gains, k);
 }
 
 BestViews GainEvaluator::best(std::span<const Pose> T_world_camera, std::size_t k,
@@ -92,7 +92,7 @@ BestViews GainEvaluator::best(std::span<const Pose> T_world_camera, std::size_t 
   if (k == 0 || T_world_camera.empty()) return best;
   const Scores scores = scores_of(*this, T_world_camera, config, control);
   best.complete = scores.scored == T_world_camera.size();
-  best.indices = best_indices(scores.worth, k);
+  best.indices = detail::largest(scores.worth, k);
   if (!best.complete) {
     // Those that were not reached look like bad poses, which come last.
     std::erase_if(best.indices, [&](std::size_t i) { return std::isnan(scores.worth[i]); });

@@ -8,9 +8,9 @@
 #include <numeric>
 #include <string>
 
-#include "costs.hpp"
 #include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
+#include "ranking.hpp"
 #include "tile_sample.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/text.hpp"
@@ -139,7 +139,7 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
     const double cost = config.costs.empty() ? 0.0 : config.costs[best.scored_indices[j]];
     worth.push_back(best.scored_gains[j].gain - cost);
   }
-  for (const std::size_t j : best_indices(worth, k)) {
+  for (const std::size_t j : detail::largest(worth, k)) {
     best.indices.push_back(best.scored_indices[j]);
     best.gains.push_back(best.scored_gains[j]);
     best.worth.push_back(worth[j]);

@@ -192,6 +192,12 @@ TEST(Race, FindsTheBestOnNearlyAllMapsAndIsDeterministic) {
   EXPECT_GE(right, 19) << "of " << kMaps;
 }
 
+std::vector<std::size_t> largest(std::span<const double> values, std::size_t k) {
+  std::vector<ViewGain> gains(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) gains[i].gain = values[i];
+  return best_indices(gains, k);
+}
+
 // What the way to each pose costs: up to the largest gain.
 std::vector<double> random_costs(std::span<const ViewGain> gains, std::uint64_t seed) {
   test::Random random(seed);
@@ -213,7 +219,7 @@ TEST(BestViews, CostsAreSubtracted) {
     std::vector<double> worth;
     for (std::size_t i = 0; i < all.size(); ++i) worth.push_back(all[i].gain - costs[i]);
     const BestViews best = evaluator.best(poses, 6, {}, {.costs = costs});
-    ASSERT_EQ(best.indices, best_indices(worth, 6));
+    ASSERT_EQ(best.indices, largest(worth, 6));
     for (std::size_t j = 0; j < 6; ++j, ++cases) {
       EXPECT_EQ(best.worth[j], worth[best.indices[j]]);
       EXPECT_TRUE(test::same_bits(best.gains[j], all[best.indices[j]]));
@@ -221,7 +227,7 @@ TEST(BestViews, CostsAreSubtracted) {
     const BestViews plain = evaluator.best(poses, 6);
     changed += plain.indices != best.indices ? 1 : 0;
     EXPECT_EQ(plain.worth[0], plain.gains[0].gain);
-    EXPECT_EQ(best_indices(worth, 150).back(), 17U);
+    EXPECT_EQ(largest(worth, 150).back(), 17U);
   }
   EXPECT_EQ(cases, 18);
   EXPECT_EQ(changed, 3);
@@ -247,8 +253,8 @@ TEST(BestViews, AMeasureTakesTheGainsPlace) {
   evaluator.evaluate(poses, static_cast<const RunMeasure&>(own), by_runs);
   const BestViews hits = evaluator.best(poses, 5, {}, {.measure = &own});
   const BestViews runs = evaluator.best(poses, 5, {}, {.run_measure = &own});
-  EXPECT_EQ(hits.indices, best_indices(by_hits, 5));
-  EXPECT_EQ(runs.indices, best_indices(by_runs, 5));
+  EXPECT_EQ(hits.indices, largest(by_hits, 5));
+  EXPECT_EQ(runs.indices, largest(by_runs, 5));
   EXPECT_EQ(hits.worth[0], by_hits[hits.indices[0]]);
   EXPECT_NE(hits.indices[0], runs.indices[0]);
   EXPECT_TRUE(hits.gains.empty());

@@ -232,7 +232,5 @@ class VIEWGAIN_EXPORT GainEvaluator {
 /// clamped.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::size_t> best_indices(
     std::span<const ViewGain> results, std::size_t k);
-[[nodiscard]] VIEWGAIN_EXPORT std::vector<std::size_t> best_indices(std::span<const double> values,
-                                                                    std::size_t k);
 
 }  // namespace viewgain
