@@ -77,10 +77,12 @@ void describe(Options& o, Visitor& visit) {
                "m^2]; default: 1.2 (trace: 0.01 of the first view's)",
                as_it_is);
   visit.derived("stop_gain_is_relative");
-  visit.option("stop_area", "--stop-area", o.stop_area,
-               "of --gain surface and combined: stop when no candidate promises this share of the "
-               "surface so far as new surface, twice in a row; 0: never; default: 0.001",
-               as_it_is);
+  visit.option(
+      "stop_area", "--stop-area", o.stop_area,
+      "of --gain surface and combined: stop when the best candidate promises less than this "
+      "share of the surface so far as new surface, on the mean of three decisions; 0: never; "
+      "default: 0.0008",
+      as_it_is);
   visit.option("stop_idle", "--stop-idle", o.stop_idle,
                "stop after so many views in a row that change entropy and unknown voxels by "
                "less than 0.1 %; 0: never",

@@ -22,7 +22,7 @@ namespace {
 constexpr double kStopGain = 1.2;  // [nat]
 
 // Of the surface so far; apps/README.md says where the camel stops by it.
-constexpr double kStopArea = 1e-3;
+constexpr double kStopArea = 8e-4;
 
 // A distance [m] from the centre at which nothing of an object of this size is.
 double outside(double size) { return 1.1 * 0.5 * std::sqrt(3.0) * size; }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/core/planning.hpp"
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -79,20 +80,25 @@ class GainRule {
   bool relative_;  ///< the limit is a share of the first gain, which has yet to come
 };
 
-// No candidate promises enough new surface, twice in a row.
+// No candidate promises enough new surface, on the mean of some decisions.
 class AreaRule {
  public:
-  explicit AreaRule(const PlanningConfig& config) : share_(config.stop_area) {}
+  explicit AreaRule(const PlanningConfig& config) : limit_(config.stop_area) {}
 
-  // A decision whose areas are not known (NaN) is not under the limit.
+  // A decision whose areas are not known (NaN) makes a mean that is not under the limit; so does a
+  // model without a surface.
   bool stops_at(double best_area, double surface_area) {
-    const bool is_under = share_ > 0 && best_area < share_ * surface_area;
-    return std::exchange(was_under_, is_under) && is_under;
+    shares_[count_++ % shares_.size()] = best_area / surface_area;
+    if (count_ < shares_.size()) return false;
+    double sum = 0;
+    for (const double share : shares_) sum += share;
+    return limit_ > 0 && sum < limit_ * static_cast<double>(shares_.size());
   }
 
  private:
-  double share_;
-  bool was_under_ = false;  // at the decision before
+  double limit_;
+  std::array<double, 3> shares_{};  // of the surface, in the last decisions
+  std::size_t count_ = 0;
 };
 
 StopReason nowhere_to_go(const Proposal& proposal) {

@@ -106,9 +106,9 @@ struct VIEWGAIN_EXPORT PlanningConfig {
   double stop_gain = 0.15;
   /// stop_gain is a share of the first decision's gain per voxel instead (for trace: 0.01).
   bool stop_gain_is_relative = false;
-  /// Stop when the most that any candidate is expected to show (Decision::best_area) is under this
-  /// share of the model's surface (ModelProgress::surface_area) in two decisions in a row: one
-  /// alone may be low by chance. 0: never.
+  /// Stop when the most that any candidate is expected to show (Decision::best_area), as a share of
+  /// the model's surface (ModelProgress::surface_area), is under this on the mean of the last three
+  /// decisions: a single one is often high or low by chance. 0: never.
   double stop_area = 0;
   std::size_t idle_views = 3;  ///< stop after so many views in a row that brought nothing; 0: never
   /// Nothing: the view adds less than this share to entropy_removed and takes less than this share
