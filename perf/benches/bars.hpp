@@ -55,6 +55,8 @@ using BarGroup = std::vector<Figure> (*)(const BarsOptions& options);
 [[nodiscard]] std::vector<Figure> memory_figures(const BarsOptions& options);
 /// decision_ms_100, decision_ms_500, decision_ms_2000.
 [[nodiscard]] std::vector<Figure> decision_figures(const BarsOptions& options);
+/// surface_over_paper, combined_over_paper, hazard_ms_128, hazard_ms_512.
+[[nodiscard]] std::vector<Figure> surface_figures(const BarsOptions& options);
 
 /// Groups by the names that BarsOptions::only takes.
 struct NamedBarGroup {

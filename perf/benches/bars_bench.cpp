@@ -41,6 +41,10 @@ constexpr std::array kRules{
     Rule{"race_over_exhaustive", 0.15, false},
     Rule{"latency_scaling", 0.6, false},
     Rule{"memory_mb", 250.0, false},
+    Rule{"surface_over_paper", 0.35, true},
+    Rule{"combined_over_paper", {}, true},
+    Rule{"hazard_ms_128", 10.0, false},
+    Rule{"hazard_ms_512", 40.0, false},
     Rule{"decision_ms_100", {}, false},
     Rule{"decision_ms_500", {}, false},
     Rule{"decision_ms_2000", {}, false},
@@ -51,6 +55,7 @@ constexpr std::array kGroups{
     NamedBarGroup{"latency", latency_figures}, NamedBarGroup{"integrate", integrate_figures},
     NamedBarGroup{"update", update_figures},   NamedBarGroup{"search", search_figures},
     NamedBarGroup{"memory", memory_figures},   NamedBarGroup{"decision", decision_figures},
+    NamedBarGroup{"surface", surface_figures},
 };
 
 /// A bar's entry in the list; `is_missed` is set if it is missed.

@@ -10,6 +10,8 @@
 #include "measure.hpp"
 #include "micro_benchmarks.hpp"
 #include "micro_scene.hpp"
+#include "scene/brick_table.hpp"
+#include "viewgain/grid/hazard.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -35,6 +37,19 @@ void snapshot(benchmark::State& state) {
   std::size_t leaves = 0;
   for (auto _ : state) leaves = micro.grid.snapshot().leaves.size();
   count(state, "leaves", static_cast<double>(leaves));
+}
+
+void hazard_field(benchmark::State& state) {
+  const GridSnapshot snapshot = MicroScene::get().grid.snapshot();
+  for (auto _ : state) benchmark::DoNotOptimize(HazardField(snapshot).near_box());
+  count(state, "fields", 1);
+}
+
+void brick_table(benchmark::State& state) {
+  const GridSnapshot snapshot = MicroScene::get().grid.snapshot();
+  const HazardField hazard(snapshot);
+  for (auto _ : state) benchmark::DoNotOptimize(detail::BrickTable(snapshot, hazard).bytes());
+  count(state, "leaves", static_cast<double>(snapshot.leaves.size()));
 }
 
 // A copy of the map with one frame more; making it is not timed.
@@ -111,6 +126,8 @@ void register_map_benchmarks() {
   wall(benchmark::RegisterBenchmark("scene_build", scene_build))->Arg(64)->Arg(128)->Arg(256);
   wall(benchmark::RegisterBenchmark("snapshot", snapshot));
   wall(benchmark::RegisterBenchmark("scene_update", scene_update));
+  wall(benchmark::RegisterBenchmark("hazard_field", hazard_field));
+  wall(benchmark::RegisterBenchmark("brick_table", brick_table));
   for (const auto& [name, carve] :
        {std::pair("integrate/cones", Carve::cones), std::pair("integrate/lines", Carve::lines)}) {
     benchmark::RegisterBenchmark(name, integrate, carve)

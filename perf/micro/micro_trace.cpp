@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Finding the first voxel that is not free: packets through the BVH, tiles along lists, leaves
-// known beforehand.
+// known beforehand; and going on from there.
 #include <benchmark/benchmark.h>
+
+#include <algorithm>
 
 #include "micro_benchmarks.hpp"
 #include "micro_scene.hpp"
 #include "scene/scene_data.hpp"
+#include "trace/ordered_walk.hpp"
+#include "trace/scene_tracing.hpp"
 
 namespace viewgain::bench {
 namespace {
@@ -68,6 +72,34 @@ void leaf_dda(benchmark::State& state, Isa isa) {
   count_rays(state, rays);
 }
 
+// Rays that hit a voxel, walked on through unknown voxels from there.
+void ordered_walk(benchmark::State& state, Isa isa) {
+  const MicroScene& micro = MicroScene::get();
+  const detail::WalkKernels& kernels = detail::walk_kernels(isa);
+  const detail::SceneData& scene = detail::SceneAccess::data(*micro.scene);
+  const detail::BrickTable& bricks = scene.tracing->bricks();
+  const Index3& dims = scene.snapshot.dims;
+  detail::WalkLimits limits;
+  limits.workspace = {static_cast<float>(dims.x), static_cast<float>(dims.y),
+                      static_cast<float>(dims.z)};
+  constexpr float kCap = 1.0F;
+  detail::WalkTask task;
+  detail::WalkedTile out;
+  std::size_t rays = 0, next = 0;
+  for (auto _ : state) {
+    const MicroScene::View& view = micro.views[next++ % micro.views.size()];
+    for (std::size_t i = 0; i < view.tiles.size(); ++i) {
+      task.rays = view.tiles[i];
+      std::fill(task.far, task.far + detail::kTileRays, view.frame.max_range);
+      task.solid_angle = &micro.tracer.table().solid_angle[view.numbers[i] * detail::kTileRays];
+      kernels.area(bricks, view.frame, limits, task, kCap, out);
+      benchmark::DoNotOptimize(out.occupied);
+    }
+    rays += view.tiles.size() * detail::kTileRays;
+  }
+  count_rays(state, rays);
+}
+
 }  // namespace
 
 void register_trace_benchmarks() {
@@ -76,6 +108,7 @@ void register_trace_benchmarks() {
   for (const Isa isa : micro_isas()) {
     const std::string name(isa_name(isa));
     benchmark::RegisterBenchmark(("leaf_dda/" + name).c_str(), leaf_dda, isa);
+    benchmark::RegisterBenchmark(("ordered_walk/" + name).c_str(), ordered_walk, isa);
   }
 }
 

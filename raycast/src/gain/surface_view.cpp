@@ -87,9 +87,12 @@ WalkLimits SurfaceView::limits_of() const {
   return limits;
 }
 
-void SurfaceView::find_ends(const PoseFrame& frame, const RayTile& rays, float* far) const {
-  std::copy(rays.range, rays.range + kTileRays, far);
-  if (scene_.has_obstacles) cut_at_obstacles(scene_.tracing->obstacle_bvh(), frame, rays, far);
+void SurfaceView::set_up(const PoseFrame& frame, std::size_t number, const RayTile& rays,
+                         WalkTask& task) const {
+  task.rays = rays;
+  std::fill(task.far, task.far + kTileRays, frame.max_range);
+  if (scene_.has_obstacles) cut_at_obstacles(scene_.tracing->obstacle_bvh(), frame, rays, task.far);
+  task.solid_angle = &tracer_.table().solid_angle[number * kTileRays];
 }
 
 Index3 SurfaceView::voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) const {
@@ -119,7 +122,7 @@ double SurfaceView::area_of(const RayTile& rays, WalkedTile& tile) const {
     tile.passed[lane] = 0;
   });
   double sum = 0;
-  for_each_lane(rays.valid, [&](int lane) { sum += static_cast<double>(tile.area[lane]); });
+  for_each_lane(rays.hit, [&](int lane) { sum += static_cast<double>(tile.area[lane]); });
   return sum;
 }
 
@@ -160,12 +163,12 @@ void SurfaceView::evaluate(const PoseFrame& frame, const Tiles& tiles, Workspace
     });
   } else {
     double sum = 0;  // [voxels²]
-    tracer_.set_up(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
-      alignas(64) float far[kTileRays];
-      find_ends(frame, rays, far);
-      WalkedTile walked;
-      walk_.area(bricks_, frame, limits_, rays, far,
-                 &tracer_.table().solid_angle[number * kTileRays], cap_, walked);
+    WalkTask task;
+    WalkedTile walked;
+    tracer_.trace(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
+      if (rays.hit == 0) return;
+      set_up(frame, number, rays, task);
+      walk_.area(bricks_, frame, limits_, task, cap_, walked);
       sum += area_of(rays, walked);
       result.hits += static_cast<std::uint32_t>(std::popcount(walked.occupied));
       if (!refines) return;
@@ -202,12 +205,12 @@ double SurfaceView::saturated_gain(Index3 voxel, const SymmetricMatrix3& informa
                    entropy_with_floor(before + information, floor_variance_));
 }
 
-void SurfaceView::find_visits(const PoseFrame& frame, const RayTile& rays,
+void SurfaceView::find_visits(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                               Workspace& workspace) const {
-  alignas(64) float far[kTileRays];
-  find_ends(frame, rays, far);
+  WalkTask task;
+  set_up(frame, number, rays, task);
   workspace.visits.clear();
-  walk_.visits(bricks_, frame, limits_, rays, far, workspace.visits);
+  walk_.visits(bricks_, frame, limits_, task, workspace.visits);
   // A packet's rays take turns; each ray's visits are in order.
   std::stable_sort(workspace.visits.begin(), workspace.visits.end(),
                    [](const VoxelVisit& a, const VoxelVisit& b) { return a.lane < b.lane; });
@@ -215,7 +218,7 @@ void SurfaceView::find_visits(const PoseFrame& frame, const RayTile& rays,
 
 void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                               Workspace& workspace) const {
-  find_visits(frame, rays, workspace);
+  find_visits(frame, number, rays, workspace);
   const double V = scene_.snapshot.voxel_size;
   const int shift = bricks_.rate_shift;
   const std::vector<WeightRegion>& weights = core_.config.weights;

@@ -34,20 +34,21 @@ class SurfaceView {
   template <typename Tiles, typename Visit>
   void for_each_share(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
                       Visit&& visit) const {
-    tracer_.set_up(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
+    tracer_.trace(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
       workspace.shares.clear();
-      find_shares(frame, number, rays, workspace);
+      if (rays.hit != 0) find_shares(frame, number, rays, workspace);
       for (const SurfaceShare& share : workspace.shares) visit(share);
     });
   }
 
-  /// Calls visit(tile number, rays, visits) for some tiles: what their rays visit, each ray's in
-  /// one piece and in order.
+  /// Calls visit(tile number, rays, visits) for those of some tiles whose rays meet anything: what
+  /// they visit, each ray's in one piece and in order.
   template <typename Tiles, typename Visit>
   void for_each_visited(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
                         Visit&& visit) const {
-    tracer_.set_up(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
-      find_visits(frame, rays, workspace);
+    tracer_.trace(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
+      if (rays.hit == 0) return;
+      find_visits(frame, number, rays, workspace);
       visit(number, rays, workspace.visits);
     });
   }
@@ -63,11 +64,13 @@ class SurfaceView {
   template <typename Tiles>
   void evaluate(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
                 ViewGain& result) const;
-  void find_visits(const PoseFrame& frame, const RayTile& rays, Workspace& workspace) const;
+  void find_visits(const PoseFrame& frame, std::size_t number, const RayTile& rays,
+                   Workspace& workspace) const;
   void find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                    Workspace& workspace) const;
   [[nodiscard]] WalkLimits limits_of() const;
-  void find_ends(const PoseFrame& frame, const RayTile& rays, float* far) const;
+  void set_up(const PoseFrame& frame, std::size_t number, const RayTile& rays,
+              WalkTask& task) const;
   [[nodiscard]] double area_of(const RayTile& rays, WalkedTile& tile) const;
   /// Does the ray come to an occupied voxel, in table coordinates, from behind?
   [[nodiscard]] bool is_behind(const RayTile& rays, int lane, Index3 at) const;

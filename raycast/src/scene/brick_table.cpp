@@ -19,7 +19,7 @@ constexpr std::uint32_t kEntriesPerNode = kBricksPerNode * kBricksPerNode * kBri
 constexpr std::uint32_t kFreeNode = 0, kFarNode = kEntriesPerNode;
 constexpr std::size_t kMostNodes = std::size_t{1} << 24U;
 
-constexpr std::uint32_t kFreeBrick = BrickTable::kFree << 30U | 3U;
+constexpr std::uint32_t kFreeBrick = BrickTable::kFree << 30U | kBrick;
 constexpr std::uint32_t kFarBrick = BrickTable::kUnknown << 30U | BrickTable::kFarSlot;
 
 std::uint32_t place_in_node(Index3 brick) {
@@ -55,7 +55,7 @@ class BrickTableMaker {
 
   void run() {
     lay_out();
-    table_.entries.assign(kEntriesPerNode, BrickTable::kFree << 30U | 7U);
+    table_.entries.assign(kEntriesPerNode, BrickTable::kFree << 30U | kNode);
     table_.entries.resize(2 * kEntriesPerNode, kFarBrick);
     table_.rates.clear();
     (void)add_far_slot();
@@ -79,7 +79,7 @@ class BrickTableMaker {
     const std::array<std::int32_t, 3> low{base.x, base.y, base.z}, size{dims.x, dims.y, dims.z};
     std::size_t count = 1;
     for (std::size_t a = 0; a < 3; ++a) {
-      table_.offset[a] = low[a] & (kNode - 1);
+      table_.offset[a] = low[a] & (kBrick - 1);
       const std::int64_t end = std::int64_t{table_.offset[a]} + size[a];
       table_.nodes[a] = static_cast<std::int32_t>((end + kNode - 1) / kNode);
       count *= static_cast<std::size_t>(table_.nodes[a]);
@@ -89,19 +89,28 @@ class BrickTableMaker {
                                              " cubes of 128 voxels: too many for a surface gain");
       }
     }
-    first_node_ = {base.x >> 7, base.y >> 7, base.z >> 7};
+    first_brick_ = {base.x >> 3, base.y >> 3, base.z >> 3};
     table_.node_entries.assign(count, kFreeNode);
     table_.rate_shift = hazard_.cell_shift();
     cells_ = kBrick >> table_.rate_shift;
   }
 
+  // Bricks by their numbers from the workspace's first on.
   [[nodiscard]] std::uint32_t& node_of(Index3 brick) {
-    const auto x = static_cast<std::size_t>((brick.x >> 4) - first_node_.x),
-               y = static_cast<std::size_t>((brick.y >> 4) - first_node_.y),
-               z = static_cast<std::size_t>((brick.z >> 4) - first_node_.z);
+    const auto x = static_cast<std::size_t>(brick.x >> 4),
+               y = static_cast<std::size_t>(brick.y >> 4),
+               z = static_cast<std::size_t>(brick.z >> 4);
     return table_.node_entries[(x * static_cast<std::size_t>(table_.nodes[1]) + y) *
                                    static_cast<std::size_t>(table_.nodes[2]) +
                                z];
+  }
+  [[nodiscard]] Index3 brick_at(Index3 voxel) const {
+    return {(voxel.x >> 3) - first_brick_.x, (voxel.y >> 3) - first_brick_.y,
+            (voxel.z >> 3) - first_brick_.z};
+  }
+  [[nodiscard]] Index3 origin_of(Index3 brick) const {
+    return {(brick.x + first_brick_.x) * kBrick, (brick.y + first_brick_.y) * kBrick,
+            (brick.z + first_brick_.z) * kBrick};
   }
 
   // The entry of a brick, in a node with entries of its own.
@@ -149,8 +158,7 @@ class BrickTableMaker {
 
   void add_leaf(const SnapshotLeaf& leaf) {
     const std::uint32_t slot = add_slot(leaf.origin);
-    entry_of({leaf.origin.x >> 3, leaf.origin.y >> 3, leaf.origin.z >> 3}) =
-        BrickTable::kMixed << 30U | slot;
+    entry_of(brick_at(leaf.origin)) = BrickTable::kMixed << 30U | slot;
     std::array<std::uint32_t, 64> cubes{};
     const auto put = [&](const LeafMask& mask, std::uint32_t state) {
       for_each_bit(mask, [&](unsigned offset) {
@@ -170,19 +178,22 @@ class BrickTableMaker {
                                           first + 16, first + 17, first + 20, first + 21};
       std::uint32_t any = 0, all = 0xFFFF;
       for (const unsigned part : parts) any |= cubes[part], all &= cubes[part];
-      const std::uint32_t flag = any == 0 ? BrickTable::kFreeOctant
-                                 : any == BrickTable::kAllUnknown && all == any
-                                     ? BrickTable::kUnknownOctant
-                                     : 0U;
-      for (const unsigned part : parts) cubes[part] |= flag;
+      const bool is_same = any == all && (any == 0 || any == BrickTable::kAllUnknown);
+      for (const unsigned part : parts) {
+        const std::uint32_t cube = cubes[part];
+        const std::uint32_t edge = is_same                                        ? 4
+                                   : cube == 0 || cube == BrickTable::kAllUnknown ? 2
+                                                                                  : 1;
+        cubes[part] |= edge << 16U;
+      }
     }
     table_.states.insert(table_.states.end(), cubes.begin(), cubes.end());
   }
 
   // A box of unknown voxels. Bricks that the workspace cuts count whole: no ray goes there.
   void add_unknown(const VoxelBox& box) {
-    const VoxelBox bricks{{box.min.x >> 3, box.min.y >> 3, box.min.z >> 3},
-                          {(box.max.x + 7) >> 3, (box.max.y + 7) >> 3, (box.max.z + 7) >> 3}};
+    const Index3 last = brick_at({box.max.x - 1, box.max.y - 1, box.max.z - 1});
+    const VoxelBox bricks{brick_at(box.min), {last.x + 1, last.y + 1, last.z + 1}};
     const VoxelBox nodes{
         {bricks.min.x >> 4, bricks.min.y >> 4, bricks.min.z >> 4},
         {(bricks.max.x + 15) >> 4, (bricks.max.y + 15) >> 4, (bricks.max.z + 15) >> 4}};
@@ -190,7 +201,7 @@ class BrickTableMaker {
     for (std::int32_t nx = nodes.min.x; nx < nodes.max.x; ++nx) {
       for (std::int32_t ny = nodes.min.y; ny < nodes.max.y; ++ny) {
         for (std::int32_t nz = nodes.min.z; nz < nodes.max.z; ++nz) {
-          const Index3 origin{nx * kNode, ny * kNode, nz * kNode};
+          const Index3 origin = origin_of({nx * 16, ny * 16, nz * 16});
           const VoxelBox node{origin, {origin.x + kNode, origin.y + kNode, origin.z + kNode}};
           const VoxelBox within = node.intersection(workspace);
           std::uint32_t& entries = node_of({nx * 16, ny * 16, nz * 16});
@@ -209,7 +220,7 @@ class BrickTableMaker {
     for (std::int32_t x = bricks.min.x; x < bricks.max.x; ++x) {
       for (std::int32_t y = bricks.min.y; y < bricks.max.y; ++y) {
         for (std::int32_t z = bricks.min.z; z < bricks.max.z; ++z) {
-          const Index3 origin{x * kBrick, y * kBrick, z * kBrick};
+          const Index3 origin = origin_of({x, y, z});
           const std::uint32_t slot =
               is_far(origin, kBrick) ? BrickTable::kFarSlot : add_slot(origin);
           entry_of({x, y, z}) = BrickTable::kUnknown << 30U | slot;
@@ -278,7 +289,7 @@ class BrickTableMaker {
 
   // Tells each free brick of a node how large the aligned cube is that is free round it.
   static void widen_free(std::uint32_t* entries) {
-    for (std::uint32_t edge = 2, level = 4; edge <= kBricksPerNode; edge *= 2, ++level) {
+    for (std::uint32_t edge = 2; edge <= kBricksPerNode; edge *= 2) {
       for (std::uint32_t at = 0; at < kEntriesPerNode; ++at) {
         const std::uint32_t x = at >> 8U, y = at >> 4U & 15U, z = at & 15U;
         if (((x | y | z) & (edge - 1)) != 0) continue;
@@ -290,8 +301,8 @@ class BrickTableMaker {
           }
         };
         bool free = true;
-        for_cube([&](std::uint32_t entry) { free = free && entry == level - 1; });
-        if (free) for_cube([&](std::uint32_t& entry) { entry = level; });
+        for_cube([&](std::uint32_t entry) { free = free && entry == edge / 2 * kBrick; });
+        if (free) for_cube([&](std::uint32_t& entry) { entry = edge * kBrick; });
       }
     }
   }
@@ -299,7 +310,7 @@ class BrickTableMaker {
   const GridSnapshot& snapshot_;
   const HazardField& hazard_;
   BrickTable& table_;
-  Index3 first_node_{};
+  Index3 first_brick_{};
   int cells_ = 0;  // hazard cells along a brick's edge
   std::uint32_t slots_ = 0;
 };

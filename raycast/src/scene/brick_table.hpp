@@ -16,20 +16,20 @@ namespace viewgain::detail {
 /// 128³ voxels have 16³ entries, one for each brick of 8³ voxels; a node that is free throughout,
 /// or unknown with the far rate, has no entries of its own.
 ///
-/// Table coordinates count voxels from the lowest node's lowest voxel; that of the workspace is
-/// `offset`, in 0..127 along each axis.
+/// Table coordinates count voxels from the lowest voxel of the workspace's lowest brick, where the
+/// first node begins too; the workspace's lowest voxel is `offset`, in 0..7 along each axis.
 struct BrickTable {
-  /// Kinds of entries, in the two highest bits. The rest: log2 of the edge of the largest aligned
-  /// free cube round the brick [voxels], 3 to 7; else the brick's slot.
+  /// Kinds of entries, in the two highest bits. The rest: edge of the largest aligned free cube
+  /// round the brick [voxels], 8 to 128; else the brick's slot.
   static constexpr std::uint32_t kFree = 0, kUnknown = 1, kMixed = 2;
   static constexpr std::uint32_t kPayload = 0x3FFFFFFFU;
   static constexpr std::uint32_t kFarSlot = 0;  ///< of all bricks with the far rate throughout
 
   /// Two bits a voxel; in `states` 16 for each cube of 2³ voxels (x << 2 | y << 1 | z), and above
-  /// them what the cube of 4³ that it is part of is throughout, if anything.
+  /// them the edge of the largest aligned cube round its voxels that is free or unknown throughout,
+  /// 1, 2 or 4.
   static constexpr std::uint32_t kFreeVoxel = 0, kUnknownVoxel = 1, kOccupiedVoxel = 2;
   static constexpr std::uint32_t kAllUnknown = 0x5555;
-  static constexpr std::uint32_t kFreeOctant = 1U << 16U, kUnknownOctant = 1U << 17U;
 
   std::array<std::int32_t, 3> offset{};
   std::array<std::int32_t, 3> nodes{};      ///< along x, y, z

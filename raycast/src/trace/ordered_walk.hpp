@@ -43,18 +43,22 @@ struct VoxelVisit {
   float rate;            ///< [1/voxel], as in BrickTable::rates; unknown voxels only
 };
 
+/// A traced tile whose rays that hit a voxel are to be walked on, from where they hit it.
+struct alignas(64) WalkTask {
+  RayTile rays;
+  float far[kTileRays];      ///< where each ray must end [voxels]
+  const float* solid_angle;  ///< what each ray stands for [sr]
+};
+
 /// Walks rays through the bricks in order, through unknown voxels to the first occupied one or the
 /// end of what is to be seen.
 struct WalkKernels {
-  /// Of a tile whose rays are set up (TraceKernels::begin): `far` is where each ray must end
-  /// [voxels], `solid_angle` what each stands for [sr], `cap` the most that P is multiplied by.
+  /// `cap`: the most that P is multiplied by.
   void (*area)(const BrickTable& table, const PoseFrame& frame, const WalkLimits& limits,
-               const RayTile& rays, const float* far, const float* solid_angle, float cap,
-               WalkedTile& out);
-  /// The same voxel by voxel: appends what the rays visit, each ray's in order, and leaves the sums
-  /// alone.
+               const WalkTask& task, float cap, WalkedTile& out);
+  /// The same voxel by voxel: appends what the rays of a tile visit, each ray's in order.
   void (*visits)(const BrickTable& table, const PoseFrame& frame, const WalkLimits& limits,
-                 const RayTile& rays, const float* far, std::vector<VoxelVisit>& out);
+                 const WalkTask& task, std::vector<VoxelVisit>& out);
 };
 
 /// Kernels of an instruction set that the CPU supports.

@@ -62,20 +62,6 @@ class ViewTracer {
     }
   }
 
-  /// Sets up the rays of those tiles that can meet a voxel, in order, and calls visit(tile number,
-  /// RayTile) without having traced them. `bins` are prepared for the view.
-  template <typename Tiles, typename Visit>
-  void set_up(const PoseFrame& frame, const Tiles& tiles, const TileBins& bins,
-              Visit&& visit) const {
-    if (frame.sees_nothing) return;
-    RayTile out;
-    for (const std::size_t tile : tiles) {
-      if (bins.valid() && bins.boxes_of(tile).empty()) continue;
-      kernels_.begin(rays_->table, frame, tile, out);
-      visit(tile, out);
-    }
-  }
-
   /// The numbers of all tiles.
   [[nodiscard]] auto all_tiles() const {
     return std::views::iota(std::size_t{0}, rays_->table.tile_count);
