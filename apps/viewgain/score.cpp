@@ -241,8 +241,10 @@ Command add_score(CLI::App& program) {
       ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000'000}, "count"))
       ->capture_default_str();
   auto* selection = app->add_option_group("selection", "at most one of; default: score all poses");
-  selection->add_flag("--race", options->race,
-                      "the best poses, very probably, by successive halving on parts of the views");
+  selection->add_flag(
+      "--race", options->race,
+      "the best poses, very probably, by parts of the views: successive halving, or for "
+      "surface and combined two stages");
   selection
       ->add_option("--approximate", options->approximate,
                    "SHARE: estimates with standard errors from this share of each view's tiles")

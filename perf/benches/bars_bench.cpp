@@ -43,6 +43,8 @@ constexpr std::array kRules{
     Rule{"memory_mb", 250.0, false},
     Rule{"surface_over_paper", 0.35, true},
     Rule{"combined_over_paper", {}, true},
+    Rule{"stages_over_paper", 0.25, false},
+    Rule{"stages_over_paper_combined", {}, false},
     Rule{"hazard_ms_128", 10.0, false},
     Rule{"hazard_ms_512", 40.0, false},
     Rule{"decision_ms_100", {}, false},
@@ -55,7 +57,7 @@ constexpr std::array kGroups{
     NamedBarGroup{"latency", latency_figures}, NamedBarGroup{"integrate", integrate_figures},
     NamedBarGroup{"update", update_figures},   NamedBarGroup{"search", search_figures},
     NamedBarGroup{"memory", memory_figures},   NamedBarGroup{"decision", decision_figures},
-    NamedBarGroup{"surface", surface_figures},
+    NamedBarGroup{"surface", surface_figures}, NamedBarGroup{"stages", stages_figures},
 };
 
 /// A bar's entry in the list; `is_missed` is set if it is missed.

@@ -303,7 +303,11 @@ gains : ndarray, (k,), structured
            py::arg("first_share") = race_defaults.first_share, py::arg("keep") = race_defaults.keep,
            py::arg("seed") = race_defaults.seed, py::arg("return_gains") = false,
            py::arg("control") = py::none(),
-           R"(The k best poses, very probably, by successive halving; see ``best``.
+           R"(The k best poses, very probably; see ``best``.
+
+By the paper's gain: successive halving on random tiles of the images. By the surface and the
+combined gain all poses are scored by about 400 rays, and max(32, 4 k, 1.5 %) of them in full; the
+parameters below then only have to be in range.
 
 Parameters
 ----------

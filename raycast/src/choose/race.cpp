@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The best views of a batch, very probably, by successive halving.
+// The best views of a batch, very probably: by successive halving, or in two stages where rays go
+// on through unknown voxels.
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <functional>
+#include <memory>
 #include <string>
 
 #include "gain/batch_loop.hpp"
@@ -41,10 +43,106 @@ void check(const RaceConfig& config) {
   if (!(config.keep > 0 && config.keep <= 1)) reject("share to keep", config.keep, "(0, 1]");
 }
 
+// Of the surface and the combined gain all poses are scored by about so many rays of the image, and
+// at least this share of them in full.
+constexpr double kCoarseRays = 400;
+constexpr double kInFull = 0.015;
+
 struct Estimate {
   std::size_t index = 0;
   double gain = 0, standard_error = 0;
 };
+
+// The poses that are still in, and what they were compared by.
+struct Field {
+  std::vector<Estimate> poses;
+  std::uint64_t rays_traced = 0;
+
+  // The best first, ties to the lower index, without those that have no gain.
+  void sort() {
+    std::erase_if(poses, [](const Estimate& e) { return std::isnan(e.gain); });
+    std::sort(poses.begin(), poses.end(), [](const Estimate& a, const Estimate& b) {
+      return a.gain != b.gain ? a.gain > b.gain : a.index < b.index;
+    });
+  }
+};
+
+using Report = std::function<void(std::size_t done)>;
+
+// Leaves those `few` that score best on every so manieth pixel and row; all where images have no
+// more rays than that. False if it was stopped.
+bool choose_by_coarse_rays(const detail::ViewDriver& driver, const VoxelScene& scene,
+                           std::span<const Pose> T_world_camera, std::size_t few,
+                           std::span<const double> costs, const BatchControl& control,
+                           const Report& report, Field& field) {
+  const detail::EvaluatorCore& core = *driver.core();
+  const double factor = std::sqrt(core.ray_count / kCoarseRays);
+  const int every = static_cast<int>(std::lround(factor));
+  if (every <= 1) return true;
+  const int stride = core.config.pixel_stride * every;
+  const detail::ViewDriver coarse(scene, std::make_shared<detail::EvaluatorCore>(core, stride));
+  const bool complete = detail::for_each(
+      driver, field.poses.size(), control, [&](std::size_t j, detail::ViewDriver::Lease& lease) {
+        Estimate& e = field.poses[j];
+        e.gain = coarse.evaluate(T_world_camera[e.index], lease).gain;
+        if (!costs.empty()) e.gain -= costs[e.index];
+      });
+  if (!complete) return false;
+  field.rays_traced += std::uint64_t{coarse.core()->ray_count} * field.poses.size();
+  field.sort();
+  if (field.poses.size() > few) field.poses.resize(few);
+  report(T_world_camera.size() - field.poses.size());
+  return true;
+}
+
+// Successive halving, until there are no more than `few`. False if it was stopped.
+bool choose_by_bundles(const detail::ViewDriver& driver, std::span<const Pose> T_world_camera,
+                       std::size_t k, std::size_t few, const RaceConfig& config,
+                       const BatchControl& control, const Report& report, Field& field) {
+  const detail::TileTable& table = driver.tracer().table();
+  std::vector<Estimate>& poses = field.poses;
+  for (double share = config.first_share;
+       share <= std::max(kLastShare, config.first_share) && poses.size() > few; share *= kGrowth) {
+    // Bundles are nested: each round's begin with those of the round before.
+    const auto per_group = static_cast<std::size_t>(std::max(
+        kLeastTiles, std::round(share * static_cast<double>(table.tile_count) / double{kGroups})));
+    const auto tiles = detail::random_tiles(table, kGroups, per_group, config.seed);
+    std::uint64_t rays = 0;
+    for (const auto& group : tiles) rays += detail::rays_of(table, group);
+    const double part = static_cast<double>(rays) / driver.core()->ray_count;
+    const bool complete = detail::for_each(
+        driver, poses.size(), control, [&](std::size_t j, detail::ViewDriver::Lease& lease) {
+          std::array<double, kGroups> gains;
+          detail::sample(driver, T_world_camera[poses[j].index], tiles, gains, lease);
+          double sum = 0, squares = 0;
+          for (const double gain : gains) sum += gain, squares += gain * gain;
+          constexpr auto n = static_cast<double>(kGroups);
+          poses[j].gain = sum;
+          if (!config.costs.empty()) poses[j].gain -= part * config.costs[poses[j].index];
+          poses[j].standard_error = std::sqrt(std::max(0.0, squares - sum * sum / n) * n / (n - 1));
+        });
+    if (!complete) return false;
+    field.rays_traced += rays * poses.size();
+
+    field.sort();
+    if (poses.size() <= few) break;
+    // Who is left: at most a share, and of those who may still be among the k best.
+    std::vector<double> least;
+    for (const Estimate& e : poses) least.push_back(e.gain - config.interval * e.standard_error);
+    std::nth_element(least.begin(), least.begin() + static_cast<std::ptrdiff_t>(k - 1), least.end(),
+                     std::greater<>());
+    const double to_reach = least[k - 1];
+    const auto kept =
+        static_cast<std::size_t>(std::ceil(config.keep * static_cast<double>(poses.size())));
+    poses.resize(std::min(poses.size(), std::max(few, kept)));
+    std::size_t place = 0;
+    std::erase_if(poses, [&](const Estimate& e) {
+      return place++ >= few && e.gain + config.interval * e.standard_error < to_reach;
+    });
+    report(T_world_camera.size() - poses.size());
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -57,67 +155,34 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
   RacedViews best;
   if (k == 0) return best;
   // Poses are done when they are out.
-  const auto report = [&](std::size_t done) {
+  const Report report = [&](std::size_t done) {
     if (control.progress) control.progress(done, count);
   };
   report(0);
-  const std::size_t few = std::max(kFewPoses, 4 * k);
-
-  std::vector<Estimate> field(count);
-  for (std::size_t i = 0; i < count; ++i) field[i].index = i;
   const detail::ViewDriver& driver = impl_->driver;
-  const detail::TileTable& table = driver.tracer().table();
-  for (double share = config.first_share;
-       share <= std::max(kLastShare, config.first_share) && field.size() > few; share *= kGrowth) {
-    // Bundles are nested: each round's begin with those of the round before.
-    const auto per_group = static_cast<std::size_t>(std::max(
-        kLeastTiles, std::round(share * static_cast<double>(table.tile_count) / double{kGroups})));
-    const auto tiles = detail::random_tiles(table, kGroups, per_group, config.seed);
-    std::uint64_t rays = 0;
-    for (const auto& group : tiles) rays += detail::rays_of(table, group);
-    const double part = static_cast<double>(rays) / driver.core()->ray_count;
-    best.complete = detail::for_each(
-        driver, field.size(), control, [&](std::size_t j, detail::ViewDriver::Lease& lease) {
-          std::array<double, kGroups> gains;
-          detail::sample(driver, T_world_camera[field[j].index], tiles, gains, lease);
-          double sum = 0, squares = 0;
-          for (const double gain : gains) sum += gain, squares += gain * gain;
-          constexpr auto n = static_cast<double>(kGroups);
-          field[j].gain = sum;
-          if (!config.costs.empty()) field[j].gain -= part * config.costs[field[j].index];
-          field[j].standard_error = std::sqrt(std::max(0.0, squares - sum * sum / n) * n / (n - 1));
-        });
-    if (!best.complete) return best;
-    best.rays_traced += rays * field.size();
-
-    std::erase_if(field, [](const Estimate& e) { return std::isnan(e.gain); });
-    std::sort(field.begin(), field.end(), [](const Estimate& a, const Estimate& b) {
-      return a.gain != b.gain ? a.gain > b.gain : a.index < b.index;
-    });
-    if (field.size() <= few) break;
-    // Who is left: at most a share, and of those who may still be among the k best.
-    std::vector<double> least;
-    for (const Estimate& e : field) least.push_back(e.gain - config.interval * e.standard_error);
-    std::nth_element(least.begin(), least.begin() + static_cast<std::ptrdiff_t>(k - 1), least.end(),
-                     std::greater<>());
-    const double to_reach = least[k - 1];
-    const auto kept =
-        static_cast<std::size_t>(std::ceil(config.keep * static_cast<double>(field.size())));
-    field.resize(std::min(field.size(), std::max(few, kept)));
-    std::size_t place = 0;
-    std::erase_if(field, [&](const Estimate& e) {
-      return place++ >= few && e.gain + config.interval * e.standard_error < to_reach;
-    });
-    report(count - field.size());
+  std::size_t few = std::max(kFewPoses, 4 * k);
+  Field field;
+  field.poses.resize(count);
+  for (std::size_t i = 0; i < count; ++i) field.poses[i].index = i;
+  if (driver.surface() == nullptr) {
+    best.complete =
+        choose_by_bundles(driver, T_world_camera, k, few, config, control, report, field);
+  } else {
+    few = std::max(few, static_cast<std::size_t>(std::ceil(kInFull * static_cast<double>(count))));
+    best.complete =
+        count <= few || choose_by_coarse_rays(driver, *impl_->scene, T_world_camera, few,
+                                              config.costs, control, report, field);
   }
+  best.rays_traced = field.rays_traced;
+  if (!best.complete) return best;
 
   // Too few finite estimates for k poses: the others make up the number, NaN and all.
   std::vector<std::uint8_t> in_field(count, 0);
-  for (const Estimate& e : field) in_field[e.index] = 1;
-  for (std::size_t i = 0; i < count && field.size() < k; ++i) {
-    if (in_field[i] == 0) field.push_back({i, 0, 0});
+  for (const Estimate& e : field.poses) in_field[e.index] = 1;
+  for (std::size_t i = 0; i < count && field.poses.size() < k; ++i) {
+    if (in_field[i] == 0) field.poses.push_back({i, 0, 0});
   }
-  for (const Estimate& e : field) best.scored_indices.push_back(e.index);
+  for (const Estimate& e : field.poses) best.scored_indices.push_back(e.index);
   std::sort(best.scored_indices.begin(), best.scored_indices.end());
   best.scored_gains.resize(best.scored_indices.size());
   best.complete = detail::evaluate_some(driver, T_world_camera, best.scored_indices,

@@ -78,6 +78,25 @@ const Sensor& checked(const Sensor& sensor, const GainConfig& config) {
   return sensor;
 }
 
+// The camera shifted so that the strided rays stand in the middle of those of `full`.
+PinholeCamera centred(const SensorRays& full, int stride) {
+  PinholeCamera camera = full.camera;
+  const auto shift = [&](int rays, int pixels) {
+    return 0.5 * ((rays - 1) * full.pixel_stride - (strided(pixels, stride) - 1) * stride);
+  };
+  camera.cx -= shift(full.table.columns, camera.width);
+  camera.cy -= shift(full.table.rows, camera.height);
+  return camera;
+}
+
+std::uint32_t rays_of(const SensorRays& rays) {
+  std::uint32_t count = 0;
+  for (const std::uint16_t lanes : rays.table.valid) {
+    count += static_cast<std::uint32_t>(std::popcount(lanes));
+  }
+  return count;
+}
+
 }  // namespace
 
 EvaluatorCore::EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config,
@@ -88,10 +107,19 @@ EvaluatorCore::EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config
       min_range(gain_config.min_range.value_or(sensor.min_range)),
       max_range(gain_config.max_range.value_or(sensor.max_range)),
       rays(std::make_shared<const SensorRays>(sensor.camera, gain_config.pixel_stride)),
-      pool(exec.num_threads) {
-  for (const std::uint16_t lanes : rays->table.valid) {
-    ray_count += static_cast<std::uint32_t>(std::popcount(lanes));
-  }
+      ray_count(rays_of(*rays)),
+      pool(exec.num_threads) {}
+
+EvaluatorCore::EvaluatorCore(const EvaluatorCore& full, int pixel_stride)
+    : config(full.config),
+      sigmas(full.sigmas),
+      working_distance(full.working_distance),
+      min_range(full.min_range),
+      max_range(full.max_range),
+      rays(std::make_shared<const SensorRays>(centred(*full.rays, pixel_stride), pixel_stride)),
+      ray_count(rays_of(*rays)),
+      pool(1) {
+  config.pixel_stride = pixel_stride;
 }
 
 double EvaluatorCore::prior_sigma_in(const VoxelScene& scene) const {

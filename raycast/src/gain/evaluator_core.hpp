@@ -65,6 +65,9 @@ struct EvaluatorCore {
 
   /// Throws Error(invalid_argument), naming the value, as GainEvaluator's constructor.
   EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config, const ExecConfig& exec);
+  /// The same with another pixel stride, its rays in the middle of those of `full`. Has no threads
+  /// of its own.
+  EvaluatorCore(const EvaluatorCore& full, int pixel_stride);
 
   /// The sensor's sigmas at range t [m], frontal.
   [[nodiscard]] MeasurementSigmas frontal(double t) const {

@@ -173,17 +173,23 @@ class VIEWGAIN_EXPORT GainEvaluator {
                                const BatchControl& control = {},
                                const BestConfig& config = {}) const;
 
-  /// The k best poses, very probably: successive halving. Poses are compared by random sub-bundles
-  /// of their tiles, nested and the same for all; each round drops those whose confidence interval
+  /// The k best poses, very probably. The survivors are scored in full, so gains reported are
+  /// exact. By the paper's gain: successive halving. Poses are compared by random sub-bundles of
+  /// their tiles, nested and the same for all; each round drops those whose confidence interval
   /// lies below those of k others, and all but a share, and traces five times as many tiles of the
-  /// rest. The survivors (32 or 4 k at least) are scored in full, so gains reported are exact.
-  /// Small bundles count rays of different tiles as if they never met in a voxel, which favours
-  /// views from near by a little. Works with obstacles, weights and distortion. Deterministic for a
-  /// seed and any number of threads. control.progress counts poses that are out, after each round.
-  /// Stopped in a round, it returns nothing, stopped while the survivors are scored the best of
-  /// those that were; either is not `complete`. Throws Error(invalid_argument), naming the value,
-  /// for a config out of range and for costs as best(); Error(backend), Error(capacity) as
-  /// VoxelScene::build(), if the scene's BVH is wanted and not there yet.
+  /// rest, until 32 or 4 k at least survive. Small bundles count rays of different tiles as if they
+  /// never met in a voxel, which favours views from near by a little. By the surface and the
+  /// combined gain: two stages. All poses are scored by about 400 rays, on every so manieth pixel
+  /// and row, and max(32, 4 k, 1.5 %) of them survive; `config` only has to be in range. A view is
+  /// lost if its 400 rays make it look worse than that many others: of 1,000 views on 12 maps of
+  /// three objects (128³ voxels) the 16 that 400 rays rank first by the surface gain held the best
+  /// on 9, and one within 0.6 % of it on all. Images of under 900 rays are all scored in full.
+  /// Works with obstacles, weights and distortion. Deterministic for a seed and any number of
+  /// threads. control.progress counts poses that are out, after each round. Stopped in a round, it
+  /// returns nothing, stopped while the survivors are scored the best of those that were; either is
+  /// not `complete`. Throws Error(invalid_argument), naming the value, for a config out of range
+  /// and for costs as best(); Error(backend), Error(capacity) as VoxelScene::build(), if the
+  /// scene's BVH is wanted and not there yet.
   [[nodiscard]] RacedViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                 const RaceConfig& config = {},
                                 const BatchControl& control = {}) const;

@@ -39,7 +39,7 @@ struct VIEWGAIN_EXPORT RacedViews : BestViews {
   std::uint64_t rays_traced = 0;            ///< of the bundles and of the poses scored in full
 };
 
-/// How GainEvaluator::race() chooses which poses to drop.
+/// How GainEvaluator::race() chooses which poses to drop, by the paper's gain.
 struct VIEWGAIN_EXPORT RaceConfig {
   double interval = 2.25;         ///< half width of a pose's confidence interval [standard errors]
   double first_share = 1.0 / 40;  ///< of the tiles in the first round, in (0, 1]; then five times

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// race() with the surface and the combined gain, which chooses in two stages, against scoring all.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stop_token>
+
+#include "raycast/scene_makers.hpp"
+#include "viewgain/core/generators.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr std::array kModels{GainModel::surface, GainModel::combined};
+constexpr std::uint64_t kCoarseRays = 24 * 20;  // every fifth pixel and row
+
+Sensor sensor_of(int width, int height) {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera = {.width = width,
+                   .height = height,
+                   .fx = 1.25 * width,
+                   .fy = 1.25 * width,
+                   .cx = 0.5 * width - 0.3,
+                   .cy = 0.5 * height + 0.2};
+  return sensor;
+}
+
+// A ball in free space: one half has been seen, the other is unknown, of another shape each time.
+BeliefGrid ball(int number) {
+  test::Random random(static_cast<unsigned>(number));
+  constexpr int kSide = 40;
+  BeliefGrid grid({.voxel_size = 0.01,
+                   .workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}},
+                   .prior_sigma = 0.01});
+  const double turn = test::uniform(random, 0, 6), wave = test::uniform(random, 1, 3);
+  for (int x = -kSide / 2; x < kSide / 2; ++x) {
+    for (int y = -kSide / 2; y < kSide / 2; ++y) {
+      for (int z = -kSide / 2; z < kSide / 2; ++z) {
+        const double r = std::sqrt(x * x + y * y + z * z) + wave * std::sin(0.4 * x + 0.3 * z);
+        const bool is_seen = x * std::cos(turn) + y * std::sin(turn) > 2;
+        if (is_seen && r >= 9 && r < 11) {
+          test::set_occupied_with_belief(grid, {x, y, z}, random);
+        } else if (r >= 11 && (is_seen || r > 15)) {
+          grid.set({x, y, z}, -0.4F);
+        }
+      }
+    }
+  }
+  return grid;
+}
+
+class TwoStages : public testing::TestWithParam<GainModel> {
+ protected:
+  [[nodiscard]] GainEvaluator evaluator(const std::shared_ptr<const VoxelScene>& scene,
+                                        int threads = 1) const {
+    return GainEvaluator(scene, sensor_of(120, 96), {.model = GetParam()},
+                         {.num_threads = threads});
+  }
+  const std::vector<Pose> poses_ = sphere_poses(400, 0.6);
+};
+
+TEST_P(TwoStages, FindsNearlyTheBestAndReportsExactGains) {
+  constexpr int kMaps = 5;
+  int checks = 0, near = 0;
+  for (int map = 0; map < kMaps; ++map) {
+    SCOPED_TRACE(map);
+    const auto scene = VoxelScene::build(ball(map));
+    const GainEvaluator one = evaluator(scene);
+    const std::vector<ViewGain> all = one.evaluate(poses_);
+    for (const std::size_t k : {std::size_t{1}, std::size_t{12}}) {
+      const RacedViews raced = one.race(poses_, k);
+      EXPECT_TRUE(raced.complete);
+      ASSERT_EQ(raced.scored_indices.size(), std::max<std::size_t>(32, 4 * k));
+      EXPECT_EQ(raced.rays_traced,
+                poses_.size() * kCoarseRays + raced.scored_indices.size() * one.rays_per_pose());
+      EXPECT_TRUE(std::is_sorted(raced.scored_indices.begin(), raced.scored_indices.end()));
+      for (std::size_t j = 0; j < raced.scored_indices.size(); ++j) {
+        EXPECT_TRUE(test::same_bits(raced.scored_gains[j], all[raced.scored_indices[j]]));
+      }
+      ASSERT_EQ(raced.indices.size(), k);
+      const std::vector<std::size_t> order = best_indices(raced.scored_gains, k);
+      for (std::size_t j = 0; j < k; ++j) {
+        EXPECT_EQ(raced.indices[j], raced.scored_indices[order[j]]);
+        EXPECT_TRUE(test::same_bits(raced.gains[j], all[raced.indices[j]]));
+      }
+      const double best = all[best_indices(all, 1)[0]].gain;
+      ASSERT_GT(best, 0);
+      near += raced.gains[0].gain >= 0.99 * best ? 1 : 0;
+      EXPECT_GE(raced.gains[0].gain, 0.95 * best);
+      ++checks;
+    }
+  }
+  EXPECT_EQ(checks, 2 * kMaps);
+  EXPECT_GE(near, 2 * kMaps - 1);
+}
+
+TEST_P(TwoStages, SameBitsForAnyNumberOfThreads) {
+  const auto scene = VoxelScene::build(ball(3));
+  const RacedViews expected = evaluator(scene, 1).race(poses_, 3);
+  int checks = 0;
+  for (const int threads : {2, 5}) {
+    const RacedViews actual = evaluator(scene, threads).race(poses_, 3);
+    EXPECT_EQ(actual.indices, expected.indices);
+    EXPECT_EQ(actual.scored_indices, expected.scored_indices);
+    EXPECT_TRUE(test::same_bits(actual.scored_gains, expected.scored_gains));
+    EXPECT_EQ(actual.rays_traced, expected.rays_traced);
+    ++checks;
+  }
+  EXPECT_EQ(checks, 2);
+}
+
+TEST_P(TwoStages, TakesOddRequests) {
+  const GainEvaluator one = evaluator(VoxelScene::build(ball(1)));
+  EXPECT_TRUE(one.race(poses_, 0).indices.empty());
+  EXPECT_TRUE(one.race({}, 2).indices.empty());
+  // All are asked for: all are scored in full, in one stage.
+  const RacedViews all = one.race(poses_, 1000);
+  EXPECT_EQ(all.indices, one.best(poses_, poses_.size()).indices);
+  EXPECT_EQ(all.rays_traced, poses_.size() * one.rays_per_pose());
+  // Bad poses come last, and only where there are too few others.
+  std::vector<Pose> bad = poses_;
+  for (std::size_t i = 0; i < 395; ++i) bad[i].m[0] = std::nan("");
+  const RacedViews few = one.race(bad, 8);
+  EXPECT_EQ(few.indices, one.best(bad, 8).indices);
+  ASSERT_EQ(few.gains.size(), 8U);
+  EXPECT_FALSE(std::isnan(few.gains[4].gain));
+  EXPECT_TRUE(std::isnan(few.gains[5].gain));
+}
+
+TEST_P(TwoStages, PosesWithoutGainAreChosenInOrder) {
+  const GainEvaluator one = evaluator(VoxelScene::build(ball(1)));
+  // They look away.
+  std::vector<Pose> away;
+  for (int i = 0; i < 100; ++i) away.push_back(look_at({0.6, 0.01 * i, 0}, {1.2, 0, 0}));
+  const RacedViews raced = one.race(away, 3);
+  EXPECT_EQ(raced.indices, (std::vector<std::size_t>{0, 1, 2}));
+  ASSERT_EQ(raced.gains.size(), 3U);
+  for (const ViewGain& gain : raced.gains) EXPECT_EQ(gain.gain, 0.0);
+}
+
+TEST_P(TwoStages, ImagesOfFewRaysAreScoredInFull) {
+  const GainEvaluator one(VoxelScene::build(ball(2)), sensor_of(24, 18), {.model = GetParam()},
+                          {.num_threads = 1});
+  const RacedViews raced = one.race(poses_, 2);
+  EXPECT_EQ(raced.scored_indices.size(), poses_.size());
+  EXPECT_EQ(raced.indices, one.best(poses_, 2).indices);
+}
+
+TEST_P(TwoStages, StopsInEitherStage) {
+  const GainEvaluator one = evaluator(VoxelScene::build(ball(1)));
+  std::stop_source source;
+  source.request_stop();
+  const RacedViews none = one.race(poses_, 2, {}, {.stop = source.get_token()});
+  EXPECT_FALSE(none.complete);
+  EXPECT_TRUE(none.indices.empty());
+  EXPECT_EQ(none.rays_traced, 0U);
+
+  const RacedViews whole = one.race(poses_, 2);
+  int cases = 0;
+  // It is asked before each pose of each stage.
+  for (const std::size_t scored : {std::size_t{0}, std::size_t{5}, std::size_t{31}}) {
+    SCOPED_TRACE(scored);
+    std::size_t asked = 0;
+    const RacedViews part =
+        one.race(poses_, 2, {}, {.is_cancelled = [&] { return ++asked > poses_.size() + scored; }});
+    EXPECT_FALSE(part.complete);
+    ASSERT_EQ(part.scored_indices.size(), scored);
+    for (std::size_t j = 0; j < scored; ++j) {
+      EXPECT_EQ(part.scored_indices[j], whole.scored_indices[j]);
+      EXPECT_TRUE(test::same_bits(part.scored_gains[j], whole.scored_gains[j]));
+    }
+    EXPECT_EQ(part.indices.size(), std::min<std::size_t>(2, scored));
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+  std::size_t asked = 0;
+  const RacedViews early =
+      one.race(poses_, 2, {}, {.is_cancelled = [&] { return ++asked > poses_.size() / 2; }});
+  EXPECT_FALSE(early.complete);
+  EXPECT_TRUE(early.scored_indices.empty());
+}
+
+std::string model_name(const testing::TestParamInfo<GainModel>& info) {
+  return std::string(gain_model_name(info.param));
+}
+INSTANTIATE_TEST_SUITE_P(Models, TwoStages, testing::ValuesIn(kModels), model_name);
+
+}  // namespace
+}  // namespace viewgain
