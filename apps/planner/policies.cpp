@@ -74,8 +74,8 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
   }
   const GainEvaluator& evaluator = *evaluator_;
   const bool scored = by_gain || config_.policy == Policy::frontier;
-  std::vector<ViewGain> gains(candidates.size());
-  if (scored) evaluator.evaluate(poses_of(candidates), gains);
+  const std::vector<ViewGain> gains =
+      scored ? score(T_world_camera, candidates) : std::vector<ViewGain>(candidates.size());
   const std::optional<std::size_t> chosen = choose(T_world_camera, candidates, gains);
   if (!chosen) return std::nullopt;
   const ViewGain gain =
@@ -95,6 +95,33 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
     for (const ViewGain& g : gains) decision.best_area = std::fmax(decision.best_area, g.area);
   }
   return decision;
+}
+
+std::vector<ViewGain> PolicyDecision::score(const Pose& T_world_camera,
+                                            std::span<const Candidate> candidates) const {
+  const std::vector<Pose> poses = poses_of(candidates);
+  ViewGain none;
+  none.gain = none.area = std::numeric_limits<double>::quiet_NaN();
+  std::vector<ViewGain> gains(poses.size(), none);
+  const bool in_two_stages = config_.policy == Policy::gain && config_.model != GainModel::paper;
+  if (!in_two_stages || config_.travel.speed) {
+    evaluator_->evaluate(poses, gains);
+    return gains;
+  }
+  std::vector<double> costs;
+  if (config_.travel.per_metre > 0) {
+    for (const Pose& pose : poses) {
+      const double distance = (pose.translation() - T_world_camera.translation()).norm();
+      costs.push_back(config_.travel.per_metre * distance);
+    }
+  }
+  RaceConfig config;
+  config.costs = costs;
+  const RacedViews raced = evaluator_->race(poses, 1, config);
+  for (std::size_t j = 0; j < raced.scored_indices.size(); ++j) {
+    gains[raced.scored_indices[j]] = raced.scored_gains[j];
+  }
+  return gains;
 }
 
 std::size_t PolicyDecision::most_proximity(std::span<const Candidate> candidates) {

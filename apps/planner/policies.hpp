@@ -69,15 +69,19 @@ class PolicyDecision : public DecisionMaking {
   [[nodiscard]] std::optional<std::size_t> choose_by_boundary(
       std::span<const Candidate> candidates);
 
+  /// Gains of the candidates; by the surface and the combined gain NaN for those that few rays
+  /// showed to be no match for others.
+  [[nodiscard]] std::vector<ViewGain> score(const Pose& T_world_camera,
+                                            std::span<const Candidate> candidates) const;
+  [[nodiscard]] std::size_t most_proximity(std::span<const Candidate> candidates);
+  /// The new surface to be expected of a view [m²], where the policy's own gain does not say.
+  [[nodiscard]] double expected_area(const Pose& T_world_camera);
+
   const Model& model_;
   const CandidateGeneration& generation_;
   Sensor sensor_;
   PolicyConfig config_;
   LoopExec exec_;
-  [[nodiscard]] std::size_t most_proximity(std::span<const Candidate> candidates);
-  /// The new surface to be expected of a view [m²], where the policy's own gain does not say.
-  [[nodiscard]] double expected_area(const Pose& T_world_camera);
-
   std::optional<GainEvaluator> evaluator_;       ///< of the last decision's scene
   std::optional<GainEvaluator> area_evaluator_;  ///< likewise, by the surface gain
   std::optional<GainEvaluator> coarse_;          ///< likewise, of few rays

@@ -86,8 +86,8 @@ struct VIEWGAIN_EXPORT Decision {
   double gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
   /// The new surface that it is expected to show [m²]; NaN: not known.
   double area = std::numeric_limits<double>::quiet_NaN();
-  /// The most that any of the candidates is expected to show [m²], held against
-  /// PlanningConfig::stop_area; NaN: not known, and never stops for it.
+  /// The most that any of the candidates that were looked at closely is expected to show [m²], held
+  /// against PlanningConfig::stop_area; NaN: not known, and never stops for it.
   double best_area = std::numeric_limits<double>::quiet_NaN();
 };
 
