@@ -28,7 +28,8 @@ Model::Model(const Sensor& sensor, const ModelConfig& config, std::shared_ptr<co
       truth_(std::move(truth)),
       grid_(config.grid),
       integrator_(sensor, config.integration, exec.threads),
-      new_surface_(sensor, config.integration.support_plane) {
+      new_surface_(sensor, config.integration.support_plane),
+      calibration_(sensor, config.integration.support_plane) {
   if (config.jump_edges) filter_.emplace(sensor.camera, *config.jump_edges);
 }
 
@@ -38,7 +39,8 @@ Model::Model(BeliefGrid grid, const Sensor& sensor, const ModelConfig& config, c
       exec_(exec),
       grid_(std::move(grid)),
       integrator_(sensor, config.integration, exec.threads),
-      new_surface_(sensor, config.integration.support_plane) {
+      new_surface_(sensor, config.integration.support_plane),
+      calibration_(sensor, config.integration.support_plane) {
   derive();
 }
 
@@ -90,6 +92,9 @@ void Model::integrate(const Measurements& measurements) {
   const std::vector<DepthFrame> frames = filtered(measurements);
   realised_area_ =
       frames.empty() ? 0.0 : area_shown_by(frames.front(), measurements.T_world_camera);
+  if (scene_ && !frames.empty()) {
+    calibration_.count(grid_, scene_->hazard(), frames.front(), measurements.T_world_camera);
+  }
   std::uint64_t inside = 0;
   const bool first = grid_.views().empty();
   for (const DepthFrame& frame : frames) {

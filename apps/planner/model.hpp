@@ -14,6 +14,7 @@
 #include "viewgain/core/planning.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/fused_points.hpp"
+#include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/mesh/surface.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
@@ -79,6 +80,7 @@ class Model : public RepresentationUpdate {
   std::optional<JumpEdgeFilter> filter_;
   FrameIntegrator integrator_;
   RealisedArea new_surface_;
+  HazardCalibration calibration_;
   std::shared_ptr<const VoxelScene> scene_;
   std::vector<FusedPoint> points_;
   SurfaceMesh surface_;

@@ -21,6 +21,14 @@ namespace viewgain::detail {
 inline constexpr std::int32_t kVdbLayoutVersion = 2;
 inline constexpr std::int32_t kOldestVdbLayoutVersion = 1;
 
+/// Names of the metadata with the hazard counters of a class; maps without counters have none.
+[[nodiscard]] inline std::string expected_name(std::size_t k) {
+  return "hazard_expected_" + std::to_string(k);
+}
+[[nodiscard]] inline std::string met_name(std::size_t k) {
+  return "hazard_met_" + std::to_string(k);
+}
+
 inline void initialize_openvdb() {
   static std::once_flag once;
   std::call_once(once, [] { openvdb::initialize(); });

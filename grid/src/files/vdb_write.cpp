@@ -50,6 +50,11 @@ openvdb::MetaMap make_metadata(const GridStorage& s) {
   metadata.insertMeta("workspace_max", openvdb::Vec3IMetadata({l.max.x, l.max.y, l.max.z}));
   metadata.insertMeta("T_world_grid", openvdb::StringMetadata(poses_to_text({s.T_world_grid})));
   metadata.insertMeta("views", openvdb::StringMetadata(poses_to_text(s.views)));
+  for (std::size_t k = 0; !s.hazard.empty() && k < HazardCounters::kClasses; ++k) {
+    const HazardCounters::Class& c = s.hazard.classes[k];
+    metadata.insertMeta(expected_name(k), openvdb::Int64Metadata(c.expected));
+    metadata.insertMeta(met_name(k), openvdb::Int64Metadata(c.met));
+  }
   return metadata;
 }
 

@@ -99,7 +99,12 @@ HazardField::HazardField(const GridSnapshot& snapshot, const HazardConfig& confi
   const double size = config.object_size.value_or(longest_side(seen) * voxel_size_);
   model_ = config.model.value_or(HazardModel::for_size(size));
   shift_ = shift_for(model_.decay_length, voxel_size_);
-  far_rate_ = static_cast<float>(model_.rate(std::numeric_limits<double>::infinity()));
+  factors_.fill(1.0);
+  if (config.calibrated && !config.model && !volume_) {
+    for (std::size_t k = 0; k < factors_.size(); ++k) factors_[k] = snapshot.hazard.factor(k);
+  }
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  far_rate_ = static_cast<float>(model_.rate(kFar) * factors_.back());
   find_distances(evidence, workspace);
 }
 
@@ -135,10 +140,14 @@ void HazardField::find_distances(const std::vector<Index3>& evidence, const Voxe
   static_assert(kBeyond == detail::kNoDistance);
 
   rates_.resize(static_cast<std::size_t>(reach * reach) + 1);
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < rates_.size(); ++i) {
     const double distance = std::sqrt(static_cast<double>(i)) * cell;
-    rates_[i] = static_cast<float>(model_.rate(distance));
+    const std::size_t k = HazardCounters::class_of(distance / model_.decay_length);
+    least = std::min(least, model_.rate(distance) * factors_[k]);
+    rates_[i] = static_cast<float>(least);
   }
+  far_rate_ = std::min(far_rate_, static_cast<float>(least));
   const double known = kKnownDistance * pooling_.length / cell;  // [cells]
   most_known_ = static_cast<std::uint32_t>(known * known);
 }

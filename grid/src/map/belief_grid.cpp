@@ -178,6 +178,12 @@ void BeliefGrid::append_view(const Pose& T_world_camera) {
   storage_->views.push_back(rigid_view(T_world_camera));
 }
 
+const HazardCounters& BeliefGrid::hazard_counters() const noexcept { return storage_->hazard; }
+void BeliefGrid::set_hazard_counters(const HazardCounters& counters) {
+  check_counters(counters);
+  storage_->hazard = counters;
+}
+
 Box BeliefGrid::workspace() const noexcept {
   const BlockLattice& l = storage_->lattice;
   const double V = storage_->voxel_size;

@@ -144,6 +144,12 @@ std::string BeliefGrid::content_hash() const {
   hash.add(s.views.size());
   for (const Pose& view : s.views) add_pose(view);
   hash.add(contents.sum());
+  if (!s.hazard.empty()) {  // maps without keep the hash that they always had
+    for (const HazardCounters::Class& c : s.hazard.classes) {
+      hash.add(static_cast<std::uint64_t>(c.expected));
+      hash.add(static_cast<std::uint64_t>(c.met));
+    }
+  }
   return hash.hex();
 }
 

@@ -101,4 +101,15 @@ void check_layout(double voxel_size, const Pose& T_world_grid, double prior_sigm
   }
 }
 
+void check_counters(const HazardCounters& counters) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 40U;
+  for (const HazardCounters::Class& c : counters.classes) {
+    for (const std::int64_t count : {c.expected, c.met}) {
+      if (count >= 0 && count <= kMost) continue;
+      throw Error(ErrorCode::invalid_argument,
+                  "hazard counter " + std::to_string(count) + " is negative or over 2^40");
+    }
+  }
+}
+
 }  // namespace viewgain::detail

@@ -19,4 +19,7 @@ struct GridLayout {
 void check_layout(double voxel_size, const Pose& T_world_grid, double prior_sigma,
                   const GridLayout& layout);
 
+/// Throws Error(invalid_argument) for a count that is negative or over 2^40.
+void check_counters(const HazardCounters& counters);
+
 }  // namespace viewgain::detail

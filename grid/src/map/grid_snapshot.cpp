@@ -187,6 +187,7 @@ GridSnapshot BeliefGrid::snapshot(const GridSnapshot& before) const {
   result.T_world_grid = s.T_world_grid;
   result.min_index = s.min_index;
   result.dims = s.dims;
+  result.hazard = s.hazard;
   result.grid_number = s.number;
   result.time = s.time;
   SnapshotMaker(s, before, result).run();

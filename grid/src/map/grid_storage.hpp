@@ -59,6 +59,7 @@ struct GridStorage {
   Index3 dims;
   BlockLattice lattice;
   std::vector<Pose> views;
+  HazardCounters hazard;
 
   /// Unknown fills the workspace grown outward to multiples of 2048 voxels, so that only tiles of
   /// the root arise; whoever reads the tree clips to the workspace. Voxels outside it hold no

@@ -144,8 +144,7 @@ class BrickTableMaker {
 
   std::uint32_t add_far_slot() {
     const float V = static_cast<float>(hazard_.voxel_size());
-    const auto rate =
-        static_cast<float>(hazard_.model().rate(std::numeric_limits<double>::infinity()));
+    const float rate = hazard_.far_rate();
     table_.rates.assign(static_cast<std::size_t>(cells_ * cells_ * cells_), rate * V);
     table_.states.assign(64, 0);
     return slots_++;

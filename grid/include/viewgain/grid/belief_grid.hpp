@@ -18,6 +18,7 @@
 #include "viewgain/core/pose.hpp"
 #include "viewgain/grid/belief.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
+#include "viewgain/grid/hazard_counters.hpp"
 #include "viewgain/grid/voxel.hpp"
 
 namespace viewgain {
@@ -134,9 +135,15 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// orthonormalised).
   void append_view(const Pose& T_world_camera);
 
+  /// What frames have said of the hazard of unknown space (HazardCalibration).
+  [[nodiscard]] const HazardCounters& hazard_counters() const noexcept;
+  /// Throws Error(invalid_argument) for a count that is negative or over 2^40.
+  void set_hazard_counters(const HazardCounters& counters);
+
   [[nodiscard]] GridStatistics statistics(Criterion criterion = Criterion::log_diagonal) const;
 
-  /// 16 hexadecimal digits over states, log-odds, beliefs, layout, prior and views. The same for
+  /// 16 hexadecimal digits over states, log-odds, beliefs, layout, prior, views and, if there are
+  /// any, hazard counters. The same for
   /// equal maps however they came about (thread count, save and load, tree topology).
   [[nodiscard]] std::string content_hash() const;
 

@@ -12,6 +12,7 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/grid/belief.hpp"
+#include "viewgain/grid/hazard_counters.hpp"
 #include "viewgain/grid/voxel.hpp"
 
 namespace viewgain {
@@ -40,6 +41,7 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   Pose T_world_grid;
   Index3 min_index;  ///< lowest voxel of the workspace
   Index3 dims;       ///< voxels along x, y, z
+  HazardCounters hazard;
   std::vector<SnapshotLeaf> leaves;
   std::vector<VoxelBox> tiles;  ///< of unknown voxels, clipped to the workspace; those larger
                                 ///< than a region first

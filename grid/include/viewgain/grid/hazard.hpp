@@ -12,6 +12,7 @@
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
+#include "viewgain/grid/hazard_counters.hpp"
 #include "viewgain/grid/pooling.hpp"
 #include "viewgain/grid/voxel.hpp"
 
@@ -58,6 +59,9 @@ struct VIEWGAIN_EXPORT HazardConfig {
   std::optional<double> object_size{};
   std::optional<HazardModel> model{};  ///< unless given HazardModel::for_size
   std::shared_ptr<const HazardVolume> volume{};
+  /// Multiplies the start values by what frames have said (GridSnapshot::hazard). A model that is
+  /// given, or a volume, stays what it is.
+  bool calibrated = true;
 
   /// Throws Error(invalid_argument), naming the value, for a size or decay length that is not
   /// positive and finite, a rate that is negative or not finite, or a volume whose count of rates
@@ -70,7 +74,9 @@ struct VIEWGAIN_EXPORT HazardConfig {
 /// Rates are constant in hazard cells: cubes of 1, 2, 4 or 8 voxels an edge on the lattice of the
 /// leaves, about a quarter of the decay length wide. Distances are between centres of such cells,
 /// to the nearest one with an occupied voxel of at least 3 hits; voxels that are finer than the
-/// sensor's footprint count in the cubes of pooling_of(). The rates of a volume are by voxel.
+/// sensor's footprint count in the cubes of pooling_of(). The model's start values are multiplied
+/// class by class by HazardCounters::factor() and kept from rising with the distance. The rates of
+/// a volume are by voxel.
 class VIEWGAIN_EXPORT HazardField {
  public:
   /// Exact distances in 3 passes over the box of cells with evidence, widened by the cut: about
@@ -78,7 +84,10 @@ class VIEWGAIN_EXPORT HazardField {
   /// HazardConfig::validate().
   explicit HazardField(const GridSnapshot& snapshot, const HazardConfig& config = {});
 
+  /// Start values, or what was given; rates may differ from them by the map's counters.
   [[nodiscard]] const HazardModel& model() const { return model_; }
+  /// Beyond the cut [1/m].
+  [[nodiscard]] float far_rate() const { return far_rate_; }
   /// Logarithm to base 2 of the hazard cells' edge [voxels]; 0 with a volume.
   [[nodiscard]] int cell_shift() const { return volume_ ? 0 : shift_; }
   [[nodiscard]] double voxel_size() const { return voxel_size_; }  ///< [m]
@@ -128,10 +137,11 @@ class VIEWGAIN_EXPORT HazardField {
   double voxel_size_;
   int shift_ = 0;  // of the cells that have a distance
   Index3 low_cell_{};
-  std::array<std::size_t, 3> size_{};   // of the box of distances [cells]
-  VoxelBox near_box_{};                 // the same in voxels
-  std::vector<std::uint16_t> squared_;  // [cells²]
-  std::vector<float> rates_;            // by squared distance
+  std::array<std::size_t, 3> size_{};                       // of the box of distances [cells]
+  VoxelBox near_box_{};                                     // the same in voxels
+  std::vector<std::uint16_t> squared_;                      // [cells²]
+  std::vector<float> rates_;                                // by squared distance
+  std::array<double, HazardCounters::kClasses> factors_{};  // by class of distance
   float far_rate_ = 0;
   std::uint32_t most_known_ = 0;  // squared distance up to which surface is not new
 };

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/hazard.hpp"
+
+namespace viewgain {
+
+/// Learns from a sensor's frames how much of unknown space is surface (DESIGN.md section 6,
+/// "Calibration").
+///
+/// Thread safety: one call at a time on one grid.
+class VIEWGAIN_EXPORT HazardCalibration {
+ public:
+  /// `support_plane`: height z of a table [m], world. Throws Error(invalid_argument) if the sensor
+  /// is not valid.
+  explicit HazardCalibration(const Sensor& sensor, std::optional<double> support_plane = {});
+
+  /// Adds a frame to the grid's counters, before it is integrated; `hazard` is the field of the map
+  /// as it stands. About 800 of the frame's pixels are followed. Where they pass unknown voxels the
+  /// model's rate times the length was to be expected; a reading in an unknown voxel is a meeting;
+  /// the last 3 σ_ax before a reading are left out. Pixels out of range and readings of the support
+  /// plane meet nothing, invalid ones say nothing. Nothing happens while no surface is known, with
+  /// a volume of rates, and for a frame that passes next to no unknown space. Throws
+  /// Error(invalid_argument) if the frame's size is not the sensor's. About 5 ms.
+  void count(BeliefGrid& grid, const HazardField& hazard, const DepthFrame& frame,
+             const Pose& T_world_camera) const;
+
+ private:
+  Sensor sensor_;
+  std::optional<double> support_plane_;
+  std::vector<Eigen::Vector3d> rays_;
+};
+
+}  // namespace viewgain

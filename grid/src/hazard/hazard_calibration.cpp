@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/grid/hazard_calibration.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr double kPixels = 800;       // that are followed
+constexpr double kLeftOut = 3;        // before a reading [σ_ax]
+constexpr double kPlaneSigmas = 3;    // as in integration
+constexpr double kEnough = 10;        // meetings to be expected of a frame that counts in full
+constexpr double kLeastEvents = 0.1;  // and of one that counts at all
+
+struct Sums {
+  std::array<double, HazardCounters::kClasses> expected{}, met{};
+};
+
+// Where a ray is in a box: [begin, end), empty if it misses it.
+struct Stretch {
+  double begin, end;
+};
+
+Stretch clipped(const Box& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                Stretch stretch) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    const double low = (box.min[a] - origin[axis]) / direction[axis];
+    const double high = (box.max[a] - origin[axis]) / direction[axis];
+    if (std::isnan(low) || std::isnan(high)) return {0, 0};  // along a face
+    stretch.begin = std::max(stretch.begin, std::min(low, high));
+    stretch.end = std::min(stretch.end, std::max(low, high));
+  }
+  return stretch;
+}
+
+}  // namespace
+
+HazardCalibration::HazardCalibration(const Sensor& sensor, std::optional<double> support_plane)
+    : sensor_(sensor), support_plane_(support_plane) {
+  sensor.validate();
+  rays_ = sensor.camera.ray_table();
+}
+
+void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const DepthFrame& frame,
+                              const Pose& T_world_camera) const {
+  if (frame.depth.size() != rays_.size()) {
+    throw Error(ErrorCode::invalid_argument, "the frame has " + std::to_string(frame.depth.size()) +
+                                                 " pixels, the sensor " +
+                                                 std::to_string(rays_.size()));
+  }
+  if (hazard.volume() != nullptr || hazard.near_box().volume() == 0) return;
+
+  const Pose T_grid_camera = grid.T_world_grid().inverse() * T_world_camera;
+  const Eigen::Vector3d eye = T_grid_camera.translation();
+  const Box workspace = grid.workspace();
+  const HazardModel& model = hazard.model();
+  // Half a hazard cell: finer steps say the same.
+  const double step = 0.5 * std::ldexp(grid.voxel_size(), hazard.cell_shift());
+  const auto class_at = [&](double distance) {
+    return HazardCounters::class_of(distance / model.decay_length);
+  };
+  const auto voxel_at = [&](const Eigen::Vector3d& p) -> Index3 {
+    const Eigen::Array3d v = (p / grid.voxel_size()).array().floor();
+    return {static_cast<std::int32_t>(v.x()), static_cast<std::int32_t>(v.y()),
+            static_cast<std::int32_t>(v.z())};
+  };
+  const auto sees_plane = [&](const Eigen::Vector3d& p_camera, double range) {
+    if (!support_plane_) return false;
+    const Eigen::Vector3d p = T_world_camera * p_camera;
+    const double height = p.z() - *support_plane_;
+    const double fall = (T_world_camera.translation().z() - p.z()) / range;
+    return height < 0 ||
+           (fall > 0 && height / fall < kPlaneSigmas * sensor_.sigmas(range, fall).axial);
+  };
+
+  Sums sums;
+  const int width = sensor_.camera.width, height = sensor_.camera.height;
+  const int stride = std::max(
+      1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(rays_.size()) / kPixels))));
+  for (int v = stride / 2; v < height; v += stride) {
+    for (int u = stride / 2; u < width; u += stride) {
+      const std::size_t i = static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+                            static_cast<std::size_t>(u);
+      const float z = frame.depth[i];
+      if (z == DepthFrame::kInvalid || !rays_[i].allFinite()) continue;
+      const double norm = rays_[i].norm();
+      const double range = z == DepthFrame::kOutOfRange ? std::numeric_limits<double>::infinity()
+                                                        : static_cast<double>(z) * norm;
+      if (range < sensor_.min_range) continue;
+      const bool is_reading = range <= sensor_.max_range;
+      const double last =
+          is_reading ? range - kLeftOut * sensor_.sigmas(range).axial : sensor_.max_range;
+      const Eigen::Vector3d direction = T_grid_camera.rotation() * rays_[i] / norm;
+      const Stretch seen = clipped(workspace, eye, direction, {sensor_.min_range, last});
+      for (double t = seen.begin + 0.5 * step; t < seen.end; t += step) {
+        const Index3 voxel = voxel_at(eye + t * direction);
+        if (grid.state(voxel) != VoxelState::unknown) continue;
+        const double distance = hazard.distance(voxel);
+        sums.expected[class_at(distance)] += model.rate(distance) * step;
+      }
+      if (!is_reading || sees_plane(static_cast<double>(z) * rays_[i], range)) continue;
+      const Eigen::Vector3d p = eye + range * direction;
+      if (!workspace.contains(p.x(), p.y(), p.z())) continue;
+      const Index3 voxel = voxel_at(p);
+      if (grid.state(voxel) == VoxelState::unknown) sums.met[class_at(hazard.distance(voxel))] += 1;
+    }
+  }
+
+  const double expected = std::accumulate(sums.expected.begin(), sums.expected.end(), 0.0);
+  if (expected < kLeastEvents) return;
+  const double weight = HazardCounters::kFrame * std::min(1.0, expected / kEnough) / expected;
+  HazardCounters counters = grid.hazard_counters();
+  for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+    HazardCounters::Class& c = counters.classes[k];
+    c.expected =
+        c.expected * HazardCounters::kKeptOf10 / 10 + std::llround(sums.expected[k] * weight);
+    c.met = c.met * HazardCounters::kKeptOf10 / 10 + std::llround(sums.met[k] * weight);
+  }
+  grid.set_hazard_counters(counters);
+}
+
+}  // namespace viewgain

@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What frames say of the hazard: against a fine walk and a world of which the rate is known.
+
+#include "viewgain/grid/hazard_calibration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <random>
+
+#include "core/expect_error.hpp"
+#include "core/temporary_folder.hpp"
+#include "grid/analytic_frames.hpp"
+#include "oracle/surface.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+
+namespace viewgain {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kVoxel = 0.01;
+constexpr double kSigma = 1e-4;
+
+/// An unknown cube of 0.4 m, but for a known spot near a corner: else no surface is known and
+/// nothing is counted.
+BeliefGrid unknown_cube(const Pose& T_world_grid = {}) {
+  BeliefGrid grid({kVoxel, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, T_world_grid, 0.01});
+  const float information = 3 / static_cast<float>(0.005 * 0.005);
+  grid.set({-18, -18, -18}, 2.0F,
+           Belief{{information, information, information, 0, 0, 0}, {0, 0, 0}, 3});
+  return grid;
+}
+
+Sensor looking() {
+  Sensor sensor = test::small_sensor(64, 48);
+  sensor.camera.fx = sensor.camera.fy = 150;
+  sensor.noise = ConstantNoise{kSigma, kSigma};
+  sensor.min_range = 0.1;
+  sensor.max_range = 2.0;
+  return sensor;
+}
+
+const Pose kFromFront = Pose::look_at({0.03, -0.6, 0.05}, {0, 0, 0}, {0, 0, 1});
+
+DepthFrame frame_of(const Sensor& sensor, float depth) {
+  const auto pixels = static_cast<std::size_t>(sensor.camera.width * sensor.camera.height);
+  return {sensor.camera.width, sensor.camera.height, std::vector<float>(pixels, depth)};
+}
+
+TEST(HazardCalibration, CountsWhatAFineWalkCounts) {
+  const Sensor sensor = looking();
+  std::size_t cases = 0, classes = 0;
+  for (const bool turned : {false, true}) {
+    const Pose T_world_grid =
+        turned ? Pose::look_at({0.02, -0.01, 0.03}, {0.3, 1, 0.2}, {0, 0.1, 1}) : Pose{};
+    for (const double depth : {0.7, 0.55, 10.0}) {  // [m]; the last is out of range
+      BeliefGrid grid = unknown_cube(T_world_grid);
+      const HazardField field(grid.snapshot(), {.object_size = 0.35});
+      const DepthFrame frame =
+          frame_of(sensor, depth > 2 ? DepthFrame::kOutOfRange : static_cast<float>(depth));
+      HazardCalibration(sensor).count(grid, field, frame, kFromFront);
+
+      // All pixels, in steps of a twentieth of a voxel.
+      std::array<double, HazardCounters::kClasses> expected{}, met{};
+      const double lambda = field.model().decay_length;
+      const auto distance = [&](Index3 v) {
+        return oracle::distance_to_evidence(grid, field.cell_shift(), v);
+      };
+      double all = 0;
+      for (const Vector3d& ray : sensor.camera.ray_table()) {
+        const Vector3d u = kFromFront.rotation() * ray.normalized();
+        const double range = depth > 2 ? sensor.max_range : depth * ray.norm() - 3 * kSigma;
+        const double step = kVoxel / 20;
+        for (double t = sensor.min_range; t < range; t += step) {
+          const auto v = grid.index_of(kFromFront.translation() + t * u);
+          if (!v || grid.state(*v) != VoxelState::unknown) continue;
+          const double d = distance(*v);
+          const double rate = field.model().rate(d) * step;
+          expected[HazardCounters::class_of(d / lambda)] += rate;
+          all += rate;
+        }
+        if (depth > 2) continue;
+        const auto v = grid.index_of(kFromFront.translation() + depth * ray.norm() * u);
+        if (v && grid.state(*v) == VoxelState::unknown) {
+          met[HazardCounters::class_of(distance(*v) / lambda)] += 1;
+        }
+      }
+      for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+        const HazardCounters::Class& c = grid.hazard_counters().classes[k];
+        const double scale = HazardCounters::kFrame / all;
+        EXPECT_NEAR(static_cast<double>(c.expected), expected[k] * scale,
+                    0.03 * HazardCounters::kFrame)
+            << k;
+        EXPECT_NEAR(static_cast<double>(c.met), met[k] * scale,
+                    0.03 * std::max(1.0, met[k] * scale) + 0.03 * HazardCounters::kFrame)
+            << k;
+        classes += c.expected > 0;
+      }
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 6U);
+  EXPECT_GT(classes, 6U);
+}
+
+TEST(HazardCalibration, FindsTheRateOfAWorldThatHasOne) {
+  // Surface at a rate of 3 times the model's beyond the cut, wherever a ray passes.
+  const Sensor sensor = looking();
+  std::mt19937 random(5);
+  BeliefGrid grid = unknown_cube();
+  const HazardField field(grid.snapshot(), {.object_size = 0.35});
+  const double rate = 3 * field.model().far_rate;
+  const std::size_t far = HazardCounters::kClasses - 1;
+  int frames = 0;
+  for (; frames < 12; ++frames) {
+    DepthFrame frame = frame_of(sensor, DepthFrame::kOutOfRange);
+    const std::vector<Vector3d> rays = sensor.camera.ray_table();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Vector3d u = kFromFront.rotation() * rays[i].normalized();
+      // Into the cube through y = -0.2, the side that all rays meet.
+      const double entry = (-0.2 - kFromFront.translation().y()) / u.y();
+      const double range = entry + std::exponential_distribution<double>(rate)(random);
+      const Vector3d p = kFromFront.translation() + range * u;
+      if ((p.array().abs() < 0.2).all()) {
+        frame.depth[i] = static_cast<float>(range / rays[i].norm());
+      }
+    }
+    HazardCalibration(sensor).count(grid, field, frame, kFromFront);
+  }
+  EXPECT_EQ(frames, 12);
+  const HazardCounters::Class& c = grid.hazard_counters().classes[far];
+  EXPECT_NEAR(static_cast<double>(c.met) / static_cast<double>(c.expected), 3.0, 0.3);
+  // The field follows, with the prior's pull, and never rises with the distance.
+  const HazardField after(grid.snapshot(), {.object_size = 0.35});
+  const double factor = grid.hazard_counters().factor(far);
+  EXPECT_GT(factor, 2.4);
+  EXPECT_NEAR(after.far_rate(), field.far_rate() * factor, 1e-4 * after.far_rate());
+  std::size_t compared = 0;
+  for (std::int32_t x = -18; x < 20; ++x, ++compared) {
+    EXPECT_LE(after.rate({x + 1, -18, -18}), after.rate({x, -18, -18}));
+  }
+  EXPECT_EQ(compared, 38U);
+  // Rates that are given stay what they are.
+  const HazardModel given{20.0, 0.03, 0.5};
+  EXPECT_EQ(HazardField(grid.snapshot(), {.model = given}).far_rate(), 0.5F);
+  EXPECT_EQ(HazardField(grid.snapshot(), {.object_size = 0.35, .calibrated = false}).far_rate(),
+            field.far_rate());
+}
+
+TEST(HazardCalibration, EarlierFramesFade) {
+  const Sensor sensor = looking();
+  const DepthFrame frame = frame_of(sensor, 0.6F);
+  BeliefGrid grid = unknown_cube();
+  const HazardField field(grid.snapshot(), {.object_size = 0.35});
+  const HazardCalibration calibration(sensor);
+  calibration.count(grid, field, frame, kFromFront);
+  const HazardCounters once = grid.hazard_counters();
+  for (int i = 1; i < 40; ++i) calibration.count(grid, field, frame, kFromFront);
+  std::size_t counted = 0;
+  for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+    const HazardCounters::Class &c = grid.hazard_counters().classes[k], &first = once.classes[k];
+    EXPECT_NEAR(static_cast<double>(c.expected), static_cast<double>(first.expected) / 0.3, 4);
+    EXPECT_NEAR(static_cast<double>(c.met), static_cast<double>(first.met) / 0.3, 4);
+    counted += first.met > 0;
+  }
+  EXPECT_GE(counted, 1U);
+}
+
+TEST(HazardCalibration, WhatSaysNothing) {
+  const Sensor sensor = looking();
+  const HazardCalibration calibration(sensor);
+  BeliefGrid grid = unknown_cube();
+  const HazardField field(grid.snapshot(), {.object_size = 0.35});
+  calibration.count(grid, field, frame_of(sensor, DepthFrame::kInvalid), kFromFront);
+  EXPECT_TRUE(grid.hazard_counters().empty());
+  // Readings of a table meet nothing, but pass what is before it.
+  const Pose down = Pose::look_at({0.02, 0.03, 0.6}, {0, 0, 0}, {0, 1, 0});
+  HazardCalibration(sensor, 0.0).count(grid, field, frame_of(sensor, 0.6F), down);
+  std::int64_t expected = 0;
+  for (const HazardCounters::Class& c : grid.hazard_counters().classes) {
+    EXPECT_EQ(c.met, 0);
+    expected += c.expected;
+  }
+  EXPECT_GT(expected, 0);
+  // Without known surface there is no distance.
+  BeliefGrid empty({kVoxel, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01});
+  calibration.count(empty, HazardField(empty.snapshot()), frame_of(sensor, 0.6F), kFromFront);
+  EXPECT_TRUE(empty.hazard_counters().empty());
+  test::expect_error(ErrorCode::invalid_argument, "pixels", [&] {
+    calibration.count(grid, field, DepthFrame{2, 2, std::vector<float>(4, 0.6F)}, kFromFront);
+  });
+}
+
+TEST(HazardCalibration, IsPartOfTheMap) {
+  const test::TemporaryFolder dir;
+  BeliefGrid grid = unknown_cube();
+  const std::string without = grid.content_hash();
+  HazardCounters counters;
+  counters.classes[2] = {123, 4'567'890'123};
+  grid.set_hazard_counters(counters);
+  EXPECT_NE(grid.content_hash(), without);
+  EXPECT_EQ(grid.clone().hazard_counters(), counters);
+  EXPECT_EQ(grid.snapshot().hazard, counters);
+  save_vdb(grid, dir.path() / "map.vdb");
+  const BeliefGrid loaded = load_vdb(dir.path() / "map.vdb");
+  EXPECT_EQ(loaded.hazard_counters(), counters);
+  EXPECT_EQ(loaded.content_hash(), grid.content_hash());
+  grid.set_hazard_counters({});
+  EXPECT_EQ(grid.content_hash(), without);
+  counters.classes[5].met = -1;
+  test::expect_error(ErrorCode::invalid_argument, "hazard counter -1",
+                     [&] { grid.set_hazard_counters(counters); });
+}
+
+}  // namespace
+}  // namespace viewgain
