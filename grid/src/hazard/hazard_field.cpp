@@ -13,7 +13,8 @@ namespace viewgain {
 namespace {
 
 constexpr std::uint64_t kLeastHits = 3;  // of a voxel, or cube of voxels, with evidence of surface
-constexpr double kKnownDistance = 2.0;   // up to which surface is not new [pooling lengths]
+constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr double kKnownDistance = 2.0;  // up to which surface is not new [pooling lengths]
 
 void check(bool ok, const char* name, double value) {
   if (!ok) {
@@ -69,6 +70,44 @@ int shift_for(double decay_length, double voxel_size) {
   return static_cast<int>(std::clamp(std::round(wanted), 0.0, 3.0));
 }
 
+// Factors of the model's rates by class of distance that make the classes' rates not rise with the
+// distance: neighbours that do are pooled by weight (isotonic regression), so that a class about
+// which little is known follows those about which more is.
+using Factors = std::array<double, HazardCounters::kClasses>;
+Factors monotone_factors(const HazardModel& model, const HazardCounters& counters) {
+  struct Block {
+    double rate, weight;
+    std::size_t classes;
+  };
+  const auto model_rate = [&](std::size_t k) {  // in the middle of a class
+    if (k == HazardCounters::kEnds.size()) return model.rate(kFar);
+    const double begin = k > 0 ? HazardCounters::kEnds[k - 1] : 0.0;
+    return model.rate(0.5 * (begin + HazardCounters::kEnds[k]) * model.decay_length);
+  };
+  std::vector<Block> blocks;
+  for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+    blocks.push_back({model_rate(k) * counters.factor(k), counters.weight(k), 1});
+    while (blocks.size() > 1 && blocks.back().rate > blocks[blocks.size() - 2].rate) {
+      const Block last = blocks.back();
+      blocks.pop_back();
+      Block& before = blocks.back();
+      const double weight = before.weight + last.weight;
+      before.rate = (before.rate * before.weight + last.rate * last.weight) / weight;
+      before.weight = weight;
+      before.classes += last.classes;
+    }
+  }
+  Factors factors;
+  std::size_t k = 0;
+  for (const Block& block : blocks) {
+    for (std::size_t i = 0; i < block.classes; ++i, ++k) {
+      const double rate = model_rate(k);
+      factors[k] = rate > 0 ? block.rate / rate : 1.0;
+    }
+  }
+  return factors;
+}
+
 }  // namespace
 
 void HazardConfig::validate() const {
@@ -100,10 +139,9 @@ HazardField::HazardField(const GridSnapshot& snapshot, const HazardConfig& confi
   model_ = config.model.value_or(HazardModel::for_size(size));
   shift_ = shift_for(model_.decay_length, voxel_size_);
   factors_.fill(1.0);
-  if (config.calibrated && !config.model && !volume_) {
-    for (std::size_t k = 0; k < factors_.size(); ++k) factors_[k] = snapshot.hazard.factor(k);
+  if (config.calibrated && !config.model && !volume_ && !snapshot.hazard.empty()) {
+    factors_ = monotone_factors(model_, snapshot.hazard);
   }
-  constexpr double kFar = std::numeric_limits<double>::infinity();
   far_rate_ = static_cast<float>(model_.rate(kFar) * factors_.back());
   find_distances(evidence, workspace);
 }
@@ -140,14 +178,14 @@ void HazardField::find_distances(const std::vector<Index3>& evidence, const Voxe
   static_assert(kBeyond == detail::kNoDistance);
 
   rates_.resize(static_cast<std::size_t>(reach * reach) + 1);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < rates_.size(); ++i) {
+  // Where a class ends the factor steps: what is nearer has at least the rate of what is farther.
+  double most = model_.rate(kFar) * factors_.back();
+  for (std::size_t i = rates_.size(); i-- > 0;) {
     const double distance = std::sqrt(static_cast<double>(i)) * cell;
     const std::size_t k = HazardCounters::class_of(distance / model_.decay_length);
-    least = std::min(least, model_.rate(distance) * factors_[k]);
-    rates_[i] = static_cast<float>(least);
+    most = std::max(most, model_.rate(distance) * factors_[k]);
+    rates_[i] = static_cast<float>(most);
   }
-  far_rate_ = std::min(far_rate_, static_cast<float>(least));
   const double known = kKnownDistance * pooling_.length / cell;  // [cells]
   most_known_ = static_cast<std::uint32_t>(known * known);
 }

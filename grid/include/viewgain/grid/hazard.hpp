@@ -75,8 +75,8 @@ struct VIEWGAIN_EXPORT HazardConfig {
 /// leaves, about a quarter of the decay length wide. Distances are between centres of such cells,
 /// to the nearest one with an occupied voxel of at least 3 hits; voxels that are finer than the
 /// sensor's footprint count in the cubes of pooling_of(). The model's start values are multiplied
-/// class by class by HazardCounters::factor() and kept from rising with the distance. The rates of
-/// a volume are by voxel.
+/// class by class by HazardCounters::factor(), pooled where rates would rise with the distance. The
+/// rates of a volume are by voxel.
 class VIEWGAIN_EXPORT HazardField {
  public:
   /// Exact distances in 3 passes over the box of cells with evidence, widened by the cut: about

@@ -22,6 +22,7 @@ struct VIEWGAIN_EXPORT HazardCounters {
   /// What earlier frames are left with when one is added, as late hazards are lower than early
   /// ones.
   static constexpr std::int64_t kKeptOf10 = 7;
+  static constexpr double kPrior = 2.0 * kFrame / kClasses;  ///< of each class
 
   struct Class {
     std::int64_t expected = 0;  ///< meetings by the model [1 / kFrame]
@@ -40,9 +41,11 @@ struct VIEWGAIN_EXPORT HazardCounters {
   /// What the model's rates in a class are multiplied by: mean of the Gamma posterior, with a prior
   /// at 1 that is worth two frames over all classes.
   [[nodiscard]] double factor(std::size_t k) const {
-    constexpr double kPrior = 2.0 * kFrame / kClasses;
-    return (kPrior + static_cast<double>(classes[k].met)) /
-           (kPrior + static_cast<double>(classes[k].expected));
+    return (kPrior + static_cast<double>(classes[k].met)) / weight(k);
+  }
+  /// What it is worth: meetings expected, with the prior's.
+  [[nodiscard]] double weight(std::size_t k) const {
+    return kPrior + static_cast<double>(classes[k].expected);
   }
 
   [[nodiscard]] bool empty() const { return *this == HazardCounters{}; }
