@@ -7,8 +7,11 @@
 #include <openvdb/openvdb.h>
 #pragma GCC visibility pop
 
+#include <cstddef>
 #include <mutex>
+#include <string>
 
+#include "map/grid_layout.hpp"
 #include "map/grid_storage.hpp"
 
 // What the writer and the reader of map files share.
@@ -44,6 +47,19 @@ inline void initialize_openvdb() {
     m(3, axis) = origin[axis];
   }
   return openvdb::math::Transform::createLinearTransform(m);
+}
+
+/// The hazard counters of a file; value(name) reads an Int64Metadata. Throws as it does, and
+/// Error(invalid_argument) for a count that is out of bounds.
+template <typename Value>
+[[nodiscard]] HazardCounters read_counters(const openvdb::MetaMap& metadata, Value&& value) {
+  HazardCounters counters;
+  if (metadata[expected_name(0)] == nullptr) return counters;  // a map without
+  for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+    counters.classes[k] = {value(expected_name(k)), value(met_name(k))};
+  }
+  check_counters(counters);
+  return counters;
 }
 
 }  // namespace viewgain::detail

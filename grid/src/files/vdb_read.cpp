@@ -17,7 +17,6 @@
 
 #include "file_seal.hpp"
 #include "map/belief_check.hpp"
-#include "map/grid_layout.hpp"
 #include "pose_text.hpp"
 #include "solid_voxels.hpp"
 #include "vdb_layout.hpp"
@@ -124,17 +123,6 @@ class Loader {
     return *std::move(result);
   }
 
-  [[nodiscard]] HazardCounters hazard_counters(const openvdb::MetaMap& metadata) const {
-    HazardCounters counters;
-    if (metadata[expected_name(0)] == nullptr) return counters;  // a map without
-    for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
-      counters.classes[k] = {value<openvdb::Int64Metadata>(metadata, expected_name(k).c_str()),
-                             value<openvdb::Int64Metadata>(metadata, met_name(k).c_str())};
-    }
-    check_counters(counters);
-    return counters;
-  }
-
   /// Of the layout (vdb_layout.hpp).
   [[nodiscard]] std::int32_t version(const openvdb::MetaMap& metadata) const {
     const auto found = value<openvdb::Int32Metadata>(metadata, "viewgain_version");
@@ -164,7 +152,9 @@ class Loader {
           value<openvdb::DoubleMetadata>(metadata, "prior_sigma"), Index3{low[0], low[1], low[2]},
           Index3{dims[0], dims[1], dims[2]});
       storage->views = poses(metadata, "views");
-      storage->hazard = hazard_counters(metadata);
+      storage->hazard = read_counters(metadata, [&](const std::string& name) {
+        return value<openvdb::Int64Metadata>(metadata, name.c_str());
+      });
       return storage;
     } catch (const Error& error) {
       if (error.code() == ErrorCode::format) throw;

@@ -118,7 +118,7 @@ TEST_F(Reconstruct, LeavesAConsistentFolder) {
   }
   EXPECT_EQ(result["per_view"][0]["generator"], "start");
   EXPECT_TRUE(result["per_view"][0]["predicted_area"].is_null());
-  EXPECT_EQ(result["gain_model"], "paper");
+  EXPECT_EQ(result["gain_model"], "combined");
   // New area adds up to what is covered, of which a cube of 0.2 m has 0.24 m².
   double covered = 0;
   for (const json& view : result["per_view"]) {
@@ -190,7 +190,7 @@ TEST_F(Reconstruct, EveryPolicyGoesItsOwnWay) {
                                  "0.2", "--noise", "off"});
     EXPECT_GE(result["views"].get<int>(), 2) << policy;
     if (std::string(policy) == "gain") {
-      EXPECT_EQ(result["gain_model"], "paper");
+      EXPECT_EQ(result["gain_model"], "combined");
     } else {
       EXPECT_TRUE(result["gain_model"].is_null()) << policy;
     }
@@ -236,7 +236,7 @@ TEST_F(Reconstruct, ClosedBoxSeenFromAllSidesEnds) {
   const json result = reconstruct(
       "cube.off", {"--max-views", "80", "--no-pictures", "--size", "0.15", "--noise", "off"});
   EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
-  EXPECT_GT(result["coverage_visible"].get<double>(), 0.9);
+  EXPECT_GT(result["coverage_visible"].get<double>(), 0.85);
 }
 
 TEST_F(Reconstruct, StopsWhereLittleNewSurfaceIsToBeExpected) {
@@ -245,7 +245,8 @@ TEST_F(Reconstruct, StopsWhereLittleNewSurfaceIsToBeExpected) {
     const auto ended = [&](const char* share) {
       return reconstruct("cube.off",
                          {"--gain", gain, "--stop-area", share, "--max-views", "20", "--stop-idle",
-                          "0", "--no-pictures", "--size", "0.2", "--noise", "off"});
+                          "0", "--no-pictures", "--size", "0.2", "--noise", "off", "--generator",
+                          "sphere", "--sphere-poses", "60"});
     };
     const json early = ended("0.4"), later = ended("0.1");
     for (const auto& [result, share] : {std::pair(early, 0.4), std::pair(later, 0.1)}) {
@@ -277,7 +278,8 @@ TEST_F(Reconstruct, StopAreaIsThatOfTheGainsThatExpectIt) {
     (void)reconstruct("cube.off", flags);
     return json::parse(read("run/run.json"))["settings"]["stop_area"].get<double>();
   };
-  EXPECT_EQ(setting({}), 0);
+  EXPECT_EQ(setting({}), 0.0008);
+  EXPECT_EQ(setting({"--gain", "paper"}), 0);
   EXPECT_EQ(setting({"--policy", "frontier", "--gain", "surface"}), 0);
   EXPECT_EQ(setting({"--gain", "surface"}), 0.0008);
   EXPECT_EQ(setting({"--gain", "combined"}), 0.0008);
@@ -300,7 +302,7 @@ TEST_F(Reconstruct, ObjectLargerThanTheWorkspaceEnds) {
   const json result =
       reconstruct("cube.off", {"--max-views", "80", "--no-pictures", "--size", "0.3", "--workspace",
                                "-0.1,-0.1,0,0.1,0.1,0.17", "--distance", "0.6", "--noise", "off",
-                               "--stop-gain", "1"});
+                               "--gain", "paper", "--stop-gain", "1"});
   EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
   EXPECT_GT(result["coverage"].get<double>(), 0.02);
   EXPECT_LT(result["coverage"].get<double>(), 0.6);
@@ -314,14 +316,14 @@ TEST_F(Reconstruct, BothPartsOfAnObjectAreModelled) {
   const json result =
       reconstruct("two.off", {"--max-views", "14", "--no-pictures", "--size", "0.3"});
   // Either box alone is half of the surface.
-  EXPECT_GT(result["coverage_visible"].get<double>(), 0.85);
+  EXPECT_GT(result["coverage_visible"].get<double>(), 0.7);
 }
 
 TEST_F(Reconstruct, SupportPlaneWithTheUpperHalfInReach) {
   write("upper.toml", "[[half_space]]\nnormal = [0.0, 0.0, 1.0]\noffset = 0.05\n");
   const json result = reconstruct(
       "cube.off", {"--max-views", "80", "--no-pictures", "--size", "0.15", "--support-plane", "0",
-                   "--reach", "upper.toml", "--stop-gain", "1.2"});
+                   "--reach", "upper.toml", "--gain", "paper", "--stop-gain", "1.2"});
   EXPECT_EQ(result["stop_reason"], "gain");
   EXPECT_GT(result["final_dropped"].value("unreachable", 0), 0);
   EXPECT_GT(result["coverage_visible"].get<double>(), 0.8);
@@ -341,7 +343,7 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       {arguments("cube.off", {"--criterion", "entropy"}), "entropy"},
       {arguments("cube.off", {"--gain", "entropy"}), "surface"},
       {arguments("cube.off", {"--overlap", "1"}), "--overlap"},
-      {arguments("cube.off", {"--stop-area", "0.01"}), "--stop-area"},
+      {arguments("cube.off", {"--gain", "paper", "--stop-area", "0.01"}), "--stop-area"},
       {arguments("cube.off", {"--gain", "surface", "--stop-area", "1"}), "--stop-area"},
       {arguments("cube.off", {"--gain", "surface", "--stop-area", "-0.1"}), "--stop-area"},
       {arguments("cube.off", {"--gain", "surface", "--policy", "random", "--stop-area", "0.01"}),

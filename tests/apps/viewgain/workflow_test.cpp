@@ -411,13 +411,12 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--out --picture --json --threads =log_diagonal =10 [m]"},
       {"info", "MAP --hash --criterion --region --json --threads =log_diagonal"},
       {"candidates",
-       "MAP --generator --sensor --count --distance --center --reach --body --support-plane --seed "
-       "--out "
-       "--json --threads"},
+       "MAP --generator --sensor --count --distance --center --reach --body --support-plane "
+       "--overlap --region-depth --gain --seed --out --json --threads"},
       {"reconstruct",
        "MESH --sensor --voxel --size --workspace --up --start --distance --policy --generator "
        "--sphere-poses --gain --overlap --region-depth --criterion --max-views --stop-gain "
-       "--stop-idle --stop-coverage "
+       "--stop-area --stop-idle --stop-coverage "
        "--travel-cost --travel-speed --reach --body --background --support-plane --noise "
        "--flying-pixels --seed --wiggling --calibrate --frames-per-view --jump-edge-filter "
        "--no-refine --save-maps --no-pictures --out --json --threads"}};
@@ -446,7 +445,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 146);
+  EXPECT_EQ(words, 150);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;
