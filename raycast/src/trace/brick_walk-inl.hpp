@@ -217,8 +217,7 @@ HWY_INLINE Reach reach_of(const BrickTable& table, const PoseFrame& frame, const
   return {enter, exit};
 }
 
-// A packet on its way. Calls sink.step() for each cube that its rays go through. Several take
-// turns, so that what one waits for does not hold up the others.
+// A packet on its way. Calls sink.step() for each cube that its rays go through.
 template <typename Sink>
 class PacketWalk {
  public:
