@@ -9,7 +9,7 @@ the views of the budget (AUC), what it has in the end, and the differences of pa
 them. A run that never gets there counts as budget + 1 views.
 
     perf/compare_policies.py [--viewgain build/release/bin/viewgain] [--meshes build/meshes]
-                             [--out build/policies] [--jobs 2] [--seeds 5] [--views 12] [--keep]
+                             [--out build/policies] [--jobs 2] [--seeds 5] [--views 12] [--keep] [--sensor sr4000]
                              [--policies combined,frontier] [--objects camel] [--against frontier]
                              [-- arguments of reconstruct]
 """
@@ -46,6 +46,7 @@ def parse_arguments():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--views", type=int, default=12, help="budget of each run")
+    parser.add_argument("--sensor", default="sr4000")
     parser.add_argument("--policies", default="combined,surface,paper,frontier,kriegel,sequence,random")
     parser.add_argument("--objects", default=",".join(OBJECTS))
     parser.add_argument("--against", default="frontier", help="policy that the others are paired with")
@@ -62,7 +63,7 @@ def run(arguments, mesh, policy, seed):
     if arguments.keep and os.path.exists(os.path.join(out, "run.json")):
         with open(os.path.join(out, "run.json"), encoding="utf-8") as file:
             return json.load(file)
-    command = [arguments.viewgain, "reconstruct", path, "--sensor", "sr4000", "--voxel", "0.003125",
+    command = [arguments.viewgain, "reconstruct", path, "--sensor", arguments.sensor, "--voxel", "0.003125",
                "--max-views", str(arguments.views), "--seed", str(seed), "--threads", "1",
                "--no-pictures", "--json", "--out", out]
     # Each policy gets the whole budget: what stops a run early is not what is compared.

@@ -48,6 +48,7 @@ LostInTree save_map(const BeliefGrid& grid, const std::filesystem::path& path,
     lost.beliefs += block.beliefs->beliefs.size();
   }
   lost.views = grid.views().size();
+  lost.hazard_counters = !grid.hazard_counters().empty();
   lost.T_world_grid = !octomap_keeps_frame(grid);
   if (lost.T_world_grid) {
     std::fprintf(

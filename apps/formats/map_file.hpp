@@ -30,6 +30,7 @@ void check_map_name(const std::filesystem::path& path);
 struct LostInTree {
   std::size_t beliefs = 0;  ///< voxels
   std::size_t views = 0;
+  bool hazard_counters = false;
   bool T_world_grid = false;  ///< see octomap_keeps_frame
 };
 

@@ -5,7 +5,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "formats/png_io.hpp"
@@ -22,9 +24,9 @@ constexpr std::size_t kMaxCubes = 400'000;
 
 // A voxel to draw. Sorting brings equal voxels together, the one with the strongest colour first.
 struct Cube {
-  enum class Kind : std::uint8_t { unknown_hit, occupied_hit, surface };
   std::int32_t x, y, z;
-  Kind kind;
+  std::size_t kind;  // below ChancePaints::kLevels: unknown, by chance; else one of these
+  static constexpr std::size_t kOccupiedHit = ChancePaints::kLevels, kSurface = kOccupiedHit + 1;
   auto operator<=>(const Cube&) const = default;
 };
 
@@ -37,24 +39,22 @@ void sort_and_merge(std::vector<Cube>& cubes) {
               cubes.end());
 }
 
-// The occupied voxels and those where the view's rays end. Returns the cubes' side in voxels: a map
-// with more voxels than the picture has room for is drawn coarser.
-std::int32_t collect_cubes(const GridSnapshot& snapshot, const std::vector<RayHit>& hits,
+// The occupied voxels and those where the view's rays end or may end. Returns the cubes' side in
+// voxels: a map with more voxels than the picture has room for is drawn coarser.
+std::int32_t collect_cubes(const GridSnapshot& snapshot,
+                           const std::vector<VoxelContribution>& touched,
                            std::vector<Cube>& cubes) {
-  for (const RayHit& hit : hits) {
-    if (hit.kind == RayHit::Kind::unknown) {
-      cubes.push_back({hit.voxel.x, hit.voxel.y, hit.voxel.z, Cube::Kind::unknown_hit});
-    } else if (hit.kind == RayHit::Kind::occupied) {
-      cubes.push_back({hit.voxel.x, hit.voxel.y, hit.voxel.z, Cube::Kind::occupied_hit});
-    }
+  for (const VoxelContribution& voxel : touched) {
+    const auto kind = voxel.state == VoxelState::unknown ? ChancePaints::level(voxel)
+                                                         : std::optional(Cube::kOccupiedHit);
+    if (kind) cubes.push_back({voxel.voxel.x, voxel.voxel.y, voxel.voxel.z, *kind});
   }
   for (const SnapshotLeaf& leaf : snapshot.leaves) {
     for (unsigned offset = 0; offset < 512; ++offset) {
       if (!test_bit(leaf.occupied, offset)) continue;
       cubes.push_back({leaf.origin.x + static_cast<std::int32_t>(offset >> 6U),
                        leaf.origin.y + static_cast<std::int32_t>(offset >> 3U & 7U),
-                       leaf.origin.z + static_cast<std::int32_t>(offset & 7U),
-                       Cube::Kind::surface});
+                       leaf.origin.z + static_cast<std::int32_t>(offset & 7U), Cube::kSurface});
     }
   }
   sort_and_merge(cubes);
@@ -83,18 +83,20 @@ void write_picture(const std::filesystem::path& path, const GainEvaluator& evalu
   const double extent = (workspace[7] - workspace[0]).norm();
 
   PaintedMesh scene;
-  const std::array<std::uint8_t, 3> cube_paints{
-      scene.add_paint({kUnknownColor}), scene.add_paint({kOccupiedColor}),
-      scene.add_paint({{0.62, 0.62, 0.60}})};  // in the order of Cube::Kind
+  const ChancePaints unknown_paints(scene);
+  const std::uint8_t occupied_paint = scene.add_paint({kOccupiedColor});
+  const std::uint8_t surface_paint = scene.add_paint({{0.62, 0.62, 0.60}});
   const std::uint8_t frustum_paint = scene.add_paint({{0.03, 0.04, 0.06}, false});
   const std::uint8_t box_paint = scene.add_paint({{0.45, 0.48, 0.52}, false});
 
   std::vector<Cube> cubes;
-  const std::int32_t side = collect_cubes(snapshot, hits, cubes);
+  const std::int32_t side = collect_cubes(snapshot, evaluator.contributions(T_world_camera), cubes);
   const double cube_size = side * snapshot.voxel_size;
   for (const Cube& cube : cubes) {
     add_lattice_cube(scene, snapshot.T_world_grid, Vector3d(cube.x, cube.y, cube.z), cube_size,
-                     cube_paints[static_cast<std::size_t>(cube.kind)]);
+                     cube.kind < ChancePaints::kLevels ? unknown_paints[cube.kind]
+                     : cube.kind == Cube::kOccupiedHit ? occupied_paint
+                                                       : surface_paint);
   }
   add_box_outline(scene, workspace, 0.0012 * extent, box_paint);
   add_pyramid(scene, eye, far_corners, 0.0025 * extent, frustum_paint);

@@ -12,8 +12,10 @@
 namespace viewgain::app {
 
 /// A picture of one view, 1280x960 px: the map's occupied voxels as little grey cubes, the view's
-/// frustum, and the voxels where its rays end, unknown ones orange, occupied ones blue; seen from a
-/// place that shows both. Atomic: a temporary file is renamed. Throws Error(io).
+/// frustum, and the voxels where its rays end, unknown ones orange, occupied ones blue; by the
+/// surface and combined gain unknown voxels in which it may find surface, the stronger in orange
+/// the likelier; seen from a place that shows both. Atomic: a temporary file is renamed. Throws
+/// Error(io).
 void write_picture(const std::filesystem::path& path, const GainEvaluator& evaluator,
                    const Sensor& sensor, const Pose& T_world_camera, const ExecConfig& exec);
 

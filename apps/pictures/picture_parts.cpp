@@ -66,6 +66,35 @@ void add_lattice_cube(PaintedMesh& scene, const Pose& T_world_grid, const Vector
                        paint);
 }
 
+namespace {
+
+struct Chance {
+  double least;  // of a ray that reaches the voxel to end in it
+  double opacity;
+};
+constexpr std::array<Chance, ChancePaints::kLevels> kChances{
+    {{0.5, 1}, {0.2, 0.5}, {0.1, 0.3}, {0.05, 0.18}, {0.02, 0.1}, {0.01, 0.05}}};
+
+}  // namespace
+
+ChancePaints::ChancePaints(PaintedMesh& scene) {
+  for (std::size_t k = 0; k < kLevels; ++k) {
+    const double opacity = kChances[k].opacity;
+    paints_[k] = scene.add_paint({.color = kUnknownColor,
+                                  .lit = opacity == 1,
+                                  .opacity = opacity,
+                                  .passes_light = opacity < 1});
+  }
+}
+
+std::optional<std::size_t> ChancePaints::level(const VoxelContribution& contribution) {
+  const double chance = contribution.expected_rays / std::max(1U, contribution.rays);
+  for (std::size_t k = 0; k < kLevels; ++k) {
+    if (chance >= kChances[k].least) return k;
+  }
+  return std::nullopt;
+}
+
 std::array<Vector3d, 4> image_corners(const Sensor& sensor, const Pose& T_world_camera,
                                       double depth) {
   const double u = sensor.camera.width - 0.5, v = sensor.camera.height - 0.5;

@@ -4,7 +4,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "ray_tracer.hpp"
@@ -12,6 +14,7 @@
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/raycast/view_contributions.hpp"
 
 namespace viewgain::app {
 
@@ -36,6 +39,22 @@ void add_box_outline(PaintedMesh& scene, const std::array<Eigen::Vector3d, 8>& c
 /// single ones stay visible.
 void add_lattice_cube(PaintedMesh& scene, const Pose& T_world_grid, const Eigen::Vector3d& index,
                       double side, std::uint8_t paint);
+
+/// Paints for unknown voxels in which rays of a view end, or may end: kUnknownColor, the likelier
+/// that a ray that reaches the voxel ends in it, the less translucent.
+class ChancePaints {
+ public:
+  static constexpr std::size_t kLevels = 6;
+
+  explicit ChancePaints(PaintedMesh& scene);
+
+  /// 0: at least even chances, opaque; nothing: less than 1 %, not worth drawing.
+  [[nodiscard]] static std::optional<std::size_t> level(const VoxelContribution& contribution);
+  [[nodiscard]] std::uint8_t operator[](std::size_t level) const { return paints_[level]; }
+
+ private:
+  std::array<std::uint8_t, kLevels> paints_{};
+};
 
 /// The four corners of the image at this depth [m], in order round it.
 [[nodiscard]] std::array<Eigen::Vector3d, 4> image_corners(const Sensor& sensor,

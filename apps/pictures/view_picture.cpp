@@ -162,6 +162,20 @@ void add_rays(PaintedMesh& scene, const Paints& paints, const std::vector<RayHit
   }
 }
 
+// Unknown voxels in which the view may find surface.
+void add_chances(PaintedMesh& scene, const std::vector<VoxelContribution>& touched,
+                 const GridSnapshot& snapshot) {
+  const ChancePaints paints(scene);
+  for (const VoxelContribution& voxel : touched) {
+    if (voxel.state != VoxelState::unknown) continue;
+    const auto level = ChancePaints::level(voxel);
+    if (!level) continue;
+    add_lattice_cube(scene, snapshot.T_world_grid,
+                     Vector3d(voxel.voxel.x, voxel.voxel.y, voxel.voxel.z), snapshot.voxel_size,
+                     paints[*level]);
+  }
+}
+
 // What the chosen view covers: a tinted pyramid.
 void add_volume(PaintedMesh& scene, const Paints& paints, const Vector3d& apex,
                 const std::array<Vector3d, 4>& base, double width, const Vector3d& viewer_eye) {
@@ -236,6 +250,10 @@ void write_view_picture(const std::filesystem::path& path, const ViewPicture& pi
     add_volume(scene, paints, eye, far_corners, kChosenEdgeWidth * extent, viewer_eye);
     add_rays(scene, paints, shown_rays(hits, picture.sensor.camera), eye, viewer_eye, snapshot,
              kRayWidth * extent);
+    // By the paper's gain they are where the rays end.
+    if (picture.evaluator.model() != GainModel::paper) {
+      add_chances(scene, picture.evaluator.contributions(subject), snapshot);
+    }
   }
   write_png(path, render(scene, camera, T_world_viewer, 0.12 * extent, exec));
 }

@@ -31,10 +31,11 @@ struct ViewPicture {
 /// green, top blue, bottom yellow); candidates as small frusta, those of boundaries in their
 /// class's colour, others grey; the view just taken as a black frustum; the chosen one as a larger
 /// green frustum with some of its rays, orange where they end in unknown voxels, blue in occupied
-/// ones. The surface's inside is darker; of more than 200 candidates an even subset is drawn, none
-/// right in front of the viewer. Atomic: a temporary file is renamed. Throws Error(io);
-/// Error(invalid_argument) for a view that is no rigid transform (1e-3). The same picture for any
-/// number of threads.
+/// ones, and by the surface and combined gain unknown voxels in which it may find surface, the
+/// stronger in orange the likelier. The surface's inside is darker; of more than 200 candidates an
+/// even subset is drawn, none right in front of the viewer. Atomic: a temporary file is renamed.
+/// Throws Error(io); Error(invalid_argument) for a view that is no rigid transform (1e-3). The same
+/// picture for any number of threads.
 void write_view_picture(const std::filesystem::path& path, const ViewPicture& picture,
                         const ExecConfig& exec);
 

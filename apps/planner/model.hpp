@@ -27,12 +27,13 @@ struct ModelConfig {
   IntegrationConfig integration{};
   std::optional<JumpEdgeConfig> jump_edges{};
   FusedPointsConfig points{};
+  HazardConfig hazard{};  ///< of unknown space, for the surface and the combined gain
   Criterion criterion = Criterion::log_diagonal;
   bool refine = true;  ///< false: the first reading of a voxel wins, later ones are ignored
 };
 
-/// The surface through the points of a map, `spacing` [m] apart (its pooling length); vertex i comes
-/// from point source[i].
+/// The surface through the points of a map, `spacing` [m] apart (its pooling length); vertex i
+/// comes from point source[i].
 [[nodiscard]] SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double spacing,
                                      const ExecConfig& exec);
 

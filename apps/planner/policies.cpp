@@ -46,6 +46,28 @@ Policy parse_policy(std::string_view name) {
   return static_cast<Policy>(found - names.begin());
 }
 
+void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
+                    std::optional<double> stop_gain, std::optional<double> stop_area) {
+  const bool expects_area = policy.policy == Policy::gain && policy.model != GainModel::paper;
+  const bool by_paper = policy.policy == Policy::gain && policy.model == GainModel::paper;
+  if (!expects_area && stop_area.value_or(0) > 0) {
+    throw Error(ErrorCode::invalid_argument,
+                "--stop-area (stop_area) goes with policy gain by the gains surface and combined");
+  }
+  if (!by_paper && stop_gain.value_or(0) > 0) {
+    throw Error(ErrorCode::invalid_argument,
+                "--stop-gain (stop_gain) goes with policy gain by the gain paper");
+  }
+  if (expects_area && policy.model == GainModel::combined && policy.criterion == Criterion::trace) {
+    throw Error(ErrorCode::invalid_argument,
+                "--criterion trace (criterion) goes with --gain paper or surface: the combined "
+                "gain is in nats");
+  }
+  planning.stop_gain_is_relative = policy.criterion == Criterion::trace && !stop_gain;
+  planning.stop_gain = stop_gain.value_or(planning.stop_gain_is_relative ? 0.01 : kStopGain);
+  planning.stop_area = stop_area.value_or(expects_area ? kStopArea : 0.0);
+}
+
 PolicyDecision::PolicyDecision(const Model& model, const CandidateGeneration& generation,
                                const Sensor& sensor, const PolicyConfig& config,
                                const LoopExec& exec)

@@ -32,10 +32,14 @@ RealisedArea::RealisedArea(const Sensor& sensor, std::optional<double> support_p
 
 double RealisedArea::of(const DepthFrame& frame, const Pose& T_world_camera,
                         const BeliefGrid& before, const HazardField* hazard) const {
-  if (frame.depth.size() != rays_.size()) {
-    throw Error(ErrorCode::invalid_argument, "the frame has " + std::to_string(frame.depth.size()) +
-                                                 " pixels, the sensor " +
-                                                 std::to_string(rays_.size()));
+  const PinholeCamera& camera = sensor_.camera;
+  if (frame.width != camera.width || frame.height != camera.height ||
+      frame.depth.size() != rays_.size()) {
+    throw Error(ErrorCode::invalid_argument,
+                "the frame is " + std::to_string(frame.width) + " x " +
+                    std::to_string(frame.height) + " px with " +
+                    std::to_string(frame.depth.size()) + " depths, the sensor " +
+                    std::to_string(camera.width) + " x " + std::to_string(camera.height) + " px");
   }
   double area = 0;
   for (std::size_t i = 0; i < rays_.size(); ++i) {

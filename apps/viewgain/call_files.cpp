@@ -15,6 +15,7 @@
 
 #include "formats/file_names.hpp"
 #include "formats/frames_dir.hpp"
+#include "formats/hazard_source.hpp"
 #include "formats/reach_toml.hpp"
 #include "formats/run_folder.hpp"
 #include "formats/sensor_toml.hpp"
@@ -33,12 +34,13 @@ struct FileOption {
   Kind kind;
 };
 constexpr std::array kFileOptions{
-    FileOption{"MESH", Kind::input},        FileOption{"MAP", Kind::input},
-    FileOption{"IN", Kind::input},          FileOption{"--map", Kind::input},
-    FileOption{"--cloud", Kind::input},     FileOption{"--poses", Kind::input},
-    FileOption{"--sensor", Kind::input},    FileOption{"--reach", Kind::reach},
-    FileOption{"FRAMES_DIR", Kind::frames}, FileOption{"OUT", Kind::output},
-    FileOption{"--picture", Kind::picture}, FileOption{"--out", Kind::output}};
+    FileOption{"MESH", Kind::input},     FileOption{"MAP", Kind::input},
+    FileOption{"IN", Kind::input},       FileOption{"--map", Kind::input},
+    FileOption{"--cloud", Kind::input},  FileOption{"--poses", Kind::input},
+    FileOption{"--sensor", Kind::input}, FileOption{"--reach", Kind::reach},
+    FileOption{"--hazard", Kind::input}, FileOption{"FRAMES_DIR", Kind::frames},
+    FileOption{"OUT", Kind::output},     FileOption{"--picture", Kind::picture},
+    FileOption{"--out", Kind::output}};
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 
@@ -77,6 +79,7 @@ std::vector<NamedFile> named_files(const CLI::App& subcommand) {
     if (option == nullptr) continue;
     for (const std::string& value : option->results()) {
       if (file_option.name == "--sensor" && !is_sensor_file(value)) continue;
+      if (file_option.name == "--hazard" && !is_hazard_file(value)) continue;
       files.push_back(
           {std::string(file_option.name), value, kind_of(file_option, subcommand.get_name())});
     }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "formats/hazard_source.hpp"
 #include "formats/map_file.hpp"
 #include "formats/reach_toml.hpp"
 #include "formats/sensor_toml.hpp"
@@ -43,6 +44,8 @@ struct Options {
   std::string gain;
   std::optional<double> overlap;
   std::optional<double> region_depth;
+  std::optional<double> object_size;
+  std::string hazard;
   std::uint64_t seed = 1;
   std::string out;
 };
@@ -148,12 +151,20 @@ void refuse_none(const Options& options, const Proposal& proposal) {
 
 void candidates(const Options& options) {
   const ExecConfig exec{options.common.threads};
+  const bool by_hazard =
+      !options.gain.empty() && parse_gain_model(options.gain) != GainModel::paper;
+  if (!by_hazard && (options.object_size || !options.hazard.empty())) {
+    throw Error(ErrorCode::invalid_argument,
+                "--object-size and --hazard go with --gain surface or combined");
+  }
   Sensor sensor = load_sensor(options.sensor);
   if (!options.body.empty()) sensor.body_size = parse_size("--body", options.body);
   BeliefGrid grid = load_map(options.map, &sensor);
   const GenerationConfig config = generation_config(options, sensor, grid);
 
-  const Model model(std::move(grid), sensor, {}, {exec});
+  ModelConfig model_config;
+  model_config.hazard = hazard_source(options.hazard, options.object_size, grid);
+  const Model model(std::move(grid), sensor, model_config, {exec});
   CandidateGeneration generation(model, sensor, config, {exec});
   const Proposal proposal = generation.generate({});
   const Order ranking = rank(options, model, sensor, proposal.candidates, exec);
@@ -232,7 +243,7 @@ Command add_candidates(CLI::App& program) {
   app->add_option("MAP", o.map, kMapHelp)->required();
   app->add_option(
          "--generator", o.generator,
-         "boundary (open boundaries of the surface in the map), sphere, dome, rings, shell "
+         "boundary (open boundaries of the surface in the map), sphere, dome, rings, shell, "
          "sequence or fibonacci")
       ->check(CLI::IsMember(generator_names()))
       ->required();
@@ -240,7 +251,7 @@ Command add_candidates(CLI::App& program) {
   app->add_option(
          "--count", o.count,
          "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 (default "
-         "48)")
+         "48); fibonacci (default 20)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
   app->add_option("--distance", o.distance,
                   "boundary: from the surface; else from the centre [m]; default: the sensor's "
@@ -256,6 +267,8 @@ Command add_candidates(CLI::App& program) {
   app->add_option("--gain", o.gain,
                   "paper, surface or combined, as in score: order the poses by it, best first")
       ->check(CLI::IsMember(gain_model_names()));
+  app->add_option("--object-size", o.object_size, kObjectSizeHelp);
+  app->add_option("--hazard", o.hazard, kHazardHelp);
   add_seed_option(*app, o.seed, "of the shell");
   app->add_option("--out", o.out, "TUM file of camera-to-world poses")->required();
   add_common_options(*app, o.common);

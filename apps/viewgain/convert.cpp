@@ -58,6 +58,7 @@ void convert(const Options& options) {
     json.update(map_json(grid, statistics));
     json.update({{"lost_beliefs", lost.beliefs},
                  {"lost_views", lost.views},
+                 {"lost_hazard_counters", lost.hazard_counters},
                  {"lost_T_world_grid", lost.T_world_grid},
                  {"hash", grid.content_hash()},
                  {"seconds", watch.seconds()}});
@@ -69,8 +70,9 @@ void convert(const Options& options) {
   std::printf("voxels: %s unknown, %s free, %s occupied\n", with_commas(statistics.unknown).c_str(),
               with_commas(statistics.free).c_str(), with_commas(statistics.occupied).c_str());
   if (lost.beliefs > 0 || lost.views > 0) {
-    std::printf("not in a tree: the beliefs of %s voxels, %s views\n",
-                with_commas(lost.beliefs).c_str(), with_commas(lost.views).c_str());
+    std::printf("not in a tree: the beliefs of %s voxels, %s views%s\n",
+                with_commas(lost.beliefs).c_str(), with_commas(lost.views).c_str(),
+                lost.hazard_counters ? ", hazard counters" : "");
   }
   std::printf("%s\n", options.out.c_str());
 }

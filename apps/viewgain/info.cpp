@@ -62,6 +62,15 @@ void print(const Region& region, const char* unit) {
   std::printf("  hits           %s\n", with_commas(s.hits).c_str());
 }
 
+// What frames have said of the hazard of unknown space; null where none was asked.
+nlohmann::ordered_json hazard_factors(const BeliefGrid& grid) {
+  const HazardCounters& counters = grid.hazard_counters();
+  if (counters.empty()) return nullptr;
+  nlohmann::ordered_json factors = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) factors.push_back(counters.factor(k));
+  return factors;
+}
+
 void info(const Options& options) {
   const Criterion criterion = parse_criterion(options.criterion);
   const BeliefGrid grid = load_map(options.map);
@@ -92,6 +101,7 @@ void info(const Options& options) {
                                 {"entropy_removed", statistics.entropy_removed},
                                 {"prior_sigma", grid.prior_sigma()},
                                 {"views", grid.views().size()},
+                                {"hazard_factors", hazard_factors(grid)},
                                 {"hash", grid.content_hash()}};
     if (region) json["region"] = region_json(*region);
     print_json(json);
@@ -113,6 +123,13 @@ void info(const Options& options) {
               options.criterion.c_str());
   std::printf("prior sigma      %g m\n", grid.prior_sigma());
   std::printf("views            %zu\n", grid.views().size());
+  if (const HazardCounters& counters = grid.hazard_counters(); !counters.empty()) {
+    std::printf("hazard factors  ");
+    for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+      std::printf(" %.2f", counters.factor(k));
+    }
+    std::printf("  (near to far)\n");
+  }
   std::printf("hash             %s\n", grid.content_hash().c_str());
   if (region) print(*region, unit);
 }

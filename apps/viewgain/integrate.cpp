@@ -218,7 +218,7 @@ void check_flags(const Options& options, const CLI::App& app) {
     refuse({"--origin", "--poses"}, "is for clouds (--cloud)");
   } else {
     refuse({"--depth-scale", "--out-of-range", "--carve", "--jump-edge-filter",
-            "--jump-edge-two-sided"},
+            "--jump-edge-two-sided", "--calibrate-hazard"},
            "is for depth frames; clouds carve along lines");
     if (!options.poses.empty()) refuse({"--origin"}, "and --poses exclude each other");
   }
@@ -240,6 +240,10 @@ void integrate(const Options& options, const CLI::App& app) {
   if (options.with_covariance && is_octomap(options.out)) {
     throw Error(ErrorCode::invalid_argument,
                 "--with-covariance with " + options.out + ": a tree has no place for covariances");
+  }
+  if (options.calibrate_hazard && is_octomap(options.out)) {
+    throw Error(ErrorCode::invalid_argument, "--calibrate-hazard with " + options.out +
+                                                 ": a tree has no place for hazard counters");
   }
   const std::unique_ptr<ReadingSource> source = open_reading_source(options);
   BeliefGrid grid =
@@ -308,6 +312,9 @@ Command add_integrate(CLI::App& program) {
   app->add_option("--prior-sigma", options->prior_sigma,
                   "sigma of an unknown voxel [m]; default: max(voxel/2, twice the sensor's axial "
                   "sigma at its working distance)");
+  app->add_flag("--calibrate-hazard", options->calibrate_hazard,
+                "count how often frames met the surface in unknown space, for the surface and "
+                "combined gain of the map");
   app->add_flag("--with-covariance", options->with_covariance,
                 "add covariances and positions to the file, for viewers");
   app->add_option("--out", options->out, "map to write (.vdb, or OctoMap's .ot)")->required();

@@ -12,6 +12,7 @@
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/grid/cloud_io.hpp"
+#include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate_cloud.hpp"
 
 namespace viewgain::app {
@@ -36,6 +37,7 @@ class FrameSource : public ReadingSource {
     const auto config =
         parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided);
     if (config) filter_.emplace(frames_.sensor.camera, *config);
+    if (options.calibrate_hazard) calibration_.emplace(frames_.sensor, support_plane_);
   }
 
   [[nodiscard]] const Sensor& sensor() const override { return frames_.sensor; }
@@ -51,7 +53,11 @@ class FrameSource : public ReadingSource {
     return reading_bounds(frames_.sensor, frame_, frames_.poses[index_], {}, support_plane_);
   }
   IntegrationReport integrate(BeliefGrid& grid) override {
-    return integrator_.integrate(grid, frame_, frames_.poses[index_]);
+    const Pose& T_world_camera = frames_.poses[index_];
+    if (calibration_) {
+      calibration_->count(grid, HazardField(grid.snapshot()), frame_, T_world_camera);
+    }
+    return integrator_.integrate(grid, frame_, T_world_camera);
   }
   [[nodiscard]] std::uint64_t jump_edge_removed() const override { return removed_; }
   [[nodiscard]] std::optional<double> depth_scale() const override { return frames_.depth_scale; }
@@ -61,6 +67,7 @@ class FrameSource : public ReadingSource {
   OutOfRangeMeaning meaning_;
   std::optional<double> support_plane_;
   std::optional<JumpEdgeFilter> filter_;
+  std::optional<HazardCalibration> calibration_;
   FrameIntegrator integrator_;
   std::size_t index_ = 0;
   DepthFrame frame_;

@@ -32,6 +32,7 @@ struct IntegrateOptions {
   std::string jump_edge_filter = "off";
   bool jump_edge_two_sided = false;
   std::optional<double> support_plane;
+  bool calibrate_hazard = false;
   std::optional<double> prior_sigma;
   bool with_covariance = false;
   std::string out;

@@ -23,15 +23,17 @@ namespace viewgain::app {
 namespace {
 
 void draw(const RunFolder& folder, const ViewRecord& record, const DepthFrame& frame,
-          const Model& model, const CandidateGeneration& generation, const Sensor& sensor,
+          const Model& model, const CandidateGeneration& generation, const RunSetup& setup,
           const LoopExec& exec) {
   const auto measuring = exec.measure("pictures");
-  const GainEvaluator evaluator(model.scene(), sensor, {}, exec.threads);
+  GainConfig gain;
+  gain.support_plane = setup.policy.support_plane;
+  if (setup.policy.policy == Policy::gain) gain.model = setup.policy.model;
+  const GainEvaluator evaluator(model.scene(), setup.sensor, gain, exec.threads);
   const std::vector<Candidate>& candidates = record.proposal.candidates;
-  ViewPicture picture{model.surface(), generation.estimated(),
-                      candidates,      record.T_world_camera,
-                      std::nullopt,    evaluator,
-                      sensor};
+  ViewPicture picture{model.surface(),       generation.estimated(), candidates,
+                      record.T_world_camera, std::nullopt,           evaluator,
+                      setup.sensor};
   if (record.decision) picture.chosen = candidates[record.decision->candidate].T_world_camera;
   write_view_picture(folder.view(record.index, ".png"), picture, exec.threads);
   if (!frame.amplitude.empty()) {
@@ -87,7 +89,7 @@ void reconstruct(const ReconstructOptions& options) {
         views.push_back(record.T_world_camera);
         if (options.save_maps) save_vdb(model.grid(), folder.map(record.index));
         if (!options.no_pictures) {
-          draw(folder, record, acquisition.last_frame(), model, generation, setup.sensor, exec);
+          draw(folder, record, acquisition.last_frame(), model, generation, setup, exec);
         }
         report.add_view(record, model.quality().back(), model.realised_area(), seconds);
         std::fprintf(stderr, "%s\n", report.progress_line().c_str());

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "formats/hazard_source.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
 #include "sensing_flags.hpp"
@@ -68,8 +69,13 @@ void describe(Options& o, Visitor& visit) {
                shows_default);
   visit.option("overlap", "--overlap", o.overlap, kOverlapHelp, shows_default);
   visit.option("region_depth", "--region-depth", o.region_depth, kRegionDepthHelp, shows_default);
-  visit.option("criterion", "--criterion", o.criterion,
-               "log_diagonal, log_determinant [nat] or trace [m^2]", shows_default);
+  visit.option("object_size", "--object-size", o.object_size, kObjectSizeHelp, as_it_is);
+  visit.option("hazard", "--hazard", o.hazard, kHazardHelp, as_it_is);
+  visit.option(
+      "criterion", "--criterion", o.criterion,
+      "of the map's entropy and the paper's gain: log_diagonal, log_determinant [nat] or trace "
+      "[m^2], which the combined gain does not go with",
+      shows_default);
   visit.option("max_views", "--max-views", o.max_views, "view budget",
                counted_with_default(1, kMaxCount));
   visit.option("stop_gain", "--stop-gain", o.stop_gain,
@@ -81,7 +87,7 @@ void describe(Options& o, Visitor& visit) {
       "stop_area", "--stop-area", o.stop_area,
       "of --gain surface and combined: stop when the best candidate promises less than this "
       "share of the surface so far as new surface, on the mean of three decisions; 0: never; "
-      "default: 0.0008",
+      "default: 0.0016",
       as_it_is);
   visit.option("stop_idle", "--stop-idle", o.stop_idle,
                "stop after so many views in a row that change entropy and unknown voxels by "
@@ -89,8 +95,8 @@ void describe(Options& o, Visitor& visit) {
                counted_with_default(0, kMaxCount));
   visit.option("stop_coverage", "--stop-coverage", o.stop_coverage,
                "stop at this coverage of the visible surface, 0..1", as_it_is);
-  visit.option("travel_cost", "--travel-cost", o.travel_cost, "rank by gain - L * distance [nat/m]",
-               shows_default);
+  visit.option("travel_cost", "--travel-cost", o.travel_cost,
+               "rank by gain - L * distance [nat/m, surface: m^2/m]", shows_default);
   visit.option("travel_speed", "--travel-speed", o.travel_speed,
                "rank by gain / (1 s + distance / speed) instead [m/s]", as_it_is);
   visit.option("reach", "--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach",

@@ -28,6 +28,8 @@ struct ReconstructOptions {
   std::string gain = "combined";
   double overlap = 0.25;
   double region_depth = 0.08;
+  std::optional<double> object_size;
+  std::string hazard;
   std::string criterion = "log_diagonal";
   std::size_t max_views = 20;
   std::optional<double> stop_gain;

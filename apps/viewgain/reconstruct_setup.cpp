@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/hazard_source.hpp"
 #include "formats/reach_toml.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
@@ -15,14 +16,6 @@
 
 namespace viewgain::app {
 namespace {
-
-// About what is left when the information of a touched voxel cannot be doubled any more
-// (3/2 ln 2 = 1.04 nat). DESIGN.md's 0.15 nat never came on the camel: each view meets voxels of
-// the noise shell, and unknown ones behind it, for the first time.
-constexpr double kStopGain = 1.2;  // [nat]
-
-// Of the surface so far; apps/README.md says where the camel stops by it.
-constexpr double kStopArea = 8e-4;
 
 // A distance [m] from the centre at which nothing of an object of this size is.
 double outside(double size) { return 1.1 * 0.5 * std::sqrt(3.0) * size; }
@@ -57,6 +50,7 @@ ModelConfig model_config(const ReconstructOptions& options, const Sensor& sensor
   config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter, false);
   config.criterion = parse_criterion(options.criterion);
   config.refine = !options.no_refine;
+  config.hazard = hazard_source(options.hazard, options.object_size, BeliefGrid(config.grid));
   return config;
 }
 
@@ -105,14 +99,7 @@ PlanningConfig planning_config(const ReconstructOptions& options, const PolicyCo
   config.max_views = options.max_views;
   config.idle_views = options.stop_idle;
   config.stop_coverage = options.stop_coverage;
-  config.stop_gain_is_relative = options.criterion == "trace" && !options.stop_gain;
-  config.stop_gain = options.stop_gain.value_or(config.stop_gain_is_relative ? 0.01 : kStopGain);
-  const bool expects_area = policy.policy == Policy::gain && policy.model != GainModel::paper;
-  if (!expects_area && options.stop_area.value_or(0) > 0) {
-    throw Error(ErrorCode::invalid_argument,
-                "--stop-area goes with --policy gain and --gain surface or combined");
-  }
-  config.stop_area = options.stop_area.value_or(expects_area ? kStopArea : 0.0);
+  set_stop_rules(config, policy, options.stop_gain, options.stop_area);
   return config;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "formats/hazard_source.hpp"
 #include "formats/map_file.hpp"
 #include "formats/pose_source.hpp"
 #include "formats/sensor_toml.hpp"
@@ -31,7 +32,8 @@ struct Options {
   PoseOptions poses;
   std::string sensor;
   std::string gain = "paper";
-  std::optional<double> refinement_weight, object_size, hazard, support_plane;
+  std::optional<double> refinement_weight, object_size, support_plane;
+  std::string hazard;
   std::string criterion = "log_diagonal";
   int stride = 1;
   std::vector<std::string> weights;
@@ -49,7 +51,7 @@ GainConfig gain_config(const Options& options) {
   GainConfig config;
   config.model = parse_gain_model(options.gain);
   if (config.model == GainModel::paper &&
-      (options.object_size || options.hazard || options.support_plane)) {
+      (options.object_size || !options.hazard.empty() || options.support_plane)) {
     throw Error(ErrorCode::invalid_argument,
                 "--object-size, --hazard and --support-plane go with --gain surface or combined");
   }
@@ -66,18 +68,6 @@ GainConfig gain_config(const Options& options) {
   for (const std::string& text : options.weights) {
     const std::vector<double> numbers = parse_numbers("--weight", text, 7, 7);
     config.weights.push_back({box_of("--weight", numbers), numbers[6]});
-  }
-  return config;
-}
-
-HazardConfig hazard_config(const Options& options, const BeliefGrid& grid) {
-  HazardConfig config;
-  config.object_size = options.object_size;
-  if (options.hazard) {
-    const Box box = grid.workspace();
-    const double longest =
-        std::max({box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]});
-    config.model = HazardModel::constant(*options.hazard, options.object_size.value_or(longest));
   }
   return config;
 }
@@ -152,8 +142,8 @@ void score(const Options& options) {
   const Sensor sensor = load_sensor(options.sensor);
   const PoseSource source = make_poses(options.poses);
   const BeliefGrid grid = load_map(options.map, &sensor);
-  const GainEvaluator evaluator(VoxelScene::build(grid, {}, exec, hazard_config(options, grid)),
-                                sensor, config, exec);
+  const HazardConfig hazard = hazard_source(options.hazard, options.object_size, grid);
+  const GainEvaluator evaluator(VoxelScene::build(grid, {}, exec, hazard), sensor, config, exec);
 
   Scores scores;
   double seconds = 0;
@@ -215,16 +205,13 @@ Command add_score(CLI::App& program) {
       ->capture_default_str();
   app->add_option("--refinement-weight", options->refinement_weight,
                   "combined: of refining known surface against finding new; default: 0.3");
-  app->add_option("--object-size", options->object_size,
-                  "surface, combined: longest side of the object [m]; default: that of what is "
-                  "seen of it");
-  app->add_option("--hazard", options->hazard,
-                  "surface, combined: rate at which rays meet the surface in unknown voxels, the "
-                  "same everywhere [1/m]; default: by the distance from what is seen");
+  app->add_option("--object-size", options->object_size, kObjectSizeHelp);
+  app->add_option("--hazard", options->hazard, kHazardHelp);
   app->add_option("--support-plane", options->support_plane,
                   "surface, combined: height z of a table at which rays end [m]; default: none");
-  app->add_option("--criterion", options->criterion,
-                  "log_diagonal (the paper's), log_determinant [nat] or trace [m^2]")
+  app->add_option(
+         "--criterion", options->criterion,
+         "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] or trace [m^2]")
       ->capture_default_str();
   app->add_option("--stride", options->stride, "every s-th pixel of every s-th row")
       ->capture_default_str();
@@ -260,8 +247,10 @@ Command add_score(CLI::App& program) {
       "--out", options->out,
       "CSV file of all poses, in input order; with a selection, of those scored in full, "
       "of the estimates, or of the set in order");
-  app->add_option("--picture", options->picture,
-                  "PNG file: the map, the best view's frustum and the voxels where its rays end");
+  app->add_option(
+      "--picture", options->picture,
+      "PNG file: the map, the best view's frustum and the voxels where its rays end; surface "
+      "and combined: may end, the stronger in colour the likelier");
   add_common_options(*app, options->common);
   return {app, [options] { score(*options); }};
 }

@@ -128,7 +128,12 @@ vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info) {
                        .occupied = statistics.occupied,
                        .views = map.views().size(),
                        .bytes = statistics.bytes,
-                       .entropy_removed = statistics.entropy_removed};
+                       .entropy_removed = statistics.entropy_removed,
+                       .hazard_factors = {}};
+    static_assert(std::size(decltype(whole.hazard_factors){}) == HazardCounters::kClasses);
+    for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+      whole.hazard_factors[k] = map.hazard_counters().factor(k);
+    }
     write_pose(map.T_world_grid(), whole.T_world_grid);
     write_struct(info, whole);
   });
@@ -238,7 +243,8 @@ vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_conf
                                      static_cast<Occupancy>(chosen.occupancy),
                                      given(chosen.support_plane)};
     return vg_integrator{FrameIntegrator(camera, settings, {.num_threads = chosen.num_threads}),
-                         camera.camera.width, camera.camera.height};
+                         HazardCalibration(camera, settings.support_plane), camera.camera.width,
+                         camera.camera.height};
   });
 }
 
@@ -251,13 +257,7 @@ vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* de
     require(depth, "depth");
     require(T_world_camera, "T_world_camera");
     if (report != nullptr) require_struct(report, "vg_integration_report");
-    DepthFrame frame;
-    frame.width = integrator->width;
-    frame.height = integrator->height;
-    const auto count =
-        static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
-    frame.depth.assign(depth, depth + count);
-    if (amplitude != nullptr) frame.amplitude.assign(amplitude, amplitude + count);
+    const DepthFrame frame = integrator->frame(depth, amplitude);
     const IntegrationReport counts =
         integrator->integrator.integrate(grid->grid, frame, rigid_pose_of(T_world_camera));
     if (report == nullptr) return;

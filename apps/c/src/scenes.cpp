@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "convert.hpp"
 #include "handles.hpp"
+#include "viewgain/grid/vdb_io.hpp"
 
 using namespace viewgain;
 using namespace viewgain::c_api;
@@ -42,10 +45,20 @@ Obstacles obstacles_of(const vg_scene_config& config) {
 HazardConfig hazard_of(const vg_scene_config& config, const BeliefGrid& grid) {
   HazardConfig hazard;
   hazard.object_size = given(config.object_size);
-  if (const auto rate = given(config.hazard_rate)) {
-    const Index3 dims = grid.dims();
-    const double longest = std::max({dims.x, dims.y, dims.z}) * grid.voxel_size();
-    hazard.model = HazardModel::constant(*rate, hazard.object_size.value_or(longest));
+  require_array(config.hazard_rates, config.hazard_count, "hazard_rates");
+  const auto rate = given(config.hazard_rate);
+  const bool by_voxel = config.hazard_rates != nullptr, by_file = config.hazard_file != nullptr;
+  if ((rate ? 1 : 0) + (by_voxel ? 1 : 0) + (by_file ? 1 : 0) > 1) {
+    reject("give one of hazard_rate, hazard_rates and hazard_file");
+  }
+  if (by_file) {
+    hazard.volume = std::make_shared<const HazardVolume>(load_hazard_vdb(config.hazard_file, grid));
+  } else if (by_voxel) {
+    HazardVolume volume{VoxelBox::from_dims(grid.min_index(), grid.dims()), {}};
+    volume.rates.assign(config.hazard_rates, config.hazard_rates + config.hazard_count);
+    hazard.volume = std::make_shared<const HazardVolume>(std::move(volume));
+  } else if (rate) {
+    hazard = constant_hazard(*rate, grid, hazard.object_size);
   }
   return hazard;
 }
@@ -121,6 +134,19 @@ vg_status vg_scene_update(const vg_scene* before, const vg_grid* grid, int32_t n
 }
 
 void vg_scene_release(vg_scene* scene) { delete scene; }
+
+vg_status vg_calibrate_hazard(const vg_integrator* integrator, vg_grid* grid, const vg_scene* scene,
+                              const float* depth, const double T_world_camera[16]) {
+  return guarded([&] {
+    require(integrator, "integrator");
+    require(grid, "grid");
+    require(scene, "scene");
+    require(depth, "depth");
+    require(T_world_camera, "T_world_camera");
+    integrator->calibration.count(grid->grid, scene->scene->hazard(),
+                                  integrator->frame(depth, nullptr), rigid_pose_of(T_world_camera));
+  });
+}
 
 void vg_feasibility_config_init(vg_feasibility_config* config, size_t struct_size) {
   initialise(config, struct_size);

@@ -66,7 +66,13 @@ struct Sizes<vg_feasibility_config> {
 template <>
 struct Sizes<vg_scene_config> {
   static constexpr std::array known{offsetof(vg_scene_config, object_size),
+                                    offsetof(vg_scene_config, hazard_rates),
                                     sizeof(vg_scene_config)};
+};
+
+template <>
+struct Sizes<vg_grid_info> {
+  static constexpr std::array known{offsetof(vg_grid_info, hazard_factors), sizeof(vg_grid_info)};
 };
 
 template <>

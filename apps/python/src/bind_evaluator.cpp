@@ -204,7 +204,8 @@ gain : {"paper", "surface", "combined"}
     What a view's gain counts: the entropy that it removes [nat], the new surface that it is expected to
     show [m**2], or that and refining known surface [nat].
 criterion : {"log_diagonal", "log_determinant", "trace"}
-    How uncertainty is measured; gains are in nats, for trace in m**2.
+    How the paper's gain measures uncertainty; gains are in nats, for trace in m**2. The combined gain
+    always goes by log_diagonal and refuses trace.
 pixel_stride : int
     Every s-th pixel of every s-th row.
 prior_sigma : float, optional
@@ -240,7 +241,8 @@ TypeError
            R"(The evaluator of another scene, for following a map as it grows.
 
 It has the sensor, the settings and the threads of this one, which stays as it is; nothing is computed
-anew, so that it takes microseconds. Its results are those of an evaluator made for that scene, whose
+anew, so that it takes microseconds; by the surface and the combined gain the hazard of a scene that has
+none yet (some milliseconds). Its results are those of an evaluator made for that scene, whose
 map's ``prior_sigma`` counts unless one was given.
 
 Parameters
@@ -266,7 +268,7 @@ control : BatchControl, optional
 Returns
 -------
 ndarray, (...), float64
-    [nat], for trace [m**2]; NaN for bad poses and for those not reached before a stop. A single
+    [nat], for trace and the surface gain [m**2]; NaN for bad poses and for those not reached before a stop. A single
     pose gives a scalar.)")
       .def("evaluate_detailed", &evaluate_detailed, py::arg("T_world_camera"), py::kw_only(),
            py::arg("strict") = false, py::arg("control") = py::none(),
@@ -277,9 +279,11 @@ Parameters are those of ``evaluate``.
 Returns
 -------
 ndarray, (...), structured
-    gain = exploration (unknown voxels) + refinement (occupied ones), posterior_entropy, rays, hits,
-    unknown_voxels, occupied_voxels (distinct), status (index into ``VIEW_STATUS_NAMES``). A single
-    pose gives a scalar.)")
+    By the paper's gain: gain = exploration (unknown voxels) + refinement (occupied ones),
+    posterior_entropy, unknown_voxels and occupied_voxels (distinct). By the others: area (new surface
+    to be expected [m**2]; gain, by the surface gain), refinement_saturated (combined [nat]). By all:
+    rays, hits, status (index into ``VIEW_STATUS_NAMES``). What a gain has not is NaN, a count 0. A
+    single pose gives a scalar.)")
       .def("best", &best, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
            py::arg("return_gains") = false, py::arg("control") = py::none(),
            R"(The k best poses, exactly: all are scored.

@@ -14,6 +14,7 @@
 #include "classes.hpp"
 #include "map/shared_grid.hpp"
 #include "scene.hpp"
+#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain::python {
 namespace {
@@ -32,9 +33,8 @@ Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes) {
   return obstacles;
 }
 
-using Rates = py::array_t<float, py::array::c_style | py::array::forcecast>;
-
-// A number, the rate everywhere, or an array of a rate for each voxel of the workspace.
+// A number, the rate everywhere, a path of a .vdb file, or an array of a rate for each voxel of the
+// workspace.
 HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_size,
                        const py::object& hazard) {
   HazardConfig config;
@@ -42,19 +42,23 @@ HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_si
   if (hazard.is_none()) return config;
   const BeliefGrid& grid = shared.layout();
   const Index3 dims = grid.dims();
-  if (py::isinstance<py::float_>(hazard) || py::isinstance<py::int_>(hazard)) {
-    const double longest = std::max({dims.x, dims.y, dims.z}) * grid.voxel_size();
-    config.model = HazardModel::constant(hazard.cast<double>(), object_size.value_or(longest));
+  if (py::isinstance<py::str>(hazard) || py::isinstance<py::bytes>(hazard) ||
+      py::hasattr(hazard, "__fspath__")) {
+    config.volume = std::make_shared<const HazardVolume>(load_hazard_vdb(file_path(hazard), grid));
     return config;
   }
-  const auto rates = Rates::ensure(hazard);
-  if (!rates || rates.ndim() != 3 || rates.shape(0) != dims.x || rates.shape(1) != dims.y ||
+  const Doubles rates = doubles(hazard, "hazard");
+  if (rates.ndim() == 0) return constant_hazard(*rates.data(), grid, object_size);
+  if (rates.ndim() != 3 || rates.shape(0) != dims.x || rates.shape(1) != dims.y ||
       rates.shape(2) != dims.z) {
-    throw py::value_error("hazard must be a number or an array of the grid's shape");
+    throw py::value_error("hazard must be a number, a path or an array of the grid's shape");
   }
   auto volume = std::make_shared<HazardVolume>();
   volume->box = VoxelBox::from_dims(grid.min_index(), dims);
-  volume->rates.assign(rates.data(), rates.data() + rates.size());
+  volume->rates.reserve(static_cast<std::size_t>(rates.size()));
+  for (py::ssize_t i = 0; i < rates.size(); ++i) {
+    volume->rates.push_back(static_cast<float>(rates.data()[i]));
+  }
   config.volume = std::move(volume);
   return config;
 }
@@ -76,9 +80,10 @@ meshes : iterable of (vertices, triangles), optional
     The same as triangles: (n, 3) [m] and (m, 3) indices.
 object_size : float, optional
     Longest side of the object [m], for the surface gain; that of what is seen unless given.
-hazard : float or array_like, the grid's shape, optional
+hazard : float, path or array_like, the grid's shape, optional
     Rate at which a ray in unknown voxels meets the surface [1/m], for the surface gain: the same
-    everywhere, or one for each voxel; by the distance from what is seen unless given.
+    everywhere, from a .vdb file (its grid of floats "hazard", or the only one), or one for each
+    voxel; by the distance from what is seen unless given.
 num_threads : int
     Of the build; 0: all hardware threads.
 

@@ -57,9 +57,9 @@ PYBIND11_MODULE(_viewgain, module) {
   bind_sensors(module);
   bind_generators(module);
   bind_grid(module);
+  bind_scene(module);
   bind_integrator(module);
   bind_cloud(module);
-  bind_scene(module);
   bind_feasibility(module);
   bind_simulation(module);
   bind_evaluator(module);

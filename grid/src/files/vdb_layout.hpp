@@ -24,6 +24,9 @@ namespace viewgain::detail {
 inline constexpr std::int32_t kVdbLayoutVersion = 2;
 inline constexpr std::int32_t kOldestVdbLayoutVersion = 1;
 
+/// The grid of rates in a file of save_hazard_vdb().
+inline constexpr const char* kHazardGridName = "hazard";
+
 /// Names of the metadata with the hazard counters of a class; maps without counters have none.
 [[nodiscard]] inline std::string expected_name(std::size_t k) {
   return "hazard_expected_" + std::to_string(k);

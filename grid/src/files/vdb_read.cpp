@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
 #pragma GCC visibility push(default)
-#include <openvdb/io/Stream.h>
 #include <openvdb/tree/ValueAccessor.h>
 #pragma GCC visibility pop
 
@@ -11,18 +10,16 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 
-#include "file_seal.hpp"
 #include "map/belief_check.hpp"
 #include "pose_text.hpp"
 #include "solid_voxels.hpp"
+#include "vdb_contents.hpp"
 #include "vdb_layout.hpp"
-#include "vdb_outline.hpp"
+#include "vdb_rates.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
 #include "viewgain/core/text.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
@@ -38,36 +35,12 @@ using openvdb::Int32Grid;
 using openvdb::Vec3f;
 using openvdb::Vec3SGrid;
 
-/// What a file holds.
-struct Contents {
-  openvdb::MetaMap::Ptr metadata;
-  openvdb::GridPtrVecPtr grids;
-
-  Contents(openvdb::MetaMap::Ptr metadata_in, openvdb::GridPtrVecPtr grids_in)
-      : metadata(std::move(metadata_in)), grids(std::move(grids_in)) {}
-  Contents(const Contents&) = delete;
-  Contents& operator=(const Contents&) = delete;
-  ~Contents() {
-    for (const auto& grid : *grids) {
-      take_down_a<FloatGrid>(*grid);
-      take_down_a<Int32Grid>(*grid);
-      take_down_a<Vec3SGrid>(*grid);
-    }
-  }
-
- private:
-  template <typename Grid>
-  static void take_down_a(openvdb::GridBase& grid) {
-    if (grid.isType<Grid>()) take_down(static_cast<Grid&>(grid).tree());
-  }
-};
-
 class Loader {
  public:
   explicit Loader(std::filesystem::path path) : path_(std::move(path)) {}
 
   [[nodiscard]] BeliefGrid load() const {
-    const Contents contents = read();
+    const VdbContents contents(path_);
     try {
       auto storage = make_storage(*contents.metadata);
       load_states(contents, *storage);
@@ -81,30 +54,6 @@ class Loader {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(ErrorCode::format, path_.string() + ": " + what);
-  }
-
-  [[nodiscard]] Contents read() const {
-    std::string bytes = file_bytes(path_);
-    const std::string fault = fault_in_outline(bytes);
-    if (!fault.empty()) fail(fault);
-    if (check_seal(bytes) == SealCheck::broken) fail("is corrupt: its checksum does not fit");
-
-    initialize_openvdb();
-    std::istringstream stream(std::move(bytes), std::ios::binary);
-    // OpenVDB does not look whether a read came short.
-    stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
-    try {
-      openvdb::io::Stream archive(stream, /*delayLoad=*/false);
-      return Contents(archive.getMetadata(), archive.getGrids());
-    } catch (const std::ios_base::failure&) {
-      fail("is truncated or corrupt");
-    } catch (const std::bad_alloc&) {
-      fail("is corrupt: it asks for more memory than there is");
-    } catch (const std::length_error&) {
-      fail("is corrupt: it asks for more memory than there is");
-    } catch (const std::exception& error) {
-      fail(std::string("cannot be read by OpenVDB: ") + error.what());
-    }
   }
 
   template <typename Metadata>
@@ -162,13 +111,14 @@ class Loader {
     }
   }
 
-  [[nodiscard]] static bool has_grid(const Contents& contents, const std::string& name) {
+  [[nodiscard]] static bool has_grid(const VdbContents& contents, const std::string& name) {
     return std::any_of(contents.grids->begin(), contents.grids->end(),
                        [&](const auto& grid) { return grid->getName() == name; });
   }
 
   template <typename Grid>
-  [[nodiscard]] const typename Grid::TreeType& tree(const Contents& contents, const GridStorage& s,
+  [[nodiscard]] const typename Grid::TreeType& tree(const VdbContents& contents,
+                                                    const GridStorage& s,
                                                     const std::string& name) const {
     typename Grid::Ptr found;
     for (const auto& grid : *contents.grids) {
@@ -211,7 +161,7 @@ class Loader {
     return code;
   }
 
-  void load_states(const Contents& contents, GridStorage& s) const {
+  void load_states(const VdbContents& contents, GridStorage& s) const {
     const auto& log_odds = tree<FloatGrid>(contents, s, "log_odds");
     std::optional<FloatTree> from_integers;
     const FloatTree& state = version(*contents.metadata) == 1
@@ -294,7 +244,8 @@ class Loader {
   /// The hits of a voxel, whichever grids say them.
   class Hits {
    public:
-    Hits(const Loader& loader, const Contents& contents, const GridStorage& s) : loader_(loader) {
+    Hits(const Loader& loader, const VdbContents& contents, const GridStorage& s)
+        : loader_(loader) {
       if (loader.version(*contents.metadata) == 1) {
         integers_ = &loader.tree<Int32Grid>(contents, s, "hits");
         return;
@@ -333,7 +284,7 @@ class Loader {
     const FloatTree *floats_ = nullptr, *rest_ = nullptr;
   };
 
-  void load_beliefs(const Contents& contents, GridStorage& s) const {
+  void load_beliefs(const VdbContents& contents, GridStorage& s) const {
     const Hits hits(*this, contents, s);
     const std::array<const openvdb::Vec3STree*, 3> parts{
         &tree<Vec3SGrid>(contents, s, "information_diagonal"),
@@ -392,5 +343,14 @@ class Loader {
 }  // namespace
 
 BeliefGrid load_vdb(const std::filesystem::path& path) { return Loader(path).load(); }
+
+HazardVolume load_hazard_vdb(const std::filesystem::path& path, const BeliefGrid& grid) {
+  const VdbContents contents(path);
+  try {
+    return RateReader(path, contents).rates_in(grid);
+  } catch (const openvdb::Exception& error) {
+    throw Error(ErrorCode::format, path.string() + ": cannot be read by OpenVDB: " + error.what());
+  }
+}
 
 }  // namespace viewgain

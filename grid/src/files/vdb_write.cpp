@@ -3,6 +3,7 @@
 // OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
 #pragma GCC visibility push(default)
 #include <openvdb/io/Archive.h>
+#include <openvdb/tree/ValueAccessor.h>
 #pragma GCC visibility pop
 
 #include <cmath>
@@ -183,18 +184,13 @@ void put_beliefs(const GridStorage& s, GridSet& set, bool with_covariance) {
   if (with_covariance) put_covariances(s, set);
 }
 
-}  // namespace
-
-void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
-              const VdbWriteConfig& config) {
+/// Writes what make_image() returns, with a seal.
+template <typename MakeImage>
+void write_sealed(const std::filesystem::path& path, MakeImage&& make_image) {
   AtomicFile file(path);
   try {
     initialize_openvdb();
-    const GridStorage& s = GridAccess::storage(grid);
-    GridSet set(make_transform(s));
-    put_states(s, set);
-    put_beliefs(s, set, config.with_covariance);
-    const std::string image = MemoryArchive().image(set.grids(), make_metadata(s));
+    const std::string image = make_image();
     file.write(image);
     file.write(make_seal(image));
   } catch (const Error&) {
@@ -205,6 +201,42 @@ void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
     throw Error(ErrorCode::io, path.string() + ": cannot be written: " + error.what());
   }
   file.commit();
+}
+
+}  // namespace
+
+void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
+              const VdbWriteConfig& config) {
+  write_sealed(path, [&] {
+    const GridStorage& s = GridAccess::storage(grid);
+    GridSet set(make_transform(s));
+    put_states(s, set);
+    put_beliefs(s, set, config.with_covariance);
+    return MemoryArchive().image(set.grids(), make_metadata(s));
+  });
+}
+
+void save_hazard_vdb(const HazardVolume& volume, const BeliefGrid& grid,
+                     const std::filesystem::path& path) {
+  HazardConfig config;
+  config.volume = std::make_shared<const HazardVolume>(volume);
+  config.validate();
+  write_sealed(path, [&] {
+    GridSet set(make_transform(GridAccess::storage(grid)));
+    auto& tree = set.add<FloatGrid>(kHazardGridName);
+    tree.root().setBackground(volume.outside, /*updateChildNodes=*/false);
+    std::size_t next = 0;
+    openvdb::tree::ValueAccessor<openvdb::FloatTree, false> values(tree);
+    const VoxelBox& box = volume.box;
+    for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
+      for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
+        for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
+          values.setValueOn({x, y, z}, volume.rates[next++]);
+        }
+      }
+    }
+    return MemoryArchive().image(set.grids(), {});
+  });
 }
 
 }  // namespace viewgain

@@ -52,12 +52,16 @@ HazardCalibration::HazardCalibration(const Sensor& sensor, std::optional<double>
 
 void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const DepthFrame& frame,
                               const Pose& T_world_camera) const {
-  if (frame.depth.size() != rays_.size()) {
-    throw Error(ErrorCode::invalid_argument, "the frame has " + std::to_string(frame.depth.size()) +
-                                                 " pixels, the sensor " +
-                                                 std::to_string(rays_.size()));
+  const PinholeCamera& camera = sensor_.camera;
+  if (frame.width != camera.width || frame.height != camera.height ||
+      frame.depth.size() != rays_.size()) {
+    throw Error(ErrorCode::invalid_argument,
+                "the frame is " + std::to_string(frame.width) + " x " +
+                    std::to_string(frame.height) + " px with " +
+                    std::to_string(frame.depth.size()) + " depths, the sensor " +
+                    std::to_string(camera.width) + " x " + std::to_string(camera.height) + " px");
   }
-  if (hazard.volume() != nullptr || hazard.near_box().volume() == 0) return;
+  if (!hazard.follows_counters() || hazard.near_box().volume() == 0) return;
 
   const Pose T_grid_camera = grid.T_world_grid().inverse() * T_world_camera;
   const Eigen::Vector3d eye = T_grid_camera.translation();
@@ -83,7 +87,7 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
   };
 
   Sums sums;
-  const int width = sensor_.camera.width, height = sensor_.camera.height;
+  const int width = camera.width, height = camera.height;
   const int stride = std::max(
       1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(rays_.size()) / kPixels))));
   for (int v = stride / 2; v < height; v += stride) {
@@ -91,7 +95,7 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
       const std::size_t i = static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
                             static_cast<std::size_t>(u);
       const float z = frame.depth[i];
-      if (z == DepthFrame::kInvalid || !rays_[i].allFinite()) continue;
+      if (!(z > 0) || !rays_[i].allFinite()) continue;  // NaN says nothing either
       const double norm = rays_[i].norm();
       const double range = z == DepthFrame::kOutOfRange ? std::numeric_limits<double>::infinity()
                                                         : static_cast<double>(z) * norm;

@@ -129,6 +129,16 @@ void HazardConfig::validate() const {
   for (const float rate : volume->rates) check(is_rate(double{rate}), "rate", double{rate});
 }
 
+HazardConfig constant_hazard(double rate, const BeliefGrid& grid,
+                             std::optional<double> object_size) {
+  const Index3 dims = grid.dims();
+  const double longest = std::max({dims.x, dims.y, dims.z}) * grid.voxel_size();
+  HazardConfig config;
+  config.object_size = object_size;
+  config.model = HazardModel::constant(rate, object_size.value_or(longest));
+  return config;
+}
+
 HazardField::HazardField(const GridSnapshot& snapshot, const HazardConfig& config)
     : volume_(config.volume), pooling_(pooling_of(snapshot)), voxel_size_(snapshot.voxel_size) {
   config.validate();
@@ -139,10 +149,11 @@ HazardField::HazardField(const GridSnapshot& snapshot, const HazardConfig& confi
   model_ = config.model.value_or(HazardModel::for_size(size));
   shift_ = shift_for(model_.decay_length, voxel_size_);
   factors_.fill(1.0);
-  if (config.calibrated && !config.model && !volume_ && !snapshot.hazard.empty()) {
+  follows_counters_ = config.calibrated && !config.model && !volume_;
+  if (follows_counters_ && !snapshot.hazard.empty()) {
     factors_ = monotone_factors(model_, snapshot.hazard);
   }
-  far_rate_ = static_cast<float>(model_.rate(kFar) * factors_.back());
+  far_rate_ = volume_ ? volume_->outside : static_cast<float>(model_.rate(kFar) * factors_.back());
   find_distances(evidence, workspace);
 }
 
@@ -150,8 +161,8 @@ void HazardField::find_distances(const std::vector<Index3>& evidence, const Voxe
   if (evidence.empty()) return;
   const int edge = 1 << shift_;
   const double cell = voxel_size_ * edge;
-  const int reach =
-      std::clamp(static_cast<int>(HazardModel::kCut * model_.decay_length / cell), 1, kMaxReach);
+  const int reach = static_cast<int>(std::clamp(HazardModel::kCut * model_.decay_length / cell, 1.0,
+                                                static_cast<double>(kMaxReach)));
   const VoxelBox seen = box_of(evidence);
   const auto shifted = [&](Index3 v, int by) {
     return Index3{(v.x >> shift_) + by, (v.y >> shift_) + by, (v.z >> shift_) + by};
@@ -166,6 +177,12 @@ void HazardField::find_distances(const std::vector<Index3>& evidence, const Voxe
            static_cast<std::size_t>(cells.max.z - cells.min.z)};
   near_box_ = {{cells.min.x * edge, cells.min.y * edge, cells.min.z * edge},
                {cells.max.x * edge, cells.max.y * edge, cells.max.z * edge}};
+  constexpr std::uint64_t kMostCells = std::uint64_t{1} << 31U;
+  if (cells.volume() > kMostCells) {
+    throw Error(ErrorCode::capacity, "hazard: what is known of the surface spreads over " +
+                                         std::to_string(cells.volume()) + " cells, " +
+                                         std::to_string(kMostCells) + " are the most");
+  }
   squared_.assign(cells.volume(), detail::kNoDistance);
   for (const Index3& v : evidence) {
     const Index3 c = shifted(v, 0);

@@ -131,6 +131,7 @@ std::size_t GainEvaluator::rays_per_pose() const noexcept {
 const PinholeCamera& GainEvaluator::camera() const noexcept {
   return impl_->driver.core()->rays->camera;
 }
+GainModel GainEvaluator::model() const noexcept { return impl_->driver.core()->config.model; }
 int GainEvaluator::pixel_stride() const noexcept {
   return impl_->driver.core()->rays->pixel_stride;
 }

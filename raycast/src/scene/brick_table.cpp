@@ -17,6 +17,7 @@ constexpr int kBrick = 8, kNode = 128, kBricksPerNode = kNode / kBrick;
 constexpr std::uint32_t kEntriesPerNode = kBricksPerNode * kBricksPerNode * kBricksPerNode;
 // Nodes without entries of their own share these.
 constexpr std::uint32_t kFreeNode = 0, kFarNode = kEntriesPerNode;
+constexpr std::size_t kStatesPerLeaf = 64;  // words, of 2³ voxels each
 constexpr std::size_t kMostNodes = std::size_t{1} << 24U;
 
 constexpr std::uint32_t kFreeBrick = BrickTable::kFree << 30U | kBrick;
@@ -66,10 +67,6 @@ class BrickTableMaker {
       widen_free(&table_.entries[node]);
     }
     find_normals();
-    constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();  // of a gather
-    if (std::max(table_.rates.size(), table_.entries.size()) > kMost) {
-      throw Error(ErrorCode::capacity, "the map is too large for a surface gain");
-    }
   }
 
  private:
@@ -119,6 +116,7 @@ class BrickTableMaker {
     if (node <= kFarNode) {
       const std::uint32_t fill = node == kFarNode ? kFarBrick : kFreeBrick;
       node = static_cast<std::uint32_t>(table_.entries.size());
+      check_capacity(table_.entries.size() + kEntriesPerNode);
       table_.entries.resize(table_.entries.size() + kEntriesPerNode, fill);
     }
     return table_.entries[node + place_in_node(brick)];
@@ -128,6 +126,8 @@ class BrickTableMaker {
   std::uint32_t add_slot(Index3 origin) {
     const float V = static_cast<float>(hazard_.voxel_size());
     const std::uint32_t slot = slots_++;
+    const auto cells = static_cast<std::size_t>(cells_ * cells_ * cells_);
+    check_capacity(std::size_t{slots_} * std::max<std::size_t>(cells, kStatesPerLeaf));
     const int shift = table_.rate_shift;
     for (int x = 0; x < cells_; ++x) {
       for (int y = 0; y < cells_; ++y) {
@@ -146,19 +146,29 @@ class BrickTableMaker {
     const float V = static_cast<float>(hazard_.voxel_size());
     const float rate = hazard_.far_rate();
     table_.rates.assign(static_cast<std::size_t>(cells_ * cells_ * cells_), rate * V);
-    table_.states.assign(64, 0);
+    table_.states.assign(kStatesPerLeaf, 0);
     return slots_++;
   }
 
+  // Has a cube the far rate everywhere, and is what is found in it new?
   [[nodiscard]] bool is_far(Index3 origin, int edge) const {
     const VoxelBox box{origin, {origin.x + edge, origin.y + edge, origin.z + edge}};
-    return hazard_.volume() == nullptr && box.intersection(hazard_.near_box()).volume() == 0;
+    const HazardVolume* volume = hazard_.volume();
+    return box.intersection(hazard_.near_box()).volume() == 0 &&
+           (volume == nullptr || box.intersection(volume->box).volume() == 0);
+  }
+
+  // Gathers have indices of 32 bits with a sign.
+  static void check_capacity(std::size_t size) {
+    if (size > std::size_t{std::numeric_limits<std::int32_t>::max()}) {
+      throw Error(ErrorCode::capacity, "the map is too large for a surface gain");
+    }
   }
 
   void add_leaf(const SnapshotLeaf& leaf) {
     const std::uint32_t slot = add_slot(leaf.origin);
     entry_of(brick_at(leaf.origin)) = BrickTable::kMixed << 30U | slot;
-    std::array<std::uint32_t, 64> cubes{};
+    std::array<std::uint32_t, kStatesPerLeaf> cubes{};
     const auto put = [&](const LeafMask& mask, std::uint32_t state) {
       for_each_bit(mask, [&](unsigned offset) {
         const unsigned x = offset >> 6U, y = offset >> 3U & 7U, z = offset & 7U;

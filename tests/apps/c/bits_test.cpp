@@ -12,6 +12,7 @@
 
 #include "core/temporary_folder.hpp"
 #include "raycast/scene_makers.hpp"
+#include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/raycast/depth_image.hpp"
 #include "viewgain/viewgain.h"
@@ -143,6 +144,96 @@ TEST(CApi, GainsAreThoseOfCppToTheLastBit) {
   }
   EXPECT_EQ(views, 3U * 5 * 40);
   EXPECT_GT(gained, 100U);
+}
+
+// The area that a view by the surface gain expects of a scene of `config`; NaN if that is refused.
+double area_of(const vg_grid* grid, const vg_scene_config& config, const vg_sensor& camera,
+               const Pose& pose) {
+  Handles own;
+  double area = std::numeric_limits<double>::quiet_NaN();
+  if (vg_scene_build(grid, &config, &own.scene) != VG_OK) return area;
+  vg_evaluator_config evaluator;
+  vg_evaluator_config_init(&evaluator, sizeof evaluator);
+  evaluator.gain = static_cast<std::int32_t>(GainModel::surface);
+  EXPECT_EQ(vg_evaluator_create(own.scene, &camera, &evaluator, &own.evaluator), VG_OK);
+  EXPECT_EQ(vg_evaluate(own.evaluator, matrices_of({&pose, 1}).data(), 1, &area, nullptr), VG_OK);
+  return area;
+}
+
+TEST(CApi, HazardsFromElsewhereAndFromFramesAreThoseOfCpp) {
+  const test::TemporaryFolder folder;
+  test::Random random(7);
+  const test::RandomMap map = test::random_map(test::MapFamily::tiles_8, random);
+  Sensor sensor = test::random_sensor(map.grid, random);
+  const ConstantNoise noise{.sigma_axial = 0.4 * map.grid.voxel_size(),
+                            .sigma_lateral = 0.2 * map.grid.voxel_size()};
+  sensor.noise = noise;
+  const vg_sensor camera = sensor_of(sensor, noise);
+  const Pose pose = test::random_poses(map, 1, random)[0];
+  const std::string path = folder.path() / "map.vdb", prior = folder.path() / "prior.vdb";
+  save_vdb(map.grid, path);
+  Handles own;
+  ASSERT_EQ(vg_grid_load(path.c_str(), &own.grid), VG_OK);
+
+  HazardVolume volume{VoxelBox::from_dims(map.grid.min_index(), map.grid.dims()), {}, 0.5F};
+  for (std::uint64_t i = 0; i < volume.box.volume(); ++i) {
+    volume.rates.push_back(static_cast<float>(i % 7));
+  }
+  save_hazard_vdb(volume, map.grid, prior);
+  HazardConfig hazard;
+  hazard.volume = std::make_shared<const HazardVolume>(volume);
+  const double expected = GainEvaluator(VoxelScene::build(map.grid, {}, {}, hazard), sensor,
+                                        {.model = GainModel::surface})
+                              .evaluate(pose)
+                              .gain;
+  ASSERT_GT(expected, 0);
+  vg_scene_config config;
+  vg_scene_config_init(&config, sizeof config);
+  const double by_distance = area_of(own.grid, config, camera, pose);
+  EXPECT_NE(by_distance, expected);
+  config.hazard_rates = volume.rates.data();
+  config.hazard_count = volume.rates.size();
+  EXPECT_EQ(bits(area_of(own.grid, config, camera, pose)), bits(expected));
+  config.hazard_count -= 1;
+  EXPECT_TRUE(std::isnan(area_of(own.grid, config, camera, pose)));
+  config.hazard_count += 1;
+  config.hazard_file = prior.c_str();
+  EXPECT_TRUE(std::isnan(area_of(own.grid, config, camera, pose))) << "two at once";
+  EXPECT_NE(std::string(vg_last_error()).find("one of"), std::string::npos);
+  config.hazard_rates = nullptr;
+  config.hazard_count = 0;
+  EXPECT_EQ(bits(area_of(own.grid, config, camera, pose)), bits(expected));
+  config.hazard_rate = 1;
+  EXPECT_TRUE(std::isnan(area_of(own.grid, config, camera, pose))) << "two at once";
+
+  // A frame's say, as by HazardCalibration.
+  vg_integrator* integrator = nullptr;
+  ASSERT_EQ(vg_integrator_create(&camera, nullptr, &integrator), VG_OK);
+  DepthFrame frame{sensor.camera.width, sensor.camera.height, {}};
+  frame.depth.assign(static_cast<std::size_t>(frame.width * frame.height),
+                     static_cast<float>(sensor.working_distance));
+  BeliefGrid same = load_vdb(path);
+  const auto scene = VoxelScene::build(same);
+  HazardCalibration(sensor).count(same, scene->hazard(), frame, pose);
+  ASSERT_EQ(vg_scene_build(own.grid, nullptr, &own.scene), VG_OK);
+  const std::vector<double> matrix = matrices_of({&pose, 1});
+  ASSERT_EQ(vg_calibrate_hazard(integrator, own.grid, own.scene, frame.depth.data(), matrix.data()),
+            VG_OK)
+      << vg_last_error();
+  vg_grid_info info;
+  vg_grid_info_init(&info, sizeof info);
+  ASSERT_EQ(vg_grid_get_info(own.grid, &info), VG_OK);
+  std::size_t other_than_one = 0;
+  for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+    EXPECT_EQ(bits(info.hazard_factors[k]), bits(same.hazard_counters().factor(k)));
+    other_than_one += info.hazard_factors[k] == 1 ? 0U : 1U;
+  }
+  EXPECT_GT(other_than_one, 0U);
+  EXPECT_EQ(vg_calibrate_hazard(nullptr, own.grid, own.scene, frame.depth.data(), matrix.data()),
+            VG_INVALID_ARGUMENT);
+  EXPECT_EQ(vg_calibrate_hazard(integrator, own.grid, own.scene, nullptr, matrix.data()),
+            VG_INVALID_ARGUMENT);
+  vg_integrator_release(integrator);
 }
 
 TEST(CApi, AnEvaluatorOfAnotherSceneHasTheBitsOfOneMadeForIt) {

@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "pictures/picture_parts.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
@@ -228,6 +229,47 @@ TEST_F(ViewPictureTest, TheChosenViewBringsItsRays) {
   EXPECT_EQ(without.count(is_ray_blue), 0);
   EXPECT_EQ(without.count(is_dark_green), 0);
   EXPECT_GT(without.count(is_black), 200);
+}
+
+TEST_F(ViewPictureTest, TheSurfaceGainShowsWhereSurfaceMayBe) {
+  const GainEvaluator surface(VoxelScene::build(test::camel_grid(48)), sensor_,
+                              {.model = GainModel::surface});
+  int likely = 0;
+  const Pose behind = look_at({-0.3, -0.5, 0.25}, {0, 0, 0});  // whence nothing was seen
+  for (const VoxelContribution& voxel : surface.contributions(behind)) {
+    const auto level = ChancePaints::level(voxel);
+    likely += voxel.state == VoxelState::unknown && level ? 1 : 0;
+  }
+  ASSERT_GT(likely, 500);
+  const SurfaceMesh nothing;
+  const EstimatedViews none;
+  const ViewPicture by_paper = picture(nothing, none, {}, behind);
+  const ViewPicture by_surface{nothing, none, {}, taken(), behind, surface, sensor_};
+  // Translucent: any reddish pixel counts.
+  const auto is_reddish = [](const Pixel& p) { return p.r > p.g + 12 && p.g > p.b; };
+  EXPECT_GT(drawn(by_surface).count(is_reddish), drawn(by_paper).count(is_reddish) + 10000);
+}
+
+TEST(ChancePaints, TheLikelierTheStronger) {
+  VoxelContribution voxel;
+  voxel.rays = 200;
+  std::size_t before = 0;
+  int cases = 0;
+  for (const double chance : {1.0, 0.5, 0.3, 0.15, 0.06, 0.03, 0.0101}) {
+    voxel.expected_rays = 200 * chance;
+    const auto level = ChancePaints::level(voxel);
+    ASSERT_TRUE(level) << chance;
+    EXPECT_EQ(*level == 0, chance >= 0.5);
+    EXPECT_GE(*level, before);
+    EXPECT_LT(*level, ChancePaints::kLevels);
+    before = *level;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 7);
+  EXPECT_EQ(before, ChancePaints::kLevels - 1);
+  voxel.expected_rays = 1.9;
+  EXPECT_FALSE(ChancePaints::level(voxel));
+  EXPECT_FALSE(ChancePaints::level({}));
 }
 
 TEST_F(ViewPictureTest, SamePictureForAnyNumberOfThreads) {

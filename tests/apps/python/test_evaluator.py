@@ -258,7 +258,7 @@ def test_reprs_have_sizes(evaluator, grid, sensor):
     assert evaluator.sensor.camera == sensor.camera
 
 
-def test_the_surface_gain_is_an_area_and_follows_the_hazard(grid, labels, sensor, poses):
+def test_the_surface_gain_is_an_area_and_follows_the_hazard(grid, labels, sensor, poses, tmp_path):
     def evaluator(gain, **scene):
         return viewgain.GainEvaluator(viewgain.VoxelScene(grid, **scene), sensor, gain=gain)
 
@@ -279,11 +279,38 @@ def test_the_surface_gain_is_an_area_and_follows_the_hazard(grid, labels, sensor
     same = evaluator("surface", hazard=5.0).evaluate(poses)
     rates = np.full(labels.shape, 5.0)
     assert np.allclose(evaluator("surface", hazard=rates).evaluate(poses), same, rtol=0.02)
+    for five in (np.float32(5), np.int64(5), np.array(5.0), 5):
+        assert np.array_equal(evaluator("surface", hazard=five).evaluate(poses), same)
+    with pytest.raises(ValueError, match="masked"):
+        evaluator("surface", hazard=np.ma.masked_equal(rates, 5.0))
     assert (evaluator("surface", hazard=0).evaluate(poses) == 0).all()
     assert (evaluator("surface", hazard=1.0).evaluate(poses) <= same).all()
     with pytest.raises(ValueError, match="the grid's shape"):
         evaluator("surface", hazard=rates[1:])
+    with pytest.raises(OSError, match="none.vdb"):
+        evaluator("surface", hazard="none.vdb")
+    for path in (tmp_path / "map.vdb", str(tmp_path / "map.vdb"), bytes(tmp_path / "map.vdb")):
+        grid.save(tmp_path / "map.vdb")
+        with pytest.raises(viewgain.Error, match="grids of floats"):
+            evaluator("surface", hazard=path)
     with pytest.raises(ValueError, match="hazard"):
         evaluator("surface", hazard=-1.0)
     with pytest.raises(ValueError, match="combined"):
         evaluator("area")
+
+
+def test_frames_say_what_the_hazard_is(sensor):
+    camera = viewgain.SimulatedSensor(*box_mesh([-0.1] * 3, [0.1] * 3), sensor, background_radius=1.5)
+    grid = viewgain.BeliefGrid(voxel_size=0.01, workspace=[[-0.2] * 3, [0.2] * 3], sensor=sensor)
+    integrator = viewgain.FrameIntegrator(sensor)
+    assert (grid.hazard_factors == np.ones(8)).all()
+    for azimuth in (0, 1, 2):
+        pose = viewgain.look_at((0.5 * np.cos(azimuth), 0.5 * np.sin(azimuth), 0.3), (0, 0, 0))
+        depth, amplitude = camera.acquire(pose)
+        before = grid.hazard_factors
+        integrator.calibrate_hazard(grid, viewgain.VoxelScene(grid), depth, pose)
+        # While no surface is known nothing is to be learnt.
+        assert (grid.hazard_factors == before).all() == (azimuth == 0)
+        integrator.integrate(grid, depth, pose, amplitude=amplitude)
+    with pytest.raises(ValueError, match="depth"):
+        integrator.calibrate_hazard(grid, viewgain.VoxelScene(grid), depth[1:], pose)

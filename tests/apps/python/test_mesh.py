@@ -34,7 +34,7 @@ def reconstruct(camera, sensor, start, **settings):
 def test_the_loop_with_a_camera_in_python(camera, sensor, start):
     seen = []
     result = reconstruct(camera, sensor, start, stop_gain=0.0, observer=seen.append)
-    assert result.reason in ("max_views", "idle", "no_candidates")
+    assert result.reason in ("max_views", "idle", "no_candidates", "area")
     assert 2 <= len(result.views) <= 4 and seen == result.views
     assert np.allclose(result.views[0]["T_world_camera"], start)
     assert result.views[0]["generator"] == "start"
@@ -47,6 +47,34 @@ def test_the_loop_with_a_camera_in_python(camera, sensor, start):
     assert f"{len(result.views)} views" in repr(result) and "vertices" in repr(result.surface)
     again = reconstruct(camera, sensor, start, stop_gain=0.0, num_threads=1)
     assert again.grid.content_hash() == result.grid.content_hash()
+    second = result.views[1]
+    assert second["predicted_area"] > 0 and second["realised_area"] > 0
+    assert second["surface_area"] > result.views[0]["surface_area"] > 0
+    assert not (result.grid.hazard_factors == 1).all()
+
+
+def test_the_gain_of_the_loop(camera, sensor, start):
+    def gains(**settings):
+        result = reconstruct(camera, sensor, start, max_views=2, **settings)
+        return result.views[1]["predicted_gain"], result.views[1]["predicted_area"]
+
+    both, area = gains()
+    assert (both, area) == gains(gain="combined")
+    assert gains(gain="surface") == (pytest.approx(area, rel=0.2), pytest.approx(area, rel=0.2))
+    assert gains(gain="paper")[0] not in (both, area)
+    soon = reconstruct(camera, sensor, start, max_views=8, stop_area=0.999,
+                       candidates=viewgain.sphere_poses(40, 0.5))
+    assert soon.reason == "area" and len(soon.views) == 3
+    with pytest.raises(ValueError, match="stop_area"):
+        gains(gain="paper", stop_area=0.1)
+    with pytest.raises(ValueError, match="stop_gain"):
+        gains(stop_gain=1.0)
+    with pytest.raises(ValueError, match="criterion"):
+        gains(criterion="trace")
+    with pytest.raises(ValueError, match="combined"):
+        gains(gain="area")
+    # By trace gains are small numbers: a share of the first decision's ends the run.
+    assert len(reconstruct(camera, sensor, start, gain="paper", criterion="trace").views) > 1
 
 
 def test_candidates_of_ones_own_and_reach(camera, sensor, start):

@@ -244,8 +244,14 @@ TEST_F(BadInputTest, Scores) {
                   {with({"--criterion", "entropy"}), "log_determinant"},
                   {with({"--gain", "best"}), "combined"},
                   {with({"--gain", "combined", "--criterion", "trace"}), "trace"},
-                  {with({"--gain", "surface", "--hazard", "-1"}), "hazard"},
-                  {with({"--gain", "surface", "--object-size", "0"}), "object size"},
+                  {with({"--gain", "surface", "--hazard", "-1"}), "--hazard -1"},
+                  {with({"--gain", "surface", "--hazard", "rates"}), "--hazard"},
+                  {with({"--gain", "surface", "--hazard", "none.VDB"}), "none.VDB"},
+                  {with({"--gain", "surface", "--hazard", "map.vdb"}), "floats"},
+                  {{"score", "map.vdb", "--sensor", "small.toml", "--sphere", "10,0.6", "--gain",
+                    "surface", "--hazard", "p.vdb", "--out", "p.vdb"},
+                   "is, or holds, a file of --hazard p.vdb"},
+                  {with({"--gain", "surface", "--object-size", "0"}), "--object-size 0"},
                   {with({"--gain", "surface", "--set", "2"}), "paper"},
                   {with({"--gain", "surface", "--refinement-weight", "1"}), "combined"},
                   {with({"--hazard", "1"}), "--gain"},
@@ -259,7 +265,7 @@ TEST_F(BadInputTest, Scores) {
                   {{"score", "map.vdb", "--sensor", "small.toml", "--sphere", "10,0.6", "--out",
                     "no/such/scores.csv"},
                    "no/such/scores.csv"}},
-                 28);
+                 32);
 }
 
 }  // namespace

@@ -278,11 +278,11 @@ TEST_F(Reconstruct, StopAreaIsThatOfTheGainsThatExpectIt) {
     (void)reconstruct("cube.off", flags);
     return json::parse(read("run/run.json"))["settings"]["stop_area"].get<double>();
   };
-  EXPECT_EQ(setting({}), 0.0008);
+  EXPECT_EQ(setting({}), 0.0016);
   EXPECT_EQ(setting({"--gain", "paper"}), 0);
   EXPECT_EQ(setting({"--policy", "frontier", "--gain", "surface"}), 0);
-  EXPECT_EQ(setting({"--gain", "surface"}), 0.0008);
-  EXPECT_EQ(setting({"--gain", "combined"}), 0.0008);
+  EXPECT_EQ(setting({"--gain", "surface"}), 0.0016);
+  EXPECT_EQ(setting({"--gain", "combined"}), 0.0016);
   EXPECT_EQ(setting({"--gain", "combined", "--stop-area", "0"}), 0);
 }
 
@@ -344,6 +344,9 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       {arguments("cube.off", {"--gain", "entropy"}), "surface"},
       {arguments("cube.off", {"--overlap", "1"}), "--overlap"},
       {arguments("cube.off", {"--gain", "paper", "--stop-area", "0.01"}), "--stop-area"},
+      {arguments("cube.off", {"--stop-gain", "1"}), "--stop-gain"},
+      {arguments("cube.off", {"--criterion", "trace"}), "--criterion trace"},
+      {arguments("cube.off", {"--hazard", "-2"}), "--hazard -2"},
       {arguments("cube.off", {"--gain", "surface", "--stop-area", "1"}), "--stop-area"},
       {arguments("cube.off", {"--gain", "surface", "--stop-area", "-0.1"}), "--stop-area"},
       {arguments("cube.off", {"--gain", "surface", "--policy", "random", "--stop-area", "0.01"}),

@@ -361,6 +361,13 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   EXPECT_GT(best({"--gain", "surface", "--hazard", "20"}).at("area"),
             best({"--gain", "surface", "--hazard", "1"}).at("area"));
   EXPECT_EQ(best({"--gain", "surface", "--hazard", "0"}).at("area"), 0.0);
+  // From a file: as the same number everywhere, up to the size of the hazard's cells.
+  const BeliefGrid map = load_vdb(dir / "map.vdb");
+  save_hazard_vdb({VoxelBox{}, {}, 20.0F}, map, dir / "prior.vdb");
+  const json by_number = best({"--gain", "surface", "--hazard", "20"});
+  const json by_file = best({"--gain", "surface", "--hazard", "prior.vdb"});
+  EXPECT_NEAR(by_file.at("area").get<double>(), by_number.at("area").get<double>(),
+              0.02 * by_number.at("area").get<double>());
   EXPECT_EQ(best({"--gain", "surface", "--support-plane", "9"}).at("rays"), 48 * 36);
   EXPECT_NE(best({"--gain", "surface", "--object-size", "1"}).at("area"), surface.at("area"));
 
@@ -374,6 +381,28 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   };
   EXPECT_GT(readings({"--center"}), readings({"--center", "--size", "0.1"}));
   EXPECT_NE(readings({"--center"}), readings({}));
+}
+
+TEST_F(Workflow, FramesSayWhatTheHazardIs) {
+  simulate("frames");
+  integrate("frames", "plain.vdb");
+  integrate("frames", "one.vdb", {"--calibrate-hazard", "--threads", "1"});
+  integrate("frames", "three.vdb", {"--calibrate-hazard", "--threads", "3"});
+  EXPECT_EQ(hash("one.vdb"), hash("three.vdb"));
+  const auto factors = [this](const std::string& map) {
+    return json::parse(run_well({"info", map, "--json"})).at("hazard_factors");
+  };
+  EXPECT_TRUE(factors("plain.vdb").is_null());
+  BeliefGrid map = load_vdb(dir / "one.vdb");
+  ASSERT_EQ(factors("one.vdb").size(), HazardCounters::kClasses);
+  for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+    EXPECT_EQ(factors("one.vdb")[k], map.hazard_counters().factor(k));
+  }
+  EXPECT_EQ(run_well({"info", "plain.vdb"}).find("hazard factors"), std::string::npos);
+  EXPECT_NE(run_well({"info", "one.vdb"}).find("hazard factors"), std::string::npos);
+  // The rest of the map is the same.
+  map.set_hazard_counters({});
+  EXPECT_EQ(map.content_hash() + "\n", hash("plain.vdb"));
 }
 
 TEST_F(Workflow, ThePictureIsAPictureAndTheOnlyNewFile) {
@@ -400,7 +429,8 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
       {"integrate",
        "FRAMES_DIR --cloud --origin --poses --voxel --workspace --sensor --depth-scale "
        "--out-of-range --carve --occupancy --jump-edge-filter --jump-edge-two-sided "
-       "--support-plane --prior-sigma --with-covariance --out --map --json --threads =carve "
+       "--calibrate-hazard --support-plane --prior-sigma --with-covariance --out --map --json "
+       "--threads =carve "
        "=cones =probabilistic =viewpoint 1e-4 [m]"},
       {"convert",
        "IN OUT --workspace --prior-sigma --sensor --with-covariance --json --threads .ot [m]"},
@@ -412,10 +442,11 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
       {"info", "MAP --hash --criterion --region --json --threads =log_diagonal"},
       {"candidates",
        "MAP --generator --sensor --count --distance --center --reach --body --support-plane "
-       "--overlap --region-depth --gain --seed --out --json --threads"},
+       "--overlap --region-depth --gain --object-size --hazard --seed --out --json --threads"},
       {"reconstruct",
        "MESH --sensor --voxel --size --workspace --up --start --distance --policy --generator "
-       "--sphere-poses --gain --overlap --region-depth --criterion --max-views --stop-gain "
+       "--sphere-poses --gain --overlap --region-depth --object-size --hazard --criterion "
+       "--max-views --stop-gain "
        "--stop-area --stop-idle --stop-coverage "
        "--travel-cost --travel-speed --reach --body --background --support-plane --noise "
        "--flying-pixels --seed --wiggling --calibrate --frames-per-view --jump-edge-filter "
@@ -445,7 +476,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 150);
+  EXPECT_EQ(words, 155);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

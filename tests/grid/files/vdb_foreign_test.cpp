@@ -398,6 +398,113 @@ TEST_F(ForeignTiles, HolesInFinerStatesAreFound) {
   expect_error(ErrorCode::format, "same voxels", [&] { (void)load_vdb(written()); });
 }
 
+/// Rates on a lattice that is turned, shifted and coarser than the map's.
+openvdb::FloatGrid::Ptr turned_rates() {
+  auto rates = openvdb::FloatGrid::create(0.25F);
+  openvdb::Mat4d to_world = openvdb::Mat4d::identity();
+  to_world.preScale(openvdb::Vec3d(0.07));
+  to_world.postRotate(openvdb::math::Z_AXIS, 0.4);
+  to_world.postTranslate(openvdb::Vec3d(0.1, -0.02, 0.03));
+  rates->setTransform(openvdb::math::Transform::createLinearTransform(to_world));
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 5; ++j) {
+      for (int k = -2; k < 4; ++k) {
+        if ((i + j + k) % 3 != 0)
+          rates->tree().setValueOn({i, j, k}, static_cast<float>(1 + i + 0.1 * j + k * k));
+      }
+    }
+  }
+  // An inactive voxel says nothing, whatever value it has.
+  rates->tree().setValueOff({1, 1, 0}, -7.0F);
+  return rates;
+}
+
+float rate_at(const HazardVolume& volume, Index3 v) {
+  if (!volume.box.contains(v)) return volume.outside;
+  const VoxelBox& b = volume.box;
+  const auto at = [](std::int32_t value, std::int32_t from) {
+    return static_cast<std::size_t>(value - from);
+  };
+  return volume
+      .rates[(at(v.x, b.min.x) * at(b.max.y, b.min.y) + at(v.y, b.min.y)) * at(b.max.z, b.min.z) +
+             at(v.z, b.min.z)];
+}
+
+TEST_F(ForeignVdb, RatesOfAnyLatticeAreRead) {
+  const Pose T_world_grid(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()).toRotationMatrix(),
+                          Eigen::Vector3d(0.05, -0.1, 0.02));
+  const BeliefGrid turned(
+      GridConfig{0.02, {{-0.1, -0.2, -0.1}, {0.5, 0.6, 0.4}}, T_world_grid, 0.1});
+  int cases = 0, active = 0;
+  for (const BeliefGrid& map : {small_map(), turned.clone()}) {
+    const auto rates = turned_rates();
+    const auto file = rewritten([&](Contents& c) { c.grids = {rates}; });
+    const HazardVolume volume = load_hazard_vdb(file, map);
+    EXPECT_EQ(volume.outside, 0.25F);
+    const Index3 low = map.min_index(), dims = map.dims();
+    for (std::int32_t x = 0; x < dims.x; ++x) {
+      for (std::int32_t y = 0; y < dims.y; ++y) {
+        for (std::int32_t z = 0; z < dims.z; ++z) {
+          const Index3 v{low.x + x, low.y + y, low.z + z};
+          const Eigen::Vector3d p = map.center(v);
+          const auto at = openvdb::Coord::round(rates->worldToIndex({p.x(), p.y(), p.z()}));
+          const bool is_active = rates->tree().isValueOn(at);
+          ASSERT_EQ(rate_at(volume, v), is_active ? rates->tree().getValue(at) : 0.25F);
+          active += rates->tree().isValueOn(at) ? 1 : 0;
+          ++cases;
+        }
+      }
+    }
+    // As our own file, exactly.
+    save_hazard_vdb(volume, map, folder_.path() / "own.vdb");
+    const HazardVolume again = load_hazard_vdb(folder_.path() / "own.vdb", map);
+    EXPECT_EQ(again.box, volume.box);
+    EXPECT_EQ(again.rates, volume.rates);
+    EXPECT_EQ(again.outside, volume.outside);
+  }
+  EXPECT_EQ(cases, 20 * 12 * 12 + 30 * 40 * 25);
+  EXPECT_GT(active, 500);
+}
+
+TEST_F(ForeignVdb, OtherGridsBesideTheRatesDoNotMatter) {
+  const auto named = [](const char* name, float value) {
+    auto grid = openvdb::FloatGrid::create(value);
+    grid->setName(name);
+    return grid;
+  };
+  const BeliefGrid map = small_map();
+  const auto load = [&](const openvdb::GridPtrVec& grids) {
+    return load_hazard_vdb(rewritten([&](Contents& c) { c.grids = grids; }), map);
+  };
+  EXPECT_EQ(load({named("density", 1), named("hazard", 2)}).outside, 2.0F);
+  const HazardVolume alone = load({named("density", 3)});
+  EXPECT_EQ(alone.outside, 3.0F);
+  EXPECT_EQ(alone.box.volume(), 0U);
+  EXPECT_EQ(load({openvdb::Int32Grid::create(7), named("", 4)}).outside, 4.0F);
+
+  int cases = 0;
+  const auto refused = [&](const char* part, const openvdb::GridPtrVec& grids) {
+    expect_error(ErrorCode::format, part, [&] { (void)load(grids); });
+    expect_error(ErrorCode::format, "foreign.vdb", [&] { (void)load(grids); });
+    ++cases;
+  };
+  refused("2 grids of floats", {named("a", 1), named("b", 1)});
+  refused("0 grids of floats", {openvdb::Int32Grid::create(7)});
+  refused("-1", {named("hazard", -1)});
+  refused("nan", {named("hazard", std::numeric_limits<float>::quiet_NaN())});
+  auto infinite = named("hazard", 1);
+  infinite->tree().setValueOn({0, 0, 0}, std::numeric_limits<float>::infinity());
+  refused("inf", {infinite});
+  auto frustum = named("hazard", 1);
+  frustum->setTransform(openvdb::math::Transform::createFrustumTransform(
+      openvdb::BBoxd({0, 0, 0}, {10, 10, 10}), 0.5, 1.0, 0.1));
+  refused("not linear", {frustum});
+  EXPECT_EQ(cases, 6);
+  expect_error(ErrorCode::format, "3 grids of floats", [&] { (void)load_hazard_vdb(path(), map); });
+  expect_error(ErrorCode::io, "none.vdb",
+               [&] { (void)load_hazard_vdb(folder_.path() / "none.vdb", map); });
+}
+
 // Without a seal a cut file is only as safe as OpenVDB's reader and our stream make it.
 TEST_F(ForeignVdb, TruncatedWithoutASeal) {
   const std::string whole = read_all(rewritten([](Contents&) {}));

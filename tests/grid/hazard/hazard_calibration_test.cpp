@@ -9,7 +9,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <random>
+#include <utility>
 
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
@@ -173,6 +175,24 @@ TEST(HazardCalibration, WhatSaysNothing) {
   const HazardField field(grid.snapshot(), {.object_size = 0.35});
   calibration.count(grid, field, frame_of(sensor, DepthFrame::kInvalid), kFromFront);
   EXPECT_TRUE(grid.hazard_counters().empty());
+  // NaN is no reading, as at integration.
+  calibration.count(grid, field, frame_of(sensor, std::numeric_limits<float>::quiet_NaN()),
+                    kFromFront);
+  EXPECT_TRUE(grid.hazard_counters().empty());
+  // What is given is not what is counted against: other scenes of the map would be misled.
+  for (const HazardConfig& given :
+       {constant_hazard(0.5, grid), HazardConfig{.model = HazardModel::for_size(0.3)},
+        HazardConfig{.calibrated = false}}) {
+    const HazardField fixed(grid.snapshot(), given);
+    EXPECT_FALSE(fixed.follows_counters());
+    calibration.count(grid, fixed, frame_of(sensor, 0.6F), kFromFront);
+    EXPECT_TRUE(grid.hazard_counters().empty());
+  }
+  EXPECT_TRUE(field.follows_counters());
+  DepthFrame turned = frame_of(sensor, 0.6F);
+  std::swap(turned.width, turned.height);
+  test::expect_error(ErrorCode::invalid_argument, "px",
+                     [&] { calibration.count(grid, field, turned, kFromFront); });
   // Readings of a table meet nothing, but pass what is before it.
   const Pose down = look_at({0, 0, 0.6}, {0, 0, 0}, {0, 1, 0});
   HazardCalibration(sensor, 0.0).count(grid, field, frame_of(sensor, 0.6F), down);
@@ -186,7 +206,7 @@ TEST(HazardCalibration, WhatSaysNothing) {
   BeliefGrid empty({kVoxel, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01});
   calibration.count(empty, HazardField(empty.snapshot()), frame_of(sensor, 0.6F), kFromFront);
   EXPECT_TRUE(empty.hazard_counters().empty());
-  test::expect_error(ErrorCode::invalid_argument, "pixels", [&] {
+  test::expect_error(ErrorCode::invalid_argument, "2 x 2 px", [&] {
     calibration.count(grid, field, DepthFrame{2, 2, std::vector<float>(4, 0.6F)}, kFromFront);
   });
 }

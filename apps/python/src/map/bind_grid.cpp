@@ -257,6 +257,21 @@ ndarray, (nx, ny, nz), uint8
 Returns
 -------
 ndarray, (n, 4, 4), float64)")
+      .def_property_readonly(
+          "hazard_factors",
+          [](const SharedGrid& grid) {
+            const auto counters =
+                grid.read([](const BeliefGrid& g) { return g.hazard_counters(); });
+            std::vector<double> factors;
+            for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+              factors.push_back(counters.factor(k));
+            }
+            return py::array_t<double>(static_cast<py::ssize_t>(factors.size()), factors.data());
+          },
+          R"(ndarray, (8,), float64: what frames have said of the hazard of unknown space.
+
+By class of distance from known surface, the nearest first: what the start values are multiplied by
+(before rates are made to fall with the distance); ones before ``FrameIntegrator.calibrate_hazard`` was called.)")
       .def(
           "beliefs",
           [](const SharedGrid& grid) {

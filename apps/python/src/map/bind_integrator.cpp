@@ -11,14 +11,21 @@
 #include "classes.hpp"
 #include "depth_images.hpp"
 #include "integration.hpp"
+#include "scene.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate.hpp"
 
 namespace viewgain::python {
 namespace {
 
-using Integrator = SharedIntegrator<FrameIntegrator>;
+/// Frames can say what the hazard of unknown space is, too.
+struct Integrator : SharedIntegrator<FrameIntegrator> {
+  Integrator(const Sensor& of, const IntegrationConfig& config, int num_threads)
+      : SharedIntegrator(of, config, num_threads), calibration(of, config.support_plane) {}
+  HazardCalibration calibration;
+};
 
 IntegrationConfig config_of(const std::string& carve, const std::string& occupancy,
                             std::optional<double> support_plane) {
@@ -37,6 +44,13 @@ py::dict integrate(Integrator& self, SharedGrid& grid, const py::object& depth,
                    const py::object& T_world_camera, const py::object& amplitude) {
   const DepthFrame frame = depth_frame(self.sensor, depth, amplitude);
   return self.integrate(grid, frame, one_pose(T_world_camera, "T_world_camera"));
+}
+
+void calibrate_hazard(const Integrator& self, SharedGrid& grid, const Scene& scene,
+                      const py::object& depth, const py::object& T_world_camera) {
+  const DepthFrame frame = depth_frame(self.sensor, depth, py::none());
+  const Pose pose = one_pose(T_world_camera, "T_world_camera");
+  grid.write([&](BeliefGrid& g) { self.calibration.count(g, scene.scene->hazard(), frame, pose); });
 }
 
 }  // namespace
@@ -77,6 +91,26 @@ amplitude : array_like, (height, width), floating point, optional
            py::arg("num_threads") = 0)
       .def("integrate", &integrate, py::arg("grid"), py::arg("depth"), py::arg("T_world_camera"),
            py::kw_only(), py::arg("amplitude") = py::none(), integrate_doc.c_str())
+      .def("calibrate_hazard", &calibrate_hazard, py::arg("grid"), py::arg("scene"),
+           py::arg("depth"), py::arg("T_world_camera"),
+           R"(Counts how often a frame meets the surface in unknown space, before it is integrated.
+
+The surface and the combined gain of the grid's later scenes go by what was counted. Nothing happens
+while no surface is known, and where the scene's hazard was given. About 5 ms.
+
+Parameters
+----------
+grid : BeliefGrid
+    Not yet with the frame.
+scene : VoxelScene
+    Of the grid as it stands.
+depth, T_world_camera
+    As ``integrate``.
+
+Raises
+------
+ValueError
+    As ``integrate``.)")
       .def("__repr__", [](const Integrator& self) {
         return "<FrameIntegrator of " + self.sensor.name + ", " +
                std::to_string(self.sensor.camera.width) + "x" +

@@ -71,7 +71,7 @@ class PythonAcquisition : public DataAcquisition {
 };
 
 // One turn of the loop.
-py::dict dict_of(const ViewRecord& record) {
+py::dict dict_of(const ViewRecord& record, double realised_area) {
   py::dict view;
   view["index"] = record.index;
   view["T_world_camera"] = to_array(record.T_world_camera);
@@ -83,6 +83,9 @@ py::dict dict_of(const ViewRecord& record) {
   view["realised_gain"] = record.realised_gain;
   view["entropy_removed"] = record.progress.entropy_removed;
   view["unknown_voxels"] = record.progress.unknown_voxels;
+  view["predicted_area"] = record.predicted_area;
+  view["realised_area"] = realised_area;
+  view["surface_area"] = record.progress.surface_area;
   view["travelled"] = record.travelled;
   view["candidates"] = record.proposal.candidates.size();
   view["dropped"] = record.proposal.dropped;
@@ -111,11 +114,12 @@ app::GenerationConfig generation_config(const Sensor& sensor, double voxel_size,
 Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, const py::object& start,
                            double voxel_size, const py::object& workspace,
                            const std::string& criterion, const std::string& policy,
-                           std::optional<bool> boundary, const py::object& candidates,
-                           const ReachRegion* reach, std::optional<double> support_plane,
-                           bool jump_edges, std::size_t max_views, double stop_gain,
-                           std::size_t idle_views, const py::object& observer, Control* control,
-                           int num_threads) {
+                           const std::string& gain, std::optional<bool> boundary,
+                           const py::object& candidates, const ReachRegion* reach,
+                           std::optional<double> support_plane, bool jump_edges,
+                           std::size_t max_views, std::optional<double> stop_gain,
+                           std::optional<double> stop_area, std::size_t idle_views,
+                           const py::object& observer, Control* control, int num_threads) {
   if (PyCallable_Check(acquire.ptr()) == 0) throw py::type_error("acquire must be callable");
   if (!observer.is_none() && PyCallable_Check(observer.ptr()) == 0) {
     throw py::type_error("observer must be callable");
@@ -143,9 +147,11 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
                           "\" has nothing to choose from");
   }
   policy_config.criterion = model_config.criterion;
+  policy_config.model = parse_gain_model(gain);
+  policy_config.support_plane = support_plane;
   PlanningConfig planning;
   planning.max_views = max_views;
-  planning.stop_gain = stop_gain;
+  app::set_stop_rules(planning, policy_config, stop_gain, stop_area);
   planning.idle_views = idle_views;
   if (control != nullptr) planning.stop = control->stop.get_token();
 
@@ -157,7 +163,7 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
   const auto watch = [&](const ViewRecord& record) {
     with_gil([&] {
       check_signals();
-      const py::dict view = dict_of(record);
+      const py::dict view = dict_of(record, model.realised_area());
       result.views.append(view);
       if (!observer.is_none()) call_python(observer, view);
     });
@@ -182,7 +188,7 @@ void bind_reconstruct(py::module_& module) {
       "What ``reconstruct`` came to: its views, why it ended, the surface and the map.");
   refuse_pickling(type);
   type.def_readonly("reason", &Reconstruction::reason,
-                    "str: why it ended: gain, no_candidates, unreachable, idle, max_views, "
+                    "str: why it ended: gain, area, no_candidates, unreachable, idle, max_views, "
                     "interrupted")
       .def_readonly("views", &Reconstruction::views, "list of dict: one per view, see reconstruct")
       .def_readonly("grid", &Reconstruction::grid, "viewgain.BeliefGrid")
@@ -196,10 +202,11 @@ void bind_reconstruct(py::module_& module) {
   module.def("reconstruct", &reconstruct, py::arg("acquire"), py::arg("sensor"), py::arg("start"),
              py::kw_only(), py::arg("voxel_size"), py::arg("workspace"),
              py::arg("criterion") = "log_diagonal", py::arg("policy") = "gain",
-             py::arg("boundary") = py::none(), py::arg("candidates") = py::none(),
-             py::arg("reach") = py::none(), py::arg("support_plane") = py::none(),
-             py::arg("jump_edges") = true, py::arg("max_views") = defaults.max_views,
-             py::arg("stop_gain") = defaults.stop_gain, py::arg("idle_views") = defaults.idle_views,
+             py::arg("gain") = "combined", py::arg("boundary") = py::none(),
+             py::arg("candidates") = py::none(), py::arg("reach") = py::none(),
+             py::arg("support_plane") = py::none(), py::arg("jump_edges") = true,
+             py::arg("max_views") = defaults.max_views, py::arg("stop_gain") = py::none(),
+             py::arg("stop_area") = py::none(), py::arg("idle_views") = defaults.idle_views,
              py::arg("observer") = py::none(), py::arg("control") = py::none(),
              py::arg("num_threads") = 0,
              R"(The whole loop: measure, update map and surface, propose views, rank them, go on.
@@ -225,6 +232,8 @@ criterion : {"log_diagonal", "log_determinant", "trace"}
 policy : {"gain", "kriegel", "random", "frontier", "proximity", "sequence"}
     How the next view is chosen; "frontier" counts unknown voxels in view, "proximity" those near
     known surface that rays pass, "sequence" takes the candidates in their order.
+gain : {"combined", "surface", "paper"}
+    Of policy "gain": expected new surface and refinement, new surface alone, entropy removed.
 boundary : bool, optional
     Propose views at the surface's open boundaries, before the candidates. Default: not for the
     policies "sequence" and "random".
@@ -237,8 +246,13 @@ support_plane : float, optional
 jump_edges : bool
     Remove flying pixels.
 max_views : int
-stop_gain : float
-    End when the best candidate promises less than this per touched voxel [nat, m**2 for trace].
+stop_gain : float, optional
+    By gain "paper": end when the best candidate promises less than this per touched voxel [nat, m**2
+    for trace]. Default: 1.2; for trace 0.01 of the first decision's.
+stop_area : float, optional
+    By gain "surface" and "combined": end when the best candidate promises less than this share of
+    the surface so far as new surface, on the mean of three decisions; 0: never. Default: that of the
+    program's ``reconstruct``.
 idle_views : int
     End after so many views in a row that brought nothing; 0: never.
 observer : callable, optional
@@ -253,7 +267,7 @@ Returns
 Reconstruction
     Its views are dicts: index, T_world_camera, generator ("start", "boundary", "candidates"),
     boundary_class, predicted_gain, realised_gain, entropy_removed [nat, m**2 for trace],
-    unknown_voxels, travelled [m], candidates (how many), dropped (reason -> how many).
+    unknown_voxels, predicted_area, realised_area (new surface), surface_area [m**2], travelled [m], candidates (how many), dropped (reason -> how many).
 
 Raises
 ------

@@ -31,7 +31,7 @@ def reconstruct_surface(
     min_component: int = ...,
     num_threads: int = 0,
 ) -> Surface: ...
-def surface_of_grid(grid: BeliefGrid, *, min_hits: int = 3, num_threads: int = 0) -> Surface: ...
+def surface_of_grid(grid: BeliefGrid, *, min_hits: int = 2, num_threads: int = 0) -> Surface: ...
 def boundary_candidates(
     surface: Surface,
     views: ArrayLike,
@@ -64,13 +64,15 @@ def reconstruct(
     workspace: ArrayLike,
     criterion: Literal["log_diagonal", "log_determinant", "trace"] = "log_diagonal",
     policy: Literal["gain", "kriegel", "random", "frontier", "proximity", "sequence"] = "gain",
+    gain: Literal["combined", "surface", "paper"] = "combined",
     boundary: bool | None = None,
     candidates: ArrayLike | None = None,
     reach: ReachRegion | None = None,
     support_plane: float | None = None,
     jump_edges: bool = True,
     max_views: int = 20,
-    stop_gain: float = ...,
+    stop_gain: float | None = None,
+    stop_area: float | None = None,
     idle_views: int = 3,
     observer: Callable[[dict[str, Any]], object] | None = None,
     control: BatchControl | None = None,

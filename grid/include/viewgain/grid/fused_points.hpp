@@ -45,7 +45,7 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
   double column_sigmas = 1.75;  ///< its half height, in sigmas of one reading across the surface
   double min_distance = 0.75;   ///< between two pooled points
   /// F = floor_sigma² I, the resolution floor that no number of readings takes away [m]; default
-  /// voxel / √12 (DESIGN.md section 5).
+  /// 1/√12 of the edge of the cubes that are pooled (a voxel, where the footprint is no longer).
   std::optional<double> floor_sigma{};
 };
 

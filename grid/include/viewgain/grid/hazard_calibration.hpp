@@ -29,9 +29,10 @@ class VIEWGAIN_EXPORT HazardCalibration {
   /// as it stands. About 800 of the frame's pixels are followed. Where they pass unknown voxels the
   /// model's rate times the length was to be expected; a reading in an unknown voxel is a meeting;
   /// the last 3 σ_ax before a reading are left out. Pixels out of range and readings of the support
-  /// plane meet nothing, invalid ones say nothing. Nothing happens while no surface is known, with
-  /// a volume of rates, and for a frame that passes next to no unknown space. Throws
-  /// Error(invalid_argument) if the frame's size is not the sensor's. About 5 ms.
+  /// plane meet nothing, invalid ones say nothing. Nothing happens while no surface is known,
+  /// where the field does not follow the counters (HazardField::follows_counters), and for a frame
+  /// that passes next to no unknown space. Throws Error(invalid_argument) if the frame's size is
+  /// not the sensor's. About 5 ms.
   void count(BeliefGrid& grid, const HazardField& hazard, const DepthFrame& frame,
              const Pose& T_world_camera) const;
 

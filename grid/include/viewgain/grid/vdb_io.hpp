@@ -6,6 +6,7 @@
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/hazard.hpp"
 
 namespace viewgain {
 
@@ -26,5 +27,20 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
 /// viewgain map; Error(capacity) if tiles hold more than 2^27 occupied voxels, or the file is over
 /// 16 GiB.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_vdb(const std::filesystem::path& path);
+
+/// Rates of the unknown for HazardConfig::volume, from a .vdb file of any program, say a prior of
+/// the object's shape: the grid of floats [1/m] named "hazard", or the only one. Its transform may
+/// be any linear one to the world [m]; each voxel of the map has the value at its centre, of the
+/// file's nearest voxel. Where the file has no active voxels its background holds. Throws as
+/// load_vdb(), and Error(format) for a rate that is negative or not finite, a file with several
+/// grids of floats of other names, or a transform that is not linear. 4 bytes, and some 50 ns, per
+/// voxel of the map in the box of active ones.
+[[nodiscard]] VIEWGAIN_EXPORT HazardVolume load_hazard_vdb(const std::filesystem::path& path,
+                                                           const BeliefGrid& grid);
+
+/// Writes rates of voxels of the map's lattice as such a file; load_hazard_vdb() reads the same.
+/// Atomic, as save_vdb(). Throws Error(invalid_argument) as HazardConfig::validate(), Error(io).
+VIEWGAIN_EXPORT void save_hazard_vdb(const HazardVolume& volume, const BeliefGrid& grid,
+                                     const std::filesystem::path& path);
 
 }  // namespace viewgain

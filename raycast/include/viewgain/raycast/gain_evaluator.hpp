@@ -44,7 +44,9 @@ enum class GainModel : std::uint8_t {
 /// What changes the answer.
 struct VIEWGAIN_EXPORT GainConfig {
   GainModel model = GainModel::paper;
-  Criterion criterion = Criterion::log_diagonal;  ///< combined: a logarithmic one
+  /// Of the paper's gain. The combined gain's refinement is by log_diagonal whatever it says, but
+  /// not trace.
+  Criterion criterion = Criterion::log_diagonal;
   int pixel_stride = 1;                 ///< every s-th pixel of every s-th row, from pixel (0,0)
   std::optional<double> prior_sigma{};  ///< sigma_0 [m]; the map's unless given
   std::optional<double> min_range{};    ///< along the ray [m]; the sensor's unless given
@@ -115,12 +117,13 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// The evaluator of another scene, for following a map as it grows: the same sensor and
   /// configuration, and shared with this one the ray table, the threads and what they work in.
   /// Nothing is computed anew but, where the scene's BVH is wanted and not there yet, that (see
-  /// VoxelScene); without, it takes some microseconds. Results have the bits of an evaluator
-  /// made for that scene. sigma_0 is the configuration's or, unless given, that of the new scene's
-  /// map. This evaluator stays as it is, with its scene. Thread safety: both may be used, moved and
-  /// destroyed at the same time; while one's call has the threads, a call of the other runs on its
-  /// caller. Throws Error(invalid_argument) for a null scene or a map whose prior sigma is outside
-  /// 1e-6..1e3 m, Error(backend), Error(capacity) as VoxelScene::build().
+  /// VoxelScene), and by the surface and the combined gain the hazard of a scene that has none yet
+  /// (some milliseconds); without, it takes some microseconds. Results have the bits of an
+  /// evaluator made for that scene. sigma_0 is the configuration's or, unless given, that of the
+  /// new scene's map. This evaluator stays as it is, with its scene. Thread safety: both may be
+  /// used, moved and destroyed at the same time; while one's call has the threads, a call of the
+  /// other runs on its caller. Throws Error(invalid_argument) for a null scene or a map whose prior
+  /// sigma is outside 1e-6..1e3 m, Error(backend), Error(capacity) as VoxelScene::build().
   [[nodiscard]] GainEvaluator with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
   /// The expected gain of one pose: the paper's on all threads of the evaluator, the others on the
@@ -223,6 +226,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
 
   [[nodiscard]] std::size_t rays_per_pose() const noexcept;
   [[nodiscard]] const PinholeCamera& camera() const noexcept;  ///< the sensor's
+  [[nodiscard]] GainModel model() const noexcept;
   [[nodiscard]] int pixel_stride() const noexcept;
   [[nodiscard]] int num_threads() const noexcept;
   [[nodiscard]] double prior_sigma() const noexcept;  ///< [m]

@@ -29,6 +29,11 @@ typedef struct vg_scene_config {
      of what is seen of it; rate at which a ray in unknown voxels meets the surface [1/m], the same
      everywhere, NaN (the default): by the distance from what is seen. */
   double object_size, hazard_rate;
+  /* Instead of hazard_rate, one of the two: a rate for each voxel [1/m], ordered as
+     vg_grid_states(); a .vdb file of rates, its grid of floats "hazard" or the only one. */
+  const float* hazard_rates;
+  size_t hazard_count; /* of hazard_rates: dims[0] * dims[1] * dims[2] */
+  const char* hazard_file;
 } vg_scene_config;
 VG_API void vg_scene_config_init(vg_scene_config* config, size_t struct_size);
 
@@ -41,6 +46,14 @@ VG_API vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* conf
 VG_API vg_status vg_scene_update(const vg_scene* before, const vg_grid* grid, int32_t num_threads,
                                  vg_scene** scene);
 VG_API void vg_scene_release(vg_scene* scene);
+
+/* Counts how often a frame meets the surface in unknown space, before it is integrated; the surface
+   and the combined gain of the grid's later scenes go by it. `scene` is that of the grid as it
+   stands, depth and pose are as for vg_integrate(). Nothing happens while no surface is known, and
+   where the scene's hazard was given (a rate, an array, a file). */
+VG_API vg_status vg_calibrate_hazard(const vg_integrator* integrator, vg_grid* grid,
+                                     const vg_scene* scene, const float* depth,
+                                     const double T_world_camera[16]);
 
 /* ---- Expected gain ---- */
 
@@ -97,11 +110,13 @@ VG_API vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluat
 
 enum { VG_VIEW_OK = 0, VG_VIEW_BAD_POSE = 1, VG_VIEW_CAMERA_IN_OCCUPIED = 2 };
 
-/* What a view is expected to bring; gains in nats, in m^2 for VG_TRACE. */
+/* What a view is expected to bring; gains in nats, in m^2 for VG_TRACE and VG_GAIN_SURFACE. What a
+   gain has not is NaN, a count 0. */
 typedef struct vg_view_gain {
-  double gain;                    /* exploration + refinement; NaN: a bad pose */
-  double exploration, refinement; /* share of unknown and of occupied voxels */
-  double posterior_entropy;       /* the paper's eq. (6), lengths in metres */
+  double gain;                    /* paper: exploration + refinement; surface: area; combined: both,
+                                     area and refinement_saturated; NaN: a bad pose */
+  double exploration, refinement; /* paper: share of unknown and of occupied voxels */
+  double posterior_entropy;       /* paper: its eq. (6), lengths in metres */
   uint32_t rays, hits;
   uint32_t unknown_voxels, occupied_voxels; /* distinct */
   int32_t status;                           /* VG_VIEW_ */
@@ -110,7 +125,8 @@ typedef struct vg_view_gain {
 } vg_view_gain;
 
 /* The expected gain of every pose, on all threads of the evaluator: poses are count times 16
-   doubles; a single one without a watch is traced on all threads together. A bad pose has gain NaN
+   doubles; a single one without a watch is traced on all threads together by the paper's
+   gain, on one by the others. A bad pose has gain NaN
    and spoils no other; a camera in an occupied voxel has 0. watch or null. VG_STOPPED: the gains
    not reached are NaN. */
 VG_API vg_status vg_evaluate(const vg_evaluator* evaluator, const double* poses, size_t count,
@@ -130,14 +146,15 @@ VG_API vg_status vg_best(const vg_evaluator* evaluator, const double* poses, siz
                          size_t* indices, double* gains, size_t* found, const vg_watch* watch);
 
 /* The k best poses, very probably, faster: poses are compared by random parts of their images, by
-   about 400 of their rays for VG_GAIN_SURFACE and VG_GAIN_COMBINED, the survivors scored in full. The
-   same for a seed and any number of threads. */
+   about 400 of their rays for VG_GAIN_SURFACE and VG_GAIN_COMBINED, the survivors scored in full.
+   The same for a seed and any number of threads. */
 VG_API vg_status vg_race(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                          uint64_t seed, size_t* indices, double* gains, size_t* found,
                          const vg_watch* watch);
 
 /* Up to k poses that are good together, in the order of their choice; gains: what each adds to
-   those before it. VG_STOPPED: those chosen so far. */
+   those before it. By VG_GAIN_PAPER only, else VG_INVALID_ARGUMENT. VG_STOPPED: those chosen so
+   far. */
 VG_API vg_status vg_best_set(const vg_evaluator* evaluator, const double* poses, size_t count,
                              size_t k, size_t* indices, double* gains, size_t* found,
                              const vg_watch* watch);
@@ -156,15 +173,16 @@ VG_API vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_wo
 typedef struct vg_contribution {
   int32_t voxel[3];     /* on the grid's lattice */
   int32_t state;        /* 0 unknown, 2 occupied */
-  uint32_t rays;        /* that end in it */
+  uint32_t rays;        /* that end in it; surface, combined: that reach it */
   double gain;          /* [nat, or m^2] */
   double expected_rays; /* that are expected to end in it; not all, where they may go on */
 } vg_contribution;
 
-/* Why a view is good: one entry per voxel in which rays end, the largest gain first; the gains add
-   up to the view's. Fills at most `capacity` of them and says in *found how many there are; never
-   more than rays_per_pose with VG_GAIN_PAPER. contribution_size is sizeof(vg_contribution). None
-   for a camera in an occupied voxel; a bad pose is VG_INVALID_ARGUMENT. */
+/* Why a view is good: one entry per voxel in which rays end or may end, the largest gain first; the
+   gains add up to the view's. Fills at most `capacity` of them and says in *found how many there
+   are; never more than rays_per_pose with VG_GAIN_PAPER. contribution_size is
+   sizeof(vg_contribution). None for a camera in an occupied voxel; a bad pose is
+   VG_INVALID_ARGUMENT. */
 VG_API vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_camera[16],
                                   vg_contribution* contributions, size_t contribution_size,
                                   size_t capacity, size_t* found);

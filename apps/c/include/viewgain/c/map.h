@@ -91,6 +91,9 @@ typedef struct vg_grid_info {
   uint64_t views;                   /* frames integrated */
   uint64_t bytes;                   /* memory */
   double entropy_removed;           /* how far the map is, by log_diagonal [nat] */
+  double hazard_factors[8];         /* what frames have said of the hazard of unknown space, by
+                                       distance from known surface, before rates are made to fall
+                                       with it: vg_calibrate_hazard() */
 } vg_grid_info;
 VG_API void vg_grid_info_init(vg_grid_info* info, size_t struct_size);
 VG_API vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info);
