@@ -16,6 +16,7 @@
 
 #include "png_io.hpp"
 #include "sensor_toml.hpp"
+#include "values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
@@ -186,9 +187,7 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
   const bool has_poses = fs::exists(dir / kPoses);
   frames.depth_scale =
       depth_scale.value_or(has_sensor && has_poses ? kDepthUnit : kRecordedDepthUnit);
-  if (!(frames.depth_scale > 0) || !std::isfinite(frames.depth_scale)) {
-    throw Error(ErrorCode::invalid_argument, "--depth-scale must be positive and finite");
-  }
+  check_positive("--depth-scale", frames.depth_scale);
   if (sensor.empty() && !has_sensor) {
     throw Error(ErrorCode::invalid_argument,
                 dir.string() + ": has no sensor.toml, so --sensor is needed");

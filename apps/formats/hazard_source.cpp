@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hazard_source.hpp"
 
-#include <cmath>
 #include <memory>
 
 #include "file_names.hpp"
@@ -17,10 +16,7 @@ bool is_hazard_file(const std::string& value) { return small_ending(value) == ".
 
 HazardConfig hazard_source(const std::string& hazard, std::optional<double> object_size,
                            const BeliefGrid& grid) {
-  if (object_size && !(*object_size > 0 && std::isfinite(*object_size))) {
-    throw Error(ErrorCode::invalid_argument,
-                "--object-size " + short_text(*object_size) + " must be positive and finite");
-  }
+  if (object_size) check_positive("--object-size", *object_size);
   HazardConfig config;
   config.object_size = object_size;
   if (hazard.empty()) return config;
@@ -28,11 +24,13 @@ HazardConfig hazard_source(const std::string& hazard, std::optional<double> obje
     config.volume = std::make_shared<const HazardVolume>(load_hazard_vdb(hazard, grid));
     return config;
   }
-  const double rate = parse_numbers("--hazard", hazard, 1, 1)[0];
-  if (!(rate >= 0 && std::isfinite(rate))) {
+  if (!small_ending(hazard).empty() &&
+      hazard.find_first_not_of("0123456789.+-eE") != std::string::npos) {
     throw Error(ErrorCode::invalid_argument,
-                "--hazard " + hazard + " must be at least 0 and finite");
+                "--hazard " + hazard + ": must be a number or the path of a .vdb file");
   }
+  const double rate = parse_numbers("--hazard", hazard, 1, 1)[0];
+  check_at_least_0("--hazard", rate);
   return constant_hazard(rate, grid, object_size);
 }
 

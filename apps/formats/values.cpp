@@ -182,4 +182,24 @@ std::string with_unit(double value) {
   return general_text(value, 3) + unit;
 }
 
+void check_finite(std::string_view flag, double value) {
+  if (!std::isfinite(value)) fail(flag, short_text(value), "must be finite");
+}
+
+void check_positive(std::string_view flag, double value) {
+  if (!(value > 0 && std::isfinite(value))) {
+    fail(flag, short_text(value), "must be positive and finite");
+  }
+}
+
+void check_at_least_0(std::string_view flag, double value) {
+  if (!(value >= 0 && std::isfinite(value))) {
+    fail(flag, short_text(value), "must be at least 0 and finite");
+  }
+}
+
+void check_inside_0_1(std::string_view flag, double value) {
+  if (!(value > 0 && value < 1)) fail(flag, short_text(value), "must be between 0 and 1");
+}
+
 }  // namespace viewgain::app

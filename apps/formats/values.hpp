@@ -51,4 +51,10 @@ namespace viewgain::app {
 /// 83.2 M for 83200000; one of k, M, G where it helps.
 [[nodiscard]] std::string with_unit(double value);
 
+/// A flag's value, checked: each throws Error(invalid_argument) that names both. NaN never passes.
+void check_finite(std::string_view flag, double value);
+void check_positive(std::string_view flag, double value);    ///< and finite
+void check_at_least_0(std::string_view flag, double value);  ///< and finite
+void check_inside_0_1(std::string_view flag, double value);  ///< neither 0 nor 1
+
 }  // namespace viewgain::app

@@ -10,6 +10,7 @@
 #include "proximity_measure.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/mix64.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -48,6 +49,14 @@ Policy parse_policy(std::string_view name) {
 
 void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                     std::optional<double> stop_gain, std::optional<double> stop_area) {
+  if (stop_gain && !(*stop_gain >= 0 && std::isfinite(*stop_gain))) {
+    throw Error(ErrorCode::invalid_argument, "--stop-gain (stop_gain) " + short_text(*stop_gain) +
+                                                 " must be at least 0 and finite");
+  }
+  if (stop_area && !(*stop_area >= 0 && *stop_area < 1)) {
+    throw Error(ErrorCode::invalid_argument, "--stop-area (stop_area) " + short_text(*stop_area) +
+                                                 " must be at least 0 and less than 1");
+  }
   const bool expects_area = policy.policy == Policy::gain && policy.model != GainModel::paper;
   const bool by_paper = policy.policy == Policy::gain && policy.model == GainModel::paper;
   if (!expects_area && stop_area.value_or(0) > 0) {

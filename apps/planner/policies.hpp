@@ -64,8 +64,8 @@ struct PolicyConfig {
 /// Sets the rules of gain and area by which a run of this policy stops; what is not given has its
 /// default: kStopGain, by the criterion trace 0.01 of the first decision's gain; kStopArea where
 /// the policy expects area (gain by the surface or the combined gain), else never. Throws
-/// Error(invalid_argument) for an area or a gain above 0 with a policy that does not go by it, and
-/// for the combined gain with the criterion trace.
+/// Error(invalid_argument) for a gain below 0, an area outside [0, 1), an area or a gain above 0
+/// with a policy that does not go by it, and for the combined gain with the criterion trace.
 void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                     std::optional<double> stop_gain, std::optional<double> stop_area);
 

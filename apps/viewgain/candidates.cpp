@@ -69,6 +69,27 @@ double distance_of(const Options& options, const Sensor& sensor, const BeliefGri
   return filling_distance(sensor, 0.5 * longest * 0.35 / 0.4);  // the object in its workspace
 }
 
+// What a generator has no use for would be ignored in silence.
+void check(const Options& options) {
+  const bool boundary = options.generator == "boundary", sequence = options.generator == "sequence";
+  if (options.count && (boundary || sequence)) {
+    throw Error(ErrorCode::invalid_argument,
+                "--count goes with sets of poses, not with --generator " + options.generator);
+  }
+  if (boundary && !options.center.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "--center goes with sets of poses, not with --generator boundary");
+  }
+  if (!boundary && (options.overlap || options.region_depth)) {
+    throw Error(ErrorCode::invalid_argument,
+                "--overlap and --region-depth go with --generator boundary");
+  }
+  if (options.overlap) check_inside_0_1("--overlap", *options.overlap);
+  if (options.region_depth) check_positive("--region-depth", *options.region_depth);
+  if (options.distance) check_positive("--distance", *options.distance);
+  if (options.support_plane) check_finite("--support-plane", *options.support_plane);
+}
+
 GenerationConfig generation_config(const Options& options, const Sensor& sensor,
                                    const BeliefGrid& grid) {
   GenerationConfig config = default_generation(sensor, grid.voxel_size());
@@ -150,6 +171,7 @@ void refuse_none(const Options& options, const Proposal& proposal) {
 }
 
 void candidates(const Options& options) {
+  check(options);
   const ExecConfig exec{options.common.threads};
   const bool by_hazard =
       !options.gain.empty() && parse_gain_model(options.gain) != GainModel::paper;

@@ -29,13 +29,6 @@ using Options = IntegrateOptions;
 
 const char* part_name(const Options& options) { return options.clouds.empty() ? "frame" : "cloud"; }
 
-void check_voxel(double voxel) {
-  if (!(voxel > 0) || !std::isfinite(voxel)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--voxel " + short_text(voxel) + ": the voxel size must be positive and finite");
-  }
-}
-
 // What a wrong scale would explain.
 std::string scale_text(const ReadingSource& source) {
   const std::optional<double> scale = source.depth_scale();
@@ -73,7 +66,7 @@ BeliefGrid new_map(ReadingSource& source, const Options& options) {
   if (!options.voxel) {
     throw Error(ErrorCode::invalid_argument, "--voxel is needed unless --map is given");
   }
-  check_voxel(*options.voxel);
+  check_positive("--voxel", *options.voxel);
   GridConfig config;
   config.voxel_size = *options.voxel;
   config.prior_sigma =
@@ -95,7 +88,7 @@ BeliefGrid continued_map(const Sensor& sensor, const Options& options) {
                 flag + " " + given + " conflicts with " + options.map + ", which has " + stored);
   };
   if (options.voxel && *options.voxel != grid.voxel_size()) {
-    check_voxel(*options.voxel);
+    check_positive("--voxel", *options.voxel);
     conflict("--voxel", short_text(*options.voxel), short_text(grid.voxel_size()));
   }
   if (options.prior_sigma && *options.prior_sigma != grid.prior_sigma()) {

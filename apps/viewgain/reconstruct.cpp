@@ -81,7 +81,8 @@ void reconstruct(const ReconstructOptions& options) {
 
   RunFolder folder(options.out);
   const PolicyConfig& policy = setup.policy;
-  RunReport report(policy.policy == Policy::gain ? std::optional(policy.model) : std::nullopt);
+  RunReport report(policy.policy == Policy::gain ? std::optional(policy.model) : std::nullopt,
+                   policy.criterion);
   std::vector<Pose> views;
   const PlanningResult result = active_view_planning(
       setup.start, acquisition, model, generation, decision, setup.planning,

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reconstruct_options.hpp"
 
-#include <cmath>
-
 #include "formats/hazard_source.hpp"
 #include "formats/sensor_toml.hpp"
 #include "formats/values.hpp"
+#include "planner/policies.hpp"
 #include "sensing_flags.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -22,6 +21,13 @@ auto counted(std::size_t least, std::size_t most) {
 auto counted_with_default(std::size_t least, std::size_t most) {
   return [=](CLI::Option& option) {
     counted(least, most)(option);
+    shows_default(option);
+  };
+}
+
+auto one_of(const std::vector<std::string>& names) {
+  return [&names](CLI::Option& option) {
+    option.check(CLI::IsMember(names));
     shows_default(option);
   };
 }
@@ -53,7 +59,7 @@ void describe(Options& o, Visitor& visit) {
                "random, frontier (most unknown voxels in view), fibonacci (evenly round the "
                "object), proximity (most unknown space near known surface on its rays), oracle "
                "(knows the mesh: an upper reference)",
-               shows_default);
+               one_of(policy_names()));
   visit.option("generators", "--generator", o.generator,
                "where candidates come from: boundary, sphere, dome, rings, shell, sequence, "
                "fibonacci, or several with commas; default: boundary (random: sphere, sequence: "
@@ -65,8 +71,8 @@ void describe(Options& o, Visitor& visit) {
                counted(1, kMaxCount));
   visit.option("gain", "--gain", o.gain,
                "of --policy gain: paper (entropy removed), surface (new surface to be expected) or "
-               "combined",
-               shows_default);
+               "combined (default)",
+               [](CLI::Option& option) { option.check(CLI::IsMember(gain_model_names())); });
   visit.option("overlap", "--overlap", o.overlap, kOverlapHelp, shows_default);
   visit.option("region_depth", "--region-depth", o.region_depth, kRegionDepthHelp, shows_default);
   visit.option("object_size", "--object-size", o.object_size, kObjectSizeHelp, as_it_is);
@@ -75,7 +81,7 @@ void describe(Options& o, Visitor& visit) {
       "criterion", "--criterion", o.criterion,
       "of the map's entropy and the paper's gain: log_diagonal, log_determinant [nat] or trace "
       "[m^2], which the combined gain does not go with",
-      shows_default);
+      one_of(criterion_names()));
   visit.option("max_views", "--max-views", o.max_views, "view budget",
                counted_with_default(1, kMaxCount));
   visit.option("stop_gain", "--stop-gain", o.stop_gain,
@@ -131,48 +137,32 @@ nlohmann::ordered_json settings_json(const ReconstructOptions& options,
 }
 
 void check(const ReconstructOptions& options) {
-  if (!(options.voxel > 0) || !std::isfinite(options.voxel)) {
+  check_positive("--voxel", options.voxel);
+  check_positive("--size", options.size);
+  if (options.voxel >= options.size) {
+    throw Error(ErrorCode::invalid_argument, "--voxel " + short_text(options.voxel) +
+                                                 ": the object is no larger, --size " +
+                                                 short_text(options.size));
+  }
+  if (!options.gain.empty() && parse_policy(options.policy) != Policy::gain) {
     throw Error(ErrorCode::invalid_argument,
-                "--voxel " + short_text(options.voxel) + " must be positive and finite");
+                "--gain " + options.gain + " goes with --policy gain, not " + options.policy);
   }
   if (options.travel_cost > 0 && options.travel_speed) {
     throw Error(ErrorCode::invalid_argument,
                 "--travel-cost and --travel-speed are two rankings; give one");
   }
-  if (options.stop_gain && !(*options.stop_gain >= 0 && std::isfinite(*options.stop_gain))) {
-    throw Error(ErrorCode::invalid_argument,
-                "--stop-gain " + short_text(*options.stop_gain) + " must be at least 0 and finite");
+  check_at_least_0("--travel-cost", options.travel_cost);
+  if (options.travel_speed) check_positive("--travel-speed", *options.travel_speed);
+  if (options.distance) check_positive("--distance", *options.distance);
+  if (options.sensing.support_plane) {
+    check_finite("--support-plane", *options.sensing.support_plane);
   }
-  if (options.stop_area && !(*options.stop_area >= 0 && *options.stop_area < 1)) {
-    throw Error(ErrorCode::invalid_argument, "--stop-area " + short_text(*options.stop_area) +
-                                                 " must be at least 0 and less than 1");
-  }
-  const double travel[] = {options.travel_cost, options.travel_speed.value_or(1.0)};
-  if (!(travel[0] >= 0 && std::isfinite(travel[0]) && travel[1] > 0 && std::isfinite(travel[1]))) {
-    throw Error(ErrorCode::invalid_argument,
-                "--travel-cost must be at least 0 and --travel-speed positive, both finite");
-  }
-  if (options.distance && !(*options.distance > 0 && std::isfinite(*options.distance))) {
-    throw Error(ErrorCode::invalid_argument,
-                "--distance " + short_text(*options.distance) + " must be positive and finite");
-  }
-  if (options.sensing.support_plane && !std::isfinite(*options.sensing.support_plane)) {
-    throw Error(ErrorCode::invalid_argument, "--support-plane must be finite");
-  }
-  if (!(options.overlap > 0 && options.overlap < 1)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--overlap " + short_text(options.overlap) + " must be between 0 and 1");
-  }
-  if (!(options.region_depth > 0 && std::isfinite(options.region_depth))) {
-    throw Error(ErrorCode::invalid_argument, "--region-depth " + short_text(options.region_depth) +
-                                                 " must be positive and finite");
-  }
+  check_inside_0_1("--overlap", options.overlap);
+  check_positive("--region-depth", options.region_depth);
   if (options.stop_coverage && !(*options.stop_coverage >= 0 && *options.stop_coverage <= 1)) {
     throw Error(ErrorCode::invalid_argument,
                 "--stop-coverage " + short_text(*options.stop_coverage) + " must be in 0..1");
-  }
-  if (options.frames_per_view < 1) {
-    throw Error(ErrorCode::invalid_argument, "--frames-per-view must be at least 1");
   }
 }
 

@@ -25,7 +25,7 @@ struct ReconstructOptions {
   std::string policy = "gain";
   std::string generator;
   std::optional<std::size_t> sphere_poses;
-  std::string gain = "combined";
+  std::string gain;
   double overlap = 0.25;
   double region_depth = 0.08;
   std::optional<double> object_size;

@@ -121,6 +121,7 @@ nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, cons
           {"start", to_json(setup.start)},
           {"distance", setup.distance},
           {"generators", generators},
+          {"gain", gain_model_name(setup.policy.model)},
           {"stop_gain", setup.planning.stop_gain},
           {"stop_gain_is_relative", setup.planning.stop_gain_is_relative},
           {"stop_area", setup.planning.stop_area},
@@ -150,7 +151,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   setup.simulation = simulation_config(options.sensing, setup.sensor);
   setup.model = model_config(options, setup.sensor, setup.stage);
   setup.policy.criterion = setup.model.criterion;
-  setup.policy.model = parse_gain_model(options.gain);
+  if (!options.gain.empty()) setup.policy.model = parse_gain_model(options.gain);
   setup.policy.support_plane = options.sensing.support_plane;
   setup.generation = generation_config(options, setup);
   setup.planning = planning_config(options, setup.policy);

@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "formats/values.hpp"
+#include "gain_unit.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -75,6 +76,11 @@ std::string counts_text(const std::map<std::string, std::size_t>& counts) {
 
 }  // namespace
 
+RunReport::RunReport(std::optional<GainModel> ranked_by, Criterion criterion)
+    : ranked_by_(ranked_by),
+      gain_unit_(gain_unit(ranked_by.value_or(GainModel::paper), criterion_name(criterion))),
+      entropy_unit_(gain_unit(GainModel::paper, criterion_name(criterion))) {}
+
 void RunReport::add_view(const ViewRecord& record, const QualityFigures& quality,
                          double realised_area, const StageSeconds& seconds) {
   StageSeconds own = seconds;
@@ -89,9 +95,10 @@ void RunReport::add_view(const ViewRecord& record, const QualityFigures& quality
 std::string RunReport::progress_line() const {
   const Entry& e = views_.back();
   std::string text =
-      formatted("view %2zu  %6.2f %% visible at 5 mm, RMS %.2f mm, unknown %s, +%.4g",
+      formatted("view %2zu  %6.2f %% visible at 5 mm, RMS %.2f mm, unknown %s, +%.4g %s",
                 e.record.index, 100 * e.quality.coverage_visible, 1e3 * e.quality.surface_error.rms,
-                with_commas(e.record.progress.unknown_voxels).c_str(), e.record.realised_gain);
+                with_commas(e.record.progress.unknown_voxels).c_str(), e.record.realised_gain,
+                entropy_unit_.data());
   text += formatted(", new %.0f cm^2", 1e4 * e.realised_area);
   if (!std::isnan(e.record.predicted_area)) {
     text += formatted(" of %.0f predicted", 1e4 * e.record.predicted_area);
@@ -101,8 +108,9 @@ std::string RunReport::progress_line() const {
   }
   const std::size_t candidates = e.record.proposal.candidates.size();
   if (e.record.decision) {
-    text += formatted("  next: gain %.4g of %zu candidates, %zu dropped", e.record.decision->gain,
-                      candidates, total(e.record.proposal.dropped));
+    text +=
+        formatted("  next: gain %.4g %s of %zu candidates, %zu dropped", e.record.decision->gain,
+                  gain_unit_.data(), candidates, total(e.record.proposal.dropped));
   }
   return text;
 }
@@ -183,8 +191,8 @@ std::string RunReport::text(StopReason reason) const {
       q.consistency.mean_clipped, q.consistency.median, q.consistency.above_9,
       q.consistency.outliers, q.consistency.points + q.consistency.outliers);
   text +=
-      formatted("entropy removed %.6g, unknown voxels %s, travelled %.2f m\n",
-                last.record.progress.entropy_removed,
+      formatted("entropy removed %.6g %s, unknown voxels %s, travelled %.2f m\n",
+                last.record.progress.entropy_removed, entropy_unit_.data(),
                 with_commas(last.record.progress.unknown_voxels).c_str(), last.record.travelled);
   double sum = 0;
   std::string stages;

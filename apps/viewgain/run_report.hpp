@@ -4,9 +4,12 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "planner/model.hpp"
+#include "viewgain/core/criterion.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
@@ -16,8 +19,8 @@ namespace viewgain::app {
 class RunReport {
  public:
   /// `ranked_by`: the gain that the policy ranks candidates by; nothing if it ranks by another
-  /// thing.
-  explicit RunReport(std::optional<GainModel> ranked_by) : ranked_by_(ranked_by) {}
+  /// thing. `criterion` is the map's and the paper's gain's.
+  RunReport(std::optional<GainModel> ranked_by, Criterion criterion);
 
   /// To be called once a view, in order. `realised_area` is Model's [m²], `seconds` are the totals
   /// so far.
@@ -46,6 +49,7 @@ class RunReport {
   [[nodiscard]] nlohmann::ordered_json entry_json(std::size_t index) const;
 
   std::optional<GainModel> ranked_by_;
+  std::string_view gain_unit_, entropy_unit_;
   std::vector<Entry> views_;
   StageSeconds totals_;
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -58,6 +59,9 @@ GainConfig gain_config(const Options& options) {
   if (config.model != GainModel::combined && options.refinement_weight) {
     throw Error(ErrorCode::invalid_argument, "--refinement-weight goes with --gain combined");
   }
+  if (options.refinement_weight)
+    check_at_least_0("--refinement-weight", *options.refinement_weight);
+  if (options.support_plane) check_finite("--support-plane", *options.support_plane);
   config.refinement_weight = options.refinement_weight.value_or(config.refinement_weight);
   config.support_plane = options.support_plane;
   config.criterion = parse_criterion(options.criterion);
@@ -202,6 +206,7 @@ Command add_score(CLI::App& program) {
   app->add_option("--gain", options->gain,
                   "paper (entropy removed) [nat], surface (new surface to be expected) [m^2] or "
                   "combined (both) [nat]")
+      ->check(CLI::IsMember(gain_model_names()))
       ->capture_default_str();
   app->add_option("--refinement-weight", options->refinement_weight,
                   "combined: of refining known surface against finding new; default: 0.3");
@@ -212,8 +217,10 @@ Command add_score(CLI::App& program) {
   app->add_option(
          "--criterion", options->criterion,
          "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] or trace [m^2]")
+      ->check(CLI::IsMember(criterion_names()))
       ->capture_default_str();
   app->add_option("--stride", options->stride, "every s-th pixel of every s-th row")
+      ->check(CLI::Range(1, std::numeric_limits<int>::max(), "stride"))
       ->capture_default_str();
   app->add_option(
          "--weight", options->weights,
@@ -242,7 +249,7 @@ Command add_score(CLI::App& program) {
           "K views that are good together on this map, with what each adds to those before")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
   selection->require_option(0, 1);
-  add_seed_option(*app, options->seed, "of --race and --approximate");
+  add_seed_option(*app, options->seed, "of --race (the paper's gain) and --approximate");
   app->add_option(
       "--out", options->out,
       "CSV file of all poses, in input order; with a selection, of those scored in full, "

@@ -78,19 +78,29 @@ ordered_json entries(const Estimates& estimates, const std::vector<Pose>& poses)
   return list;
 }
 
-void print_rows(const ScoredViews& views, const std::vector<Pose>& poses) {
-  std::printf("%4s %8s %12s %12s %12s %8s %9s %9s  %-26s %s\n", "rank", "index", "gain",
-              "exploration", "refinement", "hits", "unknown", "occupied", "eye x y z [m]",
-              "status");
+// What a gain has not, the columns do not show.
+void print_rows(const ScoredViews& views, const std::vector<Pose>& poses, GainModel model) {
+  const bool by_paper = model == GainModel::paper, refines = model == GainModel::combined;
+  std::printf("%4s %8s %12s", "rank", "index", "gain");
+  if (by_paper) std::printf(" %12s %12s", "exploration", "refinement");
+  if (!by_paper) std::printf(" %12s", "area [m^2]");
+  if (refines) std::printf(" %12s", "refinement");
+  std::printf(" %8s", "hits");
+  if (by_paper) std::printf(" %9s %9s", "unknown", "occupied");
+  std::printf("  %-26s %s\n", "eye x y z [m]", "status");
   for (std::size_t rank = 0; rank < views.indices.size(); ++rank) {
     const std::size_t i = views.indices[rank];
     const ViewGain& r = views.gains[rank];
     const Eigen::Vector3d eye = poses[i].translation();
     std::array<char, 80> position{};
     std::snprintf(position.data(), position.size(), "%8.3f %8.3f %8.3f", eye.x(), eye.y(), eye.z());
-    std::printf("%4zu %8zu %12.6g %12.6g %12.6g %8u %9u %9u  %-26s %s\n", rank + 1, i, r.gain,
-                r.exploration, r.refinement, r.hits, r.unknown_voxels, r.occupied_voxels,
-                position.data(), std::string(view_status_name(r.status)).c_str());
+    std::printf("%4zu %8zu %12.6g", rank + 1, i, r.gain);
+    if (by_paper) std::printf(" %12.6g %12.6g", r.exploration, r.refinement);
+    if (!by_paper) std::printf(" %12.6g", r.area);
+    if (refines) std::printf(" %12.6g", r.refinement_saturated);
+    std::printf(" %8u", r.hits);
+    if (by_paper) std::printf(" %9u %9u", r.unknown_voxels, r.occupied_voxels);
+    std::printf("  %-26s %s\n", position.data(), std::string(view_status_name(r.status)).c_str());
   }
 }
 
@@ -164,9 +174,9 @@ void ScoreReport::print_table() const {
                 source.orthonormalized, source.poses.size());
   }
   if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
-    print_rows(ranking->best, source.poses);
+    print_rows(ranking->best, source.poses, model);
   } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
-    print_rows(joint->views, source.poses);
+    print_rows(joint->views, source.poses, model);
     std::printf("together: %.6g\n", joint->gain);
   } else {
     print_rows(std::get<Estimates>(scores.found));

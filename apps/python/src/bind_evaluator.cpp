@@ -42,11 +42,17 @@ std::unique_ptr<Evaluator> make(const Scene& scene, const Sensor& sensor, const 
                                 const std::string& criterion, int pixel_stride,
                                 std::optional<double> prior_sigma, std::optional<double> min_range,
                                 std::optional<double> max_range, const py::iterable& weights,
-                                double refinement_weight, std::optional<double> support_plane,
-                                int num_threads) {
+                                std::optional<double> refinement_weight,
+                                std::optional<double> support_plane, int num_threads) {
   GainConfig config;
   config.model = parse_gain_model(gain);
-  config.refinement_weight = refinement_weight;
+  if (config.model == GainModel::paper && support_plane) {
+    throw py::value_error("support_plane goes with gain \"surface\" or \"combined\"");
+  }
+  if (config.model != GainModel::combined && refinement_weight) {
+    throw py::value_error("refinement_weight goes with gain \"combined\"");
+  }
+  config.refinement_weight = refinement_weight.value_or(config.refinement_weight);
   config.support_plane = support_plane;
   config.criterion = parse_criterion(criterion);
   config.pixel_stride = pixel_stride;
@@ -215,10 +221,10 @@ min_range, max_range : float, optional
 weights : iterable of (box, weight), optional
     Task weights >= 0 of parts of the workspace: boxes (2, 3) in the grid's frame [m]. The last that
     holds a voxel's centre counts, 1 outside all.
-refinement_weight : float
-    Of refining against finding new surface, for "combined".
+refinement_weight : float, optional
+    Of refining against finding new surface, with "combined" alone. Default: 0.3.
 support_plane : float, optional
-    Height z of a table at which rays end [m], for "surface" and "combined".
+    Height z of a table at which rays end [m], with "surface" and "combined" alone.
 num_threads : int
     0: all hardware threads.
 
@@ -234,8 +240,7 @@ TypeError
            py::arg("gain") = "paper", py::arg("criterion") = "log_diagonal",
            py::arg("pixel_stride") = 1, py::arg("prior_sigma") = py::none(),
            py::arg("min_range") = py::none(), py::arg("max_range") = py::none(),
-           py::arg("weights") = py::tuple(),
-           py::arg("refinement_weight") = GainConfig{}.refinement_weight,
+           py::arg("weights") = py::tuple(), py::arg("refinement_weight") = py::none(),
            py::arg("support_plane") = py::none(), py::arg("num_threads") = 0)
       .def("with_scene", &with_scene, py::arg("scene"),
            R"(The evaluator of another scene, for following a map as it grows.
@@ -370,6 +375,12 @@ ndarray, (...), structured
       .def_property_readonly(
           "prior_sigma", [](const Evaluator& self) { return self.evaluator.prior_sigma(); },
           "float: [m]")
+      .def_property_readonly(
+          "gain",
+          [](const Evaluator& self) {
+            return std::string(gain_model_name(self.evaluator.model()));
+          },
+          "str")
       .def_readonly("criterion", &Evaluator::criterion, "str")
       .def_readonly("pixel_stride", &Evaluator::pixel_stride, "int")
       .def_readonly("scene", &Evaluator::scene, "VoxelScene")
@@ -377,9 +388,9 @@ ndarray, (...), structured
           "sensor", [](const Evaluator& self) { return self.sensor; }, "Sensor")
       .def("__repr__", [](const Evaluator& self) {
         std::ostringstream text;
-        text << "<GainEvaluator " << self.criterion << ", " << self.sensor.name << ", "
-             << self.evaluator.rays_per_pose() << " rays per pose, " << self.evaluator.num_threads()
-             << " threads>";
+        text << "<GainEvaluator " << gain_model_name(self.evaluator.model()) << " gain, "
+             << self.criterion << ", " << self.sensor.name << ", " << self.evaluator.rays_per_pose()
+             << " rays per pose, " << self.evaluator.num_threads() << " threads>";
         return text.str();
       });
   bind_views(module, evaluator);

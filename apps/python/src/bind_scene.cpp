@@ -44,7 +44,9 @@ HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_si
   const Index3 dims = grid.dims();
   if (py::isinstance<py::str>(hazard) || py::isinstance<py::bytes>(hazard) ||
       py::hasattr(hazard, "__fspath__")) {
-    config.volume = std::make_shared<const HazardVolume>(load_hazard_vdb(file_path(hazard), grid));
+    const std::string file = file_path(hazard);
+    require_file(file);
+    config.volume = std::make_shared<const HazardVolume>(load_hazard_vdb(file, grid));
     return config;
   }
   const Doubles rates = doubles(hazard, "hazard");

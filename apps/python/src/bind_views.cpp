@@ -176,7 +176,8 @@ Returns
 -------
 ndarray, (n,), structured
     voxel (int32, 3; on the lattice, minus the grid's ``min_index`` for arrays), state, rays that end
-    in it, gain. Largest gain first; the gains add up to that of the view.)")
+    in it, expected_rays (by the surface and the combined gain: the sum of their chances to end there),
+    gain. Largest gain first; the gains add up to that of the view.)")
       .def("evaluate_own", &evaluate_own, py::arg("T_world_camera"), py::arg("measure"),
            py::kw_only(), py::arg("control") = py::none(),
            R"(A gain of your own: a number for what a view would see.

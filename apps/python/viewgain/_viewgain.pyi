@@ -375,7 +375,7 @@ class GainEvaluator:
         min_range: float | None = None,
         max_range: float | None = None,
         weights: Iterable[tuple[ArrayLike, float]] = (),
-        refinement_weight: float = 0.3,
+        refinement_weight: float | None = None,
         support_plane: float | None = None,
         num_threads: int = 0,
     ) -> None: ...
@@ -474,6 +474,8 @@ class GainEvaluator:
     def num_threads(self) -> int: ...
     @property
     def prior_sigma(self) -> float: ...
+    @property
+    def gain(self) -> str: ...
     @property
     def criterion(self) -> str: ...
     @property

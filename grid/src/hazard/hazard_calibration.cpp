@@ -10,6 +10,7 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -60,6 +61,11 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
                     std::to_string(frame.height) + " px with " +
                     std::to_string(frame.depth.size()) + " depths, the sensor " +
                     std::to_string(camera.width) + " x " + std::to_string(camera.height) + " px");
+  }
+  if (hazard.voxel_size() != grid.voxel_size()) {
+    throw Error(ErrorCode::invalid_argument,
+                "the hazard is of voxels of " + short_text(hazard.voxel_size()) +
+                    " m, the grid's are of " + short_text(grid.voxel_size()) + " m");
   }
   if (!hazard.follows_counters() || hazard.near_box().volume() == 0) return;
 

@@ -131,6 +131,9 @@ void HazardConfig::validate() const {
 
 HazardConfig constant_hazard(double rate, const BeliefGrid& grid,
                              std::optional<double> object_size) {
+  if (object_size) {
+    check(*object_size > 0 && std::isfinite(*object_size), "object size", *object_size);
+  }
   const Index3 dims = grid.dims();
   const double longest = std::max({dims.x, dims.y, dims.z}) * grid.voxel_size();
   HazardConfig config;

@@ -287,8 +287,10 @@ def test_the_surface_gain_is_an_area_and_follows_the_hazard(grid, labels, sensor
     assert (evaluator("surface", hazard=1.0).evaluate(poses) <= same).all()
     with pytest.raises(ValueError, match="the grid's shape"):
         evaluator("surface", hazard=rates[1:])
-    with pytest.raises(OSError, match="none.vdb"):
+    with pytest.raises(FileNotFoundError, match="none.vdb"):
         evaluator("surface", hazard="none.vdb")
+    with pytest.raises(ValueError, match="object size"):
+        evaluator("surface", hazard=1.0, object_size=0)
     for path in (tmp_path / "map.vdb", str(tmp_path / "map.vdb"), bytes(tmp_path / "map.vdb")):
         grid.save(tmp_path / "map.vdb")
         with pytest.raises(viewgain.Error, match="grids of floats"):
@@ -297,6 +299,13 @@ def test_the_surface_gain_is_an_area_and_follows_the_hazard(grid, labels, sensor
         evaluator("surface", hazard=-1.0)
     with pytest.raises(ValueError, match="combined"):
         evaluator("area")
+    # What a gain has no use for is refused, not ignored.
+    scene = viewgain.VoxelScene(grid)
+    for gain, more in (("paper", {"support_plane": 0.0}), ("surface", {"refinement_weight": 0.3})):
+        with pytest.raises(ValueError, match=next(iter(more))):
+            viewgain.GainEvaluator(scene, sensor, gain=gain, **more)
+    combined = viewgain.GainEvaluator(scene, sensor, gain="combined", refinement_weight=0.5, support_plane=0.0)
+    assert combined.gain == "combined" and "combined" in repr(combined)
 
 
 def test_frames_say_what_the_hazard_is(sensor):

@@ -67,6 +67,9 @@ def test_the_gain_of_the_loop(camera, sensor, start):
     assert soon.reason == "area" and len(soon.views) == 3
     with pytest.raises(ValueError, match="stop_area"):
         gains(gain="paper", stop_area=0.1)
+    for wrong in (-0.1, 1.0, np.nan):
+        with pytest.raises(ValueError, match="stop_area"):
+            gains(stop_area=wrong)
     with pytest.raises(ValueError, match="stop_gain"):
         gains(stop_gain=1.0)
     with pytest.raises(ValueError, match="criterion"):

@@ -141,6 +141,13 @@ TEST_F(Candidates, RefusesWhatCannotBe) {
       {{"--generator", "rings", "--count", "50"}, "50"},
       {{"--generator", "cone"}, "cone"},
       {{"--generator", "sphere", "--body", "0.1,0,0.1"}, "--body"},
+      {{"--generator", "boundary", "--count", "50"}, "--count"},
+      {{"--generator", "sequence", "--count", "50"}, "--count"},
+      {{"--generator", "boundary", "--center", "0,0,0"}, "--center"},
+      {{"--generator", "dome", "--overlap", "0.3"}, "--overlap"},
+      {{"--generator", "boundary", "--overlap", "1"}, "--overlap 1"},
+      {{"--generator", "boundary", "--region-depth", "-1"}, "--region-depth -1"},
+      {{"--generator", "dome", "--distance", "0"}, "--distance 0"},
       {{"--generator", "sphere", "--body", "0.1,0.1"}, "--body"},
       {{"--generator", "sphere", "--reach", "missing.toml"}, "missing.toml"},
   };

@@ -280,7 +280,7 @@ TEST_F(Reconstruct, StopAreaIsThatOfTheGainsThatExpectIt) {
   };
   EXPECT_EQ(setting({}), 0.0016);
   EXPECT_EQ(setting({"--gain", "paper"}), 0);
-  EXPECT_EQ(setting({"--policy", "frontier", "--gain", "surface"}), 0);
+  EXPECT_EQ(setting({"--policy", "frontier"}), 0);
   EXPECT_EQ(setting({"--gain", "surface"}), 0.0016);
   EXPECT_EQ(setting({"--gain", "combined"}), 0.0016);
   EXPECT_EQ(setting({"--gain", "combined", "--stop-area", "0"}), 0);
@@ -349,8 +349,10 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       {arguments("cube.off", {"--hazard", "-2"}), "--hazard -2"},
       {arguments("cube.off", {"--gain", "surface", "--stop-area", "1"}), "--stop-area"},
       {arguments("cube.off", {"--gain", "surface", "--stop-area", "-0.1"}), "--stop-area"},
-      {arguments("cube.off", {"--gain", "surface", "--policy", "random", "--stop-area", "0.01"}),
-       "--stop-area"},
+      {arguments("cube.off", {"--policy", "random", "--stop-area", "0.01"}), "--stop-area"},
+      {arguments("cube.off", {"--policy", "oracle", "--gain", "surface"}), "--policy gain"},
+      {arguments("cube.off", {"--voxel", "100"}), "--voxel 100"},
+      {arguments("cube.off", {"--travel-cost", "-1"}), "--travel-cost -1"},
       {arguments("cube.off", {"--region-depth", "0"}), "--region-depth"},
       {arguments("cube.off", {"--max-views", "0"}), "max-views"},
       {arguments("cube.off", {"--workspace", "0,0,0,-1,1,1"}), "--workspace"},
@@ -367,7 +369,7 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       {arguments("cube.off", {"--frames-per-view", "0"}), "frames-per-view"},
       {arguments("cube.off", {"--travel-cost", "nan"}), "travel"},
       {arguments("cube.off", {"--stop-coverage", "2"}), "coverage"},
-      {arguments("cube.off", {"--support-plane", "nan"}), "plane"},
+      {arguments("cube.off", {"--support-plane", "nan"}), "--support-plane nan"},
   };
   const Strings before = list();
   std::size_t cases = 0;

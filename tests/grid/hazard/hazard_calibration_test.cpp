@@ -16,6 +16,7 @@
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
 #include "grid/analytic_frames.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
@@ -206,6 +207,11 @@ TEST(HazardCalibration, WhatSaysNothing) {
   BeliefGrid empty({kVoxel, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01});
   calibration.count(empty, HazardField(empty.snapshot()), frame_of(sensor, 0.6F), kFromFront);
   EXPECT_TRUE(empty.hazard_counters().empty());
+  // A field of another map.
+  test::expect_error(ErrorCode::invalid_argument, short_text(2 * kVoxel).c_str(), [&] {
+    const BeliefGrid other({2 * kVoxel, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01});
+    calibration.count(grid, HazardField(other.snapshot()), frame_of(sensor, 0.6F), kFromFront);
+  });
   test::expect_error(ErrorCode::invalid_argument, "2 x 2 px", [&] {
     calibration.count(grid, field, DepthFrame{2, 2, std::vector<float>(4, 0.6F)}, kFromFront);
   });

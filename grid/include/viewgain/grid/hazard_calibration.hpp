@@ -32,7 +32,7 @@ class VIEWGAIN_EXPORT HazardCalibration {
   /// plane meet nothing, invalid ones say nothing. Nothing happens while no surface is known,
   /// where the field does not follow the counters (HazardField::follows_counters), and for a frame
   /// that passes next to no unknown space. Throws Error(invalid_argument) if the frame's size is
-  /// not the sensor's. About 5 ms.
+  /// not the sensor's, or the hazard's voxels are not the grid's. About 5 ms.
   void count(BeliefGrid& grid, const HazardField& hazard, const DepthFrame& frame,
              const Pose& T_world_camera) const;
 
