@@ -69,7 +69,7 @@ TEST(RealisedArea, NothingIsShownByWhatIsNoReading) {
     ++cases;
   }
   EXPECT_EQ(cases, 7);
-  test::expect_error(ErrorCode::invalid_argument, "6 pixels", [&] {
+  test::expect_error(ErrorCode::invalid_argument, "6 depths", [&] {
     (void)realised.of({3, 2, std::vector<float>(6, 0.4F), {}}, from_above(), grid, nullptr);
   });
 }

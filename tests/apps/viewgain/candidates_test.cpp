@@ -117,7 +117,7 @@ TEST_F(Candidates, OverlapAndRegionsMoveBoundaryCandidates) {
   const auto refused = run({"candidates", "run/map.vdb", "--generator", "boundary", "--sensor",
                             "tof.toml", "--out", "none.txt", "--overlap", "1.5"});
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.err.find("overlap must not be 1.5"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("--overlap 1.5"), std::string::npos) << refused.err;
 }
 
 TEST_F(Candidates, TheBodyIsTheSensorsOrTheUsers) {

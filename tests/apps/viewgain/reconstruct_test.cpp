@@ -351,7 +351,7 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       {arguments("cube.off", {"--gain", "surface", "--stop-area", "-0.1"}), "--stop-area"},
       {arguments("cube.off", {"--policy", "random", "--stop-area", "0.01"}), "--stop-area"},
       {arguments("cube.off", {"--policy", "oracle", "--gain", "surface"}), "--policy gain"},
-      {arguments("cube.off", {"--voxel", "100"}), "--voxel 100"},
+      {arguments("cube.off", {"--size", "0.001"}), "no larger"},
       {arguments("cube.off", {"--travel-cost", "-1"}), "--travel-cost -1"},
       {arguments("cube.off", {"--region-depth", "0"}), "--region-depth"},
       {arguments("cube.off", {"--max-views", "0"}), "max-views"},
