@@ -13,7 +13,8 @@ Each module but core draws its rooms in a block of its README:
     boundary: surface
     ```
 
-A line names a room and the rooms whose files it includes, as `#include "surface/point_grid.hpp"`.
+A line names a room and the rooms whose files it includes, as `#include "surface/point_grid.hpp"` or, where
+the room is a library of its own with public headers, as `#include "viewgain/formats/frames.hpp"`.
 """
 import pathlib
 import re
@@ -106,12 +107,15 @@ def check_rooms(root, module, faults):
         for source in members:
             for number, is_quoted, include in source.includes:
                 where = f"{source.path}:{number}"
-                target = include.split("/")[0]
+                target, is_there = include.split("/")[0], (root / folder / include).is_file()
+                public = re.match(r"viewgain/(\w+)[/.]", include)
+                if public and public[1] in on_disk and (root / folder / public[1] / "include" / include).is_file():
+                    target, is_there = public[1], True
                 if ".." in include.split("/"):
                     faults.append(f'{where}: "{include}" goes up; name the room')
                 elif not is_quoted:
                     continue
-                elif "/" in include and target != room and (root / folder / include).is_file():
+                elif "/" in include and target != room and is_there:
                     if target not in drawn.get(room, (0, {}))[1] and target not in found[room]:
                         faults.append(f"{where}: the arrow {room} -> {target} is not in {readme}")
                     found[room][target] = where
@@ -201,7 +205,9 @@ class FindsFaults(unittest.TestCase):
         "mesh/README.md": "```rooms\nsurface:\n```\n",
         "mesh/include/viewgain/mesh/surface.hpp": "\n",
         "mesh/src/surface/surface.cpp": "#include <CGAL/Surface_mesh.h>\n",
-        "apps/README.md": "```rooms\nplanner:\nviewgain: planner\n```\n",
+        "apps/README.md": "```rooms\nformats:\nplanner: formats\nviewgain: planner\n```\n",
+        "apps/formats/include/viewgain/formats/ply.hpp": "\n",
+        "apps/planner/files.cpp": '#include "viewgain/formats/ply.hpp"\n',
         "apps/planner/stage.hpp": '#include "viewgain/mesh/surface.hpp"\n',
         "apps/viewgain/main.cpp": '#include "planner/stage.hpp"\n#include "viewgain/core/pose.hpp"\n',
         "perf/README.md": "```rooms\nmicro:\n```\n",
@@ -229,6 +235,10 @@ class FindsFaults(unittest.TestCase):
     def test_arrow_not_drawn(self):
         self.expect("raycast/src/gain/gain.cpp:2: the arrow gain -> trace is not in raycast/README.md",
                     {"raycast/README.md": "```rooms\nscene:\ntrace: scene\ngain: scene\n```\n"})
+
+    def test_arrow_to_a_public_header(self):
+        self.expect('apps/viewgain/main.cpp:1: the arrow viewgain -> formats is not in apps/README.md',
+                    {"apps/viewgain/main.cpp": '#include "viewgain/formats/ply.hpp"\n#include "planner/stage.hpp"\n'})
 
     def test_arrow_not_found(self):
         self.expect("grid/README.md:4: no source of update includes one of map",

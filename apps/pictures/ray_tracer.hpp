@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/png_io.hpp"
 #include "viewgain/core/camera.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
+#include "viewgain/formats/png.hpp"
 
 namespace viewgain::app {
 

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "formats/png_io.hpp"
 #include "picture_parts.hpp"
 #include "ray_tracer.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/png.hpp"
 
 namespace viewgain::app {
 namespace {

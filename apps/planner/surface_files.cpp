@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "point_arrays.hpp"
-#include "viewgain/mesh/surface_io.hpp"
+#include "viewgain/formats/ply.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -34,9 +34,10 @@ void write_surfaces(const Model& model, const std::filesystem::path& surface_fil
   std::vector<SymmetricMatrix3> of_vertices;
   of_vertices.reserve(surface.source.size());
   for (const std::uint32_t i : surface.source) of_vertices.push_back(points.covariances[i]);
-  write_surface_ply(surface_file, surface, sigmas_along(surface.normals, of_vertices));
-  write_points_ply(points_file, points.positions, points.normals,
-                   sigmas_along(points.normals, points.covariances));
+  write_ply(surface_file, {surface.vertices, surface.normals,
+                           sigmas_along(surface.normals, of_vertices), surface.triangles});
+  write_ply(points_file,
+            {points.positions, points.normals, sigmas_along(points.normals, points.covariances)});
 }
 
 }  // namespace viewgain::app

@@ -13,14 +13,14 @@
 #include <utility>
 #include <vector>
 
-#include "formats/file_names.hpp"
-#include "formats/frames_dir.hpp"
-#include "formats/hazard_source.hpp"
-#include "formats/reach_toml.hpp"
-#include "formats/run_folder.hpp"
-#include "formats/sensor_toml.hpp"
+#include "options/hazard_source.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/file_names.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/formats/run_folder.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain::app {
 namespace {

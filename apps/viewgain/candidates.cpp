@@ -12,17 +12,17 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "formats/hazard_source.hpp"
-#include "formats/map_file.hpp"
-#include "formats/reach_toml.hpp"
-#include "formats/sensor_toml.hpp"
-#include "formats/values.hpp"
 #include "gain_unit.hpp"
+#include "options/hazard_source.hpp"
+#include "options/values.hpp"
 #include "planner/candidate_generation.hpp"
 #include "planner/model.hpp"
 #include "planner/pose_sets.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "formats/values.hpp"
+#include "options/values.hpp"
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/pose.hpp"
 
@@ -41,6 +41,8 @@ inline void add_common_options(CLI::App& app, CommonOptions& options) {
   app.add_option("--threads", options.threads, "threads; 0: as many as the machine has")
       ->capture_default_str();
 }
+
+inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt)";
 
 inline constexpr const char* kSensorHelp =
     "preset (sr4000, azure_kinect_nfov, kinect_v1, d435, laser_line) or a .toml file";

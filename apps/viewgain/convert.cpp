@@ -6,12 +6,12 @@
 #include <string>
 
 #include "commands.hpp"
-#include "formats/map_file.hpp"
-#include "formats/sensor_toml.hpp"
-#include "formats/values.hpp"
 #include "map_json.hpp"
+#include "options/values.hpp"
 #include "planner/stopwatch.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -51,6 +51,7 @@ void convert(const Options& options) {
   if (!options.sensor.empty()) sensor = load_sensor(options.sensor);
   const BeliefGrid grid = load_map(options.in, sensor ? &*sensor : nullptr, config);
   const LostInTree lost = save_map(grid, options.out, {options.with_covariance});
+  warn_of_lost_frame(lost, options.out);
   const GridStatistics statistics = grid.statistics();
   const Index3 dims = grid.dims();
   if (options.common.json) {

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "commands.hpp"
-#include "formats/map_file.hpp"
-#include "formats/values.hpp"
+#include "options/values.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/region_statistics.hpp"
 

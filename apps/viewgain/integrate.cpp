@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "formats/map_file.hpp"
-#include "formats/values.hpp"
 #include "map_json.hpp"
+#include "options/values.hpp"
 #include "planner/stopwatch.hpp"
 #include "progress.hpp"
 #include "reading_source.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain::app {
@@ -244,6 +244,7 @@ void integrate(const Options& options, const CLI::App& app) {
   const Totals totals = integrate_all(*source, options, grid);
   refuse_empty(options, *source, totals);
   const LostInTree lost = save_map(grid, options.out, {options.with_covariance});
+  warn_of_lost_frame(lost, options.out);
   print_summary(options, *source, grid, totals, lost, watch.seconds());
 }
 

@@ -8,8 +8,8 @@
 #include <mutex>
 #include <thread>
 
-#include "formats/staged_folder.hpp"
 #include "viewgain/core/atomic_file.hpp"
+#include "viewgain/formats/staged_folder.hpp"
 
 namespace viewgain::app {
 namespace {

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "commands.hpp"
+#include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain::app {
@@ -17,6 +20,15 @@ namespace viewgain::app {
           {"dims", {dims.x, dims.y, dims.z}}, {"prior_sigma", grid.prior_sigma()},
           {"unknown", statistics.unknown},    {"free", statistics.free},
           {"occupied", statistics.occupied}};
+}
+
+/// Warns on stderr of what a tree cannot hold, where save_map lost it.
+inline void warn_of_lost_frame(const LostInTree& lost, const std::string& path) {
+  if (!lost.T_world_grid) return;
+  std::fprintf(stderr,
+               "viewgain: warning: %s: the tree is in the map's own frame: T_world_grid, which is "
+               "no shift by whole voxels within a tree's space, is lost\n",
+               path.c_str());
 }
 
 }  // namespace viewgain::app

@@ -4,13 +4,13 @@
 
 #include <Eigen/Core>
 
-#include "formats/frames_dir.hpp"
-#include "formats/sensor_toml.hpp"
-#include "formats/values.hpp"
-#include "planner/sensing.hpp"
+#include "options/sensing.hpp"
+#include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/cloud_io.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate_cloud.hpp"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "formats/run_folder.hpp"
 #include "interrupt.hpp"
 #include "pictures/view_picture.hpp"
 #include "planner/simulated_acquisition.hpp"
@@ -16,6 +15,7 @@
 #include "run_report.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/run_folder.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/version.hpp"
 

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reconstruct_options.hpp"
 
-#include "formats/hazard_source.hpp"
-#include "formats/sensor_toml.hpp"
-#include "formats/values.hpp"
+#include "options/hazard_source.hpp"
+#include "options/sensing_flags.hpp"
+#include "options/values.hpp"
 #include "planner/policies.hpp"
-#include "sensing_flags.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain::app {
 namespace {

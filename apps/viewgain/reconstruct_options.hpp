@@ -8,7 +8,7 @@
 #include <string>
 
 #include "commands.hpp"
-#include "planner/sensing.hpp"
+#include "options/sensing.hpp"
 
 namespace viewgain::app {
 

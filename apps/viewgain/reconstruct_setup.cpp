@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "formats/hazard_source.hpp"
-#include "formats/reach_toml.hpp"
-#include "formats/sensor_toml.hpp"
-#include "formats/values.hpp"
+#include "options/hazard_source.hpp"
+#include "options/values.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain::app {
 namespace {

@@ -8,8 +8,8 @@
 #include <cstdio>
 
 #include "commands.hpp"
-#include "formats/values.hpp"
 #include "gain_unit.hpp"
+#include "options/values.hpp"
 
 namespace viewgain::app {
 namespace {

@@ -11,17 +11,17 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "formats/hazard_source.hpp"
-#include "formats/map_file.hpp"
-#include "formats/pose_source.hpp"
-#include "formats/sensor_toml.hpp"
-#include "formats/values.hpp"
+#include "options/hazard_source.hpp"
+#include "options/pose_source.hpp"
+#include "options/values.hpp"
 #include "pictures/picture.hpp"
 #include "planner/stopwatch.hpp"
 #include "progress.hpp"
 #include "score_report.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {

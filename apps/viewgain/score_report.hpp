@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "formats/pose_source.hpp"
+#include "options/pose_source.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 

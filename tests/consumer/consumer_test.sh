@@ -37,6 +37,8 @@ check_project() { # PREFIX [cmake arguments]
   local answers
   answers=$("$folder/boundary" "$folder/map.vdb")
   [ "$answers" = 11111111 ] || fail "boundary.cpp says $answers"
+  answers=$("$folder/files" "$folder/sensor.toml")
+  [ "$answers" = 111 ] || fail "files.cpp says $answers"
 }
 
 case $kind in
@@ -92,6 +94,10 @@ case $kind in
     c++ -std=c++20 "$here/boundary.cpp" -o "$work/$kind/boundary" "-Wl,-rpath,$libraries" \
       $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-mesh)
     [ "$("$work/$kind/boundary" "$work/$kind/map.vdb")" = 11111111 ] || fail "boundary.cpp"
+    # shellcheck disable=SC2046
+    c++ -std=c++20 "$here/files.cpp" -o "$work/$kind/files" "-Wl,-rpath,$libraries" \
+      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-formats)
+    [ "$("$work/$kind/files" "$work/$kind/sensor.toml")" = 111 ] || fail "files.cpp"
     ;;
   add_subdirectory)
     folder=$work/$kind

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What the shared libraries show and need.
-#   symbols_test.sh LIBVIEWGAIN [LIBVIEWGAIN_MESH LIBVIEWGAIN_MESH_IO]
+#   symbols_test.sh LIBVIEWGAIN [LIBVIEWGAIN_FORMATS LIBVIEWGAIN_MESH LIBVIEWGAIN_MESH_IO]
 set -euo pipefail
 fail() { echo "$*" >&2; exit 1; }
 symbols=$(mktemp)

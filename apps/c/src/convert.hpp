@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "status.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 
@@ -28,13 +29,15 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// As pose_of(), but throws Error(invalid_argument) for such a row.
 [[nodiscard]] Pose rigid_pose_of(const double* matrix);
 /// count poses of 16 numbers each; throws Error(invalid_argument) for null.
-[[nodiscard]] std::vector<Pose> poses_of(const double* matrices, std::size_t count);
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> poses_of(const double* matrices, std::size_t count);
 
 void write_pose(const Pose& pose, double* matrix);
-void write_poses(std::span<const Pose> poses, double* matrices);
+VIEWGAIN_EXPORT void write_poses(std::span<const Pose> poses, double* matrices);
 
 /// Throws Error(invalid_argument) for null, another size, or a noise model that does not exist.
-[[nodiscard]] Sensor sensor_of(const vg_sensor* given);
+[[nodiscard]] VIEWGAIN_EXPORT Sensor sensor_of(const vg_sensor* given);
+/// Fills a struct that its _init has seen; throws Error(invalid_argument) for another.
+VIEWGAIN_EXPORT void write_sensor(const Sensor& sensor, vg_sensor* out);
 
 [[nodiscard]] inline Eigen::Vector3d vector_of(const double* xyz) {
   return {xyz[0], xyz[1], xyz[2]};

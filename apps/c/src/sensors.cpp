@@ -90,6 +90,26 @@ Sensor sensor_of(const vg_sensor* given) {
   return result;
 }
 
+void write_sensor(const Sensor& sensor, vg_sensor* out) {
+  require_struct(out, "vg_sensor");
+  const PinholeCamera& camera = sensor.camera;
+  vg_sensor whole{};
+  whole.width = camera.width;
+  whole.height = camera.height;
+  whole.fx = camera.fx;
+  whole.fy = camera.fy;
+  whole.cx = camera.cx;
+  whole.cy = camera.cy;
+  std::copy(camera.distortion.begin(), camera.distortion.end(), whole.distortion);
+  whole.min_range = sensor.min_range;
+  whole.max_range = sensor.max_range;
+  whole.working_distance = sensor.working_distance;
+  const Noise noise = std::visit(Writer{}, sensor.noise);
+  whole.noise_model = noise.model;
+  std::copy(noise.p.begin(), noise.p.end(), whole.noise);
+  write_struct(out, whole);
+}
+
 }  // namespace viewgain::c_api
 
 using namespace viewgain;
@@ -100,23 +120,7 @@ void vg_sensor_init(vg_sensor* sensor, size_t struct_size) { initialise(sensor, 
 vg_status vg_sensor_preset(const char* name, vg_sensor* sensor) {
   return guarded([&] {
     require(name, "name");
-    require_struct(sensor, "vg_sensor");
-    const Sensor preset = sensor_preset(name);
-    vg_sensor whole{};
-    whole.width = preset.camera.width;
-    whole.height = preset.camera.height;
-    whole.fx = preset.camera.fx;
-    whole.fy = preset.camera.fy;
-    whole.cx = preset.camera.cx;
-    whole.cy = preset.camera.cy;
-    std::copy(preset.camera.distortion.begin(), preset.camera.distortion.end(), whole.distortion);
-    whole.min_range = preset.min_range;
-    whole.max_range = preset.max_range;
-    whole.working_distance = preset.working_distance;
-    const Noise noise = std::visit(Writer{}, preset.noise);
-    whole.noise_model = noise.model;
-    std::copy(noise.p.begin(), noise.p.end(), whole.noise);
-    write_struct(sensor, whole);
+    write_sensor(sensor_preset(name), sensor);
   });
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/version.hpp"
 #include "viewgain/viewgain.h"
 
@@ -23,7 +24,7 @@ class Stopped : public std::runtime_error {
 };
 
 /// Status of the exception in flight; keeps its message for vg_last_error().
-vg_status status_of_exception() noexcept;
+VIEWGAIN_EXPORT vg_status status_of_exception() noexcept;
 
 /// Runs the body of a function of the C interface; nothing it throws gets out.
 template <typename Body>

@@ -20,5 +20,6 @@ void bind_scene(pybind11::module_& module);
 void bind_feasibility(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
 void bind_evaluator(pybind11::module_& module);
+void bind_files(pybind11::module_& module);
 
 }  // namespace viewgain::python

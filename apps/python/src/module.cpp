@@ -63,4 +63,5 @@ PYBIND11_MODULE(_viewgain, module) {
   bind_feasibility(module);
   bind_simulation(module);
   bind_evaluator(module);
+  bind_files(module);
 }

@@ -13,15 +13,15 @@
 
 #include "apps/program_runner.hpp"
 #include "core/comma_locale.hpp"
-#include "formats/frames_dir.hpp"
-#include "formats/map_file.hpp"
-#include "formats/png_io.hpp"
-#include "formats/sensor_toml.hpp"
-#include "formats/values.hpp"
+#include "options/values.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 class Files : public test::ProgramTest {
@@ -321,4 +321,4 @@ TEST(Values, NumbersAndBoxes) {
 }
 
 }  // namespace
-}  // namespace viewgain::app
+}  // namespace viewgain

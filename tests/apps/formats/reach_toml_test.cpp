@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/reach_toml.hpp"
+#include "viewgain/formats/reach_toml.hpp"
 
 #include <numbers>
 #include <string>
@@ -11,7 +11,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 constexpr const char* kEverything = R"(
@@ -117,4 +117,4 @@ TEST_F(ReachFiles, ErrorsNameFileAndKey) {
 }
 
 }  // namespace
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/staged_folder.hpp"
+#include "viewgain/formats/staged_folder.hpp"
 
 #include <clocale>
 #include <cstdlib>
@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "formats/frames_dir.hpp"
-#include "formats/run_folder.hpp"
-#include "formats/sensor_toml.hpp"
-#include "formats/values.hpp"
+#include "options/values.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/run_folder.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 namespace fs = std::filesystem;
@@ -206,4 +206,4 @@ TEST_F(StagedFolderTest, NumbersHaveADecimalPointInEveryLocale) {
 }
 
 }  // namespace
-}  // namespace viewgain::app
+}  // namespace viewgain

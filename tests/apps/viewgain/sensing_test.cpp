@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "formats/frames_dir.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/frames.hpp"
 
 namespace viewgain {
 namespace {

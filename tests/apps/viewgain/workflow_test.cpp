@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "formats/frames_dir.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/frames.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 

@@ -16,6 +16,7 @@
 #include "planner/candidate_generation.hpp"
 #include "planner/model.hpp"
 #include "viewgain/core/text.hpp"
+#include "viewgain/formats/ply.hpp"
 #include "viewgain/mesh/boundary.hpp"
 #include "viewgain/mesh/surface.hpp"
 #include "viewgain/mesh/viewpoint_estimator.hpp"
@@ -133,6 +134,24 @@ Faces turn counter-clockwise seen from free space.)");
       .def_property_readonly(
           "source", [](const SurfaceMesh& s) { return to_array_1d<std::uint32_t>(s.source); },
           "ndarray, (n,), uint32: the input point of each vertex")
+      .def(
+          "save",
+          [](const SurfaceMesh& self, const py::object& path) {
+            const std::string file = file_path(path);
+            require_writable(file);
+            const WithoutGil without_gil;
+            write_ply(file, {self.vertices, self.normals, {}, self.triangles});
+          },
+          py::arg("path"),
+          R"(Writes vertices, normals and triangles as binary PLY, whole or not at all.
+
+Parameters
+----------
+path : path-like
+
+Raises
+------
+OSError)")
       .def("__repr__", [](const SurfaceMesh& s) {
         return "<Surface " + std::to_string(s.vertices.size()) + " vertices, " +
                std::to_string(s.triangles.size()) + " triangles>";

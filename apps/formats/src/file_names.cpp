@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "file_names.hpp"
+#include "viewgain/formats/file_names.hpp"
 
 #include <algorithm>
 #include <system_error>
 
-namespace viewgain::app {
+namespace viewgain {
 
 std::string small_ending(const std::filesystem::path& path) {
   std::string text = path.extension().string();
@@ -22,4 +22,4 @@ bool is_special_file(const std::filesystem::path& path) {
          !std::filesystem::is_directory(status);
 }
 
-}  // namespace viewgain::app
+}  // namespace viewgain

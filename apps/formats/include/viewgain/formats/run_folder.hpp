@@ -5,18 +5,19 @@
 #include <filesystem>
 #include <vector>
 
-#include "staged_folder.hpp"
+#include "viewgain/formats/staged_folder.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 
 /// The files of `dir` whose names `reconstruct` writes, relative to it; none if there is no such
 /// folder.
-[[nodiscard]] std::vector<std::filesystem::path> run_files(const std::filesystem::path& dir);
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<std::filesystem::path> run_files(
+    const std::filesystem::path& dir);
 
 /// The folder that `reconstruct` leaves: run.json, views.txt, map.vdb, surface.ply, points.ply,
 /// views/NN.png, views/NN.amplitude.png, maps/NN.vdb. Nothing is in it, and an earlier run is as it
 /// was, until commit().
-class RunFolder {
+class VIEWGAIN_EXPORT RunFolder {
  public:
   /// Throws Error(io), and Error(invalid_argument) if the folder holds files of these names without
   /// an earlier run's run.json.
@@ -35,4 +36,4 @@ class RunFolder {
   StagedFolder staged_;
 };
 
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "map_file.hpp"
+#include "viewgain/formats/map_file.hpp"
 
-#include <cstdio>
 #include <string>
 
-#include "file_names.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
+#include "viewgain/formats/file_names.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
+
 bool is_octomap(const std::filesystem::path& path) {
   return small_ending(path) == ".ot" || small_ending(path) == ".bt";
 }
@@ -50,14 +50,7 @@ LostInTree save_map(const BeliefGrid& grid, const std::filesystem::path& path,
   lost.views = grid.views().size();
   lost.hazard_counters = !grid.hazard_counters().empty();
   lost.T_world_grid = !octomap_keeps_frame(grid);
-  if (lost.T_world_grid) {
-    std::fprintf(
-        stderr,
-        "viewgain: warning: %s: the tree is in the map's own frame: T_world_grid, which is "
-        "no shift by whole voxels within a tree's space, is lost\n",
-        path.string().c_str());
-  }
   return lost;
 }
 
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "png_io.hpp"
+#include "viewgain/formats/png.hpp"
 
 #include <png.h>
 
@@ -14,7 +14,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 // Everything that must survive libpng's longjmp lives here, outside of the functions that it
@@ -145,4 +145,4 @@ void write_png(const std::filesystem::path& path, const Gray8Image& image) {
               static_cast<std::size_t>(image.width));
 }
 
-}  // namespace viewgain::app
+}  // namespace viewgain

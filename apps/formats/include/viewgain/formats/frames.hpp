@@ -8,25 +8,26 @@
 #include <string>
 #include <vector>
 
-#include "staged_folder.hpp"
 #include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/staged_folder.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 
 inline constexpr double kDepthUnit = 1e-4;          ///< of our own depth images [m]
 inline constexpr double kRecordedDepthUnit = 1e-3;  ///< of recorded ones, unless said otherwise [m]
 inline constexpr double kAmplitudeUnit = 1e-3;      ///< of amplitude images [m⁻²]
 
 /// What the value 65535 of a depth image says.
-enum class OutOfRangeMeaning {
+enum class VIEWGAIN_EXPORT OutOfRangeMeaning {
   carve,    ///< nothing up to max_range
   invalid,  ///< no reading
 };
 
 /// A folder of depth frames, opened but not read.
-struct FrameSequence {
+struct VIEWGAIN_EXPORT FrameSequence {
   Sensor sensor;           ///< with the folder's own intrinsics, where it has them
   double depth_scale = 0;  ///< [m] per unit
   bool recorded = false;   ///< a pose file a frame, instead of poses.txt
@@ -40,20 +41,25 @@ struct FrameSequence {
 /// gaps. The scale is, unless given, 1e-4 m per unit where there are poses.txt and sensor.toml,
 /// else 1e-3. Beside a depth image there may be a frame-NNNNNN.amplitude.png. `sensor`: preset or
 /// .toml file, empty for the folder's own. Throws Error naming the file that is missing or wrong.
-[[nodiscard]] FrameSequence open_frames(const std::filesystem::path& dir, const std::string& sensor,
-                                        std::optional<double> depth_scale);
+[[nodiscard]] VIEWGAIN_EXPORT FrameSequence open_frames(const std::filesystem::path& dir,
+                                                        const std::string& sensor = {},
+                                                        std::optional<double> depth_scale = {});
 
-/// Reads the depth image, and the amplitude image (16 bit, 1e-3 m⁻²) if there is one.
-[[nodiscard]] DepthFrame load_frame(const FrameSequence& frames, std::size_t index,
-                                    OutOfRangeMeaning meaning);
+/// Reads the depth image, and the amplitude image (16 bit, 1e-3 m⁻²) if there is one. Throws
+/// Error(io) or Error(format), naming the file, and Error(invalid_argument) for an index that is
+/// not less than the count of images. May be called from many threads.
+[[nodiscard]] VIEWGAIN_EXPORT DepthFrame
+load_frame(const FrameSequence& frames, std::size_t index,
+           OutOfRangeMeaning meaning = OutOfRangeMeaning::carve);
 
 /// The files of `dir` that make up frames of either layout, and what `simulate` leaves with them,
 /// relative to it; none if there is no such folder.
-[[nodiscard]] std::vector<std::filesystem::path> frame_files(const std::filesystem::path& dir);
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<std::filesystem::path> frame_files(
+    const std::filesystem::path& dir);
 
 /// Writes frames in our own layout into a folder that appears, or changes, only when all is
 /// written. simulated.txt in it says how many frames are simulated; only those are ever replaced.
-class FramesWriter {
+class VIEWGAIN_EXPORT FramesWriter {
  public:
   /// Throws Error(io), and Error(invalid_argument) if the folder holds frames, poses or a sensor
   /// that no FramesWriter has written.
@@ -62,7 +68,8 @@ class FramesWriter {
   /// Writes the depth image, and an amplitude image if the frame has amplitudes.
   void write_frame(std::size_t index, const DepthFrame& frame);
 
-  /// Writes poses and sensor and puts all in the place of the frames of an earlier simulation.
+  /// Writes poses (T_world_camera, one a frame) and sensor and puts all in the place of the frames
+  /// of an earlier simulation.
   void commit(const std::vector<Pose>& poses, const Sensor& sensor);
 
  private:
@@ -70,4 +77,4 @@ class FramesWriter {
   StagedFolder staged_;
 };
 
-}  // namespace viewgain::app
+}  // namespace viewgain

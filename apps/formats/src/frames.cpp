@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "frames_dir.hpp"
+#include "viewgain/formats/frames.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,16 +14,15 @@
 #include <string_view>
 #include <system_error>
 
-#include "png_io.hpp"
-#include "sensor_toml.hpp"
-#include "values.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/text.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 namespace fs = std::filesystem;
@@ -187,10 +186,14 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
   const bool has_poses = fs::exists(dir / kPoses);
   frames.depth_scale =
       depth_scale.value_or(has_sensor && has_poses ? kDepthUnit : kRecordedDepthUnit);
-  check_positive("--depth-scale", frames.depth_scale);
+  if (!(frames.depth_scale > 0) || !std::isfinite(frames.depth_scale)) {
+    throw Error(ErrorCode::invalid_argument, "the depth scale (--depth-scale) " +
+                                                 short_text(frames.depth_scale) +
+                                                 " must be positive and finite");
+  }
   if (sensor.empty() && !has_sensor) {
     throw Error(ErrorCode::invalid_argument,
-                dir.string() + ": has no sensor.toml, so --sensor is needed");
+                dir.string() + ": has no sensor.toml, so a sensor (--sensor) is needed");
   }
   frames.sensor = sensor.empty() ? read_sensor_toml(dir / kSensor) : load_sensor(sensor);
   if (has_poses) {
@@ -202,6 +205,10 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
 }
 
 DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRangeMeaning meaning) {
+  if (index >= frames.images.size()) {
+    throw Error(ErrorCode::invalid_argument, "there is no frame " + std::to_string(index) + " of " +
+                                                 std::to_string(frames.images.size()));
+  }
   const PinholeCamera& camera = frames.sensor.camera;
   const GrayImage image = read_gray_png(frames.images[index], camera.width, camera.height);
   const float out_of_range =
@@ -257,10 +264,10 @@ void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
 
 void FramesWriter::commit(const std::vector<Pose>& poses, const Sensor& sensor) {
   write_tum(staged_.path() / kPoses, poses);
-  write_file_atomically(staged_.path() / kSensor, sensor_toml(sensor));
+  write_sensor_toml(staged_.path() / kSensor, sensor);
   write_file_atomically(staged_.path() / kSimulated,
                         std::string(kSimulatedText) + std::to_string(poses.size()) + "\n");
   staged_.commit(earlier_);
 }
 
-}  // namespace viewgain::app
+}  // namespace viewgain

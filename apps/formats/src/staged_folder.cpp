@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "staged_folder.hpp"
+#include "viewgain/formats/staged_folder.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -15,7 +15,7 @@
 
 #include "viewgain/core/error.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 namespace fs = std::filesystem;
@@ -145,4 +145,4 @@ void remove_staged_folders() noexcept {
   for (const StagedFolder* folder : alive) folder->remove();
 }
 
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "described_options.hpp"
-#include "planner/sensing.hpp"
+#include "sensing.hpp"
 
 namespace viewgain::app {
 

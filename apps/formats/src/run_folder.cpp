@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "run_folder.hpp"
+#include "viewgain/formats/run_folder.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 namespace fs = std::filesystem;
@@ -82,4 +82,4 @@ fs::path RunFolder::map(std::size_t index) const {
   return file("maps") / numbered(index, ".vdb");
 }
 
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "viewgain/mesh/surface_io.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/formats/ply.hpp"
 
 #include <bit>
 #include <cstdint>
@@ -19,9 +19,10 @@ void append(std::string& bytes, Value value) {
   bytes.append(raw.data(), raw.size());
 }
 
-void write_ply(const std::filesystem::path& path, std::span<const std::array<double, 3>> points,
-               std::span<const std::array<double, 3>> normals, std::span<const float> sigma,
-               std::span<const std::array<std::uint32_t, 3>> triangles) {
+}  // namespace
+
+void write_ply(const std::filesystem::path& path, const PlyArrays& arrays) {
+  const auto& [points, normals, sigma, triangles] = arrays;
   const auto refuse = [&](const std::string& what) {
     throw Error(ErrorCode::invalid_argument, path.string() + ": " + what);
   };
@@ -60,20 +61,6 @@ void write_ply(const std::filesystem::path& path, std::span<const std::array<dou
     }
   }
   write_file_atomically(path, bytes);
-}
-
-}  // namespace
-
-void write_surface_ply(const std::filesystem::path& path, const SurfaceMesh& surface,
-                       std::span<const float> sigma) {
-  write_ply(path, surface.vertices, surface.normals, sigma, surface.triangles);
-}
-
-void write_points_ply(const std::filesystem::path& path,
-                      std::span<const std::array<double, 3>> points,
-                      std::span<const std::array<double, 3>> normals,
-                      std::span<const float> sigma) {
-  write_ply(path, points, normals, sigma, {});
 }
 
 }  // namespace viewgain

@@ -5,22 +5,27 @@
 #include <filesystem>
 #include <string>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 
 /// The TOML description of a sensor; apps/README.md shows the layout. Reading what was written
 /// gives an equal sensor.
-[[nodiscard]] std::string sensor_toml(const Sensor& sensor);
+[[nodiscard]] VIEWGAIN_EXPORT std::string sensor_toml(const Sensor& sensor);
 
 /// Throws Error(io) if the file cannot be read and Error(format), naming the file and the key, for
 /// a key that is missing, unknown, of the wrong type or out of bounds.
-[[nodiscard]] Sensor read_sensor_toml(const std::filesystem::path& path);
+[[nodiscard]] VIEWGAIN_EXPORT Sensor read_sensor_toml(const std::filesystem::path& path);
+
+/// Writes sensor_toml(). Atomic. Throws Error(io), and Error(invalid_argument) if the sensor is not
+/// valid.
+VIEWGAIN_EXPORT void write_sensor_toml(const std::filesystem::path& path, const Sensor& sensor);
 
 /// Whether load_sensor takes this for a file's name and not for a preset's.
-[[nodiscard]] bool is_sensor_file(const std::string& preset_or_file);
+[[nodiscard]] VIEWGAIN_EXPORT bool is_sensor_file(const std::string& preset_or_file);
 
 /// A preset by its name, or a file that ends in .toml. Throws Error.
-[[nodiscard]] Sensor load_sensor(const std::string& preset_or_file);
+[[nodiscard]] VIEWGAIN_EXPORT Sensor load_sensor(const std::string& preset_or_file);
 
-}  // namespace viewgain::app
+}  // namespace viewgain

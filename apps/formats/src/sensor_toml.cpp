@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sensor_toml.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 
 #include <array>
 #include <cstdint>
@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "toml_table.hpp"
-#include "values.hpp"
+#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 // Ten times what depth cameras have; rays and images of more would fill a machine's memory.
@@ -199,6 +200,11 @@ std::string sensor_toml(const Sensor& sensor) {
   return std::move(text).str();
 }
 
+void write_sensor_toml(const std::filesystem::path& path, const Sensor& sensor) {
+  sensor.validate();
+  write_file_atomically(path, sensor_toml(sensor));
+}
+
 Sensor read_sensor_toml(const std::filesystem::path& path) {
   const std::string file = path.string();
   const toml::table root = read_toml(path);
@@ -235,4 +241,4 @@ Sensor load_sensor(const std::string& preset_or_file) {
                                         : sensor_preset(preset_or_file);
 }
 
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -5,38 +5,38 @@
 #include <cstddef>
 #include <filesystem>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
-namespace viewgain::app {
-
-inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt)";
+namespace viewgain {
 
 /// Whether the name ends in .ot or .bt, in small or capital letters.
-[[nodiscard]] bool is_octomap(const std::filesystem::path& path);
+[[nodiscard]] VIEWGAIN_EXPORT bool is_octomap(const std::filesystem::path& path);
 
 /// Reads a .vdb map, or an OctoMap tree by `config`, whose prior is, unless given, the default for
 /// the sensor where there is one. Throws what load_vdb and load_octomap throw.
-[[nodiscard]] BeliefGrid load_map(const std::filesystem::path& path, const Sensor* sensor = nullptr,
-                                  OctomapConfig config = {});
+[[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_map(const std::filesystem::path& path,
+                                                  const Sensor* sensor = nullptr,
+                                                  OctomapConfig config = {});
 
 /// Throws Error(invalid_argument) for names that save_map does not write: those that end neither in
 /// .vdb nor in .ot, unless what is there is no regular file (/dev/null, a pipe).
-void check_map_name(const std::filesystem::path& path);
+VIEWGAIN_EXPORT void check_map_name(const std::filesystem::path& path);
 
 /// What a map has and its tree has not.
-struct LostInTree {
+struct VIEWGAIN_EXPORT LostInTree {
   std::size_t beliefs = 0;  ///< voxels
   std::size_t views = 0;
   bool hazard_counters = false;
   bool T_world_grid = false;  ///< see octomap_keeps_frame
 };
 
-/// Writes a .ot for a name that ends so, else a .vdb, of which nothing is lost. Warns on stderr if
-/// the frame is.
-LostInTree save_map(const BeliefGrid& grid, const std::filesystem::path& path,
-                    const VdbWriteConfig& config = {});
+/// Writes a .ot for a name that ends so, else a .vdb, of which nothing is lost. Atomic. Throws what
+/// save_vdb and save_octomap throw, and as check_map_name().
+VIEWGAIN_EXPORT LostInTree save_map(const BeliefGrid& grid, const std::filesystem::path& path,
+                                    const VdbWriteConfig& config = {});
 
-}  // namespace viewgain::app
+}  // namespace viewgain

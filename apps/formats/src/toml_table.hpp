@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace viewgain::app {
+namespace viewgain {
 
 /// Throws Error(io) if the file cannot be read, Error(format) with the line if it is no TOML.
 [[nodiscard]] toml::table read_toml(const std::filesystem::path& path);
@@ -47,4 +47,4 @@ class TableReader {
   std::vector<std::string> known_;
 };
 
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -6,24 +6,26 @@
 #include <filesystem>
 #include <vector>
 
-namespace viewgain::app {
+#include "viewgain/core/export.hpp"
+
+namespace viewgain {
 
 /// 16-bit grayscale image, row by row.
-struct GrayImage {
+struct VIEWGAIN_EXPORT GrayImage {
   int width = 0;
   int height = 0;
   std::vector<std::uint16_t> pixels;
 };
 
 /// 8-bit RGB image, row by row.
-struct RgbImage {
+struct VIEWGAIN_EXPORT RgbImage {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> pixels;  ///< 3 * width * height
 };
 
 /// 8-bit grayscale image, row by row.
-struct Gray8Image {
+struct VIEWGAIN_EXPORT Gray8Image {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> pixels;
@@ -32,11 +34,12 @@ struct Gray8Image {
 /// Reads a 16-bit grayscale PNG of exactly this size; raw values, no gamma. Throws Error(io) if the
 /// file cannot be read and Error(format), naming the file, if it is damaged or of another kind or
 /// size.
-[[nodiscard]] GrayImage read_gray_png(const std::filesystem::path& path, int width, int height);
+[[nodiscard]] VIEWGAIN_EXPORT GrayImage read_gray_png(const std::filesystem::path& path, int width,
+                                                      int height);
 
 /// Atomic: a temporary file is renamed. Throws Error(io).
-void write_png(const std::filesystem::path& path, const GrayImage& image);
-void write_png(const std::filesystem::path& path, const RgbImage& image);
-void write_png(const std::filesystem::path& path, const Gray8Image& image);
+VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const GrayImage& image);
+VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const RgbImage& image);
+VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const Gray8Image& image);
 
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -10,7 +10,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 
 toml::table read_toml(const std::filesystem::path& path) {
   const std::string file = path.string();
@@ -110,4 +110,4 @@ void TableReader::refuse_unknown_keys() const {
   }
 }
 
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include "file_names.hpp"
 #include "values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/text.hpp"
+#include "viewgain/formats/file_names.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain::app {

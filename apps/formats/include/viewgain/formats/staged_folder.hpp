@@ -5,14 +5,16 @@
 #include <filesystem>
 #include <vector>
 
-namespace viewgain::app {
+#include "viewgain/core/export.hpp"
+
+namespace viewgain {
 
 /// A folder of results that appears, or begins to change, only when all of them are written: they
 /// go into a hidden folder, beside the target where that is not there yet, else inside it, and
 /// commit() moves them. What else is in the target stays. The hidden folder is called
 /// .NAME.tmp-PROCESS-COUNTER; one that a killed process has left is removed by the next writer of
 /// the same target. Thread safety: distinct objects may be used from distinct threads.
-class StagedFolder {
+class VIEWGAIN_EXPORT StagedFolder {
  public:
   /// Creates the hidden folder, and the target's parents where they are missing. Throws Error(io).
   explicit StagedFolder(const std::filesystem::path& target);
@@ -32,7 +34,7 @@ class StagedFolder {
   void commit(const std::vector<std::filesystem::path>& earlier);
 
  private:
-  friend void remove_staged_folders() noexcept;
+  friend VIEWGAIN_EXPORT void remove_staged_folders() noexcept;
   void remove() const noexcept;
 
   std::filesystem::path target_;
@@ -44,6 +46,6 @@ class StagedFolder {
 /// Removes the hidden folders, and the parents made for them, of all StagedFolder objects of this
 /// process, for a program that a signal ends. Not for a signal's handler itself: it takes a lock.
 /// The writers fail afterwards.
-void remove_staged_folders() noexcept;
+VIEWGAIN_EXPORT void remove_staged_folders() noexcept;
 
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/pose_source.hpp"
+#include "options/pose_source.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 std::vector<Pose> rings(const std::string& text) {
@@ -57,4 +57,4 @@ TEST(PoseSource, ErrorsNameTheFlag) {
 }
 
 }  // namespace
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -1,18 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "reach_toml.hpp"
+#include "viewgain/formats/reach_toml.hpp"
 
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "toml_table.hpp"
+#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 std::array<double, 3> triple(TableReader& reader, std::string_view key) {
@@ -98,4 +101,41 @@ ReachRegion read_reach_toml(const std::filesystem::path& path) {
   return region;
 }
 
-}  // namespace viewgain::app
+void write_reach_toml(const std::filesystem::path& path, const ReachRegion& region) {
+  region.validate();
+  if (region.predicate) {
+    throw Error(ErrorCode::invalid_argument,
+                path.string() + ": a region with a predicate cannot be written");
+  }
+  const auto xyz = [](const auto& v) { return toml::array{v[0], v[1], v[2]}; };
+  toml::table root;
+  if (!region.poses.empty()) {
+    std::filesystem::path poses = path;
+    poses.replace_extension(".poses.txt");
+    write_tum(poses, region.poses);
+    root.insert("poses", poses.filename().string());
+  }
+  toml::array boxes, shells, half_spaces;
+  for (const Box& box : region.boxes) {
+    boxes.push_back(toml::table{{"min", xyz(box.min)}, {"max", xyz(box.max)}});
+  }
+  for (const Shell& shell : region.shells) {
+    shells.push_back(toml::table{{"center", xyz(shell.center)},
+                                 {"min_radius", shell.min_radius},
+                                 {"max_radius", shell.max_radius}});
+  }
+  for (const HalfSpace& half : region.half_spaces) {
+    half_spaces.push_back(toml::table{{"normal", xyz(half.normal)}, {"offset", half.offset}});
+  }
+  if (!boxes.empty()) root.insert("box", std::move(boxes));
+  if (!shells.empty()) root.insert("shell", std::move(shells));
+  if (!half_spaces.empty()) root.insert("half_space", std::move(half_spaces));
+  root.insert("tolerance",
+              toml::table{{"distance", region.tolerance.distance},
+                          {"angle_deg", region.tolerance.angle * 180 / std::numbers::pi}});
+  std::ostringstream text;
+  text << root << "\n";
+  write_file_atomically(path, text.str());
+}
+
+}  // namespace viewgain

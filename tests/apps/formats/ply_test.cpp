@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "viewgain/mesh/surface_io.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/formats/ply.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -15,19 +16,20 @@
 #include "core/expect_error.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
+#include "viewgain/mesh/surface.hpp"
 
 namespace viewgain {
 namespace {
 
-class SurfaceIo : public testing::Test {
+class Ply : public testing::Test {
  protected:
-  SurfaceIo() {
+  Ply() {
     const std::string name =
         testing::UnitTest::GetInstance()->current_test_info()->name() + std::to_string(getpid());
     folder_ = std::filesystem::temp_directory_path() / ("viewgain_" + name);
     std::filesystem::create_directories(folder_);
   }
-  ~SurfaceIo() override { std::filesystem::remove_all(folder_); }
+  ~Ply() override { std::filesystem::remove_all(folder_); }
 
   static std::string bytes_of(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
@@ -48,6 +50,10 @@ SurfaceMesh tetrahedron() {
   return mesh;
 }
 
+PlyArrays arrays_of(const SurfaceMesh& mesh, std::span<const float> sigma) {
+  return {mesh.vertices, mesh.normals, sigma, mesh.triangles};
+}
+
 template <typename Value>
 Value value_at(const std::string& bytes, std::size_t at) {
   Value value;
@@ -55,13 +61,13 @@ Value value_at(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-TEST_F(SurfaceIo, MeshComesBackExactly) {
+TEST_F(Ply, MeshComesBackExactly) {
   const SurfaceMesh mesh = tetrahedron();
   std::size_t cases = 0;
   for (const std::vector<float>& sigma :
        {std::vector<float>{}, std::vector<float>{0.5F, 0.25F, 0.125F, 0.001F}}) {
     const auto path = folder_ / "surface.ply";
-    write_surface_ply(path, mesh, sigma);
+    write_ply(path, arrays_of(mesh, sigma));
     const TriangleMesh read = read_mesh(path);
     EXPECT_EQ(read.vertices, mesh.vertices);
     EXPECT_EQ(read.triangles, mesh.triangles);
@@ -71,11 +77,11 @@ TEST_F(SurfaceIo, MeshComesBackExactly) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
 }
 
-TEST_F(SurfaceIo, BytesAreAsTheHeaderSays) {
+TEST_F(Ply, BytesAreAsTheHeaderSays) {
   const SurfaceMesh mesh = tetrahedron();
   const std::vector<float> sigma{0.5F, 0.25F, 0.125F, 0.001F};
   const auto path = folder_ / "surface.ply";
-  write_surface_ply(path, mesh, sigma);
+  write_ply(path, arrays_of(mesh, sigma));
   const std::string bytes = bytes_of(path);
   const std::string end = "end_header\n";
   const std::size_t data = bytes.find(end) + end.size();
@@ -94,7 +100,7 @@ TEST_F(SurfaceIo, BytesAreAsTheHeaderSays) {
   EXPECT_EQ(value_at<std::int32_t>(bytes, data + 4 * kVertex + 5), 2);
 }
 
-TEST_F(SurfaceIo, PointsWithAndWithoutNormals) {
+TEST_F(Ply, PointsWithAndWithoutNormals) {
   const SurfaceMesh mesh = tetrahedron();
   const std::vector<float> sigma(4, 0.5F);
   const std::string end = "end_header\n";
@@ -102,9 +108,10 @@ TEST_F(SurfaceIo, PointsWithAndWithoutNormals) {
   for (const bool normals : {false, true}) {
     for (const bool sigmas : {false, true}) {
       const auto path = folder_ / "points.ply";
-      write_points_ply(path, mesh.vertices,
-                       normals ? std::span(mesh.normals) : std::span<const std::array<double, 3>>(),
-                       sigmas ? std::span(sigma) : std::span<const float>());
+      PlyArrays points{mesh.vertices};
+      if (normals) points.normals = mesh.normals;
+      if (sigmas) points.sigma = sigma;
+      write_ply(path, points);
       const std::string bytes = bytes_of(path);
       EXPECT_EQ(bytes.find("face"), std::string::npos);
       const std::size_t vertex = 24U + (normals ? 12U : 0U) + (sigmas ? 4U : 0U);
@@ -113,17 +120,17 @@ TEST_F(SurfaceIo, PointsWithAndWithoutNormals) {
     }
   }
   EXPECT_EQ(cases, 4U);
-  write_points_ply(folder_ / "none.ply", {}, {}, {});
+  write_ply(folder_ / "none.ply", {});
   EXPECT_NE(bytes_of(folder_ / "none.ply").find("element vertex 0\n"), std::string::npos);
 }
 
-TEST_F(SurfaceIo, BadInputIsRefusedAndLeavesNoFile) {
+TEST_F(Ply, BadInputIsRefusedAndLeavesNoFile) {
   const auto path = folder_ / "surface.ply";
   SurfaceMesh mesh = tetrahedron();
   const std::vector<float> three(3, 0.5F);
   const auto expect_refused = [&](const std::string& what, std::span<const float> sigma) {
     test::expect_error(ErrorCode::invalid_argument, path.string() + ": " + what,
-                       [&] { write_surface_ply(path, mesh, sigma); });
+                       [&] { write_ply(path, arrays_of(mesh, sigma)); });
   };
   expect_refused("4 points but 3 sigmas", three);
   mesh.triangles[3][1] = 4;
@@ -133,7 +140,7 @@ TEST_F(SurfaceIo, BadInputIsRefusedAndLeavesNoFile) {
   expect_refused("4 points but 3 normals", {});
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
   try {
-    write_surface_ply(folder_ / "no such folder" / "surface.ply", tetrahedron(), {});
+    write_ply(folder_ / "no such folder" / "surface.ply", {});
     ADD_FAILURE() << "wrote into a folder that is not there";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::io);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "formats/values.hpp"
+#include "values.hpp"
 #include "viewgain/core/noise.hpp"
 
 namespace viewgain::app {

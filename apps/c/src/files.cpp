@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <filesystem>
+
+#include "convert.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats.h"
+#include "viewgain/formats/sensor_toml.hpp"
+
+using namespace viewgain;
+using namespace viewgain::c_api;
+
+vg_status vg_sensor_load(const char* preset_or_file, vg_sensor* sensor) {
+  return guarded([&] {
+    require(preset_or_file, "preset_or_file");
+    require_struct(sensor, "vg_sensor");
+    write_sensor(load_sensor(preset_or_file), sensor);
+  });
+}
+
+vg_status vg_sensor_save(const vg_sensor* sensor, const char* path) {
+  return guarded([&] {
+    require(path, "path");
+    Sensor whole = sensor_of(sensor);
+    whole.name = std::filesystem::path(path).stem().string();
+    write_sensor_toml(path, whole);
+  });
+}
+
+vg_status vg_poses_load(const char* path, double* T_world_camera, double* timestamps,
+                        size_t capacity, size_t* found) {
+  return guarded([&] {
+    require(path, "path");
+    require(found, "found");
+    const PoseList list = read_tum(path);
+    const std::size_t count = std::min(capacity, list.poses.size());
+    if (T_world_camera != nullptr) {
+      write_poses(std::span(list.poses).first(count), T_world_camera);
+    }
+    if (timestamps != nullptr) std::copy_n(list.timestamps.begin(), count, timestamps);
+    *found = list.poses.size();
+  });
+}
+
+vg_status vg_poses_save(const char* path, const double* T_world_camera, const double* timestamps,
+                        size_t count) {
+  return guarded([&] {
+    require(path, "path");
+    const std::vector<Pose> poses = poses_of(T_world_camera, count);
+    if (timestamps == nullptr) {
+      write_tum(path, poses);
+    } else {
+      write_tum(path, poses, {timestamps, count});
+    }
+  });
+}

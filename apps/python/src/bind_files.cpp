@@ -1,0 +1,292 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "classes.hpp"
+#include "gil.hpp"
+#include "map/depth_images.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+
+namespace viewgain::python {
+namespace {
+
+/// What read_frames gives.
+struct Frames {
+  FrameSequence frames;
+  OutOfRangeMeaning meaning;
+};
+
+// A preset's name or the file's.
+std::string preset_or_file(const py::object& value) {
+  std::string text = file_path(value);
+  if (is_sensor_file(text)) require_file(text);
+  return text;
+}
+
+Frames read_frames(const py::object& folder, const py::object& sensor,
+                   std::optional<double> depth_scale, const std::string& out_of_range) {
+  Frames result{{}, OutOfRangeMeaning::carve};
+  if (out_of_range == "invalid") {
+    result.meaning = OutOfRangeMeaning::invalid;
+  } else if (out_of_range != "carve") {
+    throw py::value_error("out_of_range is \"" + out_of_range + "\"; valid are carve invalid");
+  }
+  const std::string given = sensor.is_none() ? std::string() : preset_or_file(sensor);
+  const std::string path = file_path(folder);
+  const WithoutGil without_gil;
+  result.frames = open_frames(path, given, depth_scale);
+  return result;
+}
+
+py::tuple frame_at(const Frames& self, py::ssize_t index) {
+  const auto count = static_cast<py::ssize_t>(self.frames.images.size());
+  if (index < 0) index += count;
+  if (index < 0 || index >= count) throw py::index_error("there is no such frame");
+  const auto i = static_cast<std::size_t>(index);
+  const auto loaded = [&] {
+    const WithoutGil without_gil;
+    return load_frame(self.frames, i, self.meaning);
+  };
+  const DepthFrame frame = loaded();
+  py::object amplitude = py::none();
+  if (!frame.amplitude.empty()) {
+    amplitude = image_array(frame.amplitude, frame.height, frame.width);
+  }
+  return py::make_tuple(image_array(frame.depth, frame.height, frame.width),
+                        to_array(self.frames.poses[i]), amplitude);
+}
+
+py::array_t<double> pose_array(std::span<const Pose> poses) {
+  return to_array(poses, {static_cast<py::ssize_t>(poses.size())});
+}
+
+py::object read_poses(const py::object& path, bool return_timestamps) {
+  const std::string file = file_path(path);
+  require_file(file);
+  const PoseList list = read_tum(file);
+  py::object poses = pose_array(list.poses);
+  if (!return_timestamps) return poses;
+  return py::make_tuple(poses, to_array_1d<double>(list.timestamps));
+}
+
+void write_poses(const py::object& path, const py::object& T_world_camera,
+                 const py::object& timestamps) {
+  const std::string file = file_path(path);
+  const std::vector<Pose> poses = pose_list(T_world_camera, "T_world_camera");
+  require_writable(file);
+  if (timestamps.is_none()) {
+    write_tum(file, poses);
+    return;
+  }
+  const Doubles times = doubles(timestamps, "timestamps", {-1});
+  write_tum(file, poses, {times.data(), static_cast<std::size_t>(times.size())});
+}
+
+// Adds to a class that another part of the module has made.
+template <typename Class>
+py::class_<Class> class_of(py::module_& module, const char* name) {
+  return py::reinterpret_borrow<py::class_<Class>>(module.attr(name));
+}
+
+void bind_toml(py::module_& module) {
+  class_of<Sensor>(module, "Sensor")
+      .def_static(
+          "load", [](const py::object& given) { return load_sensor(preset_or_file(given)); },
+          py::arg("preset_or_file"), R"(A sensor from a .toml file, or a preset by its name.
+
+Parameters
+----------
+preset_or_file : str or path-like
+    What ends in .toml is a file, such as ``save`` and the program's ``simulate`` write.
+
+Returns
+-------
+Sensor
+
+Raises
+------
+FileNotFoundError, OSError
+    It cannot be opened.
+Error
+    A key is missing, unknown, of the wrong type or out of bounds; names file and key.
+ValueError
+    There is no such preset.)")
+      .def(
+          "save",
+          [](const Sensor& self, const py::object& path) {
+            const std::string file = file_path(path);
+            require_writable(file);
+            write_sensor_toml(file, self);
+          },
+          py::arg("path"), R"(Writes a .toml file, whole or not at all.
+
+Parameters
+----------
+path : path-like
+
+Raises
+------
+OSError)");
+  class_of<ReachRegion>(module, "ReachRegion")
+      .def_static(
+          "load",
+          [](const py::object& path) {
+            const std::string file = file_path(path);
+            require_file(file);
+            return read_reach_toml(file);
+          },
+          py::arg("path"), R"(A region from a .toml file: boxes, shells, half-spaces, poses.
+
+Parameters
+----------
+path : path-like
+
+Returns
+-------
+ReachRegion
+
+Raises
+------
+FileNotFoundError, OSError
+    It, or the file of poses that it names, cannot be opened.
+Error
+    A key is missing, unknown, of the wrong type or out of bounds; names file and key.)")
+      .def(
+          "save",
+          [](const ReachRegion& self, const py::object& path) {
+            const std::string file = file_path(path);
+            require_writable(file);
+            write_reach_toml(file, self);
+          },
+          py::arg("path"), R"(Writes a .toml file; poses go into NAME.poses.txt beside it.
+
+Parameters
+----------
+path : path-like
+
+Raises
+------
+ValueError
+    The region has a predicate.
+OSError)");
+}
+
+void bind_frames(py::module_& module) {
+  auto type =
+      bound_class<Frames>(module, "FrameSequence",
+                          R"(A folder of depth frames, read one by one. Made by ``read_frames``.
+
+``len(frames)``, ``frames[i]`` and iteration give (depth, T_world_camera, amplitude): depth (height,
+width), float32, along the optical axis [m] (0: nothing known, inf: nothing up to max_range), the pose
+(4, 4), and the amplitude [1/m**2] or None.)");
+  refuse_pickling(type);
+  type.def("__len__", [](const Frames& self) { return self.frames.images.size(); })
+      .def("__getitem__", &frame_at, py::arg("index"))
+      .def("__iter__",
+           [](const py::object& self) {
+             return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
+           })
+      .def_property_readonly(
+          "sensor", [](const Frames& self) { return self.frames.sensor; },
+          "Sensor: with the folder's own intrinsics, where it has them")
+      .def_property_readonly(
+          "depth_scale", [](const Frames& self) { return self.frames.depth_scale; },
+          "float: [m] per unit of the images")
+      .def_property_readonly(
+          "poses", [](const Frames& self) { return pose_array(self.frames.poses); },
+          "ndarray, (n, 4, 4): T_world_camera")
+      .def("__repr__", [](const Frames& self) {
+        std::ostringstream text;
+        text << "<FrameSequence of " << self.frames.images.size() << " frames, "
+             << self.frames.sensor.name << ">";
+        return text.str();
+      });
+
+  module.def("read_frames", &read_frames, py::arg("folder"), py::kw_only(),
+             py::arg("sensor") = py::none(), py::arg("depth_scale") = py::none(),
+             py::arg("out_of_range") = "carve", R"(Opens a folder of depth frames.
+
+Parameters
+----------
+folder : path-like
+    With frame-NNNNNN.depth.png, 16 bit, and either poses.txt (TUM) and sensor.toml, as the program's
+    ``simulate`` writes it, or frame-NNNNNN.pose.txt and camera-intrinsics.txt, as recordings have it.
+sensor : str or path-like, optional
+    A preset's name or a .toml file; the folder's own unless given.
+depth_scale : float, optional
+    [m] per unit; 1e-4 with poses.txt and sensor.toml, else 1e-3.
+out_of_range : {"carve", "invalid"}
+    What 65535 in a depth image says: nothing up to max_range, or no reading.
+
+Returns
+-------
+FrameSequence
+
+Raises
+------
+OSError
+    A file is missing.
+Error
+    A file is wrong; named.
+ValueError
+    There is no sensor, or the scale is not positive.)");
+}
+
+}  // namespace
+
+void bind_files(py::module_& module) {
+  bind_toml(module);
+  bind_frames(module);
+  module.def("read_poses", &read_poses, py::arg("path"), py::kw_only(),
+             py::arg("return_timestamps") = false,
+             R"(Poses of a file in the TUM format: time tx ty tz qx qy qz qw.
+
+Parameters
+----------
+path : path-like
+return_timestamps : bool
+
+Returns
+-------
+T_world_camera : ndarray, (n, 4, 4)
+timestamps : ndarray, (n,)
+    [s]; only if return_timestamps.
+
+Raises
+------
+FileNotFoundError, OSError
+    It cannot be opened.
+Error
+    A line is wrong; named.)");
+  module.def("write_poses", &write_poses, py::arg("path"), py::arg("T_world_camera"),
+             py::arg("timestamps") = py::none(),
+             R"(Writes poses in the TUM format, whole or not at all.
+
+Parameters
+----------
+path : path-like
+T_world_camera : array_like, (n, 4, 4)
+timestamps : array_like, (n,), optional
+    [s]; 0, 1, 2, ... unless given.
+
+Raises
+------
+ValueError
+    A pose or timestamp is not finite, or their counts differ.
+OSError)");
+}
+
+}  // namespace viewgain::python

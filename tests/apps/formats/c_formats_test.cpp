@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/temporary_folder.hpp"
+#include "viewgain/formats.h"
+
+namespace viewgain {
+namespace {
+
+TEST(CFormats, SensorsComeBackAsTheyWere) {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "mine.toml").string();
+  vg_sensor sensor, read;
+  vg_sensor_init(&sensor, sizeof sensor);
+  vg_sensor_init(&read, sizeof read);
+  ASSERT_EQ(vg_sensor_load("d435", &sensor), VG_OK);
+  sensor.distortion[1] = 0.125;
+  ASSERT_EQ(vg_sensor_save(&sensor, path.c_str()), VG_OK) << vg_last_error();
+  ASSERT_EQ(vg_sensor_load(path.c_str(), &read), VG_OK) << vg_last_error();
+  EXPECT_EQ(read.width, sensor.width);
+  EXPECT_EQ(read.fx, sensor.fx);
+  EXPECT_EQ(read.distortion[1], 0.125);
+  EXPECT_EQ(read.noise_model, sensor.noise_model);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(read.noise[i], sensor.noise[i]) << i;
+  EXPECT_NE(test::read_all(path).find("\"mine\""), std::string::npos);
+
+  EXPECT_EQ(vg_sensor_load("sr5000", &read), VG_INVALID_ARGUMENT);
+  EXPECT_EQ(vg_sensor_load("none.toml", &read), VG_IO);
+  EXPECT_NE(std::string(vg_last_error()).find("none.toml"), std::string::npos);
+  EXPECT_EQ(vg_sensor_load(folder.file("bad.toml", "width = 3\n").c_str(), &read), VG_FORMAT);
+  EXPECT_EQ(vg_sensor_load(nullptr, &read), VG_INVALID_ARGUMENT);
+  vg_sensor none{};
+  EXPECT_EQ(vg_sensor_load("d435", &none), VG_INVALID_ARGUMENT);  // not initialised
+  EXPECT_EQ(vg_sensor_load("d435", nullptr), VG_INVALID_ARGUMENT);
+  sensor.min_range = -1;
+  EXPECT_EQ(vg_sensor_save(&sensor, path.c_str()), VG_INVALID_ARGUMENT);
+  EXPECT_EQ(vg_sensor_save(&read, nullptr), VG_INVALID_ARGUMENT);
+}
+
+TEST(CFormats, PosesComeBackAsTheyWere) {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "poses.txt").string();
+  const std::array<double, 3> center{0, 0, 0.1};
+  std::vector<double> poses(7 * 16), read(7 * 16, -1);
+  ASSERT_EQ(vg_sphere_poses(7, 0.5, center.data(), poses.data()), VG_OK);
+  const std::array<double, 7> times{0.5, 1, 2, 3, 4, 5, 1e9 + 0.25};
+  std::array<double, 7> read_times{};
+  ASSERT_EQ(vg_poses_save(path.c_str(), poses.data(), times.data(), 7), VG_OK) << vg_last_error();
+  std::size_t found = 0;
+  ASSERT_EQ(vg_poses_load(path.c_str(), nullptr, nullptr, 0, &found), VG_OK);
+  EXPECT_EQ(found, 7U);
+  ASSERT_EQ(vg_poses_load(path.c_str(), read.data(), read_times.data(), 6, &found), VG_OK);
+  EXPECT_EQ(found, 7U);
+  EXPECT_EQ(read[16 * 6], -1);  // beyond the capacity
+  ASSERT_EQ(vg_poses_load(path.c_str(), read.data(), read_times.data(), 7, &found), VG_OK);
+  for (std::size_t i = 0; i < read.size(); ++i) EXPECT_NEAR(read[i], poses[i], 1e-14) << i;
+  EXPECT_EQ(read_times, times);
+  ASSERT_EQ(vg_poses_save(path.c_str(), poses.data(), nullptr, 2), VG_OK);
+  ASSERT_EQ(vg_poses_load(path.c_str(), nullptr, read_times.data(), 7, &found), VG_OK);
+  EXPECT_EQ(found, 2U);
+  EXPECT_EQ(read_times[1], 1);
+
+  EXPECT_EQ(vg_poses_load("none.txt", nullptr, nullptr, 0, &found), VG_IO);
+  EXPECT_EQ(vg_poses_load(path.c_str(), nullptr, nullptr, 0, nullptr), VG_INVALID_ARGUMENT);
+  EXPECT_EQ(vg_poses_save(path.c_str(), nullptr, nullptr, 2), VG_INVALID_ARGUMENT);
+  poses[0] = 2;
+  EXPECT_EQ(vg_poses_save(path.c_str(), poses.data(), nullptr, 2), VG_INVALID_ARGUMENT);
+  ASSERT_EQ(vg_poses_load(path.c_str(), nullptr, nullptr, 0, &found), VG_OK);
+  EXPECT_EQ(found, 2U);  // as it was
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The library viewgain::formats as a user links it; what files look like inside is tested with the
+// program.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/expect_error.hpp"
+#include "core/temporary_folder.hpp"
+#include "viewgain/core/generators.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/ply.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+
+namespace viewgain {
+namespace {
+
+TEST(Formats, SensorsComeBackAsTheyWere) {
+  const test::TemporaryFolder folder;
+  std::size_t cases = 0;
+  for (const std::string& name : sensor_preset_names()) {
+    const Sensor sensor = sensor_preset(name);
+    const auto path = folder.path() / (name + ".toml");
+    write_sensor_toml(path, sensor);
+    EXPECT_EQ(sensor_toml(load_sensor(path.string())), sensor_toml(sensor)) << name;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5U);
+  EXPECT_EQ(folder.entries(), 5);
+  Sensor wrong = sensor_preset("sr4000");
+  wrong.min_range = -1;
+  test::expect_error(ErrorCode::invalid_argument, "range",
+                     [&] { write_sensor_toml(folder.path() / "wrong.toml", wrong); });
+  test::expect_error(ErrorCode::io, "none", [&] {
+    write_sensor_toml(folder.path() / "none" / "a.toml", sensor_preset("sr4000"));
+  });
+  EXPECT_EQ(folder.entries(), 5);
+}
+
+TEST(Formats, RegionsComeBackAsTheyWere) {
+  const test::TemporaryFolder folder;
+  ReachRegion region;
+  const std::vector<ReachRegion> parts = [&] {
+    std::vector<ReachRegion> regions(6);
+    regions[1].boxes = {{{-1, -2, 0.1}, {1, 2, 1.0 / 3}}, {{0, 0, 0}, {1, 1, 1}}};
+    regions[2].shells = {{{0.1, 0, 0.2}, 0.3, 1e-3 + 0.5}};
+    regions[3].half_spaces = {{{0, 0, 2}, -0.1}};
+    regions[4].poses = sphere_poses(5, 0.6);
+    regions[5] = {regions[1].boxes, regions[2].shells, regions[3].half_spaces,
+                  regions[4].poses, {0.02, 0.1},       {}};
+    return regions;
+  }();
+  std::size_t cases = 0;
+  for (const ReachRegion& written : parts) {
+    const auto path = folder.path() / "cell.toml";
+    write_reach_toml(path, written);
+    const ReachRegion read = read_reach_toml(path);
+    EXPECT_EQ(read.boxes, written.boxes);
+    ASSERT_EQ(read.shells.size(), written.shells.size());
+    for (std::size_t i = 0; i < read.shells.size(); ++i) {
+      EXPECT_EQ(read.shells[i].center, written.shells[i].center);
+      EXPECT_EQ(read.shells[i].max_radius, written.shells[i].max_radius);
+    }
+    ASSERT_EQ(read.half_spaces.size(), written.half_spaces.size());
+    for (std::size_t i = 0; i < read.half_spaces.size(); ++i) {
+      EXPECT_EQ(read.half_spaces[i].normal, written.half_spaces[i].normal);
+      EXPECT_EQ(read.half_spaces[i].offset, written.half_spaces[i].offset);
+    }
+    ASSERT_EQ(read.poses.size(), written.poses.size());
+    for (std::size_t i = 0; i < read.poses.size(); ++i) {
+      EXPECT_EQ(read.poses[i].translation(), written.poses[i].translation());
+    }
+    EXPECT_EQ(read.tolerance.distance, written.tolerance.distance);
+    EXPECT_NEAR(read.tolerance.angle, written.tolerance.angle, 1e-15);
+    EXPECT_EQ(reach_poses_file(path).has_value(), !written.poses.empty());
+    ++cases;
+  }
+  EXPECT_EQ(cases, 6U);
+  EXPECT_EQ(folder.entries(), 2);  // cell.toml, cell.poses.txt
+  region.predicate = [](const Pose&) { return true; };
+  test::expect_error(ErrorCode::invalid_argument, "predicate",
+                     [&] { write_reach_toml(folder.path() / "p.toml", region); });
+}
+
+TEST(Formats, FramesComeBackAsTheyWere) {
+  const test::TemporaryFolder folder;
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera.width = 3, sensor.camera.height = 2;
+  const std::vector<Pose> poses = sphere_poses(2, 0.6);
+  FramesWriter writer(folder.path() / "frames");
+  const DepthFrame frame{3, 2, {0.F, 0.5F, 1.25F, DepthFrame::kOutOfRange, 6.5F, 0.0001F}, {}};
+  DepthFrame with_amplitude = frame;
+  with_amplitude.amplitude = {0.F, 1.F, 2.5F, 0.001F, 65.F, 4.F};
+  writer.write_frame(0, frame);
+  writer.write_frame(1, with_amplitude);
+  EXPECT_EQ(folder.entries(), 1);  // hidden
+  writer.commit(poses, sensor);
+
+  const FrameSequence frames = open_frames(folder.path() / "frames");
+  EXPECT_EQ(sensor_toml(frames.sensor), sensor_toml(sensor));
+  ASSERT_EQ(frames.images.size(), 2U);
+  EXPECT_EQ(frames.poses[1].translation(), poses[1].translation());
+  EXPECT_TRUE(load_frame(frames, 0).amplitude.empty());
+  const DepthFrame read = load_frame(frames, 1);
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (i != 3) EXPECT_NEAR(read.depth[i], frame.depth[i], 1e-6) << i;
+    EXPECT_NEAR(read.amplitude[i], with_amplitude.amplitude[i], 1e-5) << i;
+  }
+  EXPECT_EQ(read.depth[3], DepthFrame::kOutOfRange);
+  EXPECT_EQ(load_frame(frames, 1, OutOfRangeMeaning::invalid).depth[3], DepthFrame::kInvalid);
+  EXPECT_NEAR(load_frame(open_frames(folder.path() / "frames", "", 1e-3), 0).depth[1], 5.F, 1e-5);
+  test::expect_error(ErrorCode::invalid_argument, "no frame 2 of 2",
+                     [&] { (void)load_frame(frames, 2); });
+  for (const double scale : {0.0, -1e-3, std::nan("")}) {
+    test::expect_error(ErrorCode::invalid_argument, "depth scale",
+                       [&] { (void)open_frames(folder.path() / "frames", "", scale); });
+  }
+  test::expect_error(ErrorCode::io, "nowhere",
+                     [&] { (void)open_frames(folder.path() / "nowhere"); });
+}
+
+TEST(Formats, APointIsWrittenAsPly) {
+  const test::TemporaryFolder folder;
+  const std::vector<std::array<double, 3>> points{{1, 2, 3}};
+  write_ply(folder.path() / "p.ply", {points});
+  const std::string bytes = test::read_all(folder.path() / "p.ply");
+  EXPECT_EQ(bytes.size(), bytes.find("end_header\n") + 11 + 24);
+  const std::vector<float> sigma(2, 0.1F);
+  test::expect_error(ErrorCode::invalid_argument, "1 points but 2 sigmas",
+                     [&] { write_ply(folder.path() / "q.ply", {points, {}, sigma}); });
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+}  // namespace
+}  // namespace viewgain
