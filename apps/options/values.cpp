@@ -182,6 +182,14 @@ std::string with_unit(double value) {
   return general_text(value, 3) + unit;
 }
 
+std::string counts_text(const std::map<std::string, std::size_t>& counts) {
+  std::string text;
+  for (const auto& [reason, count] : counts) {
+    text.append(text.empty() ? "" : ", ").append(std::to_string(count)).append(" ").append(reason);
+  }
+  return text;
+}
+
 void check_finite(std::string_view flag, double value) {
   if (!std::isfinite(value)) fail(flag, short_text(value), "must be finite");
 }

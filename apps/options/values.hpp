@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,6 +51,9 @@ namespace viewgain::app {
 
 /// 83.2 M for 83200000; one of k, M, G where it helps.
 [[nodiscard]] std::string with_unit(double value);
+
+/// "12 collision, 3 unreachable"
+[[nodiscard]] std::string counts_text(const std::map<std::string, std::size_t>& counts);
 
 /// A flag's value, checked: each throws Error(invalid_argument) that names both. NaN never passes.
 void check_finite(std::string_view flag, double value);

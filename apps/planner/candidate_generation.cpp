@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "feasible_poses.hpp"
 #include "view_sight.hpp"
 
 namespace viewgain::app {
@@ -32,9 +33,7 @@ GenerationConfig default_generation(const Sensor& sensor, double voxel_size) {
   const double footprint = sigmas(sensor.noise, sensor.working_distance, sensor.camera.fx).lateral;
   config.estimator = default_estimator(std::max(voxel_size, footprint));
   config.working_distance = sensor.working_distance;
-  config.feasibility.body.T_flange_camera = sensor.T_flange_camera;
-  if (sensor.body_size) config.feasibility.body.size = *sensor.body_size;
-  config.feasibility.sensor = sensor;
+  config.feasibility = feasibility_of(sensor);
   return config;
 }
 

@@ -115,7 +115,7 @@ double Model::area_shown_by(const DepthFrame& frame, const Pose& T_world_camera)
 void Model::derive() {
   {
     const auto measuring = exec_.measure("snapshot");
-    scene_ = VoxelScene::build(grid_, {}, exec_.threads, config_.hazard);
+    scene_ = VoxelScene::build(grid_, config_.obstacles, exec_.threads, config_.hazard);
   }
   const auto measuring = exec_.measure("surface");
   points_ = fused_points(grid_, config_.points, exec_.threads);

@@ -27,6 +27,7 @@ struct ModelConfig {
   IntegrationConfig integration{};
   std::optional<JumpEdgeConfig> jump_edges{};
   FusedPointsConfig points{};
+  Obstacles obstacles{};  ///< known ones, which block rays and bodies
   HazardConfig hazard{};  ///< of unknown space, for the surface and the combined gain
   Criterion criterion = Criterion::log_diagonal;
   bool refine = true;  ///< false: the first reading of a voxel wins, later ones are ignored

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "options/hazard_source.hpp"
+#include "options/obstacle_source.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/file_names.hpp"
@@ -34,13 +35,13 @@ struct FileOption {
   Kind kind;
 };
 constexpr std::array kFileOptions{
-    FileOption{"MESH", Kind::input},     FileOption{"MAP", Kind::input},
-    FileOption{"IN", Kind::input},       FileOption{"--map", Kind::input},
-    FileOption{"--cloud", Kind::input},  FileOption{"--poses", Kind::input},
-    FileOption{"--sensor", Kind::input}, FileOption{"--reach", Kind::reach},
-    FileOption{"--hazard", Kind::input}, FileOption{"FRAMES_DIR", Kind::frames},
-    FileOption{"OUT", Kind::output},     FileOption{"--picture", Kind::picture},
-    FileOption{"--out", Kind::output}};
+    FileOption{"MESH", Kind::input},        FileOption{"MAP", Kind::input},
+    FileOption{"IN", Kind::input},          FileOption{"--map", Kind::input},
+    FileOption{"--cloud", Kind::input},     FileOption{"--poses", Kind::input},
+    FileOption{"--sensor", Kind::input},    FileOption{"--reach", Kind::reach},
+    FileOption{"--hazard", Kind::input},    FileOption{"--obstacle", Kind::input},
+    FileOption{"FRAMES_DIR", Kind::frames}, FileOption{"OUT", Kind::output},
+    FileOption{"--picture", Kind::picture}, FileOption{"--out", Kind::output}};
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 
@@ -80,6 +81,7 @@ std::vector<NamedFile> named_files(const CLI::App& subcommand) {
     for (const std::string& value : option->results()) {
       if (file_option.name == "--sensor" && !is_sensor_file(value)) continue;
       if (file_option.name == "--hazard" && !is_hazard_file(value)) continue;
+      if (file_option.name == "--obstacle" && !is_obstacle_file(value)) continue;
       files.push_back(
           {std::string(file_option.name), value, kind_of(file_option, subcommand.get_name())});
     }

@@ -14,6 +14,7 @@
 #include "commands.hpp"
 #include "gain_unit.hpp"
 #include "options/hazard_source.hpp"
+#include "options/obstacle_source.hpp"
 #include "options/values.hpp"
 #include "planner/candidate_generation.hpp"
 #include "planner/model.hpp"
@@ -46,6 +47,7 @@ struct Options {
   std::optional<double> region_depth;
   std::optional<double> object_size;
   std::string hazard;
+  std::vector<std::string> obstacles;
   std::uint64_t seed = 1;
   std::string out;
 };
@@ -160,11 +162,8 @@ nlohmann::ordered_json candidate_json(const Candidate& candidate, const Estimate
 // A file without a pose would be of no use to anybody.
 void refuse_none(const Options& options, const Proposal& proposal) {
   if (!proposal.candidates.empty()) return;
-  std::string reasons;
-  for (const auto& [reason, count] : proposal.dropped) {
-    reasons.append(reasons.empty() ? "; dropped: " : ", ").append(std::to_string(count));
-    reasons.append(" ").append(reason);
-  }
+  const std::string reasons =
+      proposal.dropped.empty() ? "" : "; dropped: " + counts_text(proposal.dropped);
   throw Error(ErrorCode::invalid_argument, options.map + ": no candidate of --generator " +
                                                options.generator + " is feasible" + reasons +
                                                "; no poses are written");
@@ -186,6 +185,7 @@ void candidates(const Options& options) {
 
   ModelConfig model_config;
   model_config.hazard = hazard_source(options.hazard, options.object_size, grid);
+  model_config.obstacles = obstacles_of(options.obstacles);
   const Model model(std::move(grid), sensor, model_config, {exec});
   CandidateGeneration generation(model, sensor, config, {exec});
   const Proposal proposal = generation.generate({});
@@ -283,6 +283,7 @@ Command add_candidates(CLI::App& program) {
   app->add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
   app->add_option("--body", o.body, kBodyHelp);
   app->add_option("--support-plane", o.support_plane, "height z of a table [m]");
+  app->add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
   app->add_option("--overlap", o.overlap, std::string(kOverlapHelp) + "; default: 0.25");
   app->add_option("--region-depth", o.region_depth,
                   std::string(kRegionDepthHelp) + "; default: 0.08");

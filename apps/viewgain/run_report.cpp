@@ -66,14 +66,6 @@ std::size_t total(const std::map<std::string, std::size_t>& counts) {
   return sum;
 }
 
-std::string counts_text(const std::map<std::string, std::size_t>& counts) {
-  std::string text;
-  for (const auto& [reason, count] : counts) {
-    text.append(text.empty() ? "" : ", ").append(std::to_string(count)).append(" ").append(reason);
-  }
-  return text;
-}
-
 }  // namespace
 
 RunReport::RunReport(std::optional<GainModel> ranked_by, Criterion criterion)

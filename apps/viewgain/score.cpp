@@ -12,15 +12,18 @@
 
 #include "commands.hpp"
 #include "options/hazard_source.hpp"
+#include "options/obstacle_source.hpp"
 #include "options/pose_source.hpp"
 #include "options/values.hpp"
 #include "pictures/picture.hpp"
+#include "planner/feasible_poses.hpp"
 #include "planner/stopwatch.hpp"
 #include "progress.hpp"
 #include "score_report.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
@@ -34,7 +37,9 @@ struct Options {
   std::string sensor;
   std::string gain = "paper";
   std::optional<double> refinement_weight, object_size, support_plane;
-  std::string hazard;
+  std::string hazard, reach, body;
+  std::vector<std::string> obstacles;
+  bool feasible = false;
   std::string criterion = "log_diagonal";
   int stride = 1;
   std::vector<std::string> weights;
@@ -51,10 +56,16 @@ struct Options {
 GainConfig gain_config(const Options& options) {
   GainConfig config;
   config.model = parse_gain_model(options.gain);
-  if (config.model == GainModel::paper &&
-      (options.object_size || !options.hazard.empty() || options.support_plane)) {
+  if (config.model == GainModel::paper && (options.object_size || !options.hazard.empty())) {
     throw Error(ErrorCode::invalid_argument,
-                "--object-size, --hazard and --support-plane go with --gain surface or combined");
+                "--object-size and --hazard go with --gain surface or combined");
+  }
+  if (config.model == GainModel::paper && options.support_plane && !options.feasible) {
+    throw Error(ErrorCode::invalid_argument,
+                "--support-plane goes with --feasible, and with --gain surface or combined");
+  }
+  if (!options.body.empty() && !options.feasible) {
+    throw Error(ErrorCode::invalid_argument, "--body goes with --feasible");
   }
   if (config.model != GainModel::combined && options.refinement_weight) {
     throw Error(ErrorCode::invalid_argument, "--refinement-weight goes with --gain combined");
@@ -74,6 +85,37 @@ GainConfig gain_config(const Options& options) {
     config.weights.push_back({box_of("--weight", numbers), numbers[6]});
   }
   return config;
+}
+
+// The poses that are to be scored: all, those in reach, or those that are possible.
+FeasiblePoses candidates_of(const Options& options, const PoseSource& source, const Sensor& sensor,
+                            const BeliefGrid& grid, const std::shared_ptr<const VoxelScene>& scene,
+                            const ExecConfig& exec) {
+  ReachRegion reach;
+  if (!options.reach.empty()) reach = read_reach_toml(options.reach);
+  if (!options.feasible) return reachable_poses(reach, source.poses);
+  FeasibilityConfig config = feasibility_of(sensor);
+  if (!options.body.empty()) config.body.size = parse_size("--body", options.body);
+  config.reach = std::move(reach);
+  config.support_plane = options.support_plane;
+  return feasible_poses(FeasibilityChecker(scene, config, exec), source.poses, grid.views());
+}
+
+// Indices of the candidates become those of the poses that were given.
+void name_by_input(Scores& scores, const FeasiblePoses& candidates) {
+  const auto name = [&](std::vector<std::size_t>& indices) {
+    for (std::size_t& i : indices) i = candidates.numbers[i];
+  };
+  if (auto* ranking = std::get_if<Ranking>(&scores.found)) {
+    name(ranking->scored.indices);
+    name(ranking->best.indices);
+  } else if (auto* joint = std::get_if<JointViews>(&scores.found)) {
+    name(joint->views.indices);
+  } else {
+    std::get<Estimates>(scores.found).indices = candidates.numbers;
+  }
+  scores.candidates = candidates.poses.size();
+  scores.dropped = candidates.dropped;
 }
 
 // What is not known yet must not count as surer than what a reading would say.
@@ -147,7 +189,13 @@ void score(const Options& options) {
   const PoseSource source = make_poses(options.poses);
   const BeliefGrid grid = load_map(options.map, &sensor);
   const HazardConfig hazard = hazard_source(options.hazard, options.object_size, grid);
-  const GainEvaluator evaluator(VoxelScene::build(grid, {}, exec, hazard), sensor, config, exec);
+  const auto scene = VoxelScene::build(grid, obstacles_of(options.obstacles), exec, hazard);
+  const GainEvaluator evaluator(scene, sensor, config, exec);
+  const FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
+  if (candidates.poses.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "no pose is left to score; dropped: " + counts_text(candidates.dropped));
+  }
 
   Scores scores;
   double seconds = 0;
@@ -158,15 +206,16 @@ void score(const Options& options) {
       progress.update(done, total);
     };
     const Stopwatch watch;
-    scores = make_scores(options, evaluator, source.poses, control);
+    scores = make_scores(options, evaluator, candidates.poses, control);
     seconds = watch.seconds();
   }
+  name_by_input(scores, candidates);
   warn_of_prior(evaluator, sensor);
   if (!options.picture.empty()) {
-    const std::size_t* winner = scores.winner();
-    const std::size_t shown =
-        winner != nullptr ? *winner : evaluator.race(source.poses).indices.at(0);
-    write_picture(options.picture, evaluator, sensor, source.poses[shown], exec);
+    const std::optional<std::size_t> winner = scores.winner();
+    const Pose& shown = winner ? source.poses[*winner]
+                               : candidates.poses[evaluator.race(candidates.poses).indices.at(0)];
+    write_picture(options.picture, evaluator, sensor, shown, exec);
   }
   if (!options.out.empty()) write_file_atomically(options.out, csv_of(scores, config.model));
   const ScoreReport report{config.model, options.criterion, grid,   sensor,
@@ -213,7 +262,15 @@ Command add_score(CLI::App& program) {
   app->add_option("--object-size", options->object_size, kObjectSizeHelp);
   app->add_option("--hazard", options->hazard, kHazardHelp);
   app->add_option("--support-plane", options->support_plane,
-                  "surface, combined: height z of a table at which rays end [m]; default: none");
+                  "height z of a table [m], at which rays of surface and combined end and which "
+                  "--feasible keeps the body above; default: none");
+  app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
+  app->add_option("--reach", options->reach,
+                  "TOML file: boxes, shells, half-spaces, poses in reach; other poses are dropped");
+  app->add_flag("--feasible", options->feasible,
+                "drop poses where the sensor's body would touch the map, an obstacle or the table, "
+                "or much would be too near to be measured");
+  app->add_option("--body", options->body, kBodyHelp);
   app->add_option(
          "--criterion", options->criterion,
          "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] or trace [m^2]")

@@ -40,7 +40,7 @@ std::string csv_rows(const ScoredViews& views, GainModel model) {
 std::string csv_rows(const Estimates& estimates) {
   std::string csv = "index,gain,standard_error\n";
   for (std::size_t i = 0; i < estimates.gains.size(); ++i) {
-    csv += std::to_string(i) + ',' + exact_text(estimates.gains[i].gain) + ',' +
+    csv += std::to_string(estimates.indices[i]) + ',' + exact_text(estimates.gains[i].gain) + ',' +
            exact_text(estimates.gains[i].standard_error) + '\n';
   }
   return csv;
@@ -70,10 +70,10 @@ ordered_json entries(const ScoredViews& views, const std::vector<Pose>& poses) {
 ordered_json entries(const Estimates& estimates, const std::vector<Pose>& poses) {
   ordered_json list = ordered_json::array();
   for (const std::size_t i : estimates.best) {
-    list.push_back({{"index", i},
+    list.push_back({{"index", estimates.indices[i]},
                     {"gain", estimates.gains[i].gain},
                     {"standard_error", estimates.gains[i].standard_error},
-                    {"T_world_camera", to_json(poses[i])}});
+                    {"T_world_camera", to_json(poses[estimates.indices[i]])}});
   }
   return list;
 }
@@ -108,8 +108,8 @@ void print_rows(const Estimates& estimates) {
   std::printf("%4s %8s %12s %14s\n", "rank", "index", "gain", "standard error");
   for (std::size_t rank = 0; rank < estimates.best.size(); ++rank) {
     const ApproximateGain& r = estimates.gains[estimates.best[rank]];
-    std::printf("%4zu %8zu %12.6g %14.3g\n", rank + 1, estimates.best[rank], r.gain,
-                r.standard_error);
+    std::printf("%4zu %8zu %12.6g %14.3g\n", rank + 1, estimates.indices[estimates.best[rank]],
+                r.gain, r.standard_error);
   }
 }
 
@@ -123,12 +123,15 @@ const ScoredViews& scored_in_full(const Scores& scores) {
 
 }  // namespace
 
-const std::size_t* Scores::winner() const {
-  const std::vector<std::size_t>* best = nullptr;
-  if (const auto* ranking = std::get_if<Ranking>(&found)) best = &ranking->best.indices;
-  if (const auto* joint = std::get_if<JointViews>(&found)) best = &joint->views.indices;
-  if (const auto* estimates = std::get_if<Estimates>(&found)) best = &estimates->best;
-  return best->empty() ? nullptr : best->data();
+std::optional<std::size_t> Scores::winner() const {
+  if (const auto* estimates = std::get_if<Estimates>(&found)) {
+    if (estimates->best.empty()) return std::nullopt;
+    return estimates->indices[estimates->best.front()];
+  }
+  const auto* ranking = std::get_if<Ranking>(&found);
+  const std::vector<std::size_t>& best =
+      ranking != nullptr ? ranking->best.indices : std::get<JointViews>(found).views.indices;
+  return best.empty() ? std::nullopt : std::optional(best.front());
 }
 
 std::string csv_of(const Scores& scores, GainModel model) {
@@ -137,7 +140,10 @@ std::string csv_of(const Scores& scores, GainModel model) {
 }
 
 void ScoreReport::print_json() const {
+  ordered_json dropped = ordered_json::object();
+  for (const auto& [reason, count] : scores.dropped) dropped[reason] = count;
   ordered_json json{{"poses", source.poses.size()},
+                    {"dropped", dropped},
                     {"poses_scored", scored_in_full(scores).gains.size()},
                     {"rays_traced", scores.rays_traced},
                     {"rays_per_pose", evaluator.rays_per_pose()},
@@ -152,7 +158,7 @@ void ScoreReport::print_json() const {
                     {"prior_sigma", evaluator.prior_sigma()},
                     {"orthonormalized_poses", source.orthonormalized},
                     {"seconds", seconds},
-                    {"poses_per_second", static_cast<double>(source.poses.size()) / seconds},
+                    {"poses_per_second", static_cast<double>(scores.candidates) / seconds},
                     {"rays_per_second", static_cast<double>(scores.rays_traced) / seconds}};
   if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
     json["best"] = entries(ranking->best, source.poses);
@@ -173,6 +179,10 @@ void ScoreReport::print_table() const {
     std::printf("rotations that were off and were orthonormalised: %zu of %zu\n",
                 source.orthonormalized, source.poses.size());
   }
+  if (!scores.dropped.empty()) {
+    std::printf("%zu of %zu poses; dropped: %s\n", scores.candidates, source.poses.size(),
+                counts_text(scores.dropped).c_str());
+  }
   if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
     print_rows(ranking->best, source.poses, model);
   } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
@@ -181,7 +191,7 @@ void ScoreReport::print_table() const {
   } else {
     print_rows(std::get<Estimates>(scores.found));
   }
-  const std::size_t poses = source.poses.size(), in_full = scored_in_full(scores).gains.size();
+  const std::size_t poses = scores.candidates, in_full = scored_in_full(scores).gains.size();
   const int threads = evaluator.num_threads();
   std::printf(
       "%s poses in %.3f s: %.0f poses/s, %s rays/s, %s rays per pose, %s voxels, %d %s, %s\n",

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -34,17 +36,20 @@ struct JointViews {
 
 /// Gains from a share of the rays.
 struct Estimates {
-  std::vector<ApproximateGain> gains;  ///< of all poses
-  std::vector<std::size_t> best;       ///< of the poses, best first
+  std::vector<ApproximateGain> gains;  ///< of all candidates
+  std::vector<std::size_t> indices;    ///< of the pose of each gain
+  std::vector<std::size_t> best;       ///< of the gains, best first
 };
 
 /// What scoring came to, by the way that was asked for.
 struct Scores {
   std::variant<Ranking, JointViews, Estimates> found;
   std::uint64_t rays_traced = 0;
+  std::size_t candidates = 0;                  ///< poses that were not dropped
+  std::map<std::string, std::size_t> dropped{};  ///< the others: reason -> count
 
   /// Index of the best pose; nothing if none was to be printed.
-  [[nodiscard]] const std::size_t* winner() const;
+  [[nodiscard]] std::optional<std::size_t> winner() const;
 };
 
 /// The contents of the file of `score --out`; apps/README.md names the columns.

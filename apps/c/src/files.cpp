@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <filesystem>
 
 #include "convert.hpp"
 #include "viewgain/core/pose_io.hpp"
@@ -22,9 +21,7 @@ vg_status vg_sensor_load(const char* preset_or_file, vg_sensor* sensor) {
 vg_status vg_sensor_save(const vg_sensor* sensor, const char* path) {
   return guarded([&] {
     require(path, "path");
-    Sensor whole = sensor_of(sensor);
-    whole.name = std::filesystem::path(path).stem().string();
-    write_sensor_toml(path, whole);
+    write_sensor_toml(path, sensor_of(sensor));
   });
 }
 

@@ -193,12 +193,31 @@ void bind_frames(py::module_& module) {
 width), float32, along the optical axis [m] (0: nothing known, inf: nothing up to max_range), the pose
 (4, 4), and the amplitude [1/m**2] or None.)");
   refuse_pickling(type);
-  type.def("__len__", [](const Frames& self) { return self.frames.images.size(); })
-      .def("__getitem__", &frame_at, py::arg("index"))
-      .def("__iter__",
-           [](const py::object& self) {
-             return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
-           })
+  type.def(
+          "__len__", [](const Frames& self) { return self.frames.images.size(); },
+          "How many frames there are.\n\nReturns\n-------\nint")
+      .def("__getitem__", &frame_at, py::arg("index"),
+           R"(Reads a frame.
+
+Parameters
+----------
+index : int
+    From the end if negative.
+
+Returns
+-------
+depth : ndarray, (height, width), float32
+    Along the optical axis [m].
+T_world_camera : ndarray, (4, 4)
+amplitude : ndarray, (height, width), float32, or None
+    [1/m**2]
+
+Raises
+------
+IndexError
+    There is no such frame.
+OSError, Error
+    Its image cannot be read or is wrong.)")
       .def_property_readonly(
           "sensor", [](const Frames& self) { return self.frames.sensor; },
           "Sensor: with the folder's own intrinsics, where it has them")

@@ -27,7 +27,7 @@ TEST(CFormats, SensorsComeBackAsTheyWere) {
   EXPECT_EQ(read.distortion[1], 0.125);
   EXPECT_EQ(read.noise_model, sensor.noise_model);
   for (int i = 0; i < 6; ++i) EXPECT_EQ(read.noise[i], sensor.noise[i]) << i;
-  EXPECT_NE(test::read_all(path).find("\"mine\""), std::string::npos);
+  EXPECT_EQ(folder.entries(), 1);
 
   EXPECT_EQ(vg_sensor_load("sr5000", &read), VG_INVALID_ARGUMENT);
   EXPECT_EQ(vg_sensor_load("none.toml", &read), VG_IO);

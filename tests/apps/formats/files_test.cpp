@@ -13,7 +13,6 @@
 
 #include "apps/program_runner.hpp"
 #include "core/comma_locale.hpp"
-#include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
@@ -294,30 +293,6 @@ TEST_F(Files, AmplitudesReadBackInThousandths) {
     writer.commit({poses[0]}, sensor);
   }
   EXPECT_EQ(list("frames").size(), 4U);
-}
-
-TEST(Values, NumbersAndBoxes) {
-  EXPECT_EQ(parse_numbers("--x", "1,-2.5e-3, +4", 1, 3), (std::vector<double>{1, -2.5e-3, 4}));
-  for (const char* bad : {"", "1,", "a", "1,nan", "inf", "1;2", "1,2,3,4", "0x10"}) {
-    EXPECT_THROW((void)parse_numbers("--x", bad, 1, 3), Error) << bad;
-  }
-  EXPECT_EQ(parse_box("--b", "-1,-2,-3,1,2,3"), (Box{{-1, -2, -3}, {1, 2, 3}}));
-  EXPECT_THROW((void)parse_box("--b", "0,0,0,1,1,0"), Error);
-  EXPECT_THROW((void)parse_box("--b", "0,0,0,1,-1,1"), Error);
-  EXPECT_EQ(parse_count("--n", 12), 12U);
-  for (const double bad : {-1.0, 0.5, 1e9, std::nan("")}) {
-    EXPECT_THROW((void)parse_count("--n", bad), Error) << bad;
-  }
-  std::mt19937_64 random(3);
-  int cases = 0;
-  for (int i = 0; i < 1000; ++i) {
-    const double value = std::ldexp(static_cast<double>(random()), i % 200 - 150);
-    EXPECT_EQ(std::stod(exact_text(value)), value);
-    EXPECT_EQ(std::stod(short_text(value)), value);
-    ++cases;
-  }
-  EXPECT_EQ(cases, 1000);
-  EXPECT_EQ(exact_text(-std::nan("")), "nan");
 }
 
 }  // namespace

@@ -169,26 +169,6 @@ TEST_F(StagedFolderTest, RunsThatNobodyLeftAreRefused) {
   EXPECT_EQ(cases, 8U);
 }
 
-TEST(Utf8Text, BytesThatAreNoUtf8AreShown) {
-  const std::vector<std::pair<std::string, std::string>> texts{
-      {"map.vdb", "map.vdb"},
-      {"gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x99\x82",
-       "gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x99\x82"},
-      {"lat\xe9.off", "lat\\xE9.off"},
-      {"\xc3", "\\xC3"},                             // cut
-      {"\xc0\xaf", "\\xC0\\xAF"},                    // longer than needed
-      {"\xe0\x80\xaf", "\\xE0\\x80\\xAF"},           // longer than needed
-      {"\xed\xa0\x80", "\\xED\\xA0\\x80"},           // half of a surrogate pair
-      {"\xf4\x90\x80\x80", "\\xF4\\x90\\x80\\x80"},  // past the last code point
-      {"a\nb", "a\nb"}};
-  std::size_t cases = 0;
-  for (const auto& [bytes, text] : texts) {
-    EXPECT_EQ(utf8_text(bytes), text);
-    ++cases;
-  }
-  EXPECT_EQ(cases, 9U);
-}
-
 // A program that a host has told to speak German writes the same files.
 TEST_F(StagedFolderTest, NumbersHaveADecimalPointInEveryLocale) {
   const std::string make =
@@ -196,8 +176,8 @@ TEST_F(StagedFolderTest, NumbersHaveADecimalPointInEveryLocale) {
   if (std::system(make.c_str()) != 0) GTEST_SKIP() << "no localedef, or no de_DE";
   ::setenv("LOCPATH", dir.c_str(), 1);
   ASSERT_NE(std::setlocale(LC_NUMERIC, "de_DE.UTF-8"), nullptr);
-  const std::string exact = exact_text(0.1), brief = describe({{0.5, 0, 0}, {1, 1, 1.25}}),
-                    unit = with_unit(83.2e6);
+  const std::string exact = exact_text(0.1), brief = app::describe({{0.5, 0, 0}, {1, 1, 1.25}}),
+                    unit = app::with_unit(83.2e6);
   std::setlocale(LC_NUMERIC, "C");
   ::unsetenv("LOCPATH");
   EXPECT_EQ(exact, "0.10000000000000001");

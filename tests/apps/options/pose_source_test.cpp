@@ -11,7 +11,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
 
-namespace viewgain {
+namespace viewgain::app {
 namespace {
 
 std::vector<Pose> rings(const std::string& text) {
@@ -57,4 +57,4 @@ TEST(PoseSource, ErrorsNameTheFlag) {
 }
 
 }  // namespace
-}  // namespace viewgain
+}  // namespace viewgain::app

@@ -31,7 +31,7 @@ def reconstruct(camera, sensor, start, **settings):
     return viewgain.mesh.reconstruct(settings.pop("acquire", acquire), sensor, start, **settings)
 
 
-def test_the_loop_with_a_camera_in_python(camera, sensor, start):
+def test_the_loop_with_a_camera_in_python(camera, sensor, start, tmp_path):
     seen = []
     result = reconstruct(camera, sensor, start, stop_gain=0.0, observer=seen.append)
     assert result.reason in ("max_views", "idle", "no_candidates", "area")
@@ -47,6 +47,10 @@ def test_the_loop_with_a_camera_in_python(camera, sensor, start):
     assert f"{len(result.views)} views" in repr(result) and "vertices" in repr(result.surface)
     again = reconstruct(camera, sensor, start, stop_gain=0.0, num_threads=1)
     assert again.grid.content_hash() == result.grid.content_hash()
+    result.surface.save(tmp_path / "surface.ply")
+    header = (tmp_path / "surface.ply").read_bytes()[:400].decode("latin1")
+    assert f"element vertex {len(result.surface.vertices)}\n" in header
+    assert f"element face {len(result.surface.triangles)}\n" in header
     second = result.views[1]
     assert second["predicted_area"] > 0 and second["realised_area"] > 0
     assert second["surface_area"] > result.views[0]["surface_area"] > 0

@@ -19,7 +19,6 @@
 namespace viewgain {
 namespace {
 
-using app::OutOfRangeMeaning;
 using nlohmann::json;
 using Strings = std::vector<std::string>;
 
@@ -54,10 +53,10 @@ class Sensing : public test::ProgramTest {
   }
 
   [[nodiscard]] std::vector<DepthFrame> load(const std::string& name) const {
-    const auto frames = app::open_frames(dir / name, "", std::nullopt);
+    const auto frames = open_frames(dir / name, "", std::nullopt);
     std::vector<DepthFrame> result;
     for (std::size_t i = 0; i < frames.images.size(); ++i) {
-      result.push_back(app::load_frame(frames, i, OutOfRangeMeaning::carve));
+      result.push_back(load_frame(frames, i, OutOfRangeMeaning::carve));
     }
     return result;
   }
@@ -139,7 +138,7 @@ TEST_F(Sensing, TheFilterRemovesThem) {
   simulate("frames", {"--noise", "on"});
   const json unfiltered = integrate("frames");
   EXPECT_EQ(unfiltered.at("jump_edge_removed"), 0);
-  const auto camera = app::open_frames(dir / "frames", "", std::nullopt).sensor.camera;
+  const auto camera = open_frames(dir / "frames", "", std::nullopt).sensor.camera;
   int cases = 0;
   for (const bool two_sided : {false, true}) {
     const JumpEdgeFilter filter(camera,

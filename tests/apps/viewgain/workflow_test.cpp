@@ -168,7 +168,7 @@ TEST_F(Workflow, CsvReadsBackTheSameDoubles) {
                               "rays", "hits", "unknown_voxels", "occupied_voxels", "status"}));
   const BeliefGrid grid = load_vdb(dir / "map.vdb");
   const GainEvaluator evaluator(VoxelScene::build(grid),
-                                app::open_frames(dir / "frames", "", std::nullopt).sensor);
+                                open_frames(dir / "frames", "", std::nullopt).sensor);
   const auto expected = evaluator.evaluate(sphere_poses(30, 0.6));
   std::size_t cases = 0;
   for (; cases < expected.size(); ++cases) {
@@ -436,13 +436,15 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "IN OUT --workspace --prior-sigma --sensor --with-covariance --json --threads .ot [m]"},
       {"score",
        "MAP --poses --sphere --dome --rings --shell --sensor --gain --refinement-weight "
-       "--object-size --hazard --support-plane --criterion --stride --weight --prior-sigma "
+       "--object-size --hazard --support-plane --obstacle --reach --feasible --body --criterion "
+       "--stride --weight --prior-sigma "
        "--min-range --max-range --top --race --approximate --set --seed "
        "--out --picture --json --threads =log_diagonal =10 [m]"},
       {"info", "MAP --hash --criterion --region --json --threads =log_diagonal"},
       {"candidates",
        "MAP --generator --sensor --count --distance --center --reach --body --support-plane "
-       "--overlap --region-depth --gain --object-size --hazard --seed --out --json --threads"},
+       "--obstacle --overlap --region-depth --gain --object-size --hazard --seed --out --json "
+       "--threads"},
       {"reconstruct",
        "MESH --sensor --voxel --size --workspace --up --start --distance --policy --generator "
        "--sphere-poses --gain --overlap --region-depth --object-size --hazard --criterion "
@@ -476,7 +478,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 155);
+  EXPECT_EQ(words, 160);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

@@ -17,7 +17,7 @@ extern "C" {
    file and the key. */
 VG_API vg_status vg_sensor_load(const char* preset_or_file, vg_sensor* sensor);
 
-/* Writes a .toml file that is named after the file's stem, whole or not at all. */
+/* Writes a .toml file, whole or not at all. */
 VG_API vg_status vg_sensor_save(const vg_sensor* sensor, const char* path);
 
 /* Reads poses in the TUM format: at most `capacity` of them, 16 numbers each, and says in *found

@@ -1,12 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: GPL-3.0-or-later
+import os
 from collections.abc import Callable, Sequence
-from typing import Any, Literal
+from typing import Any, Literal, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import BatchControl, BeliefGrid, ReachRegion, Sensor
+
+_Path = Union[str, bytes, "os.PathLike[str]"]
 
 BOUNDARY_CLASS_NAMES: tuple[str, ...]
 
