@@ -32,7 +32,7 @@ endmacro()
 set(CPACK_COMPONENTS_ALL "")
 if(BUILD_SHARED_LIBS)
   viewgain_package(runtime libviewgain0 Apache-2.0
-    "Expected information gain of camera poses, shared library" SECTION libs)
+    "Expected information gain of camera poses, shared libraries" SECTION libs)
   set(dev_depends runtime)
   set(dev_licence Apache-2.0)
   if(VIEWGAIN_BUILD_MESH)

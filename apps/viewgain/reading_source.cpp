@@ -26,10 +26,20 @@ IntegrationConfig config_of(const IntegrateOptions& options) {
   return config;
 }
 
+FrameSequence frames_of(const IntegrateOptions& options) {
+  if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
+  try {
+    return open_frames(options.frames, options.sensor, options.depth_scale);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::invalid_argument || !options.sensor.empty()) throw;
+    throw Error(error.code(), std::string(error.what()) + " (--sensor)");
+  }
+}
+
 class FrameSource : public ReadingSource {
  public:
   explicit FrameSource(const IntegrateOptions& options)
-      : frames_(open_frames(options.frames, options.sensor, options.depth_scale)),
+      : frames_(frames_of(options)),
         meaning_(options.out_of_range == "carve" ? OutOfRangeMeaning::carve
                                                  : OutOfRangeMeaning::invalid),
         support_plane_(options.support_plane),

@@ -269,7 +269,7 @@ Command add_score(CLI::App& program) {
                   "TOML file: boxes, shells, half-spaces, poses in reach; other poses are dropped");
   app->add_flag("--feasible", options->feasible,
                 "drop poses where the sensor's body would touch the map, an obstacle or the table, "
-                "or much would be too near to be measured");
+                "much would be too near to be measured, or a view of the map was taken");
   app->add_option("--body", options->body, kBodyHelp);
   app->add_option(
          "--criterion", options->criterion,
@@ -307,10 +307,10 @@ Command add_score(CLI::App& program) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
   selection->require_option(0, 1);
   add_seed_option(*app, options->seed, "of --race (the paper's gain) and --approximate");
-  app->add_option(
-      "--out", options->out,
-      "CSV file of all poses, in input order; with a selection, of those scored in full, "
-      "of the estimates, or of the set in order");
+  app->add_option("--out", options->out,
+                  "CSV file of all poses that were not dropped, in input order; with a selection, "
+                  "of those scored in full, "
+                  "of the estimates, or of the set in order");
   app->add_option(
       "--picture", options->picture,
       "PNG file: the map, the best view's frustum and the voxels where its rays end; surface "

@@ -74,6 +74,10 @@ case $kind in
     c++ -std=c++20 "$here/gain.cpp" -o "$work/$kind/by_pkg_config" \
       $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain)
     check_gain "$work/$kind/by_pkg_config"
+    # shellcheck disable=SC2046
+    c++ -std=c++20 "$here/files.cpp" -o "$work/$kind/files_by_pkg_config" \
+      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-formats)
+    [ "$("$work/$kind/files_by_pkg_config" "$work/$kind/sensor.toml")" = 111 ] || fail "files.cpp"
     ;;
   static_native) check_project "$work/static_prefix" -DCMAKE_CXX_FLAGS=-march=native ;;
   pkg_config)
@@ -94,6 +98,9 @@ case $kind in
     c++ -std=c++20 "$here/boundary.cpp" -o "$work/$kind/boundary" "-Wl,-rpath,$libraries" \
       $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-mesh)
     [ "$("$work/$kind/boundary" "$work/$kind/map.vdb")" = 11111111 ] || fail "boundary.cpp"
+    # shellcheck disable=SC2046
+    cc -std=c99 -pedantic -Wall -Wextra -Werror -fsyntax-only -include viewgain/formats.h "$here/gain.c" \
+      $(PKG_CONFIG_PATH=$pc pkg-config --cflags viewgain-formats)
     # shellcheck disable=SC2046
     c++ -std=c++20 "$here/files.cpp" -o "$work/$kind/files" "-Wl,-rpath,$libraries" \
       $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-formats)
@@ -120,7 +127,7 @@ case $kind in
     [ "$count" -gt 30 ] || fail "$count headers"
     c++ -std=c++20 -M "-I$work/prefix/include" -I/usr/include/eigen3 "$work/all.cpp" >"$work/all.d"
     grep -q Eigen "$work/all.d" || fail "no Eigen in the list"
-    ! grep -oE '[^ ]*/(openvdb|embree[34]?|CGAL|tbb|oneapi|hwy|boost|Imath)/[^ ]*' "$work/all.d" ||
+    ! grep -oE '[^ ]*/((openvdb|embree[34]?|CGAL|tbb|oneapi|hwy|boost|Imath|toml\+\+)/[^ ]*|png\.h( |$))' "$work/all.d" ||
       fail "a public header brings in a private library"
     ;;
   python)

@@ -6,6 +6,13 @@
 #include "layout_table.hpp"
 
 #include "viewgain/viewgain.hpp"
+#ifdef VIEWGAIN_WITH_FORMATS
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/ply.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/formats/run_folder.hpp"
+#endif
 #ifdef VIEWGAIN_WITH_MESH
 #include "viewgain/mesh/boundary.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
@@ -97,6 +104,17 @@ extern constinit const Layout VIEWGAIN_LAYOUT_TABLE[] = {VIEWGAIN_LAYOUT(Approxi
                                                          VIEWGAIN_LAYOUT(VoxelScene),
                                                          VIEWGAIN_LAYOUT(VoxelValue),
                                                          VIEWGAIN_LAYOUT(WeightRegion),
+#ifdef VIEWGAIN_WITH_FORMATS
+                                                         VIEWGAIN_LAYOUT(FrameSequence),
+                                                         VIEWGAIN_LAYOUT(FramesWriter),
+                                                         VIEWGAIN_LAYOUT(Gray8Image),
+                                                         VIEWGAIN_LAYOUT(GrayImage),
+                                                         VIEWGAIN_LAYOUT(LostInTree),
+                                                         VIEWGAIN_LAYOUT(PlyArrays),
+                                                         VIEWGAIN_LAYOUT(RgbImage),
+                                                         VIEWGAIN_LAYOUT(RunFolder),
+                                                         VIEWGAIN_LAYOUT(StagedFolder),
+#endif
 #ifdef VIEWGAIN_WITH_MESH
                                                          VIEWGAIN_LAYOUT(BoundaryCandidate),
                                                          VIEWGAIN_LAYOUT(BoundaryConfig),

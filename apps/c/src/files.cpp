@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include "convert.hpp"
 #include "viewgain/core/pose_io.hpp"
@@ -44,6 +46,7 @@ vg_status vg_poses_save(const char* path, const double* T_world_camera, const do
                         size_t count) {
   return guarded([&] {
     require(path, "path");
+    if (count == 0) reject("count is 0: a file of poses has at least one");
     const std::vector<Pose> poses = poses_of(T_world_camera, count);
     if (timestamps == nullptr) {
       write_tum(path, poses);

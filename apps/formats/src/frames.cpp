@@ -13,7 +13,9 @@
 #include <map>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
+#include "folders.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
@@ -62,8 +64,8 @@ std::optional<std::string> frame_number(const std::string& name, std::string_vie
 // Images of the folder by their number, as "frame-NNNNNN".
 std::map<std::uint64_t, std::string> list_frames(const fs::path& dir) {
   std::map<std::uint64_t, std::string> frames;
-  for (const auto& entry : fs::directory_iterator(dir)) {
-    if (const auto digits = frame_number(entry.path().filename().string(), kDepthSuffix)) {
+  for (const fs::path& name : names_in(dir)) {
+    if (const auto digits = frame_number(name.string(), kDepthSuffix)) {
       frames.emplace(std::stoull(*digits), std::string(kFramePrefix) + *digits);
     }
   }
@@ -116,7 +118,7 @@ std::vector<fs::path> simulated_files(const fs::path& dir) {
   const std::vector<fs::path> files = frame_files(dir);
   if (files.empty()) return files;
   std::size_t count = 0;
-  if (fs::exists(dir / kSimulated)) {
+  if (is_there(dir / kSimulated)) {
     const std::string text = file_bytes(dir / kSimulated);
     if (text.starts_with(kSimulatedText)) {
       std::from_chars(text.data() + kSimulatedText.size(), text.data() + text.size(), count);
@@ -148,7 +150,7 @@ void open_own_layout(const fs::path& dir, FrameSequence& frames) {
   }
   for (std::size_t i = 0; i < list.poses.size(); ++i) {
     frames.images.push_back(dir / frame_name(i, kDepthSuffix));
-    if (!fs::exists(frames.images.back())) {
+    if (!is_there(frames.images.back())) {
       throw Error(ErrorCode::io, frames.images.back().string() + ": no such file, poses.txt has " +
                                      std::to_string(list.poses.size()) + " poses");
     }
@@ -168,7 +170,7 @@ void open_recorded_layout(const fs::path& dir, FrameSequence& frames) {
   if (frames.images.empty()) {
     throw Error(ErrorCode::io, dir.string() + ": no poses.txt and no frame-NNNNNN.depth.png");
   }
-  if (fs::exists(dir / kIntrinsics)) {
+  if (is_there(dir / kIntrinsics)) {
     apply_intrinsics_file(dir / kIntrinsics, frames.sensor.camera);
   }
 }
@@ -181,19 +183,18 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
   if (!fs::is_directory(dir, ignored)) {
     throw Error(ErrorCode::io, dir.string() + ": no such folder");
   }
-  const bool has_sensor = fs::exists(dir / kSensor);
+  const bool has_sensor = is_there(dir / kSensor);
   FrameSequence frames;
-  const bool has_poses = fs::exists(dir / kPoses);
+  const bool has_poses = is_there(dir / kPoses);
   frames.depth_scale =
       depth_scale.value_or(has_sensor && has_poses ? kDepthUnit : kRecordedDepthUnit);
   if (!(frames.depth_scale > 0) || !std::isfinite(frames.depth_scale)) {
-    throw Error(ErrorCode::invalid_argument, "the depth scale (--depth-scale) " +
-                                                 short_text(frames.depth_scale) +
+    throw Error(ErrorCode::invalid_argument, "the depth scale " + short_text(frames.depth_scale) +
                                                  " must be positive and finite");
   }
   if (sensor.empty() && !has_sensor) {
     throw Error(ErrorCode::invalid_argument,
-                dir.string() + ": has no sensor.toml, so a sensor (--sensor) is needed");
+                dir.string() + ": has no sensor.toml, so a sensor is needed");
   }
   frames.sensor = sensor.empty() ? read_sensor_toml(dir / kSensor) : load_sensor(sensor);
   if (has_poses) {
@@ -220,7 +221,7 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRange
         value == kOutOfRangeValue ? out_of_range : static_cast<float>(value * frames.depth_scale));
   }
   const fs::path amplitude = amplitude_path(frames.images[index]);
-  if (!fs::exists(amplitude)) return frame;
+  if (!is_there(amplitude)) return frame;
   for (const std::uint16_t value : read_gray_png(amplitude, camera.width, camera.height).pixels) {
     frame.amplitude.push_back(static_cast<float>(value * kAmplitudeUnit));
   }
@@ -229,9 +230,7 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRange
 
 std::vector<fs::path> frame_files(const fs::path& dir) {
   std::vector<fs::path> files;
-  std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(dir, ignored)) {
-    const fs::path name = entry.path().filename();
+  for (const fs::path& name : names_in(dir)) {
     const bool is_frames = std::any_of(
         kFrameSuffixes.begin(), kFrameSuffixes.end(),
         [&](std::string_view suffix) { return frame_number(name.string(), suffix).has_value(); });
@@ -239,19 +238,35 @@ std::vector<fs::path> frame_files(const fs::path& dir) {
       files.push_back(name);
     }
   }
-  std::sort(files.begin(), files.end());
   return files;
 }
 
 FramesWriter::FramesWriter(const fs::path& dir) : earlier_(simulated_files(dir)), staged_(dir) {}
 
 void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorCode::invalid_argument, "frame " + std::to_string(index) + ": " + what);
+  };
+  const std::size_t pixels =
+      frame.width > 0 && frame.height > 0
+          ? static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height)
+          : 0;
+  if (pixels == 0 || frame.depth.size() != pixels ||
+      (!frame.amplitude.empty() && frame.amplitude.size() != pixels)) {
+    refuse(std::to_string(frame.width) + " x " + std::to_string(frame.height) + " px with " +
+           std::to_string(frame.depth.size()) + " depths and " +
+           std::to_string(frame.amplitude.size()) + " amplitudes");
+  }
+  if (index != written_) refuse("comes after " + std::to_string(written_) + " frames");
+  if (written_ > 0 && (frame.width != width_ || frame.height != height_)) {
+    refuse("is of another size than those before");
+  }
+  width_ = frame.width, height_ = frame.height;
+  ++written_;
   GrayImage image{frame.width, frame.height, {}};
   image.pixels.reserve(frame.depth.size());
   for (const float z : frame.depth) {
-    const double value = std::round(static_cast<double>(z) / kDepthUnit);
-    image.pixels.push_back(value < kOutOfRangeValue ? static_cast<std::uint16_t>(value)
-                                                    : kOutOfRangeValue);
+    image.pixels.push_back(saturated(static_cast<double>(z) / kDepthUnit));
   }
   write_png(staged_.path() / frame_name(index, kDepthSuffix), image);
   if (frame.amplitude.empty()) return;
@@ -263,6 +278,16 @@ void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
 }
 
 void FramesWriter::commit(const std::vector<Pose>& poses, const Sensor& sensor) {
+  if (poses.size() != written_ || written_ == 0) {
+    throw Error(ErrorCode::invalid_argument, std::to_string(poses.size()) + " poses for " +
+                                                 std::to_string(written_) + " frames");
+  }
+  if (sensor.camera.width != width_ || sensor.camera.height != height_) {
+    throw Error(ErrorCode::invalid_argument, "frames of " + std::to_string(width_) + " x " +
+                                                 std::to_string(height_) + " px for a sensor of " +
+                                                 std::to_string(sensor.camera.width) + " x " +
+                                                 std::to_string(sensor.camera.height) + " px");
+  }
   write_tum(staged_.path() / kPoses, poses);
   write_sensor_toml(staged_.path() / kSensor, sensor);
   write_file_atomically(staged_.path() / kSimulated,

@@ -4,6 +4,7 @@
 
 #include <png.h>
 
+#include <algorithm>
 #include <csetjmp>
 #include <cstddef>
 #include <cstdio>
@@ -58,11 +59,10 @@ bool decode(png_structp png, png_infop info, PngState& state, GrayImage& image) 
   if (png_get_image_width(png, info) != static_cast<png_uint_32>(image.width) ||
       png_get_image_height(png, info) != static_cast<png_uint_32>(image.height)) {
     // snprintf into a string of fixed size keeps this function free of temporaries.
-    std::snprintf(state.message.data(), state.message.size(),
-                  "the image has %lux%lu pixels, the sensor %dx%d",
-                  static_cast<unsigned long>(png_get_image_width(png, info)),
-                  static_cast<unsigned long>(png_get_image_height(png, info)), image.width,
-                  image.height);
+    std::snprintf(
+        state.message.data(), state.message.size(), "the image has %lux%lu pixels, not %dx%d",
+        static_cast<unsigned long>(png_get_image_width(png, info)),
+        static_cast<unsigned long>(png_get_image_height(png, info)), image.width, image.height);
     return false;
   }
   png_set_swap(png);  // PNG is big-endian, this machine is not
@@ -91,13 +91,22 @@ bool encode(png_structp png, png_infop info, PngState& state, int width, int hei
   throw Error(code, path.string() + ": " + what);
 }
 
-void write_image(const std::filesystem::path& path, int width, int height, int bit_depth,
-                 int color_type, const void* pixels, std::size_t row_bytes) {
+// `channels` values a pixel.
+template <typename Value>
+void write_image(const std::filesystem::path& path, int width, int height, int color_type,
+                 const std::vector<Value>& pixels, std::size_t channels) {
+  constexpr int bit_depth = 8 * sizeof(Value);
+  const std::size_t row = channels * static_cast<std::size_t>(std::max(width, 0));
+  if (width <= 0 || height <= 0 || pixels.size() != row * static_cast<std::size_t>(height)) {
+    fail(ErrorCode::invalid_argument, path,
+         "an image of " + std::to_string(width) + " x " + std::to_string(height) + " px with " +
+             std::to_string(pixels.size()) + " values");
+  }
   PngState state;
   // libpng takes rows that it does not write to as non-const.
-  auto* first = static_cast<png_bytep>(const_cast<void*>(pixels));
+  auto* first = reinterpret_cast<png_bytep>(const_cast<Value*>(pixels.data()));
   for (int v = 0; v < height; ++v) {
-    state.rows.push_back(first + static_cast<std::size_t>(v) * row_bytes);
+    state.rows.push_back(first + static_cast<std::size_t>(v) * row * sizeof(Value));
   }
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &state, on_error, on_warning);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
@@ -110,6 +119,10 @@ void write_image(const std::filesystem::path& path, int width, int height, int b
 }  // namespace
 
 GrayImage read_gray_png(const std::filesystem::path& path, int width, int height) {
+  if (width <= 0 || height <= 0) {
+    fail(ErrorCode::invalid_argument, path,
+         "asked for as " + std::to_string(width) + " x " + std::to_string(height) + " px");
+  }
   PngState state;
   state.bytes = file_bytes(path);
 
@@ -131,18 +144,15 @@ GrayImage read_gray_png(const std::filesystem::path& path, int width, int height
 }
 
 void write_png(const std::filesystem::path& path, const GrayImage& image) {
-  write_image(path, image.width, image.height, 16, PNG_COLOR_TYPE_GRAY, image.pixels.data(),
-              sizeof(std::uint16_t) * static_cast<std::size_t>(image.width));
+  write_image(path, image.width, image.height, PNG_COLOR_TYPE_GRAY, image.pixels, 1);
 }
 
 void write_png(const std::filesystem::path& path, const RgbImage& image) {
-  write_image(path, image.width, image.height, 8, PNG_COLOR_TYPE_RGB, image.pixels.data(),
-              3 * static_cast<std::size_t>(image.width));
+  write_image(path, image.width, image.height, PNG_COLOR_TYPE_RGB, image.pixels, 3);
 }
 
 void write_png(const std::filesystem::path& path, const Gray8Image& image) {
-  write_image(path, image.width, image.height, 8, PNG_COLOR_TYPE_GRAY, image.pixels.data(),
-              static_cast<std::size_t>(image.width));
+  write_image(path, image.width, image.height, PNG_COLOR_TYPE_GRAY, image.pixels, 1);
 }
 
 }  // namespace viewgain

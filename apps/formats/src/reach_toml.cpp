@@ -14,6 +14,7 @@
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/file_names.hpp"
 
 namespace viewgain {
 namespace {
@@ -109,10 +110,13 @@ void write_reach_toml(const std::filesystem::path& path, const ReachRegion& regi
   }
   const auto xyz = [](const auto& v) { return toml::array{v[0], v[1], v[2]}; };
   toml::table root;
+  std::filesystem::path poses = path;
+  poses.replace_extension(".poses.txt");
   if (!region.poses.empty()) {
-    std::filesystem::path poses = path;
-    poses.replace_extension(".poses.txt");
-    write_tum(poses, region.poses);
+    if (small_ending(path) != ".toml" || is_special_file(path)) {
+      throw Error(ErrorCode::invalid_argument,
+                  path.string() + ": the name of a region with poses must end in .toml");
+    }
     root.insert("poses", poses.filename().string());
   }
   toml::array boxes, shells, half_spaces;
@@ -135,6 +139,14 @@ void write_reach_toml(const std::filesystem::path& path, const ReachRegion& regi
                           {"angle_deg", region.tolerance.angle * 180 / std::numbers::pi}});
   std::ostringstream text;
   text << root << "\n";
+  if (!region.poses.empty()) {
+    if (toml::parse(text.str())["poses"].value<std::string>() != poses.filename().string()) {
+      throw Error(ErrorCode::invalid_argument,
+                  path.string() + ": a TOML file cannot name " + poses.filename().string());
+    }
+    const AtomicFile writable(path);  // known before the poses change
+    write_tum(poses, region.poses);
+  }
   write_file_atomically(path, text.str());
 }
 

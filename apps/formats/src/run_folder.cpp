@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "folders.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
 
@@ -37,7 +38,8 @@ std::vector<fs::path> files_of_earlier_run(const fs::path& dir) {
   std::vector<fs::path> files = run_files(dir);
   if (files.empty()) return files;
   const fs::path report = dir / "run.json";
-  if (!fs::is_regular_file(report) ||
+  std::error_code ignored;
+  if (!fs::is_regular_file(report, ignored) ||
       file_bytes(report).find("\"map_hash\"") == std::string::npos) {
     throw Error(ErrorCode::invalid_argument,
                 dir.string() + ": holds " + files.front().string() +
@@ -50,15 +52,13 @@ std::vector<fs::path> files_of_earlier_run(const fs::path& dir) {
 
 std::vector<fs::path> run_files(const fs::path& dir) {
   std::vector<fs::path> files;
-  std::error_code ignored;
   for (const char* name : kFiles) {
-    if (fs::exists(dir / name, ignored)) files.emplace_back(name);
+    if (is_there(dir / name)) files.emplace_back(name);
   }
   for (const auto& [folder, endings] :
        {std::pair{"views", std::vector<const char*>{".png", ".amplitude.png"}},
         std::pair{"maps", std::vector<const char*>{".vdb"}}}) {
-    for (const auto& entry : fs::directory_iterator(dir / folder, ignored)) {
-      const fs::path name = entry.path().filename();
+    for (const fs::path& name : names_in(dir / folder)) {
       if (std::any_of(endings.begin(), endings.end(),
                       [&](const char* ending) { return is_numbered(name.string(), ending); })) {
         files.push_back(folder / name);

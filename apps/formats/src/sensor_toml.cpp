@@ -2,16 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/formats/sensor_toml.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <sstream>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "toml_table.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/text.hpp"
+#include "viewgain/formats/file_names.hpp"
 
 namespace viewgain {
 namespace {
@@ -233,7 +236,7 @@ Sensor read_sensor_toml(const std::filesystem::path& path) {
 }
 
 bool is_sensor_file(const std::string& preset_or_file) {
-  return std::filesystem::path(preset_or_file).extension() == ".toml";
+  return small_ending(preset_or_file) == ".toml";
 }
 
 Sensor load_sensor(const std::string& preset_or_file) {

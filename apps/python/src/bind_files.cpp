@@ -76,7 +76,10 @@ py::array_t<double> pose_array(std::span<const Pose> poses) {
 py::object read_poses(const py::object& path, bool return_timestamps) {
   const std::string file = file_path(path);
   require_file(file);
-  const PoseList list = read_tum(file);
+  const PoseList list = [&] {
+    const WithoutGil without_gil;
+    return read_tum(file);
+  }();
   py::object poses = pose_array(list.poses);
   if (!return_timestamps) return poses;
   return py::make_tuple(poses, to_array_1d<double>(list.timestamps));
@@ -86,13 +89,19 @@ void write_poses(const py::object& path, const py::object& T_world_camera,
                  const py::object& timestamps) {
   const std::string file = file_path(path);
   const std::vector<Pose> poses = pose_list(T_world_camera, "T_world_camera");
+  if (poses.empty()) throw py::value_error("there is no pose to write");
   require_writable(file);
+  std::vector<double> times;
+  if (!timestamps.is_none()) {
+    const Doubles given = doubles(timestamps, "timestamps", {-1});
+    times.assign(given.data(), given.data() + given.size());
+  }
+  const WithoutGil without_gil;
   if (timestamps.is_none()) {
     write_tum(file, poses);
-    return;
+  } else {
+    write_tum(file, poses, times);
   }
-  const Doubles times = doubles(timestamps, "timestamps", {-1});
-  write_tum(file, poses, {times.data(), static_cast<std::size_t>(times.size())});
 }
 
 // Adds to a class that another part of the module has made.
@@ -104,7 +113,12 @@ py::class_<Class> class_of(py::module_& module, const char* name) {
 void bind_toml(py::module_& module) {
   class_of<Sensor>(module, "Sensor")
       .def_static(
-          "load", [](const py::object& given) { return load_sensor(preset_or_file(given)); },
+          "load",
+          [](const py::object& given) {
+            const std::string file = preset_or_file(given);
+            const WithoutGil without_gil;
+            return load_sensor(file);
+          },
           py::arg("preset_or_file"), R"(A sensor from a .toml file, or a preset by its name.
 
 Parameters
@@ -129,6 +143,7 @@ ValueError
           [](const Sensor& self, const py::object& path) {
             const std::string file = file_path(path);
             require_writable(file);
+            const WithoutGil without_gil;
             write_sensor_toml(file, self);
           },
           py::arg("path"), R"(Writes a .toml file, whole or not at all.
@@ -136,6 +151,7 @@ ValueError
 Parameters
 ----------
 path : path-like
+    ``load`` takes names that end in .toml.
 
 Raises
 ------
@@ -146,6 +162,7 @@ OSError)");
           [](const py::object& path) {
             const std::string file = file_path(path);
             require_file(file);
+            const WithoutGil without_gil;
             return read_reach_toml(file);
           },
           py::arg("path"), R"(A region from a .toml file: boxes, shells, half-spaces, poses.
@@ -169,9 +186,11 @@ Error
           [](const ReachRegion& self, const py::object& path) {
             const std::string file = file_path(path);
             require_writable(file);
+            const WithoutGil without_gil;
             write_reach_toml(file, self);
           },
-          py::arg("path"), R"(Writes a .toml file; poses go into NAME.poses.txt beside it.
+          py::arg("path"),
+          R"(Writes a .toml file; poses go into NAME.poses.txt beside it, replacing one of that name.
 
 Parameters
 ----------
@@ -180,7 +199,7 @@ path : path-like
 Raises
 ------
 ValueError
-    The region has a predicate.
+    The region has a predicate, or poses and a name that does not end in .toml.
 OSError)");
 }
 
@@ -196,6 +215,13 @@ width), float32, along the optical axis [m] (0: nothing known, inf: nothing up t
   type.def(
           "__len__", [](const Frames& self) { return self.frames.images.size(); },
           "How many frames there are.\n\nReturns\n-------\nint")
+      .def(
+          "__iter__",
+          [](const py::object& self) {
+            (void)py::cast<const Frames&>(self);  // refuses what was never initialised
+            return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
+          },
+          "The frames in their order.\n\nReturns\n-------\niterator")
       .def("__getitem__", &frame_at, py::arg("index"),
            R"(Reads a frame.
 
@@ -304,7 +330,7 @@ timestamps : array_like, (n,), optional
 Raises
 ------
 ValueError
-    A pose or timestamp is not finite, or their counts differ.
+    There is no pose, a pose or timestamp is not finite, or their counts differ.
 OSError)");
 }
 

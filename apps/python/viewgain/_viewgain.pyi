@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, Literal, Union, overload
 
 import numpy as np
@@ -493,6 +493,7 @@ class GainEvaluator:
 
 class FrameSequence:
     def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[tuple[NDArray[np.float32], _Floats, NDArray[np.float32] | None]]: ...
     def __getitem__(self, index: int) -> tuple[NDArray[np.float32], _Floats, NDArray[np.float32] | None]: ...
     @property
     def sensor(self) -> Sensor: ...

@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,6 +18,7 @@
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/ply.hpp"
+#include "viewgain/formats/png.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 
@@ -125,6 +129,85 @@ TEST(Formats, FramesComeBackAsTheyWere) {
   }
   test::expect_error(ErrorCode::io, "nowhere",
                      [&] { (void)open_frames(folder.path() / "nowhere"); });
+}
+
+TEST(Formats, WhatIsNoDepthIsWrittenAsInvalid) {
+  const test::TemporaryFolder folder;
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera.width = 4, sensor.camera.height = 1;
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  FramesWriter writer(folder.path() / "frames");
+  writer.write_frame(0, {4, 1, {kNan, -1.F, 6.6F, 6.5534F}, {kNan, -1.F, 70.F, 65.F}});
+  writer.commit({look_at({0, 0, 1}, {0, 0, 0})}, sensor);
+  const DepthFrame read = load_frame(open_frames(folder.path() / "frames"), 0);
+  EXPECT_EQ(read.depth[0], DepthFrame::kInvalid);
+  EXPECT_EQ(read.depth[1], DepthFrame::kInvalid);
+  EXPECT_EQ(read.depth[2], DepthFrame::kOutOfRange);
+  EXPECT_NEAR(read.depth[3], 6.5534, 1e-6);
+  EXPECT_EQ(read.amplitude[0], 0.F);
+  EXPECT_NEAR(read.amplitude[2], 65.535, 1e-5);
+}
+
+TEST(Formats, FramesThatCannotBeAreRefusedAndNothingIsWritten) {
+  const test::TemporaryFolder folder;
+  const Sensor sensor = sensor_preset("sr4000");
+  const std::vector<float> six(6, 1.F), five(5, 1.F);
+  const auto dir = folder.path() / "frames";
+  FramesWriter writer(dir);
+  writer.write_frame(0, {3, 2, six, {}});
+  std::size_t cases = 0;
+  const auto refuses = [&](const char* part, const auto& call) {
+    test::expect_error(ErrorCode::invalid_argument, part, call);
+    ++cases;
+  };
+  refuses("5 depths", [&] { writer.write_frame(1, {3, 2, five, {}}); });
+  refuses("5 amplitudes", [&] { writer.write_frame(1, {3, 2, six, five}); });
+  refuses("0 x 2", [&] { writer.write_frame(1, {0, 2, {}, {}}); });
+  refuses("-3 x -2", [&] { writer.write_frame(1, {-3, -2, six, {}}); });
+  refuses("after 1 frames", [&] { writer.write_frame(2, {3, 2, six, {}}); });
+  refuses("another size", [&] { writer.write_frame(1, {2, 3, six, {}}); });
+  refuses("2 poses for 1 frames", [&] { writer.commit(sphere_poses(2, 1), sensor); });
+  refuses("3 x 2 px for a sensor", [&] { writer.commit(sphere_poses(1, 1), sensor); });
+  refuses("values", [&] { write_png(folder.path() / "a.png", GrayImage{3, 2, {1, 2, 3}}); });
+  refuses("values", [&] { write_png(folder.path() / "a.png", RgbImage{1, 1, {1}}); });
+  refuses("px", [&] { (void)read_gray_png(folder.file("b.png", ""), -1, 2); });
+  EXPECT_EQ(cases, 11U);
+  EXPECT_FALSE(std::filesystem::exists(dir));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "a.png"));
+}
+
+TEST(Formats, WhatCannotBeLookedAtIsAnError) {
+  const test::TemporaryFolder folder;
+  std::size_t cases = 0;
+  for (const char* name : {"sensor.toml", "poses.txt", "camera-intrinsics.txt"}) {
+    const auto dir = folder.path() / std::to_string(cases);
+    std::filesystem::create_directory(dir);
+    std::ofstream(dir / "frame-000000.depth.png");
+    std::ofstream(dir / "frame-000000.pose.txt") << "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
+    std::filesystem::create_symlink(name, dir / name);  // to itself
+    test::expect_error(ErrorCode::io, name, [&] { (void)open_frames(dir, "sr4000"); });
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3U);
+}
+
+TEST(Formats, RegionsWithPosesNeedANameForThem) {
+  const test::TemporaryFolder folder;
+  ReachRegion region;
+  region.poses = sphere_poses(3, 0.5);
+  std::size_t cases = 0;
+  for (const std::string name : {"cell.txt", "cell", "\xff.toml"}) {
+    test::expect_error(ErrorCode::invalid_argument, "cell",
+                       [&] { write_reach_toml(folder.path() / ("cell" + name), region); });
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3U);
+  test::expect_error(ErrorCode::io, "none",
+                     [&] { write_reach_toml(folder.path() / "none" / "cell.toml", region); });
+  EXPECT_EQ(folder.entries(), 0);
+  region.poses.clear();
+  write_reach_toml(folder.path() / "cell.txt", region);  // no second file
+  EXPECT_EQ(folder.entries(), 1);
 }
 
 TEST(Formats, APointIsWrittenAsPly) {

@@ -120,6 +120,17 @@ TEST_F(Candidates, OverlapAndRegionsMoveBoundaryCandidates) {
   EXPECT_NE(refused.err.find("--overlap 1.5"), std::string::npos) << refused.err;
 }
 
+TEST_F(Candidates, ObstaclesAreInTheWay) {
+  const json usual = candidates("sphere"),
+             blocked = candidates("sphere", {"--obstacle", "0.1,-9,-9,9,9,9"});
+  EXPECT_FALSE(usual["dropped"].contains("obstacle"));
+  EXPECT_GT(blocked["dropped"]["obstacle"].get<int>(), 50);
+  for (const json& candidate : blocked["per_candidate"]) {
+    EXPECT_LT(candidate["T_world_camera"][0][3].get<double>(), 0.2);
+  }
+  EXPECT_FALSE(blocked["per_candidate"].empty());
+}
+
 TEST_F(Candidates, TheBodyIsTheSensorsOrTheUsers) {
   const auto collisions = [&](const std::string& sensor, const Strings& more) {
     Strings arguments{"candidates", "run/map.vdb", "--generator", "sphere",    "--distance", "0.15",

@@ -166,6 +166,27 @@ TEST_F(ScoreCandidates, InfeasiblePosesAreDroppedByReason) {
   const json scores = score(flags);
   EXPECT_EQ(scores.at("dropped"), json(dropped));
   EXPECT_EQ(scores.at("best").size(), possible);
+  // Those that are left keep their numbers, with a limit of reach beside and a view that was taken.
+  ReachRegion reach;
+  reach.half_spaces = {{Eigen::Vector3d::UnitX(), -0.2}};
+  write_reach_toml(dir / "reach.toml", reach);
+  config.reach = reach;
+  BeliefGrid grid = load_vdb(dir / "map.vdb");
+  const std::size_t view = scores.at("best")[0].at("index").get<std::size_t>();
+  grid.append_view(poses[view]);
+  save_vdb(grid, dir / "map.vdb");
+  const auto reasons = FeasibilityChecker(scene, config).check(poses, grid.views());
+  EXPECT_EQ(reasons[view],
+            reach.contains(poses[view]) ? Infeasibility::taken : Infeasibility::unreachable);
+  Strings more = flags;
+  more.insert(more.end(), {"--reach", "reach.toml"});
+  for (const bool approximately : {false, true}) {
+    if (approximately) more.insert(more.end(), {"--approximate", "0.5"});
+    const auto left = gains(score(more));
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      EXPECT_EQ(left.contains(i), reasons[i] == Infeasibility::none) << i;
+    }
+  }
   Strings text = arguments(flags);
   std::erase(text, "--json");
   EXPECT_NE(run_well(text).find(" of 40 poses; dropped: "), std::string::npos);

@@ -17,7 +17,7 @@ extern "C" {
    file and the key. */
 VG_API vg_status vg_sensor_load(const char* preset_or_file, vg_sensor* sensor);
 
-/* Writes a .toml file, whole or not at all. */
+/* Writes a .toml file, whole or not at all. vg_sensor_load takes names that end in .toml. */
 VG_API vg_status vg_sensor_save(const vg_sensor* sensor, const char* path);
 
 /* Reads poses in the TUM format: at most `capacity` of them, 16 numbers each, and says in *found
@@ -25,7 +25,8 @@ VG_API vg_status vg_sensor_save(const vg_sensor* sensor, const char* path);
 VG_API vg_status vg_poses_load(const char* path, double* T_world_camera, double* timestamps,
                                size_t capacity, size_t* found);
 
-/* Writes poses in the TUM format, whole or not at all. timestamps [s] null: 0, 1, 2, ... */
+/* Writes poses in the TUM format, whole or not at all; at least one. timestamps [s] null: 0, 1,
+   2, ... */
 VG_API vg_status vg_poses_save(const char* path, const double* T_world_camera,
                                const double* timestamps, size_t count);
 

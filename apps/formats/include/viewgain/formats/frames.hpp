@@ -65,16 +65,23 @@ class VIEWGAIN_EXPORT FramesWriter {
   /// that no FramesWriter has written.
   explicit FramesWriter(const std::filesystem::path& dir);
 
-  /// Writes the depth image, and an amplitude image if the frame has amplitudes.
+  /// Writes the depth image, and an amplitude image if the frame has amplitudes. What is no depth
+  /// (NaN, negative) is written as invalid, from 6.55345 m on as out of range; amplitudes end at
+  /// 65.535 m⁻². Throws Error(io), and Error(invalid_argument) for an index that is not the count
+  /// of frames so far, pixels that are too few or too many, or a size that is not that of the
+  /// first.
   void write_frame(std::size_t index, const DepthFrame& frame);
 
   /// Writes poses (T_world_camera, one a frame) and sensor and puts all in the place of the frames
-  /// of an earlier simulation.
+  /// of an earlier simulation. Throws Error(io), and Error(invalid_argument) for another count of
+  /// poses than of frames, none, or a sensor of another size.
   void commit(const std::vector<Pose>& poses, const Sensor& sensor);
 
  private:
   std::vector<std::filesystem::path> earlier_;
   StagedFolder staged_;
+  std::size_t written_ = 0;     // frames
+  int width_ = 0, height_ = 0;  // of them [px]
 };
 
 }  // namespace viewgain

@@ -37,7 +37,8 @@ struct VIEWGAIN_EXPORT Gray8Image {
 [[nodiscard]] VIEWGAIN_EXPORT GrayImage read_gray_png(const std::filesystem::path& path, int width,
                                                       int height);
 
-/// Atomic: a temporary file is renamed. Throws Error(io).
+/// Atomic: a temporary file is renamed. Throws Error(io), and Error(invalid_argument) if the values
+/// are not as many as the pixels take.
 VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const GrayImage& image);
 VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const RgbImage& image);
 VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const Gray8Image& image);

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
 #include "viewgain/formats/staged_folder.hpp"
 
 namespace viewgain {
