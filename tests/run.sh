@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, runs all tests; ends with ctest's summary.
 #   --sanitize  core, grid, raycast and the C and Python entry points instead, under AddressSanitizer and
-#               UBSan, without three tests that repeat for statistics' sake what others do, and one that saves
+#               UBSan, without those that repeat for statistics' sake what others do, and one that saves
 #               maps without memory (OpenVDB's addLeaf forgets its leaf then)
 #   --tsan      the tests of what runs at once, of core, grid, raycast and C, under ThreadSanitizer
 #               (without one that raises a signal, which ThreadSanitizer delivers late)

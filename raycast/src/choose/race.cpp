@@ -8,10 +8,12 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
+#include "race_by_measure.hpp"
 #include "ranking.hpp"
 #include "tile_sample.hpp"
 #include "viewgain/core/error.hpp"
@@ -69,6 +71,17 @@ struct Field {
 
 using Report = std::function<void(std::size_t done)>;
 
+// Every so manieth pixel and row leave about kCoarseRays.
+int coarse_step(const detail::EvaluatorCore& core) {
+  return static_cast<int>(std::lround(std::sqrt(core.ray_count / kCoarseRays)));
+}
+
+// So many poses are scored in full in the second stage.
+std::size_t in_second_stage(std::size_t k, std::size_t poses) {
+  return std::max({kFewPoses, 4 * k,
+                   static_cast<std::size_t>(std::ceil(kInFull * static_cast<double>(poses)))});
+}
+
 // Leaves those `few` that score best on every so manieth pixel and row; all where images have no
 // more rays than that. False if it was stopped.
 bool choose_by_coarse_rays(const detail::ViewDriver& driver, const VoxelScene& scene,
@@ -76,8 +89,7 @@ bool choose_by_coarse_rays(const detail::ViewDriver& driver, const VoxelScene& s
                            std::span<const double> costs, const BatchControl& control,
                            const Report& report, Field& field) {
   const detail::EvaluatorCore& core = *driver.core();
-  const double factor = std::sqrt(core.ray_count / kCoarseRays);
-  const int every = static_cast<int>(std::lround(factor));
+  const int every = coarse_step(core);
   if (every <= 1) return true;
   const int stride = core.config.pixel_stride * every;
   const detail::ViewDriver coarse(scene, std::make_shared<detail::EvaluatorCore>(core, stride));
@@ -152,23 +164,36 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
   const std::size_t count = T_world_camera.size();
   detail::check_costs(config.costs, count);
   k = std::min(k, count);
+  if (config.measure != nullptr && config.run_measure != nullptr) {
+    throw Error(ErrorCode::invalid_argument, "views are chosen by one measure, not by two");
+  }
   RacedViews best;
   if (k == 0) return best;
+  if (config.measure != nullptr || config.run_measure != nullptr) {
+    const detail::EvaluatorCore& core = *impl_->driver.core();
+    std::optional<GainEvaluator> coarse;
+    if (const int every = coarse_step(core); every > 1) {
+      coarse = GainEvaluator(std::make_unique<Impl>(
+          impl_->scene,
+          std::make_shared<detail::EvaluatorCore>(core, core.config.pixel_stride * every)));
+    }
+    return detail::race_by_measure(*this, coarse ? &*coarse : nullptr, T_world_camera, k,
+                                   in_second_stage(k, count), config, control);
+  }
   // Poses are done when they are out.
   const Report report = [&](std::size_t done) {
     if (control.progress) control.progress(done, count);
   };
   report(0);
   const detail::ViewDriver& driver = impl_->driver;
-  std::size_t few = std::max(kFewPoses, 4 * k);
   Field field;
   field.poses.resize(count);
   for (std::size_t i = 0; i < count; ++i) field.poses[i].index = i;
   if (driver.surface() == nullptr) {
-    best.complete =
-        choose_by_bundles(driver, T_world_camera, k, few, config, control, report, field);
+    best.complete = choose_by_bundles(driver, T_world_camera, k, std::max(kFewPoses, 4 * k), config,
+                                      control, report, field);
   } else {
-    few = std::max(few, static_cast<std::size_t>(std::ceil(kInFull * static_cast<double>(count))));
+    const std::size_t few = in_second_stage(k, count);
     best.complete =
         count <= few || choose_by_coarse_rays(driver, *impl_->scene, T_world_camera, few,
                                               config.costs, control, report, field);

@@ -296,6 +296,108 @@ TEST(Race, CostsAreSubtracted) {
   EXPECT_GE(others, kMaps - 2);
 }
 
+// The area that rays may find, by what they pass; also as what a ray finds on average.
+class Promise : public RunMeasure {
+ public:
+  explicit Promise(bool averages) : averages_(averages) {}
+  double measure(const Pose&, std::span<const ViewRun> runs) const override {
+    double sum = 0;
+    for (const ViewRun& run : runs) sum += run.end - run.begin;
+    return averages_ && !runs.empty() ? sum / static_cast<double>(runs.size()) : sum;
+  }
+
+ private:
+  bool averages_;
+};
+
+TEST(Race, FindsTheBestByAMeasureToo) {
+  int right = 0, cases = 0;
+  for (std::uint64_t map = 0; map < 2; ++map) {
+    const auto scene = VoxelScene::build(lump(80 + map));
+    const GainEvaluator evaluator(scene, larger_sensor(), {}, {.num_threads = 2});
+    const GainEvaluator alone(scene, larger_sensor(), {}, {.num_threads = 1});
+    const std::vector<Pose> poses = sphere_poses(300, 0.6);
+    for (const bool averages : {false, true}) {
+      const Promise own(averages);
+      std::vector<double> all(poses.size());
+      evaluator.evaluate(poses, own, all);
+      std::vector<double> costs;
+      for (std::size_t i = 0; i < all.size(); ++i) costs.push_back(0.3 * all[(7 * i) % all.size()]);
+      for (const bool with_costs : {false, true}) {
+        RaceConfig config{.run_measure = &own};
+        BestConfig exact{.run_measure = &own};
+        if (with_costs) config.costs = exact.costs = costs;
+        const RacedViews race = evaluator.race(poses, 2, config);
+        const BestViews best = evaluator.best(poses, 2, {}, exact);
+        ASSERT_EQ(race.indices.size(), 2U);
+        for (std::size_t j = 0; j < 2; ++j) {
+          const std::size_t i = race.indices[j];
+          EXPECT_EQ(race.worth[j], all[i] - (with_costs ? costs[i] : 0.0));
+        }
+        EXPECT_GE(race.worth[0], 0.99 * best.worth[0]);
+        right += race.indices[0] == best.indices[0] ? 1 : 0;
+        EXPECT_EQ(race.scored_indices.size(), 32U);
+        EXPECT_TRUE(race.gains.empty() && race.scored_gains.empty() && race.complete);
+        const std::uint64_t all_rays = evaluator.rays_per_pose() * poses.size();
+        EXPECT_LT(race.rays_traced, all_rays / 2);
+        const RacedViews again = alone.race(poses, 2, config);
+        EXPECT_EQ(again.indices, race.indices);
+        EXPECT_EQ(again.worth, race.worth);
+        ++cases;
+      }
+    }
+  }
+  EXPECT_EQ(cases, 8);
+  EXPECT_GE(right, 6);
+}
+
+TEST(Race, ByAMeasureTakesOddRequestsAndStops) {
+  const GainEvaluator evaluator(VoxelScene::build(lump(3)), larger_sensor());
+  const GainEvaluator small(VoxelScene::build(lump(3)), small_sensor());
+  std::vector<Pose> poses = sphere_poses(200, 0.6);
+  const Promise own(false);
+  const Height hits;
+  const RaceConfig config{.run_measure = &own};
+  EXPECT_TRUE(evaluator.race(poses, 0, config).indices.empty());
+  EXPECT_TRUE(evaluator.race({}, 2, config).indices.empty());
+  EXPECT_EQ(evaluator.race(poses, 1000, config).indices,
+            evaluator.best(poses, 1000, {}, {.run_measure = &own}).indices);
+  // Images of few rays are measured in full.
+  EXPECT_EQ(small.race(poses, 3, {.measure = &hits}).indices,
+            small.best(poses, 3, {}, {.measure = &hits}).indices);
+  for (std::size_t i = 0; i < 190; ++i) poses[i].m[0] = std::nan("");
+  EXPECT_EQ(evaluator.race(poses, 3, config).indices,
+            evaluator.best(poses, 3, {}, {.run_measure = &own}).indices);
+  test::expect_error(ErrorCode::invalid_argument, "two", [&] {
+    (void)evaluator.race(poses, 1, {.measure = &hits, .run_measure = &own});
+  });
+  // Stopped after so many poses: nothing in the first stage, in the second the best of those
+  // measured. Progress never goes back.
+  poses = sphere_poses(200, 0.6);
+  int cases = 0;
+  for (const int limit : {1, 100, 215}) {
+    int asked = 0;
+    std::size_t last = 0;
+    BatchControl control;
+    control.is_cancelled = [&] { return ++asked > limit; };
+    control.progress = [&](std::size_t done, std::size_t total) {
+      EXPECT_GE(done, last);
+      EXPECT_EQ(total, 232U);
+      last = done;
+    };
+    const GainEvaluator one(VoxelScene::build(lump(3)), larger_sensor(), {}, {.num_threads = 1});
+    const RacedViews race = one.race(poses, 5, config, control);
+    EXPECT_FALSE(race.complete) << limit;
+    EXPECT_EQ(race.indices.empty(), limit < 200) << limit;
+    for (const std::size_t i : race.indices) {
+      EXPECT_TRUE(std::binary_search(race.scored_indices.begin(), race.scored_indices.end(), i));
+    }
+    EXPECT_LT(race.scored_indices.size(), 32U) << limit;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
 TEST(Race, TakesOddRequestsAndRefusesBadOnes) {
   const auto scene = VoxelScene::build(lump(3));
   const GainEvaluator evaluator(scene, small_sensor());

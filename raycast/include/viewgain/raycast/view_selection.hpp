@@ -35,7 +35,7 @@ struct VIEWGAIN_EXPORT BestViews {
 /// Views chosen by GainEvaluator::race(), and what that took.
 struct VIEWGAIN_EXPORT RacedViews : BestViews {
   std::vector<std::size_t> scored_indices;  ///< poses that were scored in full, ascending
-  std::vector<ViewGain> scored_gains;       ///< of those
+  std::vector<ViewGain> scored_gains;       ///< of those; empty with a measure
   std::uint64_t rays_traced = 0;            ///< of the bundles and of the poses scored in full
 };
 
@@ -48,6 +48,8 @@ struct VIEWGAIN_EXPORT RaceConfig {
   std::uint64_t seed = 1;         ///< which tiles
   /// As BestConfig::costs; a bundle's gain bears the cost by its share of the rays.
   std::span<const double> costs{};
+  const ViewMeasure* measure = nullptr;     ///< instead of the evaluator's gain; may be null,
+  const RunMeasure* run_measure = nullptr;  ///< as may this, of which only one can be given
 };
 
 /// Views that are good together, in the order of their choice; see GainEvaluator::best_set().
