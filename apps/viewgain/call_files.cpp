@@ -97,7 +97,7 @@ struct Identity {
   explicit Identity(const fs::path& given) {
     std::error_code ignored;
     path = fs::weakly_canonical(fs::absolute(given, ignored), ignored);
-    struct stat status{};
+    struct stat status {};
     if (::stat(given.c_str(), &status) == 0) node = std::pair(status.st_dev, status.st_ino);
   }
   [[nodiscard]] bool is(const Identity& other) const {

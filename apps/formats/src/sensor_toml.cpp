@@ -25,7 +25,7 @@ constexpr std::int64_t kMostPixels = std::int64_t{1} << 24U;
 template <typename Model>
 struct NoiseField {
   const char* key;
-  double Model::* member;
+  double Model::*member;
   bool optional = false;     // then the model's default holds
   bool unsaid_at_0 = false;  // 0 is no value of its own, and not written
 };

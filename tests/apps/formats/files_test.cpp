@@ -253,9 +253,7 @@ TEST_F(Files, FramesReadBackInTenthsOfAMillimetre) {
     writer.commit({poses[0]}, sensor);
   }
   EXPECT_EQ(list("frames").size(), 4U);
-  {
-    FramesWriter failing(dir / "a" / "b" / "c");
-  }
+  { FramesWriter failing(dir / "a" / "b" / "c"); }
   EXPECT_EQ(list(), std::vector<std::string>{"frames"});
 }
 

@@ -217,8 +217,9 @@ TEST(Formats, APointIsWrittenAsPly) {
   const std::string bytes = test::read_all(folder.path() / "p.ply");
   EXPECT_EQ(bytes.size(), bytes.find("end_header\n") + 11 + 24);
   const std::vector<float> sigma(2, 0.1F);
-  test::expect_error(ErrorCode::invalid_argument, "1 points but 2 sigmas",
-                     [&] { write_ply(folder.path() / "q.ply", {points, {}, sigma}); });
+  test::expect_error(ErrorCode::invalid_argument, "1 points but 2 sigmas", [&] {
+    write_ply(folder.path() / "q.ply", {points, {}, sigma});
+  });
   EXPECT_EQ(folder.entries(), 1);
 }
 

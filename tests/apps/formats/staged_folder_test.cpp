@@ -97,9 +97,7 @@ TEST_F(StagedFolderTest, AFailureLeavesAnothersResultsInTheParentItMade) {
   first.reset();  // fails: runs/ is its own, but not only its own any more
   EXPECT_EQ(list("runs"), Strings{"b"});
   EXPECT_EQ(read("runs/b/one.txt"), "new");
-  {
-    const StagedFolder alone(dir / "made/for/this");
-  }
+  { const StagedFolder alone(dir / "made/for/this"); }
   EXPECT_FALSE(fs::exists(dir / "made"));
 }
 
@@ -118,9 +116,7 @@ TEST_F(StagedFolderTest, ALeftoverInUseStays) {
   put(dir / ".out.tmp-mine/one.txt", "no temporary");
   put(dir / ".other.tmp-1-0/one.txt", "of another folder");
   write(".out.tmp-1-0", "no folder");
-  {
-    const StagedFolder next(dir / "out");
-  }
+  { const StagedFolder next(dir / "out"); }
   EXPECT_EQ(list("."), (Strings{".other.tmp-1-0", ".out.tmp-1-0", ".out.tmp-mine"}));
 }
 
