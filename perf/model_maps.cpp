@@ -31,7 +31,7 @@ Pose next_view(const std::shared_ptr<const VoxelScene>& scene, const Sensor& sen
 bool visit_model(const ModelMapPlan& plan, const std::filesystem::path& mesh, std::uint64_t seed,
                  const ExecConfig& exec, const std::function<bool(const ModelMap&)>& visit) {
   const ModelScene model(mesh, seed, exec);
-  const app::Stage& stage = model.stage();
+  const Stage& stage = model.stage();
   const std::vector<Pose> poses = sphere_poses(kNextViews, kModelDistance, stage.center);
   double side = 0;  // the longest [m]
   for (std::size_t k = 0; k < 3; ++k) {
@@ -39,7 +39,7 @@ bool visit_model(const ModelMapPlan& plan, const std::filesystem::path& mesh, st
   }
   BeliefGrid grid = model.empty_grid(side / plan.voxels);
   FrameIntegrator integrator(model.sensor(), {}, exec);
-  Pose pose = app::default_start(stage, kModelDistance, seed, {}, {});
+  Pose pose = default_start(stage, kModelDistance, seed, {}, {});
   for (int views = 1; views <= plan.views.back(); ++views) {
     integrator.integrate(grid, model.acquire(pose, static_cast<std::uint64_t>(views - 1)), pose);
     const auto scene = VoxelScene::build(grid, {}, exec);

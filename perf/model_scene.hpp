@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <vector>
 
-#include "planner/stage.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/planner_mesh/stage.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain::bench {
@@ -20,7 +20,7 @@ class ModelScene {
  public:
   ModelScene(const std::filesystem::path& mesh, std::uint64_t seed, const ExecConfig& exec);
 
-  [[nodiscard]] const app::Stage& stage() const noexcept { return stage_; }
+  [[nodiscard]] const Stage& stage() const noexcept { return stage_; }
   [[nodiscard]] const Sensor& sensor() const noexcept { return sensor_; }
 
   /// A filtered frame.
@@ -32,7 +32,7 @@ class ModelScene {
 
  private:
   Sensor sensor_;
-  app::Stage stage_;
+  Stage stage_;
   SimulatedSensor camera_;
   SimulatedSensor undisturbed_;
   JumpEdgeFilter filter_;

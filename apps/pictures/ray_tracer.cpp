@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "viewgain/core/thread_pool.hpp"
+#include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 
 namespace viewgain::app {
@@ -151,22 +152,10 @@ std::uint8_t PaintedMesh::add_paint(const Paint& paint) {
 }
 
 void PaintedMesh::add_hexahedron(const std::array<Vector3d, 8>& corners, std::uint8_t paint) {
-  static constexpr std::array<std::array<std::uint32_t, 3>, 12> kTriangles{{{0, 2, 1},
-                                                                            {1, 2, 3},
-                                                                            {4, 5, 6},
-                                                                            {5, 7, 6},
-                                                                            {0, 1, 4},
-                                                                            {1, 5, 4},
-                                                                            {2, 6, 3},
-                                                                            {3, 6, 7},
-                                                                            {0, 4, 2},
-                                                                            {2, 4, 6},
-                                                                            {1, 3, 5},
-                                                                            {3, 7, 5}}};
   Part& part = part_for(paint);
   const auto first = static_cast<std::uint32_t>(part.mesh.vertices.size());
   for (const Vector3d& p : corners) part.mesh.vertices.push_back({p.x(), p.y(), p.z()});
-  for (const auto& t : kTriangles) {
+  for (const auto& t : kBoxTriangles) {
     part.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     part.paint_of_triangle.push_back(paint);
   }

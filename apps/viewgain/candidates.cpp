@@ -16,14 +16,14 @@
 #include "options/hazard_source.hpp"
 #include "options/obstacle_source.hpp"
 #include "options/values.hpp"
-#include "planner/candidate_generation.hpp"
-#include "planner/model.hpp"
-#include "planner/pose_sets.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/planner/pose_sets.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
@@ -95,17 +95,17 @@ void check(const Options& options) {
 GenerationConfig generation_config(const Options& options, const Sensor& sensor,
                                    const BeliefGrid& grid) {
   GenerationConfig config = default_generation(sensor, grid.voxel_size());
-  config.boundary = options.generator == "boundary";
-  if (options.distance) config.working_distance = *options.distance;
-  if (options.overlap) config.estimator.overlap = *options.overlap;
-  if (options.region_depth) config.estimator.region_depth = *options.region_depth;
+  config.at_boundaries = options.generator == "boundary";
+  if (options.distance) config.boundary.working_distance = *options.distance;
+  if (options.overlap) config.boundary.estimator.overlap = *options.overlap;
+  if (options.region_depth) config.boundary.estimator.region_depth = *options.region_depth;
   if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
   config.feasibility.support_plane = options.support_plane;
-  if (config.boundary && grid.views().empty()) {
+  if (config.at_boundaries && grid.views().empty()) {
     throw Error(ErrorCode::invalid_argument,
                 options.map + ": has no views, which boundary candidates need");
   }
-  if (!config.boundary) {
+  if (!config.at_boundaries) {
     config.sets.push_back(make_pose_set(
         options.generator, {center_of(options, grid), distance_of(options, sensor, grid),
                             options.count, options.seed, std::nullopt}));
@@ -120,7 +120,7 @@ struct Order {
   GainModel model = GainModel::paper;
 };
 
-Order rank(const Options& options, const Model& model, const Sensor& sensor,
+Order rank(const Options& options, const SurfaceModel& model, const Sensor& sensor,
            const std::vector<Candidate>& candidates, const ExecConfig& exec) {
   Order ranking;
   ranking.order.resize(candidates.size());
@@ -183,11 +183,11 @@ void candidates(const Options& options) {
   BeliefGrid grid = load_map(options.map, &sensor);
   const GenerationConfig config = generation_config(options, sensor, grid);
 
-  ModelConfig model_config;
-  model_config.hazard = hazard_source(options.hazard, options.object_size, grid);
-  model_config.obstacles = obstacles_of(options.obstacles);
-  const Model model(std::move(grid), sensor, model_config, {exec});
-  CandidateGeneration generation(model, sensor, config, {exec});
+  SurfaceModelConfig model_config;
+  model_config.map.hazard = hazard_source(options.hazard, options.object_size, grid);
+  model_config.map.obstacles = obstacles_of(options.obstacles);
+  const SurfaceModel model(std::move(grid), sensor, model_config, exec);
+  CandidateGeneration generation(model, sensor, config, exec);
   const Proposal proposal = generation.generate({});
   const Order ranking = rank(options, model, sensor, proposal.candidates, exec);
   std::vector<Pose> poses;
@@ -224,9 +224,9 @@ void candidates(const Options& options) {
       json["per_candidate"].back()["gain"] = ranking.gains[i].gain;
       json["per_candidate"].back()["area"] = ranking.gains[i].area;
     }
-    for (const CandidateGeneration::Dropped& dropped : generation.dropped()) {
+    for (const DroppedCandidate& dropped : generation.dropped()) {
       json["per_dropped"].push_back(candidate_json(dropped.candidate, estimated));
-      json["per_dropped"].back()["reason"] = infeasibility_name(dropped.reason);
+      json["per_dropped"].back()["reason"] = dropped.reason;
     }
     print_json(json);
     return refuse_none(options, proposal);

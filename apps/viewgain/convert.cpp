@@ -8,8 +8,8 @@
 #include "commands.hpp"
 #include "map_json.hpp"
 #include "options/values.hpp"
-#include "planner/stopwatch.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/stopwatch.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 

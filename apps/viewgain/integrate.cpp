@@ -15,10 +15,10 @@
 #include "commands.hpp"
 #include "map_json.hpp"
 #include "options/values.hpp"
-#include "planner/stopwatch.hpp"
 #include "progress.hpp"
 #include "reading_source.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/stopwatch.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "planner/stopwatch.hpp"
+#include "viewgain/core/stopwatch.hpp"
 
 namespace viewgain::app {
 

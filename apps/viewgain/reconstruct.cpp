@@ -9,47 +9,45 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "pictures/view_picture.hpp"
-#include "planner/simulated_acquisition.hpp"
-#include "planner/surface_files.hpp"
 #include "reconstruct_setup.hpp"
 #include "run_report.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/core/stopwatch.hpp"
 #include "viewgain/formats/run_folder.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/planner/simulated_acquisition.hpp"
+#include "viewgain/planner_mesh/surface_files.hpp"
 #include "viewgain/version.hpp"
 
 namespace viewgain::app {
 namespace {
 
 void draw(const RunFolder& folder, const ViewRecord& record, const DepthFrame& frame,
-          const Model& model, const CandidateGeneration& generation, const RunSetup& setup,
-          const LoopExec& exec) {
-  const auto measuring = exec.measure("pictures");
+          const SurfaceModel& model, const CandidateGeneration& generation, const RunSetup& setup,
+          const ExecConfig& exec) {
   GainConfig gain;
   gain.support_plane = setup.policy.support_plane;
   if (setup.policy.policy == Policy::gain) gain.model = setup.policy.model;
-  const GainEvaluator evaluator(model.scene(), setup.sensor, gain, exec.threads);
+  const GainEvaluator evaluator(model.scene(), setup.sensor, gain, exec);
   const std::vector<Candidate>& candidates = record.proposal.candidates;
   ViewPicture picture{model.surface(),       generation.estimated(), candidates,
                       record.T_world_camera, std::nullopt,           evaluator,
                       setup.sensor};
   if (record.decision) picture.chosen = candidates[record.decision->candidate].T_world_camera;
-  write_view_picture(folder.view(record.index, ".png"), picture, exec.threads);
+  write_view_picture(folder.view(record.index, ".png"), picture, exec);
   if (!frame.amplitude.empty()) {
     write_amplitude_picture(folder.view(record.index, ".amplitude.png"), frame);
   }
 }
 
-std::shared_ptr<const Truth> known_truth(const RunSetup& setup, const LoopExec& exec) {
-  const auto measuring = exec.measure("quality");
-  return std::make_shared<const Truth>(setup.stage.scene, setup.sensor, setup.visibility,
-                                       exec.threads);
+void add_to(StageSeconds& totals, const StageSeconds& seconds) {
+  for (const auto& [stage, value] : seconds) totals[stage] += value;
 }
 
 // What a run leaves beside what it wrote after each view.
 void write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t seed,
-                   const Model& model, const std::vector<Pose>& views,
+                   const SurfaceModel& model, const std::vector<Pose>& views,
                    const nlohmann::ordered_json& report) {
   save_vdb(model.grid(), folder.file("map.vdb"));
   write_surfaces(model, folder.file("surface.ply"), folder.file("points.ply"));
@@ -65,16 +63,19 @@ void write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t
 
 void reconstruct(const ReconstructOptions& options) {
   StageSeconds seconds;
-  const LoopExec exec{{options.common.threads}, &seconds};
-  RunSetup setup = set_up(options, exec.threads);
-  const std::shared_ptr<const Truth> truth = known_truth(setup, exec);
+  const ExecConfig exec{options.common.threads};
+  RunSetup setup = set_up(options, exec);
+  const Stopwatch truth_watch;
+  const auto truth =
+      std::make_shared<const Truth>(setup.stage.scene, setup.sensor, setup.visibility, exec);
+  seconds["quality"] = truth_watch.seconds();
   const InterruptGuard interrupt;
   setup.planning.stop = interrupt.token();
 
   SimulatedAcquisition acquisition(
-      SimulatedSensor(setup.stage.scene, setup.sensor, setup.simulation, exec.threads),
-      options.frames_per_view, setup.planning.stop, exec);
-  Model model(setup.sensor, setup.model, truth, exec);
+      SimulatedSensor(setup.stage.scene, setup.sensor, setup.simulation, exec),
+      options.frames_per_view, setup.planning.stop);
+  SurfaceModel model(setup.sensor, setup.model, truth, exec);
   CandidateGeneration generation(model, setup.sensor, setup.generation, exec);
   setup.policy.object = {setup.stage.scene, truth, setup.simulation};
   PolicyDecision decision(model, generation, setup.sensor, setup.policy, exec);
@@ -88,9 +89,12 @@ void reconstruct(const ReconstructOptions& options) {
       setup.start, acquisition, model, generation, decision, setup.planning,
       [&](const ViewRecord& record) {
         views.push_back(record.T_world_camera);
+        add_to(seconds, record.seconds);
         if (options.save_maps) save_vdb(model.grid(), folder.map(record.index));
         if (!options.no_pictures) {
+          const Stopwatch watch;
           draw(folder, record, acquisition.last_frame(), model, generation, setup, exec);
+          seconds["pictures"] += watch.seconds();
         }
         report.add_view(record, model.quality().back(), model.realised_area(), seconds);
         std::fprintf(stderr, "%s\n", report.progress_line().c_str());

@@ -3,11 +3,12 @@
 #include "reconstruct_options.hpp"
 
 #include "options/hazard_source.hpp"
+#include "options/obstacle_source.hpp"
 #include "options/sensing_flags.hpp"
 #include "options/values.hpp"
-#include "planner/policies.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/planner_mesh/policies.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -107,6 +108,9 @@ void describe(Options& o, Visitor& visit) {
                "rank by gain / (1 s + distance / speed) instead [m/s]", as_it_is);
   visit.option("reach", "--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach",
                as_it_is);
+  // Recorded where there are any.
+  visit.option(nullptr, "--obstacle", o.obstacles, kObstacleHelp,
+               [](CLI::Option& option) { option.allow_extra_args(false); });
   // Recorded as a part of the sensor.
   visit.option(nullptr, "--body", o.body, kBodyHelp, as_it_is);
   describe_sensing(o.sensing, visit);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "options/sensing.hpp"
@@ -39,6 +40,7 @@ struct ReconstructOptions {
   double travel_cost = 0;
   std::optional<double> travel_speed;
   std::string reach;
+  std::vector<std::string> obstacles;
   std::string body;
   std::string up = "z";
   SensingOptions sensing;

@@ -4,15 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "options/hazard_source.hpp"
+#include "options/obstacle_source.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/raycast/obstacle_view.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -40,18 +44,41 @@ Pose start_pose(const ReconstructOptions& options, const Stage& stage, double di
   return pose;
 }
 
-ModelConfig model_config(const ReconstructOptions& options, const Sensor& sensor,
-                         const Stage& stage) {
-  ModelConfig config;
+// An obstacle where the run is to start.
+void check_start(const ReconstructOptions& options, const RunSetup& setup, const ExecConfig& exec) {
+  if (options.obstacles.empty()) return;
+  const BeliefGrid grid(setup.model.map.grid);
+  const FeasibilityChecker checker(VoxelScene::build(grid, setup.model.map.obstacles, exec),
+                                   feasibility_of(setup.sensor));
+  if (checker.check(setup.start) != Infeasibility::obstacle) return;
+  const std::string which = options.start.empty() ? "the start pose, which --start would give"
+                                                  : "--start " + options.start;
+  throw Error(ErrorCode::invalid_argument,
+              which + ": the sensor's body would overlap an --obstacle there");
+}
+
+SurfaceModelConfig model_config(const ReconstructOptions& options, const Sensor& sensor,
+                                const Stage& stage) {
+  SurfaceModelConfig model;
+  MapModelConfig& config = model.map;
   config.grid.voxel_size = options.voxel;
   config.grid.workspace = stage.workspace;
   config.grid.prior_sigma = default_prior_sigma(options.voxel, sensor);
   config.integration.support_plane = options.sensing.support_plane;
   config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter, false);
+  config.obstacles = obstacles_of(options.obstacles);
   config.criterion = parse_criterion(options.criterion);
   config.refine = !options.no_refine;
   config.hazard = hazard_source(options.hazard, options.object_size, BeliefGrid(config.grid));
-  return config;
+  return model;
+}
+
+// The obstacles as the simulated camera meets them.
+std::shared_ptr<const SurfaceScene> surroundings_of(const Obstacles& obstacles,
+                                                    const ExecConfig& exec) {
+  TriangleMesh mesh = mesh_of(obstacles);
+  if (mesh.triangles.empty()) return nullptr;
+  return std::make_shared<const SurfaceScene>(std::move(mesh), exec);
 }
 
 std::vector<std::string> generators(const ReconstructOptions& options, Policy policy) {
@@ -71,16 +98,16 @@ std::vector<std::string> generators(const ReconstructOptions& options, Policy po
 
 GenerationConfig generation_config(const ReconstructOptions& options, const RunSetup& setup) {
   GenerationConfig config = default_generation(setup.sensor, options.voxel);
-  config.estimator.overlap = options.overlap;
-  config.estimator.region_depth = options.region_depth;
-  config.boundary = false;
+  config.boundary.estimator.overlap = options.overlap;
+  config.boundary.estimator.region_depth = options.region_depth;
+  config.at_boundaries = false;
   // His choice is by class alone.
-  config.classes_by_sight = setup.policy.policy == Policy::kriegel;
+  config.boundary.classes_by_sight = setup.policy.policy == Policy::kriegel;
   PoseSetRequest request{setup.stage.center, setup.distance, options.sphere_poses,
                          options.sensing.seed, setup.start};
   for (const std::string& name : generators(options, setup.policy.policy)) {
     if (name == "boundary") {
-      config.boundary = true;
+      config.at_boundaries = true;
     } else {
       request.count = options.sphere_poses;
       if (name == "fibonacci" && !request.count) request.count = options.max_views;
@@ -113,11 +140,11 @@ StageConfig stage_config(const ReconstructOptions& options) {
 
 nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, const RunSetup& setup) {
   nlohmann::ordered_json generators = nlohmann::ordered_json::array();
-  if (setup.generation.boundary) generators.push_back("boundary");
+  if (setup.generation.at_boundaries) generators.push_back("boundary");
   for (const PoseSet& set : setup.generation.sets) generators.push_back(set.generator);
   return {{"sensor", sensor_toml(setup.sensor)},
           {"workspace", to_json(setup.stage.workspace)},
-          {"prior_sigma", setup.model.grid.prior_sigma},
+          {"prior_sigma", setup.model.map.grid.prior_sigma},
           {"start", to_json(setup.start)},
           {"distance", setup.distance},
           {"generators", generators},
@@ -146,16 +173,23 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   setup.distance = options.distance.value_or(filling_distance(setup.sensor, 0.5 * options.size));
   setup.start = start_pose(options, setup.stage, setup.distance, setup.reach);
   setup.visibility = {setup.stage.center,
-                      std::max(setup.sensor.working_distance, outside(options.size)), setup.start,
-                      setup.reach, options.sensing.support_plane};
+                      std::max(setup.sensor.working_distance, outside(options.size)),
+                      setup.start,
+                      setup.reach,
+                      options.sensing.support_plane,
+                      nullptr};
   setup.simulation = simulation_config(options.sensing, setup.sensor);
   setup.model = model_config(options, setup.sensor, setup.stage);
-  setup.policy.criterion = setup.model.criterion;
+  check_start(options, setup, exec);
+  setup.visibility.surroundings = setup.simulation.surroundings =
+      surroundings_of(setup.model.map.obstacles, exec);
+  setup.policy.criterion = setup.model.map.criterion;
   if (!options.gain.empty()) setup.policy.model = parse_gain_model(options.gain);
   setup.policy.support_plane = options.sensing.support_plane;
   setup.generation = generation_config(options, setup);
   setup.planning = planning_config(options, setup.policy);
   setup.settings = settings_json(options, resolved_settings(options, setup));
+  if (!options.obstacles.empty()) setup.settings["obstacles"] = options.obstacles;
   return setup;
 }
 

@@ -4,15 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "planner/candidate_generation.hpp"
-#include "planner/model.hpp"
-#include "planner/policies.hpp"
-#include "planner/stage.hpp"
-#include "planner/truth.hpp"
 #include "reconstruct_options.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/reach.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/policies.hpp"
+#include "viewgain/planner_mesh/stage.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain::app {
@@ -26,7 +26,7 @@ struct RunSetup {
   Pose start;
   VisibilityConfig visibility{};
   SimulationConfig simulation{};
-  ModelConfig model{};
+  SurfaceModelConfig model{};
   GenerationConfig generation{};
   PolicyConfig policy{};
   PlanningConfig planning{};

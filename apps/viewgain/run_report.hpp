@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "planner/model.hpp"
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/core/planning.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
@@ -22,8 +22,8 @@ class RunReport {
   /// thing. `criterion` is the map's and the paper's gain's.
   RunReport(std::optional<GainModel> ranked_by, Criterion criterion);
 
-  /// To be called once a view, in order. `realised_area` is Model's [m²], `seconds` are the totals
-  /// so far.
+  /// To be called once a view, in order. `realised_area` is SurfaceModel's [m²], `seconds` are the
+  /// totals so far.
   void add_view(const ViewRecord& record, const QualityFigures& quality, double realised_area,
                 const StageSeconds& seconds);
 

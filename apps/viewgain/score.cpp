@@ -16,15 +16,15 @@
 #include "options/pose_source.hpp"
 #include "options/values.hpp"
 #include "pictures/picture.hpp"
-#include "planner/feasible_poses.hpp"
-#include "planner/stopwatch.hpp"
 #include "progress.hpp"
 #include "score_report.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/stopwatch.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/planner/feasible_poses.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {

@@ -47,6 +47,7 @@ constexpr std::array kRules{
     Rule{"stages_over_paper_combined", {}, false},
     Rule{"hazard_ms_128", 10.0, false},
     Rule{"hazard_ms_512", 40.0, false},
+    Rule{"planner_over_decision", 1.1, false},
     Rule{"decision_ms_100", {}, false},
     Rule{"decision_ms_500", {}, false},
     Rule{"decision_ms_2000", {}, false},

@@ -9,6 +9,7 @@
 #include "model_maps.hpp"
 #include "model_scene.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/planner/view_planner.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::bench {
@@ -46,7 +47,29 @@ std::vector<Figure> decision_figures(const BarsOptions& options) {
       if (repetition >= 0) seconds[i].push_back(value);  // -1: to warm up
     }
   }
-  std::vector<Figure> figures;
+  // The same 500 by the step interface, side by side.
+  PlannerConfig config;
+  config.grid = {.voxel_size = before.voxel_size(),
+                 .workspace = before.workspace(),
+                 .T_world_grid = before.T_world_grid(),
+                 .prior_sigma = before.prior_sigma()};
+  config.jump_edges.reset();
+  config.gain.model = GainModel::paper;
+  const std::vector<Pose> given = sphere_poses(500, kModelDistance);
+  std::vector<double> by_parts, by_planner;
+  for (int repetition = -1; repetition < options.repetitions; ++repetition) {
+    ViewPlanner planner(model.sensor(), config, exec);
+    for (std::size_t i = 0; i < kViews; ++i) planner.add(model.acquire(views[i], i), views[i]);
+    (void)planner.evaluator();
+    const double planned = seconds_of([&] {
+      (void)planner.add(frame, views[kViews]);
+      (void)planner.rank(given, 1);
+    });
+    BeliefGrid grid = before.clone();
+    const double parts = seconds_of([&] { (void)decide(grid, given); });
+    if (repetition >= 0) by_parts.push_back(parts), by_planner.push_back(planned);
+  }
+  std::vector<Figure> figures{{"planner_over_decision", median(by_planner) / median(by_parts)}};
   for (std::size_t i = 0; i < kCandidates.size(); ++i) {
     figures.push_back(
         {std::string("decision_ms_") + std::to_string(kCandidates[i]), 1e3 * median(seconds[i])});

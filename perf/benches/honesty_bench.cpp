@@ -12,11 +12,11 @@
 #include "environment.hpp"
 #include "measure.hpp"
 #include "model_scene.hpp"
-#include "planner/model.hpp"
-#include "planner/point_arrays.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/mesh/quality.hpp"
+#include "viewgain/planner/point_arrays.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
 
 namespace viewgain::bench {
 namespace {
@@ -28,7 +28,7 @@ constexpr std::array kRepeats{1, 2, 5, 10};
 constexpr double kDistance = 0.45;  // of the camera from the object's centre [m]
 
 Consistency consistency_of(const GroundTruth& truth, const std::vector<FusedPoint>& points) {
-  const app::PointArrays arrays = app::arrays_of(points);
+  const PointArrays arrays = arrays_of(points);
   return truth.consistency(arrays.positions, arrays.covariances);
 }
 
@@ -106,11 +106,11 @@ Json refinement(const ModelScene& scene, const GroundTruth& truth, const ExecCon
   for (int repeat = 1; repeat <= kTimes; ++repeat) {
     for (const Pose& view : views) integrator.integrate(grid, scene.acquire(view, frame++), view);
     const std::vector<FusedPoint> points = fused_points(grid, {}, exec);
-    const SurfaceMesh surface = app::surface_of(points, kVoxel, exec);
-    json.push_back({{"repeats", repeat},
-                    {"rms_surface", truth.error(seen_by(scene, views[0], surface.vertices)).rms},
-                    {"rms_points",
-                     truth.error(seen_by(scene, views[0], app::arrays_of(points).positions)).rms}});
+    const SurfaceMesh surface = surface_of(points, kVoxel, exec);
+    json.push_back(
+        {{"repeats", repeat},
+         {"rms_surface", truth.error(seen_by(scene, views[0], surface.vertices)).rms},
+         {"rms_points", truth.error(seen_by(scene, views[0], arrays_of(points).positions)).rms}});
   }
   return json;
 }

@@ -12,11 +12,11 @@
 #include "environment.hpp"
 #include "measure.hpp"
 #include "model_scene.hpp"
-#include "planner/candidate_generation.hpp"
-#include "planner/model.hpp"
-#include "planner/pose_sets.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/thread_pool.hpp"
+#include "viewgain/planner/pose_sets.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
@@ -43,7 +43,7 @@ int run_iteration(const IterationOptions& options) {
   const ExecConfig exec{ThreadPool(options.num_threads).num_threads()};
   const ModelScene scene(options.mesh, 1, exec);
   const double voxel = 0.4 / options.voxels;
-  const double distance = app::filling_distance(scene.sensor(), 0.175);
+  const double distance = filling_distance(scene.sensor(), 0.175);
   const std::vector<Pose> views = sphere_poses(kViews + 1, distance);
   BeliefGrid before = scene.empty_grid(voxel);
   FrameIntegrator integrator(scene.sensor(), {}, exec);
@@ -65,13 +65,13 @@ int run_iteration(const IterationOptions& options) {
     now["surface"] = seconds_of([&] {
       const std::vector<FusedPoint> fused = fused_points(grid, {}, exec);
       points = fused.size();
-      surface = app::surface_of(fused, voxel, exec);
+      surface = surface_of(fused, voxel, exec);
     });
     vertices = surface.vertices.size();
     now["candidates"] = seconds_of([&] {
       const EstimatedViews estimated =
           estimate_views(surface, grid.views(), scene.sensor(), scene.sensor().working_distance,
-                         app::default_estimator(voxel));
+                         default_estimator(voxel));
       const FeasibilityChecker checker(voxels, {});
       for (const BoundaryCandidate& c : estimated.candidates) {
         if (checker.check(c.T_world_camera, grid.views()) == Infeasibility::none) {

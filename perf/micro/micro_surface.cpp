@@ -6,9 +6,9 @@
 
 #include "micro_benchmarks.hpp"
 #include "micro_scene.hpp"
-#include "planner/candidate_generation.hpp"
-#include "planner/model.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
 
 namespace viewgain::bench {
 namespace {
@@ -25,7 +25,7 @@ void surface(benchmark::State& state) {
   const std::vector<FusedPoint> fused = fused_points(micro.grid, {}, {.num_threads = 1});
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        app::surface_of(fused, micro.grid.voxel_size(), {.num_threads = 1}).vertices.size());
+        surface_of(fused, micro.grid.voxel_size(), {.num_threads = 1}).vertices.size());
   }
   count(state, "points", static_cast<double>(fused.size()));
 }
@@ -34,11 +34,11 @@ void candidates(benchmark::State& state) {
   const MicroScene& micro = MicroScene::get();
   const double voxel = micro.grid.voxel_size();
   const SurfaceMesh mesh =
-      app::surface_of(fused_points(micro.grid, {}, {.num_threads = 1}), voxel, {.num_threads = 1});
+      surface_of(fused_points(micro.grid, {}, {.num_threads = 1}), voxel, {.num_threads = 1});
   std::size_t n = 0;
   for (auto _ : state) {
     n = estimate_views(mesh, micro.grid.views(), micro.sensor, micro.sensor.working_distance,
-                       app::default_estimator(voxel))
+                       default_estimator(voxel))
             .candidates.size();
   }
   count(state, "candidates", static_cast<double>(n));

@@ -39,6 +39,10 @@ check_project() { # PREFIX [cmake arguments]
   [ "$answers" = 11111111 ] || fail "boundary.cpp says $answers"
   answers=$("$folder/files" "$folder/sensor.toml")
   [ "$answers" = 111 ] || fail "files.cpp says $answers"
+  answers=$("$folder/planner" "$folder/planner.vdb")
+  [ "$answers" = 11111 ] || fail "planner.cpp says $answers"
+  answers=$("$folder/planner_mesh" "$folder/planner.vdb")
+  [ "$answers" = 11111 ] || fail "planner.cpp with surfaces says $answers"
 }
 
 case $kind in
@@ -78,6 +82,10 @@ case $kind in
     c++ -std=c++20 "$here/files.cpp" -o "$work/$kind/files_by_pkg_config" \
       $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-formats)
     [ "$("$work/$kind/files_by_pkg_config" "$work/$kind/sensor.toml")" = 111 ] || fail "files.cpp"
+    # shellcheck disable=SC2046
+    c++ -std=c++20 "$here/planner.cpp" -o "$work/$kind/planner_by_pkg_config" \
+      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-planner)
+    [ "$("$work/$kind/planner_by_pkg_config" "$work/$kind/state.vdb")" = 11111 ] || fail "planner.cpp"
     ;;
   static_native) check_project "$work/static_prefix" -DCMAKE_CXX_FLAGS=-march=native ;;
   pkg_config)
@@ -105,6 +113,17 @@ case $kind in
     c++ -std=c++20 "$here/files.cpp" -o "$work/$kind/files" "-Wl,-rpath,$libraries" \
       $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-formats)
     [ "$("$work/$kind/files" "$work/$kind/sensor.toml")" = 111 ] || fail "files.cpp"
+    cc -std=c99 -pedantic -Wall -Wextra -Werror -fsyntax-only -include viewgain/planner.h "$here/gain.c" \
+      $(PKG_CONFIG_PATH=$pc pkg-config --cflags viewgain-planner)
+    # shellcheck disable=SC2046
+    c++ -std=c++20 "$here/planner.cpp" -o "$work/$kind/planner" "-Wl,-rpath,$libraries" \
+      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-planner)
+    [ "$("$work/$kind/planner" "$work/$kind/state.vdb")" = 11111 ] || fail "planner.cpp"
+    # shellcheck disable=SC2046
+    c++ -std=c++20 -DWITH_SURFACES "$here/planner.cpp" -o "$work/$kind/planner_mesh" \
+      "-Wl,-rpath,$libraries" \
+      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-planner_mesh)
+    [ "$("$work/$kind/planner_mesh" "$work/$kind/state.vdb")" = 11111 ] || fail "planner.cpp with surfaces"
     ;;
   add_subdirectory)
     folder=$work/$kind
@@ -219,7 +238,7 @@ PROJECT
       # CMake's variables.
       # shellcheck disable=SC2016
       printf 'cmake_minimum_required(VERSION 3.22)\nproject(consumer LANGUAGES CXX)\nfind_package(%s)\n%s\n' "$1" \
-        'message(STATUS "answer:${viewgain_FOUND}:${viewgain_octomap_FOUND}:${viewgain_mesh_FOUND}:${viewgain_NOT_FOUND_MESSAGE}")' \
+        'message(STATUS "answer:${viewgain_FOUND}:${viewgain_octomap_FOUND}:${viewgain_mesh_FOUND}${viewgain_planner_mesh_FOUND}:${viewgain_NOT_FOUND_MESSAGE}")' \
         >"$folder/CMakeLists.txt"
       cmake -S "$folder" -B "$folder/build" -G Ninja "${@:3}" >"$folder/log" 2>&1 || true
       tr -s ' \n' ' ' <"$folder/log" | grep -qE "$2" ||
@@ -233,6 +252,8 @@ PROJECT
     check_request "viewgain REQUIRED $optional" 'answer:(1|TRUE):FALSE:TRUE: ' "$shared" "$no_octomap"
     check_request "viewgain $optional" 'answer:(1|TRUE):FALSE:TRUE: ' "$shared" "$no_octomap"
     check_request "viewgain REQUIRED $optional" 'answer:(1|TRUE):TRUE:FALSE: ' "$static" "$no_cgal"
+    check_request "viewgain REQUIRED OPTIONAL_COMPONENTS planner_mesh" 'answer:(1|TRUE)::FALSE: ' "$static" "$no_cgal"
+    check_request "viewgain REQUIRED COMPONENTS planner_mesh" 'answer:(1|TRUE)::TRUE: ' "$static"
     check_request "viewgain COMPONENTS octomap OPTIONAL_COMPONENTS mesh" \
       'answer:(0|FALSE):FALSE:TRUE:[^:]*octomap could not be found' "$shared" "$no_octomap"
     check_request "viewgain COMPONENTS hovercraft OPTIONAL_COMPONENTS octomap" \
@@ -240,7 +261,7 @@ PROJECT
     check_request "viewgain REQUIRED COMPONENTS octomap" 'CMake Error.*octomap' "$shared" "$no_octomap"
     check_request "viewgain OPTIONAL_COMPONENTS octomap" 'answer:(0|FALSE):.*Eigen3 could not be found' \
       "$shared" -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON
-    [ "$cases" = 8 ] || fail "$cases cases"
+    [ "$cases" = 10 ] || fail "$cases cases"
     ;;
   absolute_folders)
     # Distributions give folders as absolute paths.

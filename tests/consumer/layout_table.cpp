@@ -13,6 +13,23 @@
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/run_folder.hpp"
 #endif
+#ifdef VIEWGAIN_WITH_PLANNER
+#include "viewgain/planner/feasible_poses.hpp"
+#include "viewgain/planner/map_model.hpp"
+#include "viewgain/planner/point_arrays.hpp"
+#include "viewgain/planner/pose_sets.hpp"
+#include "viewgain/planner/proximity_measure.hpp"
+#include "viewgain/planner/realised_area.hpp"
+#include "viewgain/planner/simulated_acquisition.hpp"
+#include "viewgain/planner/view_planner.hpp"
+#include "viewgain/planner/view_sight.hpp"
+#endif
+#ifdef VIEWGAIN_WITH_PLANNER_MESH
+#include "viewgain/planner_mesh/boundary_generation.hpp"
+#include "viewgain/planner_mesh/policies.hpp"
+#include "viewgain/planner_mesh/stage.hpp"
+#include "viewgain/planner_mesh/truth.hpp"
+#endif
 #ifdef VIEWGAIN_WITH_MESH
 #include "viewgain/mesh/boundary.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
@@ -69,6 +86,7 @@ extern constinit const Layout VIEWGAIN_LAYOUT_TABLE[] = {VIEWGAIN_LAYOUT(Approxi
                                                          VIEWGAIN_LAYOUT(ModelProgress),
                                                          VIEWGAIN_LAYOUT(NoiseModel),
                                                          VIEWGAIN_LAYOUT(Obstacles),
+                                                         VIEWGAIN_LAYOUT(ObstacleView),
                                                          VIEWGAIN_LAYOUT(OccupiedVoxel),
                                                          VIEWGAIN_LAYOUT(PinholeCamera),
                                                          VIEWGAIN_LAYOUT(PixelTruth),
@@ -89,11 +107,14 @@ extern constinit const Layout VIEWGAIN_LAYOUT_TABLE[] = {VIEWGAIN_LAYOUT(Approxi
                                                          VIEWGAIN_LAYOUT(SimulatedSensor),
                                                          VIEWGAIN_LAYOUT(SimulationConfig),
                                                          VIEWGAIN_LAYOUT(SnapshotLeaf),
+                                                         VIEWGAIN_LAYOUT(StopMemory),
+                                                         VIEWGAIN_LAYOUT(StopRules),
                                                          VIEWGAIN_LAYOUT(SurfaceHit),
                                                          VIEWGAIN_LAYOUT(SurfaceScene),
                                                          VIEWGAIN_LAYOUT(SymmetricMatrix3),
                                                          VIEWGAIN_LAYOUT(ThreadPool),
                                                          VIEWGAIN_LAYOUT(TriangleMesh),
+                                                         VIEWGAIN_LAYOUT(VdbMap),
                                                          VIEWGAIN_LAYOUT(VdbWriteConfig),
                                                          VIEWGAIN_LAYOUT(ViewGain),
                                                          VIEWGAIN_LAYOUT(ViewHit),
@@ -114,6 +135,45 @@ extern constinit const Layout VIEWGAIN_LAYOUT_TABLE[] = {VIEWGAIN_LAYOUT(Approxi
                                                          VIEWGAIN_LAYOUT(RgbImage),
                                                          VIEWGAIN_LAYOUT(RunFolder),
                                                          VIEWGAIN_LAYOUT(StagedFolder),
+#endif
+#ifdef VIEWGAIN_WITH_PLANNER
+                                                         VIEWGAIN_LAYOUT(AddedView),
+                                                         VIEWGAIN_LAYOUT(DroppedCandidate),
+                                                         VIEWGAIN_LAYOUT(FeasiblePoses),
+                                                         VIEWGAIN_LAYOUT(MapModel),
+                                                         VIEWGAIN_LAYOUT(MapModelConfig),
+                                                         VIEWGAIN_LAYOUT(MapUpdate),
+                                                         VIEWGAIN_LAYOUT(PlannerConfig),
+                                                         VIEWGAIN_LAYOUT(PointArrays),
+                                                         VIEWGAIN_LAYOUT(PoseSet),
+                                                         VIEWGAIN_LAYOUT(PoseSetRequest),
+                                                         VIEWGAIN_LAYOUT(ProximityMeasure),
+                                                         VIEWGAIN_LAYOUT(RankConfig),
+                                                         VIEWGAIN_LAYOUT(RankedView),
+                                                         VIEWGAIN_LAYOUT(Ranking),
+                                                         VIEWGAIN_LAYOUT(RealisedArea),
+                                                         VIEWGAIN_LAYOUT(SimulatedAcquisition),
+                                                         VIEWGAIN_LAYOUT(ViewPlanner),
+                                                         VIEWGAIN_LAYOUT(ViewSight),
+#endif
+#ifdef VIEWGAIN_WITH_PLANNER_MESH
+                                                         VIEWGAIN_LAYOUT(BoundaryGeneration),
+                                                         VIEWGAIN_LAYOUT(BoundaryOrder),
+                                                         VIEWGAIN_LAYOUT(BoundaryViewsConfig),
+                                                         VIEWGAIN_LAYOUT(CandidateGeneration),
+                                                         VIEWGAIN_LAYOUT(GenerationConfig),
+                                                         VIEWGAIN_LAYOUT(KnownObject),
+                                                         VIEWGAIN_LAYOUT(OracleChoice),
+                                                         VIEWGAIN_LAYOUT(PolicyConfig),
+                                                         VIEWGAIN_LAYOUT(PolicyDecision),
+                                                         VIEWGAIN_LAYOUT(QualityFigures),
+                                                         VIEWGAIN_LAYOUT(Stage),
+                                                         VIEWGAIN_LAYOUT(StageConfig),
+                                                         VIEWGAIN_LAYOUT(SurfaceModel),
+                                                         VIEWGAIN_LAYOUT(SurfaceModelConfig),
+                                                         VIEWGAIN_LAYOUT(TravelCost),
+                                                         VIEWGAIN_LAYOUT(Truth),
+                                                         VIEWGAIN_LAYOUT(VisibilityConfig),
 #endif
 #ifdef VIEWGAIN_WITH_MESH
                                                          VIEWGAIN_LAYOUT(BoundaryCandidate),

@@ -94,8 +94,16 @@ std::vector<ModelProgress> steps(std::vector<std::pair<double, std::uint64_t>> v
   return progress;
 }
 
-PlanningConfig never_idle(std::size_t max_views = 20) {
+// Under what the scripts' decisions promise.
+PlanningConfig low_limits() {
   PlanningConfig config;
+  config.stop_gain = 0.15;
+  config.stop_area = 0;
+  return config;
+}
+
+PlanningConfig never_idle(std::size_t max_views = 20) {
+  PlanningConfig config = low_limits();
   config.idle_views = 0;
   config.max_views = max_views;
   return config;
@@ -237,7 +245,8 @@ TEST(Planning, NoShareOfTheSurfaceOrNoAreaNeverStops) {
     }
   }
   EXPECT_EQ(cases, 8);
-  EXPECT_EQ(PlanningConfig{}.stop_area, 0);
+  EXPECT_EQ(PlanningConfig{}.stop_area, kStopArea);
+  EXPECT_EQ(PlanningConfig{}.stop_gain, kStopGain);
 }
 
 TEST(Planning, NoCandidatesOrOutOfReach) {
@@ -268,7 +277,7 @@ TEST(Planning, NoCandidatesOrOutOfReach) {
 }
 
 TEST(Planning, IdleViewsInARow) {
-  PlanningConfig config;
+  PlanningConfig config = low_limits();
   config.idle_views = 2;
   config.idle_fraction = 0.01;
   struct Case {
@@ -357,7 +366,7 @@ TEST(Planning, EndsBetweenTheStepsWhenAsked) {
 // All rules that could hold do; taking the first away shows the next.
 TEST(Planning, TheOrderOfTheRules) {
   Script script;
-  PlanningConfig config;
+  PlanningConfig config = low_limits();
   config.max_views = 3;
   config.idle_views = 1;
   config.stop_coverage = 0.5;

@@ -179,6 +179,7 @@ TEST(Bench, BarsAreListedWithTheirFields) {
       {"stages_over_paper_combined", {nullptr, "lower"}},
       {"hazard_ms_128", {10.0, "lower"}},
       {"hazard_ms_512", {40.0, "lower"}},
+      {"planner_over_decision", {1.1, "lower"}},
       {"decision_ms_100", {nullptr, "lower"}},
       {"decision_ms_500", {nullptr, "lower"}},
       {"decision_ms_2000", {nullptr, "lower"}}};

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "status.hpp"
+#include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -27,17 +28,30 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// A pose from 16 numbers, row by row; all NaN if the lowest row is off by more than 1e-3.
 [[nodiscard]] Pose pose_of(const double* matrix);
 /// As pose_of(), but throws Error(invalid_argument) for such a row.
-[[nodiscard]] Pose rigid_pose_of(const double* matrix);
+[[nodiscard]] VIEWGAIN_EXPORT Pose rigid_pose_of(const double* matrix);
 /// count poses of 16 numbers each; throws Error(invalid_argument) for null.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> poses_of(const double* matrices, std::size_t count);
 
-void write_pose(const Pose& pose, double* matrix);
+VIEWGAIN_EXPORT void write_pose(const Pose& pose, double* matrix);
 VIEWGAIN_EXPORT void write_poses(std::span<const Pose> poses, double* matrices);
 
 /// Throws Error(invalid_argument) for null, another size, or a noise model that does not exist.
 [[nodiscard]] VIEWGAIN_EXPORT Sensor sensor_of(const vg_sensor* given);
 /// Fills a struct that its _init has seen; throws Error(invalid_argument) for another.
 VIEWGAIN_EXPORT void write_sensor(const Sensor& sensor, vg_sensor* out);
+
+/// A frame of the camera's size; `amplitude` may be null.
+[[nodiscard]] inline DepthFrame frame_of(const PinholeCamera& camera, const float* depth,
+                                         const float* amplitude) {
+  const auto count =
+      static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  DepthFrame frame;
+  frame.width = camera.width;
+  frame.height = camera.height;
+  frame.depth.assign(depth, depth + count);
+  if (amplitude != nullptr) frame.amplitude.assign(amplitude, amplitude + count);
+  return frame;
+}
 
 [[nodiscard]] inline Eigen::Vector3d vector_of(const double* xyz) {
   return {xyz[0], xyz[1], xyz[2]};

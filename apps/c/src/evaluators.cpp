@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +11,7 @@
 #include "handles.hpp"
 #include "viewgain/core/text.hpp"
 #include "viewgain/raycast/depth_image.hpp"
+#include "watcher.hpp"
 
 using namespace viewgain;
 using namespace viewgain::c_api;
@@ -23,47 +22,6 @@ static_assert(VG_GAIN_COMBINED == static_cast<int>(GainModel::combined));
 static_assert(VG_TRACE == static_cast<int>(Criterion::trace));
 static_assert(VG_VIEW_CAMERA_IN_OCCUPIED == static_cast<int>(ViewStatus::camera_in_occupied));
 static_assert(VG_HIT_OBSTACLE == static_cast<int>(RayHit::Kind::obstacle));
-
-/// A caller's vg_watch for the length of one call.
-class Watcher {
- public:
-  Watcher(const vg_watch* watch, std::size_t total) : total_(total) {
-    if (watch == nullptr) return;
-    watch_ = read_struct(watch, "vg_watch");
-    if (watch_->poll == nullptr) reject("poll of vg_watch is null");
-  }
-
-  /// To be used while this lives.
-  [[nodiscard]] BatchControl control() {
-    if (!watch_) return {};
-    BatchControl control;
-    control.progress = [this](std::size_t done, std::size_t) {
-      const std::lock_guard lock(mutex_);
-      done_ = std::max(done_, done);
-    };
-    control.is_cancelled = [this] {
-      const std::lock_guard lock(mutex_);
-      return watch_->poll(done_, total_, watch_->user) != 0;
-    };
-    return control;
-  }
-
-  /// At the end of the call. Throws Stopped unless all was done.
-  void finish(bool complete) {
-    if (!watch_) return;
-    if (!complete) {
-      throw Stopped("stopped by poll after " + std::to_string(done_) + " of " +
-                    std::to_string(total_) + " poses");
-    }
-    watch_->poll(total_, total_, watch_->user);
-  }
-
- private:
-  std::optional<vg_watch> watch_;
-  std::size_t total_;
-  std::size_t done_ = 0;
-  std::mutex mutex_;
-};
 
 GainConfig settings_of(const vg_evaluator_config& config) {
   if (config.criterion < VG_LOG_DIAGONAL || config.criterion > VG_TRACE) {

@@ -243,8 +243,7 @@ vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_conf
                                      static_cast<Occupancy>(chosen.occupancy),
                                      given(chosen.support_plane)};
     return vg_integrator{FrameIntegrator(camera, settings, {.num_threads = chosen.num_threads}),
-                         HazardCalibration(camera, settings.support_plane), camera.camera.width,
-                         camera.camera.height};
+                         HazardCalibration(camera, settings.support_plane), camera.camera};
   });
 }
 
@@ -257,7 +256,7 @@ vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* de
     require(depth, "depth");
     require(T_world_camera, "T_world_camera");
     if (report != nullptr) require_struct(report, "vg_integration_report");
-    const DepthFrame frame = integrator->frame(depth, amplitude);
+    const DepthFrame frame = frame_of(integrator->camera, depth, amplitude);
     const IntegrationReport counts =
         integrator->integrator.integrate(grid->grid, frame, rigid_pose_of(T_world_camera));
     if (report == nullptr) return;

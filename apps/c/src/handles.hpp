@@ -5,10 +5,9 @@
 // What the opaque handles of viewgain.h are. Scenes are shared by what is made from them, so
 // handles may go in any order.
 
-#include <cstddef>
 #include <memory>
 
-#include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/camera.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate.hpp"
@@ -24,18 +23,7 @@ struct vg_grid {
 struct vg_integrator {
   viewgain::FrameIntegrator integrator;
   viewgain::HazardCalibration calibration;
-  int width, height;  // of its frames [px]
-
-  /// `amplitude` may be null.
-  [[nodiscard]] viewgain::DepthFrame frame(const float* depth, const float* amplitude) const {
-    const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    viewgain::DepthFrame result;
-    result.width = width;
-    result.height = height;
-    result.depth.assign(depth, depth + count);
-    if (amplitude != nullptr) result.amplitude.assign(amplitude, amplitude + count);
-    return result;
-  }
+  viewgain::PinholeCamera camera;  // of its frames
 };
 
 struct vg_scene {

@@ -10,6 +10,7 @@
 
 #include "convert.hpp"
 #include "handles.hpp"
+#include "surroundings.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 using namespace viewgain;
@@ -18,29 +19,6 @@ using namespace viewgain::c_api;
 namespace {
 
 static_assert(VG_INFEASIBLE_TOO_NEAR == static_cast<int>(Infeasibility::too_near));
-
-Obstacles obstacles_of(const vg_scene_config& config) {
-  require_array(config.boxes, config.box_count, "boxes");
-  require_array(config.vertices, config.vertex_count, "vertices");
-  require_array(config.triangles, config.triangle_count, "triangles");
-  Obstacles obstacles;
-  for (std::size_t i = 0; i < config.box_count; ++i) {
-    const double* box = config.boxes + 6 * i;
-    obstacles.boxes.push_back({{box[0], box[1], box[2]}, {box[3], box[4], box[5]}});
-  }
-  if (config.triangle_count == 0) return obstacles;
-  TriangleMesh mesh;
-  for (std::size_t i = 0; i < config.vertex_count; ++i) {
-    const double* p = config.vertices + 3 * i;
-    mesh.vertices.push_back({p[0], p[1], p[2]});
-  }
-  for (std::size_t i = 0; i < config.triangle_count; ++i) {
-    const std::uint32_t* corners = config.triangles + 3 * i;
-    mesh.triangles.push_back({corners[0], corners[1], corners[2]});
-  }
-  obstacles.meshes.push_back(std::move(mesh));
-  return obstacles;
-}
 
 HazardConfig hazard_of(const vg_scene_config& config, const BeliefGrid& grid) {
   HazardConfig hazard;
@@ -77,14 +55,7 @@ FeasibilityConfig settings_of(const vg_feasibility_config& config) {
     settings.sensor->validate();
   }
   settings.max_near_share = config.max_near_share;
-  if (config.reachable != nullptr) {
-    settings.reach.predicate = [reachable = config.reachable,
-                                user = config.user](const Pose& T_world_camera) {
-      std::array<double, 16> matrix{};
-      write_pose(T_world_camera, matrix.data());
-      return reachable(matrix.data(), user) != 0;
-    };
-  }
+  settings.reach.predicate = predicate_of(config.reachable, config.user);
   return settings;
 }
 
@@ -144,7 +115,8 @@ vg_status vg_calibrate_hazard(const vg_integrator* integrator, vg_grid* grid, co
     require(depth, "depth");
     require(T_world_camera, "T_world_camera");
     integrator->calibration.count(grid->grid, scene->scene->hazard(),
-                                  integrator->frame(depth, nullptr), rigid_pose_of(T_world_camera));
+                                  frame_of(integrator->camera, depth, nullptr),
+                                  rigid_pose_of(T_world_camera));
   });
 }
 

@@ -18,7 +18,7 @@
 namespace viewgain::c_api {
 
 /// A call ended by its vg_watch, once what it has is handed over.
-class Stopped : public std::runtime_error {
+class VIEWGAIN_EXPORT Stopped : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

@@ -17,7 +17,6 @@
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain::python {
-namespace {
 
 Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes) {
   Obstacles obstacles;
@@ -32,6 +31,8 @@ Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes) {
   }
   return obstacles;
 }
+
+namespace {
 
 // A number, the rate everywhere, a path of a .vdb file, or an array of a rate for each voxel of the
 // workspace.

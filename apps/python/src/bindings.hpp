@@ -21,5 +21,6 @@ void bind_feasibility(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
 void bind_evaluator(pybind11::module_& module);
 void bind_files(pybind11::module_& module);
+void bind_planner(pybind11::module_& module);
 
 }  // namespace viewgain::python

@@ -64,4 +64,5 @@ PYBIND11_MODULE(_viewgain, module) {
   bind_simulation(module);
   bind_evaluator(module);
   bind_files(module);
+  bind_planner(module);
 }

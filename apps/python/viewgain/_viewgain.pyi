@@ -514,3 +514,58 @@ def read_poses(path: _Path, *, return_timestamps: Literal[False] = False) -> _Fl
 @overload
 def read_poses(path: _Path, *, return_timestamps: Literal[True]) -> tuple[_Floats, _Floats]: ...
 def write_poses(path: _Path, T_world_camera: ArrayLike, timestamps: ArrayLike | None = None) -> None: ...
+
+class ViewPlanner:
+    def __init__(
+        self,
+        sensor: Sensor,
+        *,
+        voxel_size: float,
+        workspace: ArrayLike,
+        T_world_grid: ArrayLike | None = None,
+        prior_sigma: float | None = None,
+        support_plane: float | None = None,
+        boxes: ArrayLike | None = None,
+        meshes: Iterable[tuple[ArrayLike, ArrayLike]] = (),
+        gain: Literal["combined", "surface", "paper"] = "combined",
+        criterion: _Criterion = "log_diagonal",
+        object_size: float | None = None,
+        reach: ReachRegion | None = None,
+        body_size: ArrayLike | None = None,
+        clearance: float = 0.0,
+        jump_edges: bool = True,
+        check_feasibility: bool = True,
+        max_views: int = 20,
+        idle_views: int = 3,
+        stop_gain: float | None = None,
+        stop_area: float | None = None,
+        state: _Path | None = None,
+        num_threads: int = 0,
+    ) -> None: ...
+    @staticmethod
+    def load(path: _Path, *args: Any, **settings: Any) -> ViewPlanner: ...
+    def save(self, path: _Path) -> None: ...
+    def add_poses(self, T_world_camera: ArrayLike, name: str = "poses") -> None: ...
+    def add_generator(
+        self, generator: Callable[[BeliefGrid], ArrayLike], name: str = "generator"
+    ) -> None: ...
+    def add(
+        self, depth: ArrayLike, T_world_camera: ArrayLike, *, amplitude: ArrayLike | None = None
+    ) -> dict[str, Any]: ...
+    def propose(self) -> dict[str, Any]: ...
+    def rank(
+        self,
+        k: int = 1,
+        *,
+        poses: ArrayLike | None = None,
+        costs: ArrayLike | None = None,
+        cost_per_metre: float = 0.0,
+        exact: bool = False,
+        control: BatchControl | None = None,
+    ) -> dict[str, Any]: ...
+    def tried(self, T_world_camera: ArrayLike, reached: bool) -> None: ...
+    def should_stop(self) -> str | None: ...
+    @property
+    def grid(self) -> BeliefGrid: ...
+    @property
+    def seconds(self) -> dict[str, float]: ...

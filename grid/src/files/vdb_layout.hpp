@@ -27,6 +27,9 @@ inline constexpr std::int32_t kOldestVdbLayoutVersion = 1;
 /// The grid of rates in a file of save_hazard_vdb().
 inline constexpr const char* kHazardGridName = "hazard";
 
+/// What the names of notes begin with (VdbWriteConfig::notes).
+inline const std::string kNotePrefix = "note_";
+
 /// Names of the metadata with the hazard counters of a class; maps without counters have none.
 [[nodiscard]] inline std::string expected_name(std::size_t k) {
   return "hazard_expected_" + std::to_string(k);

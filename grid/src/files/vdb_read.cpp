@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,13 +40,13 @@ class Loader {
  public:
   explicit Loader(std::filesystem::path path) : path_(std::move(path)) {}
 
-  [[nodiscard]] BeliefGrid load() const {
+  [[nodiscard]] VdbMap load() const {
     const VdbContents contents(path_);
     try {
       auto storage = make_storage(*contents.metadata);
       load_states(contents, *storage);
       load_beliefs(contents, *storage);
-      return GridAccess::wrap(std::move(storage));
+      return {GridAccess::wrap(std::move(storage)), notes(*contents.metadata)};
     } catch (const openvdb::Exception& error) {
       fail(std::string("cannot be read by OpenVDB: ") + error.what());
     }
@@ -70,6 +71,18 @@ class Loader {
     auto result = poses_from_text(value<openvdb::StringMetadata>(metadata, name));
     if (!result) fail(std::string("metadata '") + name + "' is no list of poses");
     return *std::move(result);
+  }
+
+  [[nodiscard]] std::map<std::string, std::string> notes(const openvdb::MetaMap& metadata) const {
+    std::map<std::string, std::string> notes;
+    for (auto entry = metadata.beginMeta(); entry != metadata.endMeta(); ++entry) {
+      const std::string& name = entry->first;
+      const auto text = metadata.getMetadata<openvdb::StringMetadata>(name);
+      if (name.starts_with(kNotePrefix) && text) {
+        notes[name.substr(kNotePrefix.size())] = text->value();
+      }
+    }
+    return notes;
   }
 
   /// Of the layout (vdb_layout.hpp).
@@ -342,7 +355,11 @@ class Loader {
 
 }  // namespace
 
-BeliefGrid load_vdb(const std::filesystem::path& path) { return Loader(path).load(); }
+BeliefGrid load_vdb(const std::filesystem::path& path) {
+  return std::move(Loader(path).load().grid);
+}
+
+VdbMap load_vdb_map(const std::filesystem::path& path) { return Loader(path).load(); }
 
 HazardVolume load_hazard_vdb(const std::filesystem::path& path, const BeliefGrid& grid) {
   const VdbContents contents(path);

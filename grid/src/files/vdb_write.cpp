@@ -212,7 +212,11 @@ void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
     GridSet set(make_transform(s));
     put_states(s, set);
     put_beliefs(s, set, config.with_covariance);
-    return MemoryArchive().image(set.grids(), make_metadata(s));
+    openvdb::MetaMap metadata = make_metadata(s);
+    for (const auto& [name, text] : config.notes) {
+      metadata.insertMeta(kNotePrefix + name, openvdb::StringMetadata(text));
+    }
+    return MemoryArchive().image(set.grids(), metadata);
   });
 }
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <string>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/text.hpp"
@@ -17,7 +16,6 @@ namespace {
 
 constexpr double kPixels = 800;       // that are followed
 constexpr double kLeftOut = 3;        // before a reading [σ_ax]
-constexpr double kPlaneSigmas = 3;    // as in integration
 constexpr double kEnough = 10;        // meetings to be expected of a frame that counts in full
 constexpr double kLeastEvents = 0.1;  // and of one that counts at all
 
@@ -54,14 +52,7 @@ HazardCalibration::HazardCalibration(const Sensor& sensor, std::optional<double>
 void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const DepthFrame& frame,
                               const Pose& T_world_camera) const {
   const PinholeCamera& camera = sensor_.camera;
-  if (frame.width != camera.width || frame.height != camera.height ||
-      frame.depth.size() != rays_.size()) {
-    throw Error(ErrorCode::invalid_argument,
-                "the frame is " + std::to_string(frame.width) + " x " +
-                    std::to_string(frame.height) + " px with " +
-                    std::to_string(frame.depth.size()) + " depths, the sensor " +
-                    std::to_string(camera.width) + " x " + std::to_string(camera.height) + " px");
-  }
+  check_frame_size(frame, camera);
   if (hazard.voxel_size() != grid.voxel_size()) {
     throw Error(ErrorCode::invalid_argument,
                 "the hazard is of voxels of " + short_text(hazard.voxel_size()) +
@@ -86,10 +77,8 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
   const auto sees_plane = [&](const Eigen::Vector3d& p_camera, double range) {
     if (!support_plane_) return false;
     const Eigen::Vector3d p = T_world_camera * p_camera;
-    const double height = p.z() - *support_plane_;
-    const double fall = (T_world_camera.translation().z() - p.z()) / range;
-    return height < 0 ||
-           (fall > 0 && height / fall < kPlaneSigmas * sensor_.sigmas(range, fall).axial);
+    const double rise = (p.z() - T_world_camera.translation().z()) / range;
+    return is_of_plane(p.z() - *support_plane_, rise, sensor_.sigmas(range, std::abs(rise)));
   };
 
   Sums sums;
@@ -117,7 +106,10 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
         const double distance = hazard.distance(voxel);
         sums.expected[class_at(distance)] += model.rate(distance) * step;
       }
-      if (!is_reading || sees_plane(static_cast<double>(z) * rays_[i], range)) continue;
+      if (!is_reading || frame.shows_known(i) ||
+          sees_plane(static_cast<double>(z) * rays_[i], range)) {
+        continue;
+      }
       const Eigen::Vector3d p = eye + range * direction;
       if (!workspace.contains(p.x(), p.y(), p.z())) continue;
       const Index3 voxel = voxel_at(p);

@@ -45,9 +45,9 @@ class CloudPoints : public Readings {
         if (kind != PixelKind::reading) continue;
         sigmas_[i] = sensor_.sigmas(norms_[i]);
         if (tapered) reach_taper_[2 * i + 1] = kTaperSigmas * sigmas_[i].axial;
-        if (support_plane && sees_plane(points_[i].z() - *support_plane, rays_[i].z() / norms_[i],
-                                        sigmas_[i].axial)) {
-          kinds_[i] = PixelKind::on_plane;
+        if (support_plane &&
+            is_of_plane(points_[i].z() - *support_plane, rays_[i].z() / norms_[i], sigmas_[i])) {
+          kinds_[i] = PixelKind::on_known;
         }
       }
     });

@@ -7,9 +7,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <string>
-
-#include "viewgain/core/error.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -36,23 +33,6 @@ FramePixels::FramePixels(const Sensor& sensor) : Readings(sensor) {
   depths_.assign((static_cast<std::size_t>(sensor_.camera.width) + 2) *
                      (static_cast<std::size_t>(sensor_.camera.height) + 2),
                  kNoDepth);
-}
-
-void FramePixels::check(const DepthFrame& frame) const {
-  const PinholeCamera& camera = sensor_.camera;
-  if (frame.width != camera.width || frame.height != camera.height ||
-      frame.depth.size() != rays_.size()) {
-    throw Error(ErrorCode::invalid_argument,
-                "depth frame is " + std::to_string(frame.width) + " x " +
-                    std::to_string(frame.height) + " px with " +
-                    std::to_string(frame.depth.size()) + " values, the sensor has " +
-                    std::to_string(camera.width) + " x " + std::to_string(camera.height));
-  }
-  if (!frame.amplitude.empty() && frame.amplitude.size() != rays_.size()) {
-    throw Error(ErrorCode::invalid_argument,
-                "depth frame has " + std::to_string(frame.amplitude.size()) + " amplitudes for " +
-                    std::to_string(rays_.size()) + " pixels");
-  }
 }
 
 void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
@@ -83,10 +63,14 @@ void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
                                   : cos_from_amplitude(frame.amplitude[i], range);
         sigmas_[i] = sensor_.sigmas(range, cosine);
         if (tapered) reach_taper_[2 * i + 1] = kTaperSigmas * sigmas_[i].axial;
+        if (frame.shows_known(i)) {
+          kinds_[i] = PixelKind::on_known;
+          continue;
+        }
         if (!plane) continue;
         const double up = plane->normal.dot(points_[i]);
-        if (sees_plane(up - plane->offset, up / range, sigmas_[i].axial)) {
-          kinds_[i] = PixelKind::on_plane;
+        if (is_of_plane(up - plane->offset, up / range, sigmas_[i])) {
+          kinds_[i] = PixelKind::on_known;
         }
       }
     }

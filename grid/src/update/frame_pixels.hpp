@@ -30,14 +30,11 @@ class FramePixels : public Readings {
   /// Undoes the lens distortion of every pixel once.
   explicit FramePixels(const Sensor& sensor);
 
-  /// Throws Error(invalid_argument) unless the frame, and its amplitude if it has one, has the
-  /// sensor's size.
-  void check(const DepthFrame& frame) const;
-
   /// Sorts the frame's pixels into the kinds and computes what follows from the readings alone.
   /// cosθ = amplitude · range² where the frame has amplitudes, else cos_incidence(). With `tapered`
-  /// false crossings keep their weight up to the reading. Readings below `plane`, or less than 3
-  /// σ_ax before it, are on_plane.
+  /// false crossings keep their weight up to the reading. Readings of the frame's known
+  /// depth, and those below `plane` or less than 3 σ above it, are on_known. The frame must have
+  /// the camera's size.
   void load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
             const std::optional<CameraPlane>& plane = {});
 

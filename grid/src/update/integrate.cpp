@@ -42,7 +42,7 @@ FrameIntegrator& FrameIntegrator::operator=(FrameIntegrator&&) noexcept = defaul
 IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame& frame,
                                              const Pose& T_world_camera_in) {
   Impl& m = *impl_;
-  m.pixels.check(frame);
+  check_frame_size(frame, m.pixels.sensor().camera);
   const Pose T_world_camera = rigid_view(T_world_camera_in);
   const Pose T_camera_grid = T_world_camera.inverse() * grid.T_world_grid();
   const Pose T_grid_camera = grid.T_world_grid().inverse() * T_world_camera;
@@ -57,7 +57,7 @@ std::optional<Box> reading_bounds(const Sensor& sensor, const DepthFrame& frame,
                                   const Pose& T_world_camera, const Pose& T_world_grid,
                                   std::optional<double> support_plane) {
   FramePixels pixels(sensor);
-  pixels.check(frame);
+  check_frame_size(frame, sensor.camera);
   check_plane(support_plane);
   const Pose T_grid_camera = T_world_grid.inverse() * rigid_view(T_world_camera);
   ThreadPool caller_alone(1);

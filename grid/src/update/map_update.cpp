@@ -46,7 +46,7 @@ IntegrationReport MapUpdate::run(BeliefGrid& grid, const PlacedFrame& frame,
   IntegrationReport report;
   for (const PixelKind kind : frame.readings.kinds()) {
     ++(kind == PixelKind::reading        ? report.readings
-       : kind == PixelKind::on_plane     ? report.plane_readings
+       : kind == PixelKind::on_known     ? report.plane_readings
        : kind == PixelKind::out_of_range ? report.out_of_range
                                          : report.invalid);
   }

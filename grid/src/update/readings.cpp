@@ -34,12 +34,6 @@ PixelKind Readings::sort_by_range(std::size_t pixel, double range) {
   return kind;
 }
 
-bool Readings::sees_plane(double height, double rise, double sigma_axial) {
-  if (height < 0) return true;
-  // How much farther the ray meets the plane; it must come down to do so.
-  return rise < 0 && height / -rise < kTaperSigmas * sigma_axial;
-}
-
 std::optional<Box> bounds_of(const Readings& readings, const Pose& T_grid_readings) {
   std::optional<Box> box;
   for (std::size_t i = 0; i < readings.size(); ++i) {

@@ -13,8 +13,9 @@
 
 namespace viewgain::detail {
 
-/// on_plane: a reading of the support plane, which carves as far as it reaches but is no hit.
-enum class PixelKind : std::uint8_t { invalid, reading, out_of_range, on_plane };
+/// on_known: a reading of the support plane or of a known obstacle, which carves as far as it
+/// reaches but is no hit.
+enum class PixelKind : std::uint8_t { invalid, reading, out_of_range, on_known };
 
 /// Noise spreads readings by this many sigma_ax.
 inline constexpr double kTaperSigmas = 3.0;
@@ -52,9 +53,6 @@ class Readings {
   void resize(std::size_t count);
   /// What a pixel at this range says (NaN: invalid), with its reach and no taper yet.
   [[nodiscard]] PixelKind sort_by_range(std::size_t pixel, double range);
-  /// Does a reading see the support plane: `height` [m] above it, `rise` metres a metre along its
-  /// ray?
-  [[nodiscard]] static bool sees_plane(double height, double rise, double sigma_axial);
 
   Sensor sensor_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();

@@ -22,6 +22,10 @@ RayReturn SimulatedRoom::first_return(const Eigen::Vector3d& origin,
                                       const Eigen::Vector3d& direction) const {
   const SurfaceHit hit = object->intersect(origin, direction);
   RayReturn first{hit.range, std::abs(hit.normal.dot(direction))};
+  if (surroundings) {
+    const SurfaceHit other = surroundings->intersect(origin, direction);
+    if (other.range < first.range) first = {other.range, std::abs(other.normal.dot(direction))};
+  }
   if (background_radius > 0) {
     const double wall = sphere_exit(origin, direction, background_radius);
     if (wall < first.range) {

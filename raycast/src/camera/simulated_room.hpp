@@ -20,8 +20,9 @@ struct RayReturn {
 /// The object and what stands round it.
 struct SimulatedRoom {
   std::shared_ptr<const SurfaceScene> object;
-  double background_radius = 0;         ///< of a sphere round the origin [m]; 0: none
-  std::optional<double> support_plane;  ///< height of a table without end [m]
+  double background_radius = 0;                      ///< of a sphere round the origin [m]; 0: none
+  std::optional<double> support_plane;               ///< height of a table without end [m]
+  std::shared_ptr<const SurfaceScene> surroundings;  ///< may be null
 
   /// The first return of a ray along the unit direction, world frame.
   [[nodiscard]] RayReturn first_return(const Eigen::Vector3d& origin,

@@ -117,7 +117,7 @@ struct SimulatedSensor::Impl {
        const SimulationConfig& config_in, int threads)
       : sensor(sensor_in),
         config(config_in),
-        room{std::move(scene), config.background_radius, config.support_plane},
+        room{std::move(scene), config.background_radius, config.support_plane, config.surroundings},
         pixel_model(sensor, config),
         pixels(pixel_rays(sensor.camera, pixel_model.mixes())),
         pool(threads) {}

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Kriegel's choice among made-up proposals.
-#include "planner/boundary_order.hpp"
+#include "viewgain/planner_mesh/boundary_order.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 constexpr double kSamePlace = 0.03;   // [m]
@@ -159,4 +159,4 @@ TEST(BoundaryOrder, PosesWithoutAClassAreNobodysBoundary) {
 }
 
 }  // namespace
-}  // namespace viewgain::app
+}  // namespace viewgain

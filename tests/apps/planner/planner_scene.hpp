@@ -7,9 +7,9 @@
 #include <memory>
 #include <utility>
 
-#include "planner/model.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 
@@ -54,15 +54,16 @@ inline Sensor half_sr4000() {
   return sensor;
 }
 
-inline app::ModelConfig model_config(const Sensor& sensor, double half_workspace, double voxel) {
-  app::ModelConfig config;
-  config.grid.voxel_size = voxel;
+inline SurfaceModelConfig model_config(const Sensor& sensor, double half_workspace, double voxel) {
+  SurfaceModelConfig model;
+  GridConfig& grid = model.map.grid;
+  grid.voxel_size = voxel;
   for (std::size_t a = 0; a < 3; ++a) {
-    config.grid.workspace.min[a] = -half_workspace;
-    config.grid.workspace.max[a] = half_workspace;
+    grid.workspace.min[a] = -half_workspace;
+    grid.workspace.max[a] = half_workspace;
   }
-  config.grid.prior_sigma = default_prior_sigma(voxel, sensor);
-  return config;
+  grid.prior_sigma = default_prior_sigma(voxel, sensor);
+  return model;
 }
 
 }  // namespace viewgain::test

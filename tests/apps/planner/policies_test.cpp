@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // What policies choose, against counts by other means.
-#include "planner/policies.hpp"
+#include "viewgain/planner_mesh/policies.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,11 +15,11 @@
 
 #include "apps/planner/planner_scene.hpp"
 #include "core/expect_error.hpp"
-#include "planner/pose_sets.hpp"
-#include "planner/proximity_measure.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/planner/pose_sets.hpp"
+#include "viewgain/planner/proximity_measure.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 double angle_between(const Pose& a, const Pose& b, const Eigen::Vector3d& center) {
@@ -58,8 +58,9 @@ TEST(Fibonacci, AnyNumberOfTheFirstViewsIsSpreadEvenly) {
   }
   EXPECT_EQ(cases, 5 + 9 + 15);
   EXPECT_EQ(make_pose_set("fibonacci", {center, 0.5, {}, 1, {}}).poses.size(), 20U);
-  test::expect_error(ErrorCode::invalid_argument, "20001",
-                     [&] { (void)make_pose_set("fibonacci", {center, 0.5, 20'001, 1, {}}); });
+  test::expect_error(ErrorCode::invalid_argument, "20001", [&] {
+    (void)make_pose_set("fibonacci", {center, 0.5, 20'001, 1, {}});
+  });
 }
 
 // A box seen once, and candidates all round it.
@@ -69,14 +70,14 @@ struct SeenBox {
       std::make_shared<const SurfaceScene>(test::box_mesh(0.08));
   std::shared_ptr<const Truth> truth;
   Pose start = look_at({0.35, 0.2, 0.25}, {0, 0, 0});
-  LoopExec exec{{1}};
+  ExecConfig exec{1};
   std::vector<Candidate> candidates;
 
   SeenBox() {
     VisibilityConfig visibility;
     visibility.distance = 0.4;
     visibility.start = start;
-    truth = std::make_shared<const Truth>(mesh, sensor, visibility, exec.threads);
+    truth = std::make_shared<const Truth>(mesh, sensor, visibility, exec);
     for (const Pose& pose : sphere_poses(30, 0.42, {0, 0, 0})) {
       candidates.push_back({pose, "sphere", std::nullopt, std::nullopt});
     }
@@ -85,17 +86,17 @@ struct SeenBox {
     candidates.push_back(candidates[7]);
   }
   [[nodiscard]] Measurements view(const Pose& pose) const {
-    return {pose, {SimulatedSensor(mesh, sensor, {}, exec.threads).acquire(pose)}};
+    return {pose, {SimulatedSensor(mesh, sensor, {}, exec).acquire(pose)}};
   }
-  [[nodiscard]] std::unique_ptr<Model> model_after(const std::vector<Pose>& views) const {
-    auto model =
-        std::make_unique<Model>(sensor, test::model_config(sensor, 0.12, 0.005), nullptr, exec);
+  [[nodiscard]] std::unique_ptr<SurfaceModel> model_after(const std::vector<Pose>& views) const {
+    auto model = std::make_unique<SurfaceModel>(sensor, test::model_config(sensor, 0.12, 0.005),
+                                                nullptr, exec);
     for (const Pose& pose : views) (void)model->update(view(pose));
     return model;
   }
-  [[nodiscard]] std::optional<Decision> choice(const Model& model, PolicyConfig config,
+  [[nodiscard]] std::optional<Decision> choice(const SurfaceModel& model, PolicyConfig config,
                                                int num_threads = 1) const {
-    const LoopExec own{{num_threads}};
+    const ExecConfig own{num_threads};
     config.object = {mesh, truth, {}};
     CandidateGeneration generation(model, sensor, default_generation(sensor, 0.005), own);
     PolicyDecision decision(model, generation, sensor, config, own);
@@ -149,7 +150,7 @@ TEST(Oracle, CountsUncoveredSamplesInView) {
   EXPECT_EQ(counts[31], counts[7]);
   // A convex body hides what looks away alone (and some at its edges); without a surface nothing is
   // covered.
-  const auto empty = std::make_unique<Model>(
+  const auto empty = std::make_unique<SurfaceModel>(
       box.sensor, test::model_config(box.sensor, 0.12, 0.005), nullptr, box.exec);
   const OracleChoice from_nothing(*empty, box.sensor, {box.mesh, box.truth, {}}, box.exec);
   const std::vector<std::size_t> all = from_nothing.uncovered_in_view(box.candidates);
@@ -182,7 +183,7 @@ TEST(Oracle, NeedsTheObject) {
 }
 
 // What the policy counts, by small steps along the rays.
-double proximity_of(const Model& model, const Sensor& sensor, const Pose& pose) {
+double proximity_of(const SurfaceModel& model, const Sensor& sensor, const Pose& pose) {
   const BeliefGrid& grid = model.grid();
   const HazardField hazard(grid.snapshot());
   const double reach = 5 * hazard.model().decay_length, step = 0.05 * grid.voxel_size();
@@ -256,4 +257,4 @@ TEST(Proximity, IsNothingWhileNoSurfaceIsKnown) {
 }
 
 }  // namespace
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -3,7 +3,7 @@
 
 // What a frame shows of new surface: planes whose area is known, and a frame of random readings
 // against a count by hand.
-#include "planner/realised_area.hpp"
+#include "viewgain/planner/realised_area.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,14 +16,14 @@
 #include "core/expect_error.hpp"
 #include "viewgain/core/generators.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 constexpr double kVoxel = 0.005;
 constexpr double kEye = 0.4;  // above the plane z = 0 [m]
 
 BeliefGrid empty_map(double half = 0.3) {
-  return BeliefGrid(test::model_config(test::half_sr4000(), half, kVoxel).grid);
+  return BeliefGrid(test::model_config(test::half_sr4000(), half, kVoxel).map.grid);
 }
 
 // Looks straight down at the plane z = 0.
@@ -69,9 +69,28 @@ TEST(RealisedArea, NothingIsShownByWhatIsNoReading) {
     ++cases;
   }
   EXPECT_EQ(cases, 7);
-  test::expect_error(ErrorCode::invalid_argument, "6 depths", [&] {
+  test::expect_error(ErrorCode::invalid_argument, "6 values", [&] {
     (void)realised.of({3, 2, std::vector<float>(6, 0.4F), {}}, from_above(), grid, nullptr);
   });
+}
+
+TEST(RealisedArea, WhatIsKnownShowsNothing) {
+  const Sensor sensor = test::half_sr4000();
+  const RealisedArea realised(sensor);
+  const BeliefGrid grid = empty_map();
+  DepthFrame frame = plane_frame(sensor, kEye);
+  const double all = realised.of(frame, from_above(), grid, nullptr);
+  // The left half of the image is known: at the reading, behind it and clearly before.
+  const std::size_t pixels = frame.depth.size();
+  for (const auto& [before, share] : {std::pair(0.0F, 0.5), {-0.1F, 0.5}, {0.2F, 1.0}}) {
+    frame.known_depth.assign(pixels, DepthFrame::kOutOfRange);
+    for (std::size_t i = 0; i < pixels; ++i) {
+      if (i % static_cast<std::size_t>(frame.width) < static_cast<std::size_t>(frame.width) / 2) {
+        frame.known_depth[i] = frame.depth[i] + before;
+      }
+    }
+    EXPECT_NEAR(realised.of(frame, from_above(), grid, nullptr), share * all, 0.01 * all) << before;
+  }
 }
 
 Belief hit(std::uint32_t hits) { return {{1e6F, 1e6F, 1e6F, 0.F, 0.F, 0.F}, {}, hits}; }
@@ -204,4 +223,4 @@ TEST(RealisedArea, IsWhatAnOracleCounts) {
 }
 
 }  // namespace
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -12,10 +12,10 @@
 #include <memory>
 
 #include "apps/planner/planner_scene.hpp"
-#include "planner/candidate_generation.hpp"
-#include "planner/policies.hpp"
-#include "planner/truth.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/policies.hpp"
+#include "viewgain/planner_mesh/truth.hpp"
 
 namespace {
 
@@ -36,7 +36,7 @@ extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
   return next(thread, attributes, function, argument);
 }
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 // Begun while a view goes into the model, candidates are proposed and one is chosen.
@@ -48,15 +48,15 @@ int threads_begun(int num_threads) {
   const Measurements measurements{view, {camera.acquire(view, 0)}};
 
   const int before = begun;
-  const LoopExec exec{{num_threads}};
+  const ExecConfig exec{num_threads};
   VisibilityConfig visibility;
   visibility.distance = 0.4;
   visibility.start = view;
-  const auto truth = std::make_shared<const Truth>(mesh, sensor, visibility, exec.threads);
-  Model model(sensor, test::model_config(sensor, 0.15, 0.005), truth, exec);
+  const auto truth = std::make_shared<const Truth>(mesh, sensor, visibility, exec);
+  SurfaceModel model(sensor, test::model_config(sensor, 0.15, 0.005), truth, exec);
   (void)model.update(measurements);
   GenerationConfig config = default_generation(sensor, 0.005);
-  config.classes_by_sight = true;
+  config.boundary.classes_by_sight = true;
   CandidateGeneration generation(model, sensor, config, exec);
   const Proposal proposal = generation.generate(view);
   EXPECT_FALSE(proposal.candidates.empty());
@@ -70,4 +70,4 @@ TEST(Threads, OneIsTheCallersOwn) { EXPECT_EQ(threads_begun(1), 0); }
 TEST(Threads, ThreeAreMore) { EXPECT_GT(threads_begun(3), 0); }
 
 }  // namespace
-}  // namespace viewgain::app
+}  // namespace viewgain

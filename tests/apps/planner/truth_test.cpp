@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // What counts as visible under limits of reach.
-#include "planner/truth.hpp"
+#include "viewgain/planner_mesh/truth.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "apps/planner/planner_scene.hpp"
 #include "viewgain/core/generators.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 constexpr double kHalf = 0.1;  // of the box [m]
@@ -123,4 +123,4 @@ TEST(Truth, AListOfPosesCountsWhereItIsInReach) {
 }
 
 }  // namespace
-}  // namespace viewgain::app
+}  // namespace viewgain

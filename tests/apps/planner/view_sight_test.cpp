@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Boundaries are classed by views that see them: what is hidden from a view counts for nothing.
-#include "planner/view_sight.hpp"
+#include "viewgain/planner/view_sight.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "apps/planner/planner_scene.hpp"
-#include "planner/candidate_generation.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
 
-namespace viewgain::app {
+namespace viewgain {
 namespace {
 
 constexpr double kVoxel = 0.008;
@@ -49,7 +49,7 @@ class HiddenPlate : public testing::Test {
   // Of the runs at the plate, and not at the roof, how many are classed by each pose's frames.
   [[nodiscard]] std::array<int, 2> views_of_plate_runs(bool by_sight) const {
     GenerationConfig config = default_generation(sensor, kVoxel);
-    config.classes_by_sight = by_sight;
+    config.boundary.classes_by_sight = by_sight;
     CandidateGeneration generation(model, sensor, config, {});
     (void)generation.generate(views.back());
     std::array<int, 2> count{};
@@ -62,7 +62,7 @@ class HiddenPlate : public testing::Test {
 
   Sensor sensor;
   std::vector<Pose> views;
-  Model model;
+  SurfaceModel model;
 };
 
 TEST_F(HiddenPlate, IsSeenFromTheSideAlone) {
@@ -102,4 +102,4 @@ TEST_F(HiddenPlate, ItsBoundariesAreClassedByTheViewThatSeesThem) {
 }
 
 }  // namespace
-}  // namespace viewgain::app
+}  // namespace viewgain

@@ -139,9 +139,10 @@ TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
   const json run_file = json::parse(read("run/run.json"));
   const std::map<std::string, std::string> renamed{
       {"generator", "generators"}, {"calibrate", "calibrated"}, {"no_refine", "refine"}};
-  // Where results go, how fast; the seed is beside the settings, the body in the sensor.
-  const std::set<std::string> elsewhere{"help",      "json",        "threads", "out",
-                                        "save_maps", "no_pictures", "seed",    "body"};
+  // Where results go, how fast; the seed is beside the settings, the body in the sensor; obstacles
+  // are there where there are any.
+  const std::set<std::string> elsewhere{"help",        "json", "threads", "out",     "save_maps",
+                                        "no_pictures", "seed", "body",    "obstacle"};
   std::istringstream help(run_well({"reconstruct", "--help"}));
   std::size_t flags = 0;
   for (std::string line; std::getline(help, line);) {
@@ -157,6 +158,37 @@ TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
   }
   // The mesh has no flag; two settings follow from others.
   EXPECT_EQ(flags + 3, run_file["settings"].size());
+}
+
+TEST_F(Reconstruct, KnownObstaclesHideTheObjectAndAreNoPartOfIt) {
+  const Strings setting{"--max-views", "3", "--no-pictures", "--size", "0.15"};
+  const json without = reconstruct("cube.off", setting);
+  Off wall;
+  wall.add_box({-0.084, -0.08, -0.08}, {-0.078, 0.08, 0.08});
+  write("wall.off", wall.text());
+  Strings with = setting;
+  const std::string box = "0.078,-0.08,-0.08,0.084,0.08,0.08";
+  for (const std::string& more :
+       {std::string("--obstacle"), box, std::string("--obstacle"), std::string("wall.off")}) {
+    with.push_back(more);
+  }
+  const json result = reconstruct("cube.off", with);
+  EXPECT_EQ(json::parse(read("run/run.json"))["settings"]["obstacles"], (Strings{box, "wall.off"}));
+  EXPECT_NE(result["per_view"][2]["pose"], without["per_view"][2]["pose"]);
+  // They stand 3 mm off two faces of the cube, which nobody can see then.
+  EXPECT_LT(result["coverage"].get<double>(), without["coverage"].get<double>());
+  for (const char* side :
+       {"-0.085,-0.08,-0.08,-0.0785,0.08,0.08", "0.0785,-0.08,-0.08,0.085,0.08,0.08"}) {
+    const json region =
+        json::parse(run_well({"info", "run/map.vdb", "--region", side, "--json"}))["region"];
+    EXPECT_LE(region["occupied"].get<int>(), 30) << side;
+  }
+  for (const char* wrong : {"1,2,3", "-1,-1,-1,1,1,1"}) {  // the second holds the start pose
+    const test::ProgramResult refused =
+        run(arguments("cube.off", {std::string("--obstacle=") + wrong}));
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.err.find("--obstacle"), std::string::npos) << refused.err;
+  }
 }
 
 TEST_F(Reconstruct, SameSeedSameRunForAnyNumberOfThreads) {

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <limits>
 #include <locale>
+#include <map>
 #include <random>
 #include <string>
 
@@ -53,6 +54,21 @@ void expect_same(const BeliefGrid& a, const BeliefGrid& b) {
   a.copy_states(states_a);
   b.copy_states(states_b);
   EXPECT_EQ(states_a, states_b);
+}
+
+TEST(VdbIo, NotesComeWithTheMap) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "map.vdb";
+  const BeliefGrid grid = seen_object(64);
+  const std::map<std::string, std::string> notes{
+      {"planner", "version 1\nseen 0.25\n"}, {"", "no name"}, {"empty", ""}, {"bytes", "\x01\xff"}};
+  save_vdb(grid, path, {.with_covariance = false, .notes = notes});
+  const VdbMap map = load_vdb_map(path);
+  EXPECT_EQ(map.notes, notes);
+  expect_same(map.grid, grid);
+  expect_same(load_vdb(path), grid);
+  save_vdb(grid, path);
+  EXPECT_TRUE(load_vdb_map(path).notes.empty());
 }
 
 TEST(VdbIo, RoundTripsAreExact) {

@@ -30,7 +30,7 @@ Sensor one_pixel() {
   Sensor sensor = small_sensor(1, 1);
   sensor.camera.cx = sensor.camera.cy = 0;
   sensor.min_range = 0.05;
-  sensor.noise = ConstantNoise{kSigma, kSigma};
+  sensor.noise = ConstantNoise{kSigma, 2 * kSigma};
   return sensor;
 }
 
@@ -41,10 +41,12 @@ IntegrationReport read_once(const Pose& pose, double t, double plane) {
   return FrameIntegrator(one_pixel(), {.support_plane = plane}).integrate(grid, frame, pose);
 }
 
-TEST(SupportPlane, BoundsAreThreeSigmaAlongTheRayAndBelow) {
+TEST(SupportPlane, BoundsAreThreeSigmaAlongTheNormalAndBelow) {
   for (const double degrees : {0.0, 40.0, 70.0}) {  // of the ray from the vertical
     const double angle = degrees * std::numbers::pi / 180;
     const double to_plane = 0.3;
+    // Three sigmas along the normal, as far along the ray.
+    const double bound = 3 * std::hypot(kSigma, 2 * kSigma * std::tan(angle));
     const Eigen::Vector3d target(0.013, -0.021, 0.05);
     const Pose above =
         look_at(target + to_plane * Eigen::Vector3d(std::sin(angle), 0, std::cos(angle)), target);
@@ -55,8 +57,8 @@ TEST(SupportPlane, BoundsAreThreeSigmaAlongTheRayAndBelow) {
       bool plane_from_above, plane_from_below;
     };
     for (const auto& [before, from_above, from_below] :
-         {Reading{0.1, false, true}, Reading{3.2 * kSigma, false, true},
-          Reading{2.8 * kSigma, true, true}, Reading{0.0005, true, true},
+         {Reading{0.1, false, true}, Reading{1.05 * bound, false, true},
+          Reading{0.95 * bound, true, true}, Reading{0.0005, true, true},
           Reading{-0.0005, true, false}, Reading{-0.02, true, false}}) {
       for (const auto& [pose, expected] : {std::pair{above, from_above}, {below, from_below}}) {
         const IntegrationReport report = read_once(pose, to_plane - before, 0.05);
@@ -144,8 +146,8 @@ TEST_F(SupportPlaneScene, OnlyVoxelsWithReadingsOfThePlaneDiffer) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Eigen::Vector3d p_world = pose * (static_cast<double>(frame.depth[i]) * rays[i]);
       const Eigen::Vector3d d = pose.rotation() * rays[i].normalized();
-      const double to_plane = (kHeight - p_world.z()) / d.z();
-      if (!(p_world.z() < kHeight || (to_plane >= 0 && to_plane < 3 * kSigma))) continue;
+      // The noise is as large in each direction.
+      if (!(p_world.z() < kHeight || (d.z() < 0 && p_world.z() - kHeight < 3 * kSigma))) continue;
       ++expected_readings;
       const Eigen::Vector3d p = grid_config_.T_world_grid.inverse() * p_world / 0.01;
       plane_voxels.emplace(static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),

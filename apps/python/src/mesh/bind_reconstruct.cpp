@@ -15,10 +15,10 @@
 #include "map/depth_images.hpp"
 #include "map/shared_grid.hpp"
 #include "mesh/bindings.hpp"
-#include "planner/candidate_generation.hpp"
-#include "planner/model.hpp"
-#include "planner/policies.hpp"
 #include "viewgain/core/planning.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/policies.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
 
 namespace viewgain::python {
 namespace {
@@ -93,16 +93,16 @@ py::dict dict_of(const ViewRecord& record, double realised_area) {
 }
 
 // Whether a policy chooses among boundary candidates by itself; others have a set of their own.
-bool is_of_boundaries(app::Policy policy) {
-  return policy != app::Policy::sequence && policy != app::Policy::random;
+bool is_of_boundaries(Policy policy) {
+  return policy != Policy::sequence && policy != Policy::random;
 }
 
-app::GenerationConfig generation_config(const Sensor& sensor, double voxel_size, bool boundary,
-                                        const py::object& candidates, const ReachRegion* reach,
-                                        std::optional<double> support_plane, app::Policy policy) {
-  app::GenerationConfig config = app::default_generation(sensor, voxel_size);
-  config.boundary = boundary;
-  config.classes_by_sight = policy == app::Policy::kriegel;
+GenerationConfig generation_config(const Sensor& sensor, double voxel_size, bool boundary,
+                                   const py::object& candidates, const ReachRegion* reach,
+                                   std::optional<double> support_plane, Policy policy) {
+  GenerationConfig config = default_generation(sensor, voxel_size);
+  config.at_boundaries = boundary;
+  config.boundary.classes_by_sight = policy == Policy::kriegel;
   if (!candidates.is_none()) {
     config.sets.push_back({"candidates", pose_list(candidates, "candidates")});
   }
@@ -126,39 +126,40 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
   }
   const ExecConfig exec{num_threads};
   const Pose x_0 = one_pose(start, "start");
-  app::ModelConfig model_config;
-  model_config.grid.voxel_size = voxel_size;
-  model_config.grid.workspace = box(workspace, "workspace");
-  model_config.grid.prior_sigma = default_prior_sigma(voxel_size, sensor);
-  model_config.integration.support_plane = support_plane;
-  if (jump_edges) model_config.jump_edges.emplace();
-  model_config.criterion = parse_criterion(criterion);
-  app::PolicyConfig policy_config;
-  policy_config.policy = app::parse_policy(policy);
-  if (policy_config.policy == app::Policy::fibonacci) {
+  SurfaceModelConfig model_config;
+  MapModelConfig& map_config = model_config.map;
+  map_config.grid.voxel_size = voxel_size;
+  map_config.grid.workspace = box(workspace, "workspace");
+  map_config.grid.prior_sigma = default_prior_sigma(voxel_size, sensor);
+  map_config.integration.support_plane = support_plane;
+  if (jump_edges) map_config.jump_edges.emplace();
+  map_config.criterion = parse_criterion(criterion);
+  PolicyConfig policy_config;
+  policy_config.policy = parse_policy(policy);
+  if (policy_config.policy == Policy::fibonacci) {
     throw py::value_error(
         "policy \"fibonacci\" is a set of poses: give them as candidates of policy \"sequence\"");
   }
-  const app::GenerationConfig generation_settings = generation_config(
+  const GenerationConfig generation_settings = generation_config(
       sensor, voxel_size, boundary.value_or(is_of_boundaries(policy_config.policy)), candidates,
       reach, support_plane, policy_config.policy);
-  if (!generation_settings.boundary && candidates.is_none()) {
+  if (!generation_settings.at_boundaries && candidates.is_none()) {
     throw py::value_error("give candidates: without boundary, policy \"" + policy +
                           "\" has nothing to choose from");
   }
-  policy_config.criterion = model_config.criterion;
+  policy_config.criterion = map_config.criterion;
   policy_config.model = parse_gain_model(gain);
   policy_config.support_plane = support_plane;
   PlanningConfig planning;
   planning.max_views = max_views;
-  app::set_stop_rules(planning, policy_config, stop_gain, stop_area);
+  set_stop_rules(planning, policy_config, stop_gain, stop_area);
   planning.idle_views = idle_views;
   if (control != nullptr) planning.stop = control->stop.get_token();
 
   PythonAcquisition acquisition(acquire, sensor);
-  app::Model model(sensor, model_config, nullptr, {exec});
-  app::CandidateGeneration generation(model, sensor, generation_settings, {exec});
-  app::PolicyDecision decision(model, generation, sensor, policy_config, {exec});
+  SurfaceModel model(sensor, model_config, nullptr, exec);
+  CandidateGeneration generation(model, sensor, generation_settings, exec);
+  PolicyDecision decision(model, generation, sensor, policy_config, exec);
   Reconstruction result;
   const auto watch = [&](const ViewRecord& record) {
     with_gil([&] {

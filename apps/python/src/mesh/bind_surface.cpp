@@ -13,13 +13,13 @@
 #include "gil.hpp"
 #include "map/shared_grid.hpp"
 #include "mesh/bindings.hpp"
-#include "planner/candidate_generation.hpp"
-#include "planner/model.hpp"
 #include "viewgain/core/text.hpp"
 #include "viewgain/formats/ply.hpp"
 #include "viewgain/mesh/boundary.hpp"
 #include "viewgain/mesh/surface.hpp"
 #include "viewgain/mesh/viewpoint_estimator.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
 
 namespace viewgain::python {
 
@@ -60,7 +60,7 @@ SurfaceMesh surface_of_grid(const SharedGrid& grid, std::uint32_t min_hits, int 
   config.min_hits = min_hits;
   return grid.read([&](const BeliefGrid& g) {
     const ExecConfig exec{num_threads};
-    return app::surface_of(fused_points(g, config, exec), pooling_of(g.snapshot()).length, exec);
+    return surface_of(fused_points(g, config, exec), pooling_of(g.snapshot()).length, exec);
   });
 }
 
@@ -74,7 +74,7 @@ py::tuple boundary_candidates(const SurfaceMesh& surface, const py::object& view
     throw py::value_error("the spacing must be positive and finite, not " + short_text(spacing));
   }
   const std::vector<Pose> taken = pose_list(views, "views");
-  EstimatorConfig config = app::default_estimator(spacing);
+  EstimatorConfig config = default_estimator(spacing);
   if (overlap) config.overlap = *overlap;
   if (distances) config.distances = *distances;
   if (tilts) config.tilts = *tilts;

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <vector>
 
+#include "viewgain/core/camera.hpp"
 #include "viewgain/core/export.hpp"
 
 namespace viewgain {
@@ -22,6 +24,15 @@ struct VIEWGAIN_EXPORT DepthFrame {
   /// Empty, or width * height values: the returned signal cosθ / t² [m⁻²], θ the angle of incidence
   /// and t the range, for a diffuse surface as bright as the sensor's noise model assumes.
   std::vector<float> amplitude{};
+  /// Empty, or width * height values: from which depth on a pixel's reading is of something that is
+  /// known and no part of the map, say the wall of a bin; infinity: none is. ObstacleView sets it.
+  /// Such readings carve but do not hit.
+  std::vector<float> known_depth{};
+
+  /// Is this pixel's reading of what is known to be there?
+  [[nodiscard]] bool shows_known(std::size_t pixel) const {
+    return !known_depth.empty() && depth[pixel] >= known_depth[pixel];
+  }
 
   [[nodiscard]] float at(int u, int v) const {
     return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
@@ -29,5 +40,9 @@ struct VIEWGAIN_EXPORT DepthFrame {
   }
   bool operator==(const DepthFrame&) const = default;
 };
+
+/// Throws Error(invalid_argument), with both sizes, unless the frame, and its amplitudes and known
+/// depths if it has any, has the camera's size.
+VIEWGAIN_EXPORT void check_frame_size(const DepthFrame& frame, const PinholeCamera& camera);
 
 }  // namespace viewgain

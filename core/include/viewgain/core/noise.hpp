@@ -25,7 +25,7 @@ struct VIEWGAIN_EXPORT ShotNoise {
   double reference_integration_time = 8.5e-3;  ///< [s]
   double integration_time = 1.0e-3;            ///< [s]
   double modulation_frequency = 30e6;          ///< of the light [Hz]; 0: ranges are unambiguous
-  double min_amplitude = 0.01;                 ///< cos / t² under which a reading is invalid [m⁻²]
+  double min_amplitude = 0.01;  ///< cos / t² under which a reading is invalid [m⁻²]
   bool operator==(const ShotNoise&) const = default;
 };
 
@@ -94,6 +94,22 @@ using NoiseModel =
                                                        double cos_incidence);
 [[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const NoiseModel&, double t, double fx,
                                                        double cos_incidence = 1.0);
+
+/// The standard deviation of a reading along the surface's normal [m]: on a surface seen at a slant
+/// the lateral one counts, too, since a reading beside its place is of another depth. √((σ_ax
+/// cosθ)² + (σ_lat sinθ)²).
+[[nodiscard]] VIEWGAIN_EXPORT double sigma_along_normal(const MeasurementSigmas& sigmas,
+                                                        double cos_incidence);
+
+/// Readings this near before a surface that is known, in standard deviations along its normal, are
+/// taken for readings of it.
+inline constexpr double kKnownSigmas = 3;
+
+/// Is a reading one of a known plane: `height` [m] above it, with `rise` metres along the plane's
+/// normal a metre along its ray? It is where it lies under the plane, or where its ray comes down
+/// and it lies less than kKnownSigmas above it.
+[[nodiscard]] VIEWGAIN_EXPORT bool is_of_plane(double height, double rise,
+                                               const MeasurementSigmas& sigmas);
 
 /// c / (2 modulation_frequency) [m]: the phase of the light repeats after it. Infinity for models
 /// without a modulation frequency.

@@ -37,12 +37,16 @@ class VIEWGAIN_EXPORT DataAcquisition {
   virtual Measurements acquire(const Pose& T_world_camera, std::size_t view) = 0;
 };
 
+/// Wall time by stage [s].
+using StageSeconds = std::map<std::string, double>;
+
 /// How far the representations are, for the stopping rules.
 struct VIEWGAIN_EXPORT ModelProgress {
   double entropy_removed = 0;  ///< of the whole map [nat, or m² for trace]
   std::uint64_t unknown_voxels = 0;
   std::optional<double> coverage{};  ///< in [0, 1], where a ground truth is known
   double surface_area = 0;           ///< of the model's surface [m²]
+  StageSeconds seconds{};            ///< what the update's stages took; may be empty
 };
 
 /// UPDATEREPRESENTATIONS: the model and the occupancy grid (the paper's M and O).
@@ -99,17 +103,29 @@ class VIEWGAIN_EXPORT DecisionMaking {
                                          std::span<const Candidate> candidates) = 0;
 };
 
+/// Default of PlanningConfig::stop_gain: about what is left when the information of a touched voxel
+/// cannot be doubled any more (3/2 ln 2 = 1.04 nat). With 0.15 nat no run on the camel ended: each
+/// view meets voxels of the noise shell, and unknown ones behind it, for the first time.
+inline constexpr double kStopGain = 1.2;  // [nat]
+/// The same for the criterion trace, as a share of the first decision's.
+inline constexpr double kStopGainShare = 0.01;
+
+/// Default of PlanningConfig::stop_area, of the surface so far; perf/README.md says where the camel
+/// stops by it.
+inline constexpr double kStopArea = 1.6e-3;
+
 /// When to stop (DESIGN.md section 9).
 struct VIEWGAIN_EXPORT PlanningConfig {
   std::size_t max_views = 20;
   /// Stop when the best candidate's gain per touched voxel is under this [nat, m² for trace].
-  double stop_gain = 0.15;
-  /// stop_gain is a share of the first decision's gain per voxel instead (for trace: 0.01).
+  double stop_gain = kStopGain;
+  /// stop_gain is a share of the first decision's gain per voxel instead (for trace:
+  /// kStopGainShare).
   bool stop_gain_is_relative = false;
   /// Stop when the most that any candidate is expected to show (Decision::best_area), as a share of
   /// the model's surface (ModelProgress::surface_area), is under this on the mean of the last three
   /// decisions: a single one is often high or low by chance. 0: never.
-  double stop_area = 0;
+  double stop_area = kStopArea;
   std::size_t idle_views = 3;  ///< stop after so many views in a row that brought nothing; 0: never
   /// Nothing: the view adds less than this share to entropy_removed and takes less than this share
   /// off the unknown voxels (or nothing at all). The first view is never idle.
@@ -146,6 +162,9 @@ struct VIEWGAIN_EXPORT ViewRecord {
   /// The next view; empty if there was none. With StopReason::gain and area it is the one
   /// that promised too little and is not taken.
   std::optional<Decision> decision{};
+  /// What the turn's steps took: acquire; the update's own stages, or, where it names none, update;
+  /// candidates; score.
+  StageSeconds seconds{};
 };
 
 struct VIEWGAIN_EXPORT PlanningResult {

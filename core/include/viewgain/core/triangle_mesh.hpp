@@ -16,4 +16,19 @@ struct VIEWGAIN_EXPORT TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three vertex indices each
 };
 
+/// The faces of a box, two triangles each, that look outward. Corner i is at max along x if bit 0
+/// of i is set, along y by bit 1, along z by bit 2.
+inline constexpr std::array<std::array<std::uint32_t, 3>, 12> kBoxTriangles{{{0, 2, 1},
+                                                                             {1, 2, 3},
+                                                                             {4, 5, 6},
+                                                                             {5, 7, 6},
+                                                                             {0, 1, 4},
+                                                                             {1, 5, 4},
+                                                                             {2, 6, 3},
+                                                                             {3, 6, 7},
+                                                                             {0, 4, 2},
+                                                                             {2, 4, 6},
+                                                                             {1, 3, 5},
+                                                                             {3, 7, 5}}};
+
 }  // namespace viewgain

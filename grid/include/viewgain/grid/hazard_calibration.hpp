@@ -28,11 +28,12 @@ class VIEWGAIN_EXPORT HazardCalibration {
   /// Adds a frame to the grid's counters, before it is integrated; `hazard` is the field of the map
   /// as it stands. About 800 of the frame's pixels are followed. Where they pass unknown voxels the
   /// model's rate times the length was to be expected; a reading in an unknown voxel is a meeting;
-  /// the last 3 σ_ax before a reading are left out. Pixels out of range and readings of the support
-  /// plane meet nothing, invalid ones say nothing. Nothing happens while no surface is known,
-  /// where the field does not follow the counters (HazardField::follows_counters), and for a frame
-  /// that passes next to no unknown space. Throws Error(invalid_argument) if the frame's size is
-  /// not the sensor's, or the hazard's voxels are not the grid's. About 5 ms.
+  /// the last 3 σ_ax before a reading are left out. Pixels out of range, readings of the support
+  /// plane and those of the frame's known depth meet nothing, invalid ones say nothing. Nothing
+  /// happens while no surface is known, where the field does not follow the counters
+  /// (HazardField::follows_counters), and for a frame that passes next to no unknown space. Throws
+  /// Error(invalid_argument) as check_frame_size(), or if the hazard's voxels are not the grid's.
+  /// About 5 ms.
   void count(BeliefGrid& grid, const HazardField& hazard, const DepthFrame& frame,
              const Pose& T_world_camera) const;
 

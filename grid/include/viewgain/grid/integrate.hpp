@@ -33,7 +33,7 @@ struct VIEWGAIN_EXPORT IntegrationConfig {
   Carve carve = Carve::cones;
   Occupancy occupancy = Occupancy::probabilistic;
   /// Height z [m] of the table that the object stands on, world. Readings whose point is below it,
-  /// or less than 3 σ_ax before the ray's intersection with it, are of the table: they carve as far
+  /// or less than 3 σ above it (is_of_plane()), are of the table: they carve as far
   /// as they reach but do not hit.
   std::optional<double> support_plane{};
 };
@@ -41,7 +41,8 @@ struct VIEWGAIN_EXPORT IntegrationConfig {
 /// Counts of one integrated frame.
 struct VIEWGAIN_EXPORT IntegrationReport {
   std::uint64_t readings = 0;  ///< pixels with a depth whose range is in [min_range, max_range]
-  std::uint64_t plane_readings = 0;   ///< such pixels that see the support plane, not in `readings`
+  /// Such pixels that see the support plane or a known depth of the frame; not in `readings`.
+  std::uint64_t plane_readings = 0;
   std::uint64_t out_of_range = 0;     ///< pixels that carve up to max_range
   std::uint64_t invalid = 0;          ///< pixels that say nothing
   std::uint64_t readings_inside = 0;  ///< readings that lie in the workspace
@@ -54,8 +55,9 @@ struct VIEWGAIN_EXPORT IntegrationReport {
 /// A pixel is a reading if its range along the ray is in [min_range, max_range]; nearer ones are
 /// invalid, farther ones out of range. Readings also carve what lies nearer than min_range. cosθ
 /// is amplitude · range² (at most 1) where the frame has amplitudes; else it comes from the normal
-/// of the pixel's 3×3 neighbourhood, 1 where there is none. The map is the same bit for bit for any
-/// number of threads and under each instruction set.
+/// of the pixel's 3×3 neighbourhood, 1 where there is none. Readings of what is known
+/// (DepthFrame::known_depth) carve as far as they reach but do not hit. The map is the same bit for
+/// bit for any number of threads and under each instruction set.
 ///
 /// Thread safety: one call at a time on one integrator and on one grid.
 class VIEWGAIN_EXPORT FrameIntegrator {
@@ -69,10 +71,10 @@ class VIEWGAIN_EXPORT FrameIntegrator {
   FrameIntegrator& operator=(FrameIntegrator&&) noexcept;
 
   /// Updates states, log-odds and beliefs, and appends the pose to the grid's views. Throws
-  /// Error(invalid_argument) if the frame's size, or its amplitude's, is not the sensor's or
-  /// the pose is not rigid (1e-3; smaller errors are orthonormalised); the grid is unchanged then.
-  /// If memory runs out (std::bad_alloc), part of the frame may be in the grid, which stays one
-  /// that can be saved and loaded, and the pose is not.
+  /// Error(invalid_argument) as check_frame_size() and if the pose is not rigid (1e-3; smaller
+  /// errors are orthonormalised); the grid is unchanged then. If memory runs out (std::bad_alloc),
+  /// part of the frame may be in the grid, which stays one that can be saved and loaded, and the
+  /// pose is not.
   IntegrationReport integrate(BeliefGrid& grid, const DepthFrame& frame,
                               const Pose& T_world_camera);
 
@@ -82,7 +84,8 @@ class VIEWGAIN_EXPORT FrameIntegrator {
 };
 
 /// The box, in the frame of T_world_grid, that holds every reading of the frame [m], those of the
-/// support plane left out; nothing if the frame has none. For choosing a workspace.
+/// support plane and of known depths left out; nothing if the frame has none. For choosing a
+/// workspace.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Box> reading_bounds(
     const Sensor& sensor, const DepthFrame& frame, const Pose& T_world_camera,
     const Pose& T_world_grid = {}, std::optional<double> support_plane = {});

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/grid/belief_grid.hpp"
@@ -13,6 +15,14 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT VdbWriteConfig {
   /// Adds covariance_diagonal, covariance_offdiagonal and position, for viewers.
   bool with_covariance = false;
+  /// Texts of the writer's own by name, kept in the file's metadata as note_<name>.
+  std::map<std::string, std::string> notes{};
+};
+
+/// A file of save_vdb, whole.
+struct VIEWGAIN_EXPORT VdbMap {
+  BeliefGrid grid;
+  std::map<std::string, std::string> notes;  ///< VdbWriteConfig::notes
 };
 
 /// Writes the map as a plain OpenVDB file (active = known; grid/README.md has the layout), of types
@@ -27,6 +37,8 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
 /// viewgain map; Error(capacity) if tiles hold more than 2^27 occupied voxels, or the file is over
 /// 16 GiB.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_vdb(const std::filesystem::path& path);
+/// The same with its notes: both of one state of the file, whoever rewrites it meanwhile.
+[[nodiscard]] VIEWGAIN_EXPORT VdbMap load_vdb_map(const std::filesystem::path& path);
 
 /// Rates of the unknown for HazardConfig::volume, from a .vdb file of any program, say a prior of
 /// the object's shape: the grid of floats [1/m] named "hazard", or the only one. Its transform may

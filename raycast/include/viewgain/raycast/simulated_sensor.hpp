@@ -41,6 +41,8 @@ struct VIEWGAIN_EXPORT SimulationConfig {
   double wiggling = 0;
   RangeCalibration calibration{};         ///< subtracted from the reading at the end
   std::optional<double> support_plane{};  ///< height z of a diffuse table without end [m], world
+  /// What else stands there, say known obstacles, diffuse; null: nothing.
+  std::shared_ptr<const SurfaceScene> surroundings{};
 };
 
 /// What the rays of one pixel met, without noise.

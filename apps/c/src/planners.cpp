@@ -1,0 +1,338 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+#include <vector>
+
+#include "convert.hpp"
+#include "handles.hpp"
+#include "surroundings.hpp"
+#include "viewgain/planner.h"
+#include "viewgain/planner/view_planner.hpp"
+#include "watcher.hpp"
+
+using namespace viewgain;
+using namespace viewgain::c_api;
+
+static_assert(VG_INFEASIBLE_MISSED == static_cast<int>(Infeasibility::too_near) + 1);
+
+struct vg_planner {
+  ViewPlanner planner;
+  Sensor sensor;
+};
+
+namespace {
+
+// The planners that there are, so that a released one is told apart.
+class LivePlanners {
+ public:
+  void add(const vg_planner* planner) {
+    const std::lock_guard lock(mutex_);
+    live_.insert(planner);
+  }
+  /// True if it was there.
+  bool remove(const vg_planner* planner) {
+    const std::lock_guard lock(mutex_);
+    return live_.erase(planner) > 0;
+  }
+  void require_live(const vg_planner* planner) {
+    require(planner, "planner");
+    const std::lock_guard lock(mutex_);
+    if (!live_.contains(planner)) reject("planner was released, or is no planner");
+  }
+
+ private:
+  std::mutex mutex_;
+  std::unordered_set<const vg_planner*> live_;
+};
+
+// Never destroyed: a planner may be released while the process ends.
+LivePlanners& live_planners() {
+  static auto* const planners = new LivePlanners;
+  return *planners;
+}
+
+ViewPlanner& live(vg_planner* planner) {
+  live_planners().require_live(planner);
+  return planner->planner;
+}
+const ViewPlanner& live(const vg_planner* planner) {
+  live_planners().require_live(planner);
+  return planner->planner;
+}
+
+Sensor sensor_with_body(const vg_sensor* given_sensor, const vg_planner_config& config) {
+  Sensor sensor = sensor_of(given_sensor);
+  sensor.body_size = std::to_array(config.body_size);
+  if (config.has_flange != 0) sensor.T_flange_camera = rigid_pose_of(config.T_flange_camera);
+  return sensor;
+}
+
+PlannerConfig settings_of(const vg_planner_config& config) {
+  if (config.gain < VG_GAIN_PAPER || config.gain > VG_GAIN_COMBINED) {
+    reject("gain is " + std::to_string(config.gain) + "; the gains are 0 to 2");
+  }
+  PlannerConfig settings;
+  settings.grid = {config.voxel_size,
+                   {std::to_array(config.box_min), std::to_array(config.box_max)},
+                   rigid_pose_of(config.T_world_grid),
+                   config.prior_sigma};
+  settings.support_plane = given(config.support_plane);
+  settings.obstacles = obstacles_of(config);
+  settings.jump_edges.reset();
+  if (config.jump_edge_angle != 0) {
+    settings.jump_edges.emplace();
+    settings.jump_edges->angle = config.jump_edge_angle;
+  }
+  settings.gain.model = static_cast<GainModel>(config.gain);
+  settings.check_feasibility = config.check_feasibility != 0;
+  settings.clearance = config.clearance;
+  settings.reach.predicate = predicate_of(config.reachable, config.user);
+  settings.max_views = static_cast<std::size_t>(config.max_views);
+  settings.idle_views = static_cast<std::size_t>(config.idle_views);
+  settings.stop_gain = given(config.stop_gain);
+  settings.stop_area = given(config.stop_area);
+  return settings;
+}
+
+template <typename Make>
+vg_status make_planner(vg_planner** planner, const Make& make) {
+  const vg_status status = make_handle(planner, "planner", make);
+  if (status != VG_OK) return status;
+  const vg_status known = guarded([&] { live_planners().add(*planner); });
+  if (known != VG_OK) {
+    delete *planner;
+    *planner = nullptr;
+  }
+  return known;
+}
+
+std::int32_t code_of(std::optional<StopReason> reason) {
+  if (!reason) return VG_GO_ON;
+  switch (*reason) {
+    case StopReason::gain:
+      return VG_STOP_GAIN;
+    case StopReason::area:
+      return VG_STOP_AREA;
+    case StopReason::no_candidates:
+      return VG_STOP_NO_CANDIDATES;
+    case StopReason::unreachable:
+      return VG_STOP_UNREACHABLE;
+    case StopReason::idle:
+      return VG_STOP_IDLE;
+    case StopReason::max_views:
+    case StopReason::coverage:     // never a planner's
+    case StopReason::interrupted:  // likewise
+      break;
+  }
+  return VG_STOP_MAX_VIEWS;
+}
+
+// "" for what is none.
+std::string_view reason_name(std::size_t reason) {
+  if (reason == VG_INFEASIBLE_MISSED) return kMissed;
+  if (reason > VG_INFEASIBLE_MISSED) return "";
+  return infeasibility_name(static_cast<Infeasibility>(reason));
+}
+
+vg_ranked_view written(const RankedView& view) {
+  vg_ranked_view out{};
+  out.index = view.index;
+  write_pose(view.T_world_camera, out.T_world_camera);
+  out.gain = view.gain.gain;
+  out.area = view.gain.area;
+  out.worth = view.worth;
+  return out;
+}
+
+// What both rankings take but for the poses.
+struct RankCall {
+  std::size_t k;
+  const double* costs;
+  std::size_t cost_count;
+  double cost_per_metre;
+  vg_ranked_view* views;
+  std::size_t view_size;
+  std::size_t* found;
+  const vg_watch* watch;
+
+  void check() const {
+    require_array(costs, cost_count, "costs");
+    require_array(views, k, "views");
+    require(found, "found");
+    require_known_size(view_size, Sizes<vg_ranked_view>::known, "vg_ranked_view (view_size)");
+    *found = 0;
+  }
+  template <typename Rank>
+  void run(std::size_t total, const Rank& rank) const {
+    Watcher watcher(watch, total);
+    RankConfig config;
+    if (cost_count > 0) config.costs = {costs, cost_count};
+    config.cost_per_metre = cost_per_metre;
+    const Ranking ranking = rank(config, watcher.control());
+    write_items(std::span<const RankedView>(ranking.views), views, view_size, written);
+    *found = ranking.views.size();
+    watcher.finish(ranking.complete);
+  }
+};
+
+}  // namespace
+
+template <>
+vg_planner_config viewgain::c_api::defaults() noexcept {
+  const PlannerConfig own;
+  const SensorBody body;
+  vg_planner_config config{};
+  config.gain = static_cast<std::int32_t>(own.gain.model);
+  write_pose(Pose{}, config.T_world_grid);
+  config.support_plane = kNone;
+  config.jump_edge_angle = own.jump_edges->angle;
+  config.check_feasibility = 1;
+  std::copy(body.size.begin(), body.size.end(), config.body_size);
+  write_pose(Pose{}, config.T_flange_camera);
+  config.clearance = own.clearance;
+  config.max_views = own.max_views;
+  config.idle_views = own.idle_views;
+  config.stop_gain = config.stop_area = kNone;
+  return config;
+}
+
+void vg_planner_config_init(vg_planner_config* config, size_t struct_size) {
+  initialise(config, struct_size);
+}
+void vg_planner_view_init(vg_planner_view* view, size_t struct_size) {
+  initialise(view, struct_size);
+}
+
+vg_status vg_planner_create(const vg_sensor* sensor, const vg_planner_config* config,
+                            vg_planner** planner) {
+  return make_planner(planner, [&] {
+    const vg_planner_config chosen = read_struct(config, "vg_planner_config");
+    const Sensor own = sensor_with_body(sensor, chosen);
+    return vg_planner{ViewPlanner(own, settings_of(chosen), {.num_threads = chosen.num_threads}),
+                      own};
+  });
+}
+
+void vg_planner_release(vg_planner* planner) {
+  if (planner != nullptr && live_planners().remove(planner)) delete planner;
+}
+
+vg_status vg_planner_add_poses(vg_planner* planner, const double* poses, size_t count) {
+  return guarded([&] { live(planner).add_poses({"poses", poses_of(poses, count)}); });
+}
+
+vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* amplitude,
+                         const double T_world_camera[16], vg_planner_view* added) {
+  return guarded([&] {
+    ViewPlanner& own = live(planner);
+    require(depth, "depth");
+    require(T_world_camera, "T_world_camera");
+    if (added != nullptr) require_struct(added, "vg_planner_view");
+    const DepthFrame frame = frame_of(planner->sensor.camera, depth, amplitude);
+    const AddedView view = own.add(frame, rigid_pose_of(T_world_camera));
+    if (added == nullptr) return;
+    write_struct(added, {.struct_size = 0,
+                         .view = view.view,
+                         .readings = view.update.counts.readings,
+                         .readings_inside = view.update.counts.readings_inside,
+                         .voxels_hit = view.update.counts.voxels_hit,
+                         .voxels_crossed = view.update.counts.voxels_crossed,
+                         .unknown_voxels = view.progress.unknown_voxels,
+                         .entropy_removed = view.entropy_removed,
+                         .total_entropy_removed = view.progress.entropy_removed,
+                         .new_area = view.update.new_area,
+                         .total_area = view.progress.surface_area});
+  });
+}
+
+vg_status vg_planner_propose(vg_planner* planner, size_t* candidates, size_t* dropped,
+                             size_t reasons) {
+  return guarded([&] {
+    ViewPlanner& own = live(planner);
+    require(candidates, "candidates");
+    require_array(dropped, reasons, "dropped");
+    const Proposal& proposal = own.propose();
+    *candidates = proposal.candidates.size();
+    for (std::size_t reason = 0; reason < reasons; ++reason) {
+      const auto found = proposal.dropped.find(std::string(reason_name(reason)));
+      dropped[reason] = found == proposal.dropped.end() ? 0 : found->second;
+    }
+  });
+}
+
+vg_status vg_planner_rank(vg_planner* planner, size_t k, const double* costs, size_t cost_count,
+                          double cost_per_metre, vg_ranked_view* views, size_t view_size,
+                          size_t* found, const vg_watch* watch) {
+  return guarded([&] {
+    ViewPlanner& own = live(planner);
+    const RankCall call{k, costs, cost_count, cost_per_metre, views, view_size, found, watch};
+    call.check();
+    call.run(own.candidate_count(), [&](const RankConfig& config, const BatchControl& control) {
+      return own.rank(k, config, control);
+    });
+  });
+}
+
+vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses, size_t count, size_t k,
+                                const double* costs, size_t cost_count, double cost_per_metre,
+                                vg_ranked_view* views, size_t view_size, size_t* found,
+                                const vg_watch* watch) {
+  return guarded([&] {
+    ViewPlanner& own = live(planner);
+    const RankCall call{k, costs, cost_count, cost_per_metre, views, view_size, found, watch};
+    call.check();
+    const std::vector<Pose> given_poses = poses_of(poses, count);
+    call.run(count, [&](const RankConfig& config, const BatchControl& control) {
+      return own.rank(given_poses, k, config, control);
+    });
+  });
+}
+
+vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16], int32_t reached) {
+  return guarded([&] {
+    ViewPlanner& own = live(planner);
+    require(T_world_camera, "T_world_camera");
+    own.tried(rigid_pose_of(T_world_camera), reached != 0);
+  });
+}
+
+vg_status vg_planner_should_stop(const vg_planner* planner, int32_t* reason) {
+  return guarded([&] {
+    const ViewPlanner& own = live(planner);
+    require(reason, "reason");
+    *reason = code_of(own.should_stop());
+  });
+}
+
+vg_status vg_planner_save(const vg_planner* planner, const char* path) {
+  return guarded([&] {
+    const ViewPlanner& own = live(planner);
+    require(path, "path");
+    own.save(path);
+  });
+}
+
+vg_status vg_planner_load(const char* path, const vg_sensor* sensor,
+                          const vg_planner_config* config, vg_planner** planner) {
+  return make_planner(planner, [&] {
+    require(path, "path");
+    const vg_planner_config chosen = read_struct(config, "vg_planner_config");
+    const Sensor own = sensor_with_body(sensor, chosen);
+    return vg_planner{
+        ViewPlanner::load(path, own, settings_of(chosen), {.num_threads = chosen.num_threads}),
+        own};
+  });
+}
+
+vg_status vg_planner_grid(const vg_planner* planner, vg_grid** grid) {
+  return make_handle(grid, "grid", [&] { return live(planner).grid().clone(); });
+}

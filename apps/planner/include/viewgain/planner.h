@@ -1,0 +1,138 @@
+/* SPDX-FileCopyrightText: 2026 The viewgain authors
+   SPDX-License-Identifier: Apache-2.0 */
+#ifndef VIEWGAIN_PLANNER_H
+#define VIEWGAIN_PLANNER_H
+
+/* Next best views step by step, for C: frames in, views out. Its functions are in the library
+   viewgain_planner (pkg-config viewgain-planner); viewgain/viewgain.h says what holds for all
+   functions, viewgain/planner/view_planner.hpp more about each step. A planner that was released is
+   known as such: VG_INVALID_ARGUMENT, and releasing it again does nothing, unless another planner
+   lies at its address by then. One call at a time on a planner. */
+
+#include "viewgain/viewgain.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct vg_planner vg_planner;
+
+/* A candidate that was commanded and not reached, beside VG_INFEASIBLE_; how many there are. */
+enum { VG_INFEASIBLE_MISSED = 8, VG_PLANNER_REASONS = 9 };
+
+/* Why to end. */
+enum {
+  VG_GO_ON = 0,
+  VG_STOP_GAIN = 1,          /* the best candidate promises too little */
+  VG_STOP_AREA = 2,          /* no candidate promises enough new surface */
+  VG_STOP_NO_CANDIDATES = 3, /* nothing is left to look at */
+  VG_STOP_UNREACHABLE = 4,   /* candidates are left, all of them out of reach */
+  VG_STOP_IDLE = 5,          /* views in a row brought nothing new */
+  VG_STOP_MAX_VIEWS = 6
+};
+
+typedef struct vg_planner_config {
+  size_t struct_size;
+  int32_t num_threads;           /* 0: all; never changes a result */
+  int32_t gain;                  /* VG_GAIN_COMBINED */
+  double voxel_size;             /* [m]; must be given */
+  double box_min[3], box_max[3]; /* the workspace, in the grid's frame [m]; must be given */
+  double T_world_grid[16];       /* identity */
+  double prior_sigma;            /* of an unknown voxel [m]; 0: vg_default_prior_sigma() */
+  double support_plane;          /* height of the table, world z [m]; NaN (the default): none */
+  /* Known obstacles, as in vg_scene_config: they block rays and the body, and readings of them
+     carve but do not hit. */
+  const double* boxes;
+  size_t box_count;
+  const double* vertices;
+  size_t vertex_count;
+  const uint32_t* triangles;
+  size_t triangle_count;
+  double jump_edge_angle; /* of the filter for flying pixels, 1 to 10 degrees [rad]; 5; 0: off */
+  /* The body and where it can be, as in vg_feasibility_config. */
+  int32_t check_feasibility; /* 1; 0: all candidates are possible but those taken or tried */
+  int32_t has_flange;
+  double body_size[3];
+  double T_flange_camera[16];
+  double clearance;
+  int32_t (*reachable)(const double T_world_camera[16], void* user);
+  void* user;
+  uint64_t max_views, idle_views; /* 20 and 3; idle_views 0: never */
+  double stop_gain, stop_area;    /* NaN: the defaults of the gain; 0: never */
+} vg_planner_config;
+VG_API void vg_planner_config_init(vg_planner_config* config, size_t struct_size);
+
+VG_API vg_status vg_planner_create(const vg_sensor* sensor, const vg_planner_config* config,
+                                   vg_planner** planner);
+VG_API void vg_planner_release(vg_planner* planner);
+
+/* Candidates that are proposed from the next vg_planner_propose() on, 16 doubles each. */
+VG_API vg_status vg_planner_add_poses(vg_planner* planner, const double* poses, size_t count);
+
+/* What a view brought. */
+typedef struct vg_planner_view {
+  size_t struct_size;
+  uint64_t view;                                 /* from 0 */
+  uint64_t readings, readings_inside;            /* pixels; those in the workspace */
+  uint64_t voxels_hit, voxels_crossed;           /* by it */
+  uint64_t unknown_voxels;                       /* that are left */
+  double entropy_removed, total_entropy_removed; /* by it and so far [nat] */
+  double new_area, total_area; /* new surface that it showed, and so far [m^2]; new_area is NaN with
+                                  VG_GAIN_PAPER */
+} vg_planner_view;
+VG_API void vg_planner_view_init(vg_planner_view* view, size_t struct_size);
+
+/* Puts a frame into the map, as vg_integrate(); `added` or null. */
+VG_API vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* amplitude,
+                                const double T_world_camera[16], vg_planner_view* added);
+
+/* What is possible now of the candidates: how many, and in dropped[reason] how many are not and
+   why; `reasons` is the length of dropped, which may be null. */
+VG_API vg_status vg_planner_propose(vg_planner* planner, size_t* candidates, size_t* dropped,
+                                    size_t reasons);
+
+typedef struct vg_ranked_view {
+  size_t index; /* of the candidate in the proposal, or of the pose that was given */
+  double T_world_camera[16];
+  double gain;  /* as vg_view_gain's */
+  double area;  /* as vg_view_gain's */
+  double worth; /* the gain less the cost */
+} vg_ranked_view;
+
+/* The k best candidates of the last proposal, which must have come since the last view, best first.
+   costs: one a candidate, in the gain's unit, or null; cost_per_metre: of the way from the last
+   view, likewise; view_size is sizeof(vg_ranked_view). *found says how many there are. watch or
+   null. */
+VG_API vg_status vg_planner_rank(vg_planner* planner, size_t k, const double* costs,
+                                 size_t cost_count, double cost_per_metre, vg_ranked_view* views,
+                                 size_t view_size, size_t* found, const vg_watch* watch);
+
+/* The same of any poses; nobody looks whether they are possible. Bad ones are last, with NaN. Says
+   nothing to vg_planner_should_stop(). */
+VG_API vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses, size_t count,
+                                       size_t k, const double* costs, size_t cost_count,
+                                       double cost_per_metre, vg_ranked_view* views,
+                                       size_t view_size, size_t* found, const vg_watch* watch);
+
+/* The pose was commanded: it is not proposed again, whether the camera got there (nonzero) or not,
+   and goes out of the proposal as it stands. */
+VG_API vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16],
+                                  int32_t reached);
+
+/* VG_GO_ON or why to end. */
+VG_API vg_status vg_planner_should_stop(const vg_planner* planner, int32_t* reason);
+
+/* The whole state but for the last proposal in one file, a map that vg_grid_load() reads too, whole
+   or not at all; and a planner that goes on from there, bit for bit, with the same sensor, config
+   and candidates. */
+VG_API vg_status vg_planner_save(const vg_planner* planner, const char* path);
+VG_API vg_status vg_planner_load(const char* path, const vg_sensor* sensor,
+                                 const vg_planner_config* config, vg_planner** planner);
+
+/* A copy of the map as it is. */
+VG_API vg_status vg_planner_grid(const vg_planner* planner, vg_grid** grid);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/reach.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/feasibility.hpp"
+
+namespace viewgain {
+
+/// What is asked of a sensor's poses: its body on its flange must have room, and what it sees must
+/// not be nearer than it can measure. No limits of reach, no support plane.
+[[nodiscard]] VIEWGAIN_EXPORT FeasibilityConfig feasibility_of(const Sensor& sensor);
+
+/// Why a candidate is dropped that was commanded and not reached.
+inline constexpr std::string_view kMissed = "missed";
+
+/// A candidate that was not proposed.
+struct VIEWGAIN_EXPORT DroppedCandidate {
+  Candidate candidate;
+  std::string reason;  ///< infeasibility_name() or kMissed
+};
+
+/// The poses that are possible, and why the others are not.
+struct VIEWGAIN_EXPORT FeasiblePoses {
+  std::vector<Pose> poses;
+  std::vector<std::size_t> numbers;            ///< of each among those that were asked about
+  std::map<std::string, std::size_t> dropped;  ///< reason -> count
+};
+
+/// Cost as FeasibilityChecker::check; `taken` as there.
+[[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses feasible_poses(const FeasibilityChecker& checker,
+                                                           std::span<const Pose> poses,
+                                                           std::span<const Pose> taken);
+
+/// The poses in reach, whatever the body meets there.
+[[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses reachable_poses(const ReachRegion& reach,
+                                                            std::span<const Pose> poses);
+
+}  // namespace viewgain

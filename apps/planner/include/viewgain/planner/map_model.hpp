@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "viewgain/core/criterion.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/hazard_calibration.hpp"
+#include "viewgain/grid/integrate.hpp"
+#include "viewgain/planner/realised_area.hpp"
+#include "viewgain/raycast/obstacle_view.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+namespace viewgain {
+
+/// What changes the map.
+struct VIEWGAIN_EXPORT MapModelConfig {
+  GridConfig grid{};
+  IntegrationConfig integration{};
+  std::optional<JumpEdgeConfig> jump_edges{};  ///< takes flying pixels out of the frames
+  /// Known ones: they block rays and bodies, and readings of them carve but do not hit.
+  Obstacles obstacles{};
+  HazardConfig hazard{};  ///< of unknown space, for the surface and the combined gain
+  Criterion criterion = Criterion::log_diagonal;  ///< of MapModel::progress()
+  bool refine = true;  ///< false: the first reading of a voxel wins, later ones are ignored
+  /// Each view is held against what was expected of unknown space: its new surface is measured, and
+  /// the hazard learns from it. What the surface and the combined gain need; some milliseconds.
+  bool follow_surface = true;
+};
+
+/// What a view brought.
+struct VIEWGAIN_EXPORT MapUpdate {
+  IntegrationReport counts{};     ///< of all its frames together
+  std::size_t flying_pixels = 0;  ///< that the jump-edge filter took out
+  /// New surface that its first frame showed [m²], see RealisedArea; NaN without follow_surface.
+  double new_area = std::numeric_limits<double>::quiet_NaN();
+  StageSeconds seconds{};  ///< integrate, snapshot
+};
+
+/// The occupancy grid O of Algorithm 1 as frames go into it, and the scene to score views against.
+///
+/// Thread safety: const members may run from many threads at once; nothing may run beside update().
+/// Scenes that it has handed out stay as they are.
+class VIEWGAIN_EXPORT MapModel {
+ public:
+  /// An empty map. Throws Error(invalid_argument) as the parts: a sensor, grid, obstacle or filter
+  /// that is not valid.
+  MapModel(const Sensor& sensor, const MapModelConfig& config, const ExecConfig& exec = {});
+
+  /// One that goes on from `grid`; config.grid says nothing then.
+  MapModel(BeliefGrid grid, const Sensor& sensor, const MapModelConfig& config,
+           const ExecConfig& exec = {});
+
+  /// Filters the frames, integrates them and brings the scene up to date. Throws
+  /// Error(invalid_argument) if a frame has another size than the sensor's images or the pose is
+  /// not rigid (1e-3); nothing has changed then. Error(capacity) and Error(backend) are those of
+  /// VoxelScene::build(): the frames are in the map then. Known depths of the frames are set anew
+  /// by the obstacles.
+  MapUpdate update(const Measurements& measurements);
+
+  /// The grid as it would be after these measurements, which do not change it. Costs a copy of it.
+  [[nodiscard]] BeliefGrid grid_after(const Measurements& measurements) const;
+
+  [[nodiscard]] const BeliefGrid& grid() const noexcept { return grid_; }
+  [[nodiscard]] const std::shared_ptr<const VoxelScene>& scene() const noexcept { return scene_; }
+  [[nodiscard]] const Sensor& sensor() const noexcept { return sensor_; }
+  /// Entropy removed and unknown voxels; no coverage and no surface.
+  [[nodiscard]] ModelProgress progress() const;
+
+ private:
+  void check(const Measurements& measurements) const;
+  /// The frames as they go into the map.
+  [[nodiscard]] std::vector<DepthFrame> filtered(const Measurements& measurements,
+                                                 std::size_t* flying_pixels) const;
+  void drop_known_readings(DepthFrame& frame, const Pose& T_world_camera) const;
+
+  Sensor sensor_;
+  MapModelConfig config_;
+  ExecConfig exec_;
+  BeliefGrid grid_;
+  std::optional<JumpEdgeFilter> filter_;
+  ObstacleView obstacles_;
+  FrameIntegrator integrator_;
+  RealisedArea new_surface_;
+  HazardCalibration calibration_;
+  std::shared_ptr<const VoxelScene> scene_;
+};
+
+}  // namespace viewgain

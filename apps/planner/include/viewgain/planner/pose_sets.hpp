@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+
+namespace viewgain {
+
+/// A fixed set of poses with a name: sphere, dome, rings, sequence, file.
+struct VIEWGAIN_EXPORT PoseSet {
+  std::string generator;
+  std::vector<Pose> poses;  ///< T_world_camera
+};
+
+/// The generators of candidates by name: boundary, sphere, dome, rings, shell, sequence,
+/// fibonacci.
+[[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& generator_names();
+
+/// What the pose sets are made for.
+struct VIEWGAIN_EXPORT PoseSetRequest {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< what they look at [m]
+  double distance = 0;                               ///< from it [m]
+  /// 500 unless given; rings: 48, 80, 288 or 864, 48; fibonacci: 20.
+  std::optional<std::size_t> count{};
+  std::uint64_t seed = 1;       ///< shell
+  std::optional<Pose> start{};  ///< sequence, fibonacci: the view before them
+};
+
+/// The set of a generator other than boundary. Shell: between 0.8 and 1.25 times the distance.
+/// Sequence: eight views on the start's circle of latitude, in steps of 45°, then one from above.
+/// Fibonacci: the sphere's poses, each as far as can be from the start's direction and those before
+/// it, so that any number of the first ones are spread evenly; ties to the lower index.
+/// Throws Error(invalid_argument) for an unknown name or a count that the generator has not.
+[[nodiscard]] VIEWGAIN_EXPORT PoseSet make_pose_set(std::string_view generator,
+                                                    const PoseSetRequest& request);
+
+/// Distance from which a sphere of this radius [m] fills the smaller side of the image; at least
+/// the sensor's working distance.
+[[nodiscard]] VIEWGAIN_EXPORT double filling_distance(const Sensor& sensor, double radius);
+
+}  // namespace viewgain

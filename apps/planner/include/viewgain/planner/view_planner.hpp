@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/reach.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/hazard.hpp"
+#include "viewgain/planner/feasible_poses.hpp"
+#include "viewgain/planner/map_model.hpp"
+#include "viewgain/planner/pose_sets.hpp"
+#include "viewgain/raycast/feasibility.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+namespace viewgain {
+
+/// What a planner is set up with, each setting in one place. The body that must have room is the
+/// sensor's (Sensor::body_size, T_flange_camera; without a size SensorBody's).
+struct VIEWGAIN_EXPORT PlannerConfig {
+  /// prior_sigma 0: default_prior_sigma(). A workspace that begins at the table has no voxels under
+  /// it that stay unknown, which the paper's gain would count.
+  GridConfig grid{};
+  std::optional<double> support_plane{};  ///< height z of the table [m], world
+  Obstacles obstacles{};                  ///< known ones, world
+  std::optional<JumpEdgeConfig> jump_edges = JumpEdgeConfig{};  ///< nothing: frames are taken as is
+  HazardConfig hazard{};
+  /// What ranks views. Its support plane is the one above.
+  GainConfig gain{.model = GainModel::combined};
+  ReachRegion reach{};              ///< its list of poses, if it has one, is among the candidates
+  double clearance = 0;             ///< round the body [m]
+  PoseTolerance taken_tolerance{};  ///< when two poses are the same
+  double max_near_share = FeasibilityConfig{}.max_near_share;  ///< as there
+  /// False: every candidate is possible but those that were taken or tried.
+  bool check_feasibility = true;
+  /// The rules of PlanningConfig; there is no coverage, and nobody asks its stop token.
+  std::size_t max_views = PlanningConfig{}.max_views;
+  std::size_t idle_views = PlanningConfig{}.idle_views;
+  std::optional<double> stop_gain{};  ///< set_stop_rules() has the defaults of both
+  /// Of the surface so far: of the sum of what the views showed of new surface.
+  std::optional<double> stop_area{};
+};
+
+/// What a view brought.
+struct VIEWGAIN_EXPORT AddedView {
+  std::size_t view = 0;  ///< from 0
+  MapUpdate update{};
+  ModelProgress progress{};    ///< after it; surface_area: the sum of new areas so far [m²]
+  double entropy_removed = 0;  ///< by this view [nat, or m² for trace]
+};
+
+/// By what ViewPlanner::rank() ranks.
+struct VIEWGAIN_EXPORT RankConfig {
+  /// One a pose, subtracted from its gain, in the gain's unit. Empty: none.
+  std::span<const double> costs{};
+  /// Of the way from the last view, likewise. The combined gain of a square metre of new surface
+  /// goes with 1 / voxel², so a cost per metre does, too.
+  double cost_per_metre = 0;
+  const ViewMeasure* measure = nullptr;     ///< instead of the gain, as in BestConfig
+  const RunMeasure* run_measure = nullptr;  ///< likewise
+  /// All poses are scored in full. Else, but by the paper's gain, where it is always so, by two
+  /// stages: see GainEvaluator::race().
+  bool exact = false;
+};
+
+struct VIEWGAIN_EXPORT RankedView {
+  std::size_t index = 0;  ///< of the candidate in the proposal, or of the pose that was given
+  Pose T_world_camera;
+  ViewGain gain;     ///< all NaN with a measure
+  double worth = 0;  ///< gain or measure, less the cost
+};
+
+struct VIEWGAIN_EXPORT Ranking {
+  std::vector<RankedView> views;  ///< best first
+  bool complete = true;           ///< false: a stop was requested
+};
+
+/// Next best views for a robot's program that calls step by step: frames in, views out. The steps
+/// of Algorithm 1 without its loop.
+///
+/// add() a frame; ask should_stop(); propose() candidates; rank() them; move, and say how that went
+/// with tried(); add() the next frame.
+///
+/// What is refused (Error(invalid_argument)) has changed nothing. What the user's own parts throw,
+/// a generation, the reach region's predicate or a measure, passes through propose() and rank().
+/// Thread safety: one call at a time. Deterministic, for any number of threads. One that was moved
+/// from can only be assigned to or destroyed.
+class VIEWGAIN_EXPORT ViewPlanner {
+ public:
+  /// Throws Error(invalid_argument), naming the value, for settings out of their range.
+  ViewPlanner(const Sensor& sensor, const PlannerConfig& config, const ExecConfig& exec = {});
+  ~ViewPlanner();
+  ViewPlanner(ViewPlanner&&) noexcept;
+  ViewPlanner& operator=(ViewPlanner&&) noexcept;
+
+  /// A fixed set of candidates, proposed from the next propose() on; the last one is void. Throws
+  /// Error(invalid_argument) for a pose that is not rigid (1e-3).
+  void add_poses(PoseSet set);
+  /// Candidates that are made anew for each proposal, say at the boundaries of the surface
+  /// (BoundaryGeneration of viewgain::planner_mesh). Not part of what save() keeps.
+  void add_generation(std::shared_ptr<ViewpointGeneration> generation);
+
+  /// Puts a frame into the map and brings the scene up to date; the last proposal is void. Throws
+  /// Error(invalid_argument) for a frame of another size than the sensor's images and a pose that
+  /// is not rigid (1e-3). Error(capacity) and Error(backend) are those of VoxelScene::build(): the
+  /// frame is in the map then, the scene is the one before. DepthFrame::known_depth is set anew by
+  /// the planner's obstacles.
+  AddedView add(const DepthFrame& frame, const Pose& T_world_camera);
+  /// The same of several frames from one pose; there must be one.
+  AddedView add(std::span<const DepthFrame> frames, const Pose& T_world_camera);
+
+  /// The candidates of the reach region's poses, the sets and the generations, in this order, that
+  /// are possible now, and how many are not and why. Valid until the next add() or propose(). An
+  /// earlier ranking since the last view is void.
+  const Proposal& propose();
+  /// Behind the last proposal, and valid as long.
+  [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept;
+  /// Of the last proposal; 0 without one since the last view.
+  [[nodiscard]] std::size_t candidate_count() const noexcept;
+
+  /// The k best of the proposal, fewer if there are fewer. Ties go to the earlier candidate. Throws
+  /// Error(invalid_argument) without a proposal since the last view, and as GainEvaluator::best().
+  [[nodiscard]] Ranking rank(std::size_t k = 1, const RankConfig& config = {},
+                             const BatchControl& control = {});
+  /// The same of any poses; nobody looks whether they are possible. Bad ones are last, with NaN.
+  /// Says nothing to should_stop().
+  [[nodiscard]] Ranking rank(std::span<const Pose> T_world_camera, std::size_t k = 1,
+                             const RankConfig& config = {}, const BatchControl& control = {});
+
+  /// The pose was commanded: it is not proposed again, whether the camera got there or not, and
+  /// goes out of the proposal as it stands, whose later candidates move up. Throws
+  /// Error(invalid_argument) for a pose that is not rigid (1e-3).
+  void tried(const Pose& T_world_camera, bool reached);
+
+  /// Why to end, if there is a reason: after add() max_views or idle; after propose() no_candidates
+  /// or unreachable; after rank() of the proposal gain or area, the last ranking of a view. Costs
+  /// do not matter here: a best worth of 0 or less says that the way costs more than the view
+  /// brings.
+  [[nodiscard]] std::optional<StopReason> should_stop() const noexcept;
+
+  /// The whole state in one file: a map that every program reads, with the rest in its notes. Left
+  /// out are what the constructor got, sets, generations and the last proposal. Atomic: after a
+  /// kill at any moment the file is the one before or this one. Throws Error(io).
+  void save(const std::filesystem::path& path) const;
+  /// Goes on where save() was called: with the same constructor's arguments, sets and generations
+  /// every later answer has the same bits, from the next propose(), add() or rank() of given poses
+  /// on. Throws as the constructor, Error(invalid_argument) if the map is laid out otherwise than
+  /// config.grid says, Error(format) for a file of another kind, and as load_vdb().
+  [[nodiscard]] static ViewPlanner load(const std::filesystem::path& path, const Sensor& sensor,
+                                        const PlannerConfig& config, const ExecConfig& exec = {});
+
+  /// Stays where it is when the planner is moved, and goes with it.
+  [[nodiscard]] const MapModel& map() const noexcept;
+  [[nodiscard]] const BeliefGrid& grid() const noexcept;
+  /// Of the scene as it is now. Valid until the next add().
+  [[nodiscard]] const GainEvaluator& evaluator();
+  /// What the steps since the last add() took, it included: integrate, snapshot, candidates, score.
+  [[nodiscard]] const StageSeconds& seconds() const noexcept;
+
+ private:
+  struct Impl;
+  explicit ViewPlanner(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace viewgain

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/stop_rules.hpp"
+
+namespace viewgain::detail {
+
+/// What a planner remembers beside its map. A value type.
+struct PlannerState {
+  double seen_area = 0;                 ///< the sum of what the views showed of new surface [m²]
+  std::vector<Pose> reached;            ///< commanded, and the camera got there
+  std::vector<Pose> missed;             ///< commanded, and it did not
+  StopMemory before_choice;             ///< of the rules, as the last view left them
+  StopMemory after_choice;              ///< and as the last ranking did
+  std::optional<StopReason> of_view;    ///< why to end since the last view
+  std::optional<StopReason> of_choice;  ///< and since the last proposal or ranking
+};
+
+/// One line an entry; exact.
+[[nodiscard]] std::string text_of(const PlannerState& state);
+/// Throws Error(format), naming `name` and the line.
+[[nodiscard]] PlannerState state_of(const std::string& name, std::string_view text);
+
+}  // namespace viewgain::detail

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/planner/pose_sets.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/generators.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr std::size_t kMostSpreadOut = 20'000;  // the order takes time by their square
+constexpr double kDegree = std::numbers::pi / 180;
+
+std::vector<Pose> sequence_poses(const PoseSetRequest& request) {
+  const Eigen::Vector3d start = request.start
+                                    ? Eigen::Vector3d(request.start->translation() - request.center)
+                                    : Eigen::Vector3d(request.distance, 0, 0);
+  const double radius = start.norm();
+  const double elevation = std::asin(std::clamp(start.z() / radius, -1.0, 1.0));
+  const double azimuth = std::atan2(start.y(), start.x());
+  std::vector<Pose> poses =
+      orbit_poses(8, radius, elevation, azimuth, 45 * kDegree, request.center);
+  const Eigen::Vector3d above = request.center + Eigen::Vector3d(0, 0, radius);
+  poses.push_back(look_at(above, request.center));
+  return poses;
+}
+
+Eigen::Vector3d direction_from(const Eigen::Vector3d& center, const Pose& pose) {
+  return (pose.translation() - center).normalized();
+}
+
+// Each pose the farthest, by angle, from the start's and from those before it.
+std::vector<Pose> spread_out(const std::vector<Pose>& poses, const PoseSetRequest& request) {
+  std::vector<double> nearest(poses.size(), -1);  // cosine of the angle to the nearest one taken
+  const auto take = [&](const Pose& pose) {
+    const Eigen::Vector3d taken = direction_from(request.center, pose);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      nearest[i] = std::max(nearest[i], direction_from(request.center, poses[i]).dot(taken));
+    }
+  };
+  if (request.start) take(*request.start);
+  std::vector<Pose> ordered;
+  ordered.reserve(poses.size());
+  std::vector<bool> is_taken(poses.size());
+  while (ordered.size() < poses.size()) {
+    std::size_t next = poses.size();
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (!is_taken[i] && (next == poses.size() || nearest[i] < nearest[next])) next = i;
+    }
+    is_taken[next] = true;
+    take(ordered.emplace_back(poses[next]));
+  }
+  return ordered;
+}
+
+}  // namespace
+
+const std::vector<std::string>& generator_names() {
+  static const std::vector<std::string> names{"boundary", "sphere",   "dome",     "rings",
+                                              "shell",    "sequence", "fibonacci"};
+  return names;
+}
+
+PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request) {
+  PoseSet set{std::string(generator), {}};
+  const std::size_t count = request.count.value_or(generator == "rings"       ? 48
+                                                   : generator == "fibonacci" ? 20
+                                                                              : 500);
+  if (generator == "sphere") {
+    set.poses = sphere_poses(count, request.distance, request.center);
+  } else if (generator == "dome") {
+    set.poses = dome_poses(count, request.distance, request.center);
+  } else if (generator == "rings") {
+    set.poses = literature_ring_poses(count, request.distance, request.center);
+  } else if (generator == "shell") {
+    set.poses = shell_poses(count, 0.8 * request.distance, 1.25 * request.distance, request.seed,
+                            request.center);
+  } else if (generator == "fibonacci") {
+    if (count > kMostSpreadOut) {
+      throw Error(ErrorCode::invalid_argument, "generator \"fibonacci\" takes at most " +
+                                                   std::to_string(kMostSpreadOut) + " poses, not " +
+                                                   std::to_string(count));
+    }
+    set.poses = spread_out(sphere_poses(count, request.distance, request.center), request);
+  } else if (generator == "sequence") {
+    set.poses = sequence_poses(request);
+  } else {
+    throw Error(ErrorCode::invalid_argument,
+                "generator \"" + std::string(generator) + "\": no such set of poses");
+  }
+  return set;
+}
+
+double filling_distance(const Sensor& sensor, double radius) {
+  const PinholeCamera& camera = sensor.camera;
+  // A camera of one line has no second side.
+  const double half_x = std::atan(0.5 * camera.width / camera.fx);
+  const double half_y = camera.height > 1 ? std::atan(0.5 * camera.height / camera.fy) : half_x;
+  return std::max(sensor.working_distance, radius / std::sin(std::min(half_x, half_y)));
+}
+
+}  // namespace viewgain

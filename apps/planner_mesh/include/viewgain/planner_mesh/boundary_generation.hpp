@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/mesh/surface.hpp"
+#include "viewgain/mesh/viewpoint_estimator.hpp"
+#include "viewgain/planner/map_model.hpp"
+
+namespace viewgain {
+
+/// How views at the surface's open boundaries are made.
+struct VIEWGAIN_EXPORT BoundaryViewsConfig {
+  EstimatorConfig estimator{};
+  double working_distance = 0;  ///< from the surface [m]
+  /// A boundary is classed by the last view that has it in sight past the rest of the map, not only
+  /// in its image; a view is traced for that. Moves the ends of runs, and so the candidates.
+  bool classes_by_sight = false;
+};
+
+/// A number of variants that makes a large batch: two distances, tilts of 15° to four sides, two
+/// rolls; a quarter of a view overlaps with what is known; regions of 80 mm. `spacing` of the
+/// surface's points [m]; Error(invalid_argument) unless it is positive.
+[[nodiscard]] VIEWGAIN_EXPORT EstimatorConfig default_estimator(double spacing);
+
+/// default_estimator() for the surface that a map of these voxels will have, at the sensor's
+/// working distance.
+[[nodiscard]] VIEWGAIN_EXPORT BoundaryViewsConfig default_boundary(const Sensor& sensor,
+                                                                   double voxel_size);
+
+/// The views at the open boundaries of a map's surface, possible or not; `views`: those so far.
+[[nodiscard]] VIEWGAIN_EXPORT EstimatedViews
+boundary_views(const SurfaceMesh& surface, const std::shared_ptr<const VoxelScene>& scene,
+               std::span<const Pose> views, const Sensor& sensor, const BoundaryViewsConfig& config,
+               const ExecConfig& exec);
+
+/// The same as candidates of the generator "boundary", numbered by their place there.
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<Candidate> candidates_of(const EstimatedViews& estimated);
+
+/// VIEWPOINTSGENERATION at the boundaries of the surface in a map, made anew for each proposal:
+/// what ViewPlanner::add_generation() takes. Nothing is dropped; the planner looks what is
+/// possible. A map without views proposes nothing.
+class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
+ public:
+  /// The map, say ViewPlanner::map(), must outlive it.
+  BoundaryGeneration(const MapModel& map, const BoundaryViewsConfig& config,
+                     const ExecConfig& exec = {});
+
+  Proposal generate(const Pose& T_world_camera) override;
+
+  /// Behind the last proposal.
+  [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
+  [[nodiscard]] const EstimatedViews& estimated() const noexcept { return estimated_; }
+
+ private:
+  const MapModel& map_;
+  BoundaryViewsConfig config_;
+  ExecConfig exec_;
+  SurfaceMesh surface_;
+  EstimatedViews estimated_;
+};
+
+}  // namespace viewgain

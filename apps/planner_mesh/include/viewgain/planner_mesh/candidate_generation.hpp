@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/mesh/viewpoint_estimator.hpp"
+#include "viewgain/planner/feasible_poses.hpp"
+#include "viewgain/planner/pose_sets.hpp"
+#include "viewgain/planner_mesh/boundary_generation.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/raycast/feasibility.hpp"
+
+namespace viewgain {
+
+struct VIEWGAIN_EXPORT GenerationConfig {
+  bool at_boundaries = true;  ///< candidates at the surface's open boundaries
+  BoundaryViewsConfig boundary{};
+  std::vector<PoseSet> sets{};
+  FeasibilityConfig feasibility{};
+};
+
+/// What every loop starts from: boundary candidates by default_boundary(), no sets, feasibility for
+/// the sensor and its body, no limits of reach.
+[[nodiscard]] VIEWGAIN_EXPORT GenerationConfig default_generation(const Sensor& sensor,
+                                                                  double voxel_size);
+
+/// VIEWPOINTSGENERATION of Algorithm 1: views at the open boundaries of the model's surface, and
+/// fixed sets; the infeasible ones are dropped and counted by reason.
+class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
+ public:
+  /// The model must outlive it.
+  CandidateGeneration(const SurfaceModel& model, const Sensor& sensor,
+                      const GenerationConfig& config, const ExecConfig& exec);
+
+  Proposal generate(const Pose& T_world_camera) override;
+
+  [[nodiscard]] const GenerationConfig& config() const noexcept { return config_; }
+
+  /// Behind the last proposal: why its boundary candidates exist. The `number` of a candidate with
+  /// a class is its index in estimated().candidates, that of one of a set its index in the set.
+  [[nodiscard]] const EstimatedViews& estimated() const noexcept { return estimated_; }
+  /// Of the last proposal: the dropped candidates, each with its reason.
+  [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept { return dropped_; }
+
+ private:
+  [[nodiscard]] std::vector<Candidate> all_candidates() const;
+
+  const SurfaceModel& model_;
+  Sensor sensor_;
+  GenerationConfig config_;
+  ExecConfig exec_;
+  std::optional<FeasibilityChecker> checker_;  ///< of the last proposal's scene
+  EstimatedViews estimated_;
+  std::vector<DroppedCandidate> dropped_;
+};
+
+}  // namespace viewgain

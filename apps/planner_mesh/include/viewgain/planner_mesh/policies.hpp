@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/planner_mesh/boundary_order.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/oracle_choice.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain {
+
+/// How the next view is chosen among the feasible candidates.
+enum class Policy : std::uint8_t {
+  gain,       ///< the largest expected gain
+  kriegel,    ///< boundaries in the order left, right, top, bottom, each once: see BoundaryOrder
+  sequence,   ///< a fixed set in its order: turntable of eight, then from above
+  random,     ///< uniform over the feasible poses
+  frontier,   ///< the most unknown voxels in view
+  fibonacci,  ///< a fixed set in its order: evenly round the object
+  proximity,  ///< the most unknown voxels near known surface on its rays: see ProximityMeasure
+  oracle,     ///< knows the object, an upper reference: see OracleChoice
+};
+[[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& policy_names();
+/// Throws Error(invalid_argument) that lists the valid names.
+[[nodiscard]] VIEWGAIN_EXPORT Policy parse_policy(std::string_view name);
+
+/// What moving costs; at most one of the two.
+struct VIEWGAIN_EXPORT TravelCost {
+  double per_metre = 0;  ///< gain - per_metre · distance [the gain's unit per m]
+  /// gain / (seconds_per_view + distance / speed), where a speed is given [m/s].
+  std::optional<double> speed{};
+  double seconds_per_view = 1.0;  ///< [s]
+};
+
+struct VIEWGAIN_EXPORT PolicyConfig {
+  Policy policy = Policy::gain;
+  GainModel model = GainModel::combined;  ///< of Policy::gain
+  Criterion criterion = Criterion::log_diagonal;
+  std::optional<double> support_plane{};  ///< height [m], at which rays end
+  TravelCost travel{};
+  KnownObject object{};  ///< of Policy::oracle
+  std::uint64_t seed = 1;
+};
+
+/// set_stop_rules() of the policy: that of its gain, and where it does not choose by a gain neither
+/// gain nor area ends a run. Throws Error(invalid_argument), too, for an area or a gain above 0
+/// with such a policy.
+VIEWGAIN_EXPORT void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
+                                    std::optional<double> stop_gain,
+                                    std::optional<double> stop_area);
+
+/// DECISIONMAKER of Algorithm 1 for all policies.
+class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking {
+ public:
+  /// Throws Error(invalid_argument) for an oracle without an object.
+  PolicyDecision(const SurfaceModel& model, const CandidateGeneration& generation,
+                 const Sensor& sensor, const PolicyConfig& config, const ExecConfig& exec);
+
+  /// Nothing if there are no candidates, and for kriegel if none of them is left to try.
+  std::optional<Decision> decide(const Pose& T_world_camera,
+                                 std::span<const Candidate> candidates) override;
+
+ private:
+  [[nodiscard]] std::optional<std::size_t> choose(const Pose& T_world_camera,
+                                                  std::span<const Candidate> candidates,
+                                                  const std::vector<ViewGain>& gains);
+  [[nodiscard]] std::optional<std::size_t> choose_by_boundary(
+      std::span<const Candidate> candidates);
+
+  /// Gains of the candidates; by the surface and the combined gain NaN for those that few rays
+  /// showed to be no match for others.
+  [[nodiscard]] std::vector<ViewGain> score(const Pose& T_world_camera,
+                                            std::span<const Candidate> candidates) const;
+  [[nodiscard]] std::size_t most_proximity(std::span<const Candidate> candidates);
+  /// The new surface to be expected of a view [m²], where the policy's own gain does not say.
+  [[nodiscard]] double expected_area(const Pose& T_world_camera);
+
+  const SurfaceModel& model_;
+  const CandidateGeneration& generation_;
+  Sensor sensor_;
+  PolicyConfig config_;
+  ExecConfig exec_;
+  std::optional<GainEvaluator> evaluator_;       ///< of the last decision's scene
+  std::optional<GainEvaluator> area_evaluator_;  ///< likewise, by the surface gain
+  std::optional<GainEvaluator> coarse_;          ///< likewise, of few rays
+  BoundaryOrder order_;
+  std::optional<OracleChoice> oracle_;
+};
+
+}  // namespace viewgain

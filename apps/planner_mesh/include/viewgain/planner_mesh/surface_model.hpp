@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/fused_points.hpp"
+#include "viewgain/mesh/surface.hpp"
+#include "viewgain/planner/map_model.hpp"
+#include "viewgain/planner_mesh/truth.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+namespace viewgain {
+
+/// What changes the model.
+struct VIEWGAIN_EXPORT SurfaceModelConfig {
+  MapModelConfig map{};
+  FusedPointsConfig points{};
+};
+
+/// The surface through the points of a map, `spacing` [m] apart (its pooling length); vertex i
+/// comes from point source[i].
+[[nodiscard]] VIEWGAIN_EXPORT SurfaceMesh surface_of(const std::vector<FusedPoint>& points,
+                                                     double spacing, const ExecConfig& exec);
+
+/// The two representations of the scene, the belief grid and the surface seen so far
+/// (UPDATEREPRESENTATIONS of Algorithm 1), and what is derived from them after each view.
+class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
+ public:
+  /// `truth` may be null: then there is no quality.
+  SurfaceModel(const Sensor& sensor, const SurfaceModelConfig& config,
+               std::shared_ptr<const Truth> truth, const ExecConfig& exec);
+
+  /// From an existing map: its surface and scene, ready for candidates.
+  SurfaceModel(BeliefGrid grid, const Sensor& sensor, const SurfaceModelConfig& config,
+               const ExecConfig& exec);
+
+  /// The stages of its seconds: integrate, snapshot, surface and, where there is a truth, quality.
+  /// Throws Error(invalid_argument) if the first view has no reading in the workspace.
+  ModelProgress update(const Measurements& measurements) override;
+
+  /// The points that the model would have after these measurements, which do not change it. Costs a
+  /// copy of the map beside what update() costs without a surface.
+  [[nodiscard]] std::vector<FusedPoint> points_after(const Measurements& measurements) const;
+
+  [[nodiscard]] const MapModel& map() const noexcept { return map_; }
+  [[nodiscard]] const BeliefGrid& grid() const noexcept { return map_.grid(); }
+  [[nodiscard]] const std::shared_ptr<const VoxelScene>& scene() const noexcept {
+    return map_.scene();
+  }
+  [[nodiscard]] const std::vector<FusedPoint>& points() const noexcept { return points_; }
+  [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
+  /// New surface that the last view's first frame showed [m²]; see RealisedArea.
+  [[nodiscard]] double realised_area() const noexcept { return realised_area_; }
+  /// After each view, where there is a truth.
+  [[nodiscard]] const std::vector<QualityFigures>& quality() const noexcept { return quality_; }
+
+ private:
+  void derive_surface();
+
+  SurfaceModelConfig config_;
+  ExecConfig exec_;
+  std::shared_ptr<const Truth> truth_;
+  MapModel map_;
+  std::vector<FusedPoint> points_;
+  SurfaceMesh surface_;
+  double realised_area_ = 0;
+  std::vector<QualityFigures> quality_;
+};
+
+}  // namespace viewgain

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/reach.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/fused_points.hpp"
+#include "viewgain/mesh/quality.hpp"
+#include "viewgain/mesh/surface.hpp"
+#include "viewgain/raycast/surface_scene.hpp"
+
+namespace viewgain {
+
+/// DESIGN.md section 10, for one model against a ground truth. Lengths in [m].
+struct VIEWGAIN_EXPORT QualityFigures {
+  double coverage = 0;          ///< of all samples, 5 mm, surface
+  double coverage_visible = 0;  ///< of the visible ones, 5 mm, surface
+  double coverage_2_5mm = 0;    ///< of all samples, 2.5 mm, surface
+  double covered_area = 0;      ///< of the mesh, where visible samples are covered, 5 mm [m²]
+  ErrorStatistics surface_error{};
+  ErrorStatistics points_error{};
+  Consistency consistency{};  ///< of the points
+};
+
+/// From where the visible samples are looked for.
+struct VIEWGAIN_EXPORT VisibilityConfig {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double distance = 0;  ///< of the 2,562 poses from the centre [m]
+  Pose start;           ///< the run's first pose, wherever it is
+  ReachRegion reach{};
+  std::optional<double> support_plane{};  ///< nothing is seen from under it; world z [m]
+  std::shared_ptr<const SurfaceScene> surroundings{};  ///< which hide the object; may be null
+};
+
+/// Is a sample of the mesh seen from a pose: in the image and the range limits, unoccluded by mesh
+/// and surroundings (may be null), and at no more than an angle of incidence whose cosine is
+/// `least_cosine`?
+[[nodiscard]] VIEWGAIN_EXPORT bool sees(const SurfaceScene& scene, const SurfaceScene* surroundings,
+                                        const Sensor& sensor, const Pose& T_world_camera,
+                                        const SurfaceSample& sample, double least_cosine);
+
+/// A sample is covered by a point that is within this of it [m].
+inline constexpr double kCovered = 5e-3;
+
+/// A ground-truth mesh and which of its samples a camera can see: unoccluded, inside the image and
+/// the range limits, at under 80°, from the start or one of 2,562 Fibonacci poses. A pose that is
+/// out of reach moves along its line of sight to the reachable distance that is nearest to the
+/// wanted one, in steps of 2.5 mm, at most 50 m and outside of the sphere round the mesh; it is
+/// left out if there is none. Where the reachable region has a list of poses, those count instead.
+class VIEWGAIN_EXPORT Truth {
+ public:
+  Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
+        const VisibilityConfig& config, const ExecConfig& exec);
+
+  [[nodiscard]] QualityFigures figures(const SurfaceMesh& surface,
+                                       std::span<const FusedPoint> points) const;
+
+  /// The samples, 10,000 of them.
+  [[nodiscard]] const GroundTruth& ground_truth() const noexcept { return truth_; }
+
+ private:
+  GroundTruth truth_;
+  double area_per_sample_;  // [m²]
+  std::vector<std::uint8_t> visible_;
+};
+
+}  // namespace viewgain

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viewgain/planner_mesh/boundary_generation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
+#include "viewgain/grid/fused_points.hpp"
+#include "viewgain/planner/view_sight.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
+
+namespace viewgain {
+
+EstimatorConfig default_estimator(double spacing) {
+  if (!(spacing > 0) || !std::isfinite(spacing)) {
+    throw Error(
+        ErrorCode::invalid_argument,
+        "the spacing of a surface's points must be positive, not " + short_text(spacing) + " m");
+  }
+  constexpr double kDegree = std::numbers::pi / 180;
+  EstimatorConfig config;
+  config.boundary.min_run_length = 8 * spacing;
+  config.boundary.min_loop_length = 8 * spacing;
+  config.overlap = 0.25;
+  config.region_depth = 0.08;
+  config.distances = {1.0, 1.15};
+  config.tilts = {0.0, 15 * kDegree, -15 * kDegree};
+  config.rolls = {0.0, 90 * kDegree};
+  return config;
+}
+
+BoundaryViewsConfig default_boundary(const Sensor& sensor, double voxel_size) {
+  BoundaryViewsConfig config;
+  // As far apart as the points of the surface will be.
+  const double footprint = sigmas(sensor.noise, sensor.working_distance, sensor.camera.fx).lateral;
+  config.estimator =
+      default_estimator(voxel_size > 0 ? std::max(voxel_size, footprint) : voxel_size);
+  config.working_distance = sensor.working_distance;
+  return config;
+}
+
+EstimatedViews boundary_views(const SurfaceMesh& surface,
+                              const std::shared_ptr<const VoxelScene>& scene,
+                              std::span<const Pose> views, const Sensor& sensor,
+                              const BoundaryViewsConfig& config, const ExecConfig& exec) {
+  std::optional<ViewSight> sight;
+  std::function<bool(std::size_t, const Eigen::Vector3d&)> sees;
+  if (config.classes_by_sight) {
+    sight.emplace(scene, sensor, views, exec);
+    sees = [&sight](std::size_t view, const Eigen::Vector3d& p) { return sight->sees(view, p); };
+  }
+  return estimate_views(surface, views, sensor, config.working_distance, config.estimator, sees);
+}
+
+std::vector<Candidate> candidates_of(const EstimatedViews& estimated) {
+  std::vector<Candidate> candidates;
+  candidates.reserve(estimated.candidates.size());
+  for (std::size_t i = 0; i < estimated.candidates.size(); ++i) {
+    const BoundaryCandidate& c = estimated.candidates[i];
+    candidates.push_back({c.T_world_camera, "boundary", c.boundary_class, i});
+  }
+  return candidates;
+}
+
+BoundaryGeneration::BoundaryGeneration(const MapModel& map, const BoundaryViewsConfig& config,
+                                       const ExecConfig& exec)
+    : map_(map), config_(config), exec_(exec) {}
+
+Proposal BoundaryGeneration::generate(const Pose&) {
+  surface_ = {};
+  estimated_ = {};
+  if (map_.grid().views().empty()) return {};
+  const double spacing = pooling_of(map_.scene()->snapshot()).length;
+  surface_ = surface_of(fused_points(map_.grid(), {}, exec_), spacing, exec_);
+  estimated_ =
+      boundary_views(surface_, map_.scene(), map_.grid().views(), map_.sensor(), config_, exec_);
+  return {candidates_of(estimated_), {}};
+}
+
+}  // namespace viewgain

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+
+#include <string>
+#include <utility>
+
+namespace viewgain {
+
+GenerationConfig default_generation(const Sensor& sensor, double voxel_size) {
+  GenerationConfig config;
+  config.boundary = default_boundary(sensor, voxel_size);
+  config.feasibility = feasibility_of(sensor);
+  return config;
+}
+
+CandidateGeneration::CandidateGeneration(const SurfaceModel& model, const Sensor& sensor,
+                                         const GenerationConfig& config, const ExecConfig& exec)
+    : model_(model), sensor_(sensor), config_(config), exec_(exec) {}
+
+std::vector<Candidate> CandidateGeneration::all_candidates() const {
+  std::vector<Candidate> all = candidates_of(estimated_);
+  for (const PoseSet& set : config_.sets) {
+    for (std::size_t i = 0; i < set.poses.size(); ++i) {
+      all.push_back({set.poses[i], set.generator, std::nullopt, i});
+    }
+  }
+  return all;
+}
+
+Proposal CandidateGeneration::generate(const Pose&) {
+  const std::vector<Pose>& views = model_.grid().views();
+  estimated_ = {};
+  if (config_.at_boundaries) {
+    estimated_ =
+        boundary_views(model_.surface(), model_.scene(), views, sensor_, config_.boundary, exec_);
+  }
+  std::vector<Candidate> all = all_candidates();
+
+  checker_ = checker_ ? checker_->with_scene(model_.scene())
+                      : FeasibilityChecker(model_.scene(), config_.feasibility, exec_);
+  std::vector<Pose> poses;
+  poses.reserve(all.size());
+  for (const Candidate& candidate : all) poses.push_back(candidate.T_world_camera);
+  const std::vector<Infeasibility> reasons = checker_->check(poses, views);
+
+  Proposal proposal;
+  dropped_.clear();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (reasons[i] == Infeasibility::none) {
+      proposal.candidates.push_back(std::move(all[i]));
+    } else {
+      std::string reason(infeasibility_name(reasons[i]));
+      ++proposal.dropped[reason];
+      dropped_.push_back({std::move(all[i]), std::move(reason)});
+    }
+  }
+  return proposal;
+}
+
+}  // namespace viewgain

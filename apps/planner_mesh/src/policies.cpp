@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viewgain/planner_mesh/policies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/mix64.hpp"
+#include "viewgain/planner/proximity_measure.hpp"
+#include "viewgain/planner/stop_settings.hpp"
+
+namespace viewgain {
+namespace {
+
+// What a gain is worth after the way to it.
+double utility(const TravelCost& cost, double gain, double distance) {
+  if (cost.speed) return gain / (cost.seconds_per_view + distance / *cost.speed);
+  return gain - cost.per_metre * distance;
+}
+
+std::vector<Pose> poses_of(std::span<const Candidate> candidates) {
+  std::vector<Pose> poses;
+  poses.reserve(candidates.size());
+  for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
+  return poses;
+}
+
+}  // namespace
+
+const std::vector<std::string>& policy_names() {
+  static const std::vector<std::string> names{"gain",     "kriegel",   "sequence",  "random",
+                                              "frontier", "fibonacci", "proximity", "oracle"};
+  return names;
+}
+
+Policy parse_policy(std::string_view name) {
+  const std::vector<std::string>& names = policy_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    std::string text = "unknown policy \"" + std::string(name) + "\"; valid are";
+    for (const std::string& valid : names) text.append(" ").append(valid);
+    throw Error(ErrorCode::invalid_argument, text);
+  }
+  return static_cast<Policy>(found - names.begin());
+}
+
+void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
+                    std::optional<double> stop_gain, std::optional<double> stop_area) {
+  const bool by_gain = policy.policy == Policy::gain;
+  if (!by_gain && stop_area.value_or(0) > 0) {
+    throw Error(ErrorCode::invalid_argument,
+                "stop_area (--stop-area) goes with policy gain by the gains surface and combined");
+  }
+  if (!by_gain && stop_gain.value_or(0) > 0) {
+    throw Error(ErrorCode::invalid_argument,
+                "stop_gain (--stop-gain) goes with policy gain by the gain paper");
+  }
+  // A policy without a gain per voxel never asks for the rule of the paper's.
+  set_stop_rules(planning, by_gain ? policy.model : GainModel::paper, policy.criterion, stop_gain,
+                 stop_area);
+}
+
+PolicyDecision::PolicyDecision(const SurfaceModel& model, const CandidateGeneration& generation,
+                               const Sensor& sensor, const PolicyConfig& config,
+                               const ExecConfig& exec)
+    : model_(model),
+      generation_(generation),
+      sensor_(sensor),
+      config_(config),
+      exec_(exec),
+      order_(0.5 * generation.config().boundary.estimator.patch_length) {
+  if (config.policy == Policy::oracle) oracle_.emplace(model, sensor, config.object, exec);
+}
+
+std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
+                                               std::span<const Candidate> candidates) {
+  if (candidates.empty()) return std::nullopt;
+  const bool by_gain = config_.policy == Policy::gain;
+  if (evaluator_) {
+    evaluator_ = evaluator_->with_scene(model_.scene());
+  } else {
+    GainConfig gain;
+    gain.criterion = config_.criterion;
+    gain.support_plane = config_.support_plane;
+    if (by_gain) gain.model = config_.model;
+    evaluator_.emplace(model_.scene(), sensor_, gain, exec_);
+  }
+  const GainEvaluator& evaluator = *evaluator_;
+  const bool scored = by_gain || config_.policy == Policy::frontier;
+  const std::vector<ViewGain> gains =
+      scored ? score(T_world_camera, candidates) : std::vector<ViewGain>(candidates.size());
+  const std::optional<std::size_t> chosen = choose(T_world_camera, candidates, gains);
+  if (!chosen) return std::nullopt;
+  const ViewGain gain =
+      scored ? gains[*chosen] : evaluator.evaluate(candidates[*chosen].T_world_camera);
+  Decision decision;
+  decision.candidate = *chosen;
+  decision.gain = gain.gain;
+  const std::uint32_t touched = gain.unknown_voxels + gain.occupied_voxels;
+  decision.area =
+      std::isnan(gain.area) ? expected_area(candidates[*chosen].T_world_camera) : gain.area;
+  // A fixed order of views does not stop because one of them promises little.
+  if (!by_gain) return decision;
+  if (config_.model == GainModel::paper) {
+    decision.gain_per_voxel = touched > 0 ? gain.gain / touched : 0.0;
+  } else {
+    decision.best_area = 0;
+    for (const ViewGain& g : gains) decision.best_area = std::fmax(decision.best_area, g.area);
+  }
+  return decision;
+}
+
+std::vector<ViewGain> PolicyDecision::score(const Pose& T_world_camera,
+                                            std::span<const Candidate> candidates) const {
+  const std::vector<Pose> poses = poses_of(candidates);
+  ViewGain none;
+  none.gain = none.area = std::numeric_limits<double>::quiet_NaN();
+  std::vector<ViewGain> gains(poses.size(), none);
+  const bool in_two_stages = config_.policy == Policy::gain && config_.model != GainModel::paper;
+  if (!in_two_stages || config_.travel.speed) {
+    evaluator_->evaluate(poses, gains);
+    return gains;
+  }
+  std::vector<double> costs;
+  if (config_.travel.per_metre > 0) {
+    for (const Pose& pose : poses) {
+      const double distance = (pose.translation() - T_world_camera.translation()).norm();
+      costs.push_back(config_.travel.per_metre * distance);
+    }
+  }
+  RaceConfig config;
+  config.costs = costs;
+  const RacedViews raced = evaluator_->race(poses, 1, config);
+  for (std::size_t j = 0; j < raced.scored_indices.size(); ++j) {
+    gains[raced.scored_indices[j]] = raced.scored_gains[j];
+  }
+  return gains;
+}
+
+std::size_t PolicyDecision::most_proximity(std::span<const Candidate> candidates) {
+  if (coarse_) {
+    coarse_ = coarse_->with_scene(model_.scene());
+  } else {
+    GainConfig config;
+    config.pixel_stride = coarse_stride(sensor_.camera);
+    config.support_plane = config_.support_plane;
+    coarse_.emplace(model_.scene(), sensor_, config, exec_);
+  }
+  std::vector<double> values(candidates.size());
+  coarse_->evaluate(poses_of(candidates), ProximityMeasure(model_.scene()->hazard()), values);
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] > values[best] || std::isnan(values[best])) best = i;
+  }
+  return best;
+}
+
+double PolicyDecision::expected_area(const Pose& T_world_camera) {
+  if (area_evaluator_) {
+    area_evaluator_ = area_evaluator_->with_scene(model_.scene());
+  } else {
+    GainConfig config;
+    config.model = GainModel::surface;
+    config.support_plane = config_.support_plane;
+    area_evaluator_.emplace(model_.scene(), sensor_, config, ExecConfig{1});
+  }
+  return area_evaluator_->evaluate(T_world_camera).area;
+}
+
+std::optional<std::size_t> PolicyDecision::choose(const Pose& T_world_camera,
+                                                  std::span<const Candidate> candidates,
+                                                  const std::vector<ViewGain>& gains) {
+  const auto best_by = [&](auto&& worth) {
+    std::size_t best = 0;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const double value = worth(i);
+      if (value > most) most = value, best = i;  // ties to the lower index; NaN never
+    }
+    return best;
+  };
+  switch (config_.policy) {
+    case Policy::gain:
+      return best_by([&](std::size_t i) {
+        const double distance =
+            (candidates[i].T_world_camera.translation() - T_world_camera.translation()).norm();
+        return utility(config_.travel, gains[i].gain, distance);
+      });
+    case Policy::frontier:
+      return best_by([&](std::size_t i) { return static_cast<double>(gains[i].unknown_voxels); });
+    case Policy::random:
+      return static_cast<std::size_t>(mix64(mix64(config_.seed) ^ model_.grid().views().size()) %
+                                      candidates.size());
+    case Policy::kriegel:
+      return choose_by_boundary(candidates);
+    case Policy::proximity:
+      return most_proximity(candidates);
+    case Policy::oracle:
+      return oracle_->next(candidates);
+    case Policy::sequence:
+    case Policy::fibonacci:
+      break;
+  }
+  return 0;
+}
+
+std::optional<std::size_t> PolicyDecision::choose_by_boundary(
+    std::span<const Candidate> candidates) {
+  if (const auto next = order_.next(candidates, generation_.estimated())) return next;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!candidates[i].boundary_class) return i;  // a pose of the reachable list
+  }
+  return std::nullopt;
+}
+
+}  // namespace viewgain

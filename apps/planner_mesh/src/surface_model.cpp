@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viewgain/planner_mesh/surface_model.hpp"
+
+#include <utility>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/stopwatch.hpp"
+#include "viewgain/planner_mesh/mesh_area.hpp"
+
+namespace viewgain {
+
+SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double spacing,
+                       const ExecConfig& exec) {
+  std::vector<OrientedPoint> oriented;
+  oriented.reserve(points.size());
+  for (const FusedPoint& point : points) oriented.push_back({point.position, point.toward_free});
+  SurfaceConfig config;
+  config.spacing = spacing;
+  return reconstruct_surface(oriented, config, exec);
+}
+
+SurfaceModel::SurfaceModel(const Sensor& sensor, const SurfaceModelConfig& config,
+                           std::shared_ptr<const Truth> truth, const ExecConfig& exec)
+    : config_(config), exec_(exec), truth_(std::move(truth)), map_(sensor, config.map, exec) {}
+
+SurfaceModel::SurfaceModel(BeliefGrid grid, const Sensor& sensor, const SurfaceModelConfig& config,
+                           const ExecConfig& exec)
+    : config_(config), exec_(exec), map_(std::move(grid), sensor, config.map, exec) {
+  derive_surface();
+}
+
+ModelProgress SurfaceModel::update(const Measurements& measurements) {
+  const bool first = grid().views().empty();
+  const MapUpdate update = map_.update(measurements);
+  if (first && update.counts.readings_inside == 0) {
+    throw Error(
+        ErrorCode::invalid_argument,
+        "the first view has no reading in the workspace: the start pose looks away from it, "
+        "is out of range, or something known hides it");
+  }
+  realised_area_ = update.new_area;
+  StageSeconds seconds = update.seconds;
+  const Stopwatch surface_watch;
+  derive_surface();
+  seconds["surface"] = surface_watch.seconds();
+  if (truth_) {
+    const Stopwatch quality_watch;
+    quality_.push_back(truth_->figures(surface_, points_));
+    seconds["quality"] = quality_watch.seconds();
+  }
+  ModelProgress progress = map_.progress();
+  progress.surface_area = mesh_area(surface_);
+  if (truth_) progress.coverage = quality_.back().coverage_visible;
+  progress.seconds = std::move(seconds);
+  return progress;
+}
+
+std::vector<FusedPoint> SurfaceModel::points_after(const Measurements& measurements) const {
+  return fused_points(map_.grid_after(measurements), config_.points, exec_);
+}
+
+void SurfaceModel::derive_surface() {
+  points_ = fused_points(grid(), config_.points, exec_);
+  surface_ = surface_of(points_, pooling_of(scene()->snapshot()).length, exec_);
+}
+
+}  // namespace viewgain

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viewgain/planner_mesh/truth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <optional>
+
+#include "viewgain/core/generators.hpp"
+#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/planner/point_arrays.hpp"
+#include "viewgain/planner_mesh/mesh_area.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr std::size_t kPoses = 2562, kSamples = 10'000;
+constexpr std::uint64_t kSeed = 1;  // of the samples
+const double kMinCosine = std::cos(80.0 * std::numbers::pi / 180);
+constexpr double kNearer = 2.5e-3;  // [m]
+constexpr double kStep = 2.5e-3;    // between distances that are looked at [m]
+constexpr int kMostSteps = 20'000;  // each way, 50 m
+
+// The pose at another distance from the centre [m].
+Pose moved(const Pose& pose, const Eigen::Vector3d& center, double distance) {
+  const Eigen::Vector3d away = (pose.translation() - center).normalized();
+  return {pose.rotation(), center + distance * away};
+}
+
+// The pose at the possible distance from the centre that is nearest to the wanted one.
+template <typename Possible>
+std::optional<Pose> moved_into_reach(const Pose& pose, const VisibilityConfig& config, double least,
+                                     double most, const Possible& possible) {
+  for (int k = 1; k <= kMostSteps; ++k) {
+    const double farther = config.distance + k * kStep, nearer = config.distance - k * kStep;
+    if (farther > most && nearer < least) break;
+    for (const double distance : {farther, nearer}) {
+      if (distance > most || distance < least) continue;
+      const Pose there = moved(pose, config.center, distance);
+      if (possible(there)) return there;
+    }
+  }
+  return std::nullopt;
+}
+
+double radius_round(const TriangleMesh& mesh, const Eigen::Vector3d& center) {
+  double radius = 0;
+  for (const auto& v : mesh.vertices) {
+    radius = std::max(radius, (Eigen::Vector3d(v[0], v[1], v[2]) - center).norm());
+  }
+  return radius;
+}
+
+// Where the camera can be to look at the object.
+std::vector<Pose> looking_poses(const VisibilityConfig& config, const Sensor& sensor,
+                                const TriangleMesh& mesh) {
+  const auto possible = [&](const Pose& pose) {
+    return config.reach.contains(pose) &&
+           !(config.support_plane && pose.translation().z() <= *config.support_plane);
+  };
+  std::vector<Pose> poses{config.start};
+  if (!config.reach.poses.empty()) {  // a lattice all but never meets a list
+    std::copy_if(config.reach.poses.begin(), config.reach.poses.end(), std::back_inserter(poses),
+                 possible);
+    return poses;
+  }
+  const double radius = radius_round(mesh, config.center);
+  for (const Pose& pose : sphere_poses(kPoses, config.distance, config.center)) {
+    if (possible(pose)) {
+      poses.push_back(pose);
+    } else if (!config.reach.contains(pose)) {
+      const std::optional<Pose> in_reach =
+          moved_into_reach(pose, config, radius, radius + sensor.max_range, possible);
+      if (in_reach) poses.push_back(*in_reach);
+    }
+  }
+  return poses;
+}
+
+}  // namespace
+
+bool sees(const SurfaceScene& scene, const SurfaceScene* surroundings, const Sensor& sensor,
+          const Pose& T_world_camera, const SurfaceSample& sample, double least_cosine) {
+  const Eigen::Vector3d eye = T_world_camera.translation();
+  const Eigen::Vector3d sight = sample.position - eye;
+  const double range = sight.norm();
+  if (!(range > sensor.min_range && range < sensor.max_range)) return false;
+  if (std::abs(sight.dot(sample.normal)) < least_cosine * range) return false;
+  const Eigen::Vector3d p_camera = T_world_camera.inverse() * sample.position;
+  if (!sensor.camera.sees(p_camera)) return false;
+  const double slack = 1e-4 * range;  // the sample's own triangle does not hide it
+  const Eigen::Vector3d direction = sight / range;
+  if (surroundings != nullptr &&
+      surroundings->intersect(eye, direction, range).range < range - slack) {
+    return false;
+  }
+  return scene.intersect(eye, direction, range).range >= range - slack;
+}
+
+Truth::Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
+             const VisibilityConfig& config, const ExecConfig& exec)
+    : truth_(scene->mesh(), kSamples, kSeed, exec),
+      area_per_sample_(mesh_area(scene->mesh()) / static_cast<double>(kSamples)) {
+  const std::vector<Pose> poses = looking_poses(config, sensor, scene->mesh());
+  const std::vector<SurfaceSample>& samples = truth_.samples();
+  visible_.resize(samples.size());
+  ThreadPool pool(exec.num_threads);
+  pool.for_each_chunk(samples.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      for (const Pose& pose : poses) {
+        if (!sees(*scene, config.surroundings.get(), sensor, pose, samples[i], kMinCosine)) {
+          continue;
+        }
+        visible_[i] = 1;
+        break;
+      }
+    }
+  });
+}
+
+QualityFigures Truth::figures(const SurfaceMesh& surface,
+                              std::span<const FusedPoint> points) const {
+  const PointArrays arrays = arrays_of(points);
+  const std::vector<double> distances = truth_.distances_to(surface.vertices);
+  QualityFigures figures;
+  figures.coverage = coverage(distances, kCovered);
+  figures.coverage_visible = coverage(distances, kCovered, visible_);
+  figures.coverage_2_5mm = coverage(distances, kNearer);
+  std::size_t covered = 0;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    if (visible_[i] != 0 && distances[i] <= kCovered) ++covered;
+  }
+  figures.covered_area = static_cast<double>(covered) * area_per_sample_;
+  figures.surface_error = truth_.error(surface.vertices);
+  figures.points_error = truth_.error(arrays.positions);
+  figures.consistency = truth_.consistency(arrays.positions, arrays.covariances);
+  return figures;
+}
+
+}  // namespace viewgain

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/core/stop_rules.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
+
+namespace viewgain {
+namespace {
+
+void check(const PlanningConfig& config) {
+  const auto fail = [](const std::string& what) {
+    throw Error(ErrorCode::invalid_argument, "planning: " + what);
+  };
+  const auto check_finite = [&fail](const char* name, double value) {
+    if (!std::isfinite(value)) {
+      fail(std::string(name) + " must be finite, not " + short_text(value));
+    }
+  };
+  if (config.max_views == 0) fail("max_views is 0");
+  check_finite("stop_gain", config.stop_gain);
+  check_finite("stop_area", config.stop_area);
+  check_finite("idle_fraction", config.idle_fraction);
+  if (config.stop_coverage) check_finite("stop_coverage", *config.stop_coverage);
+}
+
+// No change at all is nothing even where the total is 0. So is NaN: a run that cannot tell what it
+// gains must end.
+bool is_nothing(double change, double total, double fraction) {
+  return !(change > 0) || change < fraction * total;
+}
+
+}  // namespace
+
+StopReason nowhere_to_go(const Proposal& proposal) {
+  const auto found = proposal.dropped.find(std::string(kUnreachable));
+  const bool out_of_reach = found != proposal.dropped.end() && found->second > 0;
+  return out_of_reach ? StopReason::unreachable : StopReason::no_candidates;
+}
+
+StopRules::StopRules(const PlanningConfig& config, const StopMemory& memory)
+    : config_(config), memory_(memory) {
+  check(config);
+}
+
+// What was known before the first view is not known here, so that one is never idle.
+bool StopRules::brought_nothing(const ModelProgress& now) const {
+  if (memory_.views == 0) return false;
+  const auto unknown = static_cast<double>(memory_.unknown_voxels);
+  return is_nothing(now.entropy_removed - memory_.entropy_removed, memory_.entropy_removed,
+                    config_.idle_fraction) &&
+         is_nothing(unknown - static_cast<double>(now.unknown_voxels), unknown,
+                    config_.idle_fraction);
+}
+
+std::optional<StopReason> StopRules::after_view(const ModelProgress& progress) {
+  memory_.idle_views = brought_nothing(progress) ? memory_.idle_views + 1 : 0;
+  memory_.entropy_removed = progress.entropy_removed;
+  memory_.unknown_voxels = progress.unknown_voxels;
+  ++memory_.views;
+  const std::optional<double>& coverage = progress.coverage;
+  if (config_.stop_coverage && coverage && *coverage >= *config_.stop_coverage) {
+    return StopReason::coverage;
+  }
+  if (memory_.views >= config_.max_views) return StopReason::max_views;
+  if (config_.idle_views > 0 && memory_.idle_views >= config_.idle_views) return StopReason::idle;
+  return std::nullopt;
+}
+
+// A policy without a gain per voxel (NaN) never stops for it.
+bool StopRules::stops_for_gain(double gain_per_voxel) {
+  if (std::isnan(gain_per_voxel)) return false;
+  if (!config_.stop_gain_is_relative) return gain_per_voxel < config_.stop_gain;
+  if (std::isnan(memory_.first_gain_per_voxel)) {
+    // The best view brings nothing from the start: a share of that is no limit.
+    if (!(gain_per_voxel > 0)) return true;
+    memory_.first_gain_per_voxel = gain_per_voxel;
+  }
+  return gain_per_voxel < config_.stop_gain * memory_.first_gain_per_voxel;
+}
+
+// No candidate promises enough, on the mean of some decisions. A decision whose areas are not known
+// (NaN) makes a mean that is not under the limit; so does a model without a surface.
+bool StopRules::stops_for_area(double share) {
+  memory_.area_shares[memory_.decisions++ % memory_.area_shares.size()] = share;
+  if (memory_.decisions < memory_.area_shares.size()) return false;
+  double sum = 0;
+  for (const double s : memory_.area_shares) sum += s;
+  return config_.stop_area > 0 &&
+         sum < config_.stop_area * static_cast<double>(memory_.area_shares.size());
+}
+
+std::optional<StopReason> StopRules::after_decision(const std::optional<Decision>& decision,
+                                                    const Proposal& proposal, double surface_area) {
+  if (!decision) return nowhere_to_go(proposal);
+  const bool little_area = stops_for_area(decision->best_area / surface_area);
+  if (stops_for_gain(decision->gain_per_voxel)) return StopReason::gain;
+  if (little_area) return StopReason::area;
+  return std::nullopt;
+}
+
+}  // namespace viewgain

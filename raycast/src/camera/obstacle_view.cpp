@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/raycast/obstacle_view.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "scene/gather_scene.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/thread_pool.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr std::size_t kPixelChunk = 1024;
+
+void append(TriangleMesh& mesh, const TriangleMesh& part) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
+  for (const auto& t : part.triangles) {
+    mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+}
+
+TriangleMesh mesh_of(const Box& box) {
+  TriangleMesh mesh;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    auto& vertex = mesh.vertices.emplace_back();
+    for (unsigned a = 0; a < 3; ++a) {
+      vertex[a] = (corner >> a & 1U) != 0 ? box.max[a] : box.min[a];
+    }
+  }
+  mesh.triangles.assign(kBoxTriangles.begin(), kBoxTriangles.end());
+  return mesh;
+}
+
+}  // namespace
+
+TriangleMesh mesh_of(const Obstacles& obstacles) {
+  detail::check_obstacles(obstacles);
+  TriangleMesh all;
+  for (const Box& box : obstacles.boxes) append(all, mesh_of(box));
+  for (const TriangleMesh& mesh : obstacles.meshes) append(all, mesh);
+  return all;
+}
+
+struct ObstacleView::Impl {
+  Sensor sensor;
+  std::vector<Eigen::Vector3d> rays;
+  std::optional<SurfaceScene> scene;
+  mutable ThreadPool pool;
+
+  Impl(const Sensor& of, int threads) : sensor(of), rays(of.camera.ray_table()), pool(threads) {}
+};
+
+ObstacleView::ObstacleView(const Obstacles& obstacles, const Sensor& sensor,
+                           const ExecConfig& exec) {
+  sensor.validate();
+  impl_ = std::make_unique<Impl>(sensor, exec.num_threads);
+  TriangleMesh mesh = mesh_of(obstacles);
+  if (!mesh.triangles.empty()) impl_->scene.emplace(std::move(mesh), exec);
+}
+ObstacleView::~ObstacleView() = default;
+ObstacleView::ObstacleView(ObstacleView&&) noexcept = default;
+ObstacleView& ObstacleView::operator=(ObstacleView&&) noexcept = default;
+
+void ObstacleView::mark(DepthFrame& frame, const Pose& T_world_camera) const {
+  const Impl& m = *impl_;
+  frame.known_depth.clear();
+  check_frame_size(frame, m.sensor.camera);
+  if (!(orthonormality_error(T_world_camera) <= 1e-3)) {
+    throw Error(ErrorCode::invalid_argument, "the frame's pose is not a rigid transform");
+  }
+  if (!m.scene) return;
+  frame.known_depth.assign(m.rays.size(), DepthFrame::kOutOfRange);
+  const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
+  const Eigen::Vector3d eye = T_world_camera.translation();
+  m.pool.for_each_chunk(m.rays.size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!m.rays[i].allFinite()) continue;
+      const double norm = m.rays[i].norm();  // range per depth
+      const Eigen::Vector3d direction = R_world_camera * m.rays[i] / norm;
+      const SurfaceHit hit = m.scene->intersect(eye, direction);
+      if (!std::isfinite(hit.range)) continue;
+      const double cosine = std::abs(hit.normal.dot(direction));
+      // Along the ray; at a graze all before the obstacle may be a reading of it.
+      const double sigma = sigma_along_normal(m.sensor.sigmas(hit.range, cosine), cosine) /
+                           std::max(cosine, kMinCosIncidence);
+      const double from = std::max(0.0, hit.range - kKnownSigmas * sigma);
+      frame.known_depth[i] = static_cast<float>(from / norm);
+    }
+  });
+}
+
+}  // namespace viewgain

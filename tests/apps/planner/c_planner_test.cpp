@@ -1,0 +1,257 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The C interface of the planner says what the C++ one says, and refuses wrong use.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "apps/planner/bin_scene.hpp"
+#include "core/temporary_folder.hpp"
+#include "viewgain/planner.h"
+
+namespace viewgain {
+namespace {
+
+using test::BinScene;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> numbers_of(const std::vector<Pose>& poses) {
+  std::vector<double> numbers;
+  for (const Pose& pose : poses) {
+    numbers.insert(numbers.end(), pose.m.begin(), pose.m.end());
+    for (const double last : {0.0, 0.0, 0.0, 1.0}) numbers.push_back(last);
+  }
+  return numbers;
+}
+
+// The sensor and settings of BinScene for C.
+struct CScene {
+  BinScene scene;
+  vg_sensor sensor;
+  vg_planner_config config;
+  std::vector<double> boxes;
+
+  explicit CScene(GainModel model = GainModel::combined) {
+    vg_sensor_init(&sensor, sizeof sensor);
+    const PinholeCamera& c = scene.sensor.camera;
+    sensor.width = c.width, sensor.height = c.height;
+    sensor.fx = c.fx, sensor.fy = c.fy, sensor.cx = c.cx, sensor.cy = c.cy;
+    sensor.min_range = scene.sensor.min_range;
+    sensor.max_range = scene.sensor.max_range;
+    sensor.working_distance = scene.sensor.working_distance;
+    sensor.noise_model = VG_NOISE_CONSTANT;
+    sensor.noise[0] = sensor.noise[1] = 0.001;
+    const PlannerConfig own = scene.config(model);
+    vg_planner_config_init(&config, sizeof config);
+    config.num_threads = 1;
+    config.gain = static_cast<int32_t>(model);
+    config.voxel_size = own.grid.voxel_size;
+    for (std::size_t a = 0; a < 3; ++a) {
+      config.box_min[a] = own.grid.workspace.min[a];
+      config.box_max[a] = own.grid.workspace.max[a];
+    }
+    config.support_plane = *own.support_plane;
+    config.jump_edge_angle = 0;
+    for (const Box& box : own.obstacles.boxes) {
+      boxes.insert(boxes.end(), box.min.begin(), box.min.end());
+      boxes.insert(boxes.end(), box.max.begin(), box.max.end());
+    }
+    config.boxes = boxes.data();
+    config.box_count = 2;
+    if (scene.sensor.T_flange_camera) {
+      config.has_flange = 1;
+      const std::vector<double> flange = numbers_of({*scene.sensor.T_flange_camera});
+      std::copy(flange.begin(), flange.end(), config.T_flange_camera);
+    }
+  }
+};
+
+TEST(CPlanner, SaysWhatTheOtherSays) {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "state.vdb").string();
+  int cases = 0;
+  for (const GainModel model : {GainModel::paper, GainModel::combined}) {
+    const CScene c(model);
+    const BinScene& scene = c.scene;
+    ViewPlanner own(scene.sensor, scene.config(model), {1});
+    own.add_poses({"poses", scene.views});
+    vg_planner* planner = nullptr;
+    ASSERT_EQ(vg_planner_create(&c.sensor, &c.config, &planner), VG_OK) << vg_last_error();
+    const std::vector<double> poses = numbers_of(scene.views);
+    ASSERT_EQ(vg_planner_add_poses(planner, poses.data(), scene.views.size()), VG_OK);
+    for (std::size_t view = 0; view < 3; ++view, ++cases) {
+      const Pose& pose = scene.views[5 * view];
+      const DepthFrame frame = scene.see(pose, view);
+      const AddedView expected = own.add(frame, pose);
+      vg_planner_view added;
+      vg_planner_view_init(&added, sizeof added);
+      ASSERT_EQ(vg_planner_add(planner, frame.depth.data(), frame.amplitude.data(),
+                               numbers_of({pose}).data(), &added),
+                VG_OK)
+          << vg_last_error();
+      EXPECT_EQ(added.view, view);
+      EXPECT_EQ(added.readings_inside, expected.update.counts.readings_inside);
+      EXPECT_EQ(added.entropy_removed, expected.entropy_removed);
+      EXPECT_EQ(added.unknown_voxels, expected.progress.unknown_voxels);
+      EXPECT_EQ(std::isnan(added.new_area), model == GainModel::paper);
+      if (model != GainModel::paper) {
+        EXPECT_EQ(added.new_area, expected.update.new_area);
+      }
+      vg_grid* grid = nullptr;
+      ASSERT_EQ(vg_planner_grid(planner, &grid), VG_OK);
+      char hash[17];
+      ASSERT_EQ(vg_grid_hash(grid, hash), VG_OK);
+      vg_grid_release(grid);
+      EXPECT_EQ(hash, own.grid().content_hash());
+
+      size_t candidates = 0;
+      std::array<size_t, 12> dropped{};
+      ASSERT_EQ(vg_planner_propose(planner, &candidates, dropped.data(), dropped.size()), VG_OK);
+      const Proposal& proposal = own.propose();
+      EXPECT_EQ(candidates, proposal.candidates.size());
+      EXPECT_EQ(dropped[VG_INFEASIBLE_TAKEN], proposal.dropped.at("taken"));
+      size_t sum = 0, expected_sum = 0;
+      for (const size_t n : dropped) sum += n;
+      for (const auto& [reason, n] : proposal.dropped) expected_sum += n;
+      EXPECT_EQ(sum, expected_sum);
+
+      std::array<vg_ranked_view, 3> best{};
+      size_t found = 0;
+      ASSERT_EQ(vg_planner_rank(planner, 3, nullptr, 0, 2.0, best.data(), sizeof best[0], &found,
+                                nullptr),
+                VG_OK)
+          << vg_last_error();
+      const Ranking ranking = own.rank(3, {.cost_per_metre = 2.0});
+      ASSERT_EQ(found, ranking.views.size());
+      for (std::size_t i = 0; i < found; ++i) {
+        EXPECT_EQ(best[i].index, ranking.views[i].index);
+        EXPECT_EQ(best[i].gain, ranking.views[i].gain.gain);
+        EXPECT_EQ(best[i].worth, ranking.views[i].worth);
+        EXPECT_EQ(best[i].T_world_camera[3], ranking.views[i].T_world_camera.m[3]);
+        EXPECT_EQ(best[i].T_world_camera[15], 1);
+      }
+      ASSERT_EQ(vg_planner_tried(planner, best[0].T_world_camera, 0), VG_OK);
+      own.tried(ranking.views[0].T_world_camera, false);
+      ASSERT_EQ(vg_planner_propose(planner, &candidates, dropped.data(), dropped.size()), VG_OK);
+      EXPECT_EQ(dropped[VG_INFEASIBLE_MISSED], view + 1);
+      // Through a file and on.
+      ASSERT_EQ(vg_planner_save(planner, path.c_str()), VG_OK) << vg_last_error();
+      vg_planner_release(planner);
+      ASSERT_EQ(vg_planner_load(path.c_str(), &c.sensor, &c.config, &planner), VG_OK);
+      ASSERT_EQ(vg_planner_add_poses(planner, poses.data(), scene.views.size()), VG_OK);
+      ASSERT_EQ(vg_planner_rank_poses(planner, poses.data(), scene.views.size(), 1, nullptr, 0, 0,
+                                      best.data(), sizeof best[0], &found, nullptr),
+                VG_OK);
+      EXPECT_EQ(best[0].index, own.rank(scene.views, 1).views.front().index);
+    }
+    int32_t reason = -1;
+    ASSERT_EQ(vg_planner_should_stop(planner, &reason), VG_OK);
+    EXPECT_EQ(reason, VG_GO_ON);
+    vg_planner_release(planner);
+  }
+  EXPECT_EQ(cases, 6);
+}
+
+TEST(CPlanner, RefusesWrongUse) {
+  const CScene c;
+  const std::vector<double> pose = numbers_of({c.scene.views[0]});
+  const DepthFrame frame = c.scene.see(c.scene.views[0]);
+  vg_planner* planner = nullptr;
+  ASSERT_EQ(vg_planner_create(&c.sensor, &c.config, &planner), VG_OK) << vg_last_error();
+  vg_ranked_view best;
+  size_t found = 7;
+  int cases = 0;
+  const auto refused = [&](vg_status status, const std::string& part) {
+    EXPECT_EQ(status, VG_INVALID_ARGUMENT) << part;
+    EXPECT_NE(std::string(vg_last_error()).find(part), std::string::npos) << vg_last_error();
+    ++cases;
+  };
+  refused(vg_planner_rank(planner, 1, nullptr, 0, 0, &best, sizeof best, &found, nullptr),
+          "propose");
+  EXPECT_EQ(found, 0U);
+  refused(vg_planner_rank(planner, 1, nullptr, 0, 0, &best, 8, &found, nullptr), "view_size");
+  refused(vg_planner_rank(planner, 1, nullptr, 0, 0, nullptr, sizeof best, &found, nullptr),
+          "views is null");
+  refused(vg_planner_rank_poses(planner, pose.data(), 1, 1, nullptr, 0, kNan, &best, sizeof best,
+                                &found, nullptr),
+          "cost_per_metre");
+  refused(vg_planner_add(planner, nullptr, nullptr, pose.data(), nullptr), "depth");
+  std::vector<double> bad = pose;
+  bad[3] = kNan;
+  refused(vg_planner_add(planner, frame.depth.data(), nullptr, bad.data(), nullptr), "rigid");
+  refused(vg_planner_tried(planner, bad.data(), 1), "rigid");
+  bad = pose;
+  bad[15] = 2;
+  refused(vg_planner_tried(planner, bad.data(), 1), "lowest row");
+  vg_planner_view unset{};
+  refused(vg_planner_add(planner, frame.depth.data(), nullptr, pose.data(), &unset), "struct_size");
+  refused(vg_planner_propose(planner, nullptr, nullptr, 0), "candidates");
+  refused(vg_planner_save(planner, nullptr), "path");
+  EXPECT_EQ(vg_planner_save(planner, "/no/such/folder/state.vdb"), VG_IO);
+  vg_planner* other = planner;
+  EXPECT_EQ(vg_planner_load("none.vdb", &c.sensor, &c.config, &other), VG_IO);
+  EXPECT_EQ(other, nullptr);
+  refused(vg_planner_create(&c.sensor, nullptr, &other), "null");
+  vg_planner_config config = c.config;
+  config.gain = 9;
+  refused(vg_planner_create(&c.sensor, &config, &other), "gain is 9");
+  config = c.config;
+  config.voxel_size = 0;
+  refused(vg_planner_create(&c.sensor, &config, &other), "voxel");
+  config = c.config;
+  config.struct_size += 8;
+  refused(vg_planner_create(&c.sensor, &config, &other), "newer");
+
+  // Released, and released again: known as such.
+  vg_planner_release(planner);
+  vg_planner_release(planner);
+  vg_planner_release(nullptr);
+  int32_t reason = 0;
+  refused(vg_planner_should_stop(planner, &reason), "released");
+  refused(vg_planner_tried(planner, pose.data(), 1), "released");
+  refused(vg_planner_should_stop(nullptr, &reason), "null");
+  EXPECT_EQ(cases, 18);
+}
+
+int32_t stop_at_once(size_t, size_t, void*) { return 1; }
+int32_t high_enough(const double T_world_camera[16], void* user) {
+  return T_world_camera[11] > *static_cast<const double*>(user) ? 1 : 0;
+}
+
+TEST(CPlanner, AsksItsCallbacks) {
+  CScene c(GainModel::paper);
+  double height = 5;
+  c.config.reachable = high_enough;
+  c.config.user = &height;
+  vg_planner* planner = nullptr;
+  ASSERT_EQ(vg_planner_create(&c.sensor, &c.config, &planner), VG_OK) << vg_last_error();
+  const std::vector<double> poses = numbers_of(c.scene.views);
+  ASSERT_EQ(vg_planner_add_poses(planner, poses.data(), c.scene.views.size()), VG_OK);
+  size_t candidates = 1;
+  std::array<size_t, 9> dropped{};
+  ASSERT_EQ(vg_planner_propose(planner, &candidates, dropped.data(), dropped.size()), VG_OK);
+  EXPECT_EQ(candidates, 0U);
+  EXPECT_EQ(dropped[VG_INFEASIBLE_UNREACHABLE], c.scene.views.size());
+  int32_t reason = 0;
+  ASSERT_EQ(vg_planner_should_stop(planner, &reason), VG_OK);
+  EXPECT_EQ(reason, VG_STOP_UNREACHABLE);
+  vg_watch watch;
+  vg_watch_init(&watch, sizeof watch);
+  watch.poll = stop_at_once;
+  vg_ranked_view best;
+  size_t found = 0;
+  EXPECT_EQ(vg_planner_rank_poses(planner, poses.data(), c.scene.views.size(), 1, nullptr, 0, 0,
+                                  &best, sizeof best, &found, &watch),
+            VG_STOPPED);
+  vg_planner_release(planner);
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// A planner that is saved and loaded goes on bit for bit; a save that is killed leaves the file
+// before or the file after.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "apps/planner/bin_scene.hpp"
+#include "core/expect_error.hpp"
+#include "core/temporary_folder.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/planner/view_planner.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::BinScene;
+using test::expect_error;
+
+std::string hexadecimal(double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, " %a", value);
+  return text;
+}
+
+// Takes a view and chooses the next one; all that it was told, bit for bit.
+std::string step(ViewPlanner& planner, const BinScene& scene, std::size_t view) {
+  const Pose& pose = scene.views[(7 * view) % scene.views.size()];
+  const AddedView added = planner.add(scene.see(pose, view), pose);
+  std::string told = std::to_string(added.view) + hexadecimal(added.entropy_removed) +
+                     hexadecimal(added.update.new_area) + hexadecimal(added.progress.surface_area);
+  const std::size_t candidates = planner.propose().candidates.size();
+  told += " " + std::to_string(candidates);
+  for (const RankedView& ranked : planner.rank(3, {.cost_per_metre = 2}).views) {
+    told += " " + std::to_string(ranked.index) + hexadecimal(ranked.gain.gain) +
+            hexadecimal(ranked.worth);
+  }
+  planner.tried(planner.rank(1).views.front().T_world_camera, view % 2 == 0);
+  return told + " " + test::seen_of(planner);
+}
+
+TEST(SavedPlanner, GoesOnBitForBit) {
+  const BinScene scene;
+  const test::TemporaryFolder folder;
+  int cases = 0;
+  for (const GainModel model : {GainModel::paper, GainModel::combined}) {
+    PlannerConfig config = scene.config(model);
+    config.max_views = 5;  // the last one says so
+    if (model == GainModel::combined) config.stop_area = 0.9;
+    const auto start = [&] {
+      ViewPlanner planner(scene.sensor, config, {1});
+      planner.add_poses({"dome", scene.views});
+      return planner;
+    };
+    ViewPlanner whole = start(), parts = start();
+    const auto path = folder.path() / "planner.vdb";
+    std::set<std::string> ends;
+    for (std::size_t view = 0; view < 5; ++view, ++cases) {
+      EXPECT_EQ(step(parts, scene, view), step(whole, scene, view)) << view;
+      parts.save(path);
+      parts = ViewPlanner::load(path, scene.sensor, config, {2});
+      parts.add_poses({"dome", scene.views});
+      EXPECT_EQ(test::seen_of(parts), test::seen_of(whole));
+      if (parts.should_stop()) ends.insert(std::string(stop_reason_name(*parts.should_stop())));
+      EXPECT_EQ(parts.should_stop(), whole.should_stop());
+      // The last proposal is not kept.
+      EXPECT_EQ(parts.candidate_count(), 0U);
+    }
+    EXPECT_TRUE(ends.contains("max_views"));
+    EXPECT_EQ(ends.contains("area"), model == GainModel::combined);
+  }
+  EXPECT_EQ(cases, 10);
+}
+
+TEST(SavedPlanner, IsAMap) {
+  const BinScene scene;
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "planner.vdb";
+  ViewPlanner planner(scene.sensor, scene.config(), {1});
+  (void)planner.add(scene.see(scene.views[0]), scene.views[0]);
+  planner.save(path);
+  EXPECT_EQ(load_vdb(path).content_hash(), planner.grid().content_hash());
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(SavedPlanner, RefusesWhatIsNone) {
+  const BinScene scene;
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "planner.vdb";
+  const PlannerConfig config = scene.config();
+  int cases = 0;
+  const auto refuses = [&](ErrorCode code, const std::string& part, const PlannerConfig& with) {
+    expect_error(code, part, [&] { (void)ViewPlanner::load(path, scene.sensor, with); });
+    expect_error(code, "planner.vdb", [&] { (void)ViewPlanner::load(path, scene.sensor, with); });
+    ++cases;
+  };
+  refuses(ErrorCode::io, "", config);
+  ViewPlanner planner(scene.sensor, config, {1});
+  (void)planner.add(scene.see(scene.views[0]), scene.views[0]);
+  save_vdb(planner.grid(), path);
+  refuses(ErrorCode::format, "without the state of a planner", config);
+  planner.tried(scene.views[4], false);
+  planner.save(path);
+  PlannerConfig other = config;
+  other.grid.voxel_size = 0.005;
+  refuses(ErrorCode::invalid_argument, "0.006", other);
+  other = config;
+  other.grid.workspace.max[2] += 0.1;
+  refuses(ErrorCode::invalid_argument, "workspace", other);
+  other = config;
+  other.grid.prior_sigma = 0.02;
+  refuses(ErrorCode::invalid_argument, "0.02", other);
+
+  // A note that somebody changed, in each of its lines.
+  const std::string note = load_vdb_map(path).notes.at("planner");
+  const auto with_note = [&](const std::string& text) {
+    save_vdb(planner.grid(), path, {.with_covariance = false, .notes = {{"planner", text}}});
+  };
+  for (const auto& [from, to] :
+       std::vector<std::pair<std::string, std::string>>{{"version 1", "version 2"},
+                                                        {"seen_area ", "seen_area x"},
+                                                        {"before_choice 1", "before_choice 1.5"},
+                                                        {"after_choice", "after_thought"},
+                                                        {"missed ", "missed 1 "},
+                                                        {"missed ", "missed nan"},
+                                                        {"seen_area", "version 1\nseen_area"}}) {
+    std::string text = note;
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    with_note(text.replace(text.find(from), from.size(), to));
+    refuses(ErrorCode::format, "planner.vdb (note planner):", config);
+  }
+  with_note("");
+  refuses(ErrorCode::format, "version", config);
+  with_note(note + "of_view tired\n");
+  refuses(ErrorCode::format, "tired", config);
+  with_note(note);
+  EXPECT_NO_THROW((void)ViewPlanner::load(path, scene.sensor, config));
+  EXPECT_EQ(cases, 14);
+}
+
+TEST(SavedPlanner, AKilledSaveLeavesTheFileBeforeOrAfter) {
+  const BinScene scene;
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "planner.vdb";
+  PlannerConfig config = scene.config(GainModel::paper);
+  ViewPlanner planner(scene.sensor, config, {1});
+  (void)planner.add(scene.see(scene.views[0]), scene.views[0]);
+  planner.save(path);
+  const std::string first = test::seen_of(planner);
+  // How long a save takes, so that kills fall into it.
+  const auto begin = std::chrono::steady_clock::now();
+  planner.save(path);
+  const auto one = std::chrono::steady_clock::now() - begin;
+
+  std::string before = first;
+  int kills = 0;
+  for (int i = 0; i < 20; ++i) {
+    const bool waits = i == 19;  // the last one is killed when it has saved
+    const Pose& pose = scene.views[static_cast<std::size_t>(1 + i)];
+    ViewPlanner next = ViewPlanner::load(path, scene.sensor, config, {1});
+    (void)next.add(scene.see(pose), pose);
+    const std::string after = test::seen_of(next);
+    int done[2];
+    ASSERT_EQ(pipe(done), 0);
+    std::fflush(nullptr);
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      next.save(path);
+      (void)!write(done[1], "x", 1);
+      for (;;) pause();
+    }
+    char byte = 0;
+    if (waits) {
+      ASSERT_EQ(read(done[0], &byte, 1), 1);
+    } else {
+      std::this_thread::sleep_for(one * i / 13);  // up to one and a half of it
+    }
+    ASSERT_EQ(kill(child, SIGKILL), 0);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    close(done[0]), close(done[1]);
+    ++kills;
+    ViewPlanner loaded = ViewPlanner::load(path, scene.sensor, config, {1});
+    const std::string found = test::seen_of(loaded);
+    EXPECT_TRUE(found == after || (found == before && !waits)) << i;
+    before = found;
+  }
+  EXPECT_EQ(kills, 20);
+  // What killed saves left behind goes with the next one.
+  planner.save(path);
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,445 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The step interface against the parts that it is made of, called one by one.
+#include "viewgain/planner/view_planner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+#include <stop_token>
+#include <vector>
+
+#include "apps/planner/bin_scene.hpp"
+#include "core/expect_error.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/planner/feasible_poses.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::BinScene;
+using test::expect_error;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+bool same_bits(const ViewGain& a, const ViewGain& b) {
+  const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+  return same(a.gain, b.gain) && same(a.area, b.area) && a.rays == b.rays && a.hits == b.hits;
+}
+
+// What the planner should say, from the parts alone: a map by the integrator, a new scene, checker
+// and evaluator for each view.
+class Parts {
+ public:
+  Parts(const BinScene& scene, const PlannerConfig& config)
+      : scene_(scene),
+        config_(config),
+        grid_({config.grid.voxel_size,
+               config.grid.workspace,
+               {},
+               default_prior_sigma(config.grid.voxel_size, scene.sensor)}),
+        integrator_(scene.sensor, {.support_plane = config.support_plane}, {1}) {}
+
+  void add(DepthFrame frame, const Pose& pose) {
+    ObstacleView(config_.obstacles, scene_.sensor).mark(frame, pose);
+    if (config_.gain.model != GainModel::paper) {
+      const HazardCalibration calibration(scene_.sensor, config_.support_plane);
+      calibration.count(grid_, HazardField(grid_.snapshot()), frame, pose);
+    }
+    integrator_.integrate(grid_, frame, pose);
+  }
+  [[nodiscard]] std::shared_ptr<const VoxelScene> scene() const {
+    return VoxelScene::build(grid_, config_.obstacles, {1});
+  }
+  [[nodiscard]] std::vector<Pose> possible(const std::vector<Pose>& poses) const {
+    FeasibilityConfig feasibility = feasibility_of(scene_.sensor);
+    feasibility.support_plane = config_.support_plane;
+    return feasible_poses(FeasibilityChecker(scene(), feasibility), poses, grid_.views()).poses;
+  }
+  [[nodiscard]] std::vector<ViewGain> gains(const std::vector<Pose>& poses) const {
+    GainConfig gain = config_.gain;
+    gain.support_plane = config_.support_plane;
+    return GainEvaluator(scene(), scene_.sensor, gain, {1}).evaluate(poses);
+  }
+  [[nodiscard]] const BeliefGrid& grid() const { return grid_; }
+
+ private:
+  const BinScene& scene_;
+  PlannerConfig config_;
+  BeliefGrid grid_;
+  FrameIntegrator integrator_;
+};
+
+TEST(ViewPlanner, SaysWhatThePartsSay) {
+  const BinScene scene;
+  int cases = 0;
+  for (const GainModel model : {GainModel::paper, GainModel::surface, GainModel::combined}) {
+    const PlannerConfig config = scene.config(model);
+    ViewPlanner planner(scene.sensor, config, {2});
+    planner.add_poses({"dome", scene.views});
+    Parts parts(scene, config);
+    Pose next = scene.views[3];
+    for (std::size_t view = 0; view < 3; ++view, ++cases) {
+      const DepthFrame frame = scene.see(next, view);
+      const double before = parts.grid().statistics().entropy_removed;
+      const AddedView added = planner.add(frame, next);
+      parts.add(frame, next);
+      EXPECT_EQ(added.view, view);
+      EXPECT_EQ(planner.grid().content_hash(), parts.grid().content_hash());
+      const GridStatistics statistics = parts.grid().statistics();
+      EXPECT_EQ(added.progress.entropy_removed, statistics.entropy_removed);
+      EXPECT_EQ(added.entropy_removed, statistics.entropy_removed - before);
+      EXPECT_EQ(added.progress.unknown_voxels, statistics.unknown);
+      EXPECT_EQ(std::isnan(added.update.new_area), model == GainModel::paper);
+      if (model != GainModel::paper && view == 0) {
+        EXPECT_GT(added.update.new_area, 0.003);
+      }
+
+      const std::vector<Pose> possible = parts.possible(scene.views);
+      const Proposal& proposal = planner.propose();
+      ASSERT_EQ(proposal.candidates.size(), possible.size());
+      for (std::size_t i = 0; i < possible.size(); ++i) {
+        EXPECT_EQ(proposal.candidates[i].T_world_camera, possible[i]);
+        EXPECT_EQ(proposal.candidates[i].generator, "dome");
+      }
+      EXPECT_EQ(planner.candidate_count(), possible.size());
+      EXPECT_GE(proposal.dropped.at("taken"), view + 1);
+      EXPECT_EQ(planner.dropped().size(), scene.views.size() - possible.size());
+
+      const std::vector<ViewGain> gains = parts.gains(possible);
+      const std::vector<std::size_t> best = best_indices(gains, 4);
+      const Ranking ranking = planner.rank(4, {.exact = true});
+      ASSERT_EQ(ranking.views.size(), 4U);
+      for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(ranking.views[i].index, best[i]);
+        EXPECT_TRUE(same_bits(ranking.views[i].gain, gains[best[i]]));
+        EXPECT_EQ(ranking.views[i].worth, gains[best[i]].gain);
+      }
+      // The same of given poses; and few rays find the same best here, as all survive.
+      EXPECT_EQ(planner.rank(possible, 1, {.exact = true}).views.front().index, best[0]);
+      EXPECT_EQ(planner.rank(1).views.front().index, best[0]);
+      next = ranking.views.front().T_world_camera;
+    }
+  }
+  EXPECT_EQ(cases, 9);
+}
+
+TEST(ViewPlanner, ReadingsOfKnownObstaclesCarveButDoNotHit) {
+  const BinScene scene;
+  const auto walls_occupied = [&](const PlannerConfig& config) {
+    ViewPlanner planner(scene.sensor, config, {1});
+    for (std::size_t i = 0; i < scene.views.size(); i += 4) {
+      planner.add(scene.see(scene.views[i], i), scene.views[i]);
+    }
+    int walls = 0, block = 0;
+    planner.grid().for_each_occupied([&](const OccupiedVoxel& v) {
+      const Eigen::Vector3d p = planner.grid().center(v.voxel);
+      (std::abs(p.x()) > 0.09 ? walls : block) += 1;
+    });
+    EXPECT_GT(block, 300);
+    return walls;
+  };
+  PlannerConfig config = scene.config();
+  EXPECT_EQ(walls_occupied(config), 0);
+  config.obstacles = {};
+  EXPECT_GT(walls_occupied(config), 300);
+}
+
+TEST(ViewPlanner, WhatWasTriedIsNotProposedAgain) {
+  const BinScene scene;
+  for (const bool check : {true, false}) {
+    PlannerConfig config = scene.config();
+    config.check_feasibility = check;
+    ViewPlanner planner(scene.sensor, config, {1});
+    planner.add_poses({"dome", scene.views});
+    planner.add(scene.see(scene.views[0]), scene.views[0]);
+    const std::vector<Candidate> before = planner.propose().candidates;
+    planner.tried(before[2].T_world_camera, false);
+    planner.tried(before[4].T_world_camera, true);
+    Pose near = before[6].T_world_camera;  // within the tolerance of 10 mm
+    near.m[3] += 0.008;
+    planner.tried(near, false);
+    // Out of the proposal as it stands, and of the next one.
+    EXPECT_EQ(planner.candidate_count(), before.size() - 3);
+    EXPECT_EQ(planner.rank(before.size()).views.size(), before.size() - 3);
+    const Proposal& after = planner.propose();
+    EXPECT_EQ(after.candidates.size(), before.size() - 3);
+    EXPECT_EQ(after.dropped.at("missed"), 2U);
+    EXPECT_EQ(after.dropped.at("taken"), 2U);
+    for (const Candidate& candidate : after.candidates) {
+      for (const std::size_t gone : {2U, 4U, 6U}) {
+        EXPECT_FALSE(candidate.T_world_camera == before[gone].T_world_camera);
+      }
+    }
+    EXPECT_EQ(std::count_if(planner.dropped().begin(), planner.dropped().end(),
+                            [](const DroppedCandidate& d) { return d.reason == kMissed; }),
+              2);
+  }
+}
+
+TEST(ViewPlanner, CostsAreSubtracted) {
+  const BinScene scene;
+  ViewPlanner planner(scene.sensor, scene.config(GainModel::paper), {1});
+  planner.add_poses({"dome", scene.views});
+  planner.add(scene.see(scene.views[0]), scene.views[0]);
+  const std::size_t count = planner.propose().candidates.size();
+  const Ranking free = planner.rank(count);
+  std::vector<double> costs(count);
+  for (std::size_t i = 0; i < count; ++i) costs[i] = 3.0 * static_cast<double>(i);
+  const Ranking paid = planner.rank(count, {.costs = costs, .cost_per_metre = 5000});
+  ASSERT_EQ(paid.views.size(), count);
+  std::size_t cases = 0;
+  for (const RankedView& view : paid.views) {
+    const auto found = std::find_if(free.views.begin(), free.views.end(),
+                                    [&](const RankedView& v) { return v.index == view.index; });
+    ASSERT_NE(found, free.views.end());
+    const double way = (view.T_world_camera.translation() - scene.views[0].translation()).norm();
+    EXPECT_NEAR(view.worth, found->gain.gain - costs[view.index] - 5000 * way, 1e-9);
+    if (cases > 0) {
+      EXPECT_LE(view.worth, paid.views[cases - 1].worth);
+    }
+    ++cases;
+  }
+  EXPECT_EQ(cases, count);
+  EXPECT_NE(paid.views.front().index, free.views.front().index);
+}
+
+TEST(ViewPlanner, SaysWhyToEnd) {
+  const BinScene scene;
+  PlannerConfig config = scene.config(GainModel::paper);
+  config.max_views = 2;
+  ViewPlanner by_budget(scene.sensor, config, {1});
+  by_budget.add_poses({"dome", scene.views});
+  by_budget.add(scene.see(scene.views[0]), scene.views[0]);
+  EXPECT_FALSE(by_budget.should_stop());
+  by_budget.add(scene.see(scene.views[5], 1), scene.views[5]);
+  EXPECT_EQ(by_budget.should_stop(), StopReason::max_views);
+
+  config.max_views = 20;
+  config.idle_views = 2;
+  ViewPlanner idle(scene.sensor, config, {1});
+  DepthFrame nothing = scene.see(scene.views[0]);
+  std::fill(nothing.depth.begin(), nothing.depth.end(), DepthFrame::kInvalid);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(idle.should_stop());
+    idle.add(nothing, scene.views[0]);
+  }
+  EXPECT_EQ(idle.should_stop(), StopReason::idle);
+
+  ViewPlanner none(scene.sensor, config, {1});
+  none.add(scene.see(scene.views[0]), scene.views[0]);
+  EXPECT_TRUE(none.propose().candidates.empty());
+  EXPECT_EQ(none.should_stop(), StopReason::no_candidates);
+  none.add_poses({"same", {scene.views[0]}});
+  (void)none.propose();
+  EXPECT_EQ(none.should_stop(), StopReason::no_candidates);
+  EXPECT_TRUE(none.rank(3).views.empty());
+  EXPECT_EQ(none.should_stop(), StopReason::no_candidates);
+  none.add_poses({"dome", scene.views});
+  (void)none.propose();
+  EXPECT_FALSE(none.should_stop());
+
+  config.reach.half_spaces = {{{0, 0, 1}, 5.0}};
+  ViewPlanner far(scene.sensor, config, {1});
+  far.add_poses({"dome", scene.views});
+  far.add(scene.see(scene.views[0]), scene.views[0]);
+  EXPECT_TRUE(far.propose().candidates.empty());
+  EXPECT_EQ(far.should_stop(), StopReason::unreachable);
+
+  // By the paper's gain a limit that nothing meets; by the combined one no view adds a hundredfold.
+  config = scene.config(GainModel::paper);
+  config.stop_gain = 1e6;
+  ViewPlanner gain(scene.sensor, config, {1});
+  gain.add_poses({"dome", scene.views});
+  gain.add(scene.see(scene.views[0]), scene.views[0]);
+  EXPECT_FALSE(gain.should_stop());
+  (void)gain.rank(scene.views, 1);  // nobody's candidates
+  (void)gain.rank(std::vector<Pose>{}, 1);
+  EXPECT_FALSE(gain.should_stop());
+  (void)gain.propose();
+  EXPECT_FALSE(gain.should_stop());
+  (void)gain.rank();
+  EXPECT_EQ(gain.should_stop(), StopReason::gain);
+  gain.add(scene.see(scene.views[1]), scene.views[1]);
+  EXPECT_FALSE(gain.should_stop());
+
+  config = scene.config(GainModel::combined);
+  config.stop_area = 0.999;
+  ViewPlanner area(scene.sensor, config, {1});
+  area.add_poses({"dome", scene.views});
+  int views = 0;
+  for (const std::size_t i : {0U, 4U, 8U, 12U}) {
+    area.add(scene.see(scene.views[i], i), scene.views[i]);
+    // Asked again and again a view still counts once.
+    (void)area.propose();
+    for (int again = 0; again < 3; ++again) (void)area.rank();
+    ++views;
+    if (area.should_stop()) break;
+  }
+  EXPECT_EQ(area.should_stop(), StopReason::area);
+  EXPECT_EQ(views, 3);
+}
+
+// Proposes one pose, and says that it has dropped two.
+class OneMore : public ViewpointGeneration {
+ public:
+  explicit OneMore(const Pose& pose) : pose_(pose) {}
+  Proposal generate(const Pose& T_world_camera) override {
+    last = T_world_camera;
+    return {{{pose_, "more", BoundaryClass::top, 7}}, {{"too dark", 2}}};
+  }
+  Pose last;
+
+ private:
+  Pose pose_;
+};
+
+TEST(ViewPlanner, ProposesWhatSetsReachAndGenerationsHave) {
+  const BinScene scene;
+  PlannerConfig config = scene.config();
+  config.reach.poses = {scene.views[1], scene.views[2], scene.views[3]};
+  ViewPlanner planner(scene.sensor, config, {1});
+  planner.add_poses({"mine", {scene.views[2], scene.views[9]}});
+  const auto more = std::make_shared<OneMore>(scene.views[3]);
+  planner.add_generation(more);
+  planner.add(scene.see(scene.views[1]), scene.views[1]);
+  const Proposal& proposal = planner.propose();
+  std::vector<std::string> names;
+  for (const Candidate& candidate : proposal.candidates) names.push_back(candidate.generator);
+  EXPECT_EQ(names, (std::vector<std::string>{"reach", "reach", "mine", "more"}));
+  EXPECT_EQ(proposal.candidates.back().number, 7U);
+  EXPECT_EQ(proposal.dropped.at("too dark"), 2U);
+  EXPECT_EQ(proposal.dropped.at("unreachable"), 1U);
+  EXPECT_EQ(proposal.dropped.at("taken"), 1U);
+  EXPECT_EQ(more->last, scene.views[1]);
+  EXPECT_EQ(planner.seconds().count("candidates"), 1U);
+}
+
+TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
+  const BinScene scene;
+  ViewPlanner planner(scene.sensor, scene.config(), {1});
+  planner.add_poses({"dome", scene.views});
+  int cases = 0;
+  const auto refuses = [&](const std::string& part, auto&& call) {
+    const std::string before = test::seen_of(planner);
+    const std::size_t candidates = planner.candidate_count(), gone = planner.dropped().size();
+    expect_error(ErrorCode::invalid_argument, part, call);
+    EXPECT_EQ(test::seen_of(planner), before);
+    EXPECT_EQ(planner.candidate_count(), candidates);
+    EXPECT_EQ(planner.dropped().size(), gone);
+    ++cases;
+  };
+  const DepthFrame frame = scene.see(scene.views[0]);
+  refuses("propose() comes first", [&] { (void)planner.rank(); });
+  (void)planner.propose();  // before any view: all is unknown
+  EXPECT_FALSE(planner.rank().views.empty());
+  planner.add(frame, scene.views[0]);
+  refuses("propose() comes first", [&] { (void)planner.rank(); });
+  DepthFrame small = frame;
+  small.height -= 1;
+  refuses("64 x 47", [&] { planner.add(small, scene.views[0]); });
+  DepthFrame few = frame;
+  few.depth.pop_back();
+  refuses("3071 values", [&] { planner.add(few, scene.views[0]); });
+  DepthFrame dark = frame;
+  dark.amplitude.resize(5);
+  refuses("5 amplitudes", [&] { planner.add(dark, scene.views[0]); });
+  Pose nan = scene.views[0], bent = scene.views[0];
+  nan.m[3] = kNan;
+  bent.m[0] += 0.01;
+  for (const Pose& bad : {nan, bent}) {
+    refuses("rigid", [&] { planner.add(frame, bad); });
+    refuses("rigid", [&] { planner.tried(bad, false); });
+    refuses("pose 1 of the set \"mine\"", [&] { planner.add_poses({"mine", {{}, bad}}); });
+  }
+  refuses("OctoMap's", [&] { planner.save("state.ot"); });
+  refuses("without a frame", [&] { planner.add(std::span<const DepthFrame>(), scene.views[0]); });
+  refuses("null", [&] { planner.add_generation(nullptr); });
+  (void)planner.propose();
+  const std::vector<double> few_costs(2);
+  refuses("cost", [&] { (void)planner.rank(1, {.costs = few_costs}); });
+  refuses("cost_per_metre", [&] { (void)planner.rank(1, {.cost_per_metre = kNan}); });
+  refuses("cost_per_metre", [&] { (void)planner.rank(1, {.cost_per_metre = -1}); });
+  EXPECT_EQ(cases, 17);
+
+  // Bad poses are last.
+  const std::vector<Pose> mixed{nan, scene.views[7], bent};
+  const Ranking ranking = planner.rank(mixed, 3, {.exact = true});
+  ASSERT_EQ(ranking.views.size(), 3U);
+  EXPECT_EQ(ranking.views[0].index, 1U);
+  EXPECT_TRUE(std::isnan(ranking.views[1].gain.gain));
+  EXPECT_TRUE(planner.rank(std::vector<Pose>{}, 3).views.empty());
+  EXPECT_TRUE(planner.rank(mixed, 0).views.empty());
+
+  const auto refuses_config = [&](const std::string& part, auto&& change) {
+    PlannerConfig config = scene.config();
+    change(config);
+    expect_error(ErrorCode::invalid_argument, part,
+                 [&] { const ViewPlanner never(scene.sensor, config); });
+    ++cases;
+  };
+  refuses_config("max_views", [](PlannerConfig& c) { c.max_views = 0; });
+  refuses_config("stop_area", [](PlannerConfig& c) { c.stop_area = 2.0; });
+  refuses_config("stop_gain", [](PlannerConfig& c) { c.stop_gain = 2.0; });
+  refuses_config("trace", [](PlannerConfig& c) { c.gain.criterion = Criterion::trace; });
+  refuses_config("voxel", [](PlannerConfig& c) { c.grid.voxel_size = 0; });
+  refuses_config("clearance", [](PlannerConfig& c) { c.clearance = -1; });
+  refuses_config("stride", [](PlannerConfig& c) { c.gain.pixel_stride = 0; });
+  refuses_config("inside out", [](PlannerConfig& c) {
+    std::swap(c.obstacles.boxes[0].min, c.obstacles.boxes[0].max);
+  });
+  refuses_config("plane", [](PlannerConfig& c) { c.support_plane = kNan; });
+  EXPECT_EQ(cases, 26);
+}
+
+TEST(ViewPlanner, WhyToEndDoesNotHangOnHowManyAreAskedFor) {
+  const BinScene scene;
+  PlannerConfig config = scene.config();
+  const auto reason_with = [&](std::size_t k, double stop_area) {
+    config.stop_area = stop_area;
+    ViewPlanner planner(scene.sensor, config, {1});
+    planner.add_poses({"dome", scene.views});
+    for (const std::size_t i : {0U, 4U, 8U}) {
+      planner.add(scene.see(scene.views[i], i), scene.views[i]);
+      (void)planner.propose();
+      // The way makes a near view the best, not the one that shows most.
+      (void)planner.rank(k, {.cost_per_metre = 1e5, .exact = true});
+    }
+    return planner.should_stop();
+  };
+  std::set<bool> seen;
+  int cases = 0;
+  for (double share = 0.02; share < 0.9; share *= 1.5, ++cases) {
+    EXPECT_EQ(reason_with(1, share), reason_with(scene.views.size(), share)) << share;
+    seen.insert(reason_with(1, share).has_value());
+  }
+  EXPECT_EQ(seen.size(), 2U);
+  EXPECT_EQ(cases, 10);
+}
+
+TEST(ViewPlanner, AStoppedRankingIsNoDecision) {
+  const BinScene scene;
+  PlannerConfig config = scene.config(GainModel::paper);
+  config.stop_gain = 1e6;
+  ViewPlanner planner(scene.sensor, config, {1});
+  planner.add_poses({"dome", scene.views});
+  planner.add(scene.see(scene.views[0]), scene.views[0]);
+  (void)planner.propose();
+  std::stop_source stopped;
+  stopped.request_stop();
+  BatchControl control;
+  control.stop = stopped.get_token();
+  EXPECT_FALSE(planner.rank(1, {}, control).complete);
+  EXPECT_FALSE(planner.should_stop());
+  EXPECT_TRUE(planner.rank().complete);
+  EXPECT_EQ(planner.should_stop(), StopReason::gain);
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,220 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""The planner step by step against the parts that it is made of, and what it refuses."""
+import gc
+import threading
+
+import numpy as np
+import pytest
+
+import viewgain
+
+WORKSPACE = [[-0.15, -0.12, -0.01], [0.15, 0.12, 0.12]]
+BLOCK = [[-0.06, -0.04, 0.0], [0.05, 0.05, 0.06]]
+WALL = [[0.11, -0.1, 0.0], [0.13, 0.1, 0.1]]
+
+
+def box_mesh(boxes):
+    corners = np.array([[i & 1, i >> 1 & 1, i >> 2 & 1] for i in range(8)])
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    triangles = np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))])
+    low, high = np.asarray(boxes)[:, 0], np.asarray(boxes)[:, 1]
+    vertices = [lo + corners * (hi - lo) for lo, hi in zip(low, high)]
+    return np.concatenate(vertices), np.concatenate([triangles + 8 * i for i in range(len(vertices))])
+
+
+@pytest.fixture(scope="module")
+def sensor():
+    camera = viewgain.PinholeCamera(64, 48, fx=80, fy=80, cx=31.5, cy=23.5)
+    return viewgain.Sensor(camera, noise=viewgain.ConstantNoise(), min_range=0.1,
+                           max_range=3, working_distance=0.4)
+
+
+@pytest.fixture(scope="module")
+def camera(sensor):
+    return viewgain.SimulatedSensor(*box_mesh([BLOCK, WALL]), sensor)
+
+
+@pytest.fixture(scope="module")
+def poses():
+    dome = viewgain.dome_poses(40, 0.45, center=[0, 0, 0.05])
+    return dome[dome[:, 2, 3] > 0.25]
+
+
+def make(sensor, **settings):
+    return viewgain.ViewPlanner(sensor, **{**dict(voxel_size=0.006, workspace=WORKSPACE, boxes=[WALL],
+                                                  jump_edges=False, num_threads=1), **settings})
+
+
+def step(planner, camera, pose, frame=0):
+    depth, amplitude = camera.acquire(pose, frame)
+    told = [planner.add(depth, pose, amplitude=amplitude), planner.propose()["dropped"], planner.rank(3), planner.should_stop()]
+    del told[0]["view"]
+    return repr(told)
+
+
+@pytest.mark.parametrize("gain", ["paper", "surface", "combined"])
+def test_says_what_the_parts_say(gain, sensor, camera, poses):
+    planner = make(sensor, gain=gain)
+    planner.add_poses(poses, name="dome")
+    integrator = viewgain.FrameIntegrator(sensor, num_threads=1)
+    depth, amplitude = camera.acquire(poses[3], 0)
+    added = planner.add(depth, poses[3], amplitude=amplitude)
+    assert added["view"] == 0 and np.isnan(added["new_area"]) == (gain == "paper")
+    # The wall is known: without its readings the map is the same but for what they carve.
+    own = viewgain.BeliefGrid(voxel_size=0.006, workspace=WORKSPACE, sensor=sensor)
+    integrator.integrate(own, depth, poses[3], amplitude=amplitude)
+    states = planner.grid.states()
+    x = planner.grid.T_world_grid[0, 3] + (planner.grid.min_index[0] + np.arange(states.shape[0]) + 0.5) * 0.006
+    assert (states[x > 0.1] == 2).sum() == 0 and (own.states()[x > 0.1] == 2).sum() > 20
+    assert np.array_equal(states[x < 0.1] == 2, own.states()[x < 0.1] == 2)
+
+    proposal = planner.propose()
+    assert set(proposal["generator"]) == {"dome"} and proposal["dropped"]["taken"] >= 1
+    scene = viewgain.VoxelScene(planner.grid, boxes=[WALL])
+    gains = viewgain.GainEvaluator(scene, sensor, gain=gain).evaluate(proposal["T_world_camera"])
+    best = planner.rank(4, exact=True)
+    order = np.argsort(-gains, kind="stable")[:4]
+    assert best["index"].tolist() == order.tolist() and best["complete"]
+    assert np.array_equal(best["gain"], gains[order])
+    assert np.array_equal(best["T_world_camera"], proposal["T_world_camera"][order])
+    costs = np.linspace(0, 5, len(gains))
+    paid = planner.rank(2, costs=costs, exact=True)
+    assert paid["index"][0] == np.argmax(gains - costs)
+    assert np.allclose(paid["worth"], paid["gain"] - costs[paid["index"]])
+    assert set(planner.seconds) == {"integrate", "snapshot", "candidates", "score"}
+
+
+def test_saved_it_goes_on_bit_for_bit(sensor, camera, poses, tmp_path):
+    whole, parts = make(sensor), make(sensor)
+    whole.add_poses(poses), parts.add_poses(poses)
+    settings = dict(voxel_size=0.006, workspace=WORKSPACE, boxes=[WALL], jump_edges=False)
+    for view in range(4):
+        assert step(parts, camera, poses[5 * view], view) == step(whole, camera, poses[5 * view], view)
+        parts.save(tmp_path / "state.vdb")
+        parts = viewgain.ViewPlanner.load(tmp_path / "state.vdb", sensor, **settings)
+        parts.add_poses(poses)
+        assert parts.grid.content_hash() == whole.grid.content_hash()
+    assert viewgain.BeliefGrid.load(tmp_path / "state.vdb").content_hash() == whole.grid.content_hash()
+    assert [p.name for p in tmp_path.iterdir()] == ["state.vdb"]
+    with pytest.raises(ValueError, match="0.005"):
+        viewgain.ViewPlanner.load(tmp_path / "state.vdb", sensor, **{**settings, "voxel_size": 0.005})
+    whole.grid.save(tmp_path / "map.vdb")
+    with pytest.raises(viewgain.Error, match="map.vdb.*without the state"):
+        viewgain.ViewPlanner.load(tmp_path / "map.vdb", sensor, **settings)
+    with pytest.raises(FileNotFoundError):
+        viewgain.ViewPlanner.load(tmp_path / "none.vdb", sensor, **settings)
+    with pytest.raises(OSError):
+        whole.save(tmp_path / "none" / "state.vdb")
+    with pytest.raises(TypeError):
+        viewgain.ViewPlanner.load(tmp_path / "state.vdb", sensor, voxels=3)
+
+
+def test_generators_and_what_was_tried(sensor, camera, poses):
+    planner = make(sensor)
+    asked = []
+
+    def generator(grid):
+        asked.append(len(grid.views()))
+        return poses[:5]
+
+    planner.add_generator(generator, name="mine")
+    planner.add(*camera.acquire(poses[0], 0)[:1], poses[0])
+    proposal = planner.propose()
+    assert asked == [1] and proposal["generator"] == 4 * ["mine"] and proposal["dropped"] == {"taken": 1}
+    planner.tried(poses[1], reached=False)
+    planner.tried(poses[2], reached=True)
+    assert planner.propose()["dropped"] == {"taken": 2, "missed": 1}
+
+    def raises(grid):
+        raise KeyError("mine")
+
+    planner.add_generator(raises)
+    with pytest.raises(KeyError, match="mine"):
+        planner.propose()
+    inside = make(sensor)
+    inside.add_generator(lambda grid: inside.should_stop())
+    with pytest.raises(RuntimeError, match="one call at a time"):
+        inside.propose()
+    wrong = make(sensor)
+    wrong.add_generator(lambda grid: np.zeros((3, 3)))
+    with pytest.raises(ValueError, match="what the generator returns"):
+        wrong.propose()
+    del inside, wrong
+    gc.collect()
+
+
+def test_one_call_at_a_time(sensor, poses):
+    planner = make(sensor)
+    entered, leave = threading.Event(), threading.Event()
+
+    def generator(grid):
+        entered.set()
+        leave.wait(20)
+        return poses
+
+    planner.add_generator(generator)
+    thread = threading.Thread(target=planner.propose)
+    thread.start()
+    assert entered.wait(20)
+    with pytest.raises(RuntimeError, match="one call at a time"):
+        planner.rank()
+    leave.set()
+    thread.join()
+    assert len(planner.rank()["index"]) == 1
+
+
+def test_why_to_end(sensor, camera, poses):
+    planner = make(sensor, max_views=1)
+    assert planner.should_stop() is None
+    planner.add(camera.acquire(poses[0], 0)[0], poses[0])
+    assert planner.should_stop() == "max_views"
+    nothing = make(sensor)
+    nothing.add(camera.acquire(poses[0], 0)[0], poses[0])
+    assert len(nothing.propose()["T_world_camera"]) == 0 and nothing.should_stop() == "no_candidates"
+    idle = make(sensor, idle_views=1)
+    for _ in range(2):
+        idle.add(np.zeros((48, 64)), poses[0])
+    assert idle.should_stop() == "idle"
+
+
+def test_refused(sensor, camera, poses):
+    planner = make(sensor)
+    depth = camera.acquire(poses[0], 0)[0]
+    with pytest.raises(ValueError, match="propose"):
+        planner.rank()
+    nan = poses[0].copy()
+    nan[0, 3] = np.nan
+    cases = 0
+    for bad in (nan, np.eye(3), 2 * np.eye(4)):
+        for call in (lambda: planner.add(depth, bad), lambda: planner.tried(bad, True),
+                     lambda: planner.add_poses([bad])):
+            with pytest.raises(ValueError):
+                call()
+            cases += 1
+    for frame in (depth[:-1], np.ones((48, 64), int), 1000 * depth):
+        with pytest.raises((ValueError, TypeError)):
+            planner.add(frame, poses[0])
+        cases += 1
+    with pytest.raises(ValueError):
+        planner.add(depth, poses[0], amplitude=np.ones(3))
+    with pytest.raises(TypeError):
+        planner.add_generator(3)
+    assert len(planner.grid.views()) == 0
+    ranked = planner.rank(3, poses=[nan, poses[1]])
+    assert ranked["index"].tolist() == [1, 0] and np.isnan(ranked["gain"][1])
+    with pytest.raises(ValueError, match="cost"):
+        planner.rank(poses=poses, costs=[1.0])
+    with pytest.raises(ValueError, match="cost"):
+        planner.rank(poses=poses, costs=[])
+    for settings in (dict(gain="best"), dict(criterion="trace"), dict(stop_area=2), dict(max_views=0),
+                     dict(voxel_size=0), dict(workspace=[[0, 0, 0]]), dict(clearance=-1), dict(prior_sigma=0),
+                     dict(body_size=[1, 2]), dict(boxes=[[[1, 1, 1], [0, 0, 0]]])):
+        with pytest.raises(ValueError):
+            make(sensor, **settings)
+        cases += 1
+    assert cases == 22
+    control = viewgain.BatchControl()
+    control.stop()
+    stopped = planner.rank(poses=np.tile(poses, (20, 1, 1)), control=control)
+    assert not stopped["complete"]

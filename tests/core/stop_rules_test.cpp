@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The rules by themselves: what they remember is all they need to go on.
+#include "viewgain/core/stop_rules.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "core/expect_error.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(StopRules, GoOnFromWhatTheyRemember) {
+  std::mt19937 random(5);
+  const auto chance = [&](double p) { return std::bernoulli_distribution(p)(random); };
+  const auto value = [&] { return std::uniform_real_distribution(0.0, 2.0)(random); };
+  int stops = 0, steps = 0;
+  for (int run = 0; run < 200; ++run) {
+    PlanningConfig config;
+    config.max_views = 12;
+    config.idle_views = 2;
+    config.stop_gain = chance(0.5) ? 0.2 : 0.05;
+    config.stop_gain_is_relative = chance(0.5);
+    config.stop_area = chance(0.5) ? 0.2 : 0.0;
+    StopRules whole(config), parts(config);
+    ModelProgress progress{0, 1000, {}, 1.0, {}};
+    for (;;) {
+      if (chance(0.8)) progress.entropy_removed += value(), progress.unknown_voxels -= 5;
+      Decision decision;
+      if (chance(0.7)) decision.gain_per_voxel = value();
+      if (chance(0.7)) decision.best_area = 0.3 * value();
+      const auto a = whole.after_view(progress);
+      parts = StopRules(config, parts.memory());
+      const auto b = parts.after_view(progress);
+      ASSERT_EQ(a, b);
+      parts = StopRules(config, parts.memory());
+      const auto c = whole.after_decision(decision, {}, progress.surface_area);
+      const auto d = parts.after_decision(decision, {}, progress.surface_area);
+      ASSERT_EQ(c, d);
+      ++steps;
+      if (a || c) {
+        ++stops;
+        break;
+      }
+    }
+  }
+  EXPECT_EQ(stops, 200);
+  EXPECT_GT(steps, 600);
+}
+
+TEST(StopRules, NoDecisionIsNowhereToGo) {
+  StopRules rules{PlanningConfig{}};
+  Proposal proposal;
+  EXPECT_EQ(rules.after_decision(std::nullopt, proposal, 1), StopReason::no_candidates);
+  proposal.dropped["unreachable"] = 3;
+  EXPECT_EQ(rules.after_decision(std::nullopt, proposal, 1), StopReason::unreachable);
+  EXPECT_EQ(rules.memory().decisions, 0U);
+}
+
+TEST(StopRules, RefuseWhatMakesNoSense) {
+  PlanningConfig config;
+  config.idle_fraction = kNan;
+  test::expect_error(ErrorCode::invalid_argument, "idle_fraction",
+                     [&] { const StopRules never(config); });
+}
+
+}  // namespace
+}  // namespace viewgain
