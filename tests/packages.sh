@@ -37,7 +37,7 @@ for deb in build/packages/packages/{libviewgain0,python3-viewgain}_*.deb; do
     binaries=$((binaries + 1))
   done < <(find "$work/content" -type f -name '*.so*')
 done
-[ "$binaries" -eq 2 ] || fail "$binaries libraries were looked at, there should be 2"
+[ "$binaries" -eq 4 ] || fail "$binaries libraries were looked at, there should be 4"
 suggests=$(dpkg-deb -f build/packages/packages/libviewgain-dev_*.deb Suggests)
 [ "$suggests" = liboctomap-dev ] || fail "libviewgain-dev suggests '$suggests'"
 

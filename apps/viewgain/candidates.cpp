@@ -262,6 +262,7 @@ Command add_candidates(CLI::App& program) {
       "Candidate views for a map, as a poses file for score; --json says for each why it exists or "
       "why it was dropped.");
   Options& o = *options;
+  const EstimatorConfig usual = default_estimator(1.0);
   app->add_option("MAP", o.map, kMapHelp)->required();
   app->add_option(
          "--generator", o.generator,
@@ -284,9 +285,10 @@ Command add_candidates(CLI::App& program) {
   app->add_option("--body", o.body, kBodyHelp);
   app->add_option("--support-plane", o.support_plane, "height z of a table [m]");
   app->add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
-  app->add_option("--overlap", o.overlap, std::string(kOverlapHelp) + "; default: 0.25");
+  app->add_option("--overlap", o.overlap,
+                  std::string(kOverlapHelp) + "; default: " + short_text(usual.overlap));
   app->add_option("--region-depth", o.region_depth,
-                  std::string(kRegionDepthHelp) + "; default: 0.08");
+                  std::string(kRegionDepthHelp) + "; default: " + short_text(usual.region_depth));
   app->add_option("--gain", o.gain,
                   "paper, surface or combined, as in score: order the poses by it, best first")
       ->check(CLI::IsMember(gain_model_names()));

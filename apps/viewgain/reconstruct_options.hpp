@@ -10,6 +10,9 @@
 
 #include "commands.hpp"
 #include "options/sensing.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/planner_mesh/boundary_generation.hpp"
+#include "viewgain/planner_mesh/stage.hpp"
 
 namespace viewgain::app {
 
@@ -19,7 +22,7 @@ struct ReconstructOptions {
   std::string mesh;
   std::string sensor;
   double voxel = 0;
-  double size = 0.35;
+  double size = StageConfig{}.size;
   std::string workspace;
   std::string start;
   std::optional<double> distance;
@@ -27,15 +30,15 @@ struct ReconstructOptions {
   std::string generator;
   std::optional<std::size_t> sphere_poses;
   std::string gain;
-  double overlap = 0.25;
-  double region_depth = 0.08;
+  double overlap = default_estimator(1.0).overlap;
+  double region_depth = default_estimator(1.0).region_depth;
   std::optional<double> object_size;
   std::string hazard;
   std::string criterion = "log_diagonal";
-  std::size_t max_views = 20;
+  std::size_t max_views = PlanningConfig{}.max_views;
   std::optional<double> stop_gain;
   std::optional<double> stop_area;
-  std::size_t stop_idle = 3;
+  std::size_t stop_idle = PlanningConfig{}.idle_views;
   std::optional<double> stop_coverage;
   double travel_cost = 0;
   std::optional<double> travel_speed;
