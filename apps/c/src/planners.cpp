@@ -26,7 +26,6 @@ static_assert(VG_INFEASIBLE_MISSED == static_cast<int>(Infeasibility::too_near) 
 
 struct vg_planner {
   ViewPlanner planner;
-  Sensor sensor;
 };
 
 namespace {
@@ -216,9 +215,8 @@ vg_status vg_planner_create(const vg_sensor* sensor, const vg_planner_config* co
                             vg_planner** planner) {
   return make_planner(planner, [&] {
     const vg_planner_config chosen = read_struct(config, "vg_planner_config");
-    const Sensor own = sensor_with_body(sensor, chosen);
-    return vg_planner{ViewPlanner(own, settings_of(chosen), {.num_threads = chosen.num_threads}),
-                      own};
+    return ViewPlanner(sensor_with_body(sensor, chosen), settings_of(chosen),
+                       {.num_threads = chosen.num_threads});
   });
 }
 
@@ -237,7 +235,7 @@ vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* a
     require(depth, "depth");
     require(T_world_camera, "T_world_camera");
     if (added != nullptr) require_struct(added, "vg_planner_view");
-    const DepthFrame frame = frame_of(planner->sensor.camera, depth, amplitude);
+    const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
     const AddedView view = own.add(frame, rigid_pose_of(T_world_camera));
     if (added == nullptr) return;
     write_struct(added, {.struct_size = 0,
@@ -326,10 +324,8 @@ vg_status vg_planner_load(const char* path, const vg_sensor* sensor,
   return make_planner(planner, [&] {
     require(path, "path");
     const vg_planner_config chosen = read_struct(config, "vg_planner_config");
-    const Sensor own = sensor_with_body(sensor, chosen);
-    return vg_planner{
-        ViewPlanner::load(path, own, settings_of(chosen), {.num_threads = chosen.num_threads}),
-        own};
+    return ViewPlanner::load(path, sensor_with_body(sensor, chosen), settings_of(chosen),
+                             {.num_threads = chosen.num_threads});
   });
 }
 

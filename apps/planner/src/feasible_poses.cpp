@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/planner/feasible_poses.hpp"
 
+#include <utility>
+
 namespace viewgain {
 namespace {
 
@@ -19,6 +21,25 @@ FeasiblePoses sorted(std::span<const Pose> poses, std::span<const Infeasibility>
 }
 
 }  // namespace
+
+std::vector<Pose> poses_of(std::span<const Candidate> candidates) {
+  std::vector<Pose> poses;
+  poses.reserve(candidates.size());
+  for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
+  return poses;
+}
+
+void sort_candidates(std::vector<Candidate> candidates, std::span<const std::string> reasons,
+                     Proposal& proposal, std::vector<DroppedCandidate>& dropped) {
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (reasons[i].empty()) {
+      proposal.candidates.push_back(std::move(candidates[i]));
+    } else {
+      ++proposal.dropped[reasons[i]];
+      dropped.push_back({std::move(candidates[i]), reasons[i]});
+    }
+  }
+}
 
 FeasibilityConfig feasibility_of(const Sensor& sensor) {
   FeasibilityConfig config;

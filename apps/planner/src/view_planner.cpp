@@ -62,7 +62,6 @@ Decision decision_of(const Ranking& ranking, std::span<const ViewGain> looked_at
 }  // namespace
 
 struct ViewPlanner::Impl {
-  Sensor sensor;
   PlannerConfig config;
   ExecConfig exec;
   PlanningConfig planning;
@@ -76,14 +75,12 @@ struct ViewPlanner::Impl {
   std::vector<DroppedCandidate> dropped;
   StageSeconds seconds;
 
-  Impl(const Sensor& sensor_in, const PlannerConfig& config_in, const ExecConfig& exec_in,
-       MapModel map_in)
-      : sensor(sensor_in),
-        config(config_in),
+  Impl(const PlannerConfig& config_in, const ExecConfig& exec_in, MapModel map_in)
+      : config(config_in),
         exec(exec_in),
         planning(detail::planning_config(config_in)),
         map(std::move(map_in)),
-        checker(map.scene(), detail::feasibility_config(config, sensor), exec) {
+        checker(map.scene(), detail::feasibility_config(config, map.sensor()), exec) {
     (void)StopRules(planning);  // refuses what no run can have
     if (!config.reach.poses.empty()) sets.push_back({"reach", config.reach.poses});
   }
@@ -94,7 +91,7 @@ struct ViewPlanner::Impl {
 
   GainEvaluator& current_evaluator() {
     if (!evaluator) {
-      evaluator.emplace(map.scene(), sensor, detail::gain_config(config), exec);
+      evaluator.emplace(map.scene(), map.sensor(), detail::gain_config(config), exec);
     } else if (&evaluator->scene() != map.scene().get()) {
       evaluator = evaluator->with_scene(map.scene());
     }
@@ -119,9 +116,7 @@ struct ViewPlanner::Impl {
   // Why each candidate is not possible; empty: it is.
   [[nodiscard]] std::vector<std::string> reasons_against(
       const std::vector<Candidate>& candidates) const {
-    std::vector<Pose> poses;
-    poses.reserve(candidates.size());
-    for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
+    const std::vector<Pose> poses = poses_of(candidates);
     std::vector<Pose> taken = map.grid().views();
     taken.insert(taken.end(), state.reached.begin(), state.reached.end());
     std::vector<std::string> reasons(poses.size());
@@ -207,7 +202,9 @@ struct ViewPlanner::Impl {
     Ranking ranking;
     ranking.complete = best.complete;
     ViewGain none;
-    for (std::size_t i = 0; i < best.indices.size(); ++i) {
+    // The first one says why to end, whatever k.
+    const std::size_t wanted = std::min(best.indices.size(), std::max<std::size_t>(k, 1));
+    for (std::size_t i = 0; i < wanted; ++i) {
       const std::size_t at = best.indices[i];
       ranking.views.push_back(
           {at, poses[at], best.gains.empty() ? none : best.gains[i], best.worth[i]});
@@ -226,7 +223,7 @@ struct ViewPlanner::Impl {
 };
 
 ViewPlanner::ViewPlanner(const Sensor& sensor, const PlannerConfig& config, const ExecConfig& exec)
-    : impl_(std::make_unique<Impl>(sensor, config, exec,
+    : impl_(std::make_unique<Impl>(config, exec,
                                    MapModel(sensor, detail::map_config(config, sensor), exec))) {
   // The configuration of the gain is refused here, not at the first ranking.
   (void)impl_->current_evaluator();
@@ -282,16 +279,9 @@ const Proposal& ViewPlanner::propose() {
   const Stopwatch watch;
   Proposal proposal;
   std::vector<Candidate> all = m.all_candidates(proposal);
-  std::vector<std::string> reasons = m.reasons_against(all);
+  const std::vector<std::string> reasons = m.reasons_against(all);
   m.dropped.clear();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (reasons[i].empty()) {
-      proposal.candidates.push_back(std::move(all[i]));
-    } else {
-      ++proposal.dropped[reasons[i]];
-      m.dropped.push_back({std::move(all[i]), std::move(reasons[i])});
-    }
-  }
+  sort_candidates(std::move(all), reasons, proposal, m.dropped);
   m.state.of_choice.reset();
   m.state.after_choice = m.state.before_choice;
   if (proposal.candidates.empty()) m.state.of_choice = nowhere_to_go(proposal);
@@ -311,10 +301,7 @@ Ranking ViewPlanner::rank(std::size_t k, const RankConfig& config, const BatchCo
   if (!impl_->proposal) {
     fail("rank: there are no candidates; propose() comes first, after each view anew");
   }
-  std::vector<Pose> poses;
-  poses.reserve(impl_->proposal->candidates.size());
-  for (const Candidate& c : impl_->proposal->candidates) poses.push_back(c.T_world_camera);
-  return impl_->rank(poses, k, config, control, &*impl_->proposal);
+  return impl_->rank(poses_of(impl_->proposal->candidates), k, config, control, &*impl_->proposal);
 }
 
 Ranking ViewPlanner::rank(std::span<const Pose> T_world_camera, std::size_t k,
@@ -360,8 +347,8 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
          ", is laid out otherwise than the configuration says, " + layout_text(expected));
   }
   detail::PlannerState state = detail::state_of(path.string() + " (note planner)", note->second);
-  auto impl = std::make_unique<Impl>(sensor, config, exec,
-                                     MapModel(std::move(saved.grid), sensor, map, exec));
+  auto impl =
+      std::make_unique<Impl>(config, exec, MapModel(std::move(saved.grid), sensor, map, exec));
   impl->state = std::move(state);
   (void)impl->current_evaluator();
   return ViewPlanner(std::move(impl));

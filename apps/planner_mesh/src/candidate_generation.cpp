@@ -39,22 +39,14 @@ Proposal CandidateGeneration::generate(const Pose&) {
 
   checker_ = checker_ ? checker_->with_scene(model_.scene())
                       : FeasibilityChecker(model_.scene(), config_.feasibility, exec_);
-  std::vector<Pose> poses;
-  poses.reserve(all.size());
-  for (const Candidate& candidate : all) poses.push_back(candidate.T_world_camera);
-  const std::vector<Infeasibility> reasons = checker_->check(poses, views);
-
+  std::vector<std::string> reasons;
+  reasons.reserve(all.size());
+  for (const Infeasibility reason : checker_->check(poses_of(all), views)) {
+    reasons.emplace_back(reason == Infeasibility::none ? "" : infeasibility_name(reason));
+  }
   Proposal proposal;
   dropped_.clear();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (reasons[i] == Infeasibility::none) {
-      proposal.candidates.push_back(std::move(all[i]));
-    } else {
-      std::string reason(infeasibility_name(reasons[i]));
-      ++proposal.dropped[reason];
-      dropped_.push_back({std::move(all[i]), std::move(reason)});
-    }
-  }
+  sort_candidates(std::move(all), reasons, proposal, dropped_);
   return proposal;
 }
 

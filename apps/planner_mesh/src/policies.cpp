@@ -21,13 +21,6 @@ double utility(const TravelCost& cost, double gain, double distance) {
   return gain - cost.per_metre * distance;
 }
 
-std::vector<Pose> poses_of(std::span<const Candidate> candidates) {
-  std::vector<Pose> poses;
-  poses.reserve(candidates.size());
-  for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
-  return poses;
-}
-
 }  // namespace
 
 const std::vector<std::string>& policy_names() {

@@ -31,6 +31,14 @@ struct VIEWGAIN_EXPORT DroppedCandidate {
   std::string reason;  ///< infeasibility_name() or kMissed
 };
 
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> poses_of(std::span<const Candidate> candidates);
+
+/// Puts candidate i, in their order, into the proposal where reasons[i] is empty, else among the
+/// dropped, which the proposal counts.
+VIEWGAIN_EXPORT void sort_candidates(std::vector<Candidate> candidates,
+                                     std::span<const std::string> reasons, Proposal& proposal,
+                                     std::vector<DroppedCandidate>& dropped);
+
 /// The poses that are possible, and why the others are not.
 struct VIEWGAIN_EXPORT FeasiblePoses {
   std::vector<Pose> poses;
