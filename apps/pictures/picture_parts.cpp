@@ -38,7 +38,39 @@ std::array<Vector3d, 8> box_corners(const Pose& T_world_grid, const Vector3d& lo
 
 }  // namespace
 
-PinholeCamera picture_camera() { return {1280, 960, 1700, 1700, 640, 480, {}}; }
+PinholeCamera picture_camera(int width) {
+  const int height = width / 4 * 3;
+  const double focal = 1700.0 / 1280 * width;
+  return {width, height, focal, focal, 0.5 * width, 0.5 * height, {}};
+}
+
+Vector3d Viewer::direction() const {
+  return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+          std::sin(elevation)};
+}
+
+HeatPaints::HeatPaints(PaintedMesh& scene, bool lit) {
+  // Violet, blue, teal, green, yellow: lightness rises evenly.
+  static const std::array<Vector3d, 5> kAnchors{{{0.058, 0.0, 0.089},
+                                                 {0.044, 0.084, 0.258},
+                                                 {0.015, 0.283, 0.263},
+                                                 {0.112, 0.584, 0.124},
+                                                 {0.983, 0.799, 0.019}}};
+  for (std::size_t k = 0; k < paints_.size(); ++k) {
+    const double at = 4.0 * static_cast<double>(k) / static_cast<double>(paints_.size() - 1);
+    const auto below = std::min<std::size_t>(3, static_cast<std::size_t>(at));
+    const double share = at - static_cast<double>(below);
+    paints_[k] =
+        scene.add_paint({.color = (1 - share) * kAnchors[below] + share * kAnchors[below + 1],
+                         .lit = lit,
+                         .back_side = 0.55});
+  }
+}
+
+std::uint8_t HeatPaints::at(double share) const {
+  const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(paints_.size() - 1);
+  return paints_[static_cast<std::size_t>(std::lround(place))];
+}
 
 bool is_rigid(const Pose& pose) { return orthonormality_error(pose) < 1e-3; }
 
@@ -115,6 +147,29 @@ void add_pyramid(PaintedMesh& scene, const Vector3d& apex, const std::array<Vect
   }
 }
 
+std::vector<RayHit> even_hits(const std::vector<RayHit>& hits, const PinholeCamera& camera,
+                              std::size_t most) {
+  if (hits.empty()) return {};
+  const auto strided = [](int size, std::size_t s) {
+    return (static_cast<std::size_t>(size) + s - 1) / s;
+  };
+  std::size_t stride = 1;
+  while (strided(camera.width, stride) * strided(camera.height, stride) > hits.size()) ++stride;
+  const std::size_t columns = strided(camera.width, stride), rows = strided(camera.height, stride);
+  for (std::size_t n = 1;; ++n) {
+    std::vector<RayHit> shown;
+    for (std::size_t v = n / 2; v < rows; v += n) {
+      for (std::size_t u = n / 2; u < columns; u += n) {
+        const RayHit& hit = hits[v * columns + u];
+        if (hit.kind == RayHit::Kind::unknown || hit.kind == RayHit::Kind::occupied) {
+          shown.push_back(hit);
+        }
+      }
+    }
+    if (shown.size() <= most) return shown;
+  }
+}
+
 double frustum_depth(const std::vector<RayHit>& hits, const Sensor& sensor) {
   std::vector<double> ranges;
   for (const RayHit& hit : hits) {
@@ -135,12 +190,14 @@ Vector3d viewer_azimuth(const Vector3d& view_eye, const Vector3d& view_target, S
   return Eigen::AngleAxisd(angle, Vector3d::UnitZ()) * Vector3d(back.normalized());
 }
 
-Pose place_viewer(const std::vector<Vector3d>& points, const Vector3d& view_eye,
-                  const Vector3d& view_target, Side side, PinholeCamera& camera) {
+Vector3d viewer_beside(const Vector3d& view_eye, const Vector3d& view_target, Side side) {
   constexpr double kAbove = 24 * std::numbers::pi / 180;
-  const Vector3d level = viewer_azimuth(view_eye, view_target, side);
-  const Vector3d direction = std::cos(kAbove) * level + std::sin(kAbove) * Vector3d::UnitZ();
+  return std::cos(kAbove) * viewer_azimuth(view_eye, view_target, side) +
+         std::sin(kAbove) * Vector3d::UnitZ();
+}
 
+Pose place_viewer(const std::vector<Vector3d>& points, const Vector3d& direction,
+                  PinholeCamera& camera) {
   Bounds bounds;
   for (const Vector3d& p : points) bounds.add(p);
   const Vector3d center = 0.5 * (bounds.min + bounds.max);

@@ -23,8 +23,28 @@ namespace viewgain::app {
 // Linear colors of voxels in which a view's rays end: orange and blue.
 inline const Eigen::Vector3d kUnknownColor{0.95, 0.30, 0.03}, kOccupiedColor{0.05, 0.26, 0.85};
 
-/// 1280x960 px through a long lens, so that what is near does not look huge.
-[[nodiscard]] PinholeCamera picture_camera();
+/// A picture of 4:3, `width` px wide and a multiple of 4, through a long lens, so that what is near
+/// does not look huge.
+[[nodiscard]] PinholeCamera picture_camera(int width = 1280);
+
+/// From where a picture shows a map or a surface, and how large it is.
+struct Viewer {
+  double azimuth = 0, elevation = 0;  ///< of the direction towards the viewer, as seen there [rad]
+  int width = 1280;                   ///< of the picture [px], see picture_camera
+
+  [[nodiscard]] Eigen::Vector3d direction() const;  ///< unit, world
+};
+
+/// Paints from dark to bright for shares from 0 to 1, which differ for people who see no colours,
+/// too.
+class HeatPaints {
+ public:
+  HeatPaints(PaintedMesh& scene, bool lit);
+  [[nodiscard]] std::uint8_t at(double share) const;
+
+ private:
+  std::array<std::uint8_t, 64> paints_{};
+};
 
 /// Whether a pose can be drawn: a rigid transform up to 1e-3.
 [[nodiscard]] bool is_rigid(const Pose& pose);
@@ -65,6 +85,12 @@ class ChancePaints {
 void add_pyramid(PaintedMesh& scene, const Eigen::Vector3d& apex,
                  const std::array<Eigen::Vector3d, 4>& base, double width, std::uint8_t paint);
 
+/// The hits in unknown or occupied voxels of every n-th pixel of every n-th row, with n such that
+/// at most `most` are left. `hits` are GainEvaluator::trace's, of every s-th pixel of every s-th
+/// row.
+[[nodiscard]] std::vector<RayHit> even_hits(const std::vector<RayHit>& hits,
+                                            const PinholeCamera& camera, std::size_t most);
+
 /// How far a frustum is drawn [m]: to the middle of what the view sees, or its working distance.
 [[nodiscard]] double frustum_depth(const std::vector<RayHit>& hits, const Sensor& sensor);
 
@@ -76,11 +102,14 @@ enum class Side : std::uint8_t { counter_clockwise, clockwise };
 [[nodiscard]] Eigen::Vector3d viewer_azimuth(const Eigen::Vector3d& view_eye,
                                              const Eigen::Vector3d& view_target, Side side);
 
-/// T_world_camera of a viewer that looks at all `points` from the side of the view's optical axis
-/// and a little from above, so that what the view sees and the way to it are both in sight. Moves
-/// the principal point of `camera` to centre them.
+/// Direction towards a viewer beside a view's optical axis and a little above it, so that what the
+/// view sees and the way to it are both in sight; unit.
+[[nodiscard]] Eigen::Vector3d viewer_beside(const Eigen::Vector3d& view_eye,
+                                            const Eigen::Vector3d& view_target, Side side);
+
+/// T_world_camera of a viewer in this direction (unit) who sees all `points`. Moves the principal
+/// point of `camera` to centre them.
 [[nodiscard]] Pose place_viewer(const std::vector<Eigen::Vector3d>& points,
-                                const Eigen::Vector3d& view_eye, const Eigen::Vector3d& view_target,
-                                Side side, PinholeCamera& camera);
+                                const Eigen::Vector3d& direction, PinholeCamera& camera);
 
 }  // namespace viewgain::app

@@ -165,15 +165,24 @@ void PaintedMesh::add_surface(const std::vector<std::array<double, 3>>& vertices
                               const std::vector<std::array<double, 3>>& normals,
                               const std::vector<std::array<std::uint32_t, 3>>& triangles,
                               std::uint8_t paint) {
-  Part& part = part_for(paint);
+  add_surface(vertices, normals, triangles, std::vector(triangles.size(), paint));
+}
+
+void PaintedMesh::add_surface(const std::vector<std::array<double, 3>>& vertices,
+                              const std::vector<std::array<double, 3>>& normals,
+                              const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                              const std::vector<std::uint8_t>& paint_of_triangle) {
+  if (triangles.empty()) return;
+  Part& part = part_for(paint_of_triangle.front());
   const auto first = static_cast<std::uint32_t>(part.mesh.vertices.size());
   part.mesh.vertices.insert(part.mesh.vertices.end(), vertices.begin(), vertices.end());
   part.normals.resize(first, Vector3d::Zero());
   for (const auto& n : normals) part.normals.emplace_back(n[0], n[1], n[2]);
   for (const auto& t : triangles) {
     part.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    part.paint_of_triangle.push_back(paint);
   }
+  part.paint_of_triangle.insert(part.paint_of_triangle.end(), paint_of_triangle.begin(),
+                                paint_of_triangle.end());
 }
 
 void PaintedMesh::add_triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c,

@@ -38,6 +38,11 @@ class PaintedMesh {
   void add_surface(const std::vector<std::array<double, 3>>& vertices,
                    const std::vector<std::array<double, 3>>& normals,
                    const std::vector<std::array<std::uint32_t, 3>>& triangles, std::uint8_t paint);
+  /// The same with a paint for each triangle, all of which pass light or none.
+  void add_surface(const std::vector<std::array<double, 3>>& vertices,
+                   const std::vector<std::array<double, 3>>& normals,
+                   const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                   const std::vector<std::uint8_t>& paint_of_triangle);
 
   void add_triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                     std::uint8_t paint);

@@ -121,30 +121,6 @@ std::vector<const Candidate*> shown_candidates(const ViewPicture& picture) {
   return shown;
 }
 
-// The rays that end in a voxel, of every n-th pixel of every n-th row with n such that few enough
-// are left. `hits` are those of every s-th pixel, the evaluator's stride.
-std::vector<RayHit> shown_rays(const std::vector<RayHit>& hits, const PinholeCamera& camera) {
-  if (hits.empty()) return {};
-  const auto strided = [](int size, std::size_t s) {
-    return (static_cast<std::size_t>(size) + s - 1) / s;
-  };
-  std::size_t stride = 1;
-  while (strided(camera.width, stride) * strided(camera.height, stride) > hits.size()) ++stride;
-  const std::size_t columns = strided(camera.width, stride), rows = strided(camera.height, stride);
-  for (std::size_t n = 1;; ++n) {
-    std::vector<RayHit> shown;
-    for (std::size_t v = n / 2; v < rows; v += n) {
-      for (std::size_t u = n / 2; u < columns; u += n) {
-        const RayHit& hit = hits[v * columns + u];
-        if (hit.kind == RayHit::Kind::unknown || hit.kind == RayHit::Kind::occupied) {
-          shown.push_back(hit);
-        }
-      }
-    }
-    if (shown.size() <= kMaxRays) return shown;
-  }
-}
-
 void add_rays(PaintedMesh& scene, const Paints& paints, const std::vector<RayHit>& rays,
               const Vector3d& eye, const Vector3d& viewer_eye, const GridSnapshot& snapshot,
               double width) {
@@ -189,10 +165,9 @@ void add_volume(PaintedMesh& scene, const Paints& paints, const Vector3d& apex,
 
 }  // namespace
 
-void write_view_picture(const std::filesystem::path& path, const ViewPicture& picture,
-                        const ExecConfig& exec) {
+RgbImage view_picture(const ViewPicture& picture, const ExecConfig& exec) {
   if (!is_rigid(picture.T_world_camera) || (picture.chosen && !is_rigid(*picture.chosen))) {
-    throw Error(ErrorCode::invalid_argument, path.string() + ": a view is no rigid transform");
+    throw Error(ErrorCode::invalid_argument, "a view to draw is no rigid transform");
   }
   const GridSnapshot& snapshot = picture.evaluator.scene().snapshot();
   const auto workspace = workspace_corners(snapshot);
@@ -234,7 +209,7 @@ void write_view_picture(const std::filesystem::path& path, const ViewPicture& pi
                         ? Side::counter_clockwise
                         : Side::clockwise;
   PinholeCamera camera = picture_camera();
-  const Pose T_world_viewer = place_viewer(in_sight, eye, target, side, camera);
+  const Pose T_world_viewer = place_viewer(in_sight, viewer_beside(eye, target, side), camera);
   const Vector3d viewer_eye = T_world_viewer.translation();
 
   const double nearest = 0.5 * (viewer_eye - center).norm();
@@ -248,14 +223,14 @@ void write_view_picture(const std::filesystem::path& path, const ViewPicture& pi
   }
   if (picture.chosen) {
     add_volume(scene, paints, eye, far_corners, kChosenEdgeWidth * extent, viewer_eye);
-    add_rays(scene, paints, shown_rays(hits, picture.sensor.camera), eye, viewer_eye, snapshot,
-             kRayWidth * extent);
+    add_rays(scene, paints, even_hits(hits, picture.sensor.camera, kMaxRays), eye, viewer_eye,
+             snapshot, kRayWidth * extent);
     // By the paper's gain they are where the rays end.
     if (picture.evaluator.model() != GainModel::paper) {
       add_chances(scene, picture.evaluator.contributions(subject), snapshot);
     }
   }
-  write_png(path, render(scene, camera, T_world_viewer, 0.12 * extent, exec));
+  return render(scene, camera, T_world_viewer, 0.12 * extent, exec);
 }
 
 void write_amplitude_picture(const std::filesystem::path& path, const DepthFrame& frame) {

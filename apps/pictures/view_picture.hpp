@@ -10,6 +10,7 @@
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/png.hpp"
 #include "viewgain/mesh/surface.hpp"
 #include "viewgain/mesh/viewpoint_estimator.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -33,11 +34,9 @@ struct ViewPicture {
 /// green frustum with some of its rays, orange where they end in unknown voxels, blue in occupied
 /// ones, and by the surface and combined gain unknown voxels in which it may find surface, the
 /// stronger in orange the likelier. The surface's inside is darker; of more than 200 candidates an
-/// even subset is drawn, none right in front of the viewer. Atomic: a temporary file is renamed.
-/// Throws Error(io); Error(invalid_argument) for a view that is no rigid transform (1e-3). The same
-/// picture for any number of threads.
-void write_view_picture(const std::filesystem::path& path, const ViewPicture& picture,
-                        const ExecConfig& exec);
+/// even subset is drawn, none right in front of the viewer. Throws Error(invalid_argument) for a
+/// view that is no rigid transform (1e-3). The same picture for any number of threads.
+[[nodiscard]] RgbImage view_picture(const ViewPicture& picture, const ExecConfig& exec);
 
 /// The amplitude image of a frame (the paper's Fig. 1), 8-bit grey, enlarged by a whole number to
 /// at least 480 px in width; brightness ∝ the square root of the amplitude, the 99th percentile is

@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // What the value of an option names.
-enum class Kind { input, reach, frames, output, picture, frames_output, run_output };
+enum class Kind { input, reach, frames, output, picture, page, frames_output, run_output };
 struct FileOption {
   std::string_view name;
   Kind kind;
@@ -41,7 +41,8 @@ constexpr std::array kFileOptions{
     FileOption{"--sensor", Kind::input},    FileOption{"--reach", Kind::reach},
     FileOption{"--hazard", Kind::input},    FileOption{"--obstacle", Kind::input},
     FileOption{"FRAMES_DIR", Kind::frames}, FileOption{"OUT", Kind::output},
-    FileOption{"--picture", Kind::picture}, FileOption{"--out", Kind::output}};
+    FileOption{"--picture", Kind::picture}, FileOption{"--out", Kind::output},
+    FileOption{"INPUT", Kind::input},       FileOption{"--report", Kind::page}};
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 
@@ -59,6 +60,7 @@ struct NamedFile {
 Kind kind_of(const FileOption& option, const std::string& subcommand) {
   if (option.name != "--out") return option.kind;
   if (subcommand == "simulate") return Kind::frames_output;
+  if (subcommand == "render") return Kind::picture;
   return subcommand == "reconstruct" ? Kind::run_output : option.kind;
 }
 
@@ -82,6 +84,8 @@ std::vector<NamedFile> named_files(const CLI::App& subcommand) {
       if (file_option.name == "--sensor" && !is_sensor_file(value)) continue;
       if (file_option.name == "--hazard" && !is_hazard_file(value)) continue;
       if (file_option.name == "--obstacle" && !is_obstacle_file(value)) continue;
+      // There it is a switch, and the page a file of --out.
+      if (file_option.name == "--report" && subcommand.get_name() == "reconstruct") continue;
       files.push_back(
           {std::string(file_option.name), value, kind_of(file_option, subcommand.get_name())});
     }
@@ -153,10 +157,14 @@ void check_call(const CLI::App& subcommand) {
         !is_special_file(file.path)) {
       refuse(file.option, file.path.string(), "the name of a picture must end in .png");
     }
+    if (file.kind == Kind::page && small_ending(file.path) != ".html" &&
+        !is_special_file(file.path)) {
+      refuse(file.option, file.path.string(), "the name of a report must end in .html");
+    }
     check_not_read(file, files);
   }
   for (const NamedFile& file : files) {
-    if (file.kind == Kind::output || file.kind == Kind::picture) {
+    if (file.kind == Kind::output || file.kind == Kind::picture || file.kind == Kind::page) {
       const AtomicFile writable(file.path);  // known now rather than after the work
     }
   }

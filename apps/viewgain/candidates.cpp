@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "gain_unit.hpp"
+#include "options/gain_unit.hpp"
 #include "options/hazard_source.hpp"
 #include "options/obstacle_source.hpp"
 #include "options/values.hpp"

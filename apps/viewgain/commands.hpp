@@ -30,6 +30,7 @@ struct Command {
 [[nodiscard]] Command add_candidates(CLI::App& program);
 [[nodiscard]] Command add_info(CLI::App& program);
 [[nodiscard]] Command add_convert(CLI::App& program);
+[[nodiscard]] Command add_render(CLI::App& program);
 
 /// What every subcommand has.
 struct CommonOptions {

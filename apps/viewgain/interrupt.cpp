@@ -44,7 +44,7 @@ void clean_up_when_ended() {
   sigset_t signals;
   ::sigemptyset(&signals);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
-    struct sigaction action{};
+    struct sigaction action {};
     // Programs in the background and under nohup are started with some ignored.
     if (::sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
       ::sigaddset(&signals, signal);

@@ -58,7 +58,7 @@ int run(int argc, char** argv) {
       viewgain::app::add_simulate(program),    viewgain::app::add_integrate(program),
       viewgain::app::add_score(program),       viewgain::app::add_candidates(program),
       viewgain::app::add_reconstruct(program), viewgain::app::add_info(program),
-      viewgain::app::add_convert(program)};
+      viewgain::app::add_convert(program),     viewgain::app::add_render(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -2,14 +2,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "pictures/view_picture.hpp"
 #include "reconstruct_setup.hpp"
+#include "report/page.hpp"
+#include "report/run_page.hpp"
 #include "run_report.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/pose_io.hpp"
@@ -23,32 +27,37 @@
 namespace viewgain::app {
 namespace {
 
-void draw(const RunFolder& folder, const ViewRecord& record, const DepthFrame& frame,
-          const SurfaceModel& model, const CandidateGeneration& generation, const RunSetup& setup,
-          const ExecConfig& exec) {
+// By the gain that the policy ranks by, else the paper's.
+GainEvaluator step_evaluator(const SurfaceModel& model, const RunSetup& setup,
+                             const ExecConfig& exec) {
   GainConfig gain;
   gain.support_plane = setup.policy.support_plane;
+  gain.criterion = setup.policy.criterion;
   if (setup.policy.policy == Policy::gain) gain.model = setup.policy.model;
-  const GainEvaluator evaluator(model.scene(), setup.sensor, gain, exec);
+  return {model.scene(), setup.sensor, gain, exec};
+}
+
+RgbImage step_picture(const ViewRecord& record, const SurfaceModel& model,
+                      const CandidateGeneration& generation, const GainEvaluator& evaluator,
+                      const Sensor& sensor, const ExecConfig& exec) {
   const std::vector<Candidate>& candidates = record.proposal.candidates;
-  ViewPicture picture{model.surface(),       generation.estimated(), candidates,
-                      record.T_world_camera, std::nullopt,           evaluator,
-                      setup.sensor};
+  ViewPicture picture{model.surface(), generation.estimated(),
+                      candidates,      record.T_world_camera,
+                      std::nullopt,    evaluator,
+                      sensor};
   if (record.decision) picture.chosen = candidates[record.decision->candidate].T_world_camera;
-  write_view_picture(folder.view(record.index, ".png"), picture, exec);
-  if (!frame.amplitude.empty()) {
-    write_amplitude_picture(folder.view(record.index, ".amplitude.png"), frame);
-  }
+  return view_picture(picture, exec);
 }
 
 void add_to(StageSeconds& totals, const StageSeconds& seconds) {
   for (const auto& [stage, value] : seconds) totals[stage] += value;
 }
 
-// What a run leaves beside what it wrote after each view.
-void write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t seed,
-                   const SurfaceModel& model, const std::vector<Pose>& views,
-                   const nlohmann::ordered_json& report) {
+// What a run leaves beside what it wrote after each view. Returns what run.json holds.
+nlohmann::ordered_json write_results(const RunFolder& folder, const RunSetup& setup,
+                                     std::uint64_t seed, const SurfaceModel& model,
+                                     const std::vector<Pose>& views,
+                                     const nlohmann::ordered_json& report) {
   save_vdb(model.grid(), folder.file("map.vdb"));
   write_surfaces(model, folder.file("surface.ply"), folder.file("points.ply"));
   write_tum(folder.file("views.txt"), views);
@@ -59,9 +68,15 @@ void write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t
       {"map_hash", model.grid().content_hash()}};
   run.update(report);
   write_file_atomically(folder.file("run.json"), json_text(run));
+  return run;
+}
+
+std::string run_title(const ReconstructOptions& options, const RunSetup& setup) {
+  return std::filesystem::path(options.mesh).filename().string() + ", " + setup.sensor.name;
 }
 
 void reconstruct(const ReconstructOptions& options) {
+  if (options.report == "on") check_report_page("--report");
   StageSeconds seconds;
   const ExecConfig exec{options.common.threads};
   RunSetup setup = set_up(options, exec);
@@ -84,6 +99,9 @@ void reconstruct(const ReconstructOptions& options) {
   const PolicyConfig& policy = setup.policy;
   RunReport report(policy.policy == Policy::gain ? std::optional(policy.model) : std::nullopt,
                    policy.criterion);
+  const bool with_pictures = !options.no_pictures, with_report = options.report == "on";
+  RunPage page(run_title(options, setup), setup.sensor,
+               std::string(criterion_name(policy.criterion)), truth);
   std::vector<Pose> views;
   const PlanningResult result = active_view_planning(
       setup.start, acquisition, model, generation, decision, setup.planning,
@@ -91,24 +109,39 @@ void reconstruct(const ReconstructOptions& options) {
         views.push_back(record.T_world_camera);
         add_to(seconds, record.seconds);
         if (options.save_maps) save_vdb(model.grid(), folder.map(record.index));
-        if (!options.no_pictures) {
+        if (with_pictures || with_report) {
           const Stopwatch watch;
-          draw(folder, record, acquisition.last_frame(), model, generation, setup, exec);
+          const GainEvaluator evaluator = step_evaluator(model, setup, exec);
+          const RgbImage picture =
+              step_picture(record, model, generation, evaluator, setup.sensor, exec);
+          const DepthFrame& frame = acquisition.last_frame();
+          if (with_pictures) write_png(folder.view(record.index, ".png"), picture);
+          if (with_pictures && !frame.amplitude.empty()) {
+            write_amplitude_picture(folder.view(record.index, ".amplitude.png"), frame);
+          }
           seconds["pictures"] += watch.seconds();
+          const Stopwatch report_watch;
+          if (with_report) page.add_view(record, model, generation, evaluator, picture);
+          if (with_report) seconds["report"] += report_watch.seconds();
         }
         report.add_view(record, model.quality().back(), model.realised_area(), seconds);
         std::fprintf(stderr, "%s\n", report.progress_line().c_str());
       });
 
   const nlohmann::ordered_json json = report.json(result.reason);
-  write_results(folder, setup, options.sensing.seed, model, views, json);
+  const nlohmann::ordered_json run =
+      write_results(folder, setup, options.sensing.seed, model, views, json);
+  if (options.report == "on") {
+    write_report(folder.file("report.html"), page.json(run, *setup.stage.scene));
+  }
   folder.commit();
   if (options.common.json) {
     print_json(json);
   } else {
     std::printf("%s", report.text(result.reason).c_str());
-    std::printf("left in %s: run.json, views.txt, map.vdb, surface.ply, points.ply%s\n",
-                options.out.c_str(), options.no_pictures ? "" : ", views/");
+    std::printf("left in %s: run.json, views.txt, map.vdb, surface.ply, points.ply%s%s\n",
+                options.out.c_str(), with_pictures ? ", views/" : "",
+                with_report ? ", report.html" : "");
   }
 }
 

@@ -121,6 +121,11 @@ void describe(Options& o, Visitor& visit) {
   visit.flag("refine", "--no-refine", o.no_refine, "the first reading of a voxel wins");
   visit.flag(nullptr, "--save-maps", o.save_maps, "keep maps/NN.vdb after each view");
   visit.flag(nullptr, "--no-pictures", o.no_pictures, "do not draw views/NN.png");
+  visit.option(nullptr, "--report", o.report,
+               "write report.html: the run to look at in a browser, in one file",
+               [](CLI::Option& option) {
+                 option.check(CLI::IsMember({"off", "on"}))->capture_default_str();
+               });
   visit.option(nullptr, "--out", o.out, "folder to write", needed);
 }
 

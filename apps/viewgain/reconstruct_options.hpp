@@ -52,6 +52,7 @@ struct ReconstructOptions {
   bool no_refine = false;
   bool save_maps = false;
   bool no_pictures = false;
+  std::string report = "off";
   std::string out;
 };
 

@@ -8,7 +8,7 @@
 #include <cstdio>
 
 #include "commands.hpp"
-#include "gain_unit.hpp"
+#include "options/gain_unit.hpp"
 #include "options/values.hpp"
 
 namespace viewgain::app {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -15,8 +16,9 @@
 #include "options/obstacle_source.hpp"
 #include "options/pose_source.hpp"
 #include "options/values.hpp"
-#include "pictures/picture.hpp"
+#include "pictures/score_picture.hpp"
 #include "progress.hpp"
+#include "report/page.hpp"
 #include "score_report.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
@@ -51,6 +53,7 @@ struct Options {
   std::uint64_t seed = 1;
   std::string out;
   std::string picture;
+  std::string report;
 };
 
 GainConfig gain_config(const Options& options) {
@@ -183,6 +186,7 @@ Scores make_scores(const Options& options, const GainEvaluator& evaluator,
 }
 
 void score(const Options& options) {
+  if (!options.report.empty()) check_report_page("--report");
   const ExecConfig exec{options.common.threads};
   const GainConfig config = gain_config(options);
   const Sensor sensor = load_sensor(options.sensor);
@@ -211,15 +215,21 @@ void score(const Options& options) {
   }
   name_by_input(scores, candidates);
   warn_of_prior(evaluator, sensor);
-  if (!options.picture.empty()) {
+  RgbImage picture;
+  if (!options.picture.empty() || !options.report.empty()) {
     const std::optional<std::size_t> winner = scores.winner();
     const Pose& shown = winner ? source.poses[*winner]
                                : candidates.poses[evaluator.race(candidates.poses).indices.at(0)];
-    write_picture(options.picture, evaluator, sensor, shown, exec);
+    picture = score_picture(evaluator, sensor, shown, exec);
   }
+  if (!options.picture.empty()) write_png(options.picture, picture);
   if (!options.out.empty()) write_file_atomically(options.out, csv_of(scores, config.model));
   const ScoreReport report{config.model, options.criterion, grid,   sensor,
                            source,       evaluator,         scores, seconds};
+  if (!options.report.empty()) {
+    write_report(options.report,
+                 report.page(std::filesystem::path(options.map).filename(), std::move(picture)));
+  }
   if (options.common.json) {
     report.print_json();
   } else {
@@ -315,6 +325,9 @@ Command add_score(CLI::App& program) {
       "--picture", options->picture,
       "PNG file: the map, the best view's frustum and the voxels where its rays end; surface "
       "and combined: may end, the stronger in colour the likelier");
+  app->add_option("--report", options->report,
+                  "HTML file: map, candidates by gain, ranking and what the best ones see, to look "
+                  "at in a browser");
   add_common_options(*app, options->common);
   return {app, [options] { score(*options); }};
 }

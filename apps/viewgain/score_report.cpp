@@ -3,11 +3,15 @@
 #include "score_report.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "commands.hpp"
-#include "gain_unit.hpp"
+#include "options/gain_unit.hpp"
 #include "options/values.hpp"
+#include "report/score_page.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -139,27 +143,31 @@ std::string csv_of(const Scores& scores, GainModel model) {
   return estimates != nullptr ? csv_rows(*estimates) : csv_rows(scored_in_full(scores), model);
 }
 
-void ScoreReport::print_json() const {
+ordered_json ScoreReport::summary() const {
   ordered_json dropped = ordered_json::object();
   for (const auto& [reason, count] : scores.dropped) dropped[reason] = count;
-  ordered_json json{{"poses", source.poses.size()},
-                    {"dropped", dropped},
-                    {"poses_scored", scored_in_full(scores).gains.size()},
-                    {"rays_traced", scores.rays_traced},
-                    {"rays_per_pose", evaluator.rays_per_pose()},
-                    {"threads", evaluator.num_threads()},
-                    {"isa", evaluator.scene().isa()},
-                    {"voxel_size", grid.voxel_size()},
-                    {"voxels", grid.voxel_count()},
-                    {"sensor", sensor.name},
-                    {"gain_model", gain_model_name(model)},
-                    {"gain_unit", gain_unit(model, criterion)},
-                    {"criterion", criterion},
-                    {"prior_sigma", evaluator.prior_sigma()},
-                    {"orthonormalized_poses", source.orthonormalized},
-                    {"seconds", seconds},
-                    {"poses_per_second", static_cast<double>(scores.candidates) / seconds},
-                    {"rays_per_second", static_cast<double>(scores.rays_traced) / seconds}};
+  return {{"poses", source.poses.size()},
+          {"dropped", dropped},
+          {"poses_scored", scored_in_full(scores).gains.size()},
+          {"rays_traced", scores.rays_traced},
+          {"rays_per_pose", evaluator.rays_per_pose()},
+          {"threads", evaluator.num_threads()},
+          {"isa", evaluator.scene().isa()},
+          {"voxel_size", grid.voxel_size()},
+          {"voxels", grid.voxel_count()},
+          {"sensor", sensor.name},
+          {"gain_model", gain_model_name(model)},
+          {"gain_unit", gain_unit(model, criterion)},
+          {"criterion", criterion},
+          {"prior_sigma", evaluator.prior_sigma()},
+          {"orthonormalized_poses", source.orthonormalized},
+          {"seconds", seconds},
+          {"poses_per_second", static_cast<double>(scores.candidates) / seconds},
+          {"rays_per_second", static_cast<double>(scores.rays_traced) / seconds}};
+}
+
+void ScoreReport::print_json() const {
+  ordered_json json = summary();
   if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
     json["best"] = entries(ranking->best, source.poses);
   } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
@@ -203,6 +211,56 @@ void ScoreReport::print_table() const {
     std::printf("%s scored in full, %s rays traced\n", with_commas(in_full).c_str(),
                 with_commas(scores.rays_traced).c_str());
   }
+}
+
+ordered_json ScoreReport::page(const std::string& title, RgbImage picture) const {
+  constexpr std::size_t kRows = 1000, kShown = 10;
+  std::vector<double> gains(source.poses.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> areas = gains;
+  std::vector<ViewGain> ranked(source.poses.size());
+  for (ViewGain& gain : ranked) gain.gain = std::numeric_limits<double>::quiet_NaN();
+  const auto* estimates = std::get_if<Estimates>(&scores.found);
+  const ScoredViews& full = scored_in_full(scores);
+  for (std::size_t k = 0; k < full.indices.size(); ++k) ranked[full.indices[k]] = full.gains[k];
+  for (std::size_t k = 0; estimates != nullptr && k < estimates->gains.size(); ++k) {
+    ranked[estimates->indices[k]].gain = estimates->gains[k].gain;
+  }
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    gains[i] = ranked[i].gain;
+    areas[i] = ranked[i].area;
+  }
+  const bool by_area = model != GainModel::paper && estimates == nullptr;
+  ordered_json columns{"pose", "gain"}, rows = ordered_json::array();
+  if (by_area) columns.push_back("area");
+  if (estimates == nullptr) columns.insert(columns.end(), {"hits", "unknown", "occupied"});
+  std::vector<std::size_t> shown;
+  const std::vector<std::size_t> order =
+      std::holds_alternative<JointViews>(scores.found) ? full.indices : best_indices(ranked, kRows);
+  for (const std::size_t i : order) {
+    const ViewGain& r = ranked[i];
+    if (std::isnan(r.gain)) break;
+    ordered_json row{i, r.gain};
+    if (by_area) row.push_back(r.area);
+    if (estimates == nullptr) {
+      row.insert(row.end(), {r.hits, r.unknown_voxels, r.occupied_voxels});
+    }
+    rows.push_back(std::move(row));
+    if (shown.size() < kShown) shown.push_back(i);
+  }
+  const ScorePage page{title,
+                       criterion,
+                       evaluator,
+                       sensor,
+                       source.poses,
+                       std::move(gains),
+                       by_area ? std::move(areas) : std::vector<double>(),
+                       std::move(columns),
+                       std::move(rows),
+                       std::move(shown),
+                       {{"sensor", sensor_toml(sensor)}},
+                       summary(),
+                       std::move(picture)};
+  return page.json();
 }
 
 }  // namespace viewgain::app

@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "options/pose_source.hpp"
+#include "viewgain/formats/png.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
@@ -70,6 +72,11 @@ struct ScoreReport {
   void print_json() const;
   /// For people.
   void print_table() const;
+  /// The data of report.html; `picture` is of the best pose.
+  [[nodiscard]] nlohmann::ordered_json page(const std::string& title, RgbImage picture) const;
+
+ private:
+  [[nodiscard]] nlohmann::ordered_json summary() const;
 };
 
 }  // namespace viewgain::app

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
@@ -48,7 +49,32 @@ void write_bytes(png_structp png, png_bytep data, std::size_t count) {
 
 void flush_nothing(png_structp) {}
 
-// False with a message in `state` if it failed. No object with a destructor may live in here.
+// What the two functions below do is undone by libpng's longjmp where it fails: then they return
+// false with a message in `state`. No object with a destructor may live in them.
+
+bool decode_rgb(png_structp png, png_infop info, PngState& state, RgbImage& image) {
+  constexpr png_uint_32 kMostPixels = 16384;  // a side
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  png_set_read_fn(png, &state, read_bytes);
+  png_set_user_limits(png, kMostPixels, kMostPixels);
+  png_read_info(png, info);
+  if (png_get_bit_depth(png, info) != 8 || png_get_color_type(png, info) != PNG_COLOR_TYPE_RGB) {
+    png_error(png, "not an 8-bit RGB image");
+  }
+  image.width = static_cast<int>(png_get_image_width(png, info));
+  image.height = static_cast<int>(png_get_image_height(png, info));
+  const std::size_t row = 3 * static_cast<std::size_t>(image.width);
+  image.pixels.resize(row * static_cast<std::size_t>(image.height));
+  for (std::size_t v = 0; v < static_cast<std::size_t>(image.height); ++v) {
+    state.rows.push_back(image.pixels.data() + v * row);
+  }
+  (void)png_set_interlace_handling(png);
+  png_read_update_info(png, info);
+  png_read_image(png, state.rows.data());
+  png_read_end(png, nullptr);
+  return true;
+}
+
 bool decode(png_structp png, png_infop info, PngState& state, GrayImage& image) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &state, read_bytes);
@@ -91,16 +117,16 @@ bool encode(png_structp png, png_infop info, PngState& state, int width, int hei
   throw Error(code, path.string() + ": " + what);
 }
 
-// `channels` values a pixel.
+// A PNG of `channels` values a pixel.
 template <typename Value>
-void write_image(const std::filesystem::path& path, int width, int height, int color_type,
-                 const std::vector<Value>& pixels, std::size_t channels) {
+std::string encoded(int width, int height, int color_type, const std::vector<Value>& pixels,
+                    std::size_t channels) {
   constexpr int bit_depth = 8 * sizeof(Value);
   const std::size_t row = channels * static_cast<std::size_t>(std::max(width, 0));
   if (width <= 0 || height <= 0 || pixels.size() != row * static_cast<std::size_t>(height)) {
-    fail(ErrorCode::invalid_argument, path,
-         "an image of " + std::to_string(width) + " x " + std::to_string(height) + " px with " +
-             std::to_string(pixels.size()) + " values");
+    throw Error(ErrorCode::invalid_argument, "an image of " + std::to_string(width) + " x " +
+                                                 std::to_string(height) + " px with " +
+                                                 std::to_string(pixels.size()) + " values");
   }
   PngState state;
   // libpng takes rows that it does not write to as non-const.
@@ -112,8 +138,35 @@ void write_image(const std::filesystem::path& path, int width, int height, int c
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   const bool ok = info != nullptr && encode(png, info, state, width, height, bit_depth, color_type);
   png_destroy_write_struct(&png, &info);
-  if (!ok) fail(ErrorCode::io, path, "cannot encode the image: " + state.message);
-  write_file_atomically(path, state.bytes);
+  if (!ok) throw Error(ErrorCode::io, "cannot encode the image: " + state.message);
+  return std::move(state.bytes);
+}
+
+// Naming the file where the image is none.
+template <typename Value>
+void write_image(const std::filesystem::path& path, int width, int height, int color_type,
+                 const std::vector<Value>& pixels, std::size_t channels) {
+  std::string bytes;
+  try {
+    bytes = encoded(width, height, color_type, pixels, channels);
+  } catch (const Error& error) {
+    fail(error.code(), path, error.what());
+  }
+  write_file_atomically(path, bytes);
+}
+
+// Runs libpng's reading on the file: `decode_into(png, info, state)`.
+template <typename Decode>
+void read_image(const std::filesystem::path& path, PngState& state, const Decode& decode_into) {
+  state.bytes = file_bytes(path);
+  state.message.resize(160);
+  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &state, on_error, on_warning);
+  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
+  const bool ok = info != nullptr && decode_into(png, info);
+  png_destroy_read_struct(&png, &info, nullptr);
+  if (!ok) {
+    fail(ErrorCode::format, path, "not a usable image: " + std::string(state.message.c_str()));
+  }
 }
 
 }  // namespace
@@ -124,23 +177,27 @@ GrayImage read_gray_png(const std::filesystem::path& path, int width, int height
          "asked for as " + std::to_string(width) + " x " + std::to_string(height) + " px");
   }
   PngState state;
-  state.bytes = file_bytes(path);
-
   GrayImage image{width, height, {}};
   const auto columns = static_cast<std::size_t>(width);
   image.pixels.resize(columns * static_cast<std::size_t>(height));
   for (std::size_t v = 0; v < static_cast<std::size_t>(height); ++v) {
     state.rows.push_back(reinterpret_cast<png_bytep>(image.pixels.data() + v * columns));
   }
-  state.message.resize(160);
-  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &state, on_error, on_warning);
-  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
-  const bool ok = info != nullptr && decode(png, info, state, image);
-  png_destroy_read_struct(&png, &info, nullptr);
-  if (!ok) {
-    fail(ErrorCode::format, path, "not a usable image: " + std::string(state.message.c_str()));
-  }
+  read_image(path, state,
+             [&](png_structp png, png_infop info) { return decode(png, info, state, image); });
   return image;
+}
+
+RgbImage read_rgb_png(const std::filesystem::path& path) {
+  PngState state;
+  RgbImage image;
+  read_image(path, state,
+             [&](png_structp png, png_infop info) { return decode_rgb(png, info, state, image); });
+  return image;
+}
+
+std::string png_bytes(const RgbImage& image) {
+  return encoded(image.width, image.height, PNG_COLOR_TYPE_RGB, image.pixels, 3);
 }
 
 void write_png(const std::filesystem::path& path, const GrayImage& image) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "viewgain/planner_mesh/surface_model.hpp"
 
+#include <Eigen/Core>
+#include <cmath>
 #include <utility>
 
 #include "viewgain/core/error.hpp"
@@ -18,6 +20,17 @@ SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double spacing,
   SurfaceConfig config;
   config.spacing = spacing;
   return reconstruct_surface(oriented, config, exec);
+}
+
+std::vector<double> surface_sigmas(const SurfaceMesh& surface,
+                                   const std::vector<FusedPoint>& points) {
+  std::vector<double> sigmas;
+  sigmas.reserve(surface.vertices.size());
+  for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
+    const Eigen::Vector3d normal(surface.normals[i].data());
+    sigmas.push_back(std::sqrt(normal.dot(points[surface.source[i]].covariance * normal)));
+  }
+  return sigmas;
 }
 
 SurfaceModel::SurfaceModel(const Sensor& sensor, const SurfaceModelConfig& config,

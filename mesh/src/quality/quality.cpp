@@ -201,6 +201,15 @@ std::vector<double> GroundTruth::distances_to(std::span<const std::array<double,
   return distances;
 }
 
+std::vector<double> GroundTruth::distances_of(std::span<const std::array<double, 3>> points) const {
+  std::vector<double> distances;
+  distances.reserve(points.size());
+  for (const Impl::Offset& offset : impl_->offsets(points)) {
+    distances.push_back(offset.vector.norm());
+  }
+  return distances;
+}
+
 ErrorStatistics GroundTruth::error(std::span<const std::array<double, 3>> points) const {
   if (points.empty()) return {kNaN, kNaN, 0};
   std::vector<double> distances;

@@ -55,9 +55,13 @@ class VIEWGAIN_EXPORT GroundTruth {
   [[nodiscard]] const std::vector<SurfaceSample>& samples() const noexcept;
 
   /// For each sample, the distance to the nearest of the points [m]; infinity without points. This
-  /// and the next two throw Error(invalid_argument) for a point that is not finite, take O(log)
+  /// and the next three throw Error(invalid_argument) for a point that is not finite, take O(log)
   /// time a point or sample, and give the same bits for any number of threads.
   [[nodiscard]] std::vector<double> distances_to(
+      std::span<const std::array<double, 3>> points) const;
+
+  /// The distance of each point to the surface [m].
+  [[nodiscard]] std::vector<double> distances_of(
       std::span<const std::array<double, 3>> points) const;
 
   /// Distance of each point to the surface, RMS and 95th percentile.

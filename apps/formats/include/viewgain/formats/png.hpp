@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "viewgain/core/export.hpp"
@@ -36,6 +37,13 @@ struct VIEWGAIN_EXPORT Gray8Image {
 /// size.
 [[nodiscard]] VIEWGAIN_EXPORT GrayImage read_gray_png(const std::filesystem::path& path, int width,
                                                       int height);
+
+/// Reads an 8-bit RGB PNG of at most 16,384 px a side; raw values, no gamma. Throws as
+/// read_gray_png().
+[[nodiscard]] VIEWGAIN_EXPORT RgbImage read_rgb_png(const std::filesystem::path& path);
+
+/// What write_png writes. Throws Error(invalid_argument) as it does.
+[[nodiscard]] VIEWGAIN_EXPORT std::string png_bytes(const RgbImage& image);
 
 /// Atomic: a temporary file is renamed. Throws Error(io), and Error(invalid_argument) if the values
 /// are not as many as the pixels take.

@@ -29,6 +29,11 @@ struct VIEWGAIN_EXPORT SurfaceModelConfig {
 [[nodiscard]] VIEWGAIN_EXPORT SurfaceMesh surface_of(const std::vector<FusedPoint>& points,
                                                      double spacing, const ExecConfig& exec);
 
+/// The standard deviation of each vertex along the surface's normal [m], of the point that it comes
+/// from.
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<double> surface_sigmas(
+    const SurfaceMesh& surface, const std::vector<FusedPoint>& points);
+
 /// The two representations of the scene, the belief grid and the surface seen so far
 /// (UPDATEREPRESENTATIONS of Algorithm 1), and what is derived from them after each view.
 class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "picture.hpp"
+#include "score_picture.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -10,10 +10,10 @@
 #include <optional>
 #include <vector>
 
+#include "map_cubes.hpp"
 #include "picture_parts.hpp"
 #include "ray_tracer.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/formats/png.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -49,13 +49,8 @@ std::int32_t collect_cubes(const GridSnapshot& snapshot,
                                                          : std::optional(Cube::kOccupiedHit);
     if (kind) cubes.push_back({voxel.voxel.x, voxel.voxel.y, voxel.voxel.z, *kind});
   }
-  for (const SnapshotLeaf& leaf : snapshot.leaves) {
-    for (unsigned offset = 0; offset < 512; ++offset) {
-      if (!test_bit(leaf.occupied, offset)) continue;
-      cubes.push_back({leaf.origin.x + static_cast<std::int32_t>(offset >> 6U),
-                       leaf.origin.y + static_cast<std::int32_t>(offset >> 3U & 7U),
-                       leaf.origin.z + static_cast<std::int32_t>(offset & 7U), Cube::kSurface});
-    }
+  for (const Index3& at : occupied_voxels(snapshot)) {
+    cubes.push_back({at.x, at.y, at.z, Cube::kSurface});
   }
   sort_and_merge(cubes);
   std::int32_t side = 1;
@@ -68,11 +63,10 @@ std::int32_t collect_cubes(const GridSnapshot& snapshot,
 
 }  // namespace
 
-void write_picture(const std::filesystem::path& path, const GainEvaluator& evaluator,
-                   const Sensor& sensor, const Pose& T_world_camera, const ExecConfig& exec) {
+RgbImage score_picture(const GainEvaluator& evaluator, const Sensor& sensor,
+                       const Pose& T_world_camera, const ExecConfig& exec) {
   if (!is_rigid(T_world_camera)) {
-    throw Error(ErrorCode::invalid_argument,
-                path.string() + ": the best pose is no rigid transform");
+    throw Error(ErrorCode::invalid_argument, "the pose to draw is no rigid transform");
   }
   const GridSnapshot& snapshot = evaluator.scene().snapshot();
   const std::vector<RayHit> hits = evaluator.trace(T_world_camera);
@@ -108,8 +102,9 @@ void write_picture(const std::filesystem::path& path, const GainEvaluator& evalu
   in_sight.insert(in_sight.end(), far_corners.begin(), far_corners.end());
   PinholeCamera camera = picture_camera();
   const Vector3d target = T_world_camera * Vector3d(0, 0, depth);
-  const Pose T_world_viewer = place_viewer(in_sight, eye, target, Side::counter_clockwise, camera);
-  write_png(path, render(scene, camera, T_world_viewer, 0.12 * extent, exec));
+  const Pose T_world_viewer =
+      place_viewer(in_sight, viewer_beside(eye, target, Side::counter_clockwise), camera);
+  return render(scene, camera, T_world_viewer, 0.12 * extent, exec);
 }
 
 }  // namespace viewgain::app

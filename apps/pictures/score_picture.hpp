@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/png.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
@@ -14,9 +13,9 @@ namespace viewgain::app {
 /// A picture of one view, 1280x960 px: the map's occupied voxels as little grey cubes, the view's
 /// frustum, and the voxels where its rays end, unknown ones orange, occupied ones blue; by the
 /// surface and combined gain unknown voxels in which it may find surface, the stronger in orange
-/// the likelier; seen from a place that shows both. Atomic: a temporary file is renamed. Throws
-/// Error(io).
-void write_picture(const std::filesystem::path& path, const GainEvaluator& evaluator,
-                   const Sensor& sensor, const Pose& T_world_camera, const ExecConfig& exec);
+/// the likelier; seen from a place that shows both. Throws Error(invalid_argument) unless the pose
+/// is rigid (1e-3).
+[[nodiscard]] RgbImage score_picture(const GainEvaluator& evaluator, const Sensor& sensor,
+                                     const Pose& T_world_camera, const ExecConfig& exec);
 
 }  // namespace viewgain::app

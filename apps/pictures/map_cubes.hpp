@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "viewgain/grid/grid_snapshot.hpp"
+
+namespace viewgain::app {
+
+/// The occupied voxels of a map, leaf by leaf.
+[[nodiscard]] std::vector<Index3> occupied_voxels(const GridSnapshot& snapshot);
+
+/// Cubes of one lattice in the grid's frame; cube i reaches from side * at[i] to side * (at[i] + 1)
+/// [m].
+struct LatticeCubes {
+  std::vector<Index3> at;  ///< rising
+  double side = 0;         ///< [m]
+};
+
+/// The occupied voxels as at most `most` cubes: two by two by two become one until they are few
+/// enough.
+[[nodiscard]] LatticeCubes occupied_cubes(const GridSnapshot& snapshot, std::size_t most);
+
+}  // namespace viewgain::app

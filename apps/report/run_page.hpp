@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/planner_mesh/truth.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/raycast/surface_scene.hpp"
+
+namespace viewgain::app {
+
+/// Collects what report.html shows of a run, a view at a time. Holds it packed, about 200 kB a view
+/// of the camel. Thread safety: one call at a time.
+class RunPage {
+ public:
+  /// `title` is what the page calls the run; `criterion` that of the map's entropy.
+  RunPage(std::string title, const Sensor& sensor, std::string criterion,
+          std::shared_ptr<const Truth> truth);
+
+  /// To be called once a view, in order. `evaluator` is of the model's scene and scores all
+  /// candidates, which takes about as long as a ranking by all rays; `picture` is for browsers that
+  /// cannot draw.
+  void add_view(const ViewRecord& record, const SurfaceModel& model,
+                const CandidateGeneration& generation, const GainEvaluator& evaluator,
+                const RgbImage& picture);
+
+  /// The page's data. `run` is what run.json holds; there must have been a view.
+  [[nodiscard]] nlohmann::ordered_json json(const nlohmann::ordered_json& run,
+                                            const SurfaceScene& object) const;
+
+ private:
+  std::string title_, criterion_;
+  Sensor sensor_;
+  std::shared_ptr<const Truth> truth_;
+  nlohmann::ordered_json head_, views_ = nlohmann::ordered_json::array();
+};
+
+}  // namespace viewgain::app

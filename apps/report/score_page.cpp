@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "score_page.hpp"
+
+#include <cmath>
+
+#include "blocks.hpp"
+#include "pictures/map_cubes.hpp"
+#include "view_parts.hpp"
+
+namespace viewgain::app {
+namespace {
+
+using Eigen::Vector3d;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMaxCubes = 100'000;
+
+ordered_json map_json(const GridSnapshot& snapshot) {
+  const LatticeCubes cubes = occupied_cubes(snapshot, kMaxCubes);
+  std::vector<Vector3d> centers;
+  for (const Index3& at : cubes.at) {
+    centers.push_back(snapshot.T_world_grid *
+                      Vector3d(cubes.side * (Vector3d(at.x, at.y, at.z).array() + 0.5)));
+  }
+  return {{"centers", point_block(centers)}, {"size", cubes.side}};
+}
+
+ordered_json contributions_json(const GainEvaluator& evaluator, const Pose& T_world_camera,
+                                const ordered_json& unit) {
+  const GridSnapshot& snapshot = evaluator.scene().snapshot();
+  std::vector<Vector3d> centers;
+  std::vector<float> values;
+  std::vector<std::uint8_t> states;
+  for (const VoxelContribution& voxel : evaluator.contributions(T_world_camera)) {
+    centers.push_back(snapshot.center(voxel.voxel));
+    values.push_back(static_cast<float>(voxel.gain));
+    states.push_back(voxel.state == VoxelState::unknown ? 1 : 2);
+  }
+  return {{"centers", point_block(centers)},
+          {"value", float_block(values, 1)},
+          {"state", byte_block(states)},
+          {"unit", unit},
+          {"size", snapshot.voxel_size}};
+}
+
+}  // namespace
+
+ordered_json ScorePage::json() const {
+  ordered_json page = page_head("score", title, evaluator, sensor, criterion);
+  page["settings"] = settings;
+  page["summary"] = summary;
+  page["truth"] = nullptr;
+  ordered_json contributions = ordered_json::array();
+  for (const std::size_t i : shown) {
+    contributions.push_back(
+        {{"candidate", i},
+         {"bundle", bundle_json(evaluator, sensor, poses[i])},
+         {"contributions", contributions_json(evaluator, poses[i], page["gain_unit"])}});
+  }
+  ShownCandidates candidates{{poses.begin(), poses.end()}, gains, areas, {}, {}, {}};
+  candidates.generators.resize(poses.size());
+  candidates.classes.resize(poses.size());
+  for (const double gain : gains)
+    candidates.reasons.emplace_back(std::isnan(gain) ? "not scored" : "");
+  page["score"] = {{"map", map_json(evaluator.scene().snapshot())},
+                   {"candidates", to_json(candidates)},
+                   {"columns", columns},
+                   {"rows", rows},
+                   {"shown", contributions},
+                   {"picture", small_picture(picture)}};
+  return page;
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "view_parts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "blocks.hpp"
+#include "options/gain_unit.hpp"
+#include "pictures/image_grid.hpp"
+#include "pictures/picture_parts.hpp"
+#include "viewgain/version.hpp"
+
+namespace viewgain::app {
+namespace {
+
+using Eigen::Vector3d;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMaxRays = 1500;
+
+// Each text as its place in `names`, which has every text once; -1 for an empty one.
+ordered_json numbered(const std::vector<std::string>& texts, ordered_json& names) {
+  std::vector<std::string> found;
+  ordered_json numbers = ordered_json::array();
+  for (const std::string& text : texts) {
+    if (text.empty()) {
+      numbers.push_back(-1);
+      continue;
+    }
+    const auto at = std::find(found.begin(), found.end(), text);
+    numbers.push_back(at - found.begin());
+    if (at == found.end()) found.push_back(text);
+  }
+  names = found;
+  return numbers;
+}
+
+ordered_json column_of(const std::vector<double>& values, std::size_t rows) {
+  std::vector<float> column(rows, std::numeric_limits<float>::quiet_NaN());
+  std::copy_n(values.begin(), std::min(rows, values.size()), column.begin());
+  return float_block(column, 1);
+}
+
+}  // namespace
+
+ordered_json page_head(const std::string& kind, const std::string& title,
+                       const GainEvaluator& evaluator, const Sensor& sensor,
+                       std::string_view criterion) {
+  const GridSnapshot& snapshot = evaluator.scene().snapshot();
+  const auto bound = [&](std::int32_t index) { return snapshot.voxel_size * index; };
+  const Index3 low = snapshot.min_index, size = snapshot.dims;
+  ordered_json frustum = ordered_json::array();
+  for (const Vector3d& p : image_corners(sensor, Pose(), 1)) frustum.push_back({p.x(), p.y()});
+  return {{"format", 1},
+          {"kind", kind},
+          {"title", title},
+          {"version", VIEWGAIN_VERSION},
+          {"gain_model", gain_model_name(evaluator.model())},
+          {"gain_unit", gain_unit(evaluator.model(), criterion)},
+          {"entropy_unit", gain_unit(GainModel::paper, criterion)},
+          {"workspace",
+           {bound(low.x), bound(low.y), bound(low.z), bound(low.x + size.x), bound(low.y + size.y),
+            bound(low.z + size.z)}},
+          {"T_world_grid", pose_rows(snapshot.T_world_grid)},
+          {"frustum", frustum}};
+}
+
+ordered_json pose_rows(const Pose& T_world_camera) { return T_world_camera.m; }
+
+ordered_json to_json(const ShownCandidates& candidates) {
+  const std::size_t count = candidates.poses.size();
+  std::vector<float> poses;
+  poses.reserve(12 * count);
+  for (const Pose& pose : candidates.poses) {
+    for (const double number : pose.m) poses.push_back(static_cast<float>(number));
+  }
+  ordered_json json{{"poses", float_block(poses, 12)},
+                    {"gain", column_of(candidates.gains, count)},
+                    {"area", column_of(candidates.areas, count)}};
+  ordered_json names;
+  json["class"] = numbered(candidates.classes, names);
+  json["classes"] = names;
+  json["generator"] = numbered(candidates.generators, names);
+  json["generators"] = names;
+  json["reason"] = numbered(candidates.reasons, names);
+  json["reasons"] = names;
+  return json;
+}
+
+ordered_json bundle_json(const GainEvaluator& evaluator, const Sensor& sensor,
+                         const Pose& T_world_camera) {
+  std::vector<Vector3d> ends;
+  std::vector<std::uint8_t> kinds;
+  const GridSnapshot& snapshot = evaluator.scene().snapshot();
+  const std::vector<RayHit> hits = evaluator.trace(T_world_camera);
+  for (const RayHit& hit : even_hits(hits, sensor.camera, kMaxRays)) {
+    ends.push_back(snapshot.center(hit.voxel));
+    kinds.push_back(hit.kind == RayHit::Kind::unknown ? 1 : 2);
+  }
+  return {{"ends", point_block(ends)}, {"kind", byte_block(kinds)}};
+}
+
+std::string small_picture(const RgbImage& picture) { return base64(png_bytes(shrunk(picture, 3))); }
+
+}  // namespace viewgain::app

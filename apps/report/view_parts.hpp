@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::app {
+
+// What the pages of runs and of scores both show; README.md, "Data", says each part's keys.
+
+/// The keys that every page has: what it is, the space, the camera.
+[[nodiscard]] nlohmann::ordered_json page_head(const std::string& kind, const std::string& title,
+                                               const GainEvaluator& evaluator, const Sensor& sensor,
+                                               std::string_view criterion);
+
+/// Twelve numbers, the rows of T_world_camera.
+[[nodiscard]] nlohmann::ordered_json pose_rows(const Pose& T_world_camera);
+
+/// Candidates as parallel lists. `gains` may be shorter: the rest have none.
+struct ShownCandidates {
+  std::vector<Pose> poses;
+  std::vector<double> gains, areas;
+  std::vector<std::string> generators, classes, reasons;  ///< one a pose; an empty text is none
+};
+[[nodiscard]] nlohmann::ordered_json to_json(const ShownCandidates& candidates);
+
+/// Where the rays of a view end: an even subset of those that end in a voxel.
+[[nodiscard]] nlohmann::ordered_json bundle_json(const GainEvaluator& evaluator,
+                                                 const Sensor& sensor, const Pose& T_world_camera);
+
+/// A PNG of a third of the picture's width and height, in base64: enough where there is no WebGL.
+[[nodiscard]] std::string small_picture(const RgbImage& picture);
+
+}  // namespace viewgain::app

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+// Layers of voxels: the map, what a pose adds, where new surface is expected.
+import { Color } from "three";
+import { hitColours, ramps } from "../colours.js";
+import { unitOf } from "../format.js";
+import { cubes } from "../scene/cubes.js";
+
+const greatest = (values) => {
+  const high = values.reduce((most, value) => (value > most ? value : most), 0);
+  return high > 0 ? high : 1;
+};
+
+const mapLayer = (id, label, state, on, colour, size, opacity) => ({
+  id,
+  label,
+  on,
+  swatch: colour,
+  ofAllSteps: () => true,
+  has: (step) => step.map && step.map.centers.rows > 0,
+  async build({ step, report }) {
+    const map = await report.part(step.map);
+    const linear = new Color(colour).toArray();
+    const write = (i, target) => {
+      if (map.state[i] !== state) return false;
+      [target[0], target[1], target[2]] = linear;
+      return true;
+    };
+    const object = cubes(map.centers, size * map.size, write, opacity);
+    return { object, legend: { title: "map", marks: [[label.toLowerCase(), colour]] } };
+  },
+});
+
+export const occupied = mapLayer("occupied", "Occupied", 2, true, "#8b97a8", 0.98, 1);
+export const unknownBorder = mapLayer("unknown", "Unknown border", 1, true, "#e6c9a2", 0.5, 0.75);
+
+export const contributions = {
+  id: "contributions",
+  label: "What the pose adds",
+  on: true,
+  swatch: hitColours.unknown,
+  has: (step) => step.contributions && step.contributions.centers.rows > 0,
+  async build({ step, report }) {
+    const { centers, value, state, unit, size } = await report.part(step.contributions);
+    const { name, factor } = unitOf(unit);
+    const high = greatest(value);
+    const write = (i, target) => {
+      (state[i] === 1 ? ramps.unknown : ramps.occupied).write(value[i] / high, target, 0);
+      return true;
+    };
+    const bar = (title, ramp) => ({ title, ramp, low: 0, high: high * factor });
+    const legend = [
+      bar(`from unknown [${name}]`, ramps.unknown),
+      bar(`from occupied [${name}]`, ramps.occupied),
+    ];
+    return { object: cubes(centers, 1.04 * size, write), legend };
+  },
+};
+
+export const expected = {
+  id: "expected",
+  label: "Expected surface",
+  on: false,
+  swatch: ramps.expected.css(0.7),
+  has: (step) => step.expected && step.expected.centers.rows > 0,
+  async build({ step, report }) {
+    const { centers, value, unit, size } = await report.part(step.expected);
+    const { name, factor } = unitOf(unit);
+    const high = greatest(value);
+    const write = (i, target) => {
+      ramps.expected.write(value[i] / high, target, 0);
+      return true;
+    };
+    const object = cubes(centers, 0.86 * size, write, 0.9);
+    return { object, legend: { title: `expected [${name}]`, ramp: ramps.expected, low: 0, high: high * factor } };
+  },
+};

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+// The page of a report: reads the data in it and builds what shows them.
+import { Box3, Sphere, Vector3 } from "three";
+import { poseAt } from "./data/parts.js";
+import { Report } from "./data/report.js";
+import { byId } from "./dom.js";
+import { layersOf, LayerStack } from "./layers/stack.js";
+import { matrixOf } from "./scene/frusta.js";
+import { Stage } from "./scene/stage.js";
+import { State } from "./state.js";
+import { buildCameraTools } from "./ui/camera_tools.js";
+import { buildCandidateTable } from "./ui/candidate_table.js";
+import { showPictures } from "./ui/fallback.js";
+import { buildFigures, showHeadline } from "./ui/figures.js";
+import { bindKeys } from "./ui/keys.js";
+import { buildLayersPanel, toggleLayer } from "./ui/layers_panel.js";
+import { showLegend } from "./ui/legend.js";
+import { buildRankingTable } from "./ui/ranking_table.js";
+import { buildPlots } from "./ui/run_plots.js";
+import { buildTabs } from "./ui/tabs.js";
+import { followTheme, themeColours } from "./ui/theme.js";
+import { buildTimeline } from "./ui/timeline.js";
+import { buildViewTable } from "./ui/view_table.js";
+
+function trouble(text) {
+  const line = byId("trouble");
+  line.textContent = text;
+  line.hidden = false;
+}
+
+/** The most candidates that a step kept. */
+const mostKept = ({ steps }) =>
+  Math.max(...steps.map(({ candidates }) => candidates?.reason.filter((r) => r === -1).length ?? 0));
+
+function startStep(report) {
+  const asked = Number(/^#step=(\d+)$/.exec(location.hash)?.[1] ?? 0);
+  return Math.min(asked, report.steps.length - 1);
+}
+
+/** Where the run started, or the best pose. */
+async function firstPose(report) {
+  const { pose, chosen, candidates } = report.steps[0];
+  if (report.isRun) return pose;
+  return chosen === null ? null : poseAt((await report.part(candidates)).poses, chosen);
+}
+
+function stageOf(report, pose) {
+  const [x0, y0, z0, x1, y1, z1] = report.workspace;
+  const box = new Box3(new Vector3(x0, y0, z0), new Vector3(x1, y1, z1));
+  const { center, radius } = box.applyMatrix4(matrixOf(report.T_world_grid)).getBoundingSphere(new Sphere());
+  try {
+    return new Stage(byId("stage"), center, radius, pose);
+  } catch {
+    return null;
+  }
+}
+
+/** The 3-D viewer follows the state; returns the keys that it adds. */
+function buildViewer(state, report, stage, layers) {
+  const viewer = byId("viewer");
+  const stack = new LayerStack(report, stage, layers, (legends) => {
+    showLegend(byId("legend"), legends);
+    viewer.dataset.shown = String(state.values.step);
+    viewer.dataset.drawn = String(1 + Number(viewer.dataset.drawn ?? 0));
+  });
+  buildLayersPanel(state, report, layers);
+  const panel = byId("layers");
+  const makeRoom = () => stage.setAside(panel.open && stage.canvas.clientWidth > 600 ? panel.offsetWidth : 0);
+  panel.addEventListener("toggle", makeRoom);
+  makeRoom();
+  const camera = buildCameraTools(state, report, stage);
+  let colours = null;
+  state.follow(["theme"], ({ theme }) => {
+    colours = themeColours(theme);
+    stage.setColours(colours.stage, colours.ground);
+  });
+  const show = (values) => {
+    stack.show(values, colours).catch((error) => trouble(`This step cannot be shown: ${error.message}`));
+  };
+  state.follow(["step", "layers", "colouring", "sigmas", "best", "candidate", "theme"], show);
+  state.follow(["step"], ({ step }) =>
+    stage.canvas.setAttribute("aria-label", report.isRun ? `The scene after view ${step}` : "The map and the poses"));
+  stage.onPick(() => stack.pickable(), (object, instance) => {
+    const candidate = object.userData.indices[instance];
+    const rank = report.isRun ? -1 : report.steps.findIndex(({ chosen }) => chosen === candidate);
+    state.set(rank >= 0 ? { step: rank } : { candidate });
+  });
+  const angle = Math.PI / 24;
+  return [
+    { keys: ["a", "d"], shown: "A D", does: "turn left, right", act: (key) => stage.move(key === "a" ? -angle : angle, 0, 1) },
+    { keys: ["w", "s"], shown: "W S", does: "turn up, down", act: (key) => stage.move(0, key === "w" ? -angle : angle, 1) },
+    { keys: ["+", "=", "-"], shown: "+ -", does: "come closer, go back", act: (key) => stage.move(0, 0, key === "-" ? 1.12 : 1 / 1.12) },
+    { keys: ["h"], shown: "H", does: "look at everything", act: camera.home },
+    ...(camera.lookTaken ? [{ keys: ["v"], shown: "V", does: "look through the view just taken", act: camera.lookTaken }] : []),
+    { keys: ["n"], shown: "N", does: "look through the next or the selected pose", act: camera.look },
+    { keys: layers.slice(0, 10).map((_, i) => String((i + 1) % 10)), shown: "1 … 0", does: "layers on and off",
+      act: (key) => toggleLayer(state, layers[(Number(key) + 9) % 10].id) },
+  ];
+}
+
+async function build(report) {
+  byId("title").textContent = report.title;
+  document.title = `${report.title} – viewgain`;
+  byId("kind").textContent = report.kind;
+  byId("version").textContent = `viewgain ${report.version}`;
+  showHeadline(report);
+
+  const layers = layersOf(report);
+  const state = new State({
+    step: startStep(report),
+    candidate: null,
+    layers: new Set(layers.filter((layer) => layer.on).map((layer) => layer.id)),
+    colouring: "plain",
+    sigmas: 3,
+    best: report.isRun && mostKept(report) > 400 ? 200 : Infinity,
+    tab: "plots",
+    theme: "light",
+  });
+  const toggleTheme = followTheme(state);
+  const timeline = buildTimeline(state, report);
+  const plots = buildPlots(state, report, timeline.go);
+  const tabs = report.isRun
+    ? [["plots", "Plots", plots], ["candidates", "Candidates", buildCandidateTable(state, report)],
+      ["views", "Views", buildViewTable(state, report, timeline.go)], ["run", "Run", buildFigures(report)]]
+    : [["plots", "Plot", plots], ["ranking", "Ranking", buildRankingTable(state, report, timeline.go)],
+      ["run", "Run", buildFigures(report)]];
+  buildTabs(state, tabs.map(([id, name, content]) => ({ id, name, content })));
+  // A candidate belongs to its step.
+  state.follow(["step"], () => state.set({ candidate: null }));
+
+  const stage = stageOf(report, await firstPose(report));
+  const viewerKeys = stage ? buildViewer(state, report, stage, layers) : [];
+  if (!stage) showPictures(state, report);
+  bindKeys([
+    { keys: ["ArrowLeft", "ArrowRight"], shown: "← →", does: "step before, after",
+      act: (key) => timeline.go(state.values.step + (key === "ArrowLeft" ? -1 : 1)) },
+    { keys: ["Home", "End"], shown: "Home End", does: "first, last step", act: (key) => timeline.go(key === "Home" ? 0 : timeline.last) },
+    { keys: [" "], shown: "space", does: "play, pause", act: timeline.togglePlay },
+    ...viewerKeys,
+    { keys: ["Escape"], shown: "Esc", does: "select no candidate", act: () => state.set({ candidate: null }) },
+    { keys: ["t"], shown: "T", does: "light or dark", act: toggleTheme },
+  ]);
+}
+
+async function start() {
+  await build(new Report(JSON.parse(byId("data").textContent)));
+}
+
+start().catch((error) => trouble(`This report cannot be shown: ${error.message}`));

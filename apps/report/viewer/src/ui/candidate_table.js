@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+// The table of the candidates that the next view was chosen from, and why each was kept or dropped.
+import { chosenColour, ramps } from "../colours.js";
+import { el, swatch } from "../dom.js";
+import { count, none, short, unitOf, words } from "../format.js";
+import { gainRange } from "../layers/candidates.js";
+import { Table } from "./table.js";
+import { classCell } from "./view_table.js";
+
+function columnsOf(report, part, chosen, withClass) {
+  const unit = unitOf(report.gain_unit);
+  const { low, high } = gainRange(part);
+  const gainCell = ({ gain }) => {
+    if (Number.isNaN(gain)) return none;
+    const mark = swatch(ramps.gain.css((gain - low) / (high - low)));
+    return el("span", { class: "mark" }, short(gain * unit.factor), mark);
+  };
+  const fate = ({ id, reason }) => {
+    if (id === chosen) return el("span", { class: "mark strong" }, swatch(chosenColour), "chosen");
+    return reason === null ? "kept" : `dropped: ${words(reason)}`;
+  };
+  const columns = [
+    { name: "#", title: "Index of the candidate", number: true, value: (row) => row.id, cell: (row) => String(row.id) },
+    { name: `Gain ${unit.name}`, title: "Gain by which it ranks", number: true, value: (row) => row.gain, cell: gainCell },
+  ];
+  if (report.gain_unit !== "m^2" && part.area.some(Number.isFinite)) {
+    columns.push({ name: "Area cm²", title: "New surface expected [cm²]", number: true, value: (row) => row.area,
+      cell: (row) => (Number.isNaN(row.area) ? none : short(1e4 * row.area)) });
+  }
+  if (withClass) {
+    columns.push({ name: "Class", title: "Class of its boundary", value: (row) => row.class, cell: (row) => classCell(row.class) });
+  }
+  columns.push(
+    { name: "Generator", title: "What proposed it", value: (row) => row.generator, cell: (row) => words(row.generator) },
+    { name: "Why", title: "Why it was kept or dropped", value: (row) => (row.id === chosen ? "" : row.reason ?? "kept"),
+      cell: fate });
+  return columns;
+}
+
+function rowsOf(part) {
+  return part.reason.map((reason, id) => ({
+    id,
+    gain: part.gain[id],
+    area: part.area[id],
+    class: part.class[id] < 0 ? null : part.classes[part.class[id]],
+    generator: part.generators[part.generator[id]] ?? none,
+    reason: reason < 0 ? null : part.reasons[reason],
+    muted: reason >= 0,
+  }));
+}
+
+/** How many were kept, and how many were dropped for each reason. */
+function totals(part) {
+  const byReason = new Map();
+  for (const r of part.reason) byReason.set(r, (byReason.get(r) ?? 0) + 1);
+  const kept = byReason.get(-1) ?? 0;
+  const dropped = [...byReason].filter(([r]) => r !== -1).sort((a, b) => b[1] - a[1]);
+  const chips = dropped.map(([r, n]) => el("span", { class: "chip" }, `${n.toLocaleString("en")} ${words(part.reasons[r])}`));
+  return el("p", { class: "totals" }, el("b", {}, `${count(kept, "candidate", "candidates")} kept`),
+    dropped.length > 0 ? " · dropped: " : "", ...chips);
+}
+
+/** Follows the step only while its tab is open: the candidates of a step may be thousands. */
+export function buildCandidateTable(state, report) {
+  const host = el("div", { class: "candidates" });
+  const withClass = report.steps.some(({ candidates }) => candidates?.class.some((c) => c >= 0));
+  let table = null;
+  let shown = null;
+  const choose = (candidate) => state.set({ candidate });
+  const show = async ({ step, tab, candidate }) => {
+    if (tab !== "candidates") return;
+    if (shown !== step) {
+      shown = step;
+      const { candidates, chosen } = report.steps[step];
+      const part = candidates ? await report.part(candidates) : null;
+      if (shown !== step) return;
+      table = null;
+      if (!part || part.reason.length === 0) {
+        host.replaceChildren(el("p", { class: "totals" }, "No candidate was proposed after this view."));
+        return;
+      }
+      table = new Table("Candidates for the next view", columnsOf(report, part, chosen, withClass), choose);
+      table.setRows(rowsOf(part));
+      host.replaceChildren(totals(part), table.element);
+    }
+    table?.select(state.values.candidate ?? candidate);
+  };
+  state.follow(["step", "tab", "candidate"], show);
+  return host;
+}
