@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "command_line/interrupt.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "pictures/view_picture.hpp"
 #include "reconstruct_setup.hpp"
 #include "run_report.hpp"
@@ -90,8 +90,8 @@ void reconstruct(const ReconstructOptions& options) {
       [&](const ViewRecord& record) {
         views.push_back(record.T_world_camera);
         add_to(seconds, record.seconds);
-        if (options.save_maps) save_vdb(model.grid(), folder.map(record.index));
-        if (!options.no_pictures) {
+        if (options.save_maps == "on") save_vdb(model.grid(), folder.map(record.index));
+        if (options.pictures == "on") {
           const Stopwatch watch;
           draw(folder, record, acquisition.last_frame(), model, generation, setup, exec);
           seconds["pictures"] += watch.seconds();
@@ -108,7 +108,7 @@ void reconstruct(const ReconstructOptions& options) {
   } else {
     std::printf("%s", report.text(result.reason).c_str());
     std::printf("left in %s: run.json, views.txt, map.vdb, surface.ply, points.ply%s\n",
-                options.out.c_str(), options.no_pictures ? "" : ", views/");
+                options.out.c_str(), options.pictures == "on" ? ", views/" : "");
   }
 }
 
