@@ -9,15 +9,15 @@ cd "$(dirname "$0")/.."
 ./apps/install_dependencies.sh
 echo "building (the first time takes some minutes)" >&2
 mkdir -p build
-cmake --preset release >build/demo_configure.log 2>&1 || { cat build/demo_configure.log >&2; exit 1; }
-cmake --build --preset release --target viewgain_program >&2
+cmake --preset program >build/demo_configure.log 2>&1 || { cat build/demo_configure.log >&2; exit 1; }
+cmake --build --preset program >&2
 
 viewgain=build/release/bin/viewgain
 out=out/demo
 ./apps/extract_mesh.sh camel.off build/meshes
 
-"$viewgain" reconstruct build/meshes/camel.off --sensor sr4000 --voxel 0.003125 --max-views 12 \
-  --save-maps --seed 1 --out "$out"
+"$viewgain" reconstruct build/meshes/camel.off --sensor sr4000 --size 0.35 --voxel 0.003125 --max-views 12 \
+  --save-maps on --seed 1 --out "$out"
 "$viewgain" score "$out/maps/03.vdb" --sphere 2000,0.6 --sensor sr4000 --top 10 \
   --out "$out/scores.csv" --picture "$out/best_view.png"
 echo "left in $out: run.json, views.txt, map.vdb, surface.ply, points.ply, views/, maps/, scores.csv, best_view.png"

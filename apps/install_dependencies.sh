@@ -1,16 +1,29 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that building, testing and the demo need, those that are missing only.
+# Installs the Debian packages, those that are missing only, that are needed
+#   apps/install_dependencies.sh          to build and run the program, and for the demo's mesh
+#   apps/install_dependencies.sh --tests  for tests, benchmarks, examples, the Python package and packages as well
 # Asks nothing; uses sudo only if not root.
 set -euo pipefail
 
 packages=(
   g++ cmake ninja-build
   libeigen3-dev libembree-dev libopenvdb-dev libtbb-dev libcgal-dev libhwy-dev
-  libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev
-  pkg-config
-  pybind11-dev python3-dev python3-numpy python3-pytest python3-matplotlib
-  libgtest-dev liboctomap-dev libompl-dev libbenchmark-dev libcgal-demo libopenvdb-tools python3
+  libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev zlib1g-dev
+  libcgal-demo
 )
+# Node.js may come from elsewhere than Debian.
+npm --version >/dev/null 2>&1 || packages+=(nodejs npm)
+case "${1:-}" in
+  "") ;;
+  --tests)
+    packages+=(
+      pkg-config python3 pybind11-dev python3-dev python3-numpy python3-pytest python3-matplotlib
+      libgtest-dev liboctomap-dev libompl-dev libbenchmark-dev libopenvdb-tools groff-base
+      chromium-headless-shell
+    )
+    ;;
+  *) echo "$0: no option $1; there is --tests" >&2; exit 2 ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do

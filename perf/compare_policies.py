@@ -28,7 +28,7 @@ POLICIES = {
     "paper": ["--policy", "gain", "--gain", "paper"],
     "frontier": ["--policy", "frontier"],
     "kriegel": ["--policy", "kriegel"],
-    "sequence": ["--policy", "sequence", "--no-refine"],
+    "sequence": ["--policy", "sequence", "--refine", "off"],
     "random": ["--policy", "random"],
     "oracle": ["--policy", "oracle"],
     "fibonacci": ["--policy", "fibonacci"],
@@ -65,7 +65,9 @@ def run(arguments, mesh, policy, seed):
             return json.load(file)
     command = [arguments.viewgain, "reconstruct", path, "--sensor", arguments.sensor, "--voxel", "0.003125",
                "--max-views", str(arguments.views), "--seed", str(seed), "--threads", "1",
-               "--no-pictures", "--json", "--out", out]
+               "--pictures", "off", "--json", "--out", out]
+    if "--size" not in arguments.extra:
+        command += ["--size", "0.35"]
     # Each policy gets the whole budget: what stops a run early is not what is compared.
     command += ["--stop-gain", "0", "--stop-area", "0", "--stop-idle", "0"]
     command += POLICIES[policy] + arguments.extra

@@ -19,7 +19,7 @@ SimulationConfig simulation(const char* noise, std::uint64_t seed, const Sensor&
 ModelScene::ModelScene(const std::filesystem::path& mesh, std::uint64_t seed,
                        const ExecConfig& exec)
     : sensor_(sensor_preset("sr4000")),
-      stage_(set_stage({.mesh = mesh}, exec)),
+      stage_(set_stage({.mesh = mesh, .size = 0.35}, exec)),
       camera_(stage_.scene, sensor_, simulation("on", seed, sensor_), exec),
       undisturbed_(stage_.scene, sensor_, simulation("off", seed, sensor_), exec),
       filter_(sensor_.camera) {}

@@ -38,8 +38,8 @@ PYTHON
 figures() {
   local object=$1 policy=$2 isa=$3 threads=$4
   local out=$work/$object-$policy-$isa-$threads
-  VIEWGAIN_ISA=$isa "$viewgain" reconstruct "$work/$object.off" --sensor sr4000 --voxel 0.005 \
-    --policy "$policy" --max-views 4 --seed 3 --threads "$threads" --no-pictures --out "$out" >"$work/log" 2>&1 ||
+  VIEWGAIN_ISA=$isa "$viewgain" reconstruct "$work/$object.off" --size 0.35 --sensor sr4000 --voxel 0.005 \
+    --policy "$policy" --max-views 4 --seed 3 --threads "$threads" --pictures off --out "$out" >"$work/log" 2>&1 ||
     { cat "$work/log" >&2; return 1; }
   VIEWGAIN_ISA=$isa "$viewgain" score "$out/map.vdb" --sphere 100,0.6 --sensor sr4000 --threads "$threads" \
     --out "$out/scores.csv" >"$work/log" 2>&1 || { cat "$work/log" >&2; return 1; }

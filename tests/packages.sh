@@ -12,7 +12,7 @@ jobs=${VIEWGAIN_JOBS:-$(nproc)}
 fail() { echo "packages.sh: $*" >&2; exit 1; }
 need_root
 
-./apps/install_dependencies.sh
+./apps/install_dependencies.sh --tests
 mkdir -p "$work"
 
 # Packages.

@@ -14,7 +14,7 @@ case "${1:-}" in
   --tsan) preset=tsan ;;
   *) echo "tests/run.sh: no option $1; there are --sanitize and --tsan" >&2; exit 2 ;;
 esac
-./apps/install_dependencies.sh
+./apps/install_dependencies.sh --tests
 cmake --preset "$preset" >/dev/null
 cmake --build --preset "$preset"
 run=()

@@ -7,12 +7,13 @@
 #include <optional>
 #include <string>
 
+#include "choices.hpp"
+
 namespace viewgain::app {
 
 // Options are described once, by a function template that calls a visitor for each:
 //
 //   visit.option(key, flag, value, help, adjust)  a flag with a value
-//   visit.flag(key, flag, value, help)            one without
 //   visit.derived(key)                            what follows from others and is recorded too
 //
 // `key` is what run.json calls it, null where it cannot change the answer or is recorded elsewhere;
@@ -20,6 +21,10 @@ namespace viewgain::app {
 
 inline constexpr auto as_it_is = [](CLI::Option&) {};
 inline constexpr auto shows_default = [](CLI::Option& option) { option.capture_default_str(); };
+inline constexpr auto switched = [](CLI::Option& option) {
+  on_or_off(option);
+  option.capture_default_str();
+};
 inline constexpr auto needed = [](CLI::Option& option) { option.required(); };
 
 /// Declares the flags; the values stand for the defaults.
@@ -31,9 +36,6 @@ class OptionDeclaration {
   void option(const char* /*key*/, const char* flag, Value& value, const char* help,
               const Adjust& adjust) const {
     adjust(*app_.add_option(flag, value, help));
-  }
-  void flag(const char* /*key*/, const char* flag, bool& value, const char* help) const {
-    app_.add_flag(flag, value, help);
   }
   void derived(const char* /*key*/) const {}
 
@@ -50,9 +52,6 @@ class OptionRecord {
   template <typename Value, typename Adjust>
   void option(const char* key, const char* /*flag*/, const Value& value, const char* /*help*/,
               const Adjust& /*adjust*/) {
-    put(key, value);
-  }
-  void flag(const char* key, const char* /*flag*/, bool value, const char* /*help*/) {
     put(key, value);
   }
   void derived(const char* key) { json_[key] = resolved_.at(key); }

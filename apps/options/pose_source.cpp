@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pose_source.hpp"
 
-#include <cmath>
-#include <cstdint>
+#include <Eigen/Core>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "values.hpp"
 #include "viewgain/core/error.hpp"
@@ -17,7 +17,10 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-using CenteredGenerator = std::vector<Pose> (*)(std::size_t, double, const Eigen::Vector3d&);
+[[noreturn]] void refuse(const std::string& flag, const std::string& text,
+                         const std::string& what) {
+  throw Error(ErrorCode::invalid_argument, flag + " " + text + ": " + what);
+}
 
 // Generators know nothing of flags; a user does not know which value is meant without one.
 template <typename Make>
@@ -29,67 +32,64 @@ std::vector<Pose> naming_the_flag(const std::string& flag, const std::string& te
   }
 }
 
+using CenteredGenerator = std::vector<Pose> (*)(std::size_t, double, const Eigen::Vector3d&);
+
 std::vector<Pose> round_center(const std::string& flag, const std::string& text,
-                               CenteredGenerator generator) {
+                               const Eigen::Vector3d& center, CenteredGenerator generator) {
   const std::vector<double> n = parse_numbers(flag, text, 2, 5);
-  if (n.size() != 2 && n.size() != 5) {
-    throw Error(ErrorCode::invalid_argument,
-                flag + " " + text + ": needs N,RADIUS or N,RADIUS,CX,CY,CZ");
-  }
-  const Eigen::Vector3d center =
-      n.size() == 5 ? Eigen::Vector3d(n[2], n[3], n[4]) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  if (n.size() != 2) refuse(flag, text, "needs N,RADIUS; the centre is given by --center x,y,z");
   const std::size_t count = parse_count(flag, n[0]);
   return naming_the_flag(flag, text, [&] { return generator(count, n[1], center); });
 }
 
-std::vector<Pose> orbit(const std::string& text) {
+std::vector<Pose> orbit(const std::string& text, const Eigen::Vector3d& center) {
   const std::vector<double> n = parse_numbers("--orbit", text, 3, 5);
   const std::size_t count = parse_count("--orbit", n[0]);
   const double start = n.size() > 3 ? n[3] * kDegree : 0.0;
   const std::optional<double> step =
       n.size() > 4 ? std::optional<double>(n[4] * kDegree) : std::nullopt;
-  return naming_the_flag("--orbit", text,
-                         [&] { return orbit_poses(count, n[1], n[2] * kDegree, start, step); });
+  return naming_the_flag("--orbit", text, [&] {
+    return orbit_poses(count, n[1], n[2] * kDegree, start, step, center);
+  });
 }
 
-std::vector<Pose> shell(const std::string& text) {
-  constexpr const char* kFlag = "--shell";
-  constexpr double kMaxSeed = 0x1.0p53;  // whole numbers up to here are exact
-  const std::vector<double> n = parse_numbers(kFlag, text, 4, 7);
-  if (n.size() != 4 && n.size() != 7) {
-    throw Error(ErrorCode::invalid_argument,
-                "--shell " + text + ": needs N,RMIN,RMAX,SEED or N,RMIN,RMAX,SEED,CX,CY,CZ");
+std::vector<Pose> shell(const std::string& text, const Eigen::Vector3d& center,
+                        std::uint64_t seed) {
+  const std::vector<double> n = parse_numbers("--shell", text, 3, 7);
+  if (n.size() != 3) {
+    refuse("--shell", text,
+           "needs N,RMIN,RMAX; the seed is given by --seed, the centre by --center x,y,z");
   }
-  const std::size_t count = parse_count(kFlag, n[0]);
-  if (!(n[3] >= 0 && n[3] <= kMaxSeed && n[3] == std::floor(n[3]))) {
-    throw Error(ErrorCode::invalid_argument,
-                "--shell " + text + ": the seed must be a whole number from 0 to 2^53");
-  }
-  const Eigen::Vector3d center =
-      n.size() == 7 ? Eigen::Vector3d(n[4], n[5], n[6]) : Eigen::Vector3d(Eigen::Vector3d::Zero());
-  return naming_the_flag(kFlag, text, [&] {
-    return shell_poses(count, n[1], n[2], static_cast<std::uint64_t>(n[3]), center);
-  });
+  const std::size_t count = parse_count("--shell", n[0]);
+  return naming_the_flag("--shell", text,
+                         [&] { return shell_poses(count, n[1], n[2], seed, center); });
 }
 
 }  // namespace
 
-PoseSource make_poses(const PoseOptions& options) {
+PoseSource make_poses(const PoseOptions& options, std::uint64_t seed) {
   PoseSource source;
   if (!options.file.empty()) {
+    if (!options.center.empty()) {
+      refuse("--center", options.center, "goes with sets of poses, not with --poses");
+    }
     PoseList list = read_tum(options.file);
     source.poses = std::move(list.poses);
     source.orthonormalized = list.orthonormalized;
-  } else if (!options.orbit.empty()) {
-    source.poses = orbit(options.orbit);
+    return source;
+  }
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  if (!options.center.empty()) center = parse_point("--center", options.center);
+  if (!options.orbit.empty()) {
+    source.poses = orbit(options.orbit, center);
   } else if (!options.sphere.empty()) {
-    source.poses = round_center("--sphere", options.sphere, sphere_poses);
+    source.poses = round_center("--sphere", options.sphere, center, sphere_poses);
   } else if (!options.rings.empty()) {
-    source.poses = round_center("--rings", options.rings, literature_ring_poses);
+    source.poses = round_center("--rings", options.rings, center, literature_ring_poses);
   } else if (!options.shell.empty()) {
-    source.poses = shell(options.shell);
+    source.poses = shell(options.shell, center, seed);
   } else {
-    source.poses = round_center("--dome", options.dome, dome_poses);
+    source.poses = round_center("--dome", options.dome, center, dome_poses);
   }
   return source;
 }

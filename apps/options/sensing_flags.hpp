@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 
+#include "choices.hpp"
 #include "described_options.hpp"
 #include "sensing.hpp"
 
@@ -14,15 +15,10 @@ namespace viewgain::app {
 /// SensingOptions or const; described_options.hpp says what a visitor is.
 template <typename Options, typename Visitor>
 void describe_sensing(Options& o, Visitor& visit) {
-  const auto on_or_off = [](CLI::Option& option) { option.check(CLI::IsMember({"off", "on"})); };
-  const auto on_or_off_shown = [&](CLI::Option& option) {
-    on_or_off(option);
-    shows_default(option);
-  };
   visit.option("support_plane", "--support-plane", o.support_plane,
                "height z of a table without end that occludes [m]; default: none", as_it_is);
   visit.option("noise", "--noise", o.noise,
-               "Gaussian noise along the ray and across it by the sensor's model", on_or_off_shown);
+               "Gaussian noise along the ray and across it by the sensor's model", switched);
   visit.option("flying_pixels", "--flying-pixels", o.flying_pixels,
                "mix the returns of 3x3 rays in a pixel, in sensors with a modulation frequency; "
                "default: as --noise",
@@ -33,9 +29,8 @@ void describe_sensing(Options& o, Visitor& visit) {
   visit.option("wiggling", "--wiggling", o.wiggling,
                "amplitude A of the systematic error A sin(4 phase) [m]", shows_default);
   visit.option("calibrated", "--calibrate", o.calibrate,
-               "measure the systematic error on a plane beforehand and subtract it",
-               on_or_off_shown);
-  visit.option(nullptr, "--seed", o.seed, "of the noise", [](CLI::Option& option) {
+               "measure the systematic error on a plane beforehand and subtract it", switched);
+  visit.option(nullptr, "--seed", o.seed, "of what is random", [](CLI::Option& option) {
     option.check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number"))
         ->capture_default_str();
   });

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "formats/src/nearest_name.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {
@@ -119,18 +120,27 @@ Pose parse_pose(std::string_view flag, std::string_view text) {
   return {q.normalized().toRotationMatrix(), Eigen::Vector3d(n[0], n[1], n[2])};
 }
 
+Eigen::Vector3d parse_point(std::string_view flag, std::string_view text) {
+  const std::vector<double> n = parse_numbers(flag, text, 3, 3);
+  return {n[0], n[1], n[2]};
+}
+
+void check_one_of(std::string_view flag, std::string_view value,
+                  const std::vector<std::string>& names, const char* what) {
+  if (std::find(names.begin(), names.end(), value) != names.end()) return;
+  const std::string nearest = did_you_mean(value, names);
+  fail(flag, value,
+       std::string("no such ") + what +
+           (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names));
+}
+
 std::vector<std::string> parse_names(std::string_view flag, std::string_view text,
-                                     const std::vector<std::string>& valid) {
+                                     const std::vector<std::string>& valid, const char* what) {
   std::vector<std::string> names;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string name(text.substr(begin, end - begin));
-    if (std::find(valid.begin(), valid.end(), name) == valid.end()) {
-      std::string list;
-      for (const std::string& v : valid) list.append(" ").append(v);
-      fail(flag, text, "\"" + name + "\" is none of" + list);
-    }
-    names.push_back(name);
+    names.emplace_back(text.substr(begin, end - begin));
+    check_one_of(flag, names.back(), valid, what);
     begin = end + 1;
   }
   return names;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <map>
@@ -34,10 +35,18 @@ namespace viewgain::app {
 /// tx,ty,tz,qx,qy,qz,qw. Throws Error(invalid_argument) naming the flag.
 [[nodiscard]] Pose parse_pose(std::string_view flag, std::string_view text);
 
-/// A list of names separated by commas. Throws Error(invalid_argument) naming the flag for an empty
-/// or unknown one.
+/// x,y,z [m]. Throws Error(invalid_argument) naming the flag.
+[[nodiscard]] Eigen::Vector3d parse_point(std::string_view flag, std::string_view text);
+
+/// Throws Error(invalid_argument) unless the value is one of the names: "--gain surfce: no such
+/// gain; did you mean surface? There are paper, surface, combined".
+void check_one_of(std::string_view flag, std::string_view value,
+                  const std::vector<std::string>& names, const char* what);
+
+/// A list of names separated by commas, each one of the valid ones as check_one_of() has it.
 [[nodiscard]] std::vector<std::string> parse_names(std::string_view flag, std::string_view text,
-                                                   const std::vector<std::string>& valid);
+                                                   const std::vector<std::string>& valid,
+                                                   const char* what);
 
 /// x0, y0, z0 .. x1, y1, z1 for people.
 [[nodiscard]] std::string describe(const Box& box);

@@ -3,11 +3,13 @@
 #include "surface_picture.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "ray_tracer.hpp"
+#include "viewgain/core/error.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -72,6 +74,9 @@ RgbImage draw(const SurfacePicture& picture, const Viewer& viewer, const ExecCon
   PaintedMesh scene;
   const HeatPaints paints(scene, true);
   const SurfaceMesh& surface = picture.surface;
+  if (surface.triangles.empty()) {
+    throw Error(ErrorCode::invalid_argument, "the map has no surface to draw yet");
+  }
   if (picture.points != nullptr) {
     add_ellipsoids(scene, picture, paints);
   } else if (picture.sigmas.empty()) {
@@ -85,13 +90,15 @@ RgbImage draw(const SurfacePicture& picture, const Viewer& viewer, const ExecCon
     }
     scene.add_surface(surface.vertices, surface.normals, surface.triangles, paint_of_triangle);
   }
-  const double extent = (picture.workspace[7] - picture.workspace[0]).norm();
-  add_box_outline(scene, picture.workspace, 0.0012 * extent,
-                  scene.add_paint({{0.45, 0.48, 0.52}, false}));
   PinholeCamera camera = picture_camera(viewer.width);
-  const Pose T_world_viewer = place_viewer({picture.workspace.begin(), picture.workspace.end()},
-                                           viewer.direction(), camera);
-  return render(scene, camera, T_world_viewer, 0.12 * extent, exec);
+  std::vector<Vector3d> in_sight;
+  Eigen::AlignedBox3d box;
+  for (const auto& p : surface.vertices) {
+    in_sight.emplace_back(p.data());
+    box.extend(in_sight.back());
+  }
+  const Pose T_world_viewer = place_viewer(in_sight, viewer.direction(), camera);
+  return render(scene, camera, T_world_viewer, 0.25 * box.diagonal().norm(), exec);
 }
 
 std::array<double, 2> usual_range(std::vector<double> values) {

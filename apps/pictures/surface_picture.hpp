@@ -13,10 +13,9 @@
 
 namespace viewgain::app {
 
-/// What of a surface is drawn, in the outline of its map's workspace.
+/// What of a surface is drawn.
 struct SurfacePicture {
   const SurfaceMesh& surface;
-  std::array<Eigen::Vector3d, 8> workspace;  ///< its corners, world [m]
   /// One a vertex [m]: the surface from dark to bright by them; none: grey.
   std::vector<double> sigmas{};
   std::array<double, 2> sigma_range{};  ///< what is darkest and brightest [m]
@@ -26,7 +25,8 @@ struct SurfacePicture {
   double ellipsoid_sigmas = 0;
 };
 
-/// The picture. The same for any number of threads.
+/// The picture, which the surface fills. Throws Error(invalid_argument) for one without a triangle.
+/// The same for any number of threads.
 [[nodiscard]] RgbImage draw(const SurfacePicture& picture, const Viewer& viewer,
                             const ExecConfig& exec);
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "options/choices.hpp"
 #include "options/gain_unit.hpp"
 #include "options/hazard_source.hpp"
 #include "options/obstacle_source.hpp"
@@ -53,10 +54,7 @@ struct Options {
 };
 
 Eigen::Vector3d center_of(const Options& options, const BeliefGrid& grid) {
-  if (!options.center.empty()) {
-    const std::vector<double> n = parse_numbers("--center", options.center, 3, 3);
-    return {n[0], n[1], n[2]};
-  }
+  if (!options.center.empty()) return parse_point("--center", options.center);
   const Box box = grid.workspace();
   return grid.T_world_grid() * Eigen::Vector3d(0.5 * (box.min[0] + box.max[0]),
                                                0.5 * (box.min[1] + box.max[1]),
@@ -264,17 +262,15 @@ Command add_candidates(CLI::App& program) {
   Options& o = *options;
   const EstimatorConfig usual = default_estimator(1.0);
   app->add_option("MAP", o.map, kMapHelp)->required();
-  app->add_option(
-         "--generator", o.generator,
-         "boundary (open boundaries of the surface in the map), sphere, dome, rings, shell, "
-         "sequence or fibonacci")
-      ->check(CLI::IsMember(generator_names()))
-      ->required();
+  one_of(*app->add_option("--generator", o.generator,
+                          "boundary (open boundaries of the surface in the map), sphere, dome, "
+                          "rings, shell or sequence")
+              ->required(),
+         generator_names(), "generator");
   app->add_option("--sensor", o.sensor, kSensorHelp)->required();
-  app->add_option(
-         "--count", o.count,
-         "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 (default "
-         "48); fibonacci (default 20)")
+  app->add_option("--count", o.count,
+                  "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
+                  "(default 48)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
   app->add_option("--distance", o.distance,
                   "boundary: from the surface; else from the centre [m]; default: the sensor's "
@@ -289,9 +285,10 @@ Command add_candidates(CLI::App& program) {
                   std::string(kOverlapHelp) + "; default: " + short_text(usual.overlap));
   app->add_option("--region-depth", o.region_depth,
                   std::string(kRegionDepthHelp) + "; default: " + short_text(usual.region_depth));
-  app->add_option("--gain", o.gain,
-                  "paper, surface or combined, as in score: order the poses by it, best first")
-      ->check(CLI::IsMember(gain_model_names()));
+  one_of(*app->add_option(
+             "--gain", o.gain,
+             "paper, surface or combined, as in score: order the poses by it, best first"),
+         gain_model_names(), "gain");
   app->add_option("--object-size", o.object_size, kObjectSizeHelp);
   app->add_option("--hazard", o.hazard, kHazardHelp);
   add_seed_option(*app, o.seed, "of the shell");

@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "map_json.hpp"
+#include "options/choices.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/stopwatch.hpp"
@@ -22,7 +23,7 @@ struct Options {
   std::string out;
   std::string workspace, sensor;
   std::optional<double> prior_sigma;
-  bool with_covariance = false;
+  std::string with_covariance = "off";
 };
 
 void check(const Options& options) {
@@ -36,7 +37,7 @@ void check(const Options& options) {
     if (!options.sensor.empty()) refuse("--sensor", options.in, kWhy);
   }
   check_map_name(options.out);
-  if (options.with_covariance && is_octomap(options.out)) {
+  if (options.with_covariance == "on" && is_octomap(options.out)) {
     refuse("--with-covariance", options.out, "a tree has no place for covariances");
   }
 }
@@ -50,7 +51,7 @@ void convert(const Options& options) {
   std::optional<Sensor> sensor;
   if (!options.sensor.empty()) sensor = load_sensor(options.sensor);
   const BeliefGrid grid = load_map(options.in, sensor ? &*sensor : nullptr, config);
-  const LostInTree lost = save_map(grid, options.out, {options.with_covariance});
+  const LostInTree lost = save_map(grid, options.out, {options.with_covariance == "on"});
   warn_of_lost_frame(lost, options.out);
   const GridStatistics statistics = grid.statistics();
   const Index3 dims = grid.dims();
@@ -97,8 +98,9 @@ Command add_convert(CLI::App& program) {
   app->add_option("--sensor", options->sensor,
                   std::string("whose readings will be scored, for the prior of a tree's voxels: ") +
                       kSensorHelp);
-  app->add_flag("--with-covariance", options->with_covariance,
-                "add covariances and positions to the .vdb, for viewers");
+  on_or_off(*app->add_option("--with-covariance", options->with_covariance,
+                             "add covariances and positions to the .vdb, for viewers")
+                 ->capture_default_str());
   add_common_options(*app, options->common);
   return {app, [options] { convert(*options); }};
 }

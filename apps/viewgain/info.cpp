@@ -6,6 +6,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "options/choices.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
@@ -143,10 +144,10 @@ Command add_info(CLI::App& program) {
   app->add_option("MAP", options->map, kMapHelp)->required();
   app->add_flag("--hash", options->hash,
                 "print only the hash of grids and metadata: equal maps have equal ones");
-  app->add_option("--criterion", options->criterion,
-                  "of the entropy: log_diagonal, log_determinant [nat] or trace [m^2]")
-      ->check(CLI::IsMember(criterion_names()))
-      ->capture_default_str();
+  one_of(*app->add_option("--criterion", options->criterion,
+                          "of the entropy: log_diagonal, log_determinant [nat] or trace [m^2]")
+              ->capture_default_str(),
+         criterion_names(), "criterion");
   app->add_option("--region", options->region,
                   "x0,y0,z0,x1,y1,z1: also how well this part is known, grid frame [m]");
   add_common_options(*app, options->common);

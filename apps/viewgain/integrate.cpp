@@ -12,10 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "command_line/progress.hpp"
 #include "commands.hpp"
 #include "map_json.hpp"
+#include "options/choices.hpp"
 #include "options/values.hpp"
-#include "progress.hpp"
 #include "reading_source.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/stopwatch.hpp"
@@ -230,11 +231,11 @@ void integrate(const Options& options, const CLI::App& app) {
   const Stopwatch watch;
   check_flags(options, app);
   check_map_name(options.out);
-  if (options.with_covariance && is_octomap(options.out)) {
+  if (options.with_covariance == "on" && is_octomap(options.out)) {
     throw Error(ErrorCode::invalid_argument,
                 "--with-covariance with " + options.out + ": a tree has no place for covariances");
   }
-  if (options.calibrate_hazard && is_octomap(options.out)) {
+  if (options.calibrate_hazard == "on" && is_octomap(options.out)) {
     throw Error(ErrorCode::invalid_argument, "--calibrate-hazard with " + options.out +
                                                  ": a tree has no place for hazard counters");
   }
@@ -243,7 +244,7 @@ void integrate(const Options& options, const CLI::App& app) {
       options.map.empty() ? new_map(*source, options) : continued_map(source->sensor(), options);
   const Totals totals = integrate_all(*source, options, grid);
   refuse_empty(options, *source, totals);
-  const LostInTree lost = save_map(grid, options.out, {options.with_covariance});
+  const LostInTree lost = save_map(grid, options.out, {options.with_covariance == "on"});
   warn_of_lost_frame(lost, options.out);
   print_summary(options, *source, grid, totals, lost, watch.seconds());
 }
@@ -283,34 +284,38 @@ Command add_integrate(CLI::App& program) {
       "--depth-scale", options->depth_scale,
       "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
       "sensor.toml), else 1e-3");
-  app->add_option(
-         "--out-of-range", options->out_of_range,
-         "what 65535 says: carve (nothing up to the maximal range) or invalid (no reading)")
-      ->check(CLI::IsMember({"carve", "invalid"}))
-      ->capture_default_str();
-  app->add_option("--carve", options->carve,
-                  "voxels that a pixel crosses: those in its pyramid, or on its ray")
-      ->check(CLI::IsMember({"cones", "lines"}))
-      ->capture_default_str();
-  app->add_option("--occupancy", options->occupancy, "log-odds, or the paper's literal rule")
-      ->check(CLI::IsMember({"probabilistic", "literal"}))
-      ->capture_default_str();
+  one_of(*app->add_option(
+                 "--out-of-range", options->out_of_range,
+                 "what 65535 says: carve (nothing up to the maximal range) or invalid (no reading)")
+              ->capture_default_str(),
+         {"carve", "invalid"}, "meaning");
+  one_of(*app->add_option("--carve", options->carve,
+                          "voxels that a pixel crosses: those in its pyramid, or on its ray")
+              ->capture_default_str(),
+         {"cones", "lines"}, "way of carving");
+  one_of(
+      *app->add_option("--occupancy", options->occupancy, "log-odds, or the paper's literal rule")
+           ->capture_default_str(),
+      {"probabilistic", "literal"}, "rule");
   app->add_option("--jump-edge-filter", options->jump_edge_filter,
                   "ANGLE_DEG: a reading goes when the edge to a nearer neighbour is within 1..10 "
                   "degrees of its ray (5 is a good value); or off")
       ->capture_default_str();
-  app->add_flag("--jump-edge-two-sided", options->jump_edge_two_sided,
-                "the filter looks at farther neighbours too");
+  on_or_off(*app->add_option("--jump-edge-two-sided", options->jump_edge_two_sided,
+                             "the filter looks at farther neighbours too")
+                 ->capture_default_str());
   app->add_option("--support-plane", options->support_plane,
                   "height z of the table [m]: its readings carve but do not hit; default: none");
   app->add_option("--prior-sigma", options->prior_sigma,
                   "sigma of an unknown voxel [m]; default: max(voxel/2, twice the sensor's axial "
                   "sigma at its working distance)");
-  app->add_flag("--calibrate-hazard", options->calibrate_hazard,
-                "count how often frames met the surface in unknown space, for the surface and "
-                "combined gain of the map");
-  app->add_flag("--with-covariance", options->with_covariance,
-                "add covariances and positions to the file, for viewers");
+  on_or_off(*app->add_option("--calibrate-hazard", options->calibrate_hazard,
+                             "count how often frames met the surface in unknown space, for the "
+                             "surface and combined gain of the map")
+                 ->capture_default_str());
+  on_or_off(*app->add_option("--with-covariance", options->with_covariance,
+                             "add covariances and positions to the file, for viewers")
+                 ->capture_default_str());
   app->add_option("--out", options->out, "map to write (.vdb, or OctoMap's .ot)")->required();
   app->add_option("--map", options->map,
                   "map to continue (.vdb, .ot, .bt); its voxel size, workspace and prior hold");

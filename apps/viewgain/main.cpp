@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "call_files.hpp"
+#include "command_line/call_files.hpp"
+#include "command_line/interrupt.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/version.hpp"
 

@@ -45,9 +45,9 @@ class FrameSource : public ReadingSource {
         support_plane_(options.support_plane),
         integrator_(frames_.sensor, config_of(options), {options.common.threads}) {
     const auto config =
-        parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided);
+        parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided == "on");
     if (config) filter_.emplace(frames_.sensor.camera, *config);
-    if (options.calibrate_hazard) calibration_.emplace(frames_.sensor, support_plane_);
+    if (options.calibrate_hazard == "on") calibration_.emplace(frames_.sensor, support_plane_);
   }
 
   [[nodiscard]] const Sensor& sensor() const override { return frames_.sensor; }

@@ -30,11 +30,11 @@ struct IntegrateOptions {
   std::string carve = "cones";
   std::string occupancy = "probabilistic";
   std::string jump_edge_filter = "off";
-  bool jump_edge_two_sided = false;
+  std::string jump_edge_two_sided = "off";
   std::optional<double> support_plane;
-  bool calibrate_hazard = false;
+  std::string calibrate_hazard = "off";
   std::optional<double> prior_sigma;
-  bool with_covariance = false;
+  std::string with_covariance = "off";
   std::string out;
   std::string map;
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "command_line/interrupt.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "pictures/view_picture.hpp"
 #include "reconstruct_setup.hpp"
 #include "report/page.hpp"
@@ -41,7 +41,10 @@ RgbImage step_picture(const ViewRecord& record, const SurfaceModel& model,
                       const CandidateGeneration& generation, const GainEvaluator& evaluator,
                       const Sensor& sensor, const ExecConfig& exec) {
   const std::vector<Candidate>& candidates = record.proposal.candidates;
-  ViewPicture picture{model.surface(), generation.estimated(),
+  // Without a proposal the boundaries are those of a surface before.
+  const EstimatedViews none;
+  const bool proposed = !candidates.empty() || !record.proposal.dropped.empty();
+  ViewPicture picture{model.surface(), proposed ? generation.estimated() : none,
                       candidates,      record.T_world_camera,
                       std::nullopt,    evaluator,
                       sensor};
@@ -99,7 +102,7 @@ void reconstruct(const ReconstructOptions& options) {
   const PolicyConfig& policy = setup.policy;
   RunReport report(policy.policy == Policy::gain ? std::optional(policy.model) : std::nullopt,
                    policy.criterion);
-  const bool with_pictures = !options.no_pictures, with_report = options.report == "on";
+  const bool with_pictures = options.pictures == "on", with_report = options.report == "on";
   RunPage page(run_title(options, setup), setup.sensor,
                std::string(criterion_name(policy.criterion)), truth);
   std::vector<Pose> views;
@@ -108,7 +111,7 @@ void reconstruct(const ReconstructOptions& options) {
       [&](const ViewRecord& record) {
         views.push_back(record.T_world_camera);
         add_to(seconds, record.seconds);
-        if (options.save_maps) save_vdb(model.grid(), folder.map(record.index));
+        if (options.save_maps == "on") save_vdb(model.grid(), folder.map(record.index));
         if (with_pictures || with_report) {
           const Stopwatch watch;
           const GainEvaluator evaluator = step_evaluator(model, setup, exec);

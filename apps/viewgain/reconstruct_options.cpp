@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reconstruct_options.hpp"
 
+#include "options/choices.hpp"
 #include "options/hazard_source.hpp"
 #include "options/obstacle_source.hpp"
 #include "options/sensing_flags.hpp"
@@ -26,9 +27,9 @@ auto counted_with_default(std::size_t least, std::size_t most) {
   };
 }
 
-auto one_of(const std::vector<std::string>& names) {
-  return [&names](CLI::Option& option) {
-    option.check(CLI::IsMember(names));
+auto named(const std::vector<std::string>& names, const char* what) {
+  return [&names, what](CLI::Option& option) {
+    one_of(option, names, what);
     shows_default(option);
   };
 }
@@ -36,16 +37,20 @@ auto one_of(const std::vector<std::string>& names) {
 // Each option once, in the order of run.json's settings. `Options` is ReconstructOptions or const.
 template <typename Options, typename Visitor>
 void describe(Options& o, Visitor& visit) {
-  visit.option("mesh", "MESH", o.mesh, "OFF, OBJ, STL or PLY; scaled and centred", needed);
+  visit.option("mesh", "MESH", o.mesh, "OFF, OBJ, STL or PLY; centred", needed);
   visit.option("sensor", "--sensor", o.sensor, kSensorHelp, needed);
   visit.option("voxel", "--voxel", o.voxel, "voxel size [m]", needed);
-  visit.option("size", "--size", o.size, "longest side of the object [m]", shows_default);
-  visit.option("workspace", "--workspace", o.workspace,
-               "x0,y0,z0,x1,y1,z1 [m]; default: a cube of size * 0.4/0.35 around the object",
+  visit.option("size", "--size", o.size,
+               "scale the object so that its longest side is this [m]; default: the file's own "
+               "size, in metres",
                as_it_is);
+  visit.option(
+      "workspace", "--workspace", o.workspace,
+      "x0,y0,z0,x1,y1,z1 [m]; default: a cube of the longest side * 0.4/0.35 around the object",
+      as_it_is);
   visit.derived("prior_sigma");
   visit.option("up", "--up", o.up, "axis of the mesh file that points up", [](CLI::Option& option) {
-    option.check(CLI::IsMember({"x", "y", "z"}))->capture_default_str();
+    one_of(*option.capture_default_str(), {"x", "y", "z"}, "axis");
   });
   visit.option("start", "--start", o.start,
                "first camera pose tx,ty,tz,qx,qy,qz,qw [m]; default: 27 deg "
@@ -60,20 +65,20 @@ void describe(Options& o, Visitor& visit) {
                "random, frontier (most unknown voxels in view), fibonacci (evenly round the "
                "object), proximity (most unknown space near known surface on its rays), oracle "
                "(knows the mesh: an upper reference)",
-               one_of(policy_names()));
+               named(policy_names(), "policy"));
   visit.option("generators", "--generator", o.generator,
-               "where candidates come from: boundary, sphere, dome, rings, shell, sequence, "
-               "fibonacci, or several with commas; default: boundary (random: sphere, sequence: "
-               "sequence, fibonacci: fibonacci)",
+               "where candidates come from: boundary, sphere, dome, rings, shell, sequence, or "
+               "several with commas; default: boundary (random and fibonacci: sphere, sequence: "
+               "sequence)",
                as_it_is);
-  visit.option("sphere_poses", "--sphere-poses", o.sphere_poses,
-               "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
-               "(default 48); fibonacci (default: --max-views)",
+  visit.option("sphere_poses", "--count", o.count,
+               "poses of the sphere, dome or shell (default 500; sphere of --policy fibonacci: "
+               "--max-views); rings: 48, 80, 288 or 864 (default 48)",
                counted(1, kMaxCount));
   visit.option("gain", "--gain", o.gain,
                "of --policy gain: paper (entropy removed), surface (new surface to be expected) or "
                "combined (default)",
-               [](CLI::Option& option) { option.check(CLI::IsMember(gain_model_names())); });
+               [](CLI::Option& option) { one_of(option, gain_model_names(), "gain"); });
   visit.option("overlap", "--overlap", o.overlap, kOverlapHelp, shows_default);
   visit.option("region_depth", "--region-depth", o.region_depth, kRegionDepthHelp, shows_default);
   visit.option("object_size", "--object-size", o.object_size, kObjectSizeHelp, as_it_is);
@@ -82,7 +87,7 @@ void describe(Options& o, Visitor& visit) {
       "criterion", "--criterion", o.criterion,
       "of the map's entropy and the paper's gain: log_diagonal, log_determinant [nat] or trace "
       "[m^2], which the combined gain does not go with",
-      one_of(criterion_names()));
+      named(criterion_names(), "criterion"));
   visit.option("max_views", "--max-views", o.max_views, "view budget",
                counted_with_default(1, kMaxCount));
   visit.option("stop_gain", "--stop-gain", o.stop_gain,
@@ -118,14 +123,12 @@ void describe(Options& o, Visitor& visit) {
                counted_with_default(1, 1000));
   visit.option("jump_edge_filter", "--jump-edge-filter", o.jump_edge_filter,
                "angle of the filter [deg], or off", shows_default);
-  visit.flag("refine", "--no-refine", o.no_refine, "the first reading of a voxel wins");
-  visit.flag(nullptr, "--save-maps", o.save_maps, "keep maps/NN.vdb after each view");
-  visit.flag(nullptr, "--no-pictures", o.no_pictures, "do not draw views/NN.png");
+  visit.option("refine", "--refine", o.refine,
+               "readings of a voxel refine it; off: the first one wins", switched);
+  visit.option(nullptr, "--save-maps", o.save_maps, "keep maps/NN.vdb after each view", switched);
+  visit.option(nullptr, "--pictures", o.pictures, "draw views/NN.png", switched);
   visit.option(nullptr, "--report", o.report,
-               "write report.html: the run to look at in a browser, in one file",
-               [](CLI::Option& option) {
-                 option.check(CLI::IsMember({"off", "on"}))->capture_default_str();
-               });
+               "write report.html: the run to look at in a browser, in one file", switched);
   visit.option(nullptr, "--out", o.out, "folder to write", needed);
 }
 
@@ -147,12 +150,7 @@ nlohmann::ordered_json settings_json(const ReconstructOptions& options,
 
 void check(const ReconstructOptions& options) {
   check_positive("--voxel", options.voxel);
-  check_positive("--size", options.size);
-  if (options.voxel >= options.size) {
-    throw Error(ErrorCode::invalid_argument, "--voxel " + short_text(options.voxel) +
-                                                 ": the object is no larger, --size " +
-                                                 short_text(options.size));
-  }
+  if (options.size) check_positive("--size", *options.size);
   if (!options.gain.empty() && parse_policy(options.policy) != Policy::gain) {
     throw Error(ErrorCode::invalid_argument,
                 "--gain " + options.gain + " goes with --policy gain, not " + options.policy);

@@ -12,7 +12,6 @@
 #include "options/sensing.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner_mesh/boundary_generation.hpp"
-#include "viewgain/planner_mesh/stage.hpp"
 
 namespace viewgain::app {
 
@@ -22,13 +21,13 @@ struct ReconstructOptions {
   std::string mesh;
   std::string sensor;
   double voxel = 0;
-  double size = StageConfig{}.size;
+  std::optional<double> size;
   std::string workspace;
   std::string start;
   std::optional<double> distance;
   std::string policy = "gain";
   std::string generator;
-  std::optional<std::size_t> sphere_poses;
+  std::optional<std::size_t> count;
   std::string gain;
   double overlap = default_estimator(1.0).overlap;
   double region_depth = default_estimator(1.0).region_depth;
@@ -49,9 +48,9 @@ struct ReconstructOptions {
   SensingOptions sensing;
   std::size_t frames_per_view = 1;
   std::string jump_edge_filter = "5";
-  bool no_refine = false;
-  bool save_maps = false;
-  bool no_pictures = false;
+  std::string refine = "on";
+  std::string save_maps = "off";
+  std::string pictures = "on";
   std::string report = "off";
   std::string out;
 };

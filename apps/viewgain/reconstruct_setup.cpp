@@ -44,6 +44,13 @@ Pose start_pose(const ReconstructOptions& options, const Stage& stage, double di
   return pose;
 }
 
+void check_voxel(const ReconstructOptions& options, const Stage& stage) {
+  if (options.voxel < stage.size) return;
+  throw Error(ErrorCode::invalid_argument, "--voxel " + short_text(options.voxel) +
+                                               ": the object is no larger, its longest side " +
+                                               short_text(stage.size) + " m (--size)");
+}
+
 // An obstacle where the run is to start.
 void check_start(const ReconstructOptions& options, const RunSetup& setup, const ExecConfig& exec) {
   if (options.obstacles.empty()) return;
@@ -68,7 +75,7 @@ SurfaceModelConfig model_config(const ReconstructOptions& options, const Sensor&
   config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter, false);
   config.obstacles = obstacles_of(options.obstacles);
   config.criterion = parse_criterion(options.criterion);
-  config.refine = !options.no_refine;
+  config.refine = options.refine == "on";
   config.hazard = hazard_source(options.hazard, options.object_size, BeliefGrid(config.grid));
   return model;
 }
@@ -83,16 +90,16 @@ std::shared_ptr<const SurfaceScene> surroundings_of(const Obstacles& obstacles,
 
 std::vector<std::string> generators(const ReconstructOptions& options, Policy policy) {
   if (!options.generator.empty()) {
-    const auto names = parse_names("--generator", options.generator, generator_names());
+    const auto names =
+        parse_names("--generator", options.generator, generator_names(), "generator");
     if (policy == Policy::kriegel && names != std::vector<std::string>{"boundary"}) {
       throw Error(ErrorCode::invalid_argument,
                   "--policy kriegel chooses among boundary candidates alone");
     }
     return names;
   }
-  if (policy == Policy::random) return {"sphere"};
+  if (policy == Policy::random || policy == Policy::fibonacci) return {"sphere"};
   if (policy == Policy::sequence) return {"sequence"};
-  if (policy == Policy::fibonacci) return {"fibonacci"};
   return {"boundary"};
 }
 
@@ -103,14 +110,15 @@ GenerationConfig generation_config(const ReconstructOptions& options, const RunS
   config.at_boundaries = false;
   // His choice is by class alone.
   config.boundary.classes_by_sight = setup.policy.policy == Policy::kriegel;
-  PoseSetRequest request{setup.stage.center, setup.distance, options.sphere_poses,
-                         options.sensing.seed, setup.start};
+  const bool spread_out = setup.policy.policy == Policy::fibonacci;
+  PoseSetRequest request{setup.stage.center,   setup.distance, options.count,
+                         options.sensing.seed, setup.start,    spread_out};
   for (const std::string& name : generators(options, setup.policy.policy)) {
     if (name == "boundary") {
       config.at_boundaries = true;
     } else {
-      request.count = options.sphere_poses;
-      if (name == "fibonacci" && !request.count) request.count = options.max_views;
+      request.count = options.count;
+      if (spread_out && name == "sphere" && !request.count) request.count = options.max_views;
       config.sets.push_back(make_pose_set(name, request));
     }
   }
@@ -143,6 +151,7 @@ nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, cons
   if (setup.generation.at_boundaries) generators.push_back("boundary");
   for (const PoseSet& set : setup.generation.sets) generators.push_back(set.generator);
   return {{"sensor", sensor_toml(setup.sensor)},
+          {"size", setup.stage.size},
           {"workspace", to_json(setup.stage.workspace)},
           {"prior_sigma", setup.model.map.grid.prior_sigma},
           {"start", to_json(setup.start)},
@@ -154,7 +163,7 @@ nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, cons
           {"stop_area", setup.planning.stop_area},
           {"flying_pixels", options.sensing.has_flying_pixels(setup.sensor)},
           {"calibrated", options.sensing.calibrate == "on"},
-          {"refine", !options.no_refine}};
+          {"refine", options.refine == "on"}};
 }
 
 }  // namespace
@@ -170,10 +179,12 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   setup.policy.seed = options.sensing.seed;
   if (!options.reach.empty()) setup.reach = read_reach_toml(options.reach);
   setup.stage = set_stage(stage_config(options), exec);
-  setup.distance = options.distance.value_or(filling_distance(setup.sensor, 0.5 * options.size));
+  check_voxel(options, setup.stage);
+  setup.distance =
+      options.distance.value_or(filling_distance(setup.sensor, 0.5 * setup.stage.size));
   setup.start = start_pose(options, setup.stage, setup.distance, setup.reach);
   setup.visibility = {setup.stage.center,
-                      std::max(setup.sensor.working_distance, outside(options.size)),
+                      std::max(setup.sensor.working_distance, outside(setup.stage.size)),
                       setup.start,
                       setup.reach,
                       options.sensing.support_plane,

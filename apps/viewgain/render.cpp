@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -11,7 +12,7 @@
 
 #include "commands.hpp"
 #include "options/gain_unit.hpp"
-#include "options/pose_source.hpp"
+#include "options/pose_flags.hpp"
 #include "options/values.hpp"
 #include "pictures/image_grid.hpp"
 #include "pictures/map_picture.hpp"
@@ -41,6 +42,7 @@ struct Options {
   std::size_t columns = 3;
   PoseOptions poses;
   std::string sensor;
+  std::uint64_t seed = 1;
   std::string gain = "paper";
 };
 
@@ -58,7 +60,8 @@ void check(const Options& options, const CLI::App& app) {
   };
   only_for("sigma", {"--ellipsoids"});
   only_for("step", {"--views", "--columns"});
-  only_for("gain", {"--poses", "--sphere", "--sensor", "--gain"});
+  only_for("gain", {"--poses", "--sphere", "--dome", "--rings", "--shell", "--orbit", "--center",
+                    "--seed", "--sensor", "--gain"});
   if (options.what == "step" && (app.count("--azimuth") > 0 || app.count("--elevation") > 0)) {
     refuse("--azimuth and --elevation do not go with --what step, which puts pictures together");
   }
@@ -98,24 +101,23 @@ void print_range(const char* what, const std::array<double, 2>& range) {
               1e3 * range[1]);
 }
 
-RgbImage surface_image(const BeliefGrid& grid, const MapSurface& made, bool with_sigma,
-                       std::array<double, 2> range, const Viewer& viewer, const ExecConfig& exec) {
-  SurfacePicture picture{made.surface, workspace_corners(grid.snapshot())};
+RgbImage surface_image(const MapSurface& made, bool with_sigma, std::array<double, 2> range,
+                       const Viewer& viewer, const ExecConfig& exec) {
+  SurfacePicture picture{made.surface};
   if (with_sigma) picture.sigmas = made.sigmas;
   picture.sigma_range = range;
   return draw(picture, viewer, exec);
 }
 
 RgbImage sigma_image(const Options& options, const ExecConfig& exec) {
-  const BeliefGrid grid = map_of(options.inputs.front());
-  const MapSurface made(grid, exec);
+  const MapSurface made(map_of(options.inputs.front()), exec);
   const Viewer viewer = viewer_of(options, 1280);
   if (!options.ellipsoids) {
     const auto range = usual_range(made.sigmas);
     print_range("sigma along the surface's normal", range);
-    return surface_image(grid, made, true, range, viewer, exec);
+    return surface_image(made, true, range, viewer, exec);
   }
-  SurfacePicture picture{made.surface, workspace_corners(grid.snapshot())};
+  SurfacePicture picture{made.surface};
   picture.points = &made.points;
   picture.ellipsoid_sigmas = *options.ellipsoids;
   picture.sigma_range = usual_range(longest_sigmas(made.points));
@@ -125,11 +127,9 @@ RgbImage sigma_image(const Options& options, const ExecConfig& exec) {
 
 RgbImage gain_image(const Options& options, const ExecConfig& exec) {
   if (options.sensor.empty()) refuse("--what gain needs --sensor");
-  if (options.poses.file.empty() && options.poses.sphere.empty()) {
-    refuse("--what gain needs --poses or --sphere");
-  }
+  if (options.poses.none()) refuse("--what gain needs poses, say --sphere 500,0.6");
   const Sensor sensor = load_sensor(options.sensor);
-  const std::vector<Pose> poses = make_poses(options.poses).poses;
+  const std::vector<Pose> poses = make_poses(options.poses, options.seed).poses;
   const auto scene = VoxelScene::build(map_of(options.inputs.front()), {}, exec);
   GainConfig config;
   config.model = parse_gain_model(options.gain);
@@ -203,8 +203,8 @@ RgbImage sheet_image(const Options& options, const ExecConfig& exec) {
   std::vector<RgbImage> images;
   for (std::size_t i = 0; i < grids.size(); ++i) {
     images.push_back(map_picture(grids[i].snapshot(), viewer, exec));
-    images.push_back(surface_image(grids[i], made[i], false, range, viewer, exec));
-    images.push_back(surface_image(grids[i], made[i], true, range, viewer, exec));
+    images.push_back(surface_image(made[i], false, range, viewer, exec));
+    images.push_back(surface_image(made[i], true, range, viewer, exec));
   }
   print_range("sigma along the surface's normal", range);
   return image_grid(images, 3);
@@ -218,7 +218,7 @@ RgbImage image_of(const Options& options, const ExecConfig& exec) {
   const BeliefGrid grid = map_of(options.inputs.front());
   const Viewer viewer = viewer_of(options, 1280);
   if (options.what == "map") return map_picture(grid.snapshot(), viewer, exec);
-  return surface_image(grid, MapSurface(grid, exec), false, {}, viewer, exec);
+  return surface_image(MapSurface(grid, exec), false, {}, viewer, exec);
 }
 
 }  // namespace
@@ -252,9 +252,8 @@ Command add_render(CLI::App& program) {
   app->add_option("--columns", o.columns, "step: pictures in a row")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100}, "count"))
       ->capture_default_str();
-  app->add_option("--poses", o.poses.file, "gain: TUM file of poses");
-  app->add_option("--sphere", o.poses.sphere,
-                  "gain: N,RADIUS: poses of a Fibonacci lattice on a sphere [m]");
+  add_pose_options(*app, o.poses, false);
+  add_seed_option(*app, o.seed, "of --shell");
   app->add_option("--sensor", o.sensor, std::string("gain: ").append(kSensorHelp));
   app->add_option("--gain", o.gain, "gain: paper, surface or combined, as in score")
       ->check(CLI::IsMember(gain_model_names()))

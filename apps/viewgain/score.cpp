@@ -11,13 +11,14 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/progress.hpp"
 #include "commands.hpp"
+#include "options/choices.hpp"
 #include "options/hazard_source.hpp"
 #include "options/obstacle_source.hpp"
-#include "options/pose_source.hpp"
+#include "options/pose_flags.hpp"
 #include "options/values.hpp"
 #include "pictures/score_picture.hpp"
-#include "progress.hpp"
 #include "report/page.hpp"
 #include "score_report.hpp"
 #include "viewgain/core/atomic_file.hpp"
@@ -41,7 +42,7 @@ struct Options {
   std::optional<double> refinement_weight, object_size, support_plane;
   std::string hazard, reach, body;
   std::vector<std::string> obstacles;
-  bool feasible = false;
+  std::string feasible = "off";
   std::string criterion = "log_diagonal";
   int stride = 1;
   std::vector<std::string> weights;
@@ -63,12 +64,12 @@ GainConfig gain_config(const Options& options) {
     throw Error(ErrorCode::invalid_argument,
                 "--object-size and --hazard go with --gain surface or combined");
   }
-  if (config.model == GainModel::paper && options.support_plane && !options.feasible) {
+  if (config.model == GainModel::paper && options.support_plane && options.feasible == "off") {
     throw Error(ErrorCode::invalid_argument,
-                "--support-plane goes with --feasible, and with --gain surface or combined");
+                "--support-plane goes with --feasible on, and with --gain surface or combined");
   }
-  if (!options.body.empty() && !options.feasible) {
-    throw Error(ErrorCode::invalid_argument, "--body goes with --feasible");
+  if (!options.body.empty() && options.feasible == "off") {
+    throw Error(ErrorCode::invalid_argument, "--body goes with --feasible on");
   }
   if (config.model != GainModel::combined && options.refinement_weight) {
     throw Error(ErrorCode::invalid_argument, "--refinement-weight goes with --gain combined");
@@ -96,7 +97,7 @@ FeasiblePoses candidates_of(const Options& options, const PoseSource& source, co
                             const ExecConfig& exec) {
   ReachRegion reach;
   if (!options.reach.empty()) reach = read_reach_toml(options.reach);
-  if (!options.feasible) return reachable_poses(reach, source.poses);
+  if (options.feasible == "off") return reachable_poses(reach, source.poses);
   FeasibilityConfig config = feasibility_of(sensor);
   if (!options.body.empty()) config.body.size = parse_size("--body", options.body);
   config.reach = std::move(reach);
@@ -190,7 +191,7 @@ void score(const Options& options) {
   const ExecConfig exec{options.common.threads};
   const GainConfig config = gain_config(options);
   const Sensor sensor = load_sensor(options.sensor);
-  const PoseSource source = make_poses(options.poses);
+  const PoseSource source = make_poses(options.poses, options.seed);
   const BeliefGrid grid = load_map(options.map, &sensor);
   const HazardConfig hazard = hazard_source(options.hazard, options.object_size, grid);
   const auto scene = VoxelScene::build(grid, obstacles_of(options.obstacles), exec, hazard);
@@ -246,46 +247,34 @@ Command add_score(CLI::App& program) {
       "Candidate poses by expected information gain against a map: the best ones, and how "
       "fast it went.");
   app->add_option("MAP", options->map, kMapHelp)->required();
-  auto* poses = app->add_option_group("candidates", "exactly one of");
-  poses->add_option("--poses", options->poses.file,
-                    "TUM file of camera-to-world poses: time tx ty tz qx qy qz qw [s, m]");
-  poses->add_option(
-      "--sphere", options->poses.sphere,
-      "N,RADIUS[,CX,CY,CZ]: Fibonacci lattice on a sphere, looking at its centre [m]");
-  poses->add_option("--dome", options->poses.dome,
-                    "N,RADIUS[,CX,CY,CZ]: the lattice's upper half, with N points [m]");
-  poses->add_option("--rings", options->poses.rings,
-                    "N,RADIUS[,CX,CY,CZ]: cylinder and dome rings of the literature, N is 48, 80, "
-                    "288 or 864 [m]");
-  poses->add_option("--shell", options->poses.shell,
-                    "N,RMIN,RMAX,SEED[,CX,CY,CZ]: at random between two spheres, looking at their "
-                    "centre [m]");
-  poses->require_option(1);
+  add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kSensorHelp)->required();
-  app->add_option("--gain", options->gain,
-                  "paper (entropy removed) [nat], surface (new surface to be expected) [m^2] or "
-                  "combined (both) [nat]")
-      ->check(CLI::IsMember(gain_model_names()))
-      ->capture_default_str();
+  one_of(*app->add_option("--gain", options->gain,
+                          "paper (entropy removed) [nat], surface (new surface to be expected) "
+                          "[m^2] or combined (both) [nat]")
+              ->capture_default_str(),
+         gain_model_names(), "gain");
   app->add_option("--refinement-weight", options->refinement_weight,
                   "combined: of refining known surface against finding new; default: 0.3");
   app->add_option("--object-size", options->object_size, kObjectSizeHelp);
   app->add_option("--hazard", options->hazard, kHazardHelp);
   app->add_option("--support-plane", options->support_plane,
                   "height z of a table [m], at which rays of surface and combined end and which "
-                  "--feasible keeps the body above; default: none");
+                  "--feasible on keeps the body above; default: none");
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
   app->add_option("--reach", options->reach,
                   "TOML file: boxes, shells, half-spaces, poses in reach; other poses are dropped");
-  app->add_flag("--feasible", options->feasible,
-                "drop poses where the sensor's body would touch the map, an obstacle or the table, "
-                "much would be too near to be measured, or a view of the map was taken");
+  on_or_off(*app->add_option("--feasible", options->feasible,
+                             "drop poses where the sensor's body would touch the map, an obstacle "
+                             "or the table, much would be too near to be measured, or a view of "
+                             "the map was taken")
+                 ->capture_default_str());
   app->add_option("--body", options->body, kBodyHelp);
-  app->add_option(
-         "--criterion", options->criterion,
-         "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] or trace [m^2]")
-      ->check(CLI::IsMember(criterion_names()))
-      ->capture_default_str();
+  one_of(*app->add_option("--criterion", options->criterion,
+                          "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] "
+                          "or trace [m^2]")
+              ->capture_default_str(),
+         criterion_names(), "criterion");
   app->add_option("--stride", options->stride, "every s-th pixel of every s-th row")
       ->check(CLI::Range(1, std::numeric_limits<int>::max(), "stride"))
       ->capture_default_str();
@@ -316,7 +305,7 @@ Command add_score(CLI::App& program) {
           "K views that are good together on this map, with what each adds to those before")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
   selection->require_option(0, 1);
-  add_seed_option(*app, options->seed, "of --race (the paper's gain) and --approximate");
+  add_seed_option(*app, options->seed, "of --shell, --race (the paper's gain) and --approximate");
   app->add_option("--out", options->out,
                   "CSV file of all poses that were not dropped, in input order; with a selection, "
                   "of those scored in full, "

@@ -5,16 +5,18 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "command_line/progress.hpp"
 #include "commands.hpp"
-#include "options/pose_source.hpp"
+#include "options/choices.hpp"
+#include "options/pose_flags.hpp"
 #include "options/sensing.hpp"
 #include "options/sensing_flags.hpp"
 #include "options/values.hpp"
-#include "progress.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/stopwatch.hpp"
 #include "viewgain/formats/frames.hpp"
@@ -31,8 +33,8 @@ struct Options {
   std::string mesh;
   PoseOptions poses;
   std::string sensor;
-  double size = 0.35;
-  bool center = false;
+  std::optional<double> size;
+  std::string recenter = "off";
   std::string up = "z";
   SensingOptions sensing;
   std::size_t frames_per_view = 1;
@@ -64,8 +66,8 @@ struct PixelCounts {
 MeshPlacement placement_of(const Options& options) {
   MeshPlacement placement;
   placement.up = options.up == "x" ? UpAxis::x : options.up == "y" ? UpAxis::y : UpAxis::z;
-  placement.center = options.center;
-  placement.longest_side = options.size;
+  placement.center = options.recenter == "on";
+  if (options.size) placement.longest_side = *options.size;
   return placement;
 }
 
@@ -85,8 +87,16 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
   const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
   if (std::none_of(poses.begin(), poses.end(),
                    [&](const Pose& pose) { return sees_mesh(scene, sensor, rays, pose); })) {
+    Box box{scene.mesh().vertices.front(), scene.mesh().vertices.front()};
+    for (const auto& v : scene.mesh().vertices) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        box.min[k] = std::min(box.min[k], v[k]);
+        box.max[k] = std::max(box.max[k], v[k]);
+      }
+    }
     throw Error(ErrorCode::invalid_argument,
-                options.mesh + ": no pose has the mesh in view and in range");
+                options.mesh + ": no pose has the mesh in view and in range, which lies in " +
+                    describe(box) + " m (--size, --recenter)");
   }
 }
 
@@ -94,7 +104,8 @@ void simulate(const Options& options) {
   const ExecConfig exec{options.common.threads};
   const Sensor sensor = load_sensor(options.sensor);
   sensor.validate();
-  const PoseSource source = make_poses(options.poses);
+  if (options.size) check_positive("--size", *options.size);
+  const PoseSource source = make_poses(options.poses, options.sensing.seed);
   TriangleMesh mesh = read_mesh(options.mesh, placement_of(options));
   const std::size_t triangles = mesh.triangles.size();
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
@@ -167,29 +178,24 @@ Command add_simulate(CLI::App& program) {
       "poses.txt "
       "(TUM, line i is frame i), sensor.toml.");
   app->add_option("MESH", options->mesh, "OFF, OBJ, STL or PLY file")->required();
-  auto* poses = app->add_option_group("poses", "exactly one of");
-  poses->add_option("--poses", options->poses.file,
-                    "TUM file of camera-to-world poses: time tx ty tz qx qy qz qw [s, m]");
-  poses->add_option("--orbit", options->poses.orbit,
-                    "N,RADIUS,ELEVATION_DEG[,START_DEG,STEP_DEG]: N views on a circle of latitude "
-                    "round the origin, looking at it [m, degrees]; START 0, STEP 360/N");
-  poses->require_option(1);
+  add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kSensorHelp)->required();
   app->add_option("--size", options->size,
-                  "longest side of the mesh's bounding box [m]; 0: the file's own size")
-      ->capture_default_str();
-  app->add_flag("--center", options->center, "move the bounding box's centre to the origin");
-  app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
-      ->check(CLI::IsMember({"x", "y", "z"}))
-      ->capture_default_str();
+                  "scale the mesh so that its bounding box's longest side is this [m]; default: "
+                  "the file's own size, in metres");
+  on_or_off(*app->add_option("--recenter", options->recenter,
+                             "move the bounding box's centre to the origin")
+                 ->capture_default_str());
+  one_of(*app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
+              ->capture_default_str(),
+         {"x", "y", "z"}, "axis");
   add_sensing_options(*app, options->sensing);
   app->add_option("--frames-per-view", options->frames_per_view,
                   "frames from each pose, numbered on; poses.txt repeats the pose")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000}, "number"))
       ->capture_default_str();
-  app->add_option("--amplitude", options->amplitude,
-                  "write amplitude images; default: on for sensors with shot noise")
-      ->check(CLI::IsMember({"off", "on"}));
+  on_or_off(*app->add_option("--amplitude", options->amplitude,
+                             "write amplitude images; default: on for sensors with shot noise"));
   app->add_option(
          "--out", options->out,
          "folder to write; frames that simulate has left in it are replaced, others are refused")

@@ -37,6 +37,11 @@ Eigen::Vector3d direction_from(const Eigen::Vector3d& center, const Pose& pose) 
 
 // Each pose the farthest, by angle, from the start's and from those before it.
 std::vector<Pose> spread_out(const std::vector<Pose>& poses, const PoseSetRequest& request) {
+  if (poses.size() > kMostSpreadOut) {
+    throw Error(ErrorCode::invalid_argument, "at most " + std::to_string(kMostSpreadOut) +
+                                                 " poses can be spread out, not " +
+                                                 std::to_string(poses.size()));
+  }
   std::vector<double> nearest(poses.size(), -1);  // cosine of the angle to the nearest one taken
   const auto take = [&](const Pose& pose) {
     const Eigen::Vector3d taken = direction_from(request.center, pose);
@@ -62,16 +67,14 @@ std::vector<Pose> spread_out(const std::vector<Pose>& poses, const PoseSetReques
 }  // namespace
 
 const std::vector<std::string>& generator_names() {
-  static const std::vector<std::string> names{"boundary", "sphere",   "dome",     "rings",
-                                              "shell",    "sequence", "fibonacci"};
+  static const std::vector<std::string> names{"boundary", "sphere", "dome",
+                                              "rings",    "shell",  "sequence"};
   return names;
 }
 
 PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request) {
   PoseSet set{std::string(generator), {}};
-  const std::size_t count = request.count.value_or(generator == "rings"       ? 48
-                                                   : generator == "fibonacci" ? 20
-                                                                              : 500);
+  const std::size_t count = request.count.value_or(generator == "rings" ? 48 : 500);
   if (generator == "sphere") {
     set.poses = sphere_poses(count, request.distance, request.center);
   } else if (generator == "dome") {
@@ -81,19 +84,13 @@ PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request)
   } else if (generator == "shell") {
     set.poses = shell_poses(count, 0.8 * request.distance, 1.25 * request.distance, request.seed,
                             request.center);
-  } else if (generator == "fibonacci") {
-    if (count > kMostSpreadOut) {
-      throw Error(ErrorCode::invalid_argument, "generator \"fibonacci\" takes at most " +
-                                                   std::to_string(kMostSpreadOut) + " poses, not " +
-                                                   std::to_string(count));
-    }
-    set.poses = spread_out(sphere_poses(count, request.distance, request.center), request);
   } else if (generator == "sequence") {
     set.poses = sequence_poses(request);
   } else {
     throw Error(ErrorCode::invalid_argument,
                 "generator \"" + std::string(generator) + "\": no such set of poses");
   }
+  if (request.spread_out) set.poses = spread_out(set.poses, request);
   return set;
 }
 

@@ -17,22 +17,37 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
+double longest_side(const TriangleMesh& mesh) {
+  double longest = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto [low, high] =
+        std::minmax_element(mesh.vertices.begin(), mesh.vertices.end(),
+                            [a](const auto& v, const auto& w) { return v[a] < w[a]; });
+    longest = std::max(longest, (*high)[a] - (*low)[a]);
+  }
+  return longest;
+}
+
 }  // namespace
 
 Stage set_stage(const StageConfig& config, const ExecConfig& exec) {
-  if (!(config.size > 0) || !std::isfinite(config.size)) {
+  if (config.size && (!(*config.size > 0) || !std::isfinite(*config.size))) {
     throw Error(ErrorCode::invalid_argument,
-                "object size " + short_text(config.size) + " m is not positive and finite");
+                "object size " + short_text(*config.size) + " m is not positive and finite");
   }
-  TriangleMesh mesh = read_mesh(config.mesh, {config.up, true, config.size});
+  TriangleMesh mesh = read_mesh(config.mesh, {config.up, true, config.size.value_or(0)});
   Stage stage;
+  stage.size = config.size ? *config.size : longest_side(mesh);
+  if (!(stage.size > 0)) {
+    throw Error(ErrorCode::invalid_argument, config.mesh.string() + ": the mesh has no extent");
+  }
   if (config.support_plane) {
     double lowest = 0;  // the box is centred at the origin
     for (const auto& v : mesh.vertices) lowest = std::min(lowest, v[2]);
     for (auto& v : mesh.vertices) v[2] += *config.support_plane - lowest;
     stage.center.z() = *config.support_plane - lowest;
   }
-  const double half = 0.5 * config.size * 0.4 / 0.35;
+  const double half = 0.5 * stage.size * 0.4 / 0.35;
   for (std::size_t a = 0; a < 3; ++a) {
     const double middle = stage.center[static_cast<Eigen::Index>(a)];
     stage.workspace.min[a] = middle - half;

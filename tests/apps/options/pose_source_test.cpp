@@ -4,56 +4,72 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <numbers>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "core/expect_error.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
 
 namespace viewgain::app {
 namespace {
 
-std::vector<Pose> rings(const std::string& text) {
+std::vector<Pose> poses(std::string PoseOptions::*set, const std::string& text,
+                        const std::string& center = "", std::uint64_t seed = 1) {
   PoseOptions options;
-  options.rings = text;
-  return make_poses(options).poses;
+  options.*set = text;
+  options.center = center;
+  return make_poses(options, seed).poses;
 }
 
-std::vector<Pose> shell(const std::string& text) {
-  PoseOptions options;
-  options.shell = text;
-  return make_poses(options).poses;
-}
-
-TEST(PoseSource, RingsAndShells) {
-  EXPECT_EQ(rings("80,0.6"), literature_ring_poses(80, 0.6));
-  EXPECT_EQ(rings("288,0.5,1,2,3"), literature_ring_poses(288, 0.5, {1, 2, 3}));
-  EXPECT_EQ(shell("10,0.4,0.9,7"), shell_poses(10, 0.4, 0.9, 7));
-  EXPECT_EQ(shell("10,0.4,0.9,9007199254740992,1,2,3"),
-            shell_poses(10, 0.4, 0.9, 9007199254740992U, {1, 2, 3}));
+TEST(PoseSource, EverySetRoundItsCentre) {
+  EXPECT_EQ(poses(&PoseOptions::sphere, "50,0.6"), sphere_poses(50, 0.6));
+  EXPECT_EQ(poses(&PoseOptions::sphere, "50,0.6", "1,2,3"), sphere_poses(50, 0.6, {1, 2, 3}));
+  EXPECT_EQ(poses(&PoseOptions::dome, "50,0.6", "1,2,3"), dome_poses(50, 0.6, {1, 2, 3}));
+  EXPECT_EQ(poses(&PoseOptions::rings, "80,0.6"), literature_ring_poses(80, 0.6));
+  EXPECT_EQ(poses(&PoseOptions::rings, "288,0.5", "1,2,3"),
+            literature_ring_poses(288, 0.5, {1, 2, 3}));
+  EXPECT_EQ(poses(&PoseOptions::shell, "10,0.4,0.9", "", 7), shell_poses(10, 0.4, 0.9, 7));
+  constexpr std::uint64_t kLarge = 1ULL << 62U;
+  EXPECT_EQ(poses(&PoseOptions::shell, "10,0.4,0.9", "1,2,3", kLarge),
+            shell_poses(10, 0.4, 0.9, kLarge, {1, 2, 3}));
+  EXPECT_EQ(poses(&PoseOptions::orbit, "3,0.6,90,0,180", "1,2,3"),
+            orbit_poses(3, 0.6, std::numbers::pi / 2, 0, std::numbers::pi, {1, 2, 3}));
 }
 
 TEST(PoseSource, ErrorsNameTheFlag) {
-  const std::vector<std::pair<bool, std::string>> cases{
-      {true, "64,0.5"},           {true, "48"},          {true, "48,0"},
-      {true, "48,0.5,1,2"},       {true, "48.5,1"},      {false, "10,0.4,0.9"},
-      {false, "10,0.9,0.4,1"},    {false, "10,0,1,1"},   {false, "0,0.4,0.9,1"},
-      {false, "10,0.4,0.9,-1"},   {false, "10,1,2,0.5"}, {false, "10,1,2,9007199254740994"},
-      {false, "10,1,2,3,0.1,0.2"}};
+  struct Case {
+    std::string PoseOptions::*set;
+    std::string text, center, word;
+  };
+  const std::vector<Case> cases{
+      {&PoseOptions::rings, "64,0.5", "", "--rings"},
+      {&PoseOptions::rings, "48", "", "--rings"},
+      {&PoseOptions::rings, "48,0", "", "--rings"},
+      {&PoseOptions::rings, "48.5,1", "", "--rings"},
+      {&PoseOptions::shell, "10,0.9,0.4", "", "--shell"},
+      {&PoseOptions::shell, "10,0,1", "", "--shell"},
+      {&PoseOptions::shell, "0,0.4,0.9", "", "--shell"},
+      {&PoseOptions::shell, "10,0.4", "", "--shell"},
+      {&PoseOptions::orbit, "10,0.4", "", "--orbit"},
+      {&PoseOptions::sphere, "10,0.4", "0,0", "--center"},
+      {&PoseOptions::sphere, "10,0.4", "0,0,x", "--center"},
+      {&PoseOptions::file, "poses.txt", "0,0,0", "--center"},
+      // As they were spelled once.
+      {&PoseOptions::shell, "10,0.4,0.9,7", "", "given by --seed"},
+      {&PoseOptions::shell, "10,0.4,0.9,7,1,2,3", "", "by --center x,y,z"},
+      {&PoseOptions::sphere, "10,0.4,1,2,3", "", "given by --center x,y,z"},
+      {&PoseOptions::dome, "10,0.4,1,2,3", "", "given by --center x,y,z"},
+      {&PoseOptions::rings, "48,0.5,1,2,3", "", "given by --center x,y,z"}};
   std::size_t count = 0;
-  for (const auto& [is_rings, text] : cases) {
-    try {
-      (void)(is_rings ? rings(text) : shell(text));
-      ADD_FAILURE() << text;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::invalid_argument);
-      const std::string flag = is_rings ? "--rings" : "--shell";
-      EXPECT_NE(std::string(error.what()).find(flag), std::string::npos) << error.what();
-    }
+  for (const Case& wrong : cases) {
+    test::expect_error(ErrorCode::invalid_argument, wrong.word,
+                       [&] { (void)poses(wrong.set, wrong.text, wrong.center); });
     ++count;
   }
-  EXPECT_EQ(count, 13U);
+  EXPECT_EQ(count, 17U);
 }
 
 }  // namespace

@@ -32,8 +32,8 @@ TEST(Fibonacci, AnyNumberOfTheFirstViewsIsSpreadEvenly) {
   const Eigen::Vector3d center(0.1, -0.2, 0.3);
   int cases = 0;
   for (const std::size_t count : {std::size_t{6}, std::size_t{12}, std::size_t{20}}) {
-    PoseSetRequest request{center, 0.5, count, 1, look_at({0.7, 0.1, 0.6}, center)};
-    const std::vector<Pose> poses = make_pose_set("fibonacci", request).poses;
+    PoseSetRequest request{center, 0.5, count, 1, look_at({0.7, 0.1, 0.6}, center), true};
+    const std::vector<Pose> poses = make_pose_set("sphere", request).poses;
     ASSERT_EQ(poses.size(), count);
     // The poses of the lattice, in another order.
     std::set<std::size_t> found;
@@ -57,9 +57,9 @@ TEST(Fibonacci, AnyNumberOfTheFirstViewsIsSpreadEvenly) {
     }
   }
   EXPECT_EQ(cases, 5 + 9 + 15);
-  EXPECT_EQ(make_pose_set("fibonacci", {center, 0.5, {}, 1, {}}).poses.size(), 20U);
+  EXPECT_EQ(make_pose_set("sphere", {center, 0.5, {}, 1, {}, true}).poses.size(), 500U);
   test::expect_error(ErrorCode::invalid_argument, "20001", [&] {
-    (void)make_pose_set("fibonacci", {center, 0.5, 20'001, 1, {}});
+    (void)make_pose_set("sphere", {center, 0.5, 20'001, 1, {}, true});
   });
 }
 

@@ -26,7 +26,7 @@ class BadInputTest : public test::ProgramTest {
   // A map of a few voxels and its frames.
   void make_map() const {
     run_well({"simulate", "cube.off", "--orbit", "1,0.6,27", "--sensor", "small.toml", "--size",
-              "0.3", "--center", "--out", "frames"});
+              "0.3", "--recenter", "on", "--out", "frames"});
     run_well({"integrate", "frames", "--voxel", "0.05", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
               "--out", "map.vdb"});
   }
@@ -116,8 +116,8 @@ TEST_F(BadInputTest, Meshes) {
                   {simulate("range.off"), "out of range"},
                   {simulate("cut.off"), "cut.off"},
                   {simulate("mesh.doc"), ".off, .obj, .stl, .ply"},
-                  {simulate("cube.off", {"--size", "-1"}), "longest side"},
-                  {simulate("cube.off", {"--size", "nan"}), "longest side"},
+                  {simulate("cube.off", {"--size", "-1"}), "--size -1"},
+                  {simulate("cube.off", {"--size", "nan"}), "--size nan"},
                   {simulate("cube.off", {"--background", "-1"}), "background"}},
                  12);
 }

@@ -26,7 +26,7 @@ class Candidates : public test::ProgramTest {
     write_half_sensor();
     const auto made =
         run({"reconstruct", "cube.off", "--sensor", "tof.toml", "--voxel", "0.00625", "--size",
-             "0.2", "--max-views", "2", "--no-pictures", "--out", "run", "--json"});
+             "0.2", "--max-views", "2", "--pictures", "off", "--out", "run", "--json"});
     EXPECT_EQ(made.exit_code, 0) << made.err;
   }
 

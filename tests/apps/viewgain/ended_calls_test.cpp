@@ -32,30 +32,15 @@ class EndedCalls : public test::ProgramTest {
   }
 
   static Strings simulate(const std::string& out, const std::string& frames = "1") {
-    return {"simulate", "cube.off", "--orbit",  "1,0.6,27", "--sensor", "tof.toml",
-            "--size",   "0.2",      "--center", "--out",    out,        "--frames-per-view",
-            frames};
+    return {
+        "simulate", "cube.off",   "--orbit", "1,0.6,27", "--sensor", "tof.toml",          "--size",
+        "0.2",      "--recenter", "on",      "--out",    out,        "--frames-per-view", frames};
   }
   static Strings reconstruct(const std::string& out, const std::string& views) {
-    return {"reconstruct",
-            "cube.off",
-            "--sensor",
-            "tof.toml",
-            "--voxel",
-            "0.00625",
-            "--size",
-            "0.2",
-            "--out",
-            out,
-            "--json",
-            "--max-views",
-            views,
-            "--save-maps",
-            "--no-pictures",
-            "--stop-gain",
-            "0",
-            "--stop-idle",
-            "0"};
+    return {"reconstruct", "cube.off",    "--sensor", "tof.toml",   "--voxel", "0.00625",
+            "--size",      "0.2",         "--out",    out,          "--json",  "--max-views",
+            views,         "--save-maps", "on",       "--pictures", "off",     "--stop-gain",
+            "0",           "--stop-idle", "0"};
   }
 
   // The hidden folder of a call that is writing; empty if there is none.

@@ -71,7 +71,7 @@ class ForeignMaps : public test::ProgramTest {
 TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
   write_cube();
   run_well({"simulate", "cube.off", "--orbit", "3,0.6,27", "--sensor", "small.toml", "--size",
-            "0.3", "--center", "--out", "frames"});
+            "0.3", "--recenter", "on", "--out", "frames"});
   run_well({"integrate", "frames", "--voxel", "0.02", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
             "--out", "map.vdb"});
   const json map = run_json({"info", "map.vdb"});
@@ -308,7 +308,7 @@ TEST_F(ForeignMaps, WrongUseIsRefused) {
   expect_refused({"convert", "map.vdb", "new.bt"}, "not written");
   expect_refused({"convert", "map.vdb", "new.ot", "--workspace", "0,0,0,1,1,1"}, "--workspace");
   expect_refused({"convert", "map.vdb", "new.ot", "--prior-sigma", "1"}, "--prior-sigma");
-  expect_refused({"convert", "map.vdb", "new.ot", "--with-covariance"}, "--with-covariance");
+  expect_refused({"convert", "map.vdb", "new.ot", "--with-covariance", "on"}, "--with-covariance");
   expect_refused({"convert", "map.vdb"}, "OUT");
   EXPECT_EQ(cases_, 21);
 }

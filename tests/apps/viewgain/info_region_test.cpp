@@ -70,12 +70,13 @@ TEST_F(InfoRegion, BadRegionsAreRefused) {
 TEST_F(InfoRegion, RingsAndShellsAreScored) {
   write_small_sensor();
   const auto poses = [this](const std::string& flag, const std::string& value) {
-    return json::parse(
-               run_well({"score", "map.vdb", flag, value, "--sensor", "small.toml", "--json"}))
+    return json::parse(run_well({"score", "map.vdb", flag, value, "--center", "0.1,0,0", "--seed",
+                                 "5", "--sensor", "small.toml", "--json"}))
         .at("poses");
   };
   EXPECT_EQ(poses("--rings", "80,0.6"), 80);
-  EXPECT_EQ(poses("--shell", "33,0.4,0.9,5"), 33);
+  EXPECT_EQ(poses("--shell", "33,0.4,0.9"), 33);
+  EXPECT_EQ(poses("--orbit", "7,0.6,20"), 7);
   const auto both =
       run({"score", "map.vdb", "--rings", "80,0.6", "--sphere", "9,1", "--sensor", "small.toml"});
   EXPECT_EQ(both.exit_code, 2);

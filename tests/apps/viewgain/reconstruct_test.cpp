@@ -69,6 +69,9 @@ class Reconstruct : public test::ProgramTest {
     Strings result{"reconstruct", mesh,    "--sensor", "tof.toml", "--voxel",
                    "0.00625",     "--out", "run",      "--json"};
     result.insert(result.end(), more.begin(), more.end());
+    if (std::find(more.begin(), more.end(), "--size") == more.end()) {
+      result.insert(result.end(), {"--size", "0.35"});  // the cube's own is 2 m
+    }
     return result;
   }
   [[nodiscard]] json reconstruct(const std::string& mesh, const Strings& more = {}) const {
@@ -79,7 +82,8 @@ class Reconstruct : public test::ProgramTest {
 };
 
 TEST_F(Reconstruct, LeavesAConsistentFolder) {
-  const json result = reconstruct("cube.off", {"--max-views", "3", "--save-maps", "--size", "0.2"});
+  const json result =
+      reconstruct("cube.off", {"--max-views", "3", "--save-maps", "on", "--size", "0.2"});
   EXPECT_EQ(result["stop_reason"], "max_views");
   EXPECT_EQ(result["views"], 3);
   ASSERT_EQ(result["per_view"].size(), 3U);
@@ -135,14 +139,14 @@ TEST_F(Reconstruct, LeavesAConsistentFolder) {
 }
 
 TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
-  (void)reconstruct("cube.off", {"--max-views", "1", "--no-pictures", "--size", "0.2"});
+  (void)reconstruct("cube.off", {"--max-views", "1", "--pictures", "off", "--size", "0.2"});
   const json run_file = json::parse(read("run/run.json"));
   const std::map<std::string, std::string> renamed{
-      {"generator", "generators"}, {"calibrate", "calibrated"}, {"no_refine", "refine"}};
+      {"generator", "generators"}, {"calibrate", "calibrated"}, {"count", "sphere_poses"}};
   // Where results go, how fast; the seed is beside the settings, the body in the sensor; obstacles
   // are there where there are any.
-  const std::set<std::string> elsewhere{"help",        "json", "threads", "out",     "save_maps",
-                                        "no_pictures", "seed", "body",    "obstacle"};
+  const std::set<std::string> elsewhere{"help",     "json", "threads", "out",     "save_maps",
+                                        "pictures", "seed", "body",    "obstacle"};
   std::istringstream help(run_well({"reconstruct", "--help"}));
   std::size_t flags = 0;
   for (std::string line; std::getline(help, line);) {
@@ -161,7 +165,7 @@ TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
 }
 
 TEST_F(Reconstruct, KnownObstaclesHideTheObjectAndAreNoPartOfIt) {
-  const Strings setting{"--max-views", "3", "--no-pictures", "--size", "0.15"};
+  const Strings setting{"--max-views", "3", "--pictures", "off", "--size", "0.15"};
   const json without = reconstruct("cube.off", setting);
   Off wall;
   wall.add_box({-0.084, -0.08, -0.08}, {-0.078, 0.08, 0.08});
@@ -192,7 +196,7 @@ TEST_F(Reconstruct, KnownObstaclesHideTheObjectAndAreNoPartOfIt) {
 }
 
 TEST_F(Reconstruct, SameSeedSameRunForAnyNumberOfThreads) {
-  const Strings setting{"--max-views", "4", "--no-pictures", "--size", "0.2", "--seed", "3"};
+  const Strings setting{"--max-views", "4", "--pictures", "off", "--size", "0.2", "--seed", "3"};
   std::map<std::string, json> runs;
   std::map<std::string, std::string> maps;
   for (const char* threads : {"1", "2", "3"}) {
@@ -218,8 +222,8 @@ TEST_F(Reconstruct, EveryPolicyGoesItsOwnWay) {
   for (const char* policy :
        {"gain", "kriegel", "sequence", "random", "frontier", "fibonacci", "proximity", "oracle"}) {
     const json result =
-        reconstruct("cube.off", {"--policy", policy, "--max-views", "4", "--no-pictures", "--size",
-                                 "0.2", "--noise", "off"});
+        reconstruct("cube.off", {"--policy", policy, "--max-views", "4", "--pictures", "off",
+                                 "--size", "0.2", "--noise", "off"});
     EXPECT_GE(result["views"].get<int>(), 2) << policy;
     if (std::string(policy) == "gain") {
       EXPECT_EQ(result["gain_model"], "combined");
@@ -239,12 +243,12 @@ TEST_F(Reconstruct, EveryPolicyGoesItsOwnWay) {
 TEST_F(Reconstruct, FibonacciHasAsManyPosesAsViews) {
   const json result =
       reconstruct("cube.off", {"--policy", "fibonacci", "--max-views", "6", "--stop-idle", "0",
-                               "--no-pictures", "--size", "0.2", "--noise", "off"});
+                               "--pictures", "off", "--size", "0.2", "--noise", "off"});
   EXPECT_EQ(result["views"], 6);
   // Those that were taken or neared are no candidates any more.
   for (int i = 1; i < 6; ++i) {
     const json& view = result["per_view"][i];
-    EXPECT_EQ(view["generator"], "fibonacci");
+    EXPECT_EQ(view["generator"], "sphere");
     EXPECT_EQ(view["candidates"], 7 - i);
   }
   EXPECT_GT(result["coverage_visible"].get<double>(), 0.9);
@@ -258,7 +262,7 @@ TEST_F(Reconstruct, KriegelTakesReachablePosesOnlyWhenNoBoundaryIsLeft) {
   write("list.toml", "poses = \"poses.txt\"\n");
   const json result =
       reconstruct("cube.off", {"--policy", "kriegel", "--reach", "list.toml", "--max-views", "5",
-                               "--no-pictures", "--size", "0.2", "--noise", "off"});
+                               "--pictures", "off", "--size", "0.2", "--noise", "off"});
   EXPECT_GE(result["views"].get<int>(), 2);
   EXPECT_EQ(result["per_view"][1]["generator"], "reach");
   EXPECT_TRUE(result["per_view"][1]["class"].is_null());
@@ -266,7 +270,7 @@ TEST_F(Reconstruct, KriegelTakesReachablePosesOnlyWhenNoBoundaryIsLeft) {
 
 TEST_F(Reconstruct, ClosedBoxSeenFromAllSidesEnds) {
   const json result = reconstruct(
-      "cube.off", {"--max-views", "80", "--no-pictures", "--size", "0.15", "--noise", "off"});
+      "cube.off", {"--max-views", "80", "--pictures", "off", "--size", "0.15", "--noise", "off"});
   EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
   EXPECT_GT(result["coverage_visible"].get<double>(), 0.85);
 }
@@ -275,10 +279,9 @@ TEST_F(Reconstruct, StopsWhereLittleNewSurfaceIsToBeExpected) {
   int cases = 0;
   for (const char* gain : {"surface", "combined"}) {
     const auto ended = [&](const char* share) {
-      return reconstruct("cube.off",
-                         {"--gain", gain, "--stop-area", share, "--max-views", "20", "--stop-idle",
-                          "0", "--no-pictures", "--size", "0.2", "--noise", "off", "--generator",
-                          "sphere", "--sphere-poses", "60"});
+      return reconstruct("cube.off", {"--gain", gain, "--stop-area", share, "--max-views", "20",
+                                      "--stop-idle", "0", "--pictures", "off", "--size", "0.2",
+                                      "--noise", "off", "--generator", "sphere", "--count", "60"});
     };
     const json early = ended("0.4"), later = ended("0.1");
     for (const auto& [result, share] : {std::pair(early, 0.4), std::pair(later, 0.1)}) {
@@ -305,7 +308,7 @@ TEST_F(Reconstruct, StopsWhereLittleNewSurfaceIsToBeExpected) {
 
 TEST_F(Reconstruct, StopAreaIsThatOfTheGainsThatExpectIt) {
   const auto setting = [&](const Strings& more) {
-    Strings flags{"--max-views", "1", "--no-pictures", "--size", "0.2"};
+    Strings flags{"--max-views", "1", "--pictures", "off", "--size", "0.2"};
     flags.insert(flags.end(), more.begin(), more.end());
     (void)reconstruct("cube.off", flags);
     return json::parse(read("run/run.json"))["settings"]["stop_area"].get<double>();
@@ -325,16 +328,16 @@ TEST_F(Reconstruct, FlatPlateEnds) {
   plate.vertex_count = 4, plate.face_count = 1;
   write("plate.off", plate.text());
   const json result = reconstruct(
-      "plate.off", {"--max-views", "80", "--no-pictures", "--size", "0.2", "--noise", "off"});
+      "plate.off", {"--max-views", "80", "--pictures", "off", "--size", "0.2", "--noise", "off"});
   EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
   EXPECT_GT(result["coverage_visible"].get<double>(), 0.9);
 }
 
 TEST_F(Reconstruct, ObjectLargerThanTheWorkspaceEnds) {
   const json result =
-      reconstruct("cube.off", {"--max-views", "80", "--no-pictures", "--size", "0.3", "--workspace",
-                               "-0.1,-0.1,0,0.1,0.1,0.17", "--distance", "0.6", "--noise", "off",
-                               "--gain", "paper", "--stop-gain", "1"});
+      reconstruct("cube.off", {"--max-views", "80", "--pictures", "off", "--size", "0.3",
+                               "--workspace", "-0.1,-0.1,0,0.1,0.1,0.17", "--distance", "0.6",
+                               "--noise", "off", "--gain", "paper", "--stop-gain", "1"});
   EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
   EXPECT_GT(result["coverage"].get<double>(), 0.02);
   EXPECT_LT(result["coverage"].get<double>(), 0.6);
@@ -346,7 +349,7 @@ TEST_F(Reconstruct, BothPartsOfAnObjectAreModelled) {
   two.add_box({2.5, 0, 0}, {3.5, 1, 1});
   write("two.off", two.text());
   const json result =
-      reconstruct("two.off", {"--max-views", "14", "--no-pictures", "--size", "0.3"});
+      reconstruct("two.off", {"--max-views", "14", "--pictures", "off", "--size", "0.3"});
   // Either box alone is half of the surface.
   EXPECT_GT(result["coverage_visible"].get<double>(), 0.7);
 }
@@ -354,8 +357,8 @@ TEST_F(Reconstruct, BothPartsOfAnObjectAreModelled) {
 TEST_F(Reconstruct, SupportPlaneWithTheUpperHalfInReach) {
   write("upper.toml", "[[half_space]]\nnormal = [0.0, 0.0, 1.0]\noffset = 0.05\n");
   const json result = reconstruct(
-      "cube.off", {"--max-views", "80", "--no-pictures", "--size", "0.15", "--support-plane", "0",
-                   "--reach", "upper.toml", "--gain", "paper", "--stop-gain", "1.2"});
+      "cube.off", {"--max-views", "80", "--pictures", "off", "--size", "0.15", "--support-plane",
+                   "0", "--reach", "upper.toml", "--gain", "paper", "--stop-gain", "1.2"});
   EXPECT_EQ(result["stop_reason"], "gain");
   EXPECT_GT(result["final_dropped"].value("unreachable", 0), 0);
   EXPECT_GT(result["coverage_visible"].get<double>(), 0.8);
@@ -417,7 +420,7 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
 }
 
 TEST_F(Reconstruct, BadInputLeavesAnEarlierRunAlone) {
-  (void)reconstruct("cube.off", {"--max-views", "1", "--no-pictures", "--size", "0.2"});
+  (void)reconstruct("cube.off", {"--max-views", "1", "--pictures", "off", "--size", "0.2"});
   const Strings before = list("run");
   const std::string run_file = read("run/run.json");
   EXPECT_EQ(run(arguments("cube.off", {"--start", "0,0,1,0,0,0,1", "--background", "0"})).exit_code,

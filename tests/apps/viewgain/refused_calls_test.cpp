@@ -75,7 +75,8 @@ class RefusedCalls : public test::ProgramTest {
   }
 
   static Strings simulate(const std::string& mesh, const std::string& out) {
-    return {"simulate", mesh, "--sensor", "small.toml", "--size", "0.3", "--center", "--out", out};
+    return {"simulate", mesh,         "--sensor", "small.toml", "--size",
+            "0.3",      "--recenter", "on",       "--out",      out};
   }
   static Strings integrate(const std::string& frames, const std::string& out) {
     return {"integrate", frames, "--voxel", "0.05", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",

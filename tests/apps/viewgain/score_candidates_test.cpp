@@ -161,8 +161,9 @@ TEST_F(ScoreCandidates, InfeasiblePosesAreDroppedByReason) {
   }
   ASSERT_TRUE(dropped.contains("plane"));
   ASSERT_TRUE(dropped.contains("obstacle"));
-  const Strings flags{"--feasible",       "--body",          "0.2,0.2,0.2", "--obstacle",
-                      "0.3,0.1,-1,1,1,1", "--support-plane", "-0.3"};
+  const Strings flags{"--feasible",      "on",         "--body",
+                      "0.2,0.2,0.2",     "--obstacle", "0.3,0.1,-1,1,1,1",
+                      "--support-plane", "-0.3"};
   const json scores = score(flags);
   EXPECT_EQ(scores.at("dropped"), json(dropped));
   EXPECT_EQ(scores.at("best").size(), possible);
@@ -203,9 +204,9 @@ TEST_F(ScoreCandidates, RefusesWhatCannotBe) {
       {{"--obstacle", "0,0,0,1,1"}, "--obstacle"},
       {{"--obstacle", "cube.off", "--out", "cube.off"}, "--obstacle cube.off"},
       {{"--reach", "far.toml", "--out", "far.toml"}, "--reach far.toml"},
-      {{"--body", "0.1,0.1,0.1"}, "--feasible"},
-      {{"--feasible", "--body", "0.1,0.1,0"}, "--body"},
-      {{"--support-plane", "0"}, "--feasible"},
+      {{"--body", "0.1,0.1,0.1"}, "--feasible on"},
+      {{"--feasible", "on", "--body", "0.1,0.1,0"}, "--body"},
+      {{"--support-plane", "0"}, "--feasible on"},
   };
   const std::string cube = read("cube.off");
   std::size_t cases = 0;

@@ -38,8 +38,9 @@ class Sensing : public test::ProgramTest {
 
   json simulate(const std::string& out, const Strings& more = {},
                 const std::string& sensor = "tof.toml") const {
-    Strings arguments{"simulate", "cube.off", "--orbit",  "2,0.6,27,0,46", "--sensor", sensor,
-                      "--size",   "0.3",      "--center", "--out",         out,        "--json"};
+    Strings arguments{"simulate", "cube.off", "--orbit", "2,0.6,27,0,46", "--sensor",
+                      sensor,     "--size",   "0.3",     "--recenter",    "on",
+                      "--out",    out,        "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return json::parse(run_well(arguments));
   }
@@ -146,7 +147,7 @@ TEST_F(Sensing, TheFilterRemovesThem) {
     std::size_t expected = 0;
     for (DepthFrame& frame : load("frames")) expected += filter.apply(frame);
     Strings flags{"--jump-edge-filter", "4"};
-    if (two_sided) flags.push_back("--jump-edge-two-sided");
+    if (two_sided) flags.insert(flags.end(), {"--jump-edge-two-sided", "on"});
     const json filtered = integrate("frames", flags);
     EXPECT_EQ(filtered.at("jump_edge_removed"), expected);
     EXPECT_GT(expected, 50U);

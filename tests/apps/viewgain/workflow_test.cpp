@@ -44,8 +44,9 @@ class Workflow : public test::ProgramTest {
   }
 
   void simulate(const std::string& out, const Strings& more = {}) const {
-    Strings arguments{"simulate", "cube.off", "--orbit",  "3,0.6,27,0,46", "--sensor", "small.toml",
-                      "--size",   "0.3",      "--center", "--out",         out};
+    Strings arguments{"simulate",   "cube.off",   "--orbit", "3,0.6,27,0,46",
+                      "--sensor",   "small.toml", "--size",  "0.3",
+                      "--recenter", "on",         "--out",   out};
     arguments.insert(arguments.end(), more.begin(), more.end());
     run_well(arguments);
   }
@@ -67,7 +68,7 @@ class Workflow : public test::ProgramTest {
 TEST_F(Workflow, JsonHasTheDocumentedKeys) {
   const json simulated = json::parse(
       run_well({"simulate", "cube.off", "--orbit", "3,0.6,27,0,46", "--sensor", "small.toml",
-                "--size", "0.3", "--center", "--out", "frames", "--json"}));
+                "--size", "0.3", "--recenter", "on", "--out", "frames", "--json"}));
   EXPECT_EQ(simulated.at("frames"), 3);
   EXPECT_EQ(simulated.at("readings").get<int>() + simulated.at("out_of_range").get<int>() +
                 simulated.at("invalid").get<int>(),
@@ -371,7 +372,7 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   EXPECT_EQ(best({"--gain", "surface", "--support-plane", "9"}).at("rays"), 48 * 36);
   EXPECT_NE(best({"--gain", "surface", "--object-size", "1"}).at("area"), surface.at("area"));
 
-  // --up and --center: a cube that stands off the origin is seen by the orbit only when centred.
+  // A cube that stands off the origin is seen by the orbit only when it is moved there.
   const auto readings = [this](const Strings& more) {
     Strings arguments{"simulate", "cube.off",     "--orbit", "2,0.6,20",
                       "--sensor", "small.toml",   "--out",   "other_frames",
@@ -379,15 +380,16 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return json::parse(run_well(arguments)).at("readings").get<int>();
   };
-  EXPECT_GT(readings({"--center"}), readings({"--center", "--size", "0.1"}));
-  EXPECT_NE(readings({"--center"}), readings({}));
+  EXPECT_GT(readings({"--recenter", "on", "--size", "0.35"}),
+            readings({"--recenter", "on", "--size", "0.1"}));
+  EXPECT_NE(readings({"--recenter", "on", "--size", "0.35"}), readings({"--size", "0.35"}));
 }
 
 TEST_F(Workflow, FramesSayWhatTheHazardIs) {
   simulate("frames");
   integrate("frames", "plain.vdb");
-  integrate("frames", "one.vdb", {"--calibrate-hazard", "--threads", "1"});
-  integrate("frames", "three.vdb", {"--calibrate-hazard", "--threads", "3"});
+  integrate("frames", "one.vdb", {"--calibrate-hazard", "on", "--threads", "1"});
+  integrate("frames", "three.vdb", {"--calibrate-hazard", "on", "--threads", "3"});
   EXPECT_EQ(hash("one.vdb"), hash("three.vdb"));
   const auto factors = [this](const std::string& map) {
     return json::parse(run_well({"info", map, "--json"})).at("hazard_factors");
@@ -423,9 +425,9 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
   // Options, arguments, units and, after "=", defaults.
   const std::vector<std::pair<std::string, std::string>> commands{
       {"simulate",
-       "MESH --poses --orbit --sensor --size --center --background --up --support-plane --noise "
-       "--flying-pixels --wiggling --calibrate --frames-per-view --amplitude --seed --out --json "
-       "--threads =0.35 =1.5 [m]"},
+       "MESH --poses --sphere --dome --rings --shell --orbit --center --sensor --size --recenter "
+       "--background --up --support-plane --noise --flying-pixels --wiggling --calibrate "
+       "--frames-per-view --amplitude --seed --out --json --threads =1.5 [m]"},
       {"integrate",
        "FRAMES_DIR --cloud --origin --poses --voxel --workspace --sensor --depth-scale "
        "--out-of-range --carve --occupancy --jump-edge-filter --jump-edge-two-sided "
@@ -435,7 +437,8 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
       {"convert",
        "IN OUT --workspace --prior-sigma --sensor --with-covariance --json --threads .ot [m]"},
       {"score",
-       "MAP --poses --sphere --dome --rings --shell --sensor --gain --refinement-weight "
+       "MAP --poses --sphere --dome --rings --shell --orbit --center --sensor --gain "
+       "--refinement-weight "
        "--object-size --hazard --support-plane --obstacle --reach --feasible --body --criterion "
        "--stride --weight --prior-sigma "
        "--min-range --max-range --top --race --approximate --set --seed "
@@ -447,12 +450,12 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--threads"},
       {"reconstruct",
        "MESH --sensor --voxel --size --workspace --up --start --distance --policy --generator "
-       "--sphere-poses --gain --overlap --region-depth --object-size --hazard --criterion "
+       "--count --gain --overlap --region-depth --object-size --hazard --criterion "
        "--max-views --stop-gain "
        "--stop-area --stop-idle --stop-coverage "
        "--travel-cost --travel-speed --reach --body --background --support-plane --noise "
        "--flying-pixels --seed --wiggling --calibrate --frames-per-view --jump-edge-filter "
-       "--no-refine --obstacle --save-maps --no-pictures --out --json --threads"}};
+       "--refine --obstacle --save-maps --pictures --out --json --threads"}};
   const std::string top = run_well({"--help"});
   int words = 0;
   for (const auto& [command, listed] : commands) {
@@ -478,7 +481,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 161);
+  EXPECT_EQ(words, 167);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

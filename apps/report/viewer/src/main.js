@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 // The page of a report: reads the data in it and builds what shows them.
-import { Box3, Sphere, Vector3 } from "three";
-import { poseAt } from "./data/parts.js";
 import { Report } from "./data/report.js";
 import { byId } from "./dom.js";
 import { layersOf, LayerStack } from "./layers/stack.js";
-import { matrixOf } from "./scene/frusta.js";
+import { outlookOf } from "./scene/outlook.js";
 import { Stage } from "./scene/stage.js";
 import { State } from "./state.js";
 import { buildCameraTools } from "./ui/camera_tools.js";
@@ -38,19 +36,10 @@ function startStep(report) {
   return Math.min(asked, report.steps.length - 1);
 }
 
-/** Where the run started, or the best pose. */
-async function firstPose(report) {
-  const { pose, chosen, candidates } = report.steps[0];
-  if (report.isRun) return pose;
-  return chosen === null ? null : poseAt((await report.part(candidates)).poses, chosen);
-}
-
-function stageOf(report, pose) {
-  const [x0, y0, z0, x1, y1, z1] = report.workspace;
-  const box = new Box3(new Vector3(x0, y0, z0), new Vector3(x1, y1, z1));
-  const { center, radius } = box.applyMatrix4(matrixOf(report.T_world_grid)).getBoundingSphere(new Sphere());
+/** Null where the browser has no WebGL. */
+function stageOn(outlook) {
   try {
-    return new Stage(byId("stage"), center, radius, pose);
+    return new Stage(byId("stage"), outlook);
   } catch {
     return null;
   }
@@ -69,6 +58,7 @@ function buildViewer(state, report, stage, layers) {
   const makeRoom = () => stage.setAside(panel.open && stage.canvas.clientWidth > 600 ? panel.offsetWidth : 0);
   panel.addEventListener("toggle", makeRoom);
   makeRoom();
+  stage.home();
   const camera = buildCameraTools(state, report, stage);
   let colours = null;
   state.follow(["theme"], ({ theme }) => {
@@ -129,7 +119,8 @@ async function build(report) {
   // A candidate belongs to its step.
   state.follow(["step"], () => state.set({ candidate: null }));
 
-  const stage = stageOf(report, await firstPose(report));
+  const outlook = await outlookOf(report);
+  const stage = stageOn(outlook);
   const viewerKeys = stage ? buildViewer(state, report, stage, layers) : [];
   if (!stage) showPictures(state, report);
   bindKeys([

@@ -22,25 +22,26 @@ struct VIEWGAIN_EXPORT PoseSet {
   std::vector<Pose> poses;  ///< T_world_camera
 };
 
-/// The generators of candidates by name: boundary, sphere, dome, rings, shell, sequence,
-/// fibonacci.
+/// The generators of candidates by name: boundary, sphere, dome, rings, shell, sequence.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& generator_names();
 
 /// What the pose sets are made for.
 struct VIEWGAIN_EXPORT PoseSetRequest {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< what they look at [m]
   double distance = 0;                               ///< from it [m]
-  /// 500 unless given; rings: 48, 80, 288 or 864, 48; fibonacci: 20.
+  /// 500 unless given; rings: 48, 80, 288 or 864, 48.
   std::optional<std::size_t> count{};
   std::uint64_t seed = 1;       ///< shell
-  std::optional<Pose> start{};  ///< sequence, fibonacci: the view before them
+  std::optional<Pose> start{};  ///< of sequence and of sets spread out: the view before them
+  /// Puts the set's poses into an order in which any number of the first ones are spread evenly:
+  /// each as far as can be from the start's direction and those before it, ties to the lower index.
+  bool spread_out = false;
 };
 
 /// The set of a generator other than boundary. Shell: between 0.8 and 1.25 times the distance.
 /// Sequence: eight views on the start's circle of latitude, in steps of 45°, then one from above.
-/// Fibonacci: the sphere's poses, each as far as can be from the start's direction and those before
-/// it, so that any number of the first ones are spread evenly; ties to the lower index.
-/// Throws Error(invalid_argument) for an unknown name or a count that the generator has not.
+/// Throws Error(invalid_argument) for an unknown name, a count that the generator has not, and more
+/// than 20,000 poses to spread out.
 [[nodiscard]] VIEWGAIN_EXPORT PoseSet make_pose_set(std::string_view generator,
                                                     const PoseSetRequest& request);
 

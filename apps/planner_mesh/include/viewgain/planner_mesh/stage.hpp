@@ -19,7 +19,7 @@ namespace viewgain {
 
 struct VIEWGAIN_EXPORT StageConfig {
   std::filesystem::path mesh;
-  double size = 0.35;  ///< longest side [m]
+  std::optional<double> size{};  ///< longest side to scale it to [m]; not given: its own
   UpAxis up = UpAxis::z;
   std::optional<Box> workspace{};         ///< world [m]; default: see Stage
   std::optional<double> support_plane{};  ///< the object stands on it; world z [m]
@@ -29,13 +29,15 @@ struct VIEWGAIN_EXPORT StageConfig {
 struct VIEWGAIN_EXPORT Stage {
   std::shared_ptr<const SurfaceScene> scene;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the object's bounding box [m]
+  double size = 0;                                   ///< longest side of that box [m]
   /// A cube of edge size · 0.4 / 0.35 around the object, or the one given; cut at the support
   /// plane, since what is under it is known.
   Box workspace{};
 };
 
-/// Reads, centres and scales the mesh; with a support plane it is put on it. Throws Error for a
-/// mesh that cannot be read, a size that is not positive, a workspace under the plane.
+/// Reads and centres the mesh, scales it if a size is given; with a support plane it is put on it.
+/// Throws Error for a mesh that cannot be read or has no extent, a size that is not positive, a
+/// workspace under the plane.
 [[nodiscard]] VIEWGAIN_EXPORT Stage set_stage(const StageConfig& config, const ExecConfig& exec);
 
 /// A pose that looks at the object's centre from 27° above, at an azimuth that depends on the seed;

@@ -97,6 +97,11 @@ export const selected = {
   async build({ step, report, stage, values }) {
     const { poses } = await report.part(step.candidates);
     const pose = poseAt(poses, values.candidate);
-    return { object: frustumLines(pose, report.frustum, 0.2 * stage.radius, selectedColour, 3.5) };
+    const sight = stage.centre.distanceTo({ x: pose[3], y: pose[7], z: pose[11] });
+    const object = frustumLines(pose, report.frustum, 0.2 * stage.radius, selectedColour, 3.5, sight);
+    // It was asked for, so nothing hides it.
+    object.material.depthTest = false;
+    object.renderOrder = 1;
+    return { object };
   },
 };

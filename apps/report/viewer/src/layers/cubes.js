@@ -3,6 +3,7 @@
 // Layers of voxels: the map, what a pose adds, where new surface is expected.
 import { Color } from "three";
 import { hitColours, ramps } from "../colours.js";
+import { quantile } from "../data/parts.js";
 import { unitOf } from "../format.js";
 import { cubes } from "../scene/cubes.js";
 
@@ -11,28 +12,22 @@ const greatest = (values) => {
   return high > 0 ? high : 1;
 };
 
-const mapLayer = (id, label, state, on, colour, size, opacity) => ({
-  id,
-  label,
-  on,
-  swatch: colour,
+const mapColour = "#8b97a8";
+
+export const map = {
+  id: "map",
+  label: "Map, occupied",
+  on: true,
+  swatch: mapColour,
   ofAllSteps: () => true,
   has: (step) => step.map && step.map.centers.rows > 0,
   async build({ step, report }) {
-    const map = await report.part(step.map);
-    const linear = new Color(colour).toArray();
-    const write = (i, target) => {
-      if (map.state[i] !== state) return false;
-      [target[0], target[1], target[2]] = linear;
-      return true;
-    };
-    const object = cubes(map.centers, size * map.size, write, opacity);
-    return { object, legend: { title: "map", marks: [[label.toLowerCase(), colour]] } };
+    const { centers, size } = await report.part(step.map);
+    const linear = new Color(mapColour).toArray();
+    const write = (i, target) => [target[0], target[1], target[2]] = linear;
+    return { object: cubes(centers, 0.98 * size, write) };
   },
-});
-
-export const occupied = mapLayer("occupied", "Occupied", 2, true, "#8b97a8", 0.98, 1);
-export const unknownBorder = mapLayer("unknown", "Unknown border", 1, true, "#e6c9a2", 0.5, 0.75);
+};
 
 export const contributions = {
   id: "contributions",
@@ -44,10 +39,8 @@ export const contributions = {
     const { centers, value, state, unit, size } = await report.part(step.contributions);
     const { name, factor } = unitOf(unit);
     const high = greatest(value);
-    const write = (i, target) => {
+    const write = (i, target) =>
       (state[i] === 1 ? ramps.unknown : ramps.occupied).write(value[i] / high, target, 0);
-      return true;
-    };
     const bar = (title, ramp) => ({ title, ramp, low: 0, high: high * factor });
     const legend = [
       bar(`from unknown [${name}]`, ramps.unknown),
@@ -56,6 +49,8 @@ export const contributions = {
     return { object: cubes(centers, 1.04 * size, write), legend };
   },
 };
+
+const mostExpected = 8000;
 
 export const expected = {
   id: "expected",
@@ -66,12 +61,13 @@ export const expected = {
   async build({ step, report }) {
     const { centers, value, unit, size } = await report.part(step.expected);
     const { name, factor } = unitOf(unit);
-    const high = greatest(value);
-    const write = (i, target) => {
-      ramps.expected.write(value[i] / high, target, 0);
-      return true;
-    };
-    const object = cubes(centers, 0.86 * size, write, 0.9);
-    return { object, legend: { title: `expected [${name}]`, ramp: ramps.expected, low: 0, high: high * factor } };
+    // Nearly all of the unknown may be expected to show a little: the most telling cells are shown.
+    const best = Array.from(value.keys()).sort((a, b) => value[b] - value[a]).slice(0, mostExpected);
+    const shown = { centers: new Float32Array(3 * best.length), value: best.map((i) => value[i]) };
+    best.forEach((i, k) => shown.centers.set(centers.subarray(3 * i, 3 * i + 3), 3 * k));
+    const high = quantile(shown.value, 0.98) || 1;
+    const write = (i, target) => ramps.expected.write(shown.value[i] / high, target, 0);
+    const legend = { title: `expected [${name}]`, ramp: ramps.expected, low: 0, high: high * factor, open: true };
+    return { object: cubes(shown.centers, 0.86 * size, write), legend };
   },
 };

@@ -11,7 +11,7 @@ const ofRun = [
   ofSurface.taken, ofPoses.chosen, ofSurface.points, ofCubes.expected, ofSurface.truth, ofSurface.workspace,
 ];
 const ofScore = [
-  ofCubes.occupied, ofCubes.unknownBorder, ofPoses.candidates, ofPoses.dropped,
+  ofCubes.map, ofPoses.candidates, ofPoses.dropped,
   { ...ofPoses.chosen, label: "Pose and its rays" }, ofCubes.contributions, ofSurface.workspace,
 ];
 

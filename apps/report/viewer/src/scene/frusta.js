@@ -41,8 +41,8 @@ export function pyramids(poses, indices, frustum, size, colourOf, opacity = 1) {
   return mesh;
 }
 
-/** A frustum of lines, with a mark that shows where up is. */
-export function frustumLines(pose, frustum, depth, colour, width) {
+/** A frustum of lines, with a mark that shows where up is, and a line of sight of length `sight`. */
+export function frustumLines(pose, frustum, depth, colour, width, sight = 0) {
   const corners = frustum.map(([x, y]) => [x * depth, y * depth, depth]);
   const segments = [];
   corners.forEach((corner, i) => segments.push([0, 0, 0], corner, corner, corners[(i + 1) % 4]));
@@ -50,6 +50,7 @@ export function frustumLines(pose, frustum, depth, colour, width) {
   const top = Math.min(...frustum.map(([, y]) => y)) * depth;
   const roof = [[-0.35 * half, 1.06 * top, depth], [0, 1.4 * top, depth], [0.35 * half, 1.06 * top, depth]];
   segments.push(roof[0], roof[1], roof[1], roof[2], roof[2], roof[0]);
+  if (sight > 0) segments.push([0, 0, depth], [0, 0, sight]);
   const lines = wideLines(new Float32Array(segments.flat()), null, { colour, width });
   lines.applyMatrix4(matrixOf(pose));
   return lines;

@@ -38,7 +38,7 @@ export function boundaryLines({ points, start, class: classes, closed }, width) 
 
 const hitNames = ["nothing", "unknown", "occupied"];
 // More rays than these hide each other.
-const mostRays = 1200;
+const mostRays = 500;
 
 function disc() {
   const canvas = document.createElement("canvas");
@@ -75,14 +75,15 @@ export function bundleOf({ ends, kind }, pose) {
   lineGeometry.setAttribute("position", new BufferAttribute(new Float32Array(rays), 3));
   lineGeometry.setAttribute("color", new BufferAttribute(new Float32Array(rayColours), 4));
   const lineMaterial = new LineBasicMaterial({
-    vertexColors: true, transparent: true, opacity: 0.3, depthWrite: false,
+    vertexColors: true, transparent: true, opacity: 0.24, depthWrite: false,
   });
   group.add(new LineSegments(lineGeometry, lineMaterial));
   const pointGeometry = new BufferGeometry();
   pointGeometry.setAttribute("position", new BufferAttribute(new Float32Array(hits), 3));
   pointGeometry.setAttribute("color", new BufferAttribute(new Float32Array(hitColour), 3));
+  const pixels = (kind.length > 800 ? 3.5 : 4.5) * Math.min(2, window.devicePixelRatio);
   const pointMaterial = new PointsMaterial({
-    vertexColors: true, size: 4.5 * Math.min(2, window.devicePixelRatio), sizeAttenuation: false, map: disc(), alphaTest: 0.5,
+    vertexColors: true, size: pixels, sizeAttenuation: false, map: disc(), alphaTest: 0.5,
   });
   group.add(new Points(pointGeometry, pointMaterial));
   return group;

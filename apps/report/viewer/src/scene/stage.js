@@ -8,9 +8,10 @@ import {
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 const homeFieldOfView = 36;
-// Beside a first pose and above [rad].
-const homeAside = 0.75;
-const homeHeight = 0.42;
+// How far above the scene home looks down from [rad].
+const homeHeight = 0.38;
+// Home goes back this much further to have the first camera in sight.
+const homeBack = 1.3;
 
 const column = (pose, c) => new Vector3(pose[c], pose[4 + c], pose[8 + c]);
 
@@ -19,7 +20,7 @@ export class Stage {
   #size = new Vector2();
 
   /** Throws where the browser has no WebGL. */
-  constructor(host, centre, radius, firstPose) {
+  constructor(host, { centre, radius, azimuth, firstPose }) {
     this.renderer = new WebGLRenderer({ antialias: true });
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
     this.canvas = this.renderer.domElement;
@@ -29,8 +30,7 @@ export class Stage {
 
     this.centre = centre;
     this.radius = radius;
-    const [x, y] = firstPose ? column(firstPose, 3).sub(centre).toArray() : [0, -1];
-    const azimuth = Math.atan2(y, x) - homeAside;
+    this.firstPose = firstPose;
     this.homeDirection = new Vector3().setFromSphericalCoords(1, Math.PI / 2 - homeHeight, azimuth);
     // Spherical coordinates have their pole along y.
     this.homeDirection.set(this.homeDirection.z, this.homeDirection.x, this.homeDirection.y);
@@ -112,7 +112,25 @@ export class Stage {
     const distance = (0.86 * this.radius) / Math.sin(half) / narrow;
     this.controls.target.copy(this.centre);
     this.camera.position.copy(this.centre).addScaledVector(this.homeDirection, distance);
+    if (this.firstPose) this.include(this.firstPose, homeBack);
     this.draw();
+  }
+
+  /**
+   * Goes back until a camera of the data is in sight, beside what lies over the stage, but no further
+   * than `most` times as far.
+   */
+  include(pose, most = Infinity) {
+    const left = -0.92 + (2 * this.aside) / Math.max(1, this.#size.x);
+    const inSight = () => {
+      this.camera.lookAt(this.controls.target);
+      this.camera.updateMatrixWorld();
+      const at = column(pose, 3).project(this.camera);
+      return at.z < 1 && at.x > left && at.x < 0.92 && Math.abs(at.y) < 0.82;
+    };
+    const offset = () => this.camera.position.distanceTo(this.controls.target);
+    const furthest = Math.min(0.9 * this.controls.maxDistance, most * offset());
+    while (!inSight() && offset() < furthest) this.move(0, 0, 1.05);
   }
 
   /** Looks through a camera of the data, upright. */

@@ -24,6 +24,11 @@ export function buildCameraTools(state, report, stage) {
   if (report.isRun) tools.push(button("From view", "Look through the view just taken (V)", lookTaken));
   tools.push(next);
   byId("camera-tools").append(...tools);
+  state.follow(["candidate"], async ({ candidate }) => {
+    if (candidate === null) return;
+    const pose = await planned(report, state.values);
+    if (pose) stage.include(pose);
+  });
   state.follow(["step", "candidate"], ({ step, candidate }) => {
     next.disabled = (candidate ?? report.steps[step].chosen) === null;
   });

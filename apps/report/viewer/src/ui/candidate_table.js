@@ -80,7 +80,7 @@ export function buildCandidateTable(state, report) {
         host.replaceChildren(el("p", { class: "totals" }, "No candidate was proposed after this view."));
         return;
       }
-      table = new Table("Candidates for the next view", columnsOf(report, part, chosen, withClass), choose);
+      table = new Table("Candidates for the next view", columnsOf(report, part, chosen, withClass), choose, 1);
       table.setRows(rowsOf(part));
       host.replaceChildren(totals(part), table.element);
     }

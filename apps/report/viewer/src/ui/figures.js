@@ -16,7 +16,10 @@ function rowsOf(object, prefix = "") {
 
 function textOf(value) {
   if (value === null || value === undefined) return none;
-  if (typeof value === "number") return Number.isInteger(value) ? value.toLocaleString("en") : String(Number(value.toPrecision(5)));
+  if (typeof value === "number") {
+    const large = Number.isInteger(value) || Math.abs(value) >= 1000;
+    return large ? value.toLocaleString("en", { maximumFractionDigits: 1 }) : String(Number(value.toPrecision(5)));
+  }
   if (typeof value === "boolean") return value ? "yes" : "no";
   return typeof value === "string" ? value : JSON.stringify(value);
 }

@@ -9,7 +9,7 @@ function bar({ title, ramp, low, high, open }) {
   const strip = el("span", { class: "ramp", "aria-hidden": "true" });
   strip.style.background = `linear-gradient(to right, ${stops.join(",")})`;
   return el("div", { class: "bar" }, el("span", { class: "name" }, title),
-    `${open ? "≤ " : ""}${short(low)}`, strip, `${open ? "≥ " : ""}${short(high)}`);
+    `${open && low > 0 ? "≤ " : ""}${short(low)}`, strip, `${open ? "≥ " : ""}${short(high)}`);
 }
 
 function marks({ title, marks: list }) {

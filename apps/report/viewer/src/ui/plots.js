@@ -28,13 +28,18 @@ function ticksUpTo(high) {
   return Array.from({ length: steps + 1 }, (_, i) => i * step);
 }
 
+function tickText(tick, top) {
+  const [value, suffix] = top >= 10000 ? [tick / 1000, tick > 0 ? "k" : ""] : [tick, ""];
+  return `${Number(value.toPrecision(6)).toLocaleString("en")}${suffix}`;
+}
+
 const finite = (values) => values.filter(Number.isFinite);
 
 function axes(group, size, ticks, y, places, first) {
   for (const tick of ticks) {
     group.append(
       svg("line", { class: "grid", x1: size.left, x2: size.width - size.right, y1: y(tick), y2: y(tick) }),
-      svg("text", { x: size.left - 4, y: y(tick) + 3, "text-anchor": "end" }, Number(tick.toPrecision(6)).toLocaleString("en")));
+      svg("text", { x: size.left - 4, y: y(tick) + 3, "text-anchor": "end" }, tickText(tick, ticks[ticks.length - 1])));
   }
   const every = spacing(places.length / 6);
   places.forEach((x, i) => {

@@ -24,8 +24,8 @@ export class Table {
   #selected = null;
   #elements = new Map();
 
-  /** columns: name, title, number, value(row), cell(row) -> text or node; rows have an `id`. */
-  constructor(label, columns, choose) {
+  /** columns: name, title, number, value(row), cell(row) -> text or node; rows have an `id`; sortBy: a column to start with. */
+  constructor(label, columns, choose, sortBy = null) {
     this.columns = columns;
     this.choose = choose;
     this.heads = columns.map((column, i) => {
@@ -35,6 +35,7 @@ export class Table {
     this.body = el("tbody", { onkeydown: (event) => this.#key(event) });
     this.more = el("button", { type: "button", class: "more", onclick: () => this.#showAll() });
     const table = el("table", { role: "grid", "aria-label": label }, el("thead", {}, el("tr", {}, ...this.heads)), this.body);
+    if (sortBy !== null) this.#sortBy(sortBy);
     this.element = el("div", { class: "table" }, table, this.more);
   }
 

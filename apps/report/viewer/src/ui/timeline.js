@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The slider over the steps, and what happened in the one shown.
 import { byId, el } from "../dom.js";
-import { count, none, percent, short, withUnit, words } from "../format.js";
+import { count, none, percent, withUnit, words } from "../format.js";
 
 const playEvery = 1100;
 
@@ -39,7 +39,7 @@ function scoreStory(report, index) {
   const rays = bundle ? "" : " Its rays are not in this report, only those of the best poses.";
   const lost = sum(report.summary?.dropped);
   const dropped = lost ? ` ${count(lost, "pose was", "poses were")} dropped.` : "";
-  return `Pose ${short(row[0])} ranks ${index + 1} of ${report.steps.length.toLocaleString("en")}${value}.${rays}${dropped}`;
+  return `Pose ${row[0]} ranks ${index + 1} of ${report.steps.length.toLocaleString("en")}${value}.${rays}${dropped}`;
 }
 
 export function buildTimeline(state, report) {

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "choices.hpp"
+
+#include "values.hpp"
+
+namespace viewgain::app {
+
+void one_of(CLI::Option& option, const std::vector<std::string>& names, const char* what) {
+  std::string shown;
+  for (const std::string& name : names) shown.append(shown.empty() ? "{" : ",").append(name);
+  option.check(CLI::Validator(
+      [flag = option.get_name(), names, what](std::string& value) {
+        check_one_of(flag, value, names, what);
+        return std::string();
+      },
+      shown + "}"));
+}
+
+void on_or_off(CLI::Option& option) { one_of(option, {"on", "off"}, "position of a switch"); }
+
+std::vector<std::string> choices_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t begin = type.find('{');
+  std::vector<std::string> names;
+  if (begin == std::string::npos) return names;
+  std::string rest = type.substr(begin + 1, type.find('}') - begin - 1);
+  for (std::size_t comma = rest.find(','); comma != std::string::npos; comma = rest.find(',')) {
+    names.push_back(rest.substr(0, comma));
+    rest.erase(0, comma + 1);
+  }
+  names.push_back(rest);
+  return names;
+}
+
+}  // namespace viewgain::app

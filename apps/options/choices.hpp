@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace viewgain::app {
+
+/// The option takes one of these names, which help and completion show; check_one_of() refuses
+/// others.
+void one_of(CLI::Option& option, const std::vector<std::string>& names, const char* what);
+
+/// The option takes on or off.
+void on_or_off(CLI::Option& option);
+
+/// What an option takes that one_of() was called for, else nothing.
+[[nodiscard]] std::vector<std::string> choices_of(const CLI::Option& option);
+
+}  // namespace viewgain::app
