@@ -3,6 +3,7 @@
 #include "run_page.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -19,7 +20,7 @@ using nlohmann::ordered_json;
 
 // So that a run of 40 views stays under 25 MB.
 constexpr std::size_t kMaxVertices = 20'000, kMaxTruthVertices = 100'000, kMaxPoints = 1'500,
-                      kMaxExpected = 4'000;
+                      kMaxExpected = 4'000, kMaxExact = 100;
 
 ShownMesh shown_surface(const SurfaceModel& model, const Truth& truth) {
   const SurfaceMesh& surface = model.surface();
@@ -81,8 +82,31 @@ ordered_json patches_json(const EstimatedViews& estimated, double length) {
   return to_json(mesh);
 }
 
+// Those of the best and of the chosen one by all rays, of the others estimates: to trace the rays
+// of thousands of candidates would take longer than the view.
+void add_gains(ShownCandidates& shown, const GainEvaluator& evaluator,
+               const std::optional<std::size_t>& chosen) {
+  if (shown.poses.empty()) return;
+  std::vector<ApproximateGain> estimates(shown.poses.size());
+  evaluator.approximate(shown.poses, estimates);
+  std::vector<ViewGain> ranked(estimates.size());
+  for (std::size_t i = 0; i < ranked.size(); ++i) ranked[i].gain = estimates[i].gain;
+  std::vector<std::size_t> exact = best_indices(ranked, kMaxExact);
+  if (chosen) exact.push_back(*chosen);
+  std::vector<Pose> poses;
+  for (const std::size_t i : exact) poses.push_back(shown.poses[i]);
+  const std::vector<ViewGain> gains = evaluator.evaluate(poses);
+  for (std::size_t k = 0; k < exact.size(); ++k) ranked[exact[k]] = gains[k];
+  for (const ViewGain& gain : ranked) {
+    shown.gains.push_back(gain.gain);
+    shown.areas.push_back(gain.area);
+  }
+  shown.exact = std::move(exact);
+}
+
 ordered_json candidates_json(const Proposal& proposal, const CandidateGeneration& generation,
-                             const GainEvaluator& evaluator) {
+                             const GainEvaluator& evaluator,
+                             const std::optional<std::size_t>& chosen) {
   ShownCandidates shown;
   const auto add = [&](const Candidate& candidate, const std::string& reason) {
     shown.poses.push_back(candidate.T_world_camera);
@@ -92,10 +116,7 @@ ordered_json candidates_json(const Proposal& proposal, const CandidateGeneration
     shown.reasons.push_back(reason);
   };
   for (const Candidate& candidate : proposal.candidates) add(candidate, "");
-  for (const ViewGain& gain : evaluator.evaluate(shown.poses)) {
-    shown.gains.push_back(gain.gain);
-    shown.areas.push_back(gain.area);
-  }
+  add_gains(shown, evaluator, chosen);
   if (!proposal.dropped.empty()) {
     for (const DroppedCandidate& dropped : generation.dropped()) {
       add(dropped.candidate, dropped.reason);
@@ -155,7 +176,9 @@ void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
   const EstimatedViews& estimated = proposed ? generation.estimated() : none;
   view["boundaries"] = boundaries_json(model.surface(), estimated.runs);
   view["patches"] = patches_json(estimated, generation.config().boundary.estimator.patch_length);
-  view["candidates"] = candidates_json(record.proposal, generation, evaluator);
+  view["candidates"] =
+      candidates_json(record.proposal, generation, evaluator,
+                      record.decision ? std::optional(record.decision->candidate) : std::nullopt);
   view["chosen"] = nullptr;
   view["bundle"] = nullptr;
   view["expected"] = nullptr;

@@ -26,8 +26,8 @@ class RunPage {
   RunPage(std::string title, const Sensor& sensor, std::string criterion,
           std::shared_ptr<const Truth> truth);
 
-  /// To be called once a view, in order. `evaluator` is of the model's scene and scores all
-  /// candidates, which takes about as long as a ranking by all rays; `picture` is for browsers that
+  /// To be called once a view, in order. `evaluator` is of the model's scene and scores the
+  /// candidates; `picture` is for browsers that
   /// cannot draw.
   void add_view(const ViewRecord& record, const SurfaceModel& model,
                 const CandidateGeneration& generation, const GainEvaluator& evaluator,

@@ -58,7 +58,7 @@ ordered_json ScorePage::json() const {
          {"bundle", bundle_json(evaluator, sensor, poses[i])},
          {"contributions", contributions_json(evaluator, poses[i], page["gain_unit"])}});
   }
-  ShownCandidates candidates{{poses.begin(), poses.end()}, gains, areas, {}, {}, {}};
+  ShownCandidates candidates{{poses.begin(), poses.end()}, gains, areas, exact, {}, {}, {}};
   candidates.generators.resize(poses.size());
   candidates.classes.resize(poses.size());
   for (const double gain : gains)

@@ -20,9 +20,10 @@ struct ScorePage {
   std::string title, criterion;
   const GainEvaluator& evaluator;
   const Sensor& sensor;
-  std::span<const Pose> poses;  ///< all that were given
-  std::vector<double> gains;    ///< of all of them; NaN: not scored
-  std::vector<double> areas;    ///< likewise, or none
+  std::span<const Pose> poses;     ///< all that were given
+  std::vector<double> gains;       ///< of all of them; NaN: not scored
+  std::vector<double> areas;       ///< likewise, or none
+  std::vector<std::size_t> exact;  ///< poses whose gain is by all rays and no estimate
   /// The ranking: what its columns are called; a row a pose, best first, the pose's index in it.
   nlohmann::ordered_json columns, rows;
   std::vector<std::size_t> shown;  ///< poses whose rays and voxels the page has

@@ -79,6 +79,7 @@ ordered_json to_json(const ShownCandidates& candidates) {
   ordered_json json{{"poses", float_block(poses, 12)},
                     {"gain", column_of(candidates.gains, count)},
                     {"area", column_of(candidates.areas, count)}};
+  json["exact"] = candidates.exact;
   ordered_json names;
   json["class"] = numbered(candidates.classes, names);
   json["classes"] = names;

@@ -29,6 +29,7 @@ namespace viewgain::app {
 struct ShownCandidates {
   std::vector<Pose> poses;
   std::vector<double> gains, areas;
+  std::vector<std::size_t> exact;  ///< whose gain is by all rays; of the others it is estimated
   std::vector<std::string> generators, classes, reasons;  ///< one a pose; an empty text is none
 };
 [[nodiscard]] nlohmann::ordered_json to_json(const ShownCandidates& candidates);

@@ -16,6 +16,7 @@
 #include "options/gain_unit.hpp"
 #include "options/hazard_source.hpp"
 #include "options/obstacle_source.hpp"
+#include "options/sensed_map.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
@@ -176,9 +177,8 @@ void candidates(const Options& options) {
     throw Error(ErrorCode::invalid_argument,
                 "--object-size and --hazard go with --gain surface or combined");
   }
-  Sensor sensor = load_sensor(options.sensor);
+  auto [grid, sensor] = load_sensed_map(options.map, options.sensor);
   if (!options.body.empty()) sensor.body_size = parse_size("--body", options.body);
-  BeliefGrid grid = load_map(options.map, &sensor);
   const GenerationConfig config = generation_config(options, sensor, grid);
 
   SurfaceModelConfig model_config;
@@ -267,7 +267,7 @@ Command add_candidates(CLI::App& program) {
                           "rings, shell or sequence")
               ->required(),
          generator_names(), "generator");
-  app->add_option("--sensor", o.sensor, kSensorHelp)->required();
+  app->add_option("--sensor", o.sensor, kMapSensorHelp);
   app->add_option("--count", o.count,
                   "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
                   "(default 48)")

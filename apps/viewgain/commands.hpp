@@ -48,6 +48,10 @@ inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt)";
 inline constexpr const char* kSensorHelp =
     "preset (sr4000, azure_kinect_nfov, kinect_v1, d435, laser_line) or a .toml file";
 
+inline constexpr const char* kMapSensorHelp =
+    "preset (sr4000, azure_kinect_nfov, kinect_v1, d435, laser_line) or a .toml file; default: the "
+    "one that the map's readings come from, where it says so";
+
 inline constexpr const char* kBodyHelp =
     "x,y,z: width, height, depth of the sensor's housing [m]; default: the sensor's own, else the "
     "SR4000's";

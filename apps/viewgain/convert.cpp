@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "commands.hpp"
 #include "map_json.hpp"
@@ -50,8 +51,11 @@ void convert(const Options& options) {
   config.prior_sigma = options.prior_sigma;
   std::optional<Sensor> sensor;
   if (!options.sensor.empty()) sensor = load_sensor(options.sensor);
-  const BeliefGrid grid = load_map(options.in, sensor ? &*sensor : nullptr, config);
-  const LostInTree lost = save_map(grid, options.out, {options.with_covariance == "on"});
+  const MapOfSensor map = load_map_of_sensor(options.in, sensor ? &*sensor : nullptr, config);
+  const BeliefGrid& grid = map.grid;
+  VdbWriteConfig how{options.with_covariance == "on"};
+  if (map.sensor) how = noting_sensor(*map.sensor, std::move(how));
+  const LostInTree lost = save_map(grid, options.out, how);
   warn_of_lost_frame(lost, options.out);
   const GridStatistics statistics = grid.statistics();
   const Index3 dims = grid.dims();

@@ -74,7 +74,8 @@ nlohmann::ordered_json hazard_factors(const BeliefGrid& grid) {
 
 void info(const Options& options) {
   const Criterion criterion = parse_criterion(options.criterion);
-  const BeliefGrid grid = load_map(options.map);
+  const MapOfSensor map = load_map_of_sensor(options.map);
+  const BeliefGrid& grid = map.grid;
   if (options.hash) {
     if (options.common.json) {
       print_json({{"hash", grid.content_hash()}});
@@ -102,6 +103,8 @@ void info(const Options& options) {
                                 {"entropy_removed", statistics.entropy_removed},
                                 {"prior_sigma", grid.prior_sigma()},
                                 {"views", grid.views().size()},
+                                {"sensor", map.sensor ? nlohmann::ordered_json(map.sensor->name)
+                                                      : nlohmann::ordered_json()},
                                 {"hazard_factors", hazard_factors(grid)},
                                 {"hash", grid.content_hash()}};
     if (region) json["region"] = region_json(*region);
@@ -124,6 +127,7 @@ void info(const Options& options) {
               options.criterion.c_str());
   std::printf("prior sigma      %g m\n", grid.prior_sigma());
   std::printf("views            %zu\n", grid.views().size());
+  if (map.sensor) std::printf("sensor           %s\n", map.sensor->name.c_str());
   if (const HazardCounters& counters = grid.hazard_counters(); !counters.empty()) {
     std::printf("hazard factors  ");
     for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {

@@ -16,6 +16,7 @@
 #include "commands.hpp"
 #include "map_json.hpp"
 #include "options/choices.hpp"
+#include "options/sensed_map.hpp"
 #include "options/values.hpp"
 #include "reading_source.hpp"
 #include "viewgain/core/error.hpp"
@@ -82,7 +83,9 @@ BeliefGrid continued_map(const Sensor& sensor, const Options& options) {
   OctomapConfig tree;  // which has no prior or workspace of its own
   tree.prior_sigma = options.prior_sigma;
   if (!options.workspace.empty()) tree.workspace = parse_box("--workspace", options.workspace);
-  BeliefGrid grid = load_map(options.map, &sensor, tree);
+  MapOfSensor map = load_map_of_sensor(options.map, &sensor, tree);
+  warn_of_other_sensor(options.map, map, sensor);
+  BeliefGrid& grid = map.grid;
   const auto conflict = [&options](const std::string& flag, const std::string& given,
                                    const std::string& stored) {
     throw Error(ErrorCode::invalid_argument,
@@ -102,7 +105,7 @@ BeliefGrid continued_map(const Sensor& sensor, const Options& options) {
       conflict("--workspace", options.workspace, describe(grid.workspace()));
     }
   }
-  return grid;
+  return std::move(grid);
 }
 
 double median(std::vector<double> values) {
@@ -244,7 +247,8 @@ void integrate(const Options& options, const CLI::App& app) {
       options.map.empty() ? new_map(*source, options) : continued_map(source->sensor(), options);
   const Totals totals = integrate_all(*source, options, grid);
   refuse_empty(options, *source, totals);
-  const LostInTree lost = save_map(grid, options.out, {options.with_covariance == "on"});
+  const LostInTree lost = save_map(
+      grid, options.out, noting_sensor(source->sensor(), {options.with_covariance == "on"}));
   warn_of_lost_frame(lost, options.out);
   print_summary(options, *source, grid, totals, lost, watch.seconds());
 }

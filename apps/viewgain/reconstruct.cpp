@@ -18,6 +18,7 @@
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/stopwatch.hpp"
+#include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/run_folder.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/planner/simulated_acquisition.hpp"
@@ -61,7 +62,7 @@ nlohmann::ordered_json write_results(const RunFolder& folder, const RunSetup& se
                                      std::uint64_t seed, const SurfaceModel& model,
                                      const std::vector<Pose>& views,
                                      const nlohmann::ordered_json& report) {
-  save_vdb(model.grid(), folder.file("map.vdb"));
+  save_vdb(model.grid(), folder.file("map.vdb"), noting_sensor(setup.sensor));
   write_surfaces(model, folder.file("surface.ply"), folder.file("points.ply"));
   write_tum(folder.file("views.txt"), views);
   nlohmann::ordered_json run{
@@ -111,7 +112,9 @@ void reconstruct(const ReconstructOptions& options) {
       [&](const ViewRecord& record) {
         views.push_back(record.T_world_camera);
         add_to(seconds, record.seconds);
-        if (options.save_maps == "on") save_vdb(model.grid(), folder.map(record.index));
+        if (options.save_maps == "on") {
+          save_vdb(model.grid(), folder.map(record.index), noting_sensor(setup.sensor));
+        }
         if (with_pictures || with_report) {
           const Stopwatch watch;
           const GainEvaluator evaluator = step_evaluator(model, setup, exec);

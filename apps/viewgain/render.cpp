@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "options/gain_unit.hpp"
 #include "options/pose_flags.hpp"
+#include "options/sensed_map.hpp"
 #include "options/values.hpp"
 #include "pictures/image_grid.hpp"
 #include "pictures/map_picture.hpp"
@@ -80,9 +81,10 @@ Viewer viewer_of(const Options& options, int usual_width) {
 }
 
 // A map, or that of a run's folder.
-BeliefGrid map_of(const std::string& input) {
-  return load_map(fs::is_directory(input) ? fs::path(input) / "map.vdb" : fs::path(input));
+std::string map_file(const std::string& input) {
+  return fs::is_directory(input) ? (fs::path(input) / "map.vdb").string() : input;
 }
+BeliefGrid map_of(const std::string& input) { return load_map(map_file(input)); }
 
 // The surface in a map and the points that it goes through.
 struct MapSurface {
@@ -126,11 +128,10 @@ RgbImage sigma_image(const Options& options, const ExecConfig& exec) {
 }
 
 RgbImage gain_image(const Options& options, const ExecConfig& exec) {
-  if (options.sensor.empty()) refuse("--what gain needs --sensor");
   if (options.poses.none()) refuse("--what gain needs poses, say --sphere 500,0.6");
-  const Sensor sensor = load_sensor(options.sensor);
   const std::vector<Pose> poses = make_poses(options.poses, options.seed).poses;
-  const auto scene = VoxelScene::build(map_of(options.inputs.front()), {}, exec);
+  const auto [grid, sensor] = load_sensed_map(map_file(options.inputs.front()), options.sensor);
+  const auto scene = VoxelScene::build(grid, {}, exec);
   GainConfig config;
   config.model = parse_gain_model(options.gain);
   std::vector<double> gains;
@@ -254,7 +255,7 @@ Command add_render(CLI::App& program) {
       ->capture_default_str();
   add_pose_options(*app, o.poses, false);
   add_seed_option(*app, o.seed, "of --shell");
-  app->add_option("--sensor", o.sensor, std::string("gain: ").append(kSensorHelp));
+  app->add_option("--sensor", o.sensor, std::string("gain: ").append(kMapSensorHelp));
   app->add_option("--gain", o.gain, "gain: paper, surface or combined, as in score")
       ->check(CLI::IsMember(gain_model_names()))
       ->capture_default_str();

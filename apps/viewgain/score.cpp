@@ -17,6 +17,7 @@
 #include "options/hazard_source.hpp"
 #include "options/obstacle_source.hpp"
 #include "options/pose_flags.hpp"
+#include "options/sensed_map.hpp"
 #include "options/values.hpp"
 #include "pictures/score_picture.hpp"
 #include "report/page.hpp"
@@ -190,9 +191,10 @@ void score(const Options& options) {
   if (!options.report.empty()) check_report_page("--report");
   const ExecConfig exec{options.common.threads};
   const GainConfig config = gain_config(options);
-  const Sensor sensor = load_sensor(options.sensor);
   const PoseSource source = make_poses(options.poses, options.seed);
-  const BeliefGrid grid = load_map(options.map, &sensor);
+  const SensedMap map = load_sensed_map(options.map, options.sensor);
+  const BeliefGrid& grid = map.grid;
+  const Sensor& sensor = map.sensor;
   const HazardConfig hazard = hazard_source(options.hazard, options.object_size, grid);
   const auto scene = VoxelScene::build(grid, obstacles_of(options.obstacles), exec, hazard);
   const GainEvaluator evaluator(scene, sensor, config, exec);
@@ -248,7 +250,7 @@ Command add_score(CLI::App& program) {
       "fast it went.");
   app->add_option("MAP", options->map, kMapHelp)->required();
   add_pose_options(*app, options->poses);
-  app->add_option("--sensor", options->sensor, kSensorHelp)->required();
+  app->add_option("--sensor", options->sensor, kMapSensorHelp);
   one_of(*app->add_option("--gain", options->gain,
                           "paper (entropy removed) [nat], surface (new surface to be expected) "
                           "[m^2] or combined (both) [nat]")

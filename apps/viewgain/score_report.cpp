@@ -254,6 +254,7 @@ ordered_json ScoreReport::page(const std::string& title, RgbImage picture) const
                        source.poses,
                        std::move(gains),
                        by_area ? std::move(areas) : std::vector<double>(),
+                       full.indices,
                        std::move(columns),
                        std::move(rows),
                        std::move(shown),

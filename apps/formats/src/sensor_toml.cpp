@@ -157,6 +157,32 @@ Pose read_mounting(const TableReader& reader, const toml::node& node) {
   return error > kExact ? orthonormalized(pose) : pose;
 }
 
+// What `file` holds.
+Sensor sensor_of(const toml::table& root, const std::string& file) {
+  TableReader reader(root, file, "");
+  Sensor sensor;
+  sensor.name = reader.text("name");
+  sensor.min_range = reader.number("min_range");
+  sensor.max_range = reader.number("max_range");
+  sensor.working_distance = reader.number("working_distance");
+  if (const toml::node* node = reader.find("T_flange_camera"); node != nullptr) {
+    sensor.T_flange_camera = read_mounting(reader, *node);
+  }
+  if (const toml::node* node = reader.find("body"); node != nullptr) {
+    const std::vector<double> size = reader.numbers("body", *node, 3);
+    sensor.body_size = {size[0], size[1], size[2]};
+  }
+  sensor.camera = read_camera(reader.table("camera"));
+  sensor.noise = read_noise(reader.table("noise"));
+  reader.refuse_unknown_keys();
+  try {
+    sensor.validate();
+  } catch (const Error& error) {
+    throw Error(ErrorCode::format, file + ": " + error.what());
+  }
+  return sensor;
+}
+
 }  // namespace
 
 std::string sensor_toml(const Sensor& sensor) {
@@ -209,30 +235,11 @@ void write_sensor_toml(const std::filesystem::path& path, const Sensor& sensor) 
 }
 
 Sensor read_sensor_toml(const std::filesystem::path& path) {
-  const std::string file = path.string();
-  const toml::table root = read_toml(path);
-  TableReader reader(root, file, "");
-  Sensor sensor;
-  sensor.name = reader.text("name");
-  sensor.min_range = reader.number("min_range");
-  sensor.max_range = reader.number("max_range");
-  sensor.working_distance = reader.number("working_distance");
-  if (const toml::node* node = reader.find("T_flange_camera"); node != nullptr) {
-    sensor.T_flange_camera = read_mounting(reader, *node);
-  }
-  if (const toml::node* node = reader.find("body"); node != nullptr) {
-    const std::vector<double> size = reader.numbers("body", *node, 3);
-    sensor.body_size = {size[0], size[1], size[2]};
-  }
-  sensor.camera = read_camera(reader.table("camera"));
-  sensor.noise = read_noise(reader.table("noise"));
-  reader.refuse_unknown_keys();
-  try {
-    sensor.validate();
-  } catch (const Error& error) {
-    throw Error(ErrorCode::format, file + ": " + error.what());
-  }
-  return sensor;
+  return sensor_of(read_toml(path), path.string());
+}
+
+Sensor parse_sensor_toml(std::string_view text, const std::string& name) {
+  return sensor_of(parse_toml(text, name), name);
 }
 
 bool is_sensor_file(const std::string& preset_or_file) {

@@ -13,13 +13,15 @@
 namespace viewgain {
 
 toml::table read_toml(const std::filesystem::path& path) {
-  const std::string file = path.string();
   constexpr std::uint64_t kMost = std::uint64_t{1} << 24U;  // [bytes]
-  const std::string contents = file_bytes(path, kMost);
+  return parse_toml(file_bytes(path, kMost), path.string());
+}
+
+toml::table parse_toml(std::string_view text, const std::string& name) {
   try {
-    return toml::parse(contents);
+    return toml::parse(text);
   } catch (const toml::parse_error& error) {
-    throw Error(ErrorCode::format, file + ": line " + std::to_string(error.source().begin.line) +
+    throw Error(ErrorCode::format, name + ": line " + std::to_string(error.source().begin.line) +
                                        ": " + std::string(error.description()));
   }
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -21,6 +22,22 @@ namespace viewgain {
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_map(const std::filesystem::path& path,
                                                   const Sensor* sensor = nullptr,
                                                   OctomapConfig config = {});
+
+/// A map and the sensor that its readings come from, where its file says so.
+struct VIEWGAIN_EXPORT MapOfSensor {
+  BeliefGrid grid;
+  std::optional<Sensor> sensor;
+};
+
+/// load_map(), and what noting_sensor() has put into a .vdb. Throws Error(format), naming file and
+/// key, for a note that is no sensor.
+[[nodiscard]] VIEWGAIN_EXPORT MapOfSensor load_map_of_sensor(const std::filesystem::path& path,
+                                                             const Sensor* sensor = nullptr,
+                                                             OctomapConfig config = {});
+
+/// So that save_map() notes in a .vdb which sensor the map's readings come from.
+[[nodiscard]] VIEWGAIN_EXPORT VdbWriteConfig noting_sensor(const Sensor& sensor,
+                                                           VdbWriteConfig config = {});
 
 /// Throws Error(invalid_argument) for names that save_map does not write: those that end neither in
 /// .vdb nor in .ot, unless what is there is no regular file (/dev/null, a pipe).

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -17,6 +18,10 @@ namespace viewgain {
 /// Throws Error(io) if the file cannot be read and Error(format), naming the file and the key, for
 /// a key that is missing, unknown, of the wrong type or out of bounds.
 [[nodiscard]] VIEWGAIN_EXPORT Sensor read_sensor_toml(const std::filesystem::path& path);
+
+/// The same of a text; `name` is what errors call it.
+[[nodiscard]] VIEWGAIN_EXPORT Sensor parse_sensor_toml(std::string_view text,
+                                                       const std::string& name);
 
 /// Writes sensor_toml(). Atomic. Throws Error(io), and Error(invalid_argument) if the sensor is not
 /// valid.

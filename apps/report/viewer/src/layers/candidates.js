@@ -101,7 +101,6 @@ export const selected = {
     const object = frustumLines(pose, report.frustum, 0.2 * stage.radius, selectedColour, 3.5, sight);
     // It was asked for, so nothing hides it.
     object.material.depthTest = false;
-    object.renderOrder = 1;
     return { object };
   },
 };

@@ -57,7 +57,12 @@ export class LayerStack {
     }
     if (outdated) return;
     this.#shown = next;
-    for (const { object } of next.values()) this.stage.content.add(object);
+    const order = [...this.layers, ofPoses.selected].map(({ id }) => id);
+    for (const [id, { object }] of next) {
+      // Where two lie at the same depth, the later layer shows, however they came here.
+      object.traverse((part) => (part.renderOrder = order.indexOf(id)));
+      this.stage.content.add(object);
+    }
     this.stage.drawNow();
     this.onShown(this.legends());
   }

@@ -24,8 +24,9 @@ export function buildCameraTools(state, report, stage) {
   if (report.isRun) tools.push(button("From view", "Look through the view just taken (V)", lookTaken));
   tools.push(next);
   byId("camera-tools").append(...tools);
-  state.follow(["candidate"], async ({ candidate }) => {
-    if (candidate === null) return;
+  state.follow(["step", "candidate"], async ({ candidate }) => {
+    // A run is watched from where one stands; a pose that was asked for must be in sight.
+    if (report.isRun && candidate === null) return;
     const pose = await planned(report, state.values);
     if (pose) stage.include(pose);
   });
