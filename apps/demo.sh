@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # The camel from nothing, on Debian 12: installs what is missing, builds, runs the whole loop on it with
 # a simulated time-of-flight camera (acquire, map, propose, rank, move), and scores 2,000 candidate views
-# against the map after a few views. Leaves out/demo/: what `viewgain reconstruct` writes, scores.csv and
-# best_view.png.
+# against the map after a few views. Leaves out/demo/: what `viewgain reconstruct` writes, report.html,
+# scores.csv and best_view.png.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -14,10 +14,14 @@ cmake --build --preset program >&2
 
 viewgain=build/release/bin/viewgain
 out=out/demo
+# The page of the report comes from npm's registry, which may be out of reach.
+report=on
+[ -s build/release/apps/report/report_page.html ] || report=off
 ./apps/extract_mesh.sh camel.off build/meshes
 
 "$viewgain" reconstruct build/meshes/camel.off --sensor sr4000 --size 0.35 --voxel 0.003125 --max-views 12 \
-  --save-maps on --seed 1 --out "$out"
-"$viewgain" score "$out/maps/03.vdb" --sphere 2000,0.6 --sensor sr4000 --top 10 \
+  --up y --save-maps on --report "$report" --seed 1 --out "$out"
+"$viewgain" score "$out/maps/03.vdb" --sphere 2000,0.6 --top 10 \
   --out "$out/scores.csv" --picture "$out/best_view.png"
 echo "left in $out: run.json, views.txt, map.vdb, surface.ply, points.ply, views/, maps/, scores.csv, best_view.png"
+[ "$report" = off ] || echo "the run to click through, in a browser: $PWD/$out/report.html"

@@ -1,37 +1,63 @@
 #!/usr/bin/env bash
-# The README's C++ example is the file that is built, it runs, and the README names the two commands.
-#   readme_test.sh SOURCE_FOLDER BIN_FOLDER
+# Every block of code in the README is what it says and runs: the C++ is the file that is built, the
+# CMake lines are those of the consumer test, the Python and the commands run on maps of a camel, coarser
+# than the README's so that they take seconds. The README has at most 1,000 words and lines of 100.
+#   readme_test.sh SOURCE_FOLDER BIN_FOLDER [PYTHON PACKAGE_FOLDER]
 set -euo pipefail
 source=$1
 bin=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+export PATH=$bin:$PATH
 
-awk '/^```cpp$/ {inside = 1; next} /^```$/ {inside = 0} inside' "$source/README.md" >"$work/example.cpp"
+# block LANGUAGE: the lines of the README's blocks in this language
+block() { awk -v fence="^\`\`\`$1\$" '$0 ~ fence {inside = 1; next} /^```$/ {inside = 0} inside' "$source/README.md"; }
+
+test "$(wc -w <"$source/README.md")" -le 1000
+python3 - "$source/README.md" <<'LINES'
+import sys
+long = [i for i, line in enumerate(open(sys.argv[1], encoding="utf-8"), 1) if len(line.rstrip("\n")) > 100]
+sys.exit(f"README.md: lines over 100 columns: {long}" if long else 0)
+LINES
+# What it shows and links is there.
+grep -oE '\]\([^)#]+' "$source/README.md" | sed 's/](//' | while read -r path; do
+  test -e "$source/$path" || { echo "README.md: there is no $path" >&2; exit 1; }
+done
+
+block cpp >"$work/example.cpp"
 diff -u "$source/apps/examples/score_poses.cpp" "$work/example.cpp"
-grep -q '^\./apps/demo\.sh' "$source/README.md"
-grep -q '^\./tests/run\.sh' "$source/README.md"
+block cmake | sed 's/ *#.*//' | while read -r line; do
+  grep -qF "${line//planner/gain}" "$source/tests/consumer/find_package/CMakeLists.txt" ||
+    grep -qF "${line%% REQUIRED)}" "$source/tests/consumer/find_package/CMakeLists.txt"
+done
+block sh | grep -q '^\./apps/demo\.sh'
+block sh | grep -q '^\./tests/run\.sh'
 
-cat >"$work/box.off" <<'MESH'
-OFF
-8 6 0
--1 -1 -1
-1 -1 -1
-1 1 -1
--1 1 -1
--1 -1 1
-1 -1 1
-1 1 1
--1 1 1
-4 0 3 2 1
-4 4 5 6 7
-4 0 1 5 4
-4 2 3 7 6
-4 1 2 6 5
-4 0 4 7 3
-MESH
-"$bin/viewgain" simulate "$work/box.off" --orbit 1,0.6,20 --sensor sr4000 --size 0.2 --out "$work/frames" >/dev/null
-"$bin/viewgain" integrate "$work/frames" --voxel 0.01 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 \
-  --out "$work/map.vdb" >/dev/null
-"$bin/score_poses" "$work/map.vdb" | tee "$work/best.txt"
-test "$(grep -cE '^pose [0-9]+: [0-9.]+ nat$' "$work/best.txt")" -eq 3
+cd "$work"
+"$source/apps/extract_mesh.sh" camel.off .
+commands=$(block sh | grep '^viewgain' | sed 's/--voxel 0.003125/--voxel 0.01 --max-views 3 --save-maps on/')
+test "$(wc -l <<<"$commands")" -eq 3
+if [ ! -s "$bin/../apps/report/report_page.html" ]; then  # built without npm
+  commands=$(sed 's/--report on//; s/--report score.html//' <<<"$commands")
+fi
+while read -r command; do
+  echo "$command"
+  eval "$command" >log.txt 2>&1 || { cat log.txt; exit 1; }
+done <<<"$commands"
+test -s run/map.vdb
+test -s sigma.png
+
+score_poses run/map.vdb | tee best.txt
+test "$(grep -cE '^pose [0-9]+: [0-9.]+ nat$' best.txt)" -eq 3
+status=0
+score_poses no_such.vdb 2>error.txt || status=$?
+test "$status" -eq 2
+grep -q no_such.vdb error.txt
+
+if [ $# -eq 4 ]; then
+  mkdir -p out
+  ln -s "$work/run" out/demo
+  block python >example.py
+  MPLBACKEND=agg PYTHONPATH=$4 "$3" example.py
+  test -s gains.png
+fi

@@ -40,13 +40,16 @@ POLICIES = [("combined", "gain: combined (default)", "#0b7a3b"), ("frontier", "m
 
 def with_legend(picture, out, entries):
     image = plt.imread(picture)
-    figure, axes = plt.subplots(figsize=(9, 5.6), dpi=100)
-    figure.subplots_adjust(0, 0.165, 1, 1)
-    axes.imshow(image[int(0.02 * len(image)):int(0.99 * len(image))], aspect="auto")
+    image = image[int(0.06 * len(image)):int(0.94 * len(image))]  # the margins
+    width, legend = 7.7, 0.85  # [inch]
+    height = width * image.shape[0] / image.shape[1]
+    figure, axes = plt.subplots(figsize=(width, height + legend), dpi=100)
+    figure.subplots_adjust(0, legend / (height + legend), 1, 1)
+    axes.imshow(image)
     axes.axis("off")
     marks = [Line2D([], [], linestyle="", marker=mark, color=color, markersize=8, label=label)
              for label, color, mark in entries]
-    figure.legend(handles=marks, loc="lower center", ncol=3, frameon=False, fontsize=10)
+    figure.legend(handles=marks, loc="lower center", ncol=3, frameon=False, fontsize=9)
     figure.savefig(out)
 
 

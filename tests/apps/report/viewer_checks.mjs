@@ -40,6 +40,9 @@ export async function checkLayers(report) {
   const ids = await page.locator("[data-layer]").evaluateAll((boxes) => boxes.map((box) => box.dataset.layer));
   check(ids.length >= 5, `there are layers: ${ids.join(", ")}`);
   const last = Number(await page.locator("#slider").getAttribute("max"));
+  // From far away all that the layers show is in sight.
+  await page.locator("#stage canvas").focus();
+  for (let i = 0; i < 8; ++i) await page.keyboard.press("-");
   for (const id of ids) {
     const empty = () => page.locator(`.layer:has([data-layer="${id}"])`).evaluate((row) => row.classList.contains("empty"));
     let step = 0;
@@ -51,6 +54,7 @@ export async function checkLayers(report) {
     const back = await toggled(report, id);
     check(differing(before, back) <= some, `the layer ${id} switched twice gives the same picture`);
   }
+  await page.keyboard.press("h");
   await report.goTo(0);
 }
 

@@ -25,7 +25,7 @@ export const map = {
     const { centers, size } = await report.part(step.map);
     const linear = new Color(mapColour).toArray();
     const write = (i, target) => [target[0], target[1], target[2]] = linear;
-    return { object: cubes(centers, 0.98 * size, write) };
+    return { object: cubes(centers, size, write) };
   },
 };
 
@@ -46,7 +46,7 @@ export const contributions = {
       bar(`from unknown [${name}]`, ramps.unknown),
       bar(`from occupied [${name}]`, ramps.occupied),
     ];
-    return { object: cubes(centers, 1.04 * size, write), legend };
+    return { object: cubes(centers, size, write, { scale: 1.06 }), legend };
   },
 };
 
@@ -68,6 +68,6 @@ export const expected = {
     const high = quantile(shown.value, 0.98) || 1;
     const write = (i, target) => ramps.expected.write(shown.value[i] / high, target, 0);
     const legend = { title: `expected [${name}]`, ramp: ramps.expected, low: 0, high: high * factor, open: true };
-    return { object: cubes(shown.centers, 0.86 * size, write), legend };
+    return { object: cubes(shown.centers, size, write), legend };
   },
 };

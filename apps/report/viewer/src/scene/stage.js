@@ -10,7 +10,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 const homeFieldOfView = 36;
 // How far above the scene home looks down from [rad].
 const homeHeight = 0.38;
-// Home goes back this much further to have the first camera in sight.
+// Home goes back up to this much further, if that brings the first camera in sight.
 const homeBack = 1.3;
 
 const column = (pose, c) => new Vector3(pose[c], pose[4 + c], pose[8 + c]);
@@ -112,13 +112,14 @@ export class Stage {
     const distance = (0.86 * this.radius) / Math.sin(half) / narrow;
     this.controls.target.copy(this.centre);
     this.camera.position.copy(this.centre).addScaledVector(this.homeDirection, distance);
-    if (this.firstPose) this.include(this.firstPose, homeBack);
+    const near = this.camera.position.clone();
+    if (this.firstPose && !this.include(this.firstPose, homeBack)) this.camera.position.copy(near);
     this.draw();
   }
 
   /**
    * Goes back until a camera of the data is in sight, beside what lies over the stage, but no further
-   * than `most` times as far.
+   * than `most` times as far; whether it is.
    */
   include(pose, most = Infinity) {
     const left = -0.92 + (2 * this.aside) / Math.max(1, this.#size.x);
@@ -131,6 +132,7 @@ export class Stage {
     const offset = () => this.camera.position.distanceTo(this.controls.target);
     const furthest = Math.min(0.9 * this.controls.maxDistance, most * offset());
     while (!inSight() && offset() < furthest) this.move(0, 0, 1.05);
+    return inSight();
   }
 
   /** Looks through a camera of the data, upright. */
