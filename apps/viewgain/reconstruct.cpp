@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "command_line/config_file.hpp"
 #include "command_line/interrupt.hpp"
+#include "command_line/progress.hpp"
 #include "commands.hpp"
 #include "pictures/view_picture.hpp"
 #include "reconstruct_setup.hpp"
@@ -61,7 +63,7 @@ void write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t
   write_file_atomically(folder.file("run.json"), json_text(run));
 }
 
-void reconstruct(const ReconstructOptions& options) {
+void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
   StageSeconds seconds;
   const ExecConfig exec{options.common.threads};
   RunSetup setup = set_up(options, exec);
@@ -85,6 +87,7 @@ void reconstruct(const ReconstructOptions& options) {
   RunReport report(policy.policy == Policy::gain ? std::optional(policy.model) : std::nullopt,
                    policy.criterion);
   std::vector<Pose> views;
+  Progress progress("view", options.common.quiet);
   const PlanningResult result = active_view_planning(
       setup.start, acquisition, model, generation, decision, setup.planning,
       [&](const ViewRecord& record) {
@@ -97,18 +100,24 @@ void reconstruct(const ReconstructOptions& options) {
           seconds["pictures"] += watch.seconds();
         }
         report.add_view(record, model.quality().back(), model.realised_area(), seconds);
-        std::fprintf(stderr, "%s\n", report.progress_line().c_str());
+        progress.wipe();
+        if (!options.common.quiet) std::fprintf(stderr, "%s\n", report.progress_line().c_str());
+        progress.update(views.size(), options.max_views);
       });
 
+  progress.wipe();
   const nlohmann::ordered_json json = report.json(result.reason);
+  write_file_atomically(folder.file("config.toml"),
+                        config_text(app, {"out", "json", "quiet", "threads"}));
   write_results(folder, setup, options.sensing.seed, model, views, json);
   folder.commit();
   if (options.common.json) {
     print_json(json);
   } else {
     std::printf("%s", report.text(result.reason).c_str());
-    std::printf("left in %s: run.json, views.txt, map.vdb, surface.ply, points.ply%s\n",
-                options.out.c_str(), options.pictures == "on" ? ", views/" : "");
+    std::printf(
+        "left in %s: run.json, config.toml, views.txt, map.vdb, surface.ply, points.ply%s\n",
+        options.out.c_str(), options.pictures == "on" ? ", views/" : "");
   }
 }
 
@@ -121,7 +130,7 @@ Command add_reconstruct(CLI::App& program) {
       "The whole loop on a mesh: acquire with a simulated camera, update map and surface, propose "
       "views, rank them, move, until little is left to gain.");
   add_options(*app, *options);
-  return {app, [options] { reconstruct(*options); }};
+  return {app, [options, app] { reconstruct(*options, *app); }};
 }
 
 }  // namespace viewgain::app

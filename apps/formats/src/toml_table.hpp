@@ -14,9 +14,13 @@ namespace viewgain {
 /// Throws Error(io) if the file cannot be read, Error(format) with the line if it is no TOML.
 [[nodiscard]] toml::table read_toml(const std::filesystem::path& path);
 
+/// As TOML has them: a number that is read back as it was, a text in quotes, on one line.
+[[nodiscard]] std::string toml_float(double value);
+[[nodiscard]] std::string toml_string(const std::string& value);
+
 /// One table of a TOML file; remembers which keys were asked for, so that the others can be
 /// refused. Must not outlive the table. Whatever is not as it should be is an Error(format) that
-/// names the file and the key.
+/// names the file, the line of a key that is there, and the key.
 class TableReader {
  public:
   TableReader(const toml::table& table, std::string file, std::string prefix);
@@ -38,6 +42,7 @@ class TableReader {
   /// The elements of a list of tables; none if the key is not there.
   std::vector<TableReader> tables(std::string_view key);
 
+  /// Names the nearest of the keys that were asked for.
   void refuse_unknown_keys() const;
 
  private:

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -13,6 +14,9 @@ namespace viewgain {
 /// The TOML description of a sensor; apps/README.md shows the layout. Reading what was written
 /// gives an equal sensor.
 [[nodiscard]] VIEWGAIN_EXPORT std::string sensor_toml(const Sensor& sensor);
+
+/// What `model` is in such a file: shot, structured_light, stereo, quadratic, constant.
+[[nodiscard]] VIEWGAIN_EXPORT std::string_view noise_model_name(const NoiseModel& noise);
 
 /// Throws Error(io) if the file cannot be read and Error(format), naming the file and the key, for
 /// a key that is missing, unknown, of the wrong type or out of bounds.
