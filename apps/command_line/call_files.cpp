@@ -35,14 +35,15 @@ struct FileOption {
   Kind kind;
 };
 constexpr std::array kFileOptions{
-    FileOption{"MESH", Kind::input},        FileOption{"MAP", Kind::input},
-    FileOption{"IN", Kind::input},          FileOption{"--map", Kind::input},
-    FileOption{"--cloud", Kind::input},     FileOption{"--poses", Kind::input},
-    FileOption{"--sensor", Kind::input},    FileOption{"--reach", Kind::reach},
-    FileOption{"--hazard", Kind::input},    FileOption{"--obstacle", Kind::input},
-    FileOption{"FRAMES_DIR", Kind::frames}, FileOption{"OUT", Kind::output},
-    FileOption{"--picture", Kind::picture}, FileOption{"--out", Kind::output},
-    FileOption{"INPUT", Kind::input},       FileOption{"--report", Kind::page}};
+    FileOption{"--config", Kind::input},   FileOption{"MESH", Kind::input},
+    FileOption{"MAP", Kind::input},        FileOption{"IN", Kind::input},
+    FileOption{"--map", Kind::input},      FileOption{"--cloud", Kind::input},
+    FileOption{"--poses", Kind::input},    FileOption{"--sensor", Kind::input},
+    FileOption{"--reach", Kind::reach},    FileOption{"--hazard", Kind::input},
+    FileOption{"--obstacle", Kind::input}, FileOption{"FRAMES_DIR", Kind::frames},
+    FileOption{"OUT", Kind::output},       FileOption{"--picture", Kind::picture},
+    FileOption{"--out", Kind::output},     FileOption{"--save-config", Kind::output},
+    FileOption{"INPUT", Kind::input},      FileOption{"--report", Kind::page}};
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 

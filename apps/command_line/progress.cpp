@@ -4,28 +4,45 @@
 
 #include <unistd.h>
 
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <utility>
 
+#include "options/values.hpp"
+
 namespace viewgain::app {
 
-Progress::Progress(std::string label)
-    : label_(std::move(label)), on_terminal_(::isatty(STDERR_FILENO) == 1) {}
+std::string progress_text(const std::string& label, std::size_t done, std::size_t total,
+                          double seconds) {
+  const double share = static_cast<double>(done) / static_cast<double>(total);
+  std::string text = label + " " + with_commas(done) + " of " + with_commas(total) + ", " +
+                     with_unit(std::floor(100 * share)) + " %";
+  if (done == 0 || !(seconds > 0)) return text;
+  const double rate = static_cast<double>(done) / seconds;
+  const double left = std::ceil(static_cast<double>(total - done) / rate);
+  return text + ", " + with_unit(rate) + "/s, " + with_commas(static_cast<std::uint64_t>(left)) +
+         " s left";
+}
 
-Progress::~Progress() {
+Progress::Progress(std::string label, bool quiet)
+    : label_(std::move(label)), is_shown_at_all_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() { wipe(); }
+
+void Progress::wipe() {
   if (shown_) std::fputs("\r\033[K", stderr);
+  shown_ = false;
 }
 
 void Progress::update(std::size_t done, std::size_t total) {
   constexpr double kFirst = 1.0, kInterval = 0.1;  // [s]
-  if (!on_terminal_ || total == 0) return;
+  if (!is_shown_at_all_ || total == 0) return;
   const double now = watch_.seconds();
   if (now < kFirst || (shown_ && now - last_shown_ < kInterval)) return;
   shown_ = true;
   last_shown_ = now;
-  const double share = static_cast<double>(done) / static_cast<double>(total);
-  std::fprintf(stderr, "\r%s %zu of %zu, %.0f %%, %.0f s\033[K", label_.c_str(), done, total,
-               100 * share, now);
+  std::fprintf(stderr, "\r%s\033[K", progress_text(label_, done, total, now).c_str());
   std::fflush(stderr);
 }
 

@@ -6,15 +6,32 @@
 
 namespace viewgain::app {
 
+namespace {
+
+std::string shown(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text.append(text.empty() ? "{" : ",").append(name);
+  return text + "}";
+}
+
+}  // namespace
+
 void one_of(CLI::Option& option, const std::vector<std::string>& names, const char* what) {
-  std::string shown;
-  for (const std::string& name : names) shown.append(shown.empty() ? "{" : ",").append(name);
   option.check(CLI::Validator(
       [flag = option.get_name(), names, what](std::string& value) {
         check_one_of(flag, value, names, what);
         return std::string();
       },
-      shown + "}"));
+      shown(names)));
+}
+
+void several_of(CLI::Option& option, const std::vector<std::string>& names, const char* what) {
+  option.check(CLI::Validator(
+      [flag = option.get_name(), names, what](std::string& value) {
+        (void)parse_names(flag, value, names, what);
+        return std::string();
+      },
+      shown(names)));
 }
 
 void on_or_off(CLI::Option& option) { one_of(option, {"on", "off"}, "position of a switch"); }

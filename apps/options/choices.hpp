@@ -12,10 +12,13 @@ namespace viewgain::app {
 /// others.
 void one_of(CLI::Option& option, const std::vector<std::string>& names, const char* what);
 
+/// Likewise for several of them with commas.
+void several_of(CLI::Option& option, const std::vector<std::string>& names, const char* what);
+
 /// The option takes on or off.
 void on_or_off(CLI::Option& option);
 
-/// What an option takes that one_of() was called for, else nothing.
+/// What an option takes that one_of() or several_of() was called for, else nothing.
 [[nodiscard]] std::vector<std::string> choices_of(const CLI::Option& option);
 
 }  // namespace viewgain::app

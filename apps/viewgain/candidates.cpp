@@ -294,6 +294,8 @@ Command add_candidates(CLI::App& program) {
   add_seed_option(*app, o.seed, "of the shell");
   app->add_option("--out", o.out, "TUM file of camera-to-world poses")->required();
   add_common_options(*app, o.common);
+  add_help(*app, kViewsGroup,
+           "candidates map.vdb --generator boundary --sensor sr4000 --out poses.txt");
   return {app, [options] { candidates(*options); }};
 }
 

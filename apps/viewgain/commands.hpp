@@ -17,7 +17,7 @@
 namespace viewgain::app {
 
 /// One subcommand: its options are in `app`, `run` does the work after parsing. run throws Error
-/// for bad input; nothing half-written stays behind.
+/// for bad input; nothing half-written stays behind. The subcommand of the group "" is not shown.
 struct Command {
   CLI::App* app = nullptr;
   std::function<void()> run;
@@ -31,16 +31,37 @@ struct Command {
 [[nodiscard]] Command add_info(CLI::App& program);
 [[nodiscard]] Command add_convert(CLI::App& program);
 [[nodiscard]] Command add_render(CLI::App& program);
+[[nodiscard]] Command add_sensors(CLI::App& program);
 
 /// What every subcommand has.
 struct CommonOptions {
   bool json = false;
+  bool quiet = false;
   int threads = 0;
+  std::string config, save_config;  ///< main() reads and writes them
 };
 inline void add_common_options(CLI::App& app, CommonOptions& options) {
   app.add_flag("--json", options.json, "print one JSON object instead of text");
+  app.add_flag("--quiet", options.quiet, "say nothing of how far the call is");
   app.add_option("--threads", options.threads, "threads; 0: as many as the machine has")
       ->capture_default_str();
+  app.add_option("--config", options.config,
+                 "TOML file: flags without -- and positionals (mesh, map) as keys; what the "
+                 "command line says holds");
+  app.add_option("--save-config", options.save_config,
+                 "TOML file to write what was given to, for --config");
+}
+
+// What the subcommands are for, as the program's help groups them.
+inline constexpr const char* kLoopGroup = "The whole loop";
+inline constexpr const char* kMapGroup = "Make a map";
+inline constexpr const char* kViewsGroup = "Choose views";
+inline constexpr const char* kLookGroup = "Look and convert";
+
+/// Where the subcommand stands in the program's help, and a call that works where those of
+/// simulate, integrate, score and so on were made before it.
+inline void add_help(CLI::App& app, const char* group, const char* example) {
+  app.group(group)->footer(std::string("Example:\n  viewgain ") + example);
 }
 
 inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt)";

@@ -106,6 +106,7 @@ Command add_convert(CLI::App& program) {
                              "add covariances and positions to the .vdb, for viewers")
                  ->capture_default_str());
   add_common_options(*app, options->common);
+  add_help(*app, kLookGroup, "convert map.vdb tree.ot");
   return {app, [options] { convert(*options); }};
 }
 

@@ -155,6 +155,7 @@ Command add_info(CLI::App& program) {
   app->add_option("--region", options->region,
                   "x0,y0,z0,x1,y1,z1: also how well this part is known, grid frame [m]");
   add_common_options(*app, options->common);
+  add_help(*app, kLookGroup, "info map.vdb --criterion trace");
   return {app, [options] { info(*options); }};
 }
 

@@ -44,7 +44,7 @@ Box seen_workspace(ReadingSource& source, const Options& options, double voxel) 
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Box seen{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
   bool any = false;
-  Progress progress(std::string("bounds of ") + part_name(options));
+  Progress progress(std::string("bounds of ") + part_name(options), options.common.quiet);
   for (std::size_t i = 0; i < source.size(); ++i) {
     source.load(i);
     const auto bounds = source.bounds();
@@ -122,7 +122,7 @@ struct Totals {
 
 Totals integrate_all(ReadingSource& source, const Options& options, BeliefGrid& grid) {
   Totals totals;
-  Progress progress(part_name(options));
+  Progress progress(part_name(options), options.common.quiet);
   for (std::size_t i = 0; i < source.size(); ++i) {
     source.load(i);
     totals.jump_edge_removed += source.jump_edge_removed();
@@ -324,6 +324,8 @@ Command add_integrate(CLI::App& program) {
   app->add_option("--map", options->map,
                   "map to continue (.vdb, .ot, .bt); its voxel size, workspace and prior hold");
   add_common_options(*app, options->common);
+  add_help(*app, kMapGroup,
+           "integrate frames --voxel 0.005 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out map.vdb");
   return {app, [options, app] { integrate(*options, *app); }};
 }
 

@@ -1,15 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_line/call_files.hpp"
+#include "command_line/config_file.hpp"
+#include "command_line/help_files.hpp"
 #include "command_line/interrupt.hpp"
+#include "command_line/words.hpp"
 #include "commands.hpp"
+#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/version.hpp"
 
@@ -36,14 +42,17 @@ int end_of_output() {
   return 0;
 }
 
-// CLI11 says only that there is no subcommand.
-std::string explain(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
-  const std::string first = argc > 1 ? argv[1] : "";
-  if (first.empty() || first[0] == '-') return error.what();
-  for (const CLI::App* subcommand : program.get_subcommands({})) {
-    if (subcommand->get_name() == first) return error.what();
+// What CLI11 is to parse: the command line, with what a --config stands for.
+std::vector<std::string> all_words(const CLI::App& program, std::vector<std::string> words) {
+  const CLI::App* subcommand = viewgain::app::subcommand_of(program, words);
+  if (subcommand == nullptr) {
+    if (!words.empty()) (void)viewgain::app::sort_words(program, {words[0]});
+    return words;
   }
-  return first + ": no such subcommand";
+  std::vector<std::string> all =
+      viewgain::app::with_config(*subcommand, {words.begin() + 1, words.end()});
+  all.insert(all.begin(), words[0]);
+  return all;
 }
 
 int run(int argc, char** argv) {
@@ -55,23 +64,42 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", std::string("viewgain ") + VIEWGAIN_VERSION);
   program.require_subcommand(1);
   const std::vector<viewgain::app::Command> commands{
-      viewgain::app::add_simulate(program),    viewgain::app::add_integrate(program),
-      viewgain::app::add_score(program),       viewgain::app::add_candidates(program),
-      viewgain::app::add_reconstruct(program), viewgain::app::add_info(program),
-      viewgain::app::add_convert(program),     viewgain::app::add_render(program)};
+      viewgain::app::add_reconstruct(program), viewgain::app::add_simulate(program),
+      viewgain::app::add_integrate(program),   viewgain::app::add_score(program),
+      viewgain::app::add_candidates(program),  viewgain::app::add_info(program),
+      viewgain::app::add_convert(program),     viewgain::app::add_render(program),
+      viewgain::app::add_sensors(program)};
+  // For the build alone.
+  std::string help_folder;
+  CLI::App* help_files =
+      program.add_subcommand("help-files", "man pages and completion")->group("");
+  help_files->add_option("FOLDER", help_folder, "folder to write")->required();
+  program.footer(
+      "Examples:\n"
+      "  viewgain reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 4 "
+      "--out run\n"
+      "  viewgain score run/map.vdb --sphere 2000,0.6 --race --top 3");
   try {
-    program.parse(argc, argv);
+    std::vector<std::string> words = all_words(program, {argv + 1, argv + argc});
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    program.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
       program.exit(error);  // prints --help or --version
       return end_of_output();
     }
-    return report(explain(program, error, argc, argv) + " (see --help)", kBadInput);
+    return report(std::string(error.what()) + " (see --help)", kBadInput);
   }
+  if (help_files->parsed()) viewgain::app::write_help_files(program, help_folder);
   for (const viewgain::app::Command& command : commands) {
     if (!command.app->parsed()) continue;
     viewgain::app::check_call(*command.app);
     command.run();
+    const CLI::Option* save = command.app->get_option_no_throw("--save-config");
+    if (save != nullptr && !save->empty()) {
+      viewgain::write_file_atomically(save->as<std::string>(),
+                                      viewgain::app::config_text(*command.app));
+    }
   }
   viewgain::app::wait_if_ended();
   return end_of_output();

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "command_line/config_file.hpp"
 #include "command_line/interrupt.hpp"
+#include "command_line/progress.hpp"
 #include "commands.hpp"
 #include "pictures/view_picture.hpp"
 #include "reconstruct_setup.hpp"
@@ -79,7 +81,7 @@ std::string run_title(const ReconstructOptions& options, const RunSetup& setup) 
   return std::filesystem::path(options.mesh).filename().string() + ", " + setup.sensor.name;
 }
 
-void reconstruct(const ReconstructOptions& options) {
+void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
   if (options.report == "on") check_report_page("--report");
   StageSeconds seconds;
   const ExecConfig exec{options.common.threads};
@@ -107,6 +109,7 @@ void reconstruct(const ReconstructOptions& options) {
   RunPage page(run_title(options, setup), setup.sensor,
                std::string(criterion_name(policy.criterion)), truth);
   std::vector<Pose> views;
+  Progress progress("view", options.common.quiet);
   const PlanningResult result = active_view_planning(
       setup.start, acquisition, model, generation, decision, setup.planning,
       [&](const ViewRecord& record) {
@@ -131,10 +134,15 @@ void reconstruct(const ReconstructOptions& options) {
           if (with_report) seconds["report"] += report_watch.seconds();
         }
         report.add_view(record, model.quality().back(), model.realised_area(), seconds);
-        std::fprintf(stderr, "%s\n", report.progress_line().c_str());
+        progress.wipe();
+        if (!options.common.quiet) std::fprintf(stderr, "%s\n", report.progress_line().c_str());
+        progress.update(views.size(), options.max_views);
       });
 
+  progress.wipe();
   const nlohmann::ordered_json json = report.json(result.reason);
+  write_file_atomically(folder.file("config.toml"),
+                        config_text(app, {"out", "json", "quiet", "threads"}));
   const nlohmann::ordered_json run =
       write_results(folder, setup, options.sensing.seed, model, views, json);
   if (options.report == "on") {
@@ -145,9 +153,9 @@ void reconstruct(const ReconstructOptions& options) {
     print_json(json);
   } else {
     std::printf("%s", report.text(result.reason).c_str());
-    std::printf("left in %s: run.json, views.txt, map.vdb, surface.ply, points.ply%s%s\n",
-                options.out.c_str(), with_pictures ? ", views/" : "",
-                with_report ? ", report.html" : "");
+    std::printf(
+        "left in %s: run.json, config.toml, views.txt, map.vdb, surface.ply, points.ply%s%s\n",
+        options.out.c_str(), with_pictures ? ", views/" : "", with_report ? ", report.html" : "");
   }
 }
 
@@ -160,7 +168,7 @@ Command add_reconstruct(CLI::App& program) {
       "The whole loop on a mesh: acquire with a simulated camera, update map and surface, propose "
       "views, rank them, move, until little is left to gain.");
   add_options(*app, *options);
-  return {app, [options] { reconstruct(*options); }};
+  return {app, [options, app] { reconstruct(*options, *app); }};
 }
 
 }  // namespace viewgain::app

@@ -70,7 +70,7 @@ void describe(Options& o, Visitor& visit) {
                "where candidates come from: boundary, sphere, dome, rings, shell, sequence, or "
                "several with commas; default: boundary (random and fibonacci: sphere, sequence: "
                "sequence)",
-               as_it_is);
+               [](CLI::Option& option) { several_of(option, generator_names(), "generator"); });
   visit.option("sphere_poses", "--count", o.count,
                "poses of the sphere, dome or shell (default 500; sphere of --policy fibonacci: "
                "--max-views); rings: 48, 80, 288 or 864 (default 48)",
@@ -139,6 +139,9 @@ void add_options(CLI::App& app, ReconstructOptions& o) {
   const OptionDeclaration declaration(app);
   describe(o, declaration);
   add_common_options(app, o.common);
+  add_help(
+      app, kLoopGroup,
+      "reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 4 --out run");
 }
 
 nlohmann::ordered_json settings_json(const ReconstructOptions& options,

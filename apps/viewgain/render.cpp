@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "options/choices.hpp"
 #include "options/gain_unit.hpp"
 #include "options/pose_flags.hpp"
 #include "options/sensed_map.hpp"
@@ -30,6 +32,8 @@ namespace viewgain::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kNormalSigma = "sigma along the surface's normal";
 
 struct Options {
   CommonOptions common;
@@ -98,10 +102,16 @@ struct MapSurface {
         sigmas(surface_sigmas(surface, points)) {}
 };
 
-void print_range(const char* what, const std::array<double, 2>& range) {
-  std::printf("%s: from dark, %.3g mm or less, to bright, %.3g mm or more\n", what, 1e3 * range[0],
-              1e3 * range[1]);
-}
+// What colours stand for: dark up to the first, bright from the second on.
+struct ColourRange {
+  std::string what, unit;
+  std::array<double, 2> range;
+};
+
+struct Picture {
+  RgbImage image;
+  std::optional<ColourRange> colours{};
+};
 
 RgbImage surface_image(const MapSurface& made, bool with_sigma, std::array<double, 2> range,
                        const Viewer& viewer, const ExecConfig& exec) {
@@ -111,23 +121,22 @@ RgbImage surface_image(const MapSurface& made, bool with_sigma, std::array<doubl
   return draw(picture, viewer, exec);
 }
 
-RgbImage sigma_image(const Options& options, const ExecConfig& exec) {
+Picture sigma_picture(const Options& options, const ExecConfig& exec) {
   const MapSurface made(map_of(options.inputs.front()), exec);
   const Viewer viewer = viewer_of(options, 1280);
   if (!options.ellipsoids) {
     const auto range = usual_range(made.sigmas);
-    print_range("sigma along the surface's normal", range);
-    return surface_image(made, true, range, viewer, exec);
+    return {surface_image(made, true, range, viewer, exec), ColourRange{kNormalSigma, "m", range}};
   }
   SurfacePicture picture{made.surface};
   picture.points = &made.points;
   picture.ellipsoid_sigmas = *options.ellipsoids;
   picture.sigma_range = usual_range(longest_sigmas(made.points));
-  print_range("sigma along the longest axis", picture.sigma_range);
-  return draw(picture, viewer, exec);
+  return {draw(picture, viewer, exec),
+          ColourRange{"sigma along the longest axis", "m", picture.sigma_range}};
 }
 
-RgbImage gain_image(const Options& options, const ExecConfig& exec) {
+Picture gain_picture(const Options& options, const ExecConfig& exec) {
   if (options.poses.none()) refuse("--what gain needs poses, say --sphere 500,0.6");
   const std::vector<Pose> poses = make_poses(options.poses, options.seed).poses;
   const auto [grid, sensor] = load_sensed_map(map_file(options.inputs.front()), options.sensor);
@@ -138,12 +147,12 @@ RgbImage gain_image(const Options& options, const ExecConfig& exec) {
   for (const ViewGain& gain : GainEvaluator(scene, sensor, config, exec).evaluate(poses)) {
     gains.push_back(gain.gain);
   }
-  if (const auto best = std::max_element(gains.begin(), gains.end()); best != gains.end()) {
-    std::printf("%s gain: from dark, %.4g, to bright, %.4g %s\n", options.gain.c_str(),
-                *std::min_element(gains.begin(), gains.end()), *best,
-                std::string(gain_unit(config.model, "log_diagonal")).c_str());
-  }
-  return gain_picture(scene->snapshot(), sensor, poses, gains, viewer_of(options, 1280), exec);
+  const auto [low, high] = std::minmax_element(gains.begin(), gains.end());
+  const ColourRange range{
+      options.gain + " gain", std::string(gain_unit(config.model, "log_diagonal")), {*low, *high}};
+  return {
+      app::gain_picture(scene->snapshot(), sensor, poses, gains, viewer_of(options, 1280), exec),
+      range};
 }
 
 // The numbers of the run's views that are shown: those given, or up to six, evenly.
@@ -165,7 +174,7 @@ std::vector<std::size_t> shown_views(const Options& options, std::size_t count) 
   return shown;
 }
 
-RgbImage step_image(const Options& options) {
+RgbImage step_picture(const Options& options) {
   const fs::path folder = fs::path(options.inputs.front()) / "views";
   const auto picture = [&](std::size_t view) {
     std::string name = std::to_string(view);
@@ -190,7 +199,7 @@ RgbImage step_image(const Options& options) {
 }
 
 // A row a map: voxels, surface, sigma, the colours of sigma the same in all rows.
-RgbImage sheet_image(const Options& options, const ExecConfig& exec) {
+Picture sheet_picture(const Options& options, const ExecConfig& exec) {
   std::vector<BeliefGrid> grids;
   std::vector<MapSurface> made;
   std::vector<double> sigmas;
@@ -207,19 +216,44 @@ RgbImage sheet_image(const Options& options, const ExecConfig& exec) {
     images.push_back(surface_image(made[i], false, range, viewer, exec));
     images.push_back(surface_image(made[i], true, range, viewer, exec));
   }
-  print_range("sigma along the surface's normal", range);
-  return image_grid(images, 3);
+  return {image_grid(images, 3), ColourRange{kNormalSigma, "m", range}};
 }
 
-RgbImage image_of(const Options& options, const ExecConfig& exec) {
-  if (options.what == "step") return step_image(options);
-  if (options.what == "sheet") return sheet_image(options, exec);
-  if (options.what == "sigma") return sigma_image(options, exec);
-  if (options.what == "gain") return gain_image(options, exec);
+Picture picture_of(const Options& options, const ExecConfig& exec) {
+  if (options.what == "step") return {step_picture(options)};
+  if (options.what == "sheet") return sheet_picture(options, exec);
+  if (options.what == "sigma") return sigma_picture(options, exec);
+  if (options.what == "gain") return gain_picture(options, exec);
   const BeliefGrid grid = map_of(options.inputs.front());
   const Viewer viewer = viewer_of(options, 1280);
-  if (options.what == "map") return map_picture(grid.snapshot(), viewer, exec);
-  return surface_image(MapSurface(grid, exec), false, {}, viewer, exec);
+  if (options.what == "map") return {map_picture(grid.snapshot(), viewer, exec)};
+  return {surface_image(MapSurface(grid, exec), false, {}, viewer, exec)};
+}
+
+void render(const Options& options, const CLI::App& app) {
+  check(options, app);
+  const Picture picture = picture_of(options, {options.common.threads});
+  write_png(options.out, picture.image);
+  if (options.common.json) {
+    nlohmann::ordered_json json{{"what", options.what},
+                                {"width", picture.image.width},
+                                {"height", picture.image.height},
+                                {"colours", nullptr},
+                                {"out", options.out}};
+    if (picture.colours) {
+      json["colours"] = {{"of", picture.colours->what},
+                         {"unit", picture.colours->unit},
+                         {"dark", picture.colours->range[0]},
+                         {"bright", picture.colours->range[1]}};
+    }
+    return print_json(json);
+  }
+  if (picture.colours) {
+    std::printf("%s: from dark, %.4g %s, to bright, %.4g %s\n", picture.colours->what.c_str(),
+                picture.colours->range[0], picture.colours->unit.c_str(), picture.colours->range[1],
+                picture.colours->unit.c_str());
+  }
+  std::printf("%s: %d x %d px\n", options.out.c_str(), picture.image.width, picture.image.height);
 }
 
 }  // namespace
@@ -232,12 +266,14 @@ Command add_render(CLI::App& program) {
   app->add_option("INPUT", o.inputs,
                   "map (.vdb, .ot, .bt) or folder of reconstruct; sheet: several")
       ->required();
-  app->add_option("--what", o.what,
-                  "map (its voxels), surface, sigma (how well it is known), gain (poses round the "
-                  "map by what they gain), step (pictures of a run side by side) or sheet (a row a "
-                  "map: voxels, surface, sigma)")
-      ->check(CLI::IsMember({"map", "surface", "sigma", "gain", "step", "sheet"}))
-      ->required();
+  auto* what =
+      app->add_option(
+             "--what", o.what,
+             "map (its voxels), surface, sigma (how well it is known), gain (poses round the "
+             "map by what they gain), step (pictures of a run side by side) or sheet (a row a "
+             "map: voxels, surface, sigma)")
+          ->required();
+  one_of(*what, {"map", "surface", "sigma", "gain", "step", "sheet"}, "kind of picture");
   app->add_option("--width", o.width,
                   "of the picture [px], of each where there are several; default: 1280, sheet and "
                   "step 640")
@@ -256,16 +292,12 @@ Command add_render(CLI::App& program) {
   add_pose_options(*app, o.poses, false);
   add_seed_option(*app, o.seed, "of --shell");
   app->add_option("--sensor", o.sensor, std::string("gain: ").append(kMapSensorHelp));
-  app->add_option("--gain", o.gain, "gain: paper, surface or combined, as in score")
-      ->check(CLI::IsMember(gain_model_names()))
-      ->capture_default_str();
+  auto* gain = app->add_option("--gain", o.gain, "gain: paper, surface or combined, as in score");
+  one_of(*gain->capture_default_str(), gain_model_names(), "gain");
   app->add_option("--out", o.out, "PNG file to write")->required();
-  app->add_option("--threads", o.common.threads, "threads; 0: as many as the machine has")
-      ->capture_default_str();
-  return {app, [options, app] {
-            check(*options, *app);
-            write_png(options->out, image_of(*options, {options->common.threads}));
-          }};
+  add_common_options(*app, o.common);
+  add_help(*app, kLookGroup, "render run --what sigma --out sigma.png");
+  return {app, [options, app] { render(*options, *app); }};
 }
 
 }  // namespace viewgain::app

@@ -207,7 +207,7 @@ void score(const Options& options) {
   Scores scores;
   double seconds = 0;
   {
-    Progress progress("scoring pose");
+    Progress progress("pose", options.common.quiet);
     BatchControl control;
     control.progress = [&progress](std::size_t done, std::size_t total) {
       progress.update(done, total);
@@ -320,6 +320,8 @@ Command add_score(CLI::App& program) {
                   "HTML file: map, candidates by gain, ranking and what the best ones see, to look "
                   "at in a browser");
   add_common_options(*app, options->common);
+  add_help(*app, kViewsGroup,
+           "score map.vdb --sphere 500,0.6 --sensor sr4000 --gain surface --top 5");
   return {app, [options] { score(*options); }};
 }
 

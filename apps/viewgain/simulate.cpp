@@ -118,7 +118,7 @@ void simulate(const Options& options) {
   FramesWriter writer(options.out);
   PixelCounts counts;
   {
-    Progress progress("frame");
+    Progress progress("frame", options.common.quiet);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       DepthFrame frame = camera.acquire(poses[i], i);
       counts.add(frame);
@@ -201,6 +201,9 @@ Command add_simulate(CLI::App& program) {
          "folder to write; frames that simulate has left in it are replaced, others are refused")
       ->required();
   add_common_options(*app, options->common);
+  add_help(
+      *app, kMapGroup,
+      "simulate mesh.off --size 0.35 --recenter on --orbit 3,0.6,27 --sensor sr4000 --out frames");
   return {app, [options] { simulate(*options); }};
 }
 

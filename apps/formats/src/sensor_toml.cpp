@@ -10,10 +10,10 @@
 #include <variant>
 #include <vector>
 
+#include "nearest_name.hpp"
 #include "toml_table.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/formats/file_names.hpp"
 
 namespace viewgain {
@@ -76,19 +76,6 @@ struct NoiseLayout<ConstantNoise> {
       {{"sigma_axial", &ConstantNoise::sigma_axial},
        {"sigma_lateral", &ConstantNoise::sigma_lateral}}};
 };
-
-// A TOML float needs a point or an exponent.
-std::string toml_float(double value) {
-  std::string text = short_text(value);
-  if (text.find_first_of(".en") == std::string::npos) text += ".0";
-  return text;
-}
-
-std::string toml_string(const std::string& value) {
-  std::ostringstream text;
-  text << toml::value<std::string>(value);
-  return text.str();
-}
 
 PinholeCamera read_camera(TableReader reader) {
   PinholeCamera camera;
@@ -229,6 +216,12 @@ std::string sensor_toml(const Sensor& sensor) {
   return std::move(text).str();
 }
 
+std::string_view noise_model_name(const NoiseModel& noise) {
+  return std::visit(
+      []<typename Model>(const Model&) { return std::string_view(NoiseLayout<Model>::kName); },
+      noise);
+}
+
 void write_sensor_toml(const std::filesystem::path& path, const Sensor& sensor) {
   sensor.validate();
   write_file_atomically(path, sensor_toml(sensor));
@@ -247,8 +240,14 @@ bool is_sensor_file(const std::string& preset_or_file) {
 }
 
 Sensor load_sensor(const std::string& preset_or_file) {
-  return is_sensor_file(preset_or_file) ? read_sensor_toml(preset_or_file)
-                                        : sensor_preset(preset_or_file);
+  if (is_sensor_file(preset_or_file)) return read_sensor_toml(preset_or_file);
+  const std::vector<std::string>& names = sensor_preset_names();
+  if (std::find(names.begin(), names.end(), preset_or_file) == names.end()) {
+    throw Error(ErrorCode::invalid_argument,
+                "sensor \"" + preset_or_file + "\": no such preset, and no .toml file" +
+                    did_you_mean(preset_or_file, names) + " (there are " + listed(names) + ")");
+  }
+  return sensor_preset(preset_or_file);
 }
 
 }  // namespace viewgain

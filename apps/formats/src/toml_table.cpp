@@ -3,12 +3,16 @@
 #include "toml_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <utility>
 
+#include "nearest_name.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 
@@ -26,11 +30,36 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
   }
 }
 
+// A TOML float needs a point or an exponent.
+std::string toml_float(double value) {
+  std::string text = short_text(value);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string toml_string(const std::string& value) {
+  std::string text = "\"";
+  for (const char c : value) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      std::array<char, 8> escaped{};
+      std::snprintf(escaped.data(), escaped.size(), "\\u%04X", static_cast<unsigned char>(c));
+      text += escaped.data();
+    } else {
+      text.append(c == '"' || c == '\\' ? "\\" : "").append(1, c);
+    }
+  }
+  return text + "\"";
+}
+
 TableReader::TableReader(const toml::table& table, std::string file, std::string prefix)
     : table_(table), file_(std::move(file)), prefix_(std::move(prefix)) {}
 
 void TableReader::fail(std::string_view key, const std::string& what) const {
-  throw Error(ErrorCode::format, file_ + ": key \"" + prefix_ + std::string(key) + "\" " + what);
+  const toml::node* node = table_.get(key);
+  const std::string line =
+      node != nullptr ? "line " + std::to_string(node->source().begin.line) + ": " : "";
+  throw Error(ErrorCode::format,
+              file_ + ": " + line + "key \"" + prefix_ + std::string(key) + "\" " + what);
 }
 
 const toml::node* TableReader::find(std::string_view key) {
@@ -107,7 +136,7 @@ std::vector<TableReader> TableReader::tables(std::string_view key) {
 void TableReader::refuse_unknown_keys() const {
   for (const auto& [key, node] : table_) {
     if (std::find(known_.begin(), known_.end(), std::string(key.str())) == known_.end()) {
-      fail(key.str(), "is unknown");
+      fail(key.str(), "is unknown" + did_you_mean(key.str(), known_));
     }
   }
 }

@@ -16,9 +16,13 @@ namespace viewgain {
 /// The same of a text; `name` is what errors call it.
 [[nodiscard]] toml::table parse_toml(std::string_view text, const std::string& name);
 
+/// As TOML has them: a number that is read back as it was, a text in quotes, on one line.
+[[nodiscard]] std::string toml_float(double value);
+[[nodiscard]] std::string toml_string(const std::string& value);
+
 /// One table of a TOML file; remembers which keys were asked for, so that the others can be
 /// refused. Must not outlive the table. Whatever is not as it should be is an Error(format) that
-/// names the file and the key.
+/// names the file, the line of a key that is there, and the key.
 class TableReader {
  public:
   TableReader(const toml::table& table, std::string file, std::string prefix);
@@ -40,6 +44,7 @@ class TableReader {
   /// The elements of a list of tables; none if the key is not there.
   std::vector<TableReader> tables(std::string_view key);
 
+  /// Names the nearest of the keys that were asked for.
   void refuse_unknown_keys() const;
 
  private:

@@ -65,9 +65,10 @@ export class OpenReport {
     return Object.assign(report, { page, context });
   }
 
-  /** The scene alone, without what lies over it, which would show any click too. */
+  /** The scene alone, without what lies over it, which would show any click and the focus too. */
   async viewer() {
-    const style = "#layers, #legend, #camera-tools { opacity: 0 !important; }";
+    const style = `#layers, #legend, #camera-tools { opacity: 0 !important; }
+      #stage canvas { outline: none !important; }`;
     return decodePng(await this.page.locator("#stage").screenshot({ style }));
   }
 

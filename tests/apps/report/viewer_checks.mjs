@@ -43,6 +43,7 @@ export async function checkLayers(report) {
   // From far away all that the layers show is in sight.
   await page.locator("#stage canvas").focus();
   for (let i = 0; i < 8; ++i) await page.keyboard.press("-");
+  await report.settled();
   for (const id of ids) {
     const empty = () => page.locator(`.layer:has([data-layer="${id}"])`).evaluate((row) => row.classList.contains("empty"));
     let step = 0;

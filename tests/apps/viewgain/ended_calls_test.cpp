@@ -130,8 +130,8 @@ TEST_F(EndedCalls, AKilledRunLeavesTheOneBeforeWhole) {
   // The next run clears that away, and puts itself in the place of the first: one map less.
   ASSERT_EQ(run(reconstruct("run", "1")).exit_code, 0);
   EXPECT_FALSE(fs::exists(left));
-  EXPECT_EQ(list("run"), (Strings{"map.vdb", "maps", "notes.txt", "points.ply", "run.json",
-                                  "surface.ply", "views.txt"}));
+  EXPECT_EQ(list("run"), (Strings{"config.toml", "map.vdb", "maps", "notes.txt", "points.ply",
+                                  "run.json", "surface.ply", "views.txt"}));
   EXPECT_EQ(list("run/maps"), Strings{"00.vdb"});
 }
 

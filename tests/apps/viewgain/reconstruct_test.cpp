@@ -87,8 +87,8 @@ TEST_F(Reconstruct, LeavesAConsistentFolder) {
   EXPECT_EQ(result["stop_reason"], "max_views");
   EXPECT_EQ(result["views"], 3);
   ASSERT_EQ(result["per_view"].size(), 3U);
-  EXPECT_EQ(list("run"), (Strings{"map.vdb", "maps", "points.ply", "run.json", "surface.ply",
-                                  "views", "views.txt"}));
+  EXPECT_EQ(list("run"), (Strings{"config.toml", "map.vdb", "maps", "points.ply", "run.json",
+                                  "surface.ply", "views", "views.txt"}));
   EXPECT_EQ(list("run/maps"), (Strings{"00.vdb", "01.vdb", "02.vdb"}));
   EXPECT_EQ(list("run/views"), (Strings{"00.amplitude.png", "00.png", "01.amplitude.png", "01.png",
                                         "02.amplitude.png", "02.png"}));
@@ -145,8 +145,9 @@ TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
       {"generator", "generators"}, {"calibrate", "calibrated"}, {"count", "sphere_poses"}};
   // Where results go, how fast; the seed is beside the settings, the body in the sensor; obstacles
   // are there where there are any.
-  const std::set<std::string> elsewhere{"help",     "json", "threads", "out",     "save_maps",
-                                        "pictures", "seed", "body",    "obstacle"};
+  const std::set<std::string> elsewhere{"help",      "json",     "threads", "out",
+                                        "save_maps", "pictures", "seed",    "body",
+                                        "obstacle",  "quiet",    "config",  "save_config"};
   std::istringstream help(run_well({"reconstruct", "--help"}));
   std::size_t flags = 0;
   for (std::string line; std::getline(help, line);) {

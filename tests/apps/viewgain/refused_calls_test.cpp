@@ -180,7 +180,7 @@ TEST_F(RefusedCalls, LeaveEveryByteAsItWas) {
        {joined(simulate("cube.off", "new"), {"--orbit", "1,50,27"}), "cube.off: no pose"},
        {candidates({"--reach", "far.toml", "--out", "new.txt"}), "unreachable"},
        {{"simulate", "cube.off", "--orbit", "1,0.6,27", "--sensor", "wide.toml", "--out", "new"},
-        "wide.toml: key \"camera.width\""}},
+        "wide.toml: line 6: key \"camera.width\""}},
       40);
 }
 

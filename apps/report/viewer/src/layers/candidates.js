@@ -42,7 +42,7 @@ export const candidates = {
     const write = (index, target, at) =>
       ramps.gain.write((part.gain[index] - low) / (high - low), target, at);
     // Many would hide what they look at.
-    const size = Math.min(0.075, Math.max(0.034, 1.2 / Math.sqrt(indices.length))) * stage.radius;
+    const size = Math.min(0.075, Math.max(0.034, 0.9 / Math.sqrt(indices.length))) * stage.radius;
     const object = pyramids(part.poses, indices, report.frustum, size, write);
     const legend = {
       title: `gain [${unit.name}]`,

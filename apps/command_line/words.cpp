@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "formats/src/nearest_name.hpp"
+#include "options/choices.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::app {
+namespace {
+
+// Flags that had another spelling once.
+struct Renamed {
+  std::string_view subcommand, flag, now;
+};
+constexpr std::array kRenamed{Renamed{"reconstruct", "--no-refine", "--refine off"},
+                              Renamed{"reconstruct", "--no-pictures", "--pictures off"},
+                              Renamed{"reconstruct", "--sphere-poses", "--count N"}};
+
+// Values likewise.
+constexpr std::string_view kSpread =
+    "fibonacci is the sphere now; reconstruct --policy fibonacci spreads its poses out";
+
+[[noreturn]] void refuse(const CLI::App& subcommand, const std::string& flag, std::string what) {
+  if (!subcommand.get_name().empty() && subcommand.get_parent() != nullptr) {
+    what.append(" (see viewgain ").append(subcommand.get_name()).append(" --help)");
+  }
+  throw Error(ErrorCode::invalid_argument, flag + ": " + what);
+}
+
+[[noreturn]] void refuse_unknown(const CLI::App& subcommand, const std::string& flag) {
+  for (const Renamed& old : kRenamed) {
+    if (old.flag == flag && old.subcommand == subcommand.get_name()) {
+      refuse(subcommand, flag, std::string("is written ").append(old.now).append(" now"));
+    }
+  }
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : all_options(subcommand)) {
+    if (option->nonpositional()) flags.push_back(flag_of(*option));
+  }
+  refuse(subcommand, flag,
+         std::string("no such flag of ")
+             .append(subcommand.get_name())
+             .append(did_you_mean(flag, flags)));
+}
+
+[[noreturn]] void refuse_without_value(const CLI::App& subcommand, const CLI::Option& option) {
+  const std::vector<std::string> choices = choices_of(option);
+  std::string what = "needs a value";
+  if (!choices.empty()) what.append("; there are ").append(listed(choices));
+  if (subcommand.get_name() == "simulate" && flag_of(option) == "--center") {
+    what.append(", x,y,z that poses look at; the mesh is moved by --recenter on");
+  }
+  refuse(subcommand, flag_of(option), what);
+}
+
+bool is_flag(const std::string& word) { return word.size() > 2 && word.starts_with("--"); }
+
+}  // namespace
+
+std::vector<const CLI::Option*> all_options(const CLI::App& subcommand) {
+  std::vector<const CLI::Option*> options = subcommand.get_options();
+  for (const CLI::App* group : subcommand.get_subcommands({})) {
+    if (!group->get_name().empty()) continue;
+    const std::vector<const CLI::Option*> more = all_options(*group);
+    options.insert(options.end(), more.begin(), more.end());
+  }
+  return options;
+}
+
+std::string flag_of(const CLI::Option& option) {
+  return option.nonpositional() ? "--" + option.get_lnames().front() : option.get_name(true);
+}
+
+bool is_bare(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
+
+const CLI::App* subcommand_of(const CLI::App& program, const std::vector<std::string>& words) {
+  if (words.empty() || words[0].starts_with("-")) return nullptr;
+  std::vector<std::string> names;
+  for (const CLI::App* subcommand : program.get_subcommands({})) {
+    if (subcommand->get_name() == words[0]) return subcommand;
+    if (!subcommand->get_group().empty()) names.push_back(subcommand->get_name());
+  }
+  const std::string nearest = did_you_mean(words[0], names);
+  throw Error(ErrorCode::invalid_argument,
+              words[0] + ": no such subcommand" +
+                  (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names));
+}
+
+GivenWords sort_words(const CLI::App& subcommand, const std::vector<std::string>& words) {
+  const std::vector<const CLI::Option*> options = all_options(subcommand);
+  GivenWords given;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (given.has_mark || !words[i].starts_with("--")) {
+      if (given.has_mark || words[i] != "-h") ++given.positionals;
+      continue;
+    }
+    if (words[i] == "--") {
+      given.has_mark = true;
+      continue;
+    }
+    const std::size_t equals = words[i].find('=');
+    const std::string flag = words[i].substr(0, equals);
+    const auto found = std::find_if(options.begin(), options.end(), [&](const CLI::Option* option) {
+      return option->nonpositional() && flag_of(*option) == flag;
+    });
+    if (found == options.end()) refuse_unknown(subcommand, flag);
+    given.options.insert(*found);
+    if (is_bare(**found)) continue;
+    const bool is_inside = equals != std::string::npos;
+    if (!is_inside && (i + 1 == words.size() || words[i + 1] == "--" || is_flag(words[i + 1]))) {
+      refuse_without_value(subcommand, **found);
+    }
+    const std::string value = is_inside ? words[i].substr(equals + 1) : words[++i];
+    if (flag == "--generator" && value == "fibonacci")
+      refuse(subcommand, flag, std::string(kSpread));
+  }
+  return given;
+}
+
+}  // namespace viewgain::app
