@@ -1,11 +1,11 @@
 # Debian packages of what is installed: `cpack` in a folder configured with the preset `packages`.
 
 # viewgain_package(component package licence description [DEPENDS components...] [DEBIAN packages...]
-#                  [SECTION section]): one .deb of an install component. `licence` is a file's name in
-# LICENSES/ without its ending; DEPENDS: other packages of this very version; DEBIAN: further packages,
+#                  [SECTION section] [NOTICES files...]): one .deb of an install component. `licence` is a
+# file's name in LICENSES/ without its ending, as are those of NOTICES, of what others wrote; DEPENDS: other packages of this very version; DEBIAN: further packages,
 # besides those that dpkg-shlibdeps finds. A macro: CPack reads variables.
 macro(viewgain_package component package licence description)
-  cmake_parse_arguments(PKG "" "SECTION" "DEPENDS;DEBIAN" ${ARGN})
+  cmake_parse_arguments(PKG "" "SECTION" "DEPENDS;DEBIAN;NOTICES" ${ARGN})
   string(TOUPPER ${component} PKG_KEY)
   list(APPEND CPACK_COMPONENTS_ALL ${component})
   set(VIEWGAIN_PACKAGE_${component} ${package})
@@ -19,6 +19,10 @@ macro(viewgain_package component package licence description)
   list(JOIN PKG_LINES ", " CPACK_DEBIAN_${PKG_KEY}_PACKAGE_DEPENDS)
 
   file(READ ${PROJECT_SOURCE_DIR}/LICENSES/${licence}.txt PKG_LICENCE)
+  foreach(notice IN LISTS PKG_NOTICES)
+    file(READ ${PROJECT_SOURCE_DIR}/LICENSES/${notice}.txt PKG_NOTICE)
+    string(APPEND PKG_LICENCE "\nIn it, by others (${notice}):\n\n${PKG_NOTICE}")
+  endforeach()
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/copyright/${package}/copyright @ONLY CONTENT
 "viewgain @PROJECT_VERSION@
 Copyright: 2026 The viewgain authors
@@ -51,7 +55,7 @@ endif()
 if(VIEWGAIN_BUILD_APPS AND BUILD_SHARED_LIBS)
   viewgain_package(program viewgain GPL-3.0-or-later
     "Scores camera poses by expected information gain, program" SECTION science
-    DEPENDS runtime mesh-runtime)
+    DEPENDS runtime mesh-runtime NOTICES MIT-three.js)
 endif()
 if(VIEWGAIN_BUILD_PYTHON AND BUILD_SHARED_LIBS)
   # An extension is for one minor version of Python.
