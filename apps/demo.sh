@@ -20,4 +20,4 @@ out=out/demo
   --save-maps on --seed 1 --out "$out"
 "$viewgain" score "$out/maps/03.vdb" --sphere 2000,0.6 --sensor sr4000 --top 10 \
   --out "$out/scores.csv" --picture "$out/best_view.png"
-echo "left in $out: run.json, views.txt, map.vdb, surface.ply, points.ply, views/, maps/, scores.csv, best_view.png"
+echo "left in $out: run.json, config.toml, views.txt, map.vdb, surface.ply, points.ply, views/, maps/, scores.csv, best_view.png"
