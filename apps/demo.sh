@@ -23,5 +23,5 @@ report=on
   --up y --save-maps on --report "$report" --seed 1 --out "$out"
 "$viewgain" score "$out/maps/03.vdb" --sphere 2000,0.6 --top 10 \
   --out "$out/scores.csv" --picture "$out/best_view.png"
-echo "left in $out: run.json, views.txt, map.vdb, surface.ply, points.ply, views/, maps/, scores.csv, best_view.png"
+echo "left in $out: run.json, config.toml, views.txt, map.vdb, surface.ply, points.ply, views/, maps/, scores.csv, best_view.png"
 [ "$report" = off ] || echo "the run to click through, in a browser: $PWD/$out/report.html"

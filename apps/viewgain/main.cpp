@@ -76,7 +76,7 @@ int run(int argc, char** argv) {
   help_files->add_option("FOLDER", help_folder, "folder to write")->required();
   program.footer(
       "Examples:\n"
-      "  viewgain reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 4 "
+      "  viewgain reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 3 "
       "--out run\n"
       "  viewgain score run/map.vdb --sphere 2000,0.6 --race --top 3");
   try {

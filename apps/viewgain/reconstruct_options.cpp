@@ -139,9 +139,9 @@ void add_options(CLI::App& app, ReconstructOptions& o) {
   const OptionDeclaration declaration(app);
   describe(o, declaration);
   add_common_options(app, o.common);
-  add_help(
-      app, kLoopGroup,
-      "reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 4 --out run");
+  add_help(app, kLoopGroup,
+           "reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 4 "
+           "--pictures off --out run");
 }
 
 nlohmann::ordered_json settings_json(const ReconstructOptions& options,
