@@ -24,8 +24,9 @@ namespace {
 using nlohmann::json;
 using Strings = std::vector<std::string>;
 
-const Strings kSubcommands{"simulate",    "integrate", "score",   "candidates",
-                           "reconstruct", "info",      "convert", "sensors"};
+// In an order in which the examples of their help find what they name.
+const Strings kSubcommands{"simulate", "integrate", "score",   "candidates", "reconstruct",
+                           "render",   "info",      "convert", "sensors"};
 
 Strings words_of(const std::string& text) {
   std::istringstream in(text);
@@ -102,7 +103,7 @@ TEST_F(Help, GroupsSubcommandsByTaskAndItsExamplesWork) {
   for (const char* line :
        {"\nThe whole loop:\n  reconstruct ", "\nMake a map:\n  simulate ", "\n  integrate ",
         "\nChoose views:\n  score ", "\n  candidates ", "\nLook and convert:\n  info ",
-        "\n  convert ", "\n  sensors ", "\nExamples:\n  viewgain "}) {
+        "\n  convert ", "\n  render ", "\n  sensors ", "\nExamples:\n  viewgain "}) {
     const std::size_t at = help.find(line);
     ASSERT_NE(at, std::string::npos) << line;
     EXPECT_GT(at + 1, last) << line;

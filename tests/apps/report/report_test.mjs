@@ -50,8 +50,10 @@ async function checkLayout(report) {
     await report.settled();
     const now = await viewerBox();
     check(JSON.stringify(now) === JSON.stringify(box), `the viewer stays with ${await tab.textContent()} open`);
-    const scrolled = await page.evaluate(() =>
-      [document.scrollingElement, document.body, document.querySelector("main")].some((e) => e.scrollTop || e.scrollLeft));
+    const scrolled = await page.evaluate(() => {
+      const parts = [document.scrollingElement, document.body, document.querySelector("main")];
+      return parts.some((part) => part.scrollTop || part.scrollLeft);
+    });
     check(!scrolled, `nothing but the panel scrolls with ${await tab.textContent()} open`);
   }
   await tabs[0].click();

@@ -45,7 +45,8 @@ export async function checkLayers(report) {
   for (let i = 0; i < 8; ++i) await page.keyboard.press("-");
   await report.settled();
   for (const id of ids) {
-    const empty = () => page.locator(`.layer:has([data-layer="${id}"])`).evaluate((row) => row.classList.contains("empty"));
+    const row = page.locator(`.layer:has([data-layer="${id}"])`);
+    const empty = () => row.evaluate((element) => element.classList.contains("empty"));
     let step = 0;
     await report.goTo(0);
     while (step < last && (await empty())) await report.goTo(++step);

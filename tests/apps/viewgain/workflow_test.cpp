@@ -442,7 +442,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--object-size --hazard --support-plane --obstacle --reach --feasible --body --criterion "
        "--stride --weight --prior-sigma "
        "--min-range --max-range --top --race --approximate --set --seed "
-       "--out --picture --json --threads =log_diagonal =10 [m]"},
+       "--out --picture --report --json --threads =log_diagonal =10 [m]"},
       {"sensors", "NAME --json --threads"},
       {"info", "MAP --hash --criterion --region --json --threads =log_diagonal"},
       {"candidates",
@@ -456,7 +456,11 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--stop-area --stop-idle --stop-coverage "
        "--travel-cost --travel-speed --reach --body --background --support-plane --noise "
        "--flying-pixels --seed --wiggling --calibrate --frames-per-view --jump-edge-filter "
-       "--refine --obstacle --save-maps --pictures --out --json --threads"}};
+       "--refine --obstacle --save-maps --pictures --report --out --json --threads"},
+      {"render",
+       "INPUT --what --width --azimuth --elevation --ellipsoids --views --columns --poses --sphere "
+       "--dome --rings --shell --orbit --center --seed --sensor --gain --out --json --threads =30 "
+       "[px]"}};
   const std::string top = run_well({"--help"});
   int words = 0;
   for (const auto& [command, listed] : commands) {
@@ -482,7 +486,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 170);
+  EXPECT_EQ(words, 195);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

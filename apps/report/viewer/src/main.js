@@ -78,11 +78,15 @@ function buildViewer(state, report, stage, layers) {
   });
   const angle = Math.PI / 24;
   return [
-    { keys: ["a", "d"], shown: "A D", does: "turn left, right", act: (key) => stage.move(key === "a" ? -angle : angle, 0, 1) },
-    { keys: ["w", "s"], shown: "W S", does: "turn up, down", act: (key) => stage.move(0, key === "w" ? -angle : angle, 1) },
-    { keys: ["+", "=", "-"], shown: "+ -", does: "come closer, go back", act: (key) => stage.move(0, 0, key === "-" ? 1.12 : 1 / 1.12) },
+    { keys: ["a", "d"], shown: "A D", does: "turn left, right",
+      act: (key) => stage.move(key === "a" ? -angle : angle, 0, 1) },
+    { keys: ["w", "s"], shown: "W S", does: "turn up, down",
+      act: (key) => stage.move(0, key === "w" ? -angle : angle, 1) },
+    { keys: ["+", "=", "-"], shown: "+ -", does: "come closer, go back",
+      act: (key) => stage.move(0, 0, key === "-" ? 1.12 : 1 / 1.12) },
     { keys: ["h"], shown: "H", does: "look at everything", act: camera.home },
-    ...(camera.lookTaken ? [{ keys: ["v"], shown: "V", does: "look through the view just taken", act: camera.lookTaken }] : []),
+    ...(camera.lookTaken
+      ? [{ keys: ["v"], shown: "V", does: "look through the view just taken", act: camera.lookTaken }] : []),
     { keys: ["n"], shown: "N", does: "look through the next or the selected pose", act: camera.look },
     { keys: layers.slice(0, 10).map((_, i) => String((i + 1) % 10)), shown: "1 … 0", does: "layers on and off",
       act: (key) => toggleLayer(state, layers[(Number(key) + 9) % 10].id) },
@@ -126,7 +130,8 @@ async function build(report) {
   bindKeys([
     { keys: ["ArrowLeft", "ArrowRight"], shown: "← →", does: "step before, after",
       act: (key) => timeline.go(state.values.step + (key === "ArrowLeft" ? -1 : 1)) },
-    { keys: ["Home", "End"], shown: "Home End", does: "first, last step", act: (key) => timeline.go(key === "Home" ? 0 : timeline.last) },
+    { keys: ["Home", "End"], shown: "Home End", does: "first, last step",
+      act: (key) => timeline.go(key === "Home" ? 0 : timeline.last) },
     { keys: [" "], shown: "space", does: "play, pause", act: timeline.togglePlay },
     ...viewerKeys,
     { keys: ["Escape"], shown: "Esc", does: "select no candidate", act: () => state.set({ candidate: null }) },

@@ -21,20 +21,24 @@ function columnsOf(report, part, chosen, withClass) {
     return reason === null ? "kept" : `dropped: ${words(reason)}`;
   };
   const columns = [
-    { name: "#", title: "Index of the candidate", number: true, value: (row) => row.id, cell: (row) => String(row.id) },
-    { name: `Gain ${unit.name}`, title: "Gain by which it ranks", number: true, value: (row) => row.gain, cell: gainCell },
+    { name: "#", title: "Index of the candidate", number: true,
+      value: (row) => row.id, cell: (row) => String(row.id) },
+    { name: `Gain ${unit.name}`, title: "Gain by which it ranks", number: true,
+      value: (row) => row.gain, cell: gainCell },
   ];
   if (report.gain_unit !== "m^2" && part.area.some(Number.isFinite)) {
     columns.push({ name: "Area cm²", title: "New surface expected [cm²]", number: true, value: (row) => row.area,
       cell: (row) => (Number.isNaN(row.area) ? none : short(1e4 * row.area)) });
   }
   if (withClass) {
-    columns.push({ name: "Class", title: "Class of its boundary", value: (row) => row.class, cell: (row) => classCell(row.class) });
+    columns.push({ name: "Class", title: "Class of its boundary",
+      value: (row) => row.class, cell: (row) => classCell(row.class) });
   }
   columns.push(
-    { name: "Generator", title: "What proposed it", value: (row) => row.generator, cell: (row) => words(row.generator) },
-    { name: "Why", title: "Why it was kept or dropped", value: (row) => (row.id === chosen ? "" : row.reason ?? "kept"),
-      cell: fate });
+    { name: "Generator", title: "What proposed it",
+      value: (row) => row.generator, cell: (row) => words(row.generator) },
+    { name: "Why", title: "Why it was kept or dropped",
+      value: (row) => (row.id === chosen ? "" : row.reason ?? "kept"), cell: fate });
   return columns;
 }
 
@@ -56,7 +60,8 @@ function totals(part) {
   for (const r of part.reason) byReason.set(r, (byReason.get(r) ?? 0) + 1);
   const kept = byReason.get(-1) ?? 0;
   const dropped = [...byReason].filter(([r]) => r !== -1).sort((a, b) => b[1] - a[1]);
-  const chips = dropped.map(([r, n]) => el("span", { class: "chip" }, `${n.toLocaleString("en")} ${words(part.reasons[r])}`));
+  const chips = dropped.map(([r, n]) =>
+    el("span", { class: "chip" }, `${n.toLocaleString("en")} ${words(part.reasons[r])}`));
   return el("p", { class: "totals" }, el("b", {}, `${count(kept, "candidate", "candidates")} kept`),
     dropped.length > 0 ? " · dropped: " : "", ...chips);
 }

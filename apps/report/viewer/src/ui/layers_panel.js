@@ -6,10 +6,18 @@ import { colourings } from "../layers/surfaces.js";
 
 // What is worth seeing together.
 const presets = {
-  Plan: { title: "Boundaries, candidates and the next view", layers: ["surface", "boundaries", "candidates", "taken", "chosen"], colouring: "plain" },
+  Plan: {
+    title: "Boundaries, candidates and the next view",
+    layers: ["surface", "boundaries", "candidates", "taken", "chosen"],
+    colouring: "plain",
+  },
   Sigma: { title: "The surface coloured by its sigma", layers: ["surface", "taken"], colouring: "sigma" },
   Points: { title: "The points as uncertainty ellipsoids", layers: ["points", "taken"], colouring: "plain" },
-  New: { title: "Where the next view is expected to find surface", layers: ["surface", "chosen", "expected"], colouring: "plain" },
+  New: {
+    title: "Where the next view is expected to find surface",
+    layers: ["surface", "chosen", "expected"],
+    colouring: "plain",
+  },
   Error: { title: "The surface coloured by its distance from the truth", layers: ["surface"], colouring: "error" },
 };
 

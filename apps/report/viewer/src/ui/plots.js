@@ -74,7 +74,8 @@ function bars(group, series, places, y, width) {
       if (!(value > 0)) return;
       const [low, high] = [y(base[i]), y(base[i] + value)];
       base[i] += value;
-      group.append(svg("rect", { "data-step": i, x: places[i] - width / 2, y: high, width, height: low - high, fill: colour }));
+      const place = { x: places[i] - width / 2, y: high, width, height: low - high };
+      group.append(svg("rect", { "data-step": i, ...place, fill: colour }));
     });
   }
 }

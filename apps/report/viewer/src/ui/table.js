@@ -29,12 +29,14 @@ export class Table {
     this.columns = columns;
     this.choose = choose;
     this.heads = columns.map((column, i) => {
-      const button = el("button", { type: "button", title: column.title, onclick: () => this.#sortBy(i) }, column.name);
+      const sort = () => this.#sortBy(i);
+      const button = el("button", { type: "button", title: column.title, onclick: sort }, column.name);
       return el("th", { scope: "col", class: column.number ? "number" : null }, button);
     });
     this.body = el("tbody", { onkeydown: (event) => this.#key(event) });
     this.more = el("button", { type: "button", class: "more", onclick: () => this.#showAll() });
-    const table = el("table", { role: "grid", "aria-label": label }, el("thead", {}, el("tr", {}, ...this.heads)), this.body);
+    const head = el("thead", {}, el("tr", {}, ...this.heads));
+    const table = el("table", { role: "grid", "aria-label": label }, head, this.body);
     if (sortBy !== null) this.#sortBy(sortBy);
     this.element = el("div", { class: "table" }, table, this.more);
   }
