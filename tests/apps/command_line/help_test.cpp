@@ -126,7 +126,7 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
     run_example(calls[0]);
     ++cases;
   }
-  EXPECT_EQ(cases, 8U);
+  EXPECT_EQ(cases, 9U);
 }
 
 TEST_F(Help, ManPagesHaveEveryFlag) {
@@ -164,7 +164,7 @@ TEST_F(Help, ManPagesAreShownWithoutAWarning) {
     EXPECT_NE(shown.find("SEE ALSO"), std::string::npos) << page;
     ++cases;
   }
-  EXPECT_EQ(cases, 9U);
+  EXPECT_EQ(cases, 10U);
 }
 
 TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
@@ -201,7 +201,7 @@ TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
     EXPECT_EQ(completions(line), expected) << words[0] << ' ' << words[1];
     ++cases;
   }
-  EXPECT_EQ(cases, 22U);
+  EXPECT_EQ(cases, 23U);
 }
 
 TEST_F(Help, ZshHasEveryFlag) {

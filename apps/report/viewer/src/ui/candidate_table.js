@@ -11,10 +11,10 @@ import { classCell } from "./view_table.js";
 function columnsOf(report, part, chosen, withClass) {
   const unit = unitOf(report.gain_unit);
   const { low, high } = gainRange(part);
-  const gainCell = ({ gain }) => {
+  const gainCell = ({ gain, exact }) => {
     if (Number.isNaN(gain)) return none;
     const mark = swatch(ramps.gain.css((gain - low) / (high - low)));
-    return el("span", { class: "mark" }, short(gain * unit.factor), mark);
+    return el("span", { class: "mark" }, `${exact ? "" : "≈ "}${short(gain * unit.factor)}`, mark);
   };
   const fate = ({ id, reason }) => {
     if (id === chosen) return el("span", { class: "mark strong" }, swatch(chosenColour), "chosen");
@@ -23,7 +23,7 @@ function columnsOf(report, part, chosen, withClass) {
   const columns = [
     { name: "#", title: "Index of the candidate", number: true,
       value: (row) => row.id, cell: (row) => String(row.id) },
-    { name: `Gain ${unit.name}`, title: "Gain by which it ranks", number: true,
+    { name: `Gain ${unit.name}`, title: "Gain by which it ranks; ≈: estimated from a tenth of its rays", number: true,
       value: (row) => row.gain, cell: gainCell },
   ];
   if (report.gain_unit !== "m^2" && part.area.some(Number.isFinite)) {
@@ -43,9 +43,11 @@ function columnsOf(report, part, chosen, withClass) {
 }
 
 function rowsOf(part) {
+  const exact = new Set(part.exact);
   return part.reason.map((reason, id) => ({
     id,
     gain: part.gain[id],
+    exact: exact.has(id),
     area: part.area[id],
     class: part.class[id] < 0 ? null : part.classes[part.class[id]],
     generator: part.generators[part.generator[id]] ?? none,
