@@ -34,8 +34,8 @@ block sh | grep -q '^\./apps/demo\.sh'
 block sh | grep -q '^\./tests/run\.sh'
 
 cd "$work"
-"$source/apps/extract_mesh.sh" camel.off .
-commands=$(block sh | grep '^viewgain' | sed 's/--voxel 0.003125/--voxel 0.01 --max-views 3 --save-maps on/')
+"$source/apps/extract_mesh.sh" camel.off build/meshes
+commands=$(block sh | sed ':a; /\\$/ {N; s/\\\n *//; ta}' | grep '^viewgain' | sed 's/--voxel 0.003125/--voxel 0.01 --max-views 3 --save-maps on/')
 test "$(wc -l <<<"$commands")" -eq 3
 if [ ! -s "$bin/../apps/report/report_page.html" ]; then  # built without npm
   commands=$(sed 's/--report on//; s/--report score.html//' <<<"$commands")

@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // What the value of an option names.
-enum class Kind { input, reach, frames, output, picture, page, frames_output, run_output };
+enum class Kind { input, reach, frames, run, output, picture, page, frames_output, run_output };
 struct FileOption {
   std::string_view name;
   Kind kind;
@@ -43,7 +43,7 @@ constexpr std::array kFileOptions{
     FileOption{"--obstacle", Kind::input}, FileOption{"FRAMES_DIR", Kind::frames},
     FileOption{"OUT", Kind::output},       FileOption{"--picture", Kind::picture},
     FileOption{"--out", Kind::output},     FileOption{"--save-config", Kind::output},
-    FileOption{"INPUT", Kind::input},      FileOption{"--report", Kind::page}};
+    FileOption{"INPUT", Kind::run},        FileOption{"--report", Kind::page}};
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 
@@ -116,7 +116,7 @@ std::vector<Identity> identities(const NamedFile& file) {
   std::vector<fs::path> inside;
   if (file.kind == Kind::frames || file.kind == Kind::frames_output)
     inside = frame_files(file.path);
-  if (file.kind == Kind::run_output) inside = run_files(file.path);
+  if (file.kind == Kind::run || file.kind == Kind::run_output) inside = run_files(file.path);
   for (const fs::path& name : inside) found.emplace_back(file.path / name);
   if (file.kind == Kind::reach && !is_special_file(file.path)) {  // a pipe can be read only once
     if (const auto poses = reach_poses_file(file.path)) found.emplace_back(*poses);

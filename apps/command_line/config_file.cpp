@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "formats/src/settings_toml.hpp"
 #include "options/choices.hpp"
@@ -73,6 +74,9 @@ std::string word_of(const std::string& path, const Setting& setting, const Setti
   }
   const bool is_list_of_plain = value.kind == Kind::list && !value.elements.empty() &&
                                 std::all_of(value.elements.begin(), value.elements.end(), is_plain);
+  if (value.text.find('\0') != std::string::npos) {
+    refuse_setting(path, setting, "must not hold a zero byte");
+  }
   if (is_plain(value) || is_list_of_plain) return value.text;
   refuse_setting(path, setting, "must be a text, a number, or a list of these");
 }
@@ -92,6 +96,18 @@ void add_words(const std::string& path, const Setting& setting, const CLI::Optio
       words.push_back(flag + "=" + word_of(path, setting, element, option));
     }
   }
+}
+
+std::vector<std::string> positional_words(const std::string& path, const Setting& setting,
+                                          const CLI::Option& option) {
+  if (!is_repeated(option) || setting.value.kind != Kind::list) {
+    return {word_of(path, setting, setting.value, option)};
+  }
+  std::vector<std::string> words;
+  for (const SettingValue& element : setting.value.elements) {
+    words.push_back(word_of(path, setting, element, option));
+  }
+  return words;
 }
 
 // Whether the command line has said this, or another one of a group of which one may be given.
@@ -126,7 +142,8 @@ SettingValue value_of(const CLI::Option& option) {
   const std::string& text = option.results().back();
   switch (kind_of(option)) {
     case Kind::boolean:
-      return {Kind::boolean, text == "on" || text == "true" ? "true" : "false"};
+      return {Kind::boolean,
+              text == "on" || (is_bare(option) && option.as<bool>()) ? "true" : "false"};
     case Kind::number:
       return {Kind::number, short_text(option.as<double>())};
     case Kind::whole_number:
@@ -170,8 +187,9 @@ std::vector<std::string> with_config(const CLI::App& subcommand,
     if (option->nonpositional()) {
       add_words(path, *setting, *option, more);
     } else {
-      positionals.push_back(word_of(path, *setting, setting->value, *option));
-      if (is_on_the_line) positionals.pop_back();
+      for (std::string& word : positional_words(path, *setting, *option)) {
+        if (!is_on_the_line) positionals.push_back(std::move(word));
+      }
     }
     if (!is_on_the_line) all.insert(all.end(), more.begin(), more.end());
   }

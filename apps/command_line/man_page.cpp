@@ -98,7 +98,8 @@ std::string options_text(const CLI::App& subcommand) {
   std::string roff;
   for (const bool positional : {true, false}) {
     for (const CLI::Option* option : subcommand.get_options()) {
-      if (option->nonpositional() != positional) roff += option_text(*option);
+      const bool is_of_group = subcommand.get_name().empty() && option == subcommand.get_help_ptr();
+      if (option->nonpositional() != positional && !is_of_group) roff += option_text(*option);
     }
   }
   for (const CLI::App* group : subcommand.get_subcommands({})) {

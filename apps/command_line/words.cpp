@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <string_view>
 
 #include "formats/src/nearest_name.hpp"
@@ -58,6 +59,12 @@ constexpr std::string_view kSpread =
   refuse(subcommand, flag_of(option), what);
 }
 
+// No subcommand has any but -h; a number may stand for a name.
+bool is_short_flag(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && word != "-h" &&
+         std::isalpha(static_cast<unsigned char>(word[1])) != 0;
+}
+
 bool is_flag(const std::string& word) { return word.size() > 2 && word.starts_with("--"); }
 
 }  // namespace
@@ -66,8 +73,9 @@ std::vector<const CLI::Option*> all_options(const CLI::App& subcommand) {
   std::vector<const CLI::Option*> options = subcommand.get_options();
   for (const CLI::App* group : subcommand.get_subcommands({})) {
     if (!group->get_name().empty()) continue;
-    const std::vector<const CLI::Option*> more = all_options(*group);
-    options.insert(options.end(), more.begin(), more.end());
+    for (const CLI::Option* option : all_options(*group)) {
+      if (option != group->get_help_ptr()) options.push_back(option);  // the subcommand has its own
+    }
   }
   return options;
 }
@@ -96,6 +104,7 @@ GivenWords sort_words(const CLI::App& subcommand, const std::vector<std::string>
   GivenWords given;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (given.has_mark || !words[i].starts_with("--")) {
+      if (!given.has_mark && is_short_flag(words[i])) refuse_unknown(subcommand, words[i]);
       if (given.has_mark || words[i] != "-h") ++given.positionals;
       continue;
     }

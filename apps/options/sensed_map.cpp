@@ -22,10 +22,11 @@ std::string readings_of(Sensor sensor) {
 
 }  // namespace
 
-void warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const Sensor& sensor) {
-  if (!map.sensor || readings_of(*map.sensor) == readings_of(sensor)) return;
+bool warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const Sensor& sensor) {
+  if (!map.sensor || readings_of(*map.sensor) == readings_of(sensor)) return false;
   std::fprintf(stderr, "viewgain: warning: the readings in %s come from %s, not from this %s\n",
                utf8_text(path).c_str(), map.sensor->name.c_str(), sensor.name.c_str());
+  return true;
 }
 
 SensedMap load_sensed_map(const std::string& path, const std::string& sensor_flag) {

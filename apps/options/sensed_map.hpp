@@ -20,7 +20,7 @@ struct SensedMap {
 /// Error(invalid_argument) where there is neither, and as load_map() and load_sensor().
 [[nodiscard]] SensedMap load_sensed_map(const std::string& path, const std::string& sensor_flag);
 
-/// Warns on stderr if a map's readings come from another sensor than `sensor`.
-void warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const Sensor& sensor);
+/// Warns on stderr, and returns true, if a map's readings come from another sensor than `sensor`.
+bool warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const Sensor& sensor);
 
 }  // namespace viewgain::app

@@ -46,21 +46,28 @@ RgbImage map_picture(const GridSnapshot& snapshot, const Viewer& viewer, const E
                   exec);
 }
 
+std::array<double, 2> range_of(const std::vector<double>& values) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (!(low <= high)) return {};
+  return {low, high};
+}
+
 RgbImage gain_picture(const GridSnapshot& snapshot, const Sensor& sensor,
                       const std::vector<Pose>& poses, const std::vector<double>& gains,
-                      const Viewer& viewer, const ExecConfig& exec) {
+                      const std::array<double, 2>& range, const Viewer& viewer,
+                      const ExecConfig& exec) {
+  const auto [low, high] = range;
   constexpr double kLength = 0.045, kWidth = 0.004;  // of the workspace's diagonal
   PaintedMesh scene;
   add_map(scene, snapshot);
   const auto corners = workspace_corners(snapshot);
   const Vector3d center = 0.5 * (corners[0] + corners[7]);
   const double extent = (corners[7] - corners[0]).norm();
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const double gain : gains) {
-    if (std::isnan(gain)) continue;
-    low = std::min(low, gain);
-    high = std::max(high, gain);
-  }
   const HeatPaints paints(scene, false);
   std::vector<Vector3d> in_sight(corners.begin(), corners.end());
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "picture_parts.hpp"
@@ -18,11 +19,15 @@ namespace viewgain::app {
 [[nodiscard]] RgbImage map_picture(const GridSnapshot& snapshot, const Viewer& viewer,
                                    const ExecConfig& exec);
 
-/// The same with poses round it as small frusta, from dark to bright by their gain; one whose gain
-/// is NaN or that stands between viewer and workspace is left out.
+/// The least and the largest of those that are numbers; zeros without one.
+[[nodiscard]] std::array<double, 2> range_of(const std::vector<double>& values);
+
+/// The same with poses round it as small frusta, from dark to bright by their gain in `range`; one
+/// whose gain is NaN or that stands between viewer and workspace is left out.
 [[nodiscard]] RgbImage gain_picture(const GridSnapshot& snapshot, const Sensor& sensor,
                                     const std::vector<Pose>& poses,
-                                    const std::vector<double>& gains, const Viewer& viewer,
+                                    const std::vector<double>& gains,
+                                    const std::array<double, 2>& range, const Viewer& viewer,
                                     const ExecConfig& exec);
 
 }  // namespace viewgain::app

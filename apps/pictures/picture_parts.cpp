@@ -8,6 +8,9 @@
 #include <cstddef>
 #include <numbers>
 
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
+
 namespace viewgain::app {
 namespace {
 
@@ -198,8 +201,16 @@ Vector3d viewer_beside(const Vector3d& view_eye, const Vector3d& view_target, Si
 
 Pose place_viewer(const std::vector<Vector3d>& points, const Vector3d& direction,
                   PinholeCamera& camera) {
+  constexpr double kFarthest = 1e6;  // [m]; the tracer's numbers have seven digits
   Bounds bounds;
-  for (const Vector3d& p : points) bounds.add(p);
+  for (const Vector3d& p : points) {
+    if (!(p.cwiseAbs().maxCoeff() < kFarthest)) {
+      throw Error(ErrorCode::invalid_argument, "a picture cannot show a place at " +
+                                                   short_text(p.x()) + ", " + short_text(p.y()) +
+                                                   ", " + short_text(p.z()) + " m");
+    }
+    bounds.add(p);
+  }
   const Vector3d center = 0.5 * (bounds.min + bounds.max);
   const double radius = 0.5 * (bounds.max - bounds.min).norm();
   Pose T_world_camera;

@@ -24,8 +24,8 @@ void check_report_page(std::string_view flag) {
   if (!built_page().empty()) return;
   throw Error(ErrorCode::invalid_argument,
               std::string(flag) +
-                  ": this program has no report page, because npm was missing when it was built "
-                  "(install nodejs and npm, then build again)");
+                  ": this program has no report page, because npm was missing or its registry out "
+                  "of reach when it was built (install nodejs and npm, configure and build again)");
 }
 
 std::string report_page(const nlohmann::ordered_json& data, std::string_view page) {

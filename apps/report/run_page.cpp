@@ -92,7 +92,9 @@ void add_gains(ShownCandidates& shown, const GainEvaluator& evaluator,
   std::vector<ViewGain> ranked(estimates.size());
   for (std::size_t i = 0; i < ranked.size(); ++i) ranked[i].gain = estimates[i].gain;
   std::vector<std::size_t> exact = best_indices(ranked, kMaxExact);
-  if (chosen) exact.push_back(*chosen);
+  if (chosen && std::find(exact.begin(), exact.end(), *chosen) == exact.end()) {
+    exact.push_back(*chosen);
+  }
   std::vector<Pose> poses;
   for (const std::size_t i : exact) poses.push_back(shown.poses[i]);
   const std::vector<ViewGain> gains = evaluator.evaluate(poses);

@@ -78,13 +78,21 @@ BeliefGrid new_map(ReadingSource& source, const Options& options) {
   return BeliefGrid(config);
 }
 
+// The map that grows, and whether it had readings of another sensor, or of nobody knows which: then
+// its file does not say which they come from.
+struct GrownMap {
+  BeliefGrid grid;
+  bool is_of_two = false;
+};
+
 // An existing map keeps its layout and prior; flags that say something else are an error.
-BeliefGrid continued_map(const Sensor& sensor, const Options& options) {
+GrownMap continued_map(const Sensor& sensor, const Options& options) {
   OctomapConfig tree;  // which has no prior or workspace of its own
   tree.prior_sigma = options.prior_sigma;
   if (!options.workspace.empty()) tree.workspace = parse_box("--workspace", options.workspace);
   MapOfSensor map = load_map_of_sensor(options.map, &sensor, tree);
-  warn_of_other_sensor(options.map, map, sensor);
+  const bool is_of_two =
+      warn_of_other_sensor(options.map, map, sensor) || (!map.sensor && !map.grid.views().empty());
   BeliefGrid& grid = map.grid;
   const auto conflict = [&options](const std::string& flag, const std::string& given,
                                    const std::string& stored) {
@@ -105,7 +113,7 @@ BeliefGrid continued_map(const Sensor& sensor, const Options& options) {
       conflict("--workspace", options.workspace, describe(grid.workspace()));
     }
   }
-  return std::move(grid);
+  return {std::move(grid), is_of_two};
 }
 
 double median(std::vector<double> values) {
@@ -243,12 +251,14 @@ void integrate(const Options& options, const CLI::App& app) {
                                                  ": a tree has no place for hazard counters");
   }
   const std::unique_ptr<ReadingSource> source = open_reading_source(options);
-  BeliefGrid grid =
-      options.map.empty() ? new_map(*source, options) : continued_map(source->sensor(), options);
+  GrownMap map = options.map.empty() ? GrownMap{new_map(*source, options)}
+                                     : continued_map(source->sensor(), options);
+  BeliefGrid& grid = map.grid;
   const Totals totals = integrate_all(*source, options, grid);
   refuse_empty(options, *source, totals);
-  const LostInTree lost = save_map(
-      grid, options.out, noting_sensor(source->sensor(), {options.with_covariance == "on"}));
+  VdbWriteConfig how{options.with_covariance == "on"};
+  if (!map.is_of_two) how = noting_sensor(source->sensor(), std::move(how));
+  const LostInTree lost = save_map(grid, options.out, how);
   warn_of_lost_frame(lost, options.out);
   print_summary(options, *source, grid, totals, lost, watch.seconds());
 }

@@ -86,7 +86,8 @@ Viewer viewer_of(const Options& options, int usual_width) {
 
 // A map, or that of a run's folder.
 std::string map_file(const std::string& input) {
-  return fs::is_directory(input) ? (fs::path(input) / "map.vdb").string() : input;
+  std::error_code ignored;
+  return fs::is_directory(input, ignored) ? (fs::path(input) / "map.vdb").string() : input;
 }
 BeliefGrid map_of(const std::string& input) { return load_map(map_file(input)); }
 
@@ -147,12 +148,11 @@ Picture gain_picture(const Options& options, const ExecConfig& exec) {
   for (const ViewGain& gain : GainEvaluator(scene, sensor, config, exec).evaluate(poses)) {
     gains.push_back(gain.gain);
   }
-  const auto [low, high] = std::minmax_element(gains.begin(), gains.end());
-  const ColourRange range{
-      options.gain + " gain", std::string(gain_unit(config.model, "log_diagonal")), {*low, *high}};
-  return {
-      app::gain_picture(scene->snapshot(), sensor, poses, gains, viewer_of(options, 1280), exec),
-      range};
+  const std::array<double, 2> range = range_of(gains);
+  return {app::gain_picture(scene->snapshot(), sensor, poses, gains, range,
+                            viewer_of(options, 1280), exec),
+          ColourRange{options.gain + " gain", std::string(gain_unit(config.model, "log_diagonal")),
+                      range}};
 }
 
 // The numbers of the run's views that are shown: those given, or up to six, evenly.
@@ -181,7 +181,8 @@ RgbImage step_picture(const Options& options) {
     return folder / (name.insert(0, name.size() < 2 ? "0" : "").append(".png"));
   };
   std::size_t count = 0;
-  while (fs::exists(picture(count))) ++count;
+  std::error_code ignored;
+  while (fs::exists(picture(count), ignored)) ++count;
   if (count == 0) {
     refuse(options.inputs.front() +
            ": has no views/00.png; --what step needs the folder of a run with pictures");
@@ -189,7 +190,10 @@ RgbImage step_picture(const Options& options) {
   std::vector<RgbImage> images;
   for (const std::size_t view : shown_views(options, count)) {
     const RgbImage image = read_rgb_png(picture(view));
-    images.push_back(shrunk(image, std::max(1, image.width / options.width.value_or(640))));
+    const int width = options.width.value_or(640);
+    const int factor = (image.width + width - 1) / width;
+    if (image.height < factor) refuse(picture(view).string() + ": is too flat to be shown");
+    images.push_back(shrunk(image, factor));
     if (images.back().width != images.front().width ||
         images.back().height != images.front().height) {
       refuse(picture(view).string() + ": is of another size than the others");
@@ -275,8 +279,8 @@ Command add_render(CLI::App& program) {
           ->required();
   one_of(*what, {"map", "surface", "sigma", "gain", "step", "sheet"}, "kind of picture");
   app->add_option("--width", o.width,
-                  "of the picture [px], of each where there are several; default: 1280, sheet and "
-                  "step 640")
+                  "of the picture [px], of each where there are several, of step at most; default: "
+                  "1280, sheet and step 640")
       ->check(CLI::Range(64, 8192, "width"));
   app->add_option("--azimuth", o.azimuth, "of the viewer, from +x to +y [deg]")
       ->capture_default_str();

@@ -145,9 +145,9 @@ TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
       {"generator", "generators"}, {"calibrate", "calibrated"}, {"count", "sphere_poses"}};
   // Where results go, how fast; the seed is beside the settings, the body in the sensor; obstacles
   // are there where there are any.
-  const std::set<std::string> elsewhere{"help",      "json",     "threads", "out",
-                                        "save_maps", "pictures", "seed",    "body",
-                                        "obstacle",  "quiet",    "config",  "save_config"};
+  const std::set<std::string> elsewhere{
+      "help", "json",     "threads", "out",    "save_maps",   "pictures", "seed",
+      "body", "obstacle", "quiet",   "config", "save_config", "report"};
   std::istringstream help(run_well({"reconstruct", "--help"}));
   std::size_t flags = 0;
   for (std::string line; std::getline(help, line);) {

@@ -115,6 +115,46 @@ TEST_F(Render, SaysWhatItCannotDraw) {
   EXPECT_NE(wrong_name.err.find(".png"), std::string::npos) << wrong_name.err;
 }
 
+TEST_F(Render, WhatCannotBeShownOrReadIsNamed) {
+  make_run("run");
+  int refused = 0;
+  for (const char* far : {"1e7", "1e19", "1e38", "1e160"}) {
+    write("far.txt", std::string("0 ") + far + " 0 0 0 0 0 1\n");
+    for (const std::vector<std::string>& call :
+         {std::vector<std::string>{"render", "run", "--what", "gain", "--poses", "far.txt", "--out",
+                                   "far.png"},
+          {"score", "run/map.vdb", "--poses", "far.txt", "--picture", "far.png"}}) {
+      const test::ProgramResult result = run(call);
+      EXPECT_EQ(result.exit_code, 2) << far << ' ' << result.err;
+      EXPECT_FALSE(std::filesystem::exists(dir / "far.png"));
+      ++refused;
+    }
+  }
+  // What is read is not written, and odd names are bad input.
+  const std::string before = read("run/views/00.png");
+  for (const std::vector<std::string>& call :
+       {std::vector<std::string>{"run", "--what", "step", "--out", "run/views/00.png"},
+        {std::string(300, 'n'), "--what", "map", "--out", "odd.png"},
+        {std::string(300, 'n'), "--what", "step", "--out", "odd.png"}}) {
+    std::vector<std::string> all = call;
+    all.insert(all.begin(), "render");
+    const test::ProgramResult result = run(all);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    ++refused;
+  }
+  EXPECT_EQ(read("run/views/00.png"), before);
+  EXPECT_EQ(refused, 11);
+}
+
+TEST_F(Render, ASavedCallOfSeveralMapsIsReadAgain) {
+  make_run("run");
+  make_run("other", {"--seed", "2"});
+  run_well({"render", "run", "other", "--what", "sheet", "--width", "64", "--out", "a.png",
+            "--save-config", "sheet.toml"});
+  run_well({"render", "--config", "sheet.toml", "--out", "b.png"});
+  EXPECT_EQ(read("a.png"), read("b.png"));
+}
+
 TEST_F(Render, PicturesOfOtherKindsAreRefused) {
   write("text.png", "no picture");
   EXPECT_THROW((void)read_rgb_png(dir / "text.png"), Error);
@@ -146,6 +186,15 @@ TEST_F(Render, MapsRememberTheirSensor) {
   EXPECT_EQ(other.exit_code, 0);
   EXPECT_NE(other.err.find("not from this d435"), std::string::npos) << other.err;
   EXPECT_EQ(json::parse(other.out).at("sensor"), "d435");
+
+  // A map of two does not say which.
+  run_well({"simulate", "cube.off", "--orbit", "1,0.6,20", "--size", "0.3", "--sensor", "d435",
+            "--out", "frames"});
+  const test::ProgramResult two =
+      run({"integrate", "frames", "--map", "run/map.vdb", "--out", "two.vdb"});
+  EXPECT_EQ(two.exit_code, 0);
+  EXPECT_NE(two.err.find("not from this d435"), std::string::npos) << two.err;
+  EXPECT_TRUE(json::parse(run_well({"info", "two.vdb", "--json"})).at("sensor").is_null());
 
   // It goes through convert, not into a tree.
   run_well({"convert", "run/map.vdb", "again.vdb"});

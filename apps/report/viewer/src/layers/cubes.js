@@ -50,8 +50,6 @@ export const contributions = {
   },
 };
 
-const mostExpected = 8000;
-
 export const expected = {
   id: "expected",
   label: "Expected surface",
@@ -61,13 +59,9 @@ export const expected = {
   async build({ step, report }) {
     const { centers, value, unit, size } = await report.part(step.expected);
     const { name, factor } = unitOf(unit);
-    // Nearly all of the unknown may be expected to show a little: the most telling cells are shown.
-    const best = Array.from(value.keys()).sort((a, b) => value[b] - value[a]).slice(0, mostExpected);
-    const shown = { centers: new Float32Array(3 * best.length), value: best.map((i) => value[i]) };
-    best.forEach((i, k) => shown.centers.set(centers.subarray(3 * i, 3 * i + 3), 3 * k));
-    const high = quantile(shown.value, 0.98) || 1;
-    const write = (i, target) => ramps.expected.write(shown.value[i] / high, target, 0);
+    const high = quantile(value, 0.98) || 1;
+    const write = (i, target) => ramps.expected.write(value[i] / high, target, 0);
     const legend = { title: `expected [${name}]`, ramp: ramps.expected, low: 0, high: high * factor, open: true };
-    return { object: cubes(shown.centers, size, write), legend };
+    return { object: cubes(centers, size, write), legend };
   },
 };
