@@ -13,7 +13,8 @@ export PATH=$bin:$PATH
 # block LANGUAGE: the lines of the README's blocks in this language
 block() { awk -v fence="^\`\`\`$1\$" '$0 ~ fence {inside = 1; next} /^```$/ {inside = 0} inside' "$source/README.md"; }
 
-test "$(wc -w <"$source/README.md")" -le 1000
+words=$(wc -w <"$source/README.md")
+[ "$words" -le 1000 ] || { echo "README.md: $words words" >&2; exit 1; }
 python3 - "$source/README.md" <<'LINES'
 import sys
 long = [i for i, line in enumerate(open(sys.argv[1], encoding="utf-8"), 1) if len(line.rstrip("\n")) > 100]

@@ -38,7 +38,7 @@ POLICIES = [("combined", "gain: combined (default)", "#0b7a3b"), ("frontier", "m
             ("random", "random", "#888888"), ("kriegel", "boundaries in order", "#e08000")]
 
 
-def with_legend(picture, out, entries):
+def with_legend(picture, out, entries, columns):
     image = plt.imread(picture)
     image = image[int(0.06 * len(image)):int(0.94 * len(image))]  # the margins
     width, legend = 7.7, 0.85  # [inch]
@@ -49,7 +49,7 @@ def with_legend(picture, out, entries):
     axes.axis("off")
     marks = [Line2D([], [], linestyle="", marker=mark, color=color, markersize=8, label=label)
              for label, color, mark in entries]
-    figure.legend(handles=marks, loc="lower center", ncol=3, frameon=False, fontsize=9)
+    figure.legend(handles=marks, loc="lower center", ncol=columns, frameon=False, fontsize=9)
     figure.savefig(out)
 
 
@@ -105,7 +105,7 @@ def main():
     elif what == "coverage":
         coverage(source, out)
     else:
-        with_legend(source, out, STEP if what == "step" else IDEA)
+        with_legend(source, out, *((STEP, 3) if what == "step" else (IDEA, 2)))
 
 
 if __name__ == "__main__":

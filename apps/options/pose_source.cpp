@@ -36,7 +36,7 @@ using CenteredGenerator = std::vector<Pose> (*)(std::size_t, double, const Eigen
 
 std::vector<Pose> round_center(const std::string& flag, const std::string& text,
                                const Eigen::Vector3d& center, CenteredGenerator generator) {
-  const std::vector<double> n = parse_numbers(flag, text, 2, 5);
+  const std::vector<double> n = parse_numbers(flag, text, 1, 16);
   if (n.size() != 2) refuse(flag, text, "needs N,RADIUS; the centre is given by --center x,y,z");
   const std::size_t count = parse_count(flag, n[0]);
   return naming_the_flag(flag, text, [&] { return generator(count, n[1], center); });

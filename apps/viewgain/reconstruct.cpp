@@ -153,9 +153,13 @@ void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
     print_json(json);
   } else {
     std::printf("%s", report.text(result.reason).c_str());
+    const Eigen::Vector3d& center = setup.stage.center;
+    std::printf("the object's box, %.3g m long, has its centre at %.3g, %.3g, %.3g m\n",
+                setup.stage.size, center.x(), center.y(), center.z());
     std::printf(
-        "left in %s: run.json, config.toml, views.txt, map.vdb, surface.ply, points.ply%s%s\n",
-        options.out.c_str(), with_pictures ? ", views/" : "", with_report ? ", report.html" : "");
+        "left in %s: run.json, config.toml, views.txt, map.vdb, surface.ply, points.ply%s%s%s\n",
+        options.out.c_str(), with_pictures ? ", views/" : "",
+        options.save_maps == "on" ? ", maps/" : "", with_report ? ", report.html" : "");
   }
 }
 

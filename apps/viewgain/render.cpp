@@ -273,8 +273,8 @@ Command add_render(CLI::App& program) {
   auto* what =
       app->add_option(
              "--what", o.what,
-             "map (its voxels), surface, sigma (how well it is known), gain (poses round the "
-             "map by what they gain), step (pictures of a run side by side) or sheet (a row a "
+             "map (its voxels), surface, sigma (how well it is known), gain (poses, which it "
+             "needs, by what they gain), step (pictures of a run side by side) or sheet (a row a "
              "map: voxels, surface, sigma)")
           ->required();
   one_of(*what, {"map", "surface", "sigma", "gain", "step", "sheet"}, "kind of picture");
