@@ -172,7 +172,14 @@ std::vector<std::string> with_config(const CLI::App& subcommand,
   const Options options = settable_options(subcommand);
   std::vector<std::string> keys;
   for (const CLI::Option* option : options) keys.push_back(key_of(*option));
+  const auto earlier = earlier_flags(subcommand);
+  for (const auto& [flag, now] : earlier) keys.push_back(flag);
   const std::vector<Setting> settings = read_settings_toml(path, keys);
+  for (const Setting& setting : settings) {
+    for (const auto& [flag, now] : earlier) {
+      if (setting.key == flag) refuse_setting(path, setting, "is the flag " + now + " now");
+    }
+  }
 
   std::vector<std::string> all, positionals;
   std::size_t position = 0;
@@ -193,6 +200,7 @@ std::vector<std::string> with_config(const CLI::App& subcommand,
     }
     if (!is_on_the_line) all.insert(all.end(), more.begin(), more.end());
   }
+  (void)sort_words(subcommand, all);  // refuses earlier names among the values
   all.insert(all.end(), words.begin(), words.end());
   const bool needs_mark = std::any_of(positionals.begin(), positionals.end(),
                                       [](const std::string& p) { return p.starts_with("-"); });

@@ -69,6 +69,14 @@ bool is_flag(const std::string& word) { return word.size() > 2 && word.starts_wi
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::string>> earlier_flags(const CLI::App& subcommand) {
+  std::vector<std::pair<std::string, std::string>> flags;
+  for (const Renamed& old : kRenamed) {
+    if (old.subcommand == subcommand.get_name()) flags.emplace_back(old.flag.substr(2), old.now);
+  }
+  return flags;
+}
+
 std::vector<const CLI::Option*> all_options(const CLI::App& subcommand) {
   std::vector<const CLI::Option*> options = subcommand.get_options();
   for (const CLI::App* group : subcommand.get_subcommands({})) {

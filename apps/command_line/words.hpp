@@ -6,9 +6,15 @@
 #include <cstddef>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace viewgain::app {
+
+/// The flags of a subcommand that had another spelling once, without their --, and the present one
+/// for each.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> earlier_flags(
+    const CLI::App& subcommand);
 
 /// What is given on the command line of a subcommand itself.
 struct GivenWords {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "choices.hpp"
 
+#include <cstdint>
+
 #include "values.hpp"
 
 namespace viewgain::app {
@@ -35,6 +37,11 @@ void several_of(CLI::Option& option, const std::vector<std::string>& names, cons
 }
 
 void on_or_off(CLI::Option& option) { one_of(option, {"on", "off"}, "position of a switch"); }
+
+void takes_seed(CLI::Option& option) {
+  option.check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number"))
+      ->capture_default_str();
+}
 
 std::vector<std::string> choices_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();

@@ -18,6 +18,9 @@ void several_of(CLI::Option& option, const std::vector<std::string>& names, cons
 /// The option takes on or off.
 void on_or_off(CLI::Option& option);
 
+/// The option takes a seed, with the same bounds in every subcommand, and shows its default.
+void takes_seed(CLI::Option& option);
+
 /// What an option takes that one_of() or several_of() was called for, else nothing.
 [[nodiscard]] std::vector<std::string> choices_of(const CLI::Option& option);
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <cstdint>
 
 #include "choices.hpp"
 #include "described_options.hpp"
@@ -30,10 +29,7 @@ void describe_sensing(Options& o, Visitor& visit) {
                "amplitude A of the systematic error A sin(4 phase) [m]", shows_default);
   visit.option("calibrated", "--calibrate", o.calibrate,
                "measure the systematic error on a plane beforehand and subtract it", switched);
-  visit.option(nullptr, "--seed", o.seed, "of what is random", [](CLI::Option& option) {
-    option.check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number"))
-        ->capture_default_str();
-  });
+  visit.option(nullptr, "--seed", o.seed, "of the noise", takes_seed);
 }
 
 inline void add_sensing_options(CLI::App& app, SensingOptions& options) {

@@ -12,6 +12,9 @@ namespace viewgain::app {
 /// The occupied voxels of a map, leaf by leaf.
 [[nodiscard]] std::vector<Index3> occupied_voxels(const GridSnapshot& snapshot);
 
+/// As many cubes as a picture has room for.
+inline constexpr std::size_t kMaxCubes = 400'000;
+
 /// Cubes of one lattice in the grid's frame; cube i reaches from side * at[i] to side * (at[i] + 1)
 /// [m].
 struct LatticeCubes {

@@ -15,8 +15,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMaxCubes = 400'000;
-
 void add_map(PaintedMesh& scene, const GridSnapshot& snapshot) {
   const std::uint8_t surface_paint = scene.add_paint({{0.62, 0.62, 0.60}});
   const std::uint8_t box_paint = scene.add_paint({{0.45, 0.48, 0.52}, false});

@@ -20,8 +20,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMaxCubes = 400'000;
-
 // A voxel to draw. Sorting brings equal voxels together, the one with the strongest colour first.
 struct Cube {
   std::int32_t x, y, z;

@@ -14,10 +14,10 @@ namespace {
 using Eigen::Vector3d;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMaxCubes = 100'000;
+constexpr std::size_t kShownCubes = 100'000;  // a file is not to grow large
 
 ordered_json map_json(const GridSnapshot& snapshot) {
-  const LatticeCubes cubes = occupied_cubes(snapshot, kMaxCubes);
+  const LatticeCubes cubes = occupied_cubes(snapshot, kShownCubes);
   std::vector<Vector3d> centers;
   for (const Index3& at : cubes.at) {
     centers.push_back(snapshot.T_world_grid *

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "options/choices.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/pose.hpp"
@@ -69,9 +70,9 @@ inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt)";
 inline constexpr const char* kSensorHelp =
     "preset (sr4000, azure_kinect_nfov, kinect_v1, d435, laser_line) or a .toml file";
 
-inline constexpr const char* kMapSensorHelp =
-    "preset (sr4000, azure_kinect_nfov, kinect_v1, d435, laser_line) or a .toml file; default: the "
-    "one that the map's readings come from, where it says so";
+inline const std::string kMapSensorHelp =
+    std::string(kSensorHelp) +
+    "; default: the one that the map's readings come from, where it says so";
 
 inline constexpr const char* kBodyHelp =
     "x,y,z: width, height, depth of the sensor's housing [m]; default: the sensor's own, else the "
@@ -115,9 +116,7 @@ inline void print_json(const nlohmann::ordered_json& json) {
 
 /// --seed, the same bounds in every subcommand.
 inline void add_seed_option(CLI::App& app, std::uint64_t& seed, const char* of_what) {
-  app.add_option("--seed", seed, of_what)
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number"))
-      ->capture_default_str();
+  takes_seed(*app.add_option("--seed", seed, of_what));
 }
 
 }  // namespace viewgain::app

@@ -244,5 +244,28 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithFileAndLine) {
   EXPECT_EQ(cases, 25U);
 }
 
+TEST_F(ConfigFile, EarlierNamesAreToldAndFlagsThatStandAloneAreKept) {
+  write_cube();
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"sphere-poses = 3\n", "is the flag --count N now"},
+      {"no-refine = true\n", "is the flag --refine off now"},
+      {"generator = \"fibonacci\"\n", "fibonacci is the sphere now"},
+      {"sensor = \"sr4000\\u0000x\"\n", "must not hold a zero byte"}};
+  for (const auto& [text, expected] : cases) {
+    write("c.toml", text);
+    const test::ProgramResult result = run({"reconstruct", "cube.off", "--config", "c.toml"});
+    EXPECT_EQ(result.exit_code, 2) << text;
+    EXPECT_NE(result.err.find(expected), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(cases.size(), 4U);
+
+  run_well({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "sr4000", "--voxel", "0.02",
+            "--max-views", "1", "--pictures", "off", "--quiet", "--out", "run"});
+  for (const char* race : {"--race", "--race=yes", "--race=1", "--race=true"}) {
+    run_well({"score", "run/map.vdb", "--sphere", "20,0.6", race, "--save-config", "r.toml"});
+    EXPECT_NE(read("r.toml").find("race = true"), std::string::npos) << race;
+  }
+}
+
 }  // namespace
 }  // namespace viewgain
