@@ -51,6 +51,16 @@ void check_voxel(const ReconstructOptions& options, const Stage& stage) {
                                                short_text(stage.size) + " m (--size)");
 }
 
+// Most meshes that are far too large are in millimetres.
+void check_size(const RunSetup& setup) {
+  constexpr double kTooLarge = 10;  // times what the sensor sees
+  if (setup.stage.size <= kTooLarge * setup.sensor.max_range) return;
+  throw Error(ErrorCode::invalid_argument,
+              "the object's longest side is " + short_text(setup.stage.size) +
+                  " m, the sensor sees to " + short_text(setup.sensor.max_range) +
+                  " m: is the mesh in millimetres? (--size)");
+}
+
 // An obstacle where the run is to start.
 void check_start(const ReconstructOptions& options, const RunSetup& setup, const ExecConfig& exec) {
   if (options.obstacles.empty()) return;
@@ -180,6 +190,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   if (!options.reach.empty()) setup.reach = read_reach_toml(options.reach);
   setup.stage = set_stage(stage_config(options), exec);
   check_voxel(options, setup.stage);
+  check_size(setup);
   setup.distance =
       options.distance.value_or(filling_distance(setup.sensor, 0.5 * setup.stage.size));
   setup.start = start_pose(options, setup.stage, setup.distance, setup.reach);

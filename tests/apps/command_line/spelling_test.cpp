@@ -148,6 +148,11 @@ TEST_F(Spelling, AMeshKeepsItsSizeUnlessAsked) {
   };
   EXPECT_NE(reconstruct({}).find("\"size\": 2.0,"), std::string::npos) << read("run/run.json");
   EXPECT_NE(reconstruct({"--size", "1.5"}).find("\"size\": 1.5,"), std::string::npos);
+  const test::ProgramResult large = run({"reconstruct", "cube.off", "--sensor", "small.toml",
+                                         "--voxel", "1", "--size", "2000", "--out", "large"});
+  EXPECT_EQ(large.exit_code, 2);
+  EXPECT_NE(large.err.find("2000 m"), std::string::npos) << large.err;
+  EXPECT_NE(large.err.find("in millimetres? (--size)"), std::string::npos) << large.err;
   // From outside the cube of 2 m and 4 m away; the wall of a cube of 0.35 m would be farther.
   const auto near = [this](const Strings& more) {
     Strings arguments{"simulate", "cube.off", "--orbit",    "1,4,0",        "--center",
