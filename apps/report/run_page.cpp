@@ -130,7 +130,6 @@ ordered_json candidates_json(const Proposal& proposal, const CandidateGeneration
 // The unknown voxels from which most is expected of a view.
 ordered_json expected_json(const GainEvaluator& evaluator, const Pose& T_world_camera,
                            const ordered_json& unit) {
-  const GridSnapshot& snapshot = evaluator.scene().snapshot();
   std::vector<VoxelContribution> voxels = evaluator.contributions(T_world_camera);
   std::erase_if(voxels, [](const VoxelContribution& v) {
     return v.state != VoxelState::unknown || !(v.gain > 0);
@@ -142,16 +141,7 @@ ordered_json expected_json(const GainEvaluator& evaluator, const Pose& T_world_c
                              std::tie(a.gain, b.voxel.x, b.voxel.y, b.voxel.z);
                     });
   voxels.resize(count);
-  std::vector<Vector3d> centers;
-  std::vector<float> values;
-  for (const VoxelContribution& voxel : voxels) {
-    centers.push_back(snapshot.center(voxel.voxel));
-    values.push_back(static_cast<float>(voxel.gain));
-  }
-  return {{"centers", point_block(centers)},
-          {"value", float_block(values, 1)},
-          {"unit", unit},
-          {"size", snapshot.voxel_size}};
+  return contributions_json(evaluator.scene().snapshot(), voxels, unit);
 }
 
 }  // namespace
@@ -164,18 +154,14 @@ RunPage::RunPage(std::string title, const Sensor& sensor, std::string criterion,
       truth_(std::move(truth)) {}
 
 void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
-                       const CandidateGeneration& generation, const GainEvaluator& evaluator,
-                       const RgbImage& picture) {
+                       const CandidateGeneration& generation, const EstimatedViews& estimated,
+                       const GainEvaluator& evaluator, const RgbImage& picture) {
   if (views_.empty()) {
     head_ = page_head("reconstruct", title_, evaluator, sensor_, criterion_);
   }
   ordered_json view{{"pose", pose_rows(record.T_world_camera)},
                     {"surface", to_json(shown_surface(model, *truth_))},
                     {"points", points_json(model.points())}};
-  // What was estimated is of this view only if candidates were asked for after it.
-  const bool proposed = !record.proposal.candidates.empty() || !record.proposal.dropped.empty();
-  const EstimatedViews none;
-  const EstimatedViews& estimated = proposed ? generation.estimated() : none;
   view["boundaries"] = boundaries_json(model.surface(), estimated.runs);
   view["patches"] = patches_json(estimated, generation.config().boundary.estimator.patch_length);
   view["candidates"] =

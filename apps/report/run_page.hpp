@@ -26,12 +26,13 @@ class RunPage {
   RunPage(std::string title, const Sensor& sensor, std::string criterion,
           std::shared_ptr<const Truth> truth);
 
-  /// To be called once a view, in order. `evaluator` is of the model's scene and scores the
+  /// To be called once a view, in order. `estimated`: the boundaries of the surface then, none
+  /// where no candidates were asked for. `evaluator` is of the model's scene and scores the
   /// candidates; `picture` is for browsers that
   /// cannot draw.
   void add_view(const ViewRecord& record, const SurfaceModel& model,
-                const CandidateGeneration& generation, const GainEvaluator& evaluator,
-                const RgbImage& picture);
+                const CandidateGeneration& generation, const EstimatedViews& estimated,
+                const GainEvaluator& evaluator, const RgbImage& picture);
 
   /// The page's data. `run` is what run.json holds; there must have been a view.
   [[nodiscard]] nlohmann::ordered_json json(const nlohmann::ordered_json& run,

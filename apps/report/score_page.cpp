@@ -26,22 +26,16 @@ ordered_json map_json(const GridSnapshot& snapshot) {
   return {{"centers", point_block(centers)}, {"size", cubes.side}};
 }
 
-ordered_json contributions_json(const GainEvaluator& evaluator, const Pose& T_world_camera,
-                                const ordered_json& unit) {
-  const GridSnapshot& snapshot = evaluator.scene().snapshot();
-  std::vector<Vector3d> centers;
-  std::vector<float> values;
+ordered_json shown_json(const GainEvaluator& evaluator, const Pose& T_world_camera,
+                        const ordered_json& unit) {
+  const std::vector<VoxelContribution> voxels = evaluator.contributions(T_world_camera);
+  ordered_json json = contributions_json(evaluator.scene().snapshot(), voxels, unit);
   std::vector<std::uint8_t> states;
-  for (const VoxelContribution& voxel : evaluator.contributions(T_world_camera)) {
-    centers.push_back(snapshot.center(voxel.voxel));
-    values.push_back(static_cast<float>(voxel.gain));
+  for (const VoxelContribution& voxel : voxels) {
     states.push_back(voxel.state == VoxelState::unknown ? 1 : 2);
   }
-  return {{"centers", point_block(centers)},
-          {"value", float_block(values, 1)},
-          {"state", byte_block(states)},
-          {"unit", unit},
-          {"size", snapshot.voxel_size}};
+  json["state"] = byte_block(states);
+  return json;
 }
 
 }  // namespace
@@ -56,7 +50,7 @@ ordered_json ScorePage::json() const {
     contributions.push_back(
         {{"candidate", i},
          {"bundle", bundle_json(evaluator, sensor, poses[i])},
-         {"contributions", contributions_json(evaluator, poses[i], page["gain_unit"])}});
+         {"contributions", shown_json(evaluator, poses[i], page["gain_unit"])}});
   }
   ShownCandidates candidates{{poses.begin(), poses.end()}, gains, areas, exact, {}, {}, {}};
   candidates.generators.resize(poses.size());

@@ -103,6 +103,21 @@ ordered_json bundle_json(const GainEvaluator& evaluator, const Sensor& sensor,
   return {{"ends", point_block(ends)}, {"kind", byte_block(kinds)}};
 }
 
+ordered_json contributions_json(const GridSnapshot& snapshot,
+                                const std::vector<VoxelContribution>& voxels,
+                                const ordered_json& unit) {
+  std::vector<Vector3d> centers;
+  std::vector<float> values;
+  for (const VoxelContribution& voxel : voxels) {
+    centers.push_back(snapshot.center(voxel.voxel));
+    values.push_back(static_cast<float>(voxel.gain));
+  }
+  return {{"centers", point_block(centers)},
+          {"value", float_block(values, 1)},
+          {"unit", unit},
+          {"size", snapshot.voxel_size}};
+}
+
 std::string small_picture(const RgbImage& picture) { return base64(png_bytes(shrunk(picture, 3))); }
 
 }  // namespace viewgain::app

@@ -38,6 +38,11 @@ struct ShownCandidates {
 [[nodiscard]] nlohmann::ordered_json bundle_json(const GainEvaluator& evaluator,
                                                  const Sensor& sensor, const Pose& T_world_camera);
 
+/// What voxels bring to a view: centres, values and the value's unit.
+[[nodiscard]] nlohmann::ordered_json contributions_json(
+    const GridSnapshot& snapshot, const std::vector<VoxelContribution>& voxels,
+    const nlohmann::ordered_json& unit);
+
 /// A PNG of a third of the picture's width and height, in base64: enough where there is no WebGL.
 [[nodiscard]] std::string small_picture(const RgbImage& picture);
 

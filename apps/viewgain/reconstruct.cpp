@@ -40,17 +40,18 @@ GainEvaluator step_evaluator(const SurfaceModel& model, const RunSetup& setup,
   return {model.scene(), setup.sensor, gain, exec};
 }
 
+// Without a proposal those that the generation holds are of a surface before.
+EstimatedViews estimated_views(const ViewRecord& record, const CandidateGeneration& generation) {
+  const bool proposed = !record.proposal.candidates.empty() || !record.proposal.dropped.empty();
+  return proposed ? generation.estimated() : EstimatedViews{};
+}
+
 RgbImage step_picture(const ViewRecord& record, const SurfaceModel& model,
-                      const CandidateGeneration& generation, const GainEvaluator& evaluator,
+                      const EstimatedViews& estimated, const GainEvaluator& evaluator,
                       const Sensor& sensor, const ExecConfig& exec) {
   const std::vector<Candidate>& candidates = record.proposal.candidates;
-  // Without a proposal the boundaries are those of a surface before.
-  const EstimatedViews none;
-  const bool proposed = !candidates.empty() || !record.proposal.dropped.empty();
-  ViewPicture picture{model.surface(), proposed ? generation.estimated() : none,
-                      candidates,      record.T_world_camera,
-                      std::nullopt,    evaluator,
-                      sensor};
+  ViewPicture picture{model.surface(), estimated, candidates, record.T_world_camera,
+                      std::nullopt,    evaluator, sensor};
   if (record.decision) picture.chosen = candidates[record.decision->candidate].T_world_camera;
   return view_picture(picture, exec);
 }
@@ -121,17 +122,20 @@ void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
         if (with_pictures || with_report) {
           const Stopwatch watch;
           const GainEvaluator evaluator = step_evaluator(model, setup, exec);
+          const EstimatedViews estimated = estimated_views(record, generation);
           const RgbImage picture =
-              step_picture(record, model, generation, evaluator, setup.sensor, exec);
+              step_picture(record, model, estimated, evaluator, setup.sensor, exec);
           const DepthFrame& frame = acquisition.last_frame();
           if (with_pictures) write_png(folder.view(record.index, ".png"), picture);
           if (with_pictures && !frame.amplitude.empty()) {
             write_amplitude_picture(folder.view(record.index, ".amplitude.png"), frame);
           }
           seconds["pictures"] += watch.seconds();
-          const Stopwatch report_watch;
-          if (with_report) page.add_view(record, model, generation, evaluator, picture);
-          if (with_report) seconds["report"] += report_watch.seconds();
+          if (with_report) {
+            const Stopwatch report_watch;
+            page.add_view(record, model, generation, estimated, evaluator, picture);
+            seconds["report"] += report_watch.seconds();
+          }
         }
         report.add_view(record, model.quality().back(), model.realised_area(), seconds);
         progress.wipe();
@@ -145,7 +149,7 @@ void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
                         config_text(app, {"out", "json", "quiet", "threads"}));
   const nlohmann::ordered_json run =
       write_results(folder, setup, options.sensing.seed, model, views, json);
-  if (options.report == "on") {
+  if (with_report) {
     write_report(folder.file("report.html"), page.json(run, *setup.stage.scene));
   }
   folder.commit();

@@ -215,8 +215,6 @@ void ScoreReport::print_table() const {
 
 ordered_json ScoreReport::page(const std::string& title, RgbImage picture) const {
   constexpr std::size_t kRows = 1000, kShown = 10;
-  std::vector<double> gains(source.poses.size(), std::numeric_limits<double>::quiet_NaN());
-  std::vector<double> areas = gains;
   std::vector<ViewGain> ranked(source.poses.size());
   for (ViewGain& gain : ranked) gain.gain = std::numeric_limits<double>::quiet_NaN();
   const auto* estimates = std::get_if<Estimates>(&scores.found);
@@ -225,11 +223,12 @@ ordered_json ScoreReport::page(const std::string& title, RgbImage picture) const
   for (std::size_t k = 0; estimates != nullptr && k < estimates->gains.size(); ++k) {
     ranked[estimates->indices[k]].gain = estimates->gains[k].gain;
   }
-  for (std::size_t i = 0; i < ranked.size(); ++i) {
-    gains[i] = ranked[i].gain;
-    areas[i] = ranked[i].area;
-  }
   const bool by_area = model != GainModel::paper && estimates == nullptr;
+  std::vector<double> gains, areas;
+  for (const ViewGain& gain : ranked) {
+    gains.push_back(gain.gain);
+    if (by_area) areas.push_back(gain.area);
+  }
   ordered_json columns{"pose", "gain"}, rows = ordered_json::array();
   if (by_area) columns.push_back("area");
   if (estimates == nullptr) columns.insert(columns.end(), {"hits", "unknown", "occupied"});
@@ -253,7 +252,7 @@ ordered_json ScoreReport::page(const std::string& title, RgbImage picture) const
                        sensor,
                        source.poses,
                        std::move(gains),
-                       by_area ? std::move(areas) : std::vector<double>(),
+                       std::move(areas),
                        full.indices,
                        std::move(columns),
                        std::move(rows),
