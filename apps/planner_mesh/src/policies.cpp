@@ -72,16 +72,7 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
                                                std::span<const Candidate> candidates) {
   if (candidates.empty()) return std::nullopt;
   const bool by_gain = config_.policy == Policy::gain;
-  if (evaluator_) {
-    evaluator_ = evaluator_->with_scene(model_.scene());
-  } else {
-    GainConfig gain;
-    gain.criterion = config_.criterion;
-    gain.support_plane = config_.support_plane;
-    if (by_gain) gain.model = config_.model;
-    evaluator_.emplace(model_.scene(), sensor_, gain, exec_);
-  }
-  const GainEvaluator& evaluator = *evaluator_;
+  const GainEvaluator& evaluator = this->evaluator();
   const bool scored = by_gain || config_.policy == Policy::frontier;
   const std::vector<ViewGain> gains =
       scored ? score(T_world_camera, candidates) : std::vector<ViewGain>(candidates.size());
@@ -104,6 +95,36 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
     for (const ViewGain& g : gains) decision.best_area = std::fmax(decision.best_area, g.area);
   }
   return decision;
+}
+
+const GainEvaluator& PolicyDecision::evaluator() {
+  if (evaluator_) {
+    evaluator_ = evaluator_->with_scene(model_.scene());
+  } else {
+    GainConfig gain;
+    gain.criterion = config_.criterion;
+    gain.support_plane = config_.support_plane;
+    if (config_.policy == Policy::gain) gain.model = config_.model;
+    evaluator_.emplace(model_.scene(), sensor_, gain, exec_);
+  }
+  return *evaluator_;
+}
+
+std::optional<CandidateScores> PolicyDecision::scores(std::span<const Candidate> candidates) {
+  CandidateScores scores;
+  scores.area.assign(candidates.size(), std::numeric_limits<double>::quiet_NaN());
+  if (config_.policy == Policy::proximity) {
+    scores.score = proximities(candidates);
+    return scores;
+  }
+  const bool by_gain = config_.policy == Policy::gain;
+  if (!by_gain && config_.policy != Policy::frontier) return std::nullopt;
+  const std::vector<ViewGain> gains = evaluator().evaluate(poses_of(candidates));
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    scores.score.push_back(by_gain ? gains[i].gain : static_cast<double>(gains[i].unknown_voxels));
+    scores.area[i] = gains[i].area;
+  }
+  return scores;
 }
 
 std::vector<ViewGain> PolicyDecision::score(const Pose& T_world_camera,
@@ -133,7 +154,7 @@ std::vector<ViewGain> PolicyDecision::score(const Pose& T_world_camera,
   return gains;
 }
 
-std::size_t PolicyDecision::most_proximity(std::span<const Candidate> candidates) {
+std::vector<double> PolicyDecision::proximities(std::span<const Candidate> candidates) {
   if (coarse_) {
     coarse_ = coarse_->with_scene(model_.scene());
   } else {
@@ -144,11 +165,7 @@ std::size_t PolicyDecision::most_proximity(std::span<const Candidate> candidates
   }
   std::vector<double> values(candidates.size());
   coarse_->evaluate(poses_of(candidates), ProximityMeasure(model_.scene()->hazard()), values);
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    if (values[i] > values[best] || std::isnan(values[best])) best = i;
-  }
-  return best;
+  return values;
 }
 
 double PolicyDecision::expected_area(const Pose& T_world_camera) {
@@ -189,8 +206,10 @@ std::optional<std::size_t> PolicyDecision::choose(const Pose& T_world_camera,
                                       candidates.size());
     case Policy::kriegel:
       return choose_by_boundary(candidates);
-    case Policy::proximity:
-      return most_proximity(candidates);
+    case Policy::proximity: {
+      const std::vector<double> values = proximities(candidates);
+      return best_by([&](std::size_t i) { return values[i]; });
+    }
     case Policy::oracle:
       return oracle_->next(candidates);
     case Policy::sequence:

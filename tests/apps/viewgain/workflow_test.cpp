@@ -444,6 +444,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--min-range --max-range --top --race --approximate --set --seed "
        "--out --picture --report --json --threads =log_diagonal =10 [m]"},
       {"sensors", "NAME --json --threads"},
+      {"study", "SPEC --out --jobs --plots --json --threads"},
       {"info", "MAP --hash --criterion --region --json --threads =log_diagonal"},
       {"candidates",
        "MAP --generator --sensor --count --distance --center --reach --body --support-plane "
@@ -486,7 +487,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 195);
+  EXPECT_EQ(words, 201);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

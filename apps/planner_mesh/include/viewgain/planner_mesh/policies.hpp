@@ -52,6 +52,14 @@ struct VIEWGAIN_EXPORT PolicyConfig {
   std::uint64_t seed = 1;
 };
 
+/// What a policy ranks candidates by, one entry a candidate.
+struct VIEWGAIN_EXPORT CandidateScores {
+  /// In the unit of the policy's gain; a count for frontier, [m] for proximity.
+  std::vector<double> score;
+  /// The new surface to be expected [m²]; NaN where the policy's gain does not say.
+  std::vector<double> area;
+};
+
 /// set_stop_rules() of the policy: that of its gain, and where it does not choose by a gain neither
 /// gain nor area ends a run. Throws Error(invalid_argument), too, for an area or a gain above 0
 /// with such a policy.
@@ -70,7 +78,14 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking {
   std::optional<Decision> decide(const Pose& T_world_camera,
                                  std::span<const Candidate> candidates) override;
 
+  /// What the policy ranks these candidates by on the model as it stands, all of them by all rays
+  /// (proximity: by few) and the way there left out. Nothing for the policies that rank by no
+  /// figure of a view: kriegel, sequence, random, fibonacci, oracle.
+  [[nodiscard]] std::optional<CandidateScores> scores(std::span<const Candidate> candidates);
+
  private:
+  /// The evaluator by the policy's gain of the model's scene.
+  const GainEvaluator& evaluator();
   [[nodiscard]] std::optional<std::size_t> choose(const Pose& T_world_camera,
                                                   std::span<const Candidate> candidates,
                                                   const std::vector<ViewGain>& gains);
@@ -81,7 +96,7 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking {
   /// showed to be no match for others.
   [[nodiscard]] std::vector<ViewGain> score(const Pose& T_world_camera,
                                             std::span<const Candidate> candidates) const;
-  [[nodiscard]] std::size_t most_proximity(std::span<const Candidate> candidates);
+  [[nodiscard]] std::vector<double> proximities(std::span<const Candidate> candidates);
   /// The new surface to be expected of a view [m²], where the policy's own gain does not say.
   [[nodiscard]] double expected_area(const Pose& T_world_camera);
 

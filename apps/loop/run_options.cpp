@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "reconstruct_options.hpp"
+#include "run_options.hpp"
 
 #include "options/choices.hpp"
 #include "options/hazard_source.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "reconstruct_setup.hpp"
+#include "run_setup.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "options/hazard_source.hpp"
+#include "options/json_text.hpp"
 #include "options/obstacle_source.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/error.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
+#include "options/common_options.hpp"
 #include "options/sensing.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner_mesh/boundary_generation.hpp"

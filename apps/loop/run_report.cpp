@@ -7,8 +7,8 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "commands.hpp"
 #include "options/gain_unit.hpp"
+#include "options/json_text.hpp"
 #include "options/values.hpp"
 
 namespace viewgain::app {
