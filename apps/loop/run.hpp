@@ -32,6 +32,7 @@ class Run {
   [[nodiscard]] const SimulatedAcquisition& acquisition() const noexcept { return acquisition_; }
   [[nodiscard]] const SurfaceModel& model() const noexcept { return model_; }
   [[nodiscard]] const CandidateGeneration& generation() const noexcept { return generation_; }
+  [[nodiscard]] CandidateGeneration& generation() noexcept { return generation_; }
   [[nodiscard]] PolicyDecision& decision() noexcept { return decision_; }
 
  private:

@@ -23,8 +23,13 @@ std::vector<Candidate> evenly(const std::vector<Candidate>& from, std::size_t co
   return some;
 }
 
-std::vector<Candidate> candidates_of(const Run& run, const ViewRecord& record, std::size_t count) {
-  std::vector<Candidate> candidates = evenly(record.proposal.candidates, count / 2);
+std::vector<Candidate> candidates_of(Run& run, const ViewRecord& record, std::size_t count) {
+  // After the last view of the budget nobody has asked for a proposal.
+  const std::vector<Candidate> proposed =
+      record.proposal.candidates.empty()
+          ? run.generation().generate(record.T_world_camera).candidates
+          : record.proposal.candidates;
+  std::vector<Candidate> candidates = evenly(proposed, count / 2);
   const RunSetup& setup = run.setup();
   const FeasibilityChecker checker(run.model().scene(), run.generation().config().feasibility);
   std::vector<Candidate> sphere;

@@ -182,9 +182,7 @@ StudyPrediction prediction_of(TableReader& root, std::size_t max_views) {
   StudyPrediction prediction;
   if (root.find("prediction") == nullptr) return prediction;
   TableReader reader = root.table("prediction");
-  // After the last view nothing is chosen any more.
-  const auto most = static_cast<std::int64_t>(max_views) - 1;
-  if (most < 1) reader.fail("views", "needs max_views of 2 at least");
+  const auto most = static_cast<std::int64_t>(max_views);
   for (const std::int64_t view : whole_numbers(reader, "views", 1, most)) {
     prediction.views.push_back(static_cast<std::size_t>(view));
   }

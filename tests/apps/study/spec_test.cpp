@@ -127,7 +127,7 @@ TEST_F(StudySpecTest, WhatIsWrongIsNamedWithItsLine) {
       {"\"tof.toml\"", "\"sr400\"", {"sr400"}},
       {"voxels = [0.01, 0.005]", "voxels = [0.0]", {"line 6", "positive"}},
       {"max_views = 5", "max_views = 0", {"line 7"}},
-      {"max_views = 5", "max_views = 4", {"line 10", "views", "1..3"}},
+      {"max_views = 5", "max_views = 3", {"line 10", "views", "1..3"}},
       {"--up=y", "--seed=4", {"line 8", "--seed"}},
       {"candidates = 7", "candidates = 2", {"line 11", "candidates"}},
       {"candidates = 7", "canddates = 7", {"line 11", "canddates", "candidates"}},

@@ -38,7 +38,7 @@ voxels = [0.0125]
 sizes = [0.15]
 max_views = 3
 [prediction]
-views = [1, 2]
+views = [1, 3]
 candidates = 8
 )");
   }
