@@ -23,8 +23,15 @@ constexpr int kMaps = 3;
 #endif
 constexpr std::size_t kPosesPerMap = 3;
 constexpr double kTolerance = 1e-6;
+constexpr double kRounding = 1e-13;  // area_factor is a difference of numbers about 1
 // Where obstacles end rays: that is found in single precision.
 constexpr double kObstacleTolerance = 1e-4;
+
+/// Unknown voxels near occupied ones.
+bool needs_neighbours(std::size_t gain) {
+  const auto named = static_cast<ClassicGain>(gain);
+  return named == ClassicGain::proximity_count || named == ClassicGain::surface_frontier_count;
+}
 
 class ClassicOracle : public testing::TestWithParam<MapFamily> {};
 
@@ -69,7 +76,8 @@ TEST_P(ClassicOracle, AllGainsAgreeUnderEachInstructionSet) {
           for (std::size_t g = 0; g < 10; ++g) {
             const double want = expected[pose][g], have = actual[pose * 10 + g];
             const double tolerance =
-                (obstacles.boxes.empty() ? kTolerance : kObstacleTolerance) * std::abs(want);
+                (obstacles.boxes.empty() ? kTolerance : kObstacleTolerance) * std::abs(want) +
+                kRounding;
             EXPECT_NEAR(have, want, tolerance)
                 << "map " << i << ", pose " << pose << ", " << isa << ", "
                 << gain_semantics_name(semantics) << " " << classic_gain_names()[g];
@@ -82,6 +90,8 @@ TEST_P(ClassicOracle, AllGainsAgreeUnderEachInstructionSet) {
   }
   EXPECT_EQ(checks, kMaps * kPosesPerMap * 2 * isas.size() * 10);
   for (std::size_t g = 0; g < 10; ++g) {
+    // In maps with next to nothing unknown or occupied these need not meet.
+    if (GetParam() == MapFamily::salt_and_pepper_01 && needs_neighbours(g)) continue;
     EXPECT_GT(above_zero[g], isas.size()) << classic_gain_names()[g];
   }
 }
