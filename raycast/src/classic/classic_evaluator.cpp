@@ -12,6 +12,8 @@
 #include "classic_walk.hpp"
 #include "gain/batch_loop.hpp"
 #include "gain/idle_list.hpp"
+#include "scene/scene_data.hpp"
+#include "trace/scene_tracing.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/text.hpp"
 
@@ -189,6 +191,7 @@ class ClassicDriver {
                            2 * data().occlusion_depth,
                            core_->config.semantics == GainSemantics::shipped,
                            core_->is_distinct};
+    const AddTile add_tile = classic_walk(SceneAccess::data(scene).tracing->kernels.isa);
     ClassicTile tile;
     for (std::size_t number = 0; number < core_->rays.tiles().tile_count; ++number) {
       core_->rays.place(scene, data().table, frame, number, core_->max_range / V, tile);

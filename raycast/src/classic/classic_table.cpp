@@ -222,14 +222,16 @@ class Maker {
 
 // Tells the words of a mixed brick how large the cubes of one value are round them.
 void find_cubes_in_brick(std::uint32_t* words) {
-  for (std::size_t i = 0; i < kBrickVoxels; ++i) words[i] &= ClassicTable::kValue;
-  for (unsigned shift = 1; shift < 3; ++shift) {
-    const unsigned edge = 1U << shift, half = edge / 2;
+  for (std::size_t i = 0; i < kBrickVoxels; ++i) {
+    words[i] = (words[i] & ClassicTable::kValue) | 1U << ClassicTable::kEdgeShift;
+  }
+  for (unsigned edge = 2; edge < 8; edge *= 2) {
+    const unsigned half = edge / 2;
     for (unsigned x = 0; x < 8; x += edge) {
       for (unsigned y = 0; y < 8; y += edge) {
         for (unsigned z = 0; z < 8; z += edge) {
           const std::uint32_t word = words[x << 6U | y << 3U | z];
-          bool same = word >> ClassicTable::kEdgeShift == shift - 1;
+          bool same = word >> ClassicTable::kEdgeShift == half;
           for (unsigned k = 1; k < 8 && same; ++k) {
             same = words[(x + (k >> 2U) * half) << 6U | (y + (k >> 1U & 1U) * half) << 3U |
                          (z + (k & 1U) * half)] == word;
@@ -239,7 +241,7 @@ void find_cubes_in_brick(std::uint32_t* words) {
             for (unsigned j = y; j < y + edge; ++j) {
               for (unsigned k = z; k < z + edge; ++k) {
                 words[i << 6U | j << 3U | k] =
-                    (word & ClassicTable::kValue) | shift << ClassicTable::kEdgeShift;
+                    (word & ClassicTable::kValue) | edge << ClassicTable::kEdgeShift;
               }
             }
           }
@@ -254,23 +256,23 @@ void find_cubes_in_node(std::uint32_t* entries) {
   for (std::size_t i = 0; i < kEntriesPerNode; ++i) {
     if ((entries[i] & ClassicTable::kUniform) == 0) continue;
     entries[i] = ClassicTable::kUniform | (entries[i] & ClassicTable::kValue) |
-                 3U << ClassicTable::kEdgeShift;
+                 8U << ClassicTable::kEdgeShift;
   }
-  for (unsigned shift = 4; shift <= ClassicTable::kLargestShift; ++shift) {
-    const unsigned edge = 1U << (shift - 3U), half = edge / 2;
+  for (unsigned edge = 2; edge <= ClassicTable::kLargestEdge / 8; edge *= 2) {  // in bricks
+    const unsigned half = edge / 2;
     for (unsigned x = 0; x < 16; x += edge) {
       for (unsigned y = 0; y < 16; y += edge) {
         for (unsigned z = 0; z < 16; z += edge) {
           const std::uint32_t entry = entries[x << 8U | y << 4U | z];
           if ((entry & ClassicTable::kUniform) == 0) continue;
-          bool same = (entry >> ClassicTable::kEdgeShift & ClassicTable::kEdge) == shift - 1;
+          bool same = (entry >> ClassicTable::kEdgeShift & ClassicTable::kEdge) == 8 * half;
           for (unsigned k = 1; k < 8 && same; ++k) {
             same = entries[(x + (k >> 2U) * half) << 8U | (y + (k >> 1U & 1U) * half) << 4U |
                            (z + (k & 1U) * half)] == entry;
           }
           if (!same) continue;
           const std::uint32_t wide = ClassicTable::kUniform | (entry & ClassicTable::kValue) |
-                                     shift << ClassicTable::kEdgeShift;
+                                     8 * edge << ClassicTable::kEdgeShift;
           for (unsigned i = x; i < x + edge; ++i) {
             for (unsigned j = y; j < y + edge; ++j) {
               for (unsigned k = z; k < z + edge; ++k) entries[i << 8U | j << 4U | k] = wide;

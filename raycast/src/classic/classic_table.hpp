@@ -18,12 +18,12 @@ namespace viewgain::detail {
 /// first node begins too; the workspace's lowest voxel is `offset`, in 0..7 along each axis.
 struct ClassicTable {
   /// A word: code of the log-odds; whether it is a surface frontier; steps behind a measured
-  /// surface; binary logarithm of the edge of the largest aligned cube round it [voxels] whose
-  /// words are the same, 0..2 in a brick, 3..kLargestShift else.
+  /// surface; edge of the largest aligned cube round it [voxels] whose words are the same, 1, 2 or
+  /// 4 in a brick, 8 to kLargestEdge else.
   static constexpr std::uint32_t kCode = 0x7FU, kFrontier = 0x80U;
   static constexpr int kStepsShift = 8, kEdgeShift = 16;
-  static constexpr std::uint32_t kMostSteps = 255, kValue = 0xFFFFU, kEdge = 7;
-  static constexpr unsigned kLargestShift = 5;
+  static constexpr std::uint32_t kMostSteps = 255, kValue = 0xFFFFU, kEdge = 0x3FU;
+  static constexpr unsigned kLargestEdge = 32;
   /// An entry is the word of all its brick's voxels with this bit, or its first index in `words`.
   static constexpr std::uint32_t kUniform = 0x80000000U;
 

@@ -1,97 +1,172 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+
+// What rays meet on their way through all voxels, a ray a lane, in double precision. Compiled once
+// for each instruction set.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "classic/classic_walk.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+//
+#include <hwy/highway.h>
+
 #include "classic_walk.hpp"
+#include "cube_walk-inl.hpp"
 
-#include <array>
-
-#include "ordered_ray.hpp"
-
-namespace viewgain::detail {
+HWY_BEFORE_NAMESPACE();
+namespace viewgain::detail::HWY_NAMESPACE {
 namespace {
+namespace hn = hwy::HWY_NAMESPACE;
 
-// What a ray has met so far.
-struct RaySums {
-  double visibility = 1;
-  double occlusion_aware = 0, unobserved = 0, entropy = 0, voxels = 0;
-  double stretch = 0;         // Σ P H since the ray is among voxels that count as unknown
-  std::uint8_t before = 0;    // kind of the voxel before, 0: none
-  bool is_on_hidden = false;  // has come to what a measured surface hides
+// Sums what a packet's rays meet.
+class GainSink {
+ public:
+  HWY_INLINE GainSink(const ClassicView& view, const float* solid_angle)
+      : view_(view), third_of_angle_(angles(solid_angle)) {}
+
+  // Lanes that end in an occupied voxel.
+  HWY_INLINE ML step(const CubeStep& step, DistinctVoxels& distinct) {
+    const VL code = hn::And(step.word, whole(ClassicTable::kCode));
+    const ML counts = step.counts;
+    const ML ends = hn::And(counts, hn::Gt(code, whole(kLastFree)));
+    const ML unobserved = hn::And(counts, hn::Eq(code, hn::Zero(dl)));
+    const ML is_free =
+        hn::And(hn::Lt(code, whole(view_.values.free_end)), hn::Gt(code, hn::Zero(dl)));
+    const ML is_occupied = hn::Gt(code, whole(view_.values.occupied_begin - 1));
+    const ML unknown = hn::AndNot(is_free, hn::AndNot(is_occupied, counts));
+
+    const VD n = hn::IfThenElse(to_d(ends), real(1.0), step.voxels);
+    const VL run =
+        hn::ShiftLeft<2>(hn::Or(hn::ShiftLeft<VoxelValues::kRowBits>(code), integer_of(n)));
+    const double* runs = &view_.values.runs.data()->visible;
+    const VD visible =
+        hn::IfThenElseZero(to_d(counts), hn::Mul(passed_, hn::GatherIndex(dd, runs, run)));
+    occlusion_aware_ = hn::Add(occlusion_aware_, visible);
+    const VD of_unknown = hn::IfThenElseZero(to_d(unknown), visible);
+    unobserved_ = hn::Add(unobserved_, of_unknown);
+    entropy_ =
+        hn::Add(entropy_, hn::IfThenElseZero(to_d(counts), hn::GatherIndex(dd, runs + 2, run)));
+    voxels_ = hn::Add(voxels_, hn::IfThenElseZero(to_d(counts), n));
+    if (!hn::AllFalse(dl, ends)) end(hn::And(ends, is_occupied), visible);
+
+    passed_ =
+        hn::IfThenElse(to_d(counts), hn::Mul(passed_, hn::GatherIndex(dd, runs + 1, run)), passed_);
+    const VD stretch = hn::IfThenElseZero(to_d(unknown), hn::Add(stretch_, visible));
+    stretch_ = hn::IfThenElse(to_d(counts), stretch, stretch_);
+    from_unknown_ = hn::Or(unknown, hn::AndNot(counts, from_unknown_));
+    from_free_ = hn::Or(hn::And(counts, is_free), hn::AndNot(counts, from_free_));
+    if (!hn::AllFalse(dl, unobserved)) pass_unobserved(step, unobserved, n, distinct);
+    return ends;
+  }
+
+  HWY_INLINE void add_to(ClassicSums& sums) const {
+    sums.occlusion_aware += total(occlusion_aware_);
+    sums.unobserved += total(unobserved_);
+    sums.entropy += total(view_.is_shipped ? ended_entropy_ : entropy_);
+    sums.voxels += total(view_.is_shipped ? ended_voxels_ : voxels_);
+    sums.rear_side_entropy += total(rear_side_entropy_);
+    sums.proximity += total(proximity_);
+    sums.volume += total(hn::Mul(volume_, third_of_angle_));
+    sums.rear_side += rear_side_;
+    sums.on_surface += on_surface_;
+    sums.on_hidden += hn::CountTrue(dl, is_on_hidden_);
+  }
+
+ private:
+  // The code of log-odds 0.
+  static constexpr std::int64_t kLastFree = 41;
+
+  static HWY_INLINE VD angles(const float* solid_angle) {
+    HWY_ALIGN double thirds[kLanes];
+    for (std::size_t i = 0; i < kLanes; ++i) thirds[i] = static_cast<double>(solid_angle[i]) / 3;
+    return hn::Load(dd, thirds);
+  }
+  static HWY_INLINE double total(VD v) { return hn::GetLane(hn::SumOfLanes(dd, v)); }
+
+  // Rays that come to what counts as occupied; `visible` is P H of it.
+  HWY_INLINE void end(ML occupied, VD visible) {
+    const ML rear = hn::And(occupied, from_unknown_);
+    rear_side_ += hn::CountTrue(dl, rear);
+    rear_side_entropy_ = hn::Add(rear_side_entropy_, hn::IfThenElseZero(to_d(rear), stretch_));
+    on_surface_ += hn::CountTrue(dl, hn::AndNot(is_on_hidden_, hn::And(occupied, from_free_)));
+    if (!view_.is_shipped) return;
+    const MD lanes = to_d(occupied);
+    rear_side_entropy_ = hn::Add(rear_side_entropy_, hn::IfThenElseZero(lanes, visible));
+    ended_entropy_ = hn::IfThenElse(lanes, entropy_, ended_entropy_);
+    ended_voxels_ = hn::IfThenElse(lanes, voxels_, ended_voxels_);
+  }
+
+  HWY_INLINE void pass_unobserved(const CubeStep& step, ML lanes, VD n, DistinctVoxels& distinct) {
+    const auto cube = [](VD t) HWY_ATTR { return hn::Mul(t, hn::Mul(t, t)); };
+    volume_ =
+        hn::Add(volume_, hn::IfThenElseZero(to_d(lanes), hn::Sub(cube(step.next), cube(step.t))));
+    const VL steps = hn::And(hn::ShiftRight<ClassicTable::kStepsShift>(step.word),
+                             whole(ClassicTable::kMostSteps));
+    const ML hidden = hn::And(lanes, hn::Gt(steps, hn::Zero(dl)));
+    is_on_hidden_ = hn::Or(is_on_hidden_, hidden);
+    const VD nearness = hn::Mul(n, hn::Sub(real(view_.most_steps), real_of(steps)));
+    proximity_ = hn::Add(proximity_, hn::IfThenElseZero(to_d(hidden), nearness));
+    if (!view_.is_distinct) return;
+    HWY_ALIGN std::int64_t xs[kLanes], ys[kLanes], zs[kLanes], words[kLanes];
+    hn::Store(integer_of(step.at.x), dl, xs);
+    hn::Store(integer_of(step.at.y), dl, ys);
+    hn::Store(integer_of(step.at.z), dl, zs);
+    hn::Store(step.word, dl, words);
+    for (unsigned bits = bits_of(lanes); bits != 0; bits &= bits - 1) {
+      const int i = std::countr_zero(bits);
+      distinct.mark(static_cast<std::int32_t>(xs[i]), static_cast<std::int32_t>(ys[i]),
+                    static_cast<std::int32_t>(zs[i]), static_cast<std::uint32_t>(words[i]));
+    }
+  }
+
+  const ClassicView& view_;
+  VD third_of_angle_;
+  VD passed_ = real(1.0), stretch_ = hn::Zero(dd);
+  VD occlusion_aware_ = hn::Zero(dd), unobserved_ = hn::Zero(dd);
+  VD entropy_ = hn::Zero(dd), voxels_ = hn::Zero(dd);
+  VD ended_entropy_ = hn::Zero(dd), ended_voxels_ = hn::Zero(dd);
+  VD rear_side_entropy_ = hn::Zero(dd), proximity_ = hn::Zero(dd), volume_ = hn::Zero(dd);
+  // What the voxel before counted as, and whether the ray has come to what surfaces hide.
+  ML from_unknown_ = no_lane(), from_free_ = no_lane(), is_on_hidden_ = no_lane();
+  std::uint64_t rear_side_ = 0, on_surface_ = 0;
 };
 
-void add_end(const ClassicView& view, std::uint8_t kind, double entropy, const RaySums& ray,
-             ClassicSums& sums) {
-  if ((kind & VoxelValues::kIsOccupied) == 0) return;
-  const bool from_unknown = (ray.before & VoxelValues::kIsUnknown) != 0;
-  if (from_unknown) {
-    ++sums.rear_side;
-    sums.rear_side_entropy += ray.stretch;
-  }
-  if (view.is_shipped) sums.rear_side_entropy += ray.visibility * entropy;
-  if (!ray.is_on_hidden && (ray.before & VoxelValues::kIsFree) != 0) ++sums.on_surface;
-  if (view.is_shipped) {
-    sums.entropy += ray.entropy + entropy;
-    sums.voxels += ray.voxels + 1;
-  }
-}
-
-void add_ray(const ClassicView& view, const ClassicTile& tile, int lane, ClassicSums& sums,
-             DistinctVoxels& distinct) {
-  const VoxelValues& values = view.values;
-  OrderedRay walk(view.table, view.origin, {tile.dx[lane], tile.dy[lane], tile.dz[lane]},
-                  view.min_range, tile.far[lane]);
-  RaySums ray;
-  while (walk.goes_on()) {
-    const CubeVisit visit = walk.next([&](std::uint32_t word) {
-      return view.is_distinct && (word & ClassicTable::kCode) == OccupancyCodes::kUnknown;
-    });
-    if (!(visit.begin < visit.end)) continue;
-    const std::uint32_t code = visit.word & ClassicTable::kCode;
-    const std::uint8_t kind = values.kinds[code];
-    const bool ends = OccupancyCodes::is_occupied(static_cast<std::uint8_t>(code));
-    const std::uint32_t n = ends ? 1 : visit.voxels;
-    const auto count = static_cast<double>(n);
-    const double visible = ray.visibility * values.sums[code * VoxelValues::kRow + n];
-    ray.occlusion_aware += visible;
-    if ((kind & VoxelValues::kIsUnknown) != 0) ray.unobserved += visible;
-    if (ends) {
-      add_end(view, kind, values.entropy[code], ray, sums);
-      if (!view.is_shipped) {
-        ray.entropy += values.entropy[code];
-        ray.voxels += 1;
-      }
-      break;
+void add_tile(const ClassicView& view, const ClassicTile& tile, ClassicSums& sums,
+              DistinctVoxels& distinct) {
+  for (std::size_t lane0 = 0; lane0 < kTileRays; lane0 += kLanes) {
+    CubeWalk walk;
+    if (!walk.begin(view, tile, lane0)) continue;
+    GainSink sink(view, tile.solid_angle + lane0);
+    while (walk.step([&](const CubeStep& step) HWY_ATTR { return sink.step(step, distinct); })) {
     }
-    ray.entropy += count * values.entropy[code];
-    ray.voxels += count;
-    ray.stretch = (kind & VoxelValues::kIsUnknown) != 0 ? ray.stretch + visible : 0;
-    ray.before = kind;
-    ray.visibility *= values.powers[code * VoxelValues::kRow + n];
-    if (code != OccupancyCodes::kUnknown) continue;
-    const std::uint32_t steps = visit.word >> ClassicTable::kStepsShift & ClassicTable::kMostSteps;
-    if (steps > 0) {
-      ray.is_on_hidden = true;
-      sums.proximity += count * (view.most_steps - static_cast<double>(steps));
-    }
-    sums.volume += static_cast<double>(tile.solid_angle[lane]) / 3 *
-                   (visit.end * visit.end * visit.end - visit.begin * visit.begin * visit.begin);
-    if (view.is_distinct) distinct.mark(visit.voxel[0], visit.voxel[1], visit.voxel[2], visit.word);
-  }
-  sums.occlusion_aware += ray.occlusion_aware;
-  sums.unobserved += ray.unobserved;
-  sums.on_hidden += ray.is_on_hidden ? 1 : 0;
-  if (!view.is_shipped) {
-    sums.entropy += ray.entropy;
-    sums.voxels += ray.voxels;
+    sink.add_to(sums);
   }
 }
 
 }  // namespace
 
-void add_tile(const ClassicView& view, const ClassicTile& tile, ClassicSums& sums,
-              DistinctVoxels& distinct) {
-  for (int lane = 0; lane < kTileRays; ++lane) {
-    if ((tile.valid >> lane & 1U) != 0) add_ray(view, tile, lane, sums, distinct);
+AddTile classic_walk_of_target() { return add_tile; }
+
+}  // namespace viewgain::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace viewgain::detail {
+
+AddTile classic_walk(Isa isa) {
+  switch (isa) {
+#if HWY_TARGETS & HWY_AVX3
+    case Isa::avx512:
+      return N_AVX3::classic_walk_of_target();
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Isa::avx2:
+      return N_AVX2::classic_walk_of_target();
+#endif
+    default:
+      return HWY_STATIC_DISPATCH(classic_walk_of_target)();
   }
 }
 
 }  // namespace viewgain::detail
+#endif

@@ -8,6 +8,7 @@
 #include "classic_table.hpp"
 #include "distinct_voxels.hpp"
 #include "trace/ray_tile.hpp"
+#include "viewgain/core/isa.hpp"
 #include "voxel_values.hpp"
 
 namespace viewgain::detail {
@@ -43,7 +44,10 @@ struct ClassicView {
 };
 
 /// Walks the rays of a tile, in order through all voxels, and adds what they meet.
-void add_tile(const ClassicView& view, const ClassicTile& tile, ClassicSums& sums,
-              DistinctVoxels& distinct);
+using AddTile = void (*)(const ClassicView& view, const ClassicTile& tile, ClassicSums& sums,
+                         DistinctVoxels& distinct);
+
+/// For an instruction set that the CPU supports.
+[[nodiscard]] AddTile classic_walk(Isa isa);
 
 }  // namespace viewgain::detail

@@ -51,7 +51,9 @@ class OrderedRay {
     CubeVisit visit;
     const std::uint32_t word = table_.word(voxel_[0], voxel_[1], voxel_[2]);
     const std::int32_t edge =
-        is_split(word) ? 1 : 1 << (word >> ClassicTable::kEdgeShift & ClassicTable::kEdge);
+        is_split(word)
+            ? 1
+            : static_cast<std::int32_t>(word >> ClassicTable::kEdgeShift & ClassicTable::kEdge);
     std::array<double, 3> leaves;
     std::array<std::int32_t, 3> low;
     for (std::size_t a = 0; a < 3; ++a) {

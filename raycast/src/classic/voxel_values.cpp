@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "classic_table.hpp"
+
 namespace viewgain::detail {
 namespace {
 
@@ -12,32 +14,32 @@ double entropy_of(double p) {
   return -p * std::log(p) - (1 - p) * std::log(1 - p);
 }
 
-std::uint8_t kind_of(const ClassicConfig& config, std::uint8_t code, double p) {
-  if (config.semantics == GainSemantics::shipped) {
-    if (p > config.occupied_above) return VoxelValues::kIsOccupied;
-    return p < config.free_below ? VoxelValues::kIsFree : VoxelValues::kIsUnknown;
-  }
-  if (code == OccupancyCodes::kUnknown) return VoxelValues::kIsUnknown;
-  return OccupancyCodes::is_occupied(code) ? VoxelValues::kIsOccupied : VoxelValues::kIsFree;
-}
-
 }  // namespace
 
 VoxelValues::VoxelValues(const ClassicConfig& config)
-    : sums(OccupancyCodes::kCount * kRow), powers(OccupancyCodes::kCount * kRow) {
-  for (std::size_t i = 0; i < entropy.size(); ++i) {
+    : runs(std::size_t{OccupancyCodes::kCount} << kRowBits),
+      occupied_begin(OccupancyCodes::kCount) {
+  static_assert(sizeof(Run) == kRunDoubles * sizeof(double));
+  static_assert(3 * ClassicTable::kLargestEdge - 2 < 1U << kRowBits);
+  const bool shipped = config.semantics == GainSemantics::shipped;
+  for (int i = 0; i < OccupancyCodes::kCount; ++i) {
     const auto code = static_cast<std::uint8_t>(i);
-    const double p = code == OccupancyCodes::kUnknown
-                         ? config.unknown_prior
-                         : 1 / (1 + std::exp(-static_cast<double>(OccupancyCodes::log_odds(code))));
-    const double q = config.semantics == GainSemantics::shipped ? p : 1 - p;
-    entropy[i] = entropy_of(p);
-    kinds[i] = kind_of(config, code, p);
+    const bool is_known = code != OccupancyCodes::kUnknown;
+    const double p = is_known
+                         ? 1 / (1 + std::exp(-static_cast<double>(OccupancyCodes::log_odds(code))))
+                         : config.unknown_prior;
+    // p rises with the code.
+    const bool is_occupied =
+        shipped ? p > config.occupied_above : OccupancyCodes::is_occupied(code);
+    const bool is_free = shipped ? p < config.free_below : !OccupancyCodes::is_occupied(code);
+    if (is_known && is_free) free_end = i + 1;
+    if (is_known && is_occupied && occupied_begin > i) occupied_begin = i;
+    const double H = entropy_of(p), q = shipped ? p : 1 - p;
     double sum = 0, power = 1;
-    for (std::size_t n = 0; n < kRow; ++n) {
-      sums[i * kRow + n] = sum;
-      powers[i * kRow + n] = power;
-      sum += power * entropy[i];
+    Run* row = &runs[static_cast<std::size_t>(i) << kRowBits];
+    for (std::size_t n = 0; n < std::size_t{1} << kRowBits; ++n) {
+      row[n] = {sum, power, static_cast<double>(n) * H, 0};
+      sum += power * H;
       power *= q;
     }
   }

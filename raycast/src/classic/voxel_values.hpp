@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,16 +12,21 @@ namespace viewgain::detail {
 
 /// What voxels weigh by the code of their log-odds, for one semantics.
 struct VoxelValues {
-  /// Most voxels that a ray meets of an aligned cube of 32³ without leaving it: 3 · 32 - 2.
-  static constexpr std::size_t kMostInCube = 94, kRow = kMostInCube + 1;
-  /// What voxels count as.
-  static constexpr std::uint8_t kIsUnknown = 1, kIsFree = 2, kIsOccupied = 4;
+  /// What n voxels of a code in a row add to a ray, q being what each lets through.
+  struct Run {
+    double visible;  ///< Σ_{k<n} q^k H
+    double passed;   ///< q^n
+    double entropy;  ///< n H
+    double unused;
+  };
+  /// A ray meets at most 3 · 32 - 2 voxels of an aligned cube of 32³ without leaving it.
+  static constexpr int kRowBits = 7;
+  static constexpr int kRunDoubles = 4;
 
-  std::array<double, OccupancyCodes::kCount> entropy{};  ///< H [nat]
-  std::array<std::uint8_t, OccupancyCodes::kCount> kinds{};
-  /// Of n voxels of a code in a row, at code * kRow + n: Σ_{k<n} q^k H and q^n, q being what each
-  /// lets through.
-  std::vector<double> sums, powers;
+  std::vector<Run> runs;  ///< at code << kRowBits | n
+  /// Known voxels count as free below, as occupied from there on; others, and those that no reading
+  /// told of, as unknown.
+  std::int64_t free_end = 0, occupied_begin = 0;
 
   explicit VoxelValues(const ClassicConfig& config);
 };
