@@ -177,8 +177,7 @@ class ClassicDriver {
       if (!(v >= table.offset[a] && v < table.offset[a] + table.size[a])) return false;
       voxel[a] = static_cast<std::int32_t>(v);
     }
-    return OccupancyCodes::is_occupied(
-        static_cast<std::uint8_t>(table.word(voxel[0], voxel[1], voxel[2]) & ClassicTable::kCode));
+    return ClassicTable::is_occupied(table.word(voxel[0], voxel[1], voxel[2]));
   }
 
   void trace(const ClassicFrame& frame, DistinctVoxels& distinct, ClassicSums& sums) const {

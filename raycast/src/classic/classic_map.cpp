@@ -49,11 +49,6 @@ void check(const VoxelScene* scene, const BeliefGrid& grid,
   }
 }
 
-std::uint32_t code_of(std::uint32_t word) { return word & ClassicTable::kCode; }
-bool is_occupied(std::uint32_t word) {
-  return OccupancyCodes::is_occupied(static_cast<std::uint8_t>(code_of(word)));
-}
-
 // Follows the rays of the views that made a map.
 class OcclusionTracer {
  public:
@@ -94,8 +89,8 @@ class OcclusionTracer {
               double far, OcclusionSteps& steps) const {
     OrderedRay ray(table_, origin, direction, min_range_, far);
     while (ray.goes_on()) {
-      const CubeVisit visit = ray.next(is_occupied);
-      if (visit.begin < visit.end && is_occupied(visit.word)) {
+      const CubeVisit visit = ray.next(ClassicTable::is_occupied);
+      if (visit.begin < visit.end && ClassicTable::is_occupied(visit.word)) {
         return mark_behind(origin, direction, visit, steps);
       }
     }
@@ -111,7 +106,7 @@ class OcclusionTracer {
       if (!(visit.begin < visit.end)) continue;
       if (is_behind) ++count;
       if (visit.voxel == surface.voxel) is_behind = true;
-      if (count == 0 || code_of(visit.word) != OccupancyCodes::kUnknown) continue;
+      if (count == 0 || !ClassicTable::is_unknown(visit.word)) continue;
       steps.mark(visit.voxel[0], visit.voxel[1], visit.voxel[2], static_cast<std::uint8_t>(count));
     }
   }
@@ -159,11 +154,10 @@ ClassicMap::~ClassicMap() = default;
 
 const VoxelScene& ClassicMap::scene() const noexcept { return *data_->scene; }
 int ClassicMap::occlusion_steps(Index3 voxel) const {
-  return static_cast<int>(word_at(data_->table, voxel) >> ClassicTable::kStepsShift &
-                          ClassicTable::kMostSteps);
+  return static_cast<int>(ClassicTable::steps(word_at(data_->table, voxel)));
 }
 bool ClassicMap::is_surface_frontier(Index3 voxel) const {
-  return (word_at(data_->table, voxel) & ClassicTable::kFrontier) != 0;
+  return ClassicTable::is_frontier(word_at(data_->table, voxel));
 }
 std::uint64_t ClassicMap::bytes() const noexcept { return data_->table.bytes(); }
 

@@ -24,6 +24,11 @@ void check_capacity(std::size_t size) {
   }
 }
 
+std::uint16_t word_of(std::uint32_t code) {
+  return static_cast<std::uint16_t>(code == OccupancyCodes::kUnknown ? ClassicTable::kUnknown
+                                                                     : code);
+}
+
 // Every voxel with what is within one voxel of it.
 Rows dilated(const Rows& rows) {
   Rows along_z{}, along_y{}, all{};
@@ -52,6 +57,7 @@ class Maker {
   Maker(const OccupancyCodes& codes, ClassicTable& table) : codes_(codes), table_(table) {}
 
   void run() {
+    table_.words.assign(kBrickVoxels, 0);
     for (std::size_t node = 0; node < codes_.node_entries.size(); ++node) {
       const std::uint32_t from = codes_.node_entries[node];
       if ((from & OccupancyCodes::kUniform) != 0) {
@@ -76,17 +82,22 @@ class Maker {
         uniform_nodes_.emplace(code, static_cast<std::uint32_t>(table_.entries.size()));
     if (is_new) {
       check_capacity(table_.entries.size() + kEntriesPerNode);
-      table_.entries.resize(table_.entries.size() + kEntriesPerNode, ClassicTable::kUniform | code);
+      table_.entries.resize(table_.entries.size() + kEntriesPerNode,
+                            ClassicTable::kUniform | word_of(code));
     }
     return found->second;
   }
 
   std::uint32_t entry_of(std::uint32_t from) {
-    if ((from & OccupancyCodes::kUniform) != 0) return ClassicTable::kUniform | (from & 0xFFU);
+    if ((from & OccupancyCodes::kUniform) != 0)
+      return ClassicTable::kUniform | word_of(from & 0xFFU);
     const std::size_t first = table_.words.size();
     check_capacity(first + kBrickVoxels);
     const std::uint8_t* codes = codes_.codes.data() + from;
-    table_.words.insert(table_.words.end(), codes, codes + kBrickVoxels);
+    table_.words.resize(first + kBrickVoxels);
+    for (std::uint32_t i = 0; i < kBrickVoxels; ++i) {
+      table_.words[first + ClassicTable::word_in_brick(i >> 6U, i >> 3U, i)] = word_of(codes[i]);
+    }
     return static_cast<std::uint32_t>(first);
   }
 
@@ -95,9 +106,7 @@ class Maker {
     std::vector<Index3> with_occupied;
     for_each_mixed([&](Index3 brick, std::uint32_t first) {
       const auto begin = table_.words.begin() + first;
-      if (std::any_of(begin, begin + kBrickVoxels, [](std::uint32_t word) {
-            return OccupancyCodes::is_occupied(static_cast<std::uint8_t>(word));
-          })) {
+      if (std::any_of(begin, begin + kBrickVoxels, ClassicTable::is_occupied)) {
         with_occupied.push_back(brick);
       }
     });
@@ -154,11 +163,10 @@ class Maker {
         unsigned free_row = 0, occupied_row = 0;
         for (std::int32_t z = 0; z < kRows; ++z) {
           if (!is_inside(low[2] + z, 2)) continue;
-          const auto code = static_cast<std::uint8_t>(
-              table_.word(low[0] + x, low[1] + y, low[2] + z) & ClassicTable::kCode);
-          if (OccupancyCodes::is_occupied(code)) {
+          const std::uint32_t word = table_.word(low[0] + x, low[1] + y, low[2] + z);
+          if (ClassicTable::is_occupied(word)) {
             occupied_row |= 1U << z;
-          } else if (code != OccupancyCodes::kUnknown) {
+          } else if (!ClassicTable::is_unknown(word)) {
             free_row |= 1U << z;
           }
         }
@@ -169,7 +177,7 @@ class Maker {
       }
     }
     const Rows near_free = dilated(free), near_occupied = dilated(occupied);
-    std::uint32_t* own = nullptr;
+    std::uint16_t* own = nullptr;
     for (std::int32_t x = 0; x < 8; ++x) {
       for (std::int32_t y = 0; y < 8; ++y) {
         const auto i = static_cast<std::size_t>(x + 1), j = static_cast<std::size_t>(y + 1);
@@ -180,10 +188,13 @@ class Maker {
               !is_inside(low[1] + 1 + y, 1) || !is_inside(low[2] + 1 + z, 2)) {
             continue;
           }
-          if ((table_.word(low[0] + 1 + x, low[1] + 1 + y, low[2] + 1 + z) & ClassicTable::kCode) ==
-              OccupancyCodes::kUnknown) {
+          if (ClassicTable::is_unknown(
+                  table_.word(low[0] + 1 + x, low[1] + 1 + y, low[2] + 1 + z))) {
             if (own == nullptr) own = own_words(table_, brick);
-            own[x << 6 | y << 3 | z] |= ClassicTable::kFrontier;
+            std::uint16_t& word = own[ClassicTable::word_in_brick(static_cast<std::uint32_t>(x),
+                                                                  static_cast<std::uint32_t>(y),
+                                                                  static_cast<std::uint32_t>(z))];
+            word = static_cast<std::uint16_t>(word | ClassicTable::kFrontier);
           }
         }
       }
@@ -192,7 +203,7 @@ class Maker {
 
  public:
   // The words of a brick; it becomes a mixed one. Not in a node whose entries others share.
-  static std::uint32_t* own_words(ClassicTable& table, Index3 brick) {
+  static std::uint16_t* own_words(ClassicTable& table, Index3 brick) {
     std::uint32_t& node =
         table.node_entries[table.node_index(brick.x * 8, brick.y * 8, brick.z * 8)];
     const std::uint32_t word = table.entries[node];
@@ -206,7 +217,7 @@ class Maker {
     }
     std::uint32_t& entry = table.entries[table.entry_index(brick.x * 8, brick.y * 8, brick.z * 8)];
     if ((entry & ClassicTable::kUniform) != 0) {
-      const std::uint32_t value = entry & ClassicTable::kValue;
+      const auto value = static_cast<std::uint16_t>(entry & ClassicTable::kValue);
       check_capacity(table.words.size() + kBrickVoxels);
       entry = static_cast<std::uint32_t>(table.words.size());
       table.words.resize(table.words.size() + kBrickVoxels, value);
@@ -221,28 +232,29 @@ class Maker {
 };
 
 // Tells the words of a mixed brick how large the cubes of one value are round them.
-void find_cubes_in_brick(std::uint32_t* words) {
+void find_cubes_in_brick(std::uint16_t* words) {
+  const auto at = [&](unsigned x, unsigned y, unsigned z) -> std::uint16_t& {
+    return words[ClassicTable::word_in_brick(x, y, z)];
+  };
   for (std::size_t i = 0; i < kBrickVoxels; ++i) {
-    words[i] = (words[i] & ClassicTable::kValue) | 1U << ClassicTable::kEdgeShift;
+    words[i] = static_cast<std::uint16_t>(words[i] & ClassicTable::kValue);
   }
-  for (unsigned edge = 2; edge < 8; edge *= 2) {
-    const unsigned half = edge / 2;
+  for (unsigned shift = 1; shift < 3; ++shift) {
+    const unsigned edge = 1U << shift, half = edge / 2;
     for (unsigned x = 0; x < 8; x += edge) {
       for (unsigned y = 0; y < 8; y += edge) {
         for (unsigned z = 0; z < 8; z += edge) {
-          const std::uint32_t word = words[x << 6U | y << 3U | z];
-          bool same = word >> ClassicTable::kEdgeShift == half;
+          const std::uint32_t word = at(x, y, z);
+          bool same = word >> ClassicTable::kEdgeShift == shift - 1;
           for (unsigned k = 1; k < 8 && same; ++k) {
-            same = words[(x + (k >> 2U) * half) << 6U | (y + (k >> 1U & 1U) * half) << 3U |
-                         (z + (k & 1U) * half)] == word;
+            same = at(x + (k >> 2U) * half, y + (k >> 1U & 1U) * half, z + (k & 1U) * half) == word;
           }
           if (!same) continue;
+          const auto wide = static_cast<std::uint16_t>((word & ClassicTable::kValue) |
+                                                       shift << ClassicTable::kEdgeShift);
           for (unsigned i = x; i < x + edge; ++i) {
             for (unsigned j = y; j < y + edge; ++j) {
-              for (unsigned k = z; k < z + edge; ++k) {
-                words[i << 6U | j << 3U | k] =
-                    (word & ClassicTable::kValue) | edge << ClassicTable::kEdgeShift;
-              }
+              for (unsigned k = z; k < z + edge; ++k) at(i, j, k) = wide;
             }
           }
         }
@@ -256,23 +268,23 @@ void find_cubes_in_node(std::uint32_t* entries) {
   for (std::size_t i = 0; i < kEntriesPerNode; ++i) {
     if ((entries[i] & ClassicTable::kUniform) == 0) continue;
     entries[i] = ClassicTable::kUniform | (entries[i] & ClassicTable::kValue) |
-                 8U << ClassicTable::kEdgeShift;
+                 3U << ClassicTable::kEdgeShift;
   }
-  for (unsigned edge = 2; edge <= ClassicTable::kLargestEdge / 8; edge *= 2) {  // in bricks
-    const unsigned half = edge / 2;
+  for (unsigned shift = 4; shift <= ClassicTable::kLargestShift; ++shift) {
+    const unsigned edge = 1U << (shift - 3U), half = edge / 2;  // in bricks
     for (unsigned x = 0; x < 16; x += edge) {
       for (unsigned y = 0; y < 16; y += edge) {
         for (unsigned z = 0; z < 16; z += edge) {
           const std::uint32_t entry = entries[x << 8U | y << 4U | z];
           if ((entry & ClassicTable::kUniform) == 0) continue;
-          bool same = (entry >> ClassicTable::kEdgeShift & ClassicTable::kEdge) == 8 * half;
+          bool same = (entry >> ClassicTable::kEdgeShift & ClassicTable::kEdge) == shift - 1;
           for (unsigned k = 1; k < 8 && same; ++k) {
             same = entries[(x + (k >> 2U) * half) << 8U | (y + (k >> 1U & 1U) * half) << 4U |
                            (z + (k & 1U) * half)] == entry;
           }
           if (!same) continue;
           const std::uint32_t wide = ClassicTable::kUniform | (entry & ClassicTable::kValue) |
-                                     8 * edge << ClassicTable::kEdgeShift;
+                                     shift << ClassicTable::kEdgeShift;
           for (unsigned i = x; i < x + edge; ++i) {
             for (unsigned j = y; j < y + edge; ++j) {
               for (unsigned k = z; k < z + edge; ++k) entries[i << 8U | j << 4U | k] = wide;
@@ -285,7 +297,7 @@ void find_cubes_in_node(std::uint32_t* entries) {
 }
 
 void find_cubes(ClassicTable& table) {
-  for (std::size_t first = 0; first < table.words.size(); first += kBrickVoxels) {
+  for (std::size_t first = kBrickVoxels; first < table.words.size(); first += kBrickVoxels) {
     find_cubes_in_brick(&table.words[first]);
   }
   for (std::size_t first = 0; first < table.entries.size(); first += kEntriesPerNode) {
@@ -306,9 +318,10 @@ ClassicTable::ClassicTable(const OccupancyCodes& codes)
 
 void ClassicTable::add(const OcclusionSteps& steps) {
   for (const auto& [place, brick] : steps.bricks()) {
-    std::uint32_t* own = Maker::own_words(*this, {place[0], place[1], place[2]});
-    for (std::size_t i = 0; i < kBrickVoxels; ++i) {
-      own[i] |= std::uint32_t{(*brick)[i]} << kStepsShift;
+    std::uint16_t* own = Maker::own_words(*this, {place[0], place[1], place[2]});
+    for (std::uint32_t i = 0; i < kBrickVoxels; ++i) {
+      std::uint16_t& word = own[word_in_brick(i >> 6U, i >> 3U, i)];
+      word = static_cast<std::uint16_t>(word | std::uint32_t{(*brick)[i]} << kStepsShift);
     }
   }
   find_cubes(*this);

@@ -17,13 +17,30 @@ namespace viewgain::detail {
 /// Table coordinates count voxels from the lowest voxel of the workspace's lowest brick, where the
 /// first node begins too; the workspace's lowest voxel is `offset`, in 0..7 along each axis.
 struct ClassicTable {
-  /// A word: code of the log-odds; whether it is a surface frontier; steps behind a measured
-  /// surface; edge of the largest aligned cube round it [voxels] whose words are the same, 1, 2 or
-  /// 4 in a brick, 8 to kLargestEdge else.
-  static constexpr std::uint32_t kCode = 0x7FU, kFrontier = 0x80U;
-  static constexpr int kStepsShift = 8, kEdgeShift = 16;
-  static constexpr std::uint32_t kMostSteps = 255, kValue = 0xFFFFU, kEdge = 0x3FU;
-  static constexpr unsigned kLargestEdge = 32;
+  /// A word of 13 bits. A known voxel's begins with the code of its log-odds, an unknown one's has
+  /// kUnknown, its steps behind a measured surface and whether it is a surface frontier. Above
+  /// either the binary logarithm of the edge of the largest aligned cube round it whose values are
+  /// the same, 0 to 2 in a brick, 3 to kLargestShift else [voxels].
+  static constexpr std::uint32_t kCode = 0x7FU, kFrontier = 1, kUnknown = 0x200U;
+  static constexpr int kStepsShift = 1, kEdgeShift = 10;
+  static constexpr std::uint32_t kMostSteps = 255, kValue = 0x3FFU, kEdge = 7;
+  static constexpr unsigned kLargestShift = 5;
+  [[nodiscard]] static bool is_unknown(std::uint32_t word) { return (word & kUnknown) != 0; }
+  [[nodiscard]] static bool is_occupied(std::uint32_t word) {
+    return !is_unknown(word) &&
+           OccupancyCodes::is_occupied(static_cast<std::uint8_t>(word & kCode));
+  }
+  [[nodiscard]] static bool is_frontier(std::uint32_t word) {
+    return is_unknown(word) && (word & kFrontier) != 0;
+  }
+  [[nodiscard]] static std::uint32_t steps(std::uint32_t word) {
+    return is_unknown(word) ? word >> kStepsShift & kMostSteps : 0;
+  }
+  /// Edge of the cube [voxels].
+  [[nodiscard]] static std::int32_t edge(std::uint32_t word) {
+    return 1 << (word >> kEdgeShift & kEdge);
+  }
+
   /// An entry is the word of all its brick's voxels with this bit, or its first index in `words`.
   static constexpr std::uint32_t kUniform = 0x80000000U;
 
@@ -32,7 +49,9 @@ struct ClassicTable {
   std::array<std::int32_t, 3> nodes{};           ///< along x, y, z
   std::vector<std::uint32_t> node_entries;       ///< first entry of each node, x-major
   std::vector<std::uint32_t> entries;            ///< 4096 a node, x-major
-  std::vector<std::uint32_t> words;              ///< 512 a mixed brick, x << 6 | y << 3 | z
+  /// 512 a mixed brick, by word_in_brick(); those before the first brick are for gathers that read
+  /// four bytes, which end in a word.
+  std::vector<std::uint16_t> words;
 
   explicit ClassicTable(const OccupancyCodes& codes);
 
@@ -43,7 +62,14 @@ struct ClassicTable {
   [[nodiscard]] std::uint32_t word(std::int32_t x, std::int32_t y, std::int32_t z) const {
     const std::uint32_t entry = entries[entry_index(x, y, z)];
     if ((entry & kUniform) != 0) return entry;
-    return words[entry + static_cast<std::uint32_t>((x & 7) << 6 | (y & 7) << 3 | (z & 7))];
+    return words[entry + word_in_brick(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                       static_cast<std::uint32_t>(z))];
+  }
+  /// Words lie by cubes of 4³, in two cache lines each.
+  [[nodiscard]] static std::uint32_t word_in_brick(std::uint32_t x, std::uint32_t y,
+                                                   std::uint32_t z) {
+    return (x & 4U) << 6U | (y & 4U) << 5U | (z & 4U) << 4U | (x & 3U) << 4U | (y & 3U) << 2U |
+           (z & 3U);
   }
   /// The voxel's node.
   [[nodiscard]] std::size_t node_index(std::int32_t x, std::int32_t y, std::int32_t z) const {
@@ -58,7 +84,8 @@ struct ClassicTable {
   }
 
   [[nodiscard]] std::uint64_t bytes() const {
-    return (node_entries.size() + entries.size() + words.size()) * sizeof(std::uint32_t);
+    return (node_entries.size() + entries.size()) * sizeof(std::uint32_t) +
+           words.size() * sizeof(std::uint16_t);
   }
 };
 

@@ -26,10 +26,13 @@ class GainSink {
 
   // Lanes that end in an occupied voxel.
   HWY_INLINE ML step(const CubeStep& step, DistinctVoxels& distinct) {
-    const VL code = hn::And(step.word, whole(ClassicTable::kCode));
+    const ML is_unobserved =
+        hn::Ne(hn::And(step.word, whole(ClassicTable::kUnknown)), hn::Zero(dl));
+    const VL code =
+        hn::IfThenZeroElse(is_unobserved, hn::And(step.word, whole(ClassicTable::kCode)));
     const ML counts = step.counts;
     const ML ends = hn::And(counts, hn::Gt(code, whole(kLastFree)));
-    const ML unobserved = hn::And(counts, hn::Eq(code, hn::Zero(dl)));
+    const ML unobserved = hn::And(counts, is_unobserved);
     const ML is_free =
         hn::And(hn::Lt(code, whole(view_.values.free_end)), hn::Gt(code, hn::Zero(dl)));
     const ML is_occupied = hn::Gt(code, whole(view_.values.occupied_begin - 1));

@@ -67,6 +67,23 @@ HWY_INLINE VL gather(const std::vector<std::uint32_t>& table, VL index) {
 #endif
 }
 
+// Four bytes that end in the word; indices are above 0.
+HWY_INLINE VL gather(const std::vector<std::uint16_t>& table, VL index) {
+#if HWY_TARGET == HWY_AVX3
+  const VL four{_mm512_cvtepu32_epi64(_mm512_i64gather_epi32(index.raw, table.data() - 1, 2))};
+  return hn::ShiftRight<16>(four);
+#elif HWY_TARGET == HWY_AVX2
+  const VL four{_mm256_cvtepu32_epi64(
+      _mm256_i64gather_epi32(reinterpret_cast<const int*>(table.data() - 1), index.raw, 2))};
+  return hn::ShiftRight<16>(four);
+#else
+  HWY_ALIGN std::int64_t lanes[kLanes];
+  hn::Store(index, dl, lanes);
+  for (std::int64_t& lane : lanes) lane = table[static_cast<std::size_t>(lane)];
+  return hn::Load(dl, lanes);
+#endif
+}
+
 // Whole numbers, the voxels that rays are in.
 struct Voxels {
   VD x, y, z;
@@ -117,16 +134,15 @@ class CubeWalk {
   template <typename Sink>
   HWY_INLINE bool step(Sink&& sink) {
     const VL word = word_at();
-    VL edge_bits =
-        hn::And(hn::ShiftRight<ClassicTable::kEdgeShift>(word), whole(ClassicTable::kEdge));
+    VL shift = hn::And(hn::ShiftRight<ClassicTable::kEdgeShift>(word), whole(ClassicTable::kEdge));
     if (splits_unknown_) {
-      const ML unknown = hn::Eq(hn::And(word, whole(ClassicTable::kCode)), hn::Zero(dl));
-      edge_bits = hn::IfThenElse(unknown, whole(1), edge_bits);
+      const VL unknown = hn::And(word, whole(ClassicTable::kUnknown));
+      shift = hn::IfThenElseZero(hn::Eq(unknown, hn::Zero(dl)), shift);
     }
-    // The reciprocal of a power of two has the exponent's negative.
-    const VD edge = real_of(edge_bits);
-    const VD share =
-        hn::BitCast(dd, hn::Sub(whole(std::int64_t{2046} << 52), hn::BitCast(dl, edge)));
+    // 2^shift and its reciprocal, by their exponents.
+    const VL exponent = hn::ShiftLeft<52>(shift), of_one = hn::BitCast(dl, real(1.0));
+    const VD edge = hn::BitCast(dd, hn::Add(of_one, exponent)),
+             share = hn::BitCast(dd, hn::Sub(of_one, exponent));
     const Along x = along(x_, at_.x, edge, share), y = along(y_, at_.y, edge, share),
                 z = along(z_, at_.z, edge, share);
     const VD exit = hn::Min(x.leaves, hn::Min(y.leaves, z.leaves));
@@ -205,11 +221,15 @@ class CubeWalk {
     const VL entry = gather(table_->entries, hn::Add(first_, brick));
     const ML is_mixed = hn::Eq(hn::And(entry, whole(ClassicTable::kUniform)), hn::Zero(dl));
     if (hn::AllFalse(dl, hn::And(active_, is_mixed))) return entry;
-    const VL seven = whole(7);
-    const VL offset =
-        hn::Or(hn::Or(hn::ShiftLeft<6>(hn::And(x, seven)), hn::ShiftLeft<3>(hn::And(y, seven))),
-               hn::And(z, seven));
-    const VL own = gather(table_->words, hn::IfThenElseZero(is_mixed, hn::Add(entry, offset)));
+    // As ClassicTable::word_in_brick().
+    const auto part = [](VL v, std::int64_t bits) HWY_ATTR { return hn::And(v, whole(bits)); };
+    const VL cube = hn::Or(hn::Or(hn::ShiftLeft<6>(part(x, 4)), hn::ShiftLeft<5>(part(y, 4))),
+                           hn::ShiftLeft<4>(part(z, 4)));
+    const VL in_cube =
+        hn::Or(hn::Or(hn::ShiftLeft<4>(part(x, 3)), hn::ShiftLeft<2>(part(y, 3))), part(z, 3));
+    const VL offset = hn::Or(cube, in_cube);
+    const VL own =
+        gather(table_->words, hn::IfThenElse(is_mixed, hn::Add(entry, offset), whole(1)));
     return hn::IfThenElse(is_mixed, own, entry);
   }
 

@@ -44,7 +44,7 @@ class DistinctVoxels {
     if ((row & bit) != 0) return;
     row |= bit;
     ++count_;
-    if ((word & ClassicTable::kFrontier) != 0) ++frontiers_;
+    if (ClassicTable::is_frontier(word)) ++frontiers_;
   }
 
   [[nodiscard]] std::uint64_t count() const { return count_; }

@@ -50,10 +50,7 @@ class OrderedRay {
   CubeVisit next(IsSplit&& is_split) {
     CubeVisit visit;
     const std::uint32_t word = table_.word(voxel_[0], voxel_[1], voxel_[2]);
-    const std::int32_t edge =
-        is_split(word)
-            ? 1
-            : static_cast<std::int32_t>(word >> ClassicTable::kEdgeShift & ClassicTable::kEdge);
+    const std::int32_t edge = is_split(word) ? 1 : ClassicTable::edge(word);
     std::array<double, 3> leaves;
     std::array<std::int32_t, 3> low;
     for (std::size_t a = 0; a < 3; ++a) {

@@ -20,7 +20,7 @@ VoxelValues::VoxelValues(const ClassicConfig& config)
     : runs(std::size_t{OccupancyCodes::kCount} << kRowBits),
       occupied_begin(OccupancyCodes::kCount) {
   static_assert(sizeof(Run) == kRunDoubles * sizeof(double));
-  static_assert(3 * ClassicTable::kLargestEdge - 2 < 1U << kRowBits);
+  static_assert((3U << ClassicTable::kLargestShift) - 2 < 1U << kRowBits);
   const bool shipped = config.semantics == GainSemantics::shipped;
   for (int i = 0; i < OccupancyCodes::kCount; ++i) {
     const auto code = static_cast<std::uint8_t>(i);
