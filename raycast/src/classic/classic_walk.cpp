@@ -136,13 +136,25 @@ class GainSink {
 
 void add_tile(const ClassicView& view, const ClassicTile& tile, ClassicSums& sums,
               DistinctVoxels& distinct) {
-  for (std::size_t lane0 = 0; lane0 < kTileRays; lane0 += kLanes) {
-    CubeWalk walk;
-    if (!walk.begin(view, tile, lane0)) continue;
-    GainSink sink(view, tile.solid_angle + lane0);
-    while (walk.step([&](const CubeStep& step) HWY_ATTR { return sink.step(step, distinct); })) {
+  // Two packets take turns, so that one need not wait for what the other gathers.
+  static_assert(kTileRays % (2 * kLanes) == 0);
+  for (std::size_t lane0 = 0; lane0 < kTileRays; lane0 += 2 * kLanes) {
+    CubeWalk one, other;
+    GainSink of_one(view, tile.solid_angle + lane0),
+        of_other(view, tile.solid_angle + lane0 + kLanes);
+    const auto go_on = [&](CubeWalk& walk, GainSink& sink) HWY_ATTR {
+      return walk.step([&](const CubeStep& step) HWY_ATTR { return sink.step(step, distinct); });
+    };
+    bool one_goes = one.begin(view, tile, lane0),
+         other_goes = other.begin(view, tile, lane0 + kLanes);
+    while (one_goes && other_goes) {
+      one_goes = go_on(one, of_one);
+      other_goes = go_on(other, of_other);
     }
-    sink.add_to(sums);
+    while (one_goes) one_goes = go_on(one, of_one);
+    while (other_goes) other_goes = go_on(other, of_other);
+    of_one.add_to(sums);
+    of_other.add_to(sums);
   }
 }
 
