@@ -437,7 +437,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
       {"convert",
        "IN OUT --workspace --prior-sigma --sensor --with-covariance --json --threads .ot [m]"},
       {"score",
-       "MAP --poses --sphere --dome --rings --shell --orbit --center --sensor --gain "
+       "MAP --poses --sphere --dome --rings --shell --orbit --center --sensor --gain --semantics "
        "--refinement-weight "
        "--object-size --hazard --support-plane --obstacle --reach --feasible --body --criterion "
        "--stride --weight --prior-sigma "
@@ -487,7 +487,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 201);
+  EXPECT_EQ(words, 202);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;
