@@ -44,8 +44,9 @@ std::vector<Pose> hemisphere(const HemisphereOptions& options) {
 std::vector<Eigen::Vector3d> points_on(const std::filesystem::path& path, double size) {
   const TriangleMesh mesh =
       read_mesh(path, {.up = UpAxis::z, .center = true, .longest_side = size});
+  const GroundTruth surface(mesh, kPoints);
   std::vector<Eigen::Vector3d> points;
-  for (const SurfaceSample& sample : GroundTruth(mesh, kPoints).samples()) {
+  for (const SurfaceSample& sample : surface.samples()) {
     points.push_back(sample.position);
   }
   return points;

@@ -13,12 +13,12 @@ struct HemisphereOptions {
   std::vector<std::filesystem::path> meshes;
   std::filesystem::path
       views_file;  ///< in the layout of MA-SCVP's view_space.txt; empty: 32 of ours
-  std::vector<std::string> rankers{"combined", "surface", "frontier", "random"};
+  std::vector<std::string> rankers{"combined", "frontier", "random"};
   int first_views = 20;   ///< runs of each object and ranker begin at each of the first so many
   int budget = 20;        ///< views of a run
   double size = 0.15;     ///< longest side of the objects [m]
   double voxel = 0.0025;  ///< of our map [m]
-  int stride = 4;         ///< of the pixels that views are scored on
+  int stride = 8;         ///< of the pixels that views are scored on
   bool json = false;
 };
 

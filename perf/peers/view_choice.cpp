@@ -58,14 +58,15 @@ ViewChoice::ViewChoice(Ranker ranker, const Sensor& sensor, const Box& workspace
       planner_(sensor, planner_config(ranker, workspace, voxel, stride), exec) {}
 
 void ViewChoice::add(const DepthFrame& frame, const Pose& T_world_camera) {
-  planner_.add(frame, T_world_camera);
+  ++views_;
+  if (ranker_ != Ranker::random) planner_.add(frame, T_world_camera);
   eye_ = T_world_camera.translation();
 }
 
 std::vector<double> ViewChoice::values(std::span<const Pose> T_world_camera) {
   std::vector<double> result;
   if (ranker_ == Ranker::random) {
-    const std::uint64_t step = mix64(mix64(seed_) ^ planner_.grid().views().size());
+    const std::uint64_t step = mix64(mix64(seed_) ^ views_);
     for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
       result.push_back(unit_number(mix64(step ^ i)));
     }

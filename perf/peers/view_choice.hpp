@@ -45,7 +45,8 @@ class ViewChoice {
 
   Ranker ranker_;
   std::uint64_t seed_;
-  ViewPlanner planner_;
+  ViewPlanner planner_;      ///< its map stays empty where the choice is random
+  std::uint64_t views_ = 0;  ///< added
   Eigen::Vector3d eye_ = Eigen::Vector3d::Zero();
 };
 
