@@ -68,9 +68,13 @@ std::size_t total(const std::map<std::string, std::size_t>& counts) {
 
 }  // namespace
 
-RunReport::RunReport(std::optional<GainModel> ranked_by, Criterion criterion)
+RunReport::RunReport(std::optional<GainModel> ranked_by, Criterion criterion,
+                     std::optional<ClassicGain> classic)
     : ranked_by_(ranked_by),
-      gain_unit_(gain_unit(ranked_by.value_or(GainModel::paper), criterion_name(criterion))),
+      classic_(classic),
+      gain_unit_(classic
+                     ? classic_gain_unit(*classic)
+                     : gain_unit(ranked_by.value_or(GainModel::paper), criterion_name(criterion))),
       entropy_unit_(gain_unit(GainModel::paper, criterion_name(criterion))) {}
 
 void RunReport::add_view(const ViewRecord& record, const QualityFigures& quality,
@@ -150,6 +154,7 @@ ordered_json RunReport::json(StopReason reason) const {
   const Entry& last = views_.back();
   ordered_json json{{"stop_reason", stop_reason_name(reason)}, {"views", views_.size()}};
   json["gain_model"] = ranked_by_ ? ordered_json(gain_model_name(*ranked_by_)) : ordered_json();
+  if (classic_) json["gain_model"] = classic_gain_name(*classic_);
   put_figures(json, last.quality, last.record.progress);
   json["travelled"] = last.record.travelled;
   const Proposal& proposal = last_proposal();

@@ -11,6 +11,7 @@
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/raycast/classic_gains.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
@@ -20,7 +21,9 @@ class RunReport {
  public:
   /// `ranked_by`: the gain that the policy ranks candidates by; nothing if it ranks by another
   /// thing. `criterion` is the map's and the paper's gain's.
-  RunReport(std::optional<GainModel> ranked_by, Criterion criterion);
+  /// `classic`: a gain of the literature, where it ranks by one.
+  RunReport(std::optional<GainModel> ranked_by, Criterion criterion,
+            std::optional<ClassicGain> classic = {});
 
   /// To be called once a view, in order. `realised_area` is SurfaceModel's [m²], `seconds` are the
   /// totals so far.
@@ -49,6 +52,7 @@ class RunReport {
   [[nodiscard]] nlohmann::ordered_json entry_json(std::size_t index) const;
 
   std::optional<GainModel> ranked_by_;
+  std::optional<ClassicGain> classic_;
   std::string_view gain_unit_, entropy_unit_;
   std::vector<Entry> views_;
   StageSeconds totals_;
