@@ -74,9 +74,7 @@ std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& stud
   RunSetup setup = set_up(options, exec);
   setup.planning.stop = stop;
   Run run(std::move(setup), options.frames_per_view, exec);
-  const PolicyConfig& policy = run.setup().policy;
-  RunReport report(policy.policy == Policy::gain ? std::optional(policy.model) : std::nullopt,
-                   policy.criterion);
+  RunReport report(run.setup().policy);
   StudyResult result;
   ordered_json prediction = ordered_json::array();
   const std::vector<std::size_t>& views = spec.prediction.views;

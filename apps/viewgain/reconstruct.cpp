@@ -35,7 +35,7 @@ GainEvaluator step_evaluator(const SurfaceModel& model, const RunSetup& setup,
   GainConfig gain;
   gain.support_plane = setup.policy.support_plane;
   gain.criterion = setup.policy.criterion;
-  if (setup.policy.policy == Policy::gain) gain.model = setup.policy.model;
+  if (setup.policy.policy == Policy::gain && !setup.policy.classic) gain.model = setup.policy.model;
   return {model.scene(), setup.sensor, gain, exec};
 }
 
@@ -96,8 +96,7 @@ void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
 
   RunFolder folder(options.out);
   const PolicyConfig& policy = setup.policy;
-  RunReport report(policy.policy == Policy::gain ? std::optional(policy.model) : std::nullopt,
-                   policy.criterion);
+  RunReport report(policy);
   const bool with_pictures = options.pictures == "on", with_report = options.report == "on";
   RunPage page(run_title(options, setup), setup.sensor,
                std::string(criterion_name(policy.criterion)), loop.truth());

@@ -282,7 +282,7 @@ Command add_score(CLI::App& program) {
                               "[m^2] or combined (both) [nat]; or gains of the literature, several "
                               "with commas, ranked by the first")
                   ->capture_default_str(),
-             score_gain_names(), "gain");
+             all_gain_names(), "gain");
   one_of(*app->add_option("--semantics", options->semantics,
                           "of the literature's gains: as the papers define them or as the code "
                           "that was shipped with them computes them")

@@ -45,15 +45,9 @@ std::string name_of(ClassicGain gain) { return std::string(classic_gain_name(gai
 
 }  // namespace
 
-std::vector<std::string> score_gain_names() {
-  std::vector<std::string> names = gain_model_names();
-  names.insert(names.end(), classic_gain_names().begin(), classic_gain_names().end());
-  return names;
-}
-
 std::optional<std::vector<ClassicGain>> classic_gains_of(const std::string& names) {
   const std::vector<std::string>& models = gain_model_names();
-  const std::vector<std::string> asked = parse_names("--gain", names, score_gain_names(), "gain");
+  const std::vector<std::string> asked = parse_names("--gain", names, all_gain_names(), "gain");
   std::vector<ClassicGain> gains;
   for (const std::string& name : asked) {
     if (std::find(models.begin(), models.end(), name) == models.end()) {

@@ -15,9 +15,6 @@
 
 namespace viewgain::app {
 
-/// The gains that `score` takes by name: its own three, then the classic ones.
-[[nodiscard]] std::vector<std::string> score_gain_names();
-
 /// The classic gains of --gain NAME[,NAME...]; nothing where it names one of score's own. Throws
 /// Error(invalid_argument) for names of both kinds, or several of its own.
 [[nodiscard]] std::optional<std::vector<ClassicGain>> classic_gains_of(const std::string& names);

@@ -42,7 +42,7 @@ Policy parse_policy(std::string_view name) {
 
 void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                     std::optional<double> stop_gain, std::optional<double> stop_area) {
-  const bool by_gain = policy.policy == Policy::gain;
+  const bool by_gain = policy.policy == Policy::gain && !policy.classic;
   if (!by_gain && stop_area.value_or(0) > 0) {
     throw Error(ErrorCode::invalid_argument,
                 "stop_area (--stop-area) goes with policy gain by the gains surface and combined");
@@ -66,16 +66,20 @@ PolicyDecision::PolicyDecision(const SurfaceModel& model, const CandidateGenerat
       exec_(exec),
       order_(0.5 * generation.config().boundary.estimator.patch_length) {
   if (config.policy == Policy::oracle) oracle_.emplace(model, sensor, config.object, exec);
+  if (config.policy == Policy::gain && config.classic) {
+    classic_.emplace(model, sensor, *config.classic, config.support_plane, exec);
+  }
 }
 
 std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
                                                std::span<const Candidate> candidates) {
   if (candidates.empty()) return std::nullopt;
-  const bool by_gain = config_.policy == Policy::gain;
+  const bool by_gain = config_.policy == Policy::gain && !classic_;
   const GainEvaluator& evaluator = this->evaluator();
-  const bool scored = by_gain || config_.policy == Policy::frontier;
-  const std::vector<ViewGain> gains =
-      scored ? score(T_world_camera, candidates) : std::vector<ViewGain>(candidates.size());
+  const bool scored = by_gain || classic_ || config_.policy == Policy::frontier;
+  const std::vector<ViewGain> gains = classic_ ? score_classic(candidates)
+                                      : scored ? score(T_world_camera, candidates)
+                                               : std::vector<ViewGain>(candidates.size());
   const std::optional<std::size_t> chosen = choose(T_world_camera, candidates, gains);
   if (!chosen) return std::nullopt;
   const ViewGain gain =
@@ -104,7 +108,7 @@ const GainEvaluator& PolicyDecision::evaluator() {
     GainConfig gain;
     gain.criterion = config_.criterion;
     gain.support_plane = config_.support_plane;
-    if (config_.policy == Policy::gain) gain.model = config_.model;
+    if (config_.policy == Policy::gain && !classic_) gain.model = config_.model;
     evaluator_.emplace(model_.scene(), sensor_, gain, exec_);
   }
   return *evaluator_;
@@ -115,6 +119,10 @@ std::optional<CandidateScores> PolicyDecision::scores(std::span<const Candidate>
   scores.area.assign(candidates.size(), std::numeric_limits<double>::quiet_NaN());
   if (config_.policy == Policy::proximity) {
     scores.score = proximities(candidates);
+    return scores;
+  }
+  if (classic_) {
+    scores.score = classic_->gains(poses_of(candidates), /*all=*/true);
     return scores;
   }
   const bool by_gain = config_.policy == Policy::gain;
@@ -151,6 +159,14 @@ std::vector<ViewGain> PolicyDecision::score(const Pose& T_world_camera,
   for (std::size_t j = 0; j < raced.scored_indices.size(); ++j) {
     gains[raced.scored_indices[j]] = raced.scored_gains[j];
   }
+  return gains;
+}
+
+std::vector<ViewGain> PolicyDecision::score_classic(std::span<const Candidate> candidates) {
+  const bool way_counts = config_.travel.per_metre > 0 || config_.travel.speed;
+  const std::vector<double> values = classic_->gains(poses_of(candidates), way_counts);
+  std::vector<ViewGain> gains(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) gains[i].gain = values[i];
   return gains;
 }
 

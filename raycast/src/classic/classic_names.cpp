@@ -37,7 +37,7 @@ ClassicGain parse_classic_gain(std::string_view name) {
 }
 std::string_view classic_gain_unit(ClassicGain gain) {
   static constexpr std::array<std::string_view, 10> kUnits{
-      "nat", "nat", "nat", "rays", "nat", "voxels", "1", "m3", "voxels", "voxels"};
+      "nat", "nat", "nat", "rays", "nat", "voxels", "1", "m^3", "voxels", "voxels"};
   return kUnits.at(static_cast<std::size_t>(gain));
 }
 bool needs_occlusion(ClassicGain gain) {

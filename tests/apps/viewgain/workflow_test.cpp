@@ -452,7 +452,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--threads"},
       {"reconstruct",
        "MESH --sensor --voxel --size --workspace --up --start --distance --policy --generator "
-       "--count --gain --overlap --region-depth --object-size --hazard --criterion "
+       "--count --gain --semantics --overlap --region-depth --object-size --hazard --criterion "
        "--max-views --stop-gain "
        "--stop-area --stop-idle --stop-coverage "
        "--travel-cost --travel-speed --reach --body --background --support-plane --noise "
@@ -487,7 +487,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 202);
+  EXPECT_EQ(words, 203);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

@@ -46,7 +46,7 @@ enum class ClassicGain : std::uint8_t {
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view classic_gain_name(ClassicGain gain);
 /// Throws Error(invalid_argument) that lists the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT ClassicGain parse_classic_gain(std::string_view name);
-/// "nat", "rays", "voxels", "m3" or "1".
+/// "nat", "rays", "voxels", "m^3" or "1".
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view classic_gain_unit(ClassicGain gain);
 /// Does it need to know how far unknown voxels are behind what earlier views measured?
 [[nodiscard]] VIEWGAIN_EXPORT bool needs_occlusion(ClassicGain gain);

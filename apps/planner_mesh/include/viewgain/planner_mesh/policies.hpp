@@ -13,6 +13,7 @@
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner_mesh/boundary_order.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/classic_choice.hpp"
 #include "viewgain/planner_mesh/oracle_choice.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -44,7 +45,8 @@ struct VIEWGAIN_EXPORT TravelCost {
 
 struct VIEWGAIN_EXPORT PolicyConfig {
   Policy policy = Policy::gain;
-  GainModel model = GainModel::combined;  ///< of Policy::gain
+  GainModel model = GainModel::combined;    ///< of Policy::gain
+  std::optional<ClassicRanking> classic{};  ///< of Policy::gain, instead of `model`
   Criterion criterion = Criterion::log_diagonal;
   std::optional<double> support_plane{};  ///< height [m], at which rays end
   TravelCost travel{};
@@ -60,9 +62,9 @@ struct VIEWGAIN_EXPORT CandidateScores {
   std::vector<double> area;
 };
 
-/// set_stop_rules() of the policy: that of its gain, and where it does not choose by a gain neither
-/// gain nor area ends a run. Throws Error(invalid_argument), too, for an area or a gain above 0
-/// with such a policy.
+/// set_stop_rules() of the policy: that of its gain, and where it does not choose by a gain, or by
+/// a classic one, neither gain nor area ends a run. Throws Error(invalid_argument), too, for an
+/// area or a gain above 0 with such a policy.
 VIEWGAIN_EXPORT void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                                     std::optional<double> stop_gain,
                                     std::optional<double> stop_area);
@@ -96,6 +98,8 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking {
   /// showed to be no match for others.
   [[nodiscard]] std::vector<ViewGain> score(const Pose& T_world_camera,
                                             std::span<const Candidate> candidates) const;
+  /// The same by a classic gain. Where the way there counts, all have their gain.
+  [[nodiscard]] std::vector<ViewGain> score_classic(std::span<const Candidate> candidates);
   [[nodiscard]] std::vector<double> proximities(std::span<const Candidate> candidates);
   /// The new surface to be expected of a view [m²], where the policy's own gain does not say.
   [[nodiscard]] double expected_area(const Pose& T_world_camera);
@@ -110,6 +114,7 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking {
   std::optional<GainEvaluator> coarse_;          ///< likewise, of few rays
   BoundaryOrder order_;
   std::optional<OracleChoice> oracle_;
+  std::optional<ClassicChoice> classic_;
 };
 
 }  // namespace viewgain
