@@ -14,6 +14,7 @@
 #include "command_line/progress.hpp"
 #include "commands.hpp"
 #include "options/choices.hpp"
+#include "options/gain_names.hpp"
 #include "options/hazard_source.hpp"
 #include "options/obstacle_source.hpp"
 #include "options/pose_flags.hpp"

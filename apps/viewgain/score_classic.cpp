@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "options/gain_names.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 
