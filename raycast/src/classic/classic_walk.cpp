@@ -170,17 +170,12 @@ void add_tile(const ClassicView& view, const ClassicTile& tile, ClassicSums& sum
     CubeWalk one, other;
     GainSink of_one(view, tile.solid_angle + lane0),
         of_other(view, tile.solid_angle + lane0 + kLanes);
-    const auto go_on = [&](CubeWalk& walk, GainSink& sink) HWY_ATTR {
-      return walk.step([&](const CubeStep& step) HWY_ATTR { return sink.step(step, distinct); });
-    };
     bool one_goes = one.begin(view, tile, lane0),
          other_goes = other.begin(view, tile, lane0 + kLanes);
-    while (one_goes && other_goes) {
-      one_goes = go_on(one, of_one);
-      other_goes = go_on(other, of_other);
+    while (one_goes || other_goes) {
+      if (one_goes) one_goes = one.step(of_one, distinct);
+      if (other_goes) other_goes = other.step(of_other, distinct);
     }
-    while (one_goes) one_goes = go_on(one, of_one);
-    while (other_goes) other_goes = go_on(other, of_other);
     of_one.add_to(sums);
     of_other.add_to(sums);
   }

@@ -130,9 +130,9 @@ class CubeWalk {
     return true;
   }
 
-  // Calls ends = sink(CubeStep), lanes that end there. False if no ray goes on.
+  // Calls ends = sink.step(CubeStep, distinct), lanes that end there. False if no ray goes on.
   template <typename Sink>
-  HWY_INLINE bool step(Sink&& sink) {
+  HWY_INLINE bool step(Sink& sink, DistinctVoxels& distinct) {
     const VL word = word_at();
     VL shift = hn::And(hn::ShiftRight<ClassicTable::kEdgeShift>(word), whole(ClassicTable::kEdge));
     if (splits_unknown_) {
@@ -161,7 +161,7 @@ class CubeWalk {
     };
     const Voxels beyond{advance(x_, at_.x, x), advance(y_, at_.y, y), advance(z_, at_.z, z)};
     const ML counts = hn::And(active_, to_l(hn::Lt(t_, next)));
-    const ML ends = sink(CubeStep{word, at_, voxels, t_, next, counts});
+    const ML ends = sink.step(CubeStep{word, at_, voxels, t_, next, counts}, distinct);
     active_ = hn::AndNot(ends, hn::And(active_, to_l(hn::Lt(exit, end_))));
     if (hn::AllFalse(dl, active_)) return false;
     t_ = next;
