@@ -24,6 +24,7 @@ import statistics
 import subprocess
 
 LINES = 480  # of a sweep
+LEAST_WAY = {"SR4000": 0.3, "laser_line": 0.03, "sweeps": 0.3}  # between views, in the mean [m]
 SWEEP = f"""name = "sweep of {LINES} lines"
 min_range = 0.1
 max_range = 1.0
@@ -70,19 +71,23 @@ def ways(arguments, budget):
     flags = {"SR4000": ["--sensor", "sr4000"], "sweeps": ["--sensor", sweep],
              "laser_line": ["--sensor", "laser_line", "--generator", "shell", "--count", "500",
                             "--travel-speed", str(arguments.speed)]}
-    # Enough views for the budget if none of them took any way.
-    return {name: (flags[name] + ["--max-views", str(min(1000, math.ceil(budget / seconds)))], seconds)
-            for name, seconds in each.items()}
+    def most(name):
+        return str(math.ceil(budget / (each[name] + LEAST_WAY[name] / arguments.speed)))
+
+    return {name: (flags[name] + ["--max-views", most(name)], each[name]) for name in each}
 
 
 def run(arguments, name, flags, seed):
     command = [arguments.viewgain, "reconstruct", arguments.mesh, "--size", "0.35", "--voxel", "0.003125",
-               "--seed", str(seed), "--stop-area", "0", "--stop-idle", "0", "--pictures", "off", "--report", "off",
+               "--seed", str(seed), "--threads", "1", "--stop-area", "0", "--stop-idle", "0", "--pictures", "off", "--report", "off",
                "--quiet", "--json", "--out", os.path.join(arguments.out, f"{name}-{seed}")] + flags + arguments.extra
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise SystemExit(f"{' '.join(command)}: {done.stderr.strip().splitlines()[-1:]}")
-    return json.loads(done.stdout)["per_view"]
+    views = json.loads(done.stdout)["per_view"]
+    if views[-1]["travelled"] < LEAST_WAY[name] * (len(views) - 1):
+        raise SystemExit(f"{name}, seed {seed}: shorter ways than LEAST_WAY, so that the budget was not used up")
+    return views
 
 
 def at(views, seconds, per_view, speed):
