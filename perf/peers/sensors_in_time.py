@@ -12,7 +12,7 @@ own prior). The time is that of a robot, not of this program:
     way / speed + lines / line rate             laser_line: lines are taken in motion
 
     perf/peers/sensors_in_time.py [--viewgain build/release/bin/viewgain] [--mesh build/release/meshes/camel.off]
-                                  [--out build/sensors_in_time] [--seconds 10,20,40,60,120] [--speed 0.25]
+                                  [--out build/sensors_in_time] [--seconds 10,20,30,60] [--speed 0.25]
                                   [--settle 0.5] [--line-rate 50] [--seeds 3] [-- arguments of reconstruct]
 """
 
@@ -24,7 +24,7 @@ import statistics
 import subprocess
 
 LINES = 480  # of a sweep
-LEAST_WAY = {"SR4000": 0.3, "laser_line": 0.03, "sweeps": 0.3}  # between views, in the mean [m]
+LEAST_WAY = {"SR4000": 0.5, "laser_line": 0.08, "sweeps": 0.5}  # between views, in the mean [m]
 SWEEP = f"""name = "sweep of {LINES} lines"
 min_range = 0.1
 max_range = 1.0
@@ -50,7 +50,7 @@ def parse_arguments():
     parser.add_argument("--viewgain", default="build/release/bin/viewgain")
     parser.add_argument("--mesh", default="build/release/meshes/camel.off")
     parser.add_argument("--out", default="build/sensors_in_time")
-    parser.add_argument("--seconds", default="10,20,40,60,120", help="rows of the table; the last is the budget")
+    parser.add_argument("--seconds", default="10,20,30,60", help="rows of the table; the last is the budget")
     parser.add_argument("--speed", type=float, default=0.25, help="of the camera [m/s]")
     parser.add_argument("--settle", type=float, default=0.5, help="before a view [s]")
     parser.add_argument("--line-rate", type=float, default=50, help="lines a second")
