@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What rays meet on their way through all voxels, a ray a lane, in double precision. Compiled once
+// What rays meet on their way through all voxels, a ray a lane. Compiled once
 // for each instruction set.
 
 #undef HWY_TARGET_INCLUDE
@@ -18,166 +18,202 @@ namespace viewgain::detail::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// VoxelValues::Run, one a lane.
-struct Runs {
-  VD visible, passed, entropy;
-};
-
-HWY_INLINE Runs runs_at(const VoxelValues& values, VL index) {
+// What a code has in a table of VoxelValues; codes are below VoxelValues::kPassed.
+HWY_INLINE VF lookup(const std::array<float, VoxelValues::kPassed>& table, VI code) {
 #if HWY_TARGET == HWY_AVX3
-  // Loads of whole runs, turned: cheaper than three gathers.
-  HWY_ALIGN std::int64_t at[kLanes];
-  hn::Store(index, dl, at);
-  const VoxelValues::Run* runs = values.runs.data();
-  const auto pair = [&](std::size_t i) HWY_ATTR {
-    const __m256d low = _mm256_loadu_pd(&runs[at[i]].visible),
-                  high = _mm256_loadu_pd(&runs[at[i + 4]].visible);
-    return _mm512_insertf64x4(_mm512_castpd256_pd512(low), high, 1);
-  };
-  const __m512d a = pair(0), b = pair(1), c = pair(2), d = pair(3);
-  const __m512d even_ab = _mm512_unpacklo_pd(a, b), even_cd = _mm512_unpacklo_pd(c, d);
-  const __m512d odd_ab = _mm512_unpackhi_pd(a, b), odd_cd = _mm512_unpackhi_pd(c, d);
-  const __m512i first = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13),
-                second = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
-  return {VD{_mm512_permutex2var_pd(even_ab, first, even_cd)},
-          VD{_mm512_permutex2var_pd(odd_ab, first, odd_cd)},
-          VD{_mm512_permutex2var_pd(even_ab, second, even_cd)}};
+  const float* values = table.data();
+  const __m512 low = _mm512_permutex2var_ps(_mm512_load_ps(values), code.raw,
+                                            _mm512_load_ps(values + 16)),
+               high = _mm512_permutex2var_ps(_mm512_load_ps(values + 32), code.raw,
+                                             _mm512_load_ps(values + 48));
+  return hn::IfThenElse(to_f(hn::Gt(code, whole(31))), VF{high}, VF{low});
 #else
-  const double* doubles = &values.runs.data()->visible;
-  const VL at = hn::ShiftLeft<2>(index);
-  return {hn::GatherIndex(dd, doubles, at), hn::GatherIndex(dd, doubles + 1, at),
-          hn::GatherIndex(dd, doubles + 2, at)};
+  return hn::GatherIndex(df, table.data(), code);
 #endif
+}
+
+// 2^-(whole + rest), whole above 0 and rest small, to single precision.
+HWY_INLINE VF left_after(VF absorbed, VF rest) {
+  const VF nearest = hn::Round(absorbed);
+  const VF f = hn::Add(hn::Sub(absorbed, nearest), rest);  // the difference is exact
+  // exp(-f ln 2): seven terms are enough for |f| to 0.51.
+  constexpr float kTerms[] = {-1.5252734e-5F, 1.5403530e-4F, -1.3333558e-3F, 9.6181291e-3F,
+                              -5.5504109e-2F, 2.4022651e-1F, -6.9314718e-1F, 1.0F};
+  VF power = real(kTerms[0]);
+  for (int i = 1; i < 8; ++i) power = hn::MulAdd(power, f, real(kTerms[i]));
+  const VI exponent = hn::Sub(whole(127), hn::ConvertTo(di, hn::Min(nearest, real(127.0F))));
+  return hn::Mul(power, hn::BitCast(df, hn::ShiftLeft<23>(exponent)));
+}
+
+HWY_INLINE double total(VF v) {
+  HWY_ALIGN float lanes[kWidth];
+  hn::Store(v, df, lanes);
+  double sum = 0;
+  for (const float lane : lanes) sum += static_cast<double>(lane);
+  return sum;
+}
+HWY_INLINE std::int64_t total(VI v) {
+  HWY_ALIGN std::int32_t lanes[kWidth];
+  hn::Store(v, di, lanes);
+  std::int64_t sum = 0;
+  for (const std::int32_t lane : lanes) sum += lane;
+  return sum;
+}
+
+// Adds to a sum of many numbers of one size, with what rounding took of it (Kahan's).
+HWY_INLINE void add_to_long(VF& sum, VF& error, VF v) {
+  const VF mended = hn::Sub(v, error), next = hn::Add(sum, mended);
+  error = hn::Sub(hn::Sub(next, sum), mended);
+  sum = next;
 }
 
 // Sums what a packet's rays meet.
 class GainSink {
  public:
-  HWY_INLINE GainSink(const ClassicView& view, const float* solid_angle)
-      : view_(view), third_of_angle_(angles(solid_angle)) {}
+  HWY_INLINE GainSink(const ClassicView& view, const float* solid_angle, DistinctVoxels& distinct)
+      : view_(view), solid_angle_(solid_angle), distinct_(distinct) {}
 
-  // Lanes that end in an occupied voxel.
-  HWY_INLINE ML step(const CubeStep& step, DistinctVoxels& distinct) {
-    const ML is_unobserved =
-        hn::Ne(hn::And(step.word, whole(ClassicTable::kUnknown)), hn::Zero(dl));
-    const VL code =
+  HWY_INLINE void step(const CubeStep& step, const ExactRays& rays) {
+    const VoxelValues& values = view_.values;
+    const MI counts = step.counts;
+    const MI is_unobserved = step.is_unknown, ends = step.ends;
+    const VI code =
         hn::IfThenZeroElse(is_unobserved, hn::And(step.word, whole(ClassicTable::kCode)));
-    const ML counts = step.counts;
-    const ML ends = hn::And(counts, hn::Gt(code, whole(kLastFree)));
-    const ML unobserved = hn::And(counts, is_unobserved);
-    const ML is_free =
-        hn::And(hn::Lt(code, whole(view_.values.free_end)), hn::Gt(code, hn::Zero(dl)));
-    const ML is_occupied = hn::Gt(code, whole(view_.values.occupied_begin - 1));
-    const ML unknown = hn::AndNot(is_free, hn::AndNot(is_occupied, counts));
+    const MI unobserved = hn::And(counts, is_unobserved);
+    const MI is_free = hn::AndNot(is_unobserved, hn::Lt(code, whole(values.free_end)));
+    const MI is_occupied = hn::Gt(code, whole(values.occupied_begin - 1));
+    const MI unknown = hn::AndNot(is_free, hn::AndNot(is_occupied, counts));
 
-    const VD n = hn::IfThenElse(to_d(ends), real(1.0), step.voxels);
-    const Runs runs =
-        runs_at(view_.values, hn::Or(hn::ShiftLeft<VoxelValues::kRowBits>(code), integer_of(n)));
-    const VD visible = hn::IfThenElseZero(to_d(counts), hn::Mul(passed_, runs.visible));
+    const VI passed_code = hn::And(code, whole(VoxelValues::kPassed - 1));
+    const VI voxels = hn::IfThenElse(ends, whole(1), step.voxels);
+    const VI counted = hn::IfThenElseZero(counts, voxels);
+    const VF n = hn::ConvertTo(df, counted);
+    // Of the entropies only those below kPassed.
+    VF H = lookup(view_.values.passed_entropy, passed_code);
+    if (!hn::AllFalse(di, ends)) {
+      H = hn::IfThenElse(to_f(ends), hn::GatherIndex(df, values.entropy.data(), code), H);
+    }
+    absorbed_ = hn::MulAdd(n, lookup(values.absorbed, passed_code), absorbed_);
+    rest_ = hn::MulAdd(n, lookup(values.absorbed_rest, passed_code), rest_);
+    const VF left = left_after(absorbed_, rest_);
+    // One voxel has P H; several together what they take, which rounding leaves alone if voxels
+    // absorb much as all known ones do.
+    const VF of_many = hn::Mul(hn::Sub(left_, left), lookup(values.per_taken, passed_code));
+    const VF of_one = hn::Mul(left_, H);
+    const VF visible = hn::IfThenElseZero(
+        to_f(counts), hn::IfThenElse(to_f(hn::Eq(voxels, whole(1))), of_one, of_many));
+    left_ = left;
     occlusion_aware_ = hn::Add(occlusion_aware_, visible);
-    const VD of_unknown = hn::IfThenElseZero(to_d(unknown), visible);
-    unobserved_ = hn::Add(unobserved_, of_unknown);
-    entropy_ = hn::Add(entropy_, hn::IfThenElseZero(to_d(counts), runs.entropy));
-    voxels_ = hn::Add(voxels_, hn::IfThenElseZero(to_d(counts), n));
-    if (!hn::AllFalse(dl, ends)) end(hn::And(ends, is_occupied), visible);
+    add_to_long(entropy_, entropy_error_, hn::Mul(n, H));
+    voxels_ = hn::Add(voxels_, counted);
+    if (!hn::AllFalse(di, ends)) end(hn::And(ends, is_occupied), visible);
 
-    passed_ = hn::IfThenElse(to_d(counts), hn::Mul(passed_, runs.passed), passed_);
-    const VD stretch = hn::IfThenElseZero(to_d(unknown), hn::Add(stretch_, visible));
-    stretch_ = hn::IfThenElse(to_d(counts), stretch, stretch_);
+    const VF of_unknown = hn::IfThenElseZero(to_f(unknown), visible);
+    unobserved_ = hn::Add(unobserved_, of_unknown);
+    const VF stretch = hn::IfThenElseZero(to_f(unknown), hn::Add(stretch_, visible));
+    stretch_ = hn::IfThenElse(to_f(counts), stretch, stretch_);
     from_unknown_ = hn::Or(unknown, hn::AndNot(counts, from_unknown_));
     from_free_ = hn::Or(hn::And(counts, is_free), hn::AndNot(counts, from_free_));
-    if (!hn::AllFalse(dl, unobserved)) pass_unobserved(step, unobserved, n, distinct);
-    return ends;
+    const MI turns = hn::And(counts, hn::Xor(in_unobserved_, is_unobserved));
+    if (!hn::AllFalse(di, turns)) turn(step.at, turns, unobserved, rays);
+    if (!hn::AllFalse(di, unobserved)) pass_unobserved(step, unobserved);
   }
 
-  HWY_INLINE void add_to(ClassicSums& sums) const {
+  HWY_INLINE void add_to(ClassicSums& sums, const CubeWalk& walk) {
+    for (unsigned bits = bits_of(in_unobserved_); bits != 0; bits &= bits - 1) {
+      const int i = std::countr_zero(bits);
+      volume_ += cone(i, walk.rays().end_at[i]);
+    }
     sums.occlusion_aware += total(occlusion_aware_);
     sums.unobserved += total(unobserved_);
     sums.entropy += total(view_.is_shipped ? ended_entropy_ : entropy_);
-    sums.voxels += total(view_.is_shipped ? ended_voxels_ : voxels_);
+    sums.voxels += static_cast<double>(total(view_.is_shipped ? ended_voxels_ : voxels_));
     sums.rear_side_entropy += total(rear_side_entropy_);
-    sums.proximity += total(proximity_);
-    sums.volume += total(hn::Mul(volume_, third_of_angle_));
+    sums.proximity +=
+        view_.most_steps * static_cast<double>(hidden_) - static_cast<double>(total(hidden_steps_));
+    sums.volume += volume_;
     sums.rear_side += rear_side_;
     sums.on_surface += on_surface_;
-    sums.on_hidden += hn::CountTrue(dl, is_on_hidden_);
+    sums.on_hidden += hn::CountTrue(di, is_on_hidden_);
   }
 
  private:
-  // The code of log-odds 0.
-  static constexpr std::int64_t kLastFree = 41;
-
-  static HWY_INLINE VD angles(const float* solid_angle) {
-    HWY_ALIGN double thirds[kLanes];
-    for (std::size_t i = 0; i < kLanes; ++i) thirds[i] = static_cast<double>(solid_angle[i]) / 3;
-    return hn::Load(dd, thirds);
+  // A ray's cone from its origin to t.
+  [[nodiscard]] HWY_INLINE double cone(int lane, double t) const {
+    return t * t * t * (static_cast<double>(solid_angle_[lane]) / 3);
   }
-  static HWY_INLINE double total(VD v) { return hn::GetLane(hn::SumOfLanes(dd, v)); }
 
   // Rays that come to what counts as occupied; `visible` is P H of it.
-  HWY_INLINE void end(ML occupied, VD visible) {
-    const ML rear = hn::And(occupied, from_unknown_);
-    rear_side_ += hn::CountTrue(dl, rear);
-    rear_side_entropy_ = hn::Add(rear_side_entropy_, hn::IfThenElseZero(to_d(rear), stretch_));
-    on_surface_ += hn::CountTrue(dl, hn::AndNot(is_on_hidden_, hn::And(occupied, from_free_)));
+  HWY_INLINE void end(MI occupied, VF visible) {
+    const MI rear = hn::And(occupied, from_unknown_);
+    rear_side_ += hn::CountTrue(di, rear);
+    rear_side_entropy_ = hn::Add(rear_side_entropy_, hn::IfThenElseZero(to_f(rear), stretch_));
+    on_surface_ += hn::CountTrue(di, hn::AndNot(is_on_hidden_, hn::And(occupied, from_free_)));
     if (!view_.is_shipped) return;
-    const MD lanes = to_d(occupied);
-    rear_side_entropy_ = hn::Add(rear_side_entropy_, hn::IfThenElseZero(lanes, visible));
-    ended_entropy_ = hn::IfThenElse(lanes, entropy_, ended_entropy_);
-    ended_voxels_ = hn::IfThenElse(lanes, voxels_, ended_voxels_);
+    rear_side_entropy_ = hn::Add(rear_side_entropy_, hn::IfThenElseZero(to_f(occupied), visible));
+    ended_entropy_ = hn::IfThenElse(to_f(occupied), entropy_, ended_entropy_);
+    ended_voxels_ = hn::IfThenElse(occupied, voxels_, ended_voxels_);
   }
 
-  HWY_INLINE void pass_unobserved(const CubeStep& step, ML lanes, VD n, DistinctVoxels& distinct) {
-    const auto cube = [](VD t) HWY_ATTR { return hn::Mul(t, hn::Mul(t, t)); };
-    volume_ =
-        hn::Add(volume_, hn::IfThenElseZero(to_d(lanes), hn::Sub(cube(step.next), cube(step.t))));
-    const VL steps = hn::And(hn::ShiftRight<ClassicTable::kStepsShift>(step.word),
-                             whole(ClassicTable::kMostSteps));
-    const ML hidden = hn::And(lanes, hn::Gt(steps, hn::Zero(dl)));
-    is_on_hidden_ = hn::Or(is_on_hidden_, hidden);
-    const VD nearness = hn::Mul(n, hn::Sub(real(view_.most_steps), real_of(steps)));
-    proximity_ = hn::Add(proximity_, hn::IfThenElseZero(to_d(hidden), nearness));
-    if (!view_.is_distinct) return;
-    HWY_ALIGN std::int64_t xs[kLanes], ys[kLanes], zs[kLanes], words[kLanes];
-    hn::Store(integer_of(step.at.x), dl, xs);
-    hn::Store(integer_of(step.at.y), dl, ys);
-    hn::Store(integer_of(step.at.z), dl, zs);
-    hn::Store(step.word, dl, words);
+  // Rays that come into unobserved space or leave it: the cones of the voxels between differ by
+  // less than single precision tells, but only the first face and the last count.
+  HWY_INLINE void turn(const Voxels& at, MI lanes, MI unobserved, const ExactRays& rays) {
+    HWY_ALIGN std::int32_t x[kWidth], y[kWidth], z[kWidth];
+    CubeWalk::store(at, x, y, z);
+    const unsigned come = bits_of(unobserved);
     for (unsigned bits = bits_of(lanes); bits != 0; bits &= bits - 1) {
       const int i = std::countr_zero(bits);
-      distinct.mark(static_cast<std::int32_t>(xs[i]), static_cast<std::int32_t>(ys[i]),
-                    static_cast<std::int32_t>(zs[i]), static_cast<std::uint32_t>(words[i]));
+      const double before = cone(i, rays.enters(i, {x[i], y[i], z[i]}));
+      volume_ += (come >> static_cast<unsigned>(i) & 1U) != 0 ? -before : before;
+    }
+    in_unobserved_ = hn::Xor(in_unobserved_, lanes);
+  }
+
+  // Unobserved voxels are passed one by one.
+  HWY_INLINE void pass_unobserved(const CubeStep& step, MI lanes) {
+    const VI steps = hn::And(hn::ShiftRight<ClassicTable::kStepsShift>(step.word),
+                             whole(ClassicTable::kMostSteps));
+    const MI hidden = hn::And(lanes, hn::Gt(steps, hn::Zero(di)));
+    is_on_hidden_ = hn::Or(is_on_hidden_, hidden);
+    hidden_ += hn::CountTrue(di, hidden);
+    hidden_steps_ = hn::Add(hidden_steps_, hn::IfThenElseZero(hidden, steps));
+    if (!view_.is_distinct) return;
+    HWY_ALIGN std::uint32_t nodes[kWidth], places[kWidth], words[kWidth];
+    hn::Store(hn::BitCast(du, step.node), du, nodes);
+    hn::Store(hn::BitCast(du, step.place()), du, places);
+    hn::Store(hn::BitCast(du, step.word), du, words);
+    for (unsigned bits = bits_of(lanes); bits != 0; bits &= bits - 1) {
+      const int i = std::countr_zero(bits);
+      distinct_.mark(nodes[i], places[i], words[i]);
     }
   }
 
   const ClassicView& view_;
-  VD third_of_angle_;
-  VD passed_ = real(1.0), stretch_ = hn::Zero(dd);
-  VD occlusion_aware_ = hn::Zero(dd), unobserved_ = hn::Zero(dd);
-  VD entropy_ = hn::Zero(dd), voxels_ = hn::Zero(dd);
-  VD ended_entropy_ = hn::Zero(dd), ended_voxels_ = hn::Zero(dd);
-  VD rear_side_entropy_ = hn::Zero(dd), proximity_ = hn::Zero(dd), volume_ = hn::Zero(dd);
+  const float* solid_angle_;
+  DistinctVoxels& distinct_;
+  VF absorbed_ = hn::Zero(df), rest_ = hn::Zero(df);  // -log2 of P, as VoxelValues has it
+  VF left_ = real(1.0F), stretch_ = hn::Zero(df);     // P, and Σ P H since what was not unknown
+  VF occlusion_aware_ = hn::Zero(df), unobserved_ = hn::Zero(df);
+  VF entropy_ = hn::Zero(df), entropy_error_ = hn::Zero(df);
+  VI voxels_ = hn::Zero(di), ended_voxels_ = hn::Zero(di), hidden_steps_ = hn::Zero(di);
+  VF ended_entropy_ = hn::Zero(df), rear_side_entropy_ = hn::Zero(df);
   // What the voxel before counted as, and whether the ray has come to what surfaces hide.
-  ML from_unknown_ = no_lane(), from_free_ = no_lane(), is_on_hidden_ = no_lane();
-  std::uint64_t rear_side_ = 0, on_surface_ = 0;
+  MI from_unknown_ = no_lane(), from_free_ = no_lane(), is_on_hidden_ = no_lane();
+  MI in_unobserved_ = no_lane();
+  std::uint64_t rear_side_ = 0, on_surface_ = 0, hidden_ = 0;
+  double volume_ = 0;
 };
 
 void add_tile(const ClassicView& view, const ClassicTile& tile, ClassicSums& sums,
               DistinctVoxels& distinct) {
-  // Two packets take turns, so that one need not wait for what the other gathers.
-  static_assert(kTileRays % (2 * kLanes) == 0);
-  for (std::size_t lane0 = 0; lane0 < kTileRays; lane0 += 2 * kLanes) {
-    CubeWalk one, other;
-    GainSink of_one(view, tile.solid_angle + lane0),
-        of_other(view, tile.solid_angle + lane0 + kLanes);
-    bool one_goes = one.begin(view, tile, lane0),
-         other_goes = other.begin(view, tile, lane0 + kLanes);
-    while (one_goes || other_goes) {
-      if (one_goes) one_goes = one.step(of_one, distinct);
-      if (other_goes) other_goes = other.step(of_other, distinct);
+  static_assert(kTileRays % kWidth == 0);
+  for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
+    CubeWalk walk;
+    GainSink sink(view, tile.solid_angle + lane0, distinct);
+    if (!walk.begin(view, tile, lane0)) continue;
+    while (walk.step(sink)) {
     }
-    of_one.add_to(sums);
-    of_other.add_to(sums);
+    sink.add_to(sums, walk);
   }
 }
 

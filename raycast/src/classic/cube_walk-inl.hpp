@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Takes packets of rays through a ClassicTable in order, cube by cube, in double precision: what
-// OrderedRay does, a ray a lane. Included once for each instruction set; Highway flips the toggle.
+// Takes packets of rays through a ClassicTable in order, cube by cube, a ray a lane: what
+// OrderedRay does, by the same voxels. Steps are made in single precision with a bound on its
+// error. Voxels are whole numbers, so that a step that is nearer to a tie than the bound can be
+// made again in double precision by itself. Included once for each instruction set; Highway flips
+// the toggle.
 #if defined(VIEWGAIN_CUBE_WALK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef VIEWGAIN_CUBE_WALK_INL_HPP
 #undef VIEWGAIN_CUBE_WALK_INL_HPP
@@ -13,245 +16,308 @@
 #include <hwy/highway.h>
 
 #include <bit>
+#include <cmath>
 
 #include "classic_walk.hpp"
+#include "exact_ray.hpp"
+#include "trace/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// At most 8 lanes: half a tile.
-using DD = hn::CappedTag<double, 8>;
-using DL = hn::RebindToSigned<DD>;
-constexpr DD dd;
-constexpr DL dl;
-using VD = hn::Vec<DD>;
-using VL = hn::Vec<DL>;
-using MD = hn::Mask<DD>;
-using ML = hn::Mask<DL>;
-constexpr std::size_t kLanes = hn::MaxLanes(dd);
+HWY_INLINE VF real(float v) { return hn::Set(df, v); }
+HWY_INLINE VI whole(std::int32_t v) { return hn::Set(di, v); }
+HWY_INLINE MF to_f(MI m) { return hn::RebindMask(df, m); }
+HWY_INLINE MI to_i(MF m) { return hn::RebindMask(di, m); }
+HWY_INLINE MI no_lane() { return hn::Lt(hn::Zero(di), hn::Zero(di)); }
 
-HWY_INLINE VD real(double v) { return hn::Set(dd, v); }
-HWY_INLINE VL whole(std::int64_t v) { return hn::Set(dl, v); }
-HWY_INLINE MD to_d(ML m) { return hn::RebindMask(dd, m); }
-HWY_INLINE ML to_l(MD m) { return hn::RebindMask(dl, m); }
-HWY_INLINE ML no_lane() { return hn::Lt(hn::Zero(dl), hn::Zero(dl)); }
-
-// Whole numbers from 0 to 2^51 between the two: added to 2^52 they are a double's lowest bits.
-constexpr double kTwoTo52 = 4503599627370496.0;
-HWY_INLINE VL bits_of(VD v) { return hn::BitCast(dl, hn::Add(v, real(kTwoTo52))); }
-HWY_INLINE VL integer_of(VD v) { return hn::And(bits_of(v), whole((std::int64_t{1} << 51) - 1)); }
-HWY_INLINE VD real_of(VL v) {
-  const VL exponent = hn::BitCast(dl, real(kTwoTo52));
-  return hn::Sub(hn::BitCast(dd, hn::Or(v, exponent)), real(kTwoTo52));
-}
-
-HWY_INLINE unsigned bits_of(ML mask) {
+HWY_INLINE unsigned bits_of(MI mask) {
   std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(dl, mask, bits);
-  return bits[0] & ((1U << kLanes) - 1U);
+  hn::StoreMaskBits(di, mask, bits);
+  return (bits[0] | static_cast<unsigned>(bits[1]) << 8U) & ((1U << kWidth) - 1U);
 }
 
-HWY_INLINE VL gather(const std::vector<std::uint32_t>& table, VL index) {
-#if HWY_TARGET == HWY_AVX3
-  return VL{_mm512_cvtepu32_epi64(_mm512_i64gather_epi32(index.raw, table.data(), 4))};
-#elif HWY_TARGET == HWY_AVX2
-  return VL{_mm256_cvtepu32_epi64(
-      _mm256_i64gather_epi32(reinterpret_cast<const int*>(table.data()), index.raw, 4))};
-#else
-  HWY_ALIGN std::int64_t lanes[kLanes];
-  hn::Store(index, dl, lanes);
-  for (std::int64_t& lane : lanes) lane = table[static_cast<std::size_t>(lane)];
-  return hn::Load(dl, lanes);
-#endif
+HWY_INLINE VI gather(const std::vector<std::uint32_t>& table, VI index) {
+  return hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(table.data()), index);
 }
 
 // Four bytes that end in the word; indices are above 0.
-HWY_INLINE VL gather(const std::vector<std::uint16_t>& table, VL index) {
+HWY_INLINE VI gather(const std::vector<std::uint16_t>& table, VI index) {
 #if HWY_TARGET == HWY_AVX3
-  const VL four{_mm512_cvtepu32_epi64(_mm512_i64gather_epi32(index.raw, table.data() - 1, 2))};
-  return hn::ShiftRight<16>(four);
+  const VI four{_mm512_i32gather_epi32(index.raw, table.data() - 1, 2)};
+  return hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(du, four)));
 #elif HWY_TARGET == HWY_AVX2
-  const VL four{_mm256_cvtepu32_epi64(
-      _mm256_i64gather_epi32(reinterpret_cast<const int*>(table.data() - 1), index.raw, 2))};
-  return hn::ShiftRight<16>(four);
+  const VI four{
+      _mm256_i32gather_epi32(reinterpret_cast<const int*>(table.data() - 1), index.raw, 2)};
+  return hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(du, four)));
 #else
-  HWY_ALIGN std::int64_t lanes[kLanes];
-  hn::Store(index, dl, lanes);
-  for (std::int64_t& lane : lanes) lane = table[static_cast<std::size_t>(lane)];
-  return hn::Load(dl, lanes);
+  HWY_ALIGN std::int32_t lanes[kWidth];
+  hn::Store(index, di, lanes);
+  for (std::int32_t& lane : lanes) lane = table[static_cast<std::size_t>(lane)];
+  return hn::Load(di, lanes);
+#endif
+}
+
+// Truncation that needs no care of numbers that no integer holds.
+HWY_INLINE VI truncated(VF v) {
+#if HWY_TARGET == HWY_AVX3
+  return VI{_mm512_cvttps_epi32(v.raw)};
+#elif HWY_TARGET == HWY_AVX2
+  return VI{_mm256_cvttps_epi32(v.raw)};
+#else
+  return hn::ConvertTo(di, v);
 #endif
 }
 
 // Whole numbers, the voxels that rays are in.
 struct Voxels {
-  VD x, y, z;
+  VI x, y, z;
 };
+
+// The entry of their brick in its node.
+HWY_INLINE VI brick_of(const Voxels& v) {
+  const VI mask = whole(0x78);
+  return hn::Or(hn::Or(hn::ShiftLeft<5>(hn::And(v.x, mask)), hn::ShiftLeft<1>(hn::And(v.y, mask))),
+                hn::ShiftRight<3>(hn::And(v.z, mask)));
+}
+
+// As ClassicTable::word_in_brick().
+HWY_INLINE VI in_brick(const Voxels& v) {
+  const auto part = [](VI a, std::int32_t bits) HWY_ATTR { return hn::And(a, whole(bits)); };
+  const VI cube = hn::Or(hn::Or(hn::ShiftLeft<6>(part(v.x, 4)), hn::ShiftLeft<5>(part(v.y, 4))),
+                         hn::ShiftLeft<4>(part(v.z, 4)));
+  const VI in_cube =
+      hn::Or(hn::Or(hn::ShiftLeft<4>(part(v.x, 3)), hn::ShiftLeft<2>(part(v.y, 3))), part(v.z, 3));
+  return hn::Or(cube, in_cube);
+}
 
 // What a step leads through: voxels that are the same.
 struct CubeStep {
-  VL word;     // as ClassicTable's
-  Voxels at;   // the first
-  VD voxels;   // how many
-  VD t, next;  // from where to where
-  ML counts;   // lanes for which it has a length
+  VI word;    // as ClassicTable's
+  Voxels at;  // the first
+  VI node;
+  VI voxels;      // how many
+  MI counts;      // lanes for which it has a length
+  MI is_unknown;  // no reading told of them
+  MI ends;        // lanes of `counts` that end there, in an occupied voxel
+
+  // The number of the first in its node, for DistinctVoxels.
+  [[nodiscard]] HWY_INLINE VI place() const {
+    return hn::Or(hn::ShiftLeft<9>(brick_of(at)), in_brick(at));
+  }
 };
 
-// One axis of a packet's rays.
+// One axis of a packet's rays. The origin is in two parts, of which the first is whole.
 struct Axis {
-  double origin;
-  VD direction, inverse;
-  VD forward;  // 1 where the ray runs towards larger voxels, else 0
+  std::int32_t origin;
+  float rest;
+  VF direction, inverse;
+  VI forward, over;  // all bits and 1 where the ray runs towards larger voxels, else 0 and -1
+  VI stop;           // the first voxel beyond the workspace
 };
 
 class CubeWalk {
  public:
   // False if no ray goes anywhere.
-  HWY_INLINE bool begin(const ClassicView& view, const ClassicTile& tile, std::size_t lane0) {
+  HWY_INLINE bool begin(const ClassicView& view, const ClassicTile& tile, int lane0) {
     table_ = &view.table;
-    splits_unknown_ = view.is_distinct;
-    t_ = real(view.min_range);
-    end_ = hn::Load(dd, tile.far + lane0);
-    begin_axis(view, tile.dx + lane0, 0, x_);
-    begin_axis(view, tile.dy + lane0, 1, y_);
-    begin_axis(view, tile.dz + lane0, 2, z_);
-    const VL lane = hn::Shl(whole(1), hn::Iota(dl, static_cast<std::int64_t>(lane0)));
-    active_ = hn::And(hn::TestBit(whole(tile.valid), lane), to_l(hn::Lt(t_, end_)));
-    if (hn::AllFalse(dl, active_)) return false;
-    const auto first_voxel = [&](const Axis& axis, std::size_t a) HWY_ATTR {
-      const VD low = real(table_->offset[a]);
-      const VD last = real(table_->offset[a] + table_->size[a] - 1);
-      const VD at = hn::Min(hn::Max(voxel_at(axis, t_), low), last);
-      return hn::IfThenElse(to_d(active_), at, low);
-    };
-    at_ = {first_voxel(x_, 0), first_voxel(y_, 1), first_voxel(z_, 2)};
-    find_nodes(bits_of(at_.x), bits_of(at_.y), bits_of(at_.z));
+    rays_.begin(view, tile, lane0, kWidth);
+    if (rays_.active == 0) return false;
+    x_ = axis_of(view, tile.dx + lane0, 0);
+    y_ = axis_of(view, tile.dy + lane0, 1);
+    z_ = axis_of(view, tile.dz + lane0, 2);
+    t_ = hn::Load(df, rays_.near);
+    end_ = hn::Load(df, rays_.far);
+    near_error_ = hn::Load(df, rays_.error);
+    at_ = {hn::Load(di, rays_.voxel[0]), hn::Load(di, rays_.voxel[1]),
+           hn::Load(di, rays_.voxel[2])};
+    active_ = lanes_of(rays_.active);
+    find_nodes(at_);
+    fetch_words();
     return true;
   }
 
-  // Calls ends = sink.step(CubeStep, distinct), lanes that end there. False if no ray goes on.
+  // Calls sink.step(CubeStep, rays). False if no ray goes on.
   template <typename Sink>
-  HWY_INLINE bool step(Sink& sink, DistinctVoxels& distinct) {
-    const VL word = word_at();
-    VL shift = hn::And(hn::ShiftRight<ClassicTable::kEdgeShift>(word), whole(ClassicTable::kEdge));
-    if (splits_unknown_) {
-      const VL unknown = hn::And(word, whole(ClassicTable::kUnknown));
-      shift = hn::IfThenElseZero(hn::Eq(unknown, hn::Zero(dl)), shift);
-    }
-    // 2^shift and its reciprocal, by their exponents.
-    const VL exponent = hn::ShiftLeft<52>(shift), of_one = hn::BitCast(dl, real(1.0));
-    const VD edge = hn::BitCast(dd, hn::Add(of_one, exponent)),
-             share = hn::BitCast(dd, hn::Sub(of_one, exponent));
-    const Along x = along(x_, at_.x, edge, share), y = along(y_, at_.y, edge, share),
-                z = along(z_, at_.z, edge, share);
-    const VD exit = hn::Min(x.leaves, hn::Min(y.leaves, z.leaves));
-    const VD next = hn::Max(t_, hn::Min(exit, end_));
-    const MD leaves = hn::Le(exit, end_);
-    const VD top = hn::Sub(edge, real(1.0));
-    VD voxels = real(1.0);
-    const auto advance = [&](const Axis& axis, VD v, const Along& a) HWY_ATTR {
-      const MD crosses = hn::And(leaves, hn::Le(a.leaves, exit));
-      const VD far_side = hn::MulAdd(axis.forward, top, a.low);
-      const VD inside = hn::Min(hn::Max(voxel_at(axis, next), a.low), hn::Add(a.low, top));
-      const VD last = hn::IfThenElse(crosses, far_side, inside);
+  HWY_INLINE bool step(Sink& sink) {
+    const VI word = hn::BitCast(di, hn::Load(du, words_));
+    const MI is_unknown = hn::Ne(hn::And(word, whole(ClassicTable::kUnknown)), hn::Zero(di));
+    const VI shift =
+        hn::And(hn::ShiftRight<ClassicTable::kEdgeShift>(word), whole(ClassicTable::kEdge));
+    // Unknown voxels are met one by one.
+    const VI edge = hn::Shl(whole(1), hn::IfThenZeroElse(is_unknown, shift));
+    const Along x = along(x_, at_.x, edge), y = along(y_, at_.y, edge), z = along(z_, at_.z, edge);
+    const VF exit = hn::Min(x.leaves, hn::Min(y.leaves, z.leaves));
+    const VF next = hn::Min(exit, end_);
+    const VF error = hn::MulAdd(next, real(kStepError), near_error_);
+    const VF within = hn::Add(exit, error);
+    const MF leaves = hn::Le(hn::Sub(exit, error), end_);
+    const VI top = hn::Sub(edge, whole(1));
+    VI voxels = whole(1);
+    // Two planes are met together, or the step has hardly a length.
+    const MF near_x = hn::Le(x.leaves, within), near_y = hn::Le(y.leaves, within),
+             near_z = hn::Le(z.leaves, within);
+    MF doubt = hn::Or(hn::And(near_x, near_y), hn::And(near_z, hn::Or(near_x, near_y)));
+    doubt = hn::Or(doubt, hn::Le(hn::Sub(next, t_), error));
+    MF between = hn::Lt(hn::Zero(df), hn::Zero(df));
+    MI stops = no_lane();
+    const auto advance = [&](const Axis& axis, VI v, const Along& a) HWY_ATTR {
+      const MF crosses = hn::And(leaves, hn::Le(a.leaves, exit));
+      const VI far_side = hn::Add(a.low, hn::And(axis.forward, top));
+      const VF place = hn::Add(hn::Mul(axis.direction, next), real(axis.rest));
+      const VF floor = hn::Floor(place), above = hn::Sub(place, floor);
+      between =
+          hn::Or(between, hn::AndNot(crosses, hn::Or(hn::Le(above, error),
+                                                     hn::Ge(above, hn::Sub(real(1.0F), error)))));
+      const VI inside = hn::Min(hn::Max(hn::Add(truncated(floor), whole(axis.origin)), a.low),
+                                hn::Add(a.low, top));
+      const VI last = hn::IfThenElse(to_i(crosses), far_side, inside);
       voxels = hn::Add(voxels, hn::Abs(hn::Sub(last, v)));
-      const VD over = hn::Sub(hn::Add(axis.forward, axis.forward), real(1.0));
-      return hn::Add(last, hn::IfThenElseZero(crosses, over));
+      const VI beyond = hn::Add(last, hn::IfThenElseZero(to_i(crosses), axis.over));
+      stops = hn::Or(stops, hn::Eq(beyond, axis.stop));
+      return beyond;
     };
-    const Voxels beyond{advance(x_, at_.x, x), advance(y_, at_.y, y), advance(z_, at_.z, z)};
-    const ML counts = hn::And(active_, to_l(hn::Lt(t_, next)));
-    const ML ends = sink.step(CubeStep{word, at_, voxels, t_, next, counts}, distinct);
-    active_ = hn::AndNot(ends, hn::And(active_, to_l(hn::Lt(exit, end_))));
-    if (hn::AllFalse(dl, active_)) return false;
-    t_ = next;
-    move_to(beyond);
-    return true;
+    Voxels beyond{advance(x_, at_.x, x), advance(y_, at_.y, y), advance(z_, at_.z, z)};
+    // Where the point is on faces between voxels only matters in larger cubes.
+    doubt = hn::Or(doubt, hn::And(between, to_f(hn::Gt(top, hn::Zero(di)))));
+    doubt = hn::Or(doubt, hn::AndNot(to_f(stops), hn::Le(hn::Abs(hn::Sub(exit, end_)), error)));
+    MI counts = active_, goes_on = hn::AndNot(stops, to_i(hn::Lt(exit, end_)));
+    const unsigned doubtful = bits_of(hn::And(active_, to_i(doubt)));
+    if (HWY_UNLIKELY(doubtful != 0)) resolve(doubtful, edge, voxels, beyond, counts, goes_on);
+    const MI is_occupied =
+        hn::Gt(hn::And(word, whole(ClassicTable::kValue)), whole(VoxelValues::kLastFree));
+    const MI ends = hn::And(counts, hn::AndNot(is_unknown, is_occupied));
+    const CubeStep passed{word, at_, node_, voxels, counts, is_unknown, ends};
+    active_ = hn::AndNot(ends, hn::And(active_, goes_on));
+    const bool any = !hn::AllFalse(di, active_);
+    if (any) {
+      t_ = next;
+      // What is gathered here is waited for while the sink is busy.
+      move_to(beyond);
+      fetch_words();
+    }
+    sink.step(passed, rays_);
+    return any;
+  }
+
+  [[nodiscard]] HWY_INLINE const ExactRays& rays() const { return rays_; }
+
+ private:
+  // Relative error of a distance along the ray, with a good margin: the plane less the origin, the
+  // reciprocal and their product are rounded, and the point's place is found from it.
+  static constexpr float kStepError = 6e-7F;
+
+  // How a cube is left along an axis: its lowest voxel, and where on the ray.
+  struct Along {
+    VI low;
+    VF leaves;
+  };
+
+  static HWY_INLINE MI lanes_of(unsigned bits) {
+    const VI lane = hn::Shl(whole(1), hn::Iota(di, 0));
+    return hn::TestBit(whole(static_cast<std::int32_t>(bits)), lane);
+  }
+
+  HWY_INLINE Axis axis_of(const ClassicView& view, const double* direction, std::size_t a) const {
+    HWY_ALIGN float d[kWidth];
+    for (int i = 0; i < kWidth; ++i) d[i] = static_cast<float>(direction[i]);
+    const VF inverse = hn::Load(df, rays_.inverse[a]);
+    const double origin = std::floor(view.origin[a]);
+    const MI is_forward = to_i(hn::Lt(hn::Zero(df), inverse));
+    const std::int32_t low = table_->offset[a], high = low + table_->size[a];
+    return {static_cast<std::int32_t>(origin),
+            static_cast<float>(view.origin[a] - origin),
+            hn::Load(df, d),
+            inverse,
+            hn::IfThenElseZero(is_forward, whole(-1)),
+            hn::IfThenElse(is_forward, whole(1), whole(-1)),
+            hn::IfThenElse(is_forward, whole(high), whole(low - 1))};
+  }
+
+  static HWY_INLINE Along along(const Axis& axis, VI v, VI edge) {
+    const VI low = hn::And(v, hn::Neg(edge));
+    const VI plane = hn::Sub(hn::Add(low, hn::And(axis.forward, edge)), whole(axis.origin));
+    return {low, hn::Mul(hn::Sub(hn::ConvertTo(df, plane), real(axis.rest)), axis.inverse)};
+  }
+
+  HWY_NOINLINE void resolve(unsigned lanes, VI edge, VI& voxels, Voxels& beyond, MI& counts,
+                            MI& goes_on) const {
+    HWY_ALIGN std::int32_t x[kWidth], y[kWidth], z[kWidth], edges[kWidth], n[kWidth];
+    HWY_ALIGN std::int32_t bx[kWidth], by[kWidth], bz[kWidth];
+    store(at_, x, y, z);
+    store(beyond, bx, by, bz);
+    hn::Store(edge, di, edges);
+    hn::Store(voxels, di, n);
+    unsigned count_bits = bits_of(counts), on_bits = bits_of(goes_on);
+    for (unsigned left = lanes; left != 0; left &= left - 1) {
+      const int i = std::countr_zero(left);
+      const ExactStep step = rays_.step(i, {x[i], y[i], z[i]}, edges[i]);
+      bx[i] = step.beyond[0];
+      by[i] = step.beyond[1];
+      bz[i] = step.beyond[2];
+      n[i] = step.voxels;
+      if (!step.has_length) count_bits &= ~(1U << static_cast<unsigned>(i));
+      on_bits &= ~(1U << static_cast<unsigned>(i));
+      if (step.goes_on) on_bits |= 1U << static_cast<unsigned>(i);
+    }
+    voxels = hn::Load(di, n);
+    beyond = {hn::Load(di, bx), hn::Load(di, by), hn::Load(di, bz)};
+    counts = lanes_of(count_bits);
+    goes_on = lanes_of(on_bits);
+  }
+
+ public:
+  static HWY_INLINE void store(const Voxels& v, std::int32_t* x, std::int32_t* y, std::int32_t* z) {
+    hn::Store(v.x, di, x);
+    hn::Store(v.y, di, y);
+    hn::Store(v.z, di, z);
   }
 
  private:
-  // How a cube is left along an axis: its lowest voxel, and where on the ray.
-  struct Along {
-    VD low, leaves;
-  };
-
-  HWY_INLINE void begin_axis(const ClassicView& view, const double* direction, std::size_t a,
-                             Axis& axis) {
-    const VD d = hn::Load(dd, direction);
-    // Along an axis that a ray does not move, planes are far away, or at 0 where it starts in one.
-    const VD inverse = hn::IfThenElse(hn::Eq(d, hn::Zero(dd)), real(1e300), hn::Div(real(1.0), d));
-    axis = {view.origin[a], d, inverse,
-            hn::IfThenElseZero(hn::Lt(hn::Zero(dd), inverse), real(1.0))};
-    const auto at_plane = [&](double plane) HWY_ATTR {
-      return hn::Mul(hn::Sub(real(plane), real(axis.origin)), inverse);
-    };
-    const VD low = at_plane(table_->offset[a]),
-             high = at_plane(table_->offset[a] + table_->size[a]);
-    t_ = hn::Max(t_, hn::Min(low, high));
-    end_ = hn::Min(end_, hn::Max(low, high));
+  HWY_INLINE void find_nodes(const Voxels& v) {
+    node_ = hn::Add(hn::Mul(hn::Add(hn::Mul(hn::ShiftRight<7>(v.x), whole(table_->nodes[1])),
+                                    hn::ShiftRight<7>(v.y)),
+                            whole(table_->nodes[2])),
+                    hn::ShiftRight<7>(v.z));
+    first_ = gather(table_->node_entries, node_);
   }
 
-  static HWY_INLINE VD voxel_at(const Axis& axis, VD t) {
-    return hn::Floor(hn::Add(real(axis.origin), hn::Mul(axis.direction, t)));
-  }
-
-  static HWY_INLINE Along along(const Axis& axis, VD v, VD edge, VD share) {
-    const VD low = hn::Mul(hn::Floor(hn::Mul(v, share)), edge);
-    const VD plane = hn::Add(low, hn::Mul(axis.forward, edge));
-    return {low, hn::Mul(hn::Sub(plane, real(axis.origin)), axis.inverse)};
-  }
-
-  HWY_INLINE void find_nodes(VL x, VL y, VL z) {
-    const auto number = [](VL v) HWY_ATTR {
-      return hn::And(hn::ShiftRight<7>(v), whole((std::int64_t{1} << 40) - 1));
-    };
-    // Products of small numbers, as doubles: 64-bit integers have none before AVX-512.
-    const VD plane =
-        hn::Add(hn::Mul(real_of(number(x)), real(table_->nodes[1])), real_of(number(y)));
-    const VD node = hn::Add(hn::Mul(plane, real(table_->nodes[2])), real_of(number(z)));
-    first_ = gather(table_->node_entries, integer_of(node));
-  }
-
-  [[nodiscard]] HWY_INLINE VL word_at() const {
-    const VL x = bits_of(at_.x), y = bits_of(at_.y), z = bits_of(at_.z);
-    const VL mask = whole(0x78);
-    const VL brick =
-        hn::Or(hn::Or(hn::ShiftLeft<5>(hn::And(x, mask)), hn::ShiftLeft<1>(hn::And(y, mask))),
-               hn::ShiftRight<3>(hn::And(z, mask)));
-    const VL entry = gather(table_->entries, hn::Add(first_, brick));
-    const ML is_mixed = hn::Eq(hn::And(entry, whole(ClassicTable::kUniform)), hn::Zero(dl));
-    if (hn::AllFalse(dl, hn::And(active_, is_mixed))) return entry;
-    // As ClassicTable::word_in_brick().
-    const auto part = [](VL v, std::int64_t bits) HWY_ATTR { return hn::And(v, whole(bits)); };
-    const VL cube = hn::Or(hn::Or(hn::ShiftLeft<6>(part(x, 4)), hn::ShiftLeft<5>(part(y, 4))),
-                           hn::ShiftLeft<4>(part(z, 4)));
-    const VL in_cube =
-        hn::Or(hn::Or(hn::ShiftLeft<4>(part(x, 3)), hn::ShiftLeft<2>(part(y, 3))), part(z, 3));
-    const VL offset = hn::Or(cube, in_cube);
-    const VL own =
-        gather(table_->words, hn::IfThenElse(is_mixed, hn::Add(entry, offset), whole(1)));
-    return hn::IfThenElse(is_mixed, own, entry);
+  // Lane by lane: two gathers, one waiting for the other, take longer.
+  HWY_INLINE void fetch_words() {
+    HWY_ALIGN std::uint32_t bricks[kWidth], in_bricks[kWidth];
+    hn::Store(hn::BitCast(du, hn::Add(first_, brick_of(at_))), du, bricks);
+    hn::Store(hn::BitCast(du, in_brick(at_)), du, in_bricks);
+    const std::uint32_t* entries = table_->entries.data();
+    const std::uint16_t* words = table_->words.data();
+    for (std::size_t i = 0; i < kWidth; ++i) {
+      // Without branches, which nothing foretells; there is a word at 0 too.
+      const std::uint32_t entry = entries[bricks[i]];
+      const std::uint32_t uniform = 0U - (entry >> 31U);
+      static_assert(ClassicTable::kUniform == 1U << 31U);
+      const std::uint32_t own = words[(entry + in_bricks[i]) & ~uniform];
+      words_[i] = (entry & uniform) | (own & ~uniform);
+    }
   }
 
   HWY_INLINE void move_to(const Voxels& beyond) {
-    const MD goes_on = to_d(active_);
-    const auto moved_to = [&](VD v, VD before)
-                              HWY_ATTR { return hn::IfThenElse(goes_on, v, before); };
     const Voxels before = at_;
-    at_ = {moved_to(beyond.x, at_.x), moved_to(beyond.y, at_.y), moved_to(beyond.z, at_.z)};
-    const VL x = bits_of(at_.x), y = bits_of(at_.y), z = bits_of(at_.z);
-    const VL moved = hn::Or(hn::Or(hn::Xor(x, bits_of(before.x)), hn::Xor(y, bits_of(before.y))),
-                            hn::Xor(z, bits_of(before.z)));
-    if (!hn::AllTrue(dl, hn::Lt(moved, whole(128)))) find_nodes(x, y, z);
+    at_ = {hn::IfThenElse(active_, beyond.x, at_.x), hn::IfThenElse(active_, beyond.y, at_.y),
+           hn::IfThenElse(active_, beyond.z, at_.z)};
+    const VI moved = hn::Or(hn::Or(hn::Xor(at_.x, before.x), hn::Xor(at_.y, before.y)),
+                            hn::Xor(at_.z, before.z));
+    if (!hn::AllTrue(di, hn::Lt(moved, whole(128)))) find_nodes(at_);
   }
 
   const ClassicTable* table_ = nullptr;
-  bool splits_unknown_ = false;
+  ExactRays rays_;
   Axis x_{}, y_{}, z_{};
-  VD t_, end_;
-  ML active_;
+  VF t_, end_, near_error_;
+  MI active_;
   Voxels at_;
-  VL first_;  // entry of each lane's node
+  alignas(64) std::uint32_t words_[kWidth];  // of the cubes that they are in
+  VI node_, first_;                          // each lane's node and its first entry
 };
 
 }  // namespace

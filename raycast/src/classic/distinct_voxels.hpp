@@ -12,8 +12,9 @@
 
 namespace viewgain::detail {
 
-/// Counts the distinct voxels that the rays of a view pass: a bit a voxel, by nodes of 128³, which
-/// are made when a ray first comes there and kept. Emptied in the time that marking took.
+/// Counts the distinct unknown voxels that the rays of a view pass: a bit a voxel, by nodes of
+/// 128³, which are made when a ray first comes there and kept. Emptied in the time that marking
+/// took.
 class DistinctVoxels {
  public:
   /// For another view, of a table of any size.
@@ -26,25 +27,25 @@ class DistinctVoxels {
     touched_.clear();
     count_ = frontiers_ = 0;
     if (nodes_.size() < table.node_entries.size()) nodes_.resize(table.node_entries.size());
-    table_ = &table;
   }
 
-  void mark(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t word) {
-    const std::size_t number = table_->node_index(x, y, z);
+  /// `place` is the number of a voxel's brick in its node, times 512, plus any number of the voxel
+  /// in its brick.
+  void mark(std::uint32_t number, std::uint32_t place, std::uint32_t word) {
     std::unique_ptr<Node>& node = nodes_[number];
     if (!node) node = std::make_unique<Node>();
-    const auto brick =
-        static_cast<std::uint32_t>((x >> 3 & 15) << 8 | (y >> 3 & 15) << 4 | (z >> 3 & 15));
+    const std::uint32_t brick = place >> 9U;
     if (node->is_touched[brick] == 0) {
       node->is_touched[brick] = 1;
-      touched_.push_back({static_cast<std::uint32_t>(number), brick});
+      touched_.push_back({number, brick});
     }
-    std::uint64_t& row = node->bits[brick * std::size_t{8} + static_cast<std::size_t>(x & 7)];
-    const std::uint64_t bit = std::uint64_t{1} << ((y & 7) << 3 | (z & 7));
-    if ((row & bit) != 0) return;
-    row |= bit;
-    ++count_;
-    if (ClassicTable::is_frontier(word)) ++frontiers_;
+    std::uint64_t& bits = node->bits[place >> 6U];
+    // No branch: whether another ray was here before cannot be foretold.
+    const std::uint64_t is_new = ~bits >> (place & 63U) & 1U;
+    bits |= is_new << (place & 63U);
+    count_ += is_new;
+    frontiers_ += is_new & word;
+    static_assert(ClassicTable::kFrontier == 1);
   }
 
   [[nodiscard]] std::uint64_t count() const { return count_; }
@@ -58,7 +59,6 @@ class DistinctVoxels {
   struct Place {
     std::uint32_t node, brick;
   };
-  const ClassicTable* table_ = nullptr;
   std::vector<std::unique_ptr<Node>> nodes_;
   std::vector<Place> touched_;
   std::uint64_t count_ = 0, frontiers_ = 0;

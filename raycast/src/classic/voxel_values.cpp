@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "voxel_values.hpp"
 
+#include <algorithm>
 #include <cmath>
-
-#include "classic_table.hpp"
 
 namespace viewgain::detail {
 namespace {
+
+constexpr double kPart = 4096;        // first parts of -log2 q are multiples of its reciprocal
+constexpr double kAllAbsorbed = 200;  // in place of -log2 0: nothing is left in single precision
 
 double entropy_of(double p) {
   if (!(p > 0 && p < 1)) return 0;
@@ -16,14 +18,12 @@ double entropy_of(double p) {
 
 }  // namespace
 
-VoxelValues::VoxelValues(const ClassicConfig& config)
-    : runs(std::size_t{OccupancyCodes::kCount} << kRowBits),
-      occupied_begin(OccupancyCodes::kCount) {
-  static_assert(sizeof(Run) == kRunDoubles * sizeof(double));
-  static_assert((3U << ClassicTable::kLargestShift) - 2 < 1U << kRowBits);
+VoxelValues::VoxelValues(const ClassicConfig& config) {
+  static_assert(OccupancyCodes::kCount <= 128 && kLastFree < kPassed);
   const bool shipped = config.semantics == GainSemantics::shipped;
   for (int i = 0; i < OccupancyCodes::kCount; ++i) {
     const auto code = static_cast<std::uint8_t>(i);
+    const auto at = static_cast<std::size_t>(i);
     const bool is_known = code != OccupancyCodes::kUnknown;
     const double p = is_known
                          ? 1 / (1 + std::exp(-static_cast<double>(OccupancyCodes::log_odds(code))))
@@ -35,13 +35,14 @@ VoxelValues::VoxelValues(const ClassicConfig& config)
     if (is_known && is_free) free_end = i + 1;
     if (is_known && is_occupied && occupied_begin > i) occupied_begin = i;
     const double H = entropy_of(p), q = shipped ? p : 1 - p;
-    double sum = 0, power = 1;
-    Run* row = &runs[static_cast<std::size_t>(i) << kRowBits];
-    for (std::size_t n = 0; n < std::size_t{1} << kRowBits; ++n) {
-      row[n] = {sum, power, static_cast<double>(n) * H, 0};
-      sum += power * H;
-      power *= q;
-    }
+    entropy[at] = static_cast<float>(H);
+    if (i > kLastFree) continue;
+    passed_entropy[at] = entropy[at];
+    const double absorbs = q > 0 ? std::min(-std::log2(q), kAllAbsorbed) : kAllAbsorbed;
+    const double first = std::floor(absorbs * kPart) / kPart;
+    absorbed[at] = static_cast<float>(first);
+    absorbed_rest[at] = static_cast<float>(absorbs - first);
+    per_taken[at] = H > 0 ? static_cast<float>(H / (1 - q)) : 0.0F;
   }
 }
 

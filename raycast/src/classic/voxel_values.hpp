@@ -2,31 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <vector>
 
 #include "viewgain/grid/occupancy_codes.hpp"
 #include "viewgain/raycast/classic_gains.hpp"
 
 namespace viewgain::detail {
 
-/// What voxels weigh by the code of their log-odds, for one semantics.
+/// What voxels weigh by the code of their log-odds, for one semantics; q is what each lets through.
 struct VoxelValues {
-  /// What n voxels of a code in a row add to a ray, q being what each lets through.
-  struct Run {
-    double visible;  ///< Σ_{k<n} q^k H
-    double passed;   ///< q^n
-    double entropy;  ///< n H
-    double unused;
-  };
-  /// A ray meets at most 3 · 32 - 2 voxels of an aligned cube of 32³ without leaving it.
-  static constexpr int kRowBits = 7;
-  static constexpr int kRunDoubles = 4;
+  /// Codes of voxels that rays go on through are below this.
+  static constexpr std::size_t kPassed = 64;
+  /// Of the code of log-odds 0, the last that rays go on through.
+  static constexpr std::int32_t kLastFree = 41;
 
-  std::vector<Run> runs;  ///< at code << kRowBits | n
+  /// -log2 q in two parts. Multiples of the first by numbers of voxels, and sums of such, are exact
+  /// in single precision; the second is small, so that its rounding does not matter.
+  alignas(64) std::array<float, kPassed> absorbed{}, absorbed_rest{};
+  /// H / (1 - q): n voxels in a row have Σ P H = this times what they take of P.
+  alignas(64) std::array<float, kPassed> per_taken{};
+  alignas(64) std::array<float, kPassed> passed_entropy{};  ///< H of these [nat]
+  alignas(64) std::array<float, 128> entropy{};             ///< H of all codes [nat]
   /// Known voxels count as free below, as occupied from there on; others, and those that no reading
   /// told of, as unknown.
-  std::int64_t free_end = 0, occupied_begin = 0;
+  std::int32_t free_end = 0, occupied_begin = OccupancyCodes::kCount;
 
   explicit VoxelValues(const ClassicConfig& config);
 };

@@ -123,8 +123,8 @@ class VIEWGAIN_EXPORT ClassicMap {
 /// workspace's edge. Nothing outside the workspace counts, and no ray twice; but a voxel that
 /// several rays pass counts with each of them, unless its gain says distinct.
 ///
-/// The geometry is in double precision: gains agree with voxel by voxel sums to 1e-6 of them, under
-/// every instruction set. Thread safety: const members may run from many threads at once.
+/// The voxels are those of rays in double precision: gains agree with voxel by voxel sums to 1e-6
+/// of them, under every instruction set. Thread safety: const members may run from many threads at once.
 /// Determinism: the same bits for any number of threads.
 class VIEWGAIN_EXPORT ClassicGainEvaluator {
  public:
