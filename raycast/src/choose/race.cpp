@@ -26,7 +26,7 @@ constexpr std::size_t kFewPoses = 24;
 
 // All poses are scored by about so many rays of the image, and at least this share of them in full.
 constexpr double kCoarseRays = 400;
-constexpr double kInFull = 0.016;
+constexpr double kInFull = 0.016, kInFullByPaper = 0.03;
 
 struct Estimate {
   std::size_t index = 0;
@@ -50,9 +50,9 @@ struct Field {
 using Report = std::function<void(std::size_t done)>;
 
 // So many poses are scored in full in the second stage.
-std::size_t in_second_stage(std::size_t k, std::size_t poses) {
-  return std::max({kFewPoses, 4 * k,
-                   static_cast<std::size_t>(std::ceil(kInFull * static_cast<double>(poses)))});
+std::size_t in_second_stage(std::size_t k, std::size_t poses, double share) {
+  return std::max(
+      {kFewPoses, 4 * k, static_cast<std::size_t>(std::ceil(share * static_cast<double>(poses)))});
 }
 
 // Leaves those `few` that score best by a lattice of their rays; all where images have no more rays
@@ -103,7 +103,7 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
           std::make_shared<detail::EvaluatorCore>(core, detail::centred_lattice(core, step))));
     }
     return detail::race_by_measure(*this, coarse ? &*coarse : nullptr, T_world_camera, k,
-                                   in_second_stage(k, count), config, control);
+                                   in_second_stage(k, count, kInFull), config, control);
   }
   // Poses are done when they are out.
   const Report report = [&](std::size_t done) {
@@ -114,7 +114,8 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
   Field field;
   field.poses.resize(count);
   for (std::size_t i = 0; i < count; ++i) field.poses[i].index = i;
-  const std::size_t few = in_second_stage(k, count);
+  const std::size_t few =
+      in_second_stage(k, count, driver.surface() == nullptr ? kInFullByPaper : kInFull);
   best.complete = count <= few || choose_by_few_rays(driver, *impl_->scene, T_world_camera, few,
                                                      config, control, report, field);
   best.rays_traced = field.rays_traced;
