@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes every picture of the READMEs from the program's own output: apps/gallery/ and perf/*.png. Needs a
-# full build and some minutes of a quiet machine.
+# full build and some minutes of a quiet machine; coverage, which makes a study, some hours.
 #   apps/make_pictures.sh [demo] [gains] [idea] [speed] [coverage] [approximate] [scaling]; default: all
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,7 +15,7 @@ wanted=("$@")
 # What demo.sh makes, kept for the pictures that show it.
 demo() {
   [ -e "$work/demo/run.json" ] && return
-  for mesh in camel lion-head mannequin-devil; do ./apps/extract_mesh.sh "$mesh.off" build/meshes; done
+  ./apps/extract_mesh.sh camel.off build/meshes
   viewgain reconstruct build/meshes/camel.off --size 0.35 --up y --sensor sr4000 --voxel 0.003125 \
     --max-views 12 --save-maps on --seed 1 --out "$work/demo"
 }
@@ -41,10 +41,11 @@ for picture in "${wanted[@]}"; do
       viewgain-bench trace --threads 2 --json >"$work/trace.json"
       "$python" $gallery/draw.py speed "$work/trace.json" $gallery/speed.png ;;
     coverage)
-      demo
-      perf/compare_policies.py --seeds 3 --policies combined,frontier,kriegel,random --out "$work/policies" \
-        --jobs 2 --keep >"$work/policies.md"
-      "$python" $gallery/draw.py coverage "$work/policies" $gallery/coverage.png ;;
+      for mesh in camel lion-head mannequin-devil armadillo elephant bunny00; do
+        ./apps/extract_mesh.sh "$mesh.off" build/meshes
+      done
+      viewgain study perf/studies/policies.toml --out "$work/policies" --plots off >"$work/policies.md"
+      "$python" $gallery/draw.py coverage "$work/policies/results.json" $gallery/coverage.png ;;
     approximate)
       viewgain-bench approximate --json >"$work/approximate.json"
       "$python" perf/plot.py "$work/approximate.json" perf/approximate.png ;;

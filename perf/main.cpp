@@ -14,6 +14,11 @@
 #include "benches/scaling_bench.hpp"
 #include "benches/trace_bench.hpp"
 #include "environment.hpp"
+#include "model_maps.hpp"
+#include "peers/armadillo_bench.hpp"
+#include "peers/frames_bench.hpp"
+#include "peers/hemisphere_bench.hpp"
+#include "peers/view_choice.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -175,6 +180,92 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   memory_app->add_option("--mesh", memory.mesh, "the camel's mesh file")->capture_default_str();
 
+  viewgain::bench::ArmadilloOptions armadillo;
+  CLI::App* armadillo_app = app.add_subcommand(
+      "armadillo",
+      "views to the share of the Armadillo that NBV-Simulation's log has, by its count");
+  armadillo_app->add_option("--threads", armadillo.num_threads, "threads, 0: all")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  armadillo_app
+      ->add_option("--data", armadillo.data,
+                   "a clone of NBV-Simulation (perf/peers/get_nbv_simulation.sh), or a stand-in")
+      ->required();
+  armadillo_app->add_option("--gain", armadillo.rankers, "what ranks views, a run each")
+      ->check(CLI::IsMember(viewgain::bench::ranker_names()))
+      ->delimiter(',')
+      ->capture_default_str();
+  armadillo_app
+      ->add_option("--travel", armadillo.travel, "share of the way in the score, a run each")
+      ->check(CLI::Range(0.0, 1.0))
+      ->delimiter(',')
+      ->capture_default_str();
+  armadillo_app->add_option("--views", armadillo.views, "views of a run")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  armadillo_app->add_option("--voxel", armadillo.voxel, "voxel size of our map [m]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  armadillo_app->add_option("--stride", armadillo.stride, "of the pixels that views are scored on")
+      ->check(CLI::Range(1, 640))
+      ->capture_default_str();
+  armadillo_app->add_flag("--json", armadillo.json, "print JSON");
+
+  viewgain::bench::HemisphereOptions hemisphere;
+  hemisphere.meshes = viewgain::bench::object_meshes();
+  hemisphere.meshes.push_back(hemisphere.meshes.back().parent_path() / "elephant.off");
+  CLI::App* hemisphere_app = app.add_subcommand(
+      "hemisphere", "coverage by view among the views of a hemisphere, by MA-SCVP's protocol");
+  hemisphere_app->add_option("--threads", hemisphere.num_threads, "threads, 0: all")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  hemisphere_app->add_option("--mesh", hemisphere.meshes, "mesh files; default: six objects")
+      ->delimiter(',');
+  hemisphere_app->add_option("--views-file", hemisphere.views_file,
+                             "MA-SCVP's view_space.txt or one in its layout; default: 32 of ours");
+  hemisphere_app->add_option("--gain", hemisphere.rankers, "what ranks views")
+      ->check(CLI::IsMember(viewgain::bench::ranker_names()))
+      ->delimiter(',')
+      ->capture_default_str();
+  hemisphere_app
+      ->add_option("--first-views", hemisphere.first_views, "runs, one from each of these")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  hemisphere_app->add_option("--budget", hemisphere.budget, "views of a run")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  hemisphere_app->add_option("--size", hemisphere.size, "longest side of the objects [m]")
+      ->check(CLI::Range(0.01, 0.3))
+      ->capture_default_str();
+  hemisphere_app->add_flag("--json", hemisphere.json, "print JSON");
+
+  viewgain::bench::FramesOptions frames;
+  frames.meshes = viewgain::bench::object_meshes();
+  CLI::App* frames_app = app.add_subcommand(
+      "frames", "what log_diagonal costs on turned grids, against log_determinant");
+  frames_app->add_option("--threads", frames.num_threads, "threads, 0: all")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  frames_app->add_option("--mesh", frames.meshes, "mesh files; default: five objects")
+      ->delimiter(',');
+  frames_app->add_option("--degrees", frames.degrees, "that the grid is turned by")
+      ->check(CLI::Range(-180.0, 180.0))
+      ->delimiter(',')
+      ->capture_default_str();
+  frames_app->add_option("--seeds", frames.seeds, "runs of each object")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  frames_app->add_option("--views", frames.views, "views of a run")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  frames_app->add_option("--candidates", frames.candidates, "views on the sphere")
+      ->check(CLI::Range(2, 1000000))
+      ->capture_default_str();
+  frames_app->add_option("--voxel", frames.voxel, "voxel size [m]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  frames_app->add_flag("--json", frames.json, "print JSON");
+
   int environment_threads = 0;
   CLI::App* environment_app = app.add_subcommand(
       "environment", "JSON of what results depend on: CPU, ISA, compiler, versions, commit");
@@ -196,6 +287,9 @@ int run(int argc, char** argv) {
   if (choose_app->parsed()) return viewgain::bench::run_choose(choose);
   if (bars_app->parsed()) return viewgain::bench::run_bars(bars);
   if (memory_app->parsed()) return viewgain::bench::run_memory(memory);
+  if (armadillo_app->parsed()) return viewgain::bench::run_armadillo(armadillo);
+  if (hemisphere_app->parsed()) return viewgain::bench::run_hemisphere(hemisphere);
+  if (frames_app->parsed()) return viewgain::bench::run_frames(frames);
   return viewgain::bench::run_environment(environment_threads);
 }
 

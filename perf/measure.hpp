@@ -22,6 +22,9 @@ template <typename Call>
 
 [[nodiscard]] inline double median(std::span<const double> sample) { return quantile(sample, 0.5); }
 
+/// Spearman's rank correlation of two samples of the same size, at least 2.
+[[nodiscard]] double rank_correlation(std::span<const double> a, std::span<const double> b);
+
 /// The CPU's name as the operating system gives it.
 [[nodiscard]] std::string cpu_name();
 

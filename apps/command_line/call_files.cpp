@@ -43,7 +43,8 @@ constexpr std::array kFileOptions{
     FileOption{"--obstacle", Kind::input}, FileOption{"FRAMES_DIR", Kind::frames},
     FileOption{"OUT", Kind::output},       FileOption{"--picture", Kind::picture},
     FileOption{"--out", Kind::output},     FileOption{"--save-config", Kind::output},
-    FileOption{"INPUT", Kind::run},        FileOption{"--report", Kind::page}};
+    FileOption{"INPUT", Kind::run},        FileOption{"--report", Kind::page},
+    FileOption{"SPEC", Kind::input}};
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 
@@ -62,7 +63,7 @@ Kind kind_of(const FileOption& option, const std::string& subcommand) {
   if (option.name != "--out") return option.kind;
   if (subcommand == "simulate") return Kind::frames_output;
   if (subcommand == "render") return Kind::picture;
-  return subcommand == "reconstruct" ? Kind::run_output : option.kind;
+  return subcommand == "reconstruct" || subcommand == "study" ? Kind::run_output : option.kind;
 }
 
 void check_values(const CLI::App& subcommand) {

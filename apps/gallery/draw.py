@@ -5,15 +5,13 @@
 
     step, idea   a picture of the program and a legend beside it
     speed        the JSON of `viewgain-bench trace`
-    coverage     the folder of runs that perf/compare_policies.py keeps
+    coverage     the results.json of a study
 
 make_pictures.sh calls it. Needs matplotlib.
 """
 
 import collections
-import glob
 import json
-import os
 import statistics
 import sys
 
@@ -34,8 +32,9 @@ METHODS = [("viewgain_gain", "viewgain, with its gain"), ("viewgain_trace", "vie
            ("dense_dda", "dense arrays, hierarchical DDA"), ("embree_quads", "Embree, a mesh of the voxels"),
            ("openvdb_hdda", "OpenVDB VolumeHDDA"), ("openvdb_dda", "OpenVDB DDA"),
            ("octomap_cast_ray", "OctoMap castRay"), ("octomap_gain", "OctoMap, with a gain")]
-POLICIES = [("combined", "gain: combined (default)", "#0b7a3b"), ("frontier", "most unknown voxels", "#1f4fe0"),
-            ("random", "random", "#888888"), ("kriegel", "boundaries in order", "#e08000")]
+POLICIES = [("gain:combined", "gain: combined (default)", "#0b7a3b"), ("gain:paper", "gain: the paper's", "#e08000"),
+            ("frontier", "most unknown voxels", "#1f4fe0"), ("random", "random", "#d81b8a"),
+            ("oracle", "knows the object", "#111111")]
 
 
 def with_legend(picture, out, entries, columns):
@@ -72,24 +71,26 @@ def speed(result_file, out):
     figure.savefig(out)
 
 
-def coverage(folder, out):
-    shares = collections.defaultdict(lambda: collections.defaultdict(list))
-    for name in sorted(glob.glob(os.path.join(folder, "*", "run.json"))):
-        policy = os.path.basename(os.path.dirname(name)).split("-")[-2]
-        with open(name, encoding="utf-8") as file:
-            run = json.load(file)
-        for view in run["per_view"]:
-            shares[policy][view["index"] + 1].append(100 * view["coverage_visible"])
-    figure, axes = plt.subplots(figsize=(8, 3.4), dpi=100, layout="constrained")
-    for policy, label, color in POLICIES:
-        views = sorted(shares[policy])
-        axes.plot(views, [statistics.mean(shares[policy][v]) for v in views], color=color, label=label,
-                  linewidth=2.2 if policy == "combined" else 1.4)
-    runs = len(shares["combined"][1])
-    axes.set_xlabel(f"views (means of {runs} runs each)")
+def coverage(results_file, out):
+    """Mean coverage by view of a study: some policies by name, the others in grey."""
+    with open(results_file, encoding="utf-8") as file:
+        results = json.load(file)
+    curves = collections.defaultdict(list)
+    for run in results:
+        name = ":".join(part for part in (run["policy"], run["gain"], run["semantics"]) if part)
+        curves[name].append([100 * share for share in run["coverage_by_view"]])
+    means = {name: [statistics.fmean(view) for view in zip(*runs)] for name, runs in curves.items()}
+    views = range(1, len(next(iter(means.values()))) + 1)
+    named = {name: (label, color) for name, label, color in POLICIES if name in means}
+    figure, axes = plt.subplots(figsize=(8, 3.8), dpi=100, layout="constrained")
+    others = [mean for name, mean in means.items() if name not in named]
+    for i, mean in enumerate(others):
+        axes.plot(views, mean, color="#b8bec5", linewidth=1, label=f"{len(others)} others" if i == 0 else None)
+    for name, (label, color) in named.items():
+        axes.plot(views, means[name], color=color, linewidth=2, label=label)
+    axes.set_xlabel(f"views (means of {min(map(len, curves.values()))} runs each)")
     axes.set_ylabel("visible surface covered [%]")
-    axes.set_xlim(1, 12)
-    axes.set_ylim(20, 100)
+    axes.set_xlim(1, views[-1])
     axes.grid(alpha=0.3)
     axes.legend(frameon=False)
     axes.spines[["top", "right"]].set_visible(False)

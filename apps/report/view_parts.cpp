@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "blocks.hpp"
-#include "options/gain_unit.hpp"
+#include "options/gain_names.hpp"
 #include "pictures/image_grid.hpp"
 #include "pictures/picture_parts.hpp"
 #include "viewgain/version.hpp"

@@ -13,7 +13,7 @@
 
 #include "commands.hpp"
 #include "options/choices.hpp"
-#include "options/gain_unit.hpp"
+#include "options/gain_names.hpp"
 #include "options/hazard_source.hpp"
 #include "options/obstacle_source.hpp"
 #include "options/sensed_map.hpp"

@@ -3,17 +3,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <cstdint>
-#include <cstdio>
 #include <functional>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
 
-#include "options/choices.hpp"
-#include "options/values.hpp"
-#include "viewgain/core/box.hpp"
-#include "viewgain/core/pose.hpp"
+#include "options/common_options.hpp"
+#include "options/json_text.hpp"
 
 namespace viewgain::app {
 
@@ -33,90 +26,6 @@ struct Command {
 [[nodiscard]] Command add_convert(CLI::App& program);
 [[nodiscard]] Command add_render(CLI::App& program);
 [[nodiscard]] Command add_sensors(CLI::App& program);
-
-/// What every subcommand has.
-struct CommonOptions {
-  bool json = false;
-  bool quiet = false;
-  int threads = 0;
-  std::string config, save_config;  ///< main() reads and writes them
-};
-inline void add_common_options(CLI::App& app, CommonOptions& options) {
-  app.add_flag("--json", options.json, "print one JSON object instead of text");
-  app.add_flag("--quiet", options.quiet, "say nothing of how far the call is");
-  app.add_option("--threads", options.threads, "threads; 0: as many as the machine has")
-      ->capture_default_str();
-  app.add_option("--config", options.config,
-                 "TOML file: flags without -- and positionals (mesh, map) as keys; what the "
-                 "command line says holds");
-  app.add_option("--save-config", options.save_config,
-                 "TOML file to write what was given to, for --config");
-}
-
-// What the subcommands are for, as the program's help groups them.
-inline constexpr const char* kLoopGroup = "The whole loop";
-inline constexpr const char* kMapGroup = "Make a map";
-inline constexpr const char* kViewsGroup = "Choose views";
-inline constexpr const char* kLookGroup = "Look and convert";
-
-/// Where the subcommand stands in the program's help, and a call that works where those of
-/// simulate, integrate, score and so on were made before it.
-inline void add_help(CLI::App& app, const char* group, const char* example) {
-  app.group(group)->footer(std::string("Example:\n  viewgain ") + example);
-}
-
-inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt)";
-
-inline constexpr const char* kSensorHelp =
-    "preset (sr4000, azure_kinect_nfov, kinect_v1, d435, laser_line) or a .toml file";
-
-inline const std::string kMapSensorHelp =
-    std::string(kSensorHelp) +
-    "; default: the one that the map's readings come from, where it says so";
-
-inline constexpr const char* kBodyHelp =
-    "x,y,z: width, height, depth of the sensor's housing [m]; default: the sensor's own, else the "
-    "SR4000's";
-
-inline constexpr const char* kOverlapHelp =
-    "share of a boundary candidate's view that is to show known surface, 0..1";
-
-inline constexpr const char* kRegionDepthHelp =
-    "how far inward from a boundary the surface is fitted that candidates go on from [m]";
-
-[[nodiscard]] inline nlohmann::ordered_json to_json(const Box& box) {
-  return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
-}
-
-[[nodiscard]] inline nlohmann::ordered_json to_json(const Pose& pose) {
-  const auto& m = pose.m;
-  return {{m[0], m[1], m[2], m[3]},
-          {m[4], m[5], m[6], m[7]},
-          {m[8], m[9], m[10], m[11]},
-          {0.0, 0.0, 0.0, 1.0}};
-}
-
-/// With every text made UTF-8: a file name may be any bytes.
-[[nodiscard]] inline nlohmann::ordered_json with_utf8_text(nlohmann::ordered_json json) {
-  if (json.is_string()) return utf8_text(json.get_ref<const std::string&>());
-  if (json.is_structured()) {
-    for (nlohmann::ordered_json& part : json) part = with_utf8_text(std::move(part));
-  }
-  return json;
-}
-
-/// What run.json and --json hold.
-[[nodiscard]] inline std::string json_text(const nlohmann::ordered_json& json) {
-  return with_utf8_text(json).dump(2) + "\n";
-}
-
-inline void print_json(const nlohmann::ordered_json& json) {
-  std::fputs(json_text(json).c_str(), stdout);
-}
-
-/// --seed, the same bounds in every subcommand.
-inline void add_seed_option(CLI::App& app, std::uint64_t& seed, const char* of_what) {
-  takes_seed(*app.add_option("--seed", seed, of_what));
-}
+[[nodiscard]] Command add_study(CLI::App& program);
 
 }  // namespace viewgain::app

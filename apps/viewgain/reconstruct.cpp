@@ -12,18 +12,17 @@
 #include "command_line/interrupt.hpp"
 #include "command_line/progress.hpp"
 #include "commands.hpp"
+#include "loop/run.hpp"
+#include "loop/run_report.hpp"
 #include "pictures/view_picture.hpp"
-#include "reconstruct_setup.hpp"
 #include "report/page.hpp"
 #include "report/run_page.hpp"
-#include "run_report.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/stopwatch.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/run_folder.hpp"
 #include "viewgain/grid/vdb_io.hpp"
-#include "viewgain/planner/simulated_acquisition.hpp"
 #include "viewgain/planner_mesh/surface_files.hpp"
 #include "viewgain/version.hpp"
 
@@ -36,7 +35,7 @@ GainEvaluator step_evaluator(const SurfaceModel& model, const RunSetup& setup,
   GainConfig gain;
   gain.support_plane = setup.policy.support_plane;
   gain.criterion = setup.policy.criterion;
-  if (setup.policy.policy == Policy::gain) gain.model = setup.policy.model;
+  if (setup.policy.policy == Policy::gain && !setup.policy.classic) gain.model = setup.policy.model;
   return {model.scene(), setup.sensor, gain, exec};
 }
 
@@ -87,61 +86,51 @@ void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
   StageSeconds seconds;
   const ExecConfig exec{options.common.threads};
   RunSetup setup = set_up(options, exec);
-  const Stopwatch truth_watch;
-  const auto truth =
-      std::make_shared<const Truth>(setup.stage.scene, setup.sensor, setup.visibility, exec);
-  seconds["quality"] = truth_watch.seconds();
   const InterruptGuard interrupt;
   setup.planning.stop = interrupt.token();
-
-  SimulatedAcquisition acquisition(
-      SimulatedSensor(setup.stage.scene, setup.sensor, setup.simulation, exec),
-      options.frames_per_view, setup.planning.stop);
-  SurfaceModel model(setup.sensor, setup.model, truth, exec);
-  CandidateGeneration generation(model, setup.sensor, setup.generation, exec);
-  setup.policy.object = {setup.stage.scene, truth, setup.simulation};
-  PolicyDecision decision(model, generation, setup.sensor, setup.policy, exec);
+  const Stopwatch watch_of_set_up;
+  Run loop(setup, options.frames_per_view, exec);
+  seconds["quality"] = watch_of_set_up.seconds();
+  const SurfaceModel& model = loop.model();
+  const CandidateGeneration& generation = loop.generation();
 
   RunFolder folder(options.out);
   const PolicyConfig& policy = setup.policy;
-  RunReport report(policy.policy == Policy::gain ? std::optional(policy.model) : std::nullopt,
-                   policy.criterion);
+  RunReport report(policy);
   const bool with_pictures = options.pictures == "on", with_report = options.report == "on";
   RunPage page(run_title(options, setup), setup.sensor,
-               std::string(criterion_name(policy.criterion)), truth);
+               std::string(criterion_name(policy.criterion)), loop.truth());
   std::vector<Pose> views;
   Progress progress("view", options.common.quiet);
-  const PlanningResult result = active_view_planning(
-      setup.start, acquisition, model, generation, decision, setup.planning,
-      [&](const ViewRecord& record) {
-        views.push_back(record.T_world_camera);
-        add_to(seconds, record.seconds);
-        if (options.save_maps == "on") {
-          save_vdb(model.grid(), folder.map(record.index), noting_sensor(setup.sensor));
-        }
-        if (with_pictures || with_report) {
-          const Stopwatch watch;
-          const GainEvaluator evaluator = step_evaluator(model, setup, exec);
-          const EstimatedViews estimated = estimated_views(record, generation);
-          const RgbImage picture =
-              step_picture(record, model, estimated, evaluator, setup.sensor, exec);
-          const DepthFrame& frame = acquisition.last_frame();
-          if (with_pictures) write_png(folder.view(record.index, ".png"), picture);
-          if (with_pictures && !frame.amplitude.empty()) {
-            write_amplitude_picture(folder.view(record.index, ".amplitude.png"), frame);
-          }
-          seconds["pictures"] += watch.seconds();
-          if (with_report) {
-            const Stopwatch report_watch;
-            page.add_view(record, model, generation, estimated, evaluator, picture);
-            seconds["report"] += report_watch.seconds();
-          }
-        }
-        report.add_view(record, model.quality().back(), model.realised_area(), seconds);
-        progress.wipe();
-        if (!options.common.quiet) std::fprintf(stderr, "%s\n", report.progress_line().c_str());
-        progress.update(views.size(), options.max_views);
-      });
+  const PlanningResult result = loop.go([&](const ViewRecord& record) {
+    views.push_back(record.T_world_camera);
+    add_to(seconds, record.seconds);
+    if (options.save_maps == "on") {
+      save_vdb(model.grid(), folder.map(record.index), noting_sensor(setup.sensor));
+    }
+    if (with_pictures || with_report) {
+      const Stopwatch watch;
+      const GainEvaluator evaluator = step_evaluator(model, setup, exec);
+      const EstimatedViews estimated = estimated_views(record, generation);
+      const RgbImage picture =
+          step_picture(record, model, estimated, evaluator, setup.sensor, exec);
+      const DepthFrame& frame = loop.acquisition().last_frame();
+      if (with_pictures) write_png(folder.view(record.index, ".png"), picture);
+      if (with_pictures && !frame.amplitude.empty()) {
+        write_amplitude_picture(folder.view(record.index, ".amplitude.png"), frame);
+      }
+      seconds["pictures"] += watch.seconds();
+      if (with_report) {
+        const Stopwatch report_watch;
+        page.add_view(record, model, generation, estimated, evaluator, picture);
+        seconds["report"] += report_watch.seconds();
+      }
+    }
+    report.add_view(record, model.quality().back(), model.realised_area(), seconds);
+    progress.wipe();
+    if (!options.common.quiet) std::fprintf(stderr, "%s\n", report.progress_line().c_str());
+    progress.update(views.size(), options.max_views);
+  });
 
   progress.wipe();
   const nlohmann::ordered_json json = report.json(result.reason);

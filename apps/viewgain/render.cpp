@@ -13,7 +13,7 @@
 
 #include "commands.hpp"
 #include "options/choices.hpp"
-#include "options/gain_unit.hpp"
+#include "options/gain_names.hpp"
 #include "options/pose_flags.hpp"
 #include "options/sensed_map.hpp"
 #include "options/values.hpp"

@@ -14,6 +14,7 @@
 #include "command_line/progress.hpp"
 #include "commands.hpp"
 #include "options/choices.hpp"
+#include "options/gain_names.hpp"
 #include "options/hazard_source.hpp"
 #include "options/obstacle_source.hpp"
 #include "options/pose_flags.hpp"
@@ -21,6 +22,8 @@
 #include "options/values.hpp"
 #include "pictures/score_picture.hpp"
 #include "report/page.hpp"
+#include "score_classic.hpp"
+#include "score_options.hpp"
 #include "score_report.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
@@ -34,29 +37,14 @@
 namespace viewgain::app {
 namespace {
 
-struct Options {
-  CommonOptions common;
-  std::string map;
-  PoseOptions poses;
-  std::string sensor;
-  std::string gain = "paper";
-  std::optional<double> refinement_weight, object_size, support_plane;
-  std::string hazard, reach, body;
-  std::vector<std::string> obstacles;
-  std::string feasible = "off";
-  std::string criterion = "log_diagonal";
-  int stride = 1;
-  std::vector<std::string> weights;
-  std::optional<double> prior_sigma, min_range, max_range;
-  std::size_t top = 10;
-  bool race = false;
-  std::optional<double> approximate;  // share of the rays
-  std::optional<std::size_t> set;     // how many
-  std::uint64_t seed = 1;
-  std::string out;
-  std::string picture;
-  std::string report;
-};
+using Options = ScoreOptions;
+
+void check_feasibility(const Options& options) {
+  if (!options.body.empty() && options.feasible == "off") {
+    throw Error(ErrorCode::invalid_argument, "--body goes with --feasible on");
+  }
+  if (options.support_plane) check_finite("--support-plane", *options.support_plane);
+}
 
 GainConfig gain_config(const Options& options) {
   GainConfig config;
@@ -69,15 +57,15 @@ GainConfig gain_config(const Options& options) {
     throw Error(ErrorCode::invalid_argument,
                 "--support-plane goes with --feasible on, and with --gain surface or combined");
   }
-  if (!options.body.empty() && options.feasible == "off") {
-    throw Error(ErrorCode::invalid_argument, "--body goes with --feasible on");
-  }
   if (config.model != GainModel::combined && options.refinement_weight) {
     throw Error(ErrorCode::invalid_argument, "--refinement-weight goes with --gain combined");
   }
   if (options.refinement_weight)
     check_at_least_0("--refinement-weight", *options.refinement_weight);
-  if (options.support_plane) check_finite("--support-plane", *options.support_plane);
+  if (options.semantics != "paper") {
+    throw Error(ErrorCode::invalid_argument,
+                "--semantics " + options.semantics + " goes with classic gains");
+  }
   config.refinement_weight = options.refinement_weight.value_or(config.refinement_weight);
   config.support_plane = options.support_plane;
   config.criterion = parse_criterion(options.criterion);
@@ -104,6 +92,25 @@ FeasiblePoses candidates_of(const Options& options, const PoseSource& source, co
   config.reach = std::move(reach);
   config.support_plane = options.support_plane;
   return feasible_poses(FeasibilityChecker(scene, config, exec), source.poses, grid.views());
+}
+
+void check_left(const FeasiblePoses& candidates) {
+  if (!candidates.poses.empty()) return;
+  throw Error(ErrorCode::invalid_argument,
+              "no pose is left to score; dropped: " + counts_text(candidates.dropped));
+}
+
+// Calls work(control), which shows how far it is. Returns how long it took [s].
+template <typename Work>
+double timed(const Options& options, const Work& work) {
+  Progress progress("pose", options.common.quiet);
+  BatchControl control;
+  control.progress = [&progress](std::size_t done, std::size_t total) {
+    progress.update(done, total);
+  };
+  const Stopwatch watch;
+  work(control);
+  return watch.seconds();
 }
 
 // Indices of the candidates become those of the poses that were given.
@@ -187,7 +194,38 @@ Scores make_scores(const Options& options, const GainEvaluator& evaluator,
   return scored(options, evaluator, poses, control);
 }
 
+void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gains) {
+  const ClassicConfig config = classic_config(options, std::move(gains));
+  const ExecConfig exec{options.common.threads};
+  const PoseSource source = make_poses(options.poses, options.seed);
+  const auto [grid, sensor] = load_sensed_map(options.map, options.sensor);
+  const auto scene = VoxelScene::build(grid, obstacles_of(options.obstacles), exec);
+  const bool hides = std::any_of(config.gains.begin(), config.gains.end(), needs_occlusion);
+  const auto acquisition = hides ? std::optional(Acquisition{sensor}) : std::nullopt;
+  const ClassicGainEvaluator evaluator(ClassicMap::build(scene, grid, acquisition, exec), sensor,
+                                       config, exec);
+  const FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
+  check_left(candidates);
+
+  ClassicScores scores{grid, sensor, source, evaluator, candidates.numbers, candidates.dropped};
+  scores.gains.resize(candidates.poses.size() * evaluator.config().gains.size());
+  scores.statuses.resize(candidates.poses.size());
+  scores.seconds = timed(options, [&](const BatchControl& control) {
+    evaluator.evaluate(candidates.poses, scores.gains, scores.statuses, control);
+  });
+  if (!options.out.empty()) write_file_atomically(options.out, scores.csv());
+  if (options.common.json) {
+    scores.print_json(options.top);
+  } else {
+    scores.print_table(options.top);
+  }
+}
+
 void score(const Options& options) {
+  check_feasibility(options);
+  if (auto gains = classic_gains_of(options.gain)) {
+    return score_by_classic_gains(options, std::move(*gains));
+  }
   if (!options.report.empty()) check_report_page("--report");
   const ExecConfig exec{options.common.threads};
   const GainConfig config = gain_config(options);
@@ -199,23 +237,12 @@ void score(const Options& options) {
   const auto scene = VoxelScene::build(grid, obstacles_of(options.obstacles), exec, hazard);
   const GainEvaluator evaluator(scene, sensor, config, exec);
   const FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
-  if (candidates.poses.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                "no pose is left to score; dropped: " + counts_text(candidates.dropped));
-  }
+  check_left(candidates);
 
   Scores scores;
-  double seconds = 0;
-  {
-    Progress progress("pose", options.common.quiet);
-    BatchControl control;
-    control.progress = [&progress](std::size_t done, std::size_t total) {
-      progress.update(done, total);
-    };
-    const Stopwatch watch;
+  const double seconds = timed(options, [&](const BatchControl& control) {
     scores = make_scores(options, evaluator, candidates.poses, control);
-    seconds = watch.seconds();
-  }
+  });
   name_by_input(scores, candidates);
   warn_of_prior(evaluator, sensor);
   RgbImage picture;
@@ -251,11 +278,17 @@ Command add_score(CLI::App& program) {
   app->add_option("MAP", options->map, kMapHelp)->required();
   add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kMapSensorHelp);
-  one_of(*app->add_option("--gain", options->gain,
-                          "paper (entropy removed) [nat], surface (new surface to be expected) "
-                          "[m^2] or combined (both) [nat]")
+  several_of(*app->add_option("--gain", options->gain,
+                              "paper (entropy removed) [nat], surface (new surface to be expected) "
+                              "[m^2] or combined (both) [nat]; or gains of the literature, several "
+                              "with commas, ranked by the first")
+                  ->capture_default_str(),
+             all_gain_names(), "gain");
+  one_of(*app->add_option("--semantics", options->semantics,
+                          "of the literature's gains: as the papers define them or as the code "
+                          "that was shipped with them computes them")
               ->capture_default_str(),
-         gain_model_names(), "gain");
+         gain_semantics_names(), "semantics");
   app->add_option("--refinement-weight", options->refinement_weight,
                   "combined: of refining known surface against finding new; default: 0.3");
   app->add_option("--object-size", options->object_size, kObjectSizeHelp);

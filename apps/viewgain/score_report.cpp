@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "commands.hpp"
-#include "options/gain_unit.hpp"
+#include "options/gain_names.hpp"
 #include "options/values.hpp"
 #include "report/score_page.hpp"
 #include "viewgain/formats/sensor_toml.hpp"

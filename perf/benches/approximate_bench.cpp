@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <vector>
 
 #include "environment.hpp"
@@ -38,29 +37,6 @@ struct Way {
   std::vector<double> standard_errors;  // empty: it has none
   std::vector<double> seconds;
 };
-
-/// Places 0, 1, ... of the values in rising order. Equal gains of different views do not occur but
-/// for 0, whose places are then as good as any.
-std::vector<double> ranks(const std::vector<double>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-  std::vector<double> rank(values.size());
-  for (std::size_t i = 0; i < order.size(); ++i) rank[order[i]] = static_cast<double>(i);
-  return rank;
-}
-
-/// Spearman's rank correlation.
-double rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  const std::vector<double> rank_a = ranks(a), rank_b = ranks(b);
-  const auto n = static_cast<double>(a.size());
-  double squares = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    squares += (rank_a[i] - rank_b[i]) * (rank_a[i] - rank_b[i]);
-  }
-  return 1 - 6 * squares / (n * (n * n - 1));
-}
 
 std::size_t index_of_largest(const std::vector<double>& values) {
   return static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());

@@ -58,6 +58,8 @@ using BarGroup = std::vector<Figure> (*)(const BarsOptions& options);
 [[nodiscard]] std::vector<Figure> decision_figures(const BarsOptions& options);
 /// surface_over_paper, combined_over_paper, hazard_ms_128, hazard_ms_512.
 [[nodiscard]] std::vector<Figure> surface_figures(const BarsOptions& options);
+/// classic_over_paper: the time of all classic gains together over that of the paper's.
+[[nodiscard]] std::vector<Figure> classic_figures(const BarsOptions& options);
 /// stages_over_paper, stages_over_paper_combined.
 [[nodiscard]] std::vector<Figure> stages_figures(const BarsOptions& options);
 

@@ -43,6 +43,7 @@ constexpr std::array kRules{
     Rule{"memory_mb", 250.0, false},
     Rule{"surface_over_paper", 0.35, true},
     Rule{"combined_over_paper", {}, true},
+    Rule{"classic_over_paper", 4.0, false},
     Rule{"stages_over_paper", 0.25, false},
     Rule{"stages_over_paper_combined", {}, false},
     Rule{"hazard_ms_128", 10.0, false},
@@ -59,6 +60,7 @@ constexpr std::array kGroups{
     NamedBarGroup{"update", update_figures},   NamedBarGroup{"search", search_figures},
     NamedBarGroup{"memory", memory_figures},   NamedBarGroup{"decision", decision_figures},
     NamedBarGroup{"surface", surface_figures}, NamedBarGroup{"stages", stages_figures},
+    NamedBarGroup{"classic", classic_figures},
 };
 
 /// A bar's entry in the list; `is_missed` is set if it is missed.

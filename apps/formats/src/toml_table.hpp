@@ -9,10 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "viewgain/core/export.hpp"
+
 namespace viewgain {
 
 /// Throws Error(io) if the file cannot be read, Error(format) with the line if it is no TOML.
-[[nodiscard]] toml::table read_toml(const std::filesystem::path& path);
+[[nodiscard]] VIEWGAIN_EXPORT toml::table read_toml(const std::filesystem::path& path);
 /// The same of a text; `name` is what errors call it.
 [[nodiscard]] toml::table parse_toml(std::string_view text, const std::string& name);
 
@@ -23,7 +25,7 @@ namespace viewgain {
 /// One table of a TOML file; remembers which keys were asked for, so that the others can be
 /// refused. Must not outlive the table. Whatever is not as it should be is an Error(format) that
 /// names the file, the line of a key that is there, and the key.
-class TableReader {
+class VIEWGAIN_EXPORT TableReader {
  public:
   TableReader(const toml::table& table, std::string file, std::string prefix);
 

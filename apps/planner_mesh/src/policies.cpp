@@ -42,7 +42,7 @@ Policy parse_policy(std::string_view name) {
 
 void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                     std::optional<double> stop_gain, std::optional<double> stop_area) {
-  const bool by_gain = policy.policy == Policy::gain;
+  const bool by_gain = policy.policy == Policy::gain && !policy.classic;
   if (!by_gain && stop_area.value_or(0) > 0) {
     throw Error(ErrorCode::invalid_argument,
                 "stop_area (--stop-area) goes with policy gain by the gains surface and combined");
@@ -66,25 +66,20 @@ PolicyDecision::PolicyDecision(const SurfaceModel& model, const CandidateGenerat
       exec_(exec),
       order_(0.5 * generation.config().boundary.estimator.patch_length) {
   if (config.policy == Policy::oracle) oracle_.emplace(model, sensor, config.object, exec);
+  if (config.policy == Policy::gain && config.classic) {
+    classic_.emplace(model, sensor, *config.classic, config.support_plane, exec);
+  }
 }
 
 std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
                                                std::span<const Candidate> candidates) {
   if (candidates.empty()) return std::nullopt;
-  const bool by_gain = config_.policy == Policy::gain;
-  if (evaluator_) {
-    evaluator_ = evaluator_->with_scene(model_.scene());
-  } else {
-    GainConfig gain;
-    gain.criterion = config_.criterion;
-    gain.support_plane = config_.support_plane;
-    if (by_gain) gain.model = config_.model;
-    evaluator_.emplace(model_.scene(), sensor_, gain, exec_);
-  }
-  const GainEvaluator& evaluator = *evaluator_;
-  const bool scored = by_gain || config_.policy == Policy::frontier;
-  const std::vector<ViewGain> gains =
-      scored ? score(T_world_camera, candidates) : std::vector<ViewGain>(candidates.size());
+  const bool by_gain = config_.policy == Policy::gain && !classic_;
+  const GainEvaluator& evaluator = this->evaluator();
+  const bool scored = by_gain || classic_ || config_.policy == Policy::frontier;
+  const std::vector<ViewGain> gains = classic_ ? score_classic(candidates)
+                                      : scored ? score(T_world_camera, candidates)
+                                               : std::vector<ViewGain>(candidates.size());
   const std::optional<std::size_t> chosen = choose(T_world_camera, candidates, gains);
   if (!chosen) return std::nullopt;
   const ViewGain gain =
@@ -104,6 +99,40 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
     for (const ViewGain& g : gains) decision.best_area = std::fmax(decision.best_area, g.area);
   }
   return decision;
+}
+
+const GainEvaluator& PolicyDecision::evaluator() {
+  if (evaluator_) {
+    evaluator_ = evaluator_->with_scene(model_.scene());
+  } else {
+    GainConfig gain;
+    gain.criterion = config_.criterion;
+    gain.support_plane = config_.support_plane;
+    if (config_.policy == Policy::gain && !classic_) gain.model = config_.model;
+    evaluator_.emplace(model_.scene(), sensor_, gain, exec_);
+  }
+  return *evaluator_;
+}
+
+std::optional<CandidateScores> PolicyDecision::scores(std::span<const Candidate> candidates) {
+  CandidateScores scores;
+  scores.area.assign(candidates.size(), std::numeric_limits<double>::quiet_NaN());
+  if (config_.policy == Policy::proximity) {
+    scores.score = proximities(candidates);
+    return scores;
+  }
+  if (classic_) {
+    scores.score = classic_->gains(poses_of(candidates), /*all=*/true);
+    return scores;
+  }
+  const bool by_gain = config_.policy == Policy::gain;
+  if (!by_gain && config_.policy != Policy::frontier) return std::nullopt;
+  const std::vector<ViewGain> gains = evaluator().evaluate(poses_of(candidates));
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    scores.score.push_back(by_gain ? gains[i].gain : static_cast<double>(gains[i].unknown_voxels));
+    scores.area[i] = gains[i].area;
+  }
+  return scores;
 }
 
 std::vector<ViewGain> PolicyDecision::score(const Pose& T_world_camera,
@@ -133,7 +162,15 @@ std::vector<ViewGain> PolicyDecision::score(const Pose& T_world_camera,
   return gains;
 }
 
-std::size_t PolicyDecision::most_proximity(std::span<const Candidate> candidates) {
+std::vector<ViewGain> PolicyDecision::score_classic(std::span<const Candidate> candidates) {
+  const bool way_counts = config_.travel.per_metre > 0 || config_.travel.speed;
+  const std::vector<double> values = classic_->gains(poses_of(candidates), way_counts);
+  std::vector<ViewGain> gains(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) gains[i].gain = values[i];
+  return gains;
+}
+
+std::vector<double> PolicyDecision::proximities(std::span<const Candidate> candidates) {
   if (coarse_) {
     coarse_ = coarse_->with_scene(model_.scene());
   } else {
@@ -144,11 +181,7 @@ std::size_t PolicyDecision::most_proximity(std::span<const Candidate> candidates
   }
   std::vector<double> values(candidates.size());
   coarse_->evaluate(poses_of(candidates), ProximityMeasure(model_.scene()->hazard()), values);
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    if (values[i] > values[best] || std::isnan(values[best])) best = i;
-  }
-  return best;
+  return values;
 }
 
 double PolicyDecision::expected_area(const Pose& T_world_camera) {
@@ -189,8 +222,10 @@ std::optional<std::size_t> PolicyDecision::choose(const Pose& T_world_camera,
                                       candidates.size());
     case Policy::kriegel:
       return choose_by_boundary(candidates);
-    case Policy::proximity:
-      return most_proximity(candidates);
+    case Policy::proximity: {
+      const std::vector<double> values = proximities(candidates);
+      return best_by([&](std::size_t i) { return values[i]; });
+    }
     case Policy::oracle:
       return oracle_->next(candidates);
     case Policy::sequence:

@@ -69,8 +69,10 @@ ModelProgress SurfaceModel::update(const Measurements& measurements) {
   return progress;
 }
 
-std::vector<FusedPoint> SurfaceModel::points_after(const Measurements& measurements) const {
-  return fused_points(map_.grid_after(measurements), config_.points, exec_);
+ModelOutlook SurfaceModel::after(const Measurements& measurements) const {
+  const BeliefGrid grid = map_.grid_after(measurements);
+  return {fused_points(grid, config_.points, exec_),
+          grid.statistics(config_.map.criterion).entropy_removed};
 }
 
 void SurfaceModel::derive_surface() {

@@ -8,9 +8,9 @@
 #include <mutex>
 #include <string>
 
-#include "view_driver.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain::detail {
 
@@ -22,9 +22,10 @@ inline void check_room(std::size_t poses, std::size_t results) {
 }
 
 /// Calls work(i, lease) for every i below count on all threads; ends early if a stop is requested
-/// or the call cancelled. Returns whether all was done.
-template <typename Work>
-bool for_each(const ViewDriver& driver, std::size_t count, const BatchControl& control,
+/// or the call cancelled. Returns whether all was done. A driver has a core() with a pool, and a
+/// Lease of what a thread works in.
+template <typename Driver, typename Work>
+bool for_each(const Driver& driver, std::size_t count, const BatchControl& control,
               const Work& work) {
   ThreadPool& pool = driver.core()->pool;
   std::atomic<bool> complete{true};
@@ -40,7 +41,7 @@ bool for_each(const ViewDriver& driver, std::size_t count, const BatchControl& c
   const std::size_t shares = 8 * static_cast<std::size_t>(pool.num_threads());
   const std::size_t chunk = std::clamp<std::size_t>(count / shares, 1, 4);
   pool.for_each_chunk(count, chunk, [&](std::size_t begin, std::size_t end) {
-    ViewDriver::Lease lease(driver);
+    typename Driver::Lease lease(driver);
     for (std::size_t i = begin; i < end; ++i) {
       if (is_stopped()) {
         complete = false;
@@ -53,13 +54,13 @@ bool for_each(const ViewDriver& driver, std::size_t count, const BatchControl& c
 }
 
 /// The same for whole scores: says how many are done, and returns that.
-template <typename Work>
-std::size_t for_each_pose(const ViewDriver& driver, std::size_t count, const BatchControl& control,
+template <typename Driver, typename Work>
+std::size_t for_each_pose(const Driver& driver, std::size_t count, const BatchControl& control,
                           const Work& work) {
   std::atomic<std::size_t> done{0};
   std::mutex progress_mutex;
   std::size_t reported = 0;
-  for_each(driver, count, control, [&](std::size_t i, ViewDriver::Lease& lease) {
+  for_each(driver, count, control, [&](std::size_t i, typename Driver::Lease& lease) {
     work(i, lease);
     const std::size_t now = done.fetch_add(1) + 1;
     if (!control.progress) return;

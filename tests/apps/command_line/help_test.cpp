@@ -26,7 +26,7 @@ using Strings = std::vector<std::string>;
 
 // In an order in which the examples of their help find what they name.
 const Strings kSubcommands{"simulate", "integrate", "score",   "candidates", "reconstruct",
-                           "render",   "info",      "convert", "sensors"};
+                           "render",   "info",      "convert", "sensors",    "study"};
 
 Strings words_of(const std::string& text) {
   std::istringstream in(text);
@@ -118,6 +118,9 @@ TEST_F(Help, GroupsSubcommandsByTaskAndItsExamplesWork) {
 TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
   write_cube();
   std::filesystem::copy_file(dir / "cube.off", dir / "mesh.off");
+  write("spec.toml",
+        "objects = [\"mesh.off\"]\npolicies = [\"frontier\"]\nseeds = [1]\nsensors = "
+        "[\"sr4000\"]\nvoxels = [0.02]\nsizes = [0.3]\nmax_views = 1\n");
   std::size_t cases = 0;
   for (const std::string& subcommand : kSubcommands) {
     const std::vector<Strings> calls = examples({subcommand});
@@ -126,7 +129,7 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
     run_example(calls[0]);
     ++cases;
   }
-  EXPECT_EQ(cases, 9U);
+  EXPECT_EQ(cases, 10U);
 }
 
 TEST_F(Help, ManPagesHaveEveryFlag) {
@@ -164,7 +167,7 @@ TEST_F(Help, ManPagesAreShownWithoutAWarning) {
     EXPECT_NE(shown.find("SEE ALSO"), std::string::npos) << page;
     ++cases;
   }
-  EXPECT_EQ(cases, 10U);
+  EXPECT_EQ(cases, 11U);
 }
 
 TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
@@ -173,7 +176,7 @@ TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
   Set subcommands(kSubcommands.begin(), kSubcommands.end());
   subcommands.insert({"--help", "--version"});
   EXPECT_EQ(completions({"viewgain", ""}), subcommands);
-  EXPECT_EQ(completions({"viewgain", "s"}), (Set{"score", "sensors", "simulate"}));
+  EXPECT_EQ(completions({"viewgain", "s"}), (Set{"score", "sensors", "simulate", "study"}));
   std::size_t cases = 0;
   for (const std::string& subcommand : kSubcommands) {
     EXPECT_EQ(completions({"viewgain", subcommand, "--"}), flags_in_help(subcommand)) << subcommand;
@@ -201,7 +204,7 @@ TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
     EXPECT_EQ(completions(line), expected) << words[0] << ' ' << words[1];
     ++cases;
   }
-  EXPECT_EQ(cases, 23U);
+  EXPECT_EQ(cases, 24U);
 }
 
 TEST_F(Help, ZshHasEveryFlag) {

@@ -104,6 +104,60 @@ struct SeenBox {
   }
 };
 
+TEST(Classic, ChoosesTheFirstOfTheBestByItsGain) {
+  const SeenBox box;
+  const auto model = box.model_after({box.start});
+  PolicyConfig config;
+  std::size_t checked = 0;
+  for (const ClassicGain gain : {ClassicGain::unknown_count, ClassicGain::proximity_count}) {
+    config.classic = {gain, GainSemantics::shipped};
+    const auto map = ClassicMap::build(model->scene(), model->grid(), Acquisition{box.sensor});
+    const std::vector<Pose> poses = poses_of(box.candidates);
+    const std::vector<double> values =
+        ClassicGainEvaluator(map, box.sensor,
+                             {.gains = {gain}, .semantics = GainSemantics::shipped})
+            .evaluate(poses);
+    const auto best = std::max_element(values.begin(), values.end());
+    for (const int threads : {1, 3}) {
+      const auto decision = box.choice(*model, config, threads);
+      ASSERT_TRUE(decision);
+      EXPECT_EQ(decision->candidate, static_cast<std::size_t>(best - values.begin()));
+      EXPECT_EQ(decision->gain, *best);
+      EXPECT_GT(decision->area, 0);
+      ++checked;
+    }
+  }
+  EXPECT_EQ(checked, 4U);
+}
+
+TEST(Classic, OfManyThirtyTwoAreScoredInFull) {
+  const SeenBox box;
+  const auto model = box.model_after({box.start});
+  const std::vector<Pose> poses = sphere_poses(100, 0.4);
+  ClassicChoice choice(*model, box.sensor, {}, {}, box.exec);
+  const std::vector<double> all = choice.gains(poses, true), some = choice.gains(poses, false);
+  std::size_t scored = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_FALSE(std::isnan(all[i]));
+    if (std::isnan(some[i])) continue;
+    EXPECT_EQ(some[i], all[i]);
+    ++scored;
+  }
+  EXPECT_EQ(scored, ClassicChoice::kInFull);
+  const double best = *std::max_element(all.begin(), all.end());
+  EXPECT_GT(std::count(some.begin(), some.end(), best), 0);
+}
+
+TEST(Classic, NeitherGainNorAreaEndsARun) {
+  PolicyConfig policy;
+  policy.classic = ClassicRanking{};
+  PlanningConfig planning;
+  set_stop_rules(planning, policy, {}, {});
+  EXPECT_EQ(planning.stop_area, 0);
+  EXPECT_THROW(set_stop_rules(planning, policy, 1.0, {}), Error);
+  EXPECT_THROW(set_stop_rules(planning, policy, {}, 0.01), Error);
+}
+
 TEST(Oracle, ChoosesWhatABruteForceOverAllCandidatesChooses) {
   const SeenBox box;
   // Without the library's: takes each view for itself and looks for the nearest point.
@@ -136,8 +190,8 @@ TEST(Oracle, ChoosesWhatABruteForceOverAllCandidatesChooses) {
   EXPECT_EQ(model->grid().content_hash(), before);
   // Its own simulation comes to the same numbers.
   const OracleChoice oracle(*model, box.sensor, {box.mesh, box.truth, {}}, box.exec);
-  EXPECT_EQ(oracle.covered_after(box.candidates[best].T_world_camera), covered[best]);
-  EXPECT_EQ(oracle.covered_after(box.candidates[30].T_world_camera), covered[30]);
+  EXPECT_EQ(oracle.outcome_of(box.candidates[best].T_world_camera).covered, covered[best]);
+  EXPECT_EQ(oracle.outcome_of(box.candidates[30].T_world_camera).covered, covered[30]);
 }
 
 TEST(Oracle, CountsUncoveredSamplesInView) {

@@ -138,6 +138,29 @@ TEST_F(Reconstruct, LeavesAConsistentFolder) {
   }
 }
 
+TEST_F(Reconstruct, RanksByAGainOfTheLiterature) {
+  const json result =
+      reconstruct("cube.off", {"--max-views", "3", "--pictures", "off", "--size", "0.2", "--gain",
+                               "unknown_count", "--semantics", "shipped", "--generator", "sphere",
+                               "--count", "60"});
+  EXPECT_EQ(result["gain_model"], "unknown_count");
+  ASSERT_EQ(result["per_view"].size(), 3U);
+  for (std::size_t i = 1; i < 3; ++i) {
+    const double gain = result["per_view"][i]["predicted_gain"].get<double>();
+    EXPECT_GT(gain, 100);
+    EXPECT_EQ(gain, std::floor(gain));
+    EXPECT_GT(result["per_view"][i]["predicted_area"].get<double>(), 0);
+  }
+  const json settings = json::parse(read("run/run.json"))["settings"];
+  EXPECT_EQ(settings["gain"], "unknown_count");
+  EXPECT_EQ(settings["semantics"], "shipped");
+  EXPECT_EQ(settings["stop_area"], 0.0);
+  const test::ProgramResult refused =
+      run(arguments("cube.off", {"--policy", "random", "--gain", "unknown_count"}));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("--policy gain"), std::string::npos);
+}
+
 TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
   (void)reconstruct("cube.off", {"--max-views", "1", "--pictures", "off", "--size", "0.2"});
   const json run_file = json::parse(read("run/run.json"));

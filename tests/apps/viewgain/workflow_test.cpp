@@ -437,13 +437,14 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
       {"convert",
        "IN OUT --workspace --prior-sigma --sensor --with-covariance --json --threads .ot [m]"},
       {"score",
-       "MAP --poses --sphere --dome --rings --shell --orbit --center --sensor --gain "
+       "MAP --poses --sphere --dome --rings --shell --orbit --center --sensor --gain --semantics "
        "--refinement-weight "
        "--object-size --hazard --support-plane --obstacle --reach --feasible --body --criterion "
        "--stride --weight --prior-sigma "
        "--min-range --max-range --top --race --approximate --set --seed "
        "--out --picture --report --json --threads =log_diagonal =10 [m]"},
       {"sensors", "NAME --json --threads"},
+      {"study", "SPEC --out --jobs --plots --json --threads"},
       {"info", "MAP --hash --criterion --region --json --threads =log_diagonal"},
       {"candidates",
        "MAP --generator --sensor --count --distance --center --reach --body --support-plane "
@@ -451,7 +452,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--threads"},
       {"reconstruct",
        "MESH --sensor --voxel --size --workspace --up --start --distance --policy --generator "
-       "--count --gain --overlap --region-depth --object-size --hazard --criterion "
+       "--count --gain --semantics --overlap --region-depth --object-size --hazard --criterion "
        "--max-views --stop-gain "
        "--stop-area --stop-idle --stop-coverage "
        "--travel-cost --travel-speed --reach --body --background --support-plane --noise "
@@ -486,7 +487,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 195);
+  EXPECT_EQ(words, 203);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

@@ -23,6 +23,12 @@ struct VIEWGAIN_EXPORT KnownObject {
   SimulationConfig simulation{};  ///< of its surroundings; noise is left out
 };
 
+/// What a view really brings, without noise.
+struct VIEWGAIN_EXPORT TrueOutcome {
+  std::size_t covered = 0;     ///< samples of the mesh that the map's points cover afterwards
+  double entropy_removed = 0;  ///< of the whole map afterwards, by its criterion
+};
+
 /// The choice of one who knows the object: an upper reference for planners, and no planner. Looks
 /// one view ahead, so that a sequence of views may still be better.
 ///
@@ -46,10 +52,15 @@ class VIEWGAIN_EXPORT OracleChoice {
   /// How many of the samples that the surface does not cover yet each candidate sees.
   [[nodiscard]] std::vector<std::size_t> uncovered_in_view(
       std::span<const Candidate> candidates) const;
-  /// How many samples the map's points cover after a frame from there.
-  [[nodiscard]] std::size_t covered_after(const Pose& T_world_camera) const;
+  /// How many samples the map's points cover (within 5 mm), and what the map would know, after a
+  /// frame from there. Costs a simulated frame and a copy of the map.
+  [[nodiscard]] TrueOutcome outcome_of(const Pose& T_world_camera) const;
+  /// How many samples the map's points cover as it stands.
+  [[nodiscard]] std::size_t covered() const;
 
  private:
+  [[nodiscard]] std::size_t covered_by(const std::vector<FusedPoint>& points) const;
+
   const SurfaceModel& model_;
   Sensor sensor_;
   KnownObject object_;

@@ -13,6 +13,7 @@
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner_mesh/boundary_order.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/classic_choice.hpp"
 #include "viewgain/planner_mesh/oracle_choice.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -44,7 +45,8 @@ struct VIEWGAIN_EXPORT TravelCost {
 
 struct VIEWGAIN_EXPORT PolicyConfig {
   Policy policy = Policy::gain;
-  GainModel model = GainModel::combined;  ///< of Policy::gain
+  GainModel model = GainModel::combined;    ///< of Policy::gain
+  std::optional<ClassicRanking> classic{};  ///< of Policy::gain, instead of `model`
   Criterion criterion = Criterion::log_diagonal;
   std::optional<double> support_plane{};  ///< height [m], at which rays end
   TravelCost travel{};
@@ -52,9 +54,17 @@ struct VIEWGAIN_EXPORT PolicyConfig {
   std::uint64_t seed = 1;
 };
 
-/// set_stop_rules() of the policy: that of its gain, and where it does not choose by a gain neither
-/// gain nor area ends a run. Throws Error(invalid_argument), too, for an area or a gain above 0
-/// with such a policy.
+/// What a policy ranks candidates by, one entry a candidate.
+struct VIEWGAIN_EXPORT CandidateScores {
+  /// In the unit of the policy's gain; a count for frontier, [m] for proximity.
+  std::vector<double> score;
+  /// The new surface to be expected [m²]; NaN where the policy's gain does not say.
+  std::vector<double> area;
+};
+
+/// set_stop_rules() of the policy: that of its gain, and where it does not choose by a gain, or by
+/// a classic one, neither gain nor area ends a run. Throws Error(invalid_argument), too, for an
+/// area or a gain above 0 with such a policy.
 VIEWGAIN_EXPORT void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                                     std::optional<double> stop_gain,
                                     std::optional<double> stop_area);
@@ -70,7 +80,14 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking {
   std::optional<Decision> decide(const Pose& T_world_camera,
                                  std::span<const Candidate> candidates) override;
 
+  /// What the policy ranks these candidates by on the model as it stands, all of them by all rays
+  /// (proximity: by few) and the way there left out. Nothing for the policies that rank by no
+  /// figure of a view: kriegel, sequence, random, fibonacci, oracle.
+  [[nodiscard]] std::optional<CandidateScores> scores(std::span<const Candidate> candidates);
+
  private:
+  /// The evaluator by the policy's gain of the model's scene.
+  const GainEvaluator& evaluator();
   [[nodiscard]] std::optional<std::size_t> choose(const Pose& T_world_camera,
                                                   std::span<const Candidate> candidates,
                                                   const std::vector<ViewGain>& gains);
@@ -81,7 +98,9 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking {
   /// showed to be no match for others.
   [[nodiscard]] std::vector<ViewGain> score(const Pose& T_world_camera,
                                             std::span<const Candidate> candidates) const;
-  [[nodiscard]] std::size_t most_proximity(std::span<const Candidate> candidates);
+  /// The same by a classic gain. Where the way there counts, all have their gain.
+  [[nodiscard]] std::vector<ViewGain> score_classic(std::span<const Candidate> candidates);
+  [[nodiscard]] std::vector<double> proximities(std::span<const Candidate> candidates);
   /// The new surface to be expected of a view [m²], where the policy's own gain does not say.
   [[nodiscard]] double expected_area(const Pose& T_world_camera);
 
@@ -95,6 +114,7 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking {
   std::optional<GainEvaluator> coarse_;          ///< likewise, of few rays
   BoundaryOrder order_;
   std::optional<OracleChoice> oracle_;
+  std::optional<ClassicChoice> classic_;
 };
 
 }  // namespace viewgain

@@ -34,6 +34,12 @@ struct VIEWGAIN_EXPORT SurfaceModelConfig {
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<double> surface_sigmas(
     const SurfaceMesh& surface, const std::vector<FusedPoint>& points);
 
+/// What a model would hold after measurements that do not change it.
+struct VIEWGAIN_EXPORT ModelOutlook {
+  std::vector<FusedPoint> points;
+  double entropy_removed = 0;  ///< of the whole map, by the map's criterion
+};
+
 /// The two representations of the scene, the belief grid and the surface seen so far
 /// (UPDATEREPRESENTATIONS of Algorithm 1), and what is derived from them after each view.
 class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
@@ -50,9 +56,9 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   /// Throws Error(invalid_argument) if the first view has no reading in the workspace.
   ModelProgress update(const Measurements& measurements) override;
 
-  /// The points that the model would have after these measurements, which do not change it. Costs a
-  /// copy of the map beside what update() costs without a surface.
-  [[nodiscard]] std::vector<FusedPoint> points_after(const Measurements& measurements) const;
+  /// What the model would hold after these measurements, which do not change it. Costs a copy of
+  /// the map beside what update() costs without a surface.
+  [[nodiscard]] ModelOutlook after(const Measurements& measurements) const;
 
   [[nodiscard]] const MapModel& map() const noexcept { return map_; }
   [[nodiscard]] const BeliefGrid& grid() const noexcept { return map_.grid(); }

@@ -65,6 +65,8 @@ class VIEWGAIN_EXPORT Truth {
   [[nodiscard]] QualityFigures figures(const SurfaceMesh& surface,
                                        std::span<const FusedPoint> points) const;
 
+  /// What a sample stands for [m²].
+  [[nodiscard]] double area_per_sample() const noexcept { return area_per_sample_; }
   /// The samples, 10,000 of them.
   [[nodiscard]] const GroundTruth& ground_truth() const noexcept { return truth_; }
 

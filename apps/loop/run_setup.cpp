@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "reconstruct_setup.hpp"
+#include "run_setup.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "options/hazard_source.hpp"
+#include "options/json_text.hpp"
 #include "options/obstacle_source.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/error.hpp"
@@ -156,6 +157,17 @@ StageConfig stage_config(const ReconstructOptions& options) {
   return config;
 }
 
+void set_gain(const ReconstructOptions& options, PolicyConfig& policy) {
+  if (options.gain.empty()) return;
+  const std::vector<std::string>& classic = classic_gain_names();
+  if (std::find(classic.begin(), classic.end(), options.gain) == classic.end()) {
+    policy.model = parse_gain_model(options.gain);
+    return;
+  }
+  policy.classic = {parse_classic_gain(options.gain),
+                    parse_gain_semantics(options.semantics.empty() ? "paper" : options.semantics)};
+}
+
 nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, const RunSetup& setup) {
   nlohmann::ordered_json generators = nlohmann::ordered_json::array();
   if (setup.generation.at_boundaries) generators.push_back("boundary");
@@ -167,7 +179,8 @@ nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, cons
           {"start", to_json(setup.start)},
           {"distance", setup.distance},
           {"generators", generators},
-          {"gain", gain_model_name(setup.policy.model)},
+          {"gain", setup.policy.classic ? classic_gain_name(setup.policy.classic->gain)
+                                        : gain_model_name(setup.policy.model)},
           {"stop_gain", setup.planning.stop_gain},
           {"stop_gain_is_relative", setup.planning.stop_gain_is_relative},
           {"stop_area", setup.planning.stop_area},
@@ -206,7 +219,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   setup.visibility.surroundings = setup.simulation.surroundings =
       surroundings_of(setup.model.map.obstacles, exec);
   setup.policy.criterion = setup.model.map.criterion;
-  if (!options.gain.empty()) setup.policy.model = parse_gain_model(options.gain);
+  set_gain(options, setup.policy);
   setup.policy.support_plane = options.sensing.support_plane;
   setup.generation = generation_config(options, setup);
   setup.planning = planning_config(options, setup.policy);

@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "reconstruct_options.hpp"
+#include "run_options.hpp"
+
+#include <algorithm>
 
 #include "options/choices.hpp"
+#include "options/gain_names.hpp"
 #include "options/hazard_source.hpp"
 #include "options/obstacle_source.hpp"
 #include "options/sensing_flags.hpp"
@@ -10,6 +13,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
+#include "viewgain/raycast/classic_gains.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -77,8 +81,12 @@ void describe(Options& o, Visitor& visit) {
                counted(1, kMaxCount));
   visit.option("gain", "--gain", o.gain,
                "of --policy gain: paper (entropy removed), surface (new surface to be expected) or "
-               "combined (default)",
-               [](CLI::Option& option) { one_of(option, gain_model_names(), "gain"); });
+               "combined (default); or a gain of the literature",
+               [](CLI::Option& option) { one_of(option, all_gain_names(), "gain"); });
+  visit.option("semantics", "--semantics", o.semantics,
+               "of a gain of the literature: as the papers define it (default) or as the code that "
+               "was shipped with them computes it",
+               [](CLI::Option& option) { one_of(option, gain_semantics_names(), "semantics"); });
   visit.option("overlap", "--overlap", o.overlap, kOverlapHelp, shows_default);
   visit.option("region_depth", "--region-depth", o.region_depth, kRegionDepthHelp, shows_default);
   visit.option("object_size", "--object-size", o.object_size, kObjectSizeHelp, as_it_is);
@@ -157,6 +165,13 @@ void check(const ReconstructOptions& options) {
   if (!options.gain.empty() && parse_policy(options.policy) != Policy::gain) {
     throw Error(ErrorCode::invalid_argument,
                 "--gain " + options.gain + " goes with --policy gain, not " + options.policy);
+  }
+  const std::vector<std::string>& classic = classic_gain_names();
+  if (!options.semantics.empty() &&
+      std::find(classic.begin(), classic.end(), options.gain) == classic.end()) {
+    throw Error(ErrorCode::invalid_argument, "--semantics " + options.semantics +
+                                                 " goes with a gain of the literature (--gain " +
+                                                 classic.front() + ", ...)");
   }
   if (options.travel_cost > 0 && options.travel_speed) {
     throw Error(ErrorCode::invalid_argument,

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
+#include "options/common_options.hpp"
 #include "options/sensing.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner_mesh/boundary_generation.hpp"
@@ -29,6 +29,7 @@ struct ReconstructOptions {
   std::string generator;
   std::optional<std::size_t> count;
   std::string gain;
+  std::string semantics;
   double overlap = default_estimator(1.0).overlap;
   double region_depth = default_estimator(1.0).region_depth;
   std::optional<double> object_size;

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "reconstruct_options.hpp"
+#include "run_options.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/reach.hpp"
 #include "viewgain/core/sensor.hpp"

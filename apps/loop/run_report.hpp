@@ -3,24 +3,20 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "viewgain/core/criterion.hpp"
 #include "viewgain/core/planning.hpp"
+#include "viewgain/planner_mesh/policies.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
-#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
 
 /// What a run came to, for run.json, --json and people. apps/README.md names the keys.
 class RunReport {
  public:
-  /// `ranked_by`: the gain that the policy ranks candidates by; nothing if it ranks by another
-  /// thing. `criterion` is the map's and the paper's gain's.
-  RunReport(std::optional<GainModel> ranked_by, Criterion criterion);
+  explicit RunReport(const PolicyConfig& policy);
 
   /// To be called once a view, in order. `realised_area` is SurfaceModel's [m²], `seconds` are the
   /// totals so far.
@@ -48,7 +44,7 @@ class RunReport {
   };
   [[nodiscard]] nlohmann::ordered_json entry_json(std::size_t index) const;
 
-  std::optional<GainModel> ranked_by_;
+  std::string_view ranked_by_;  ///< the gain; empty: the policy ranks by another thing
   std::string_view gain_unit_, entropy_unit_;
   std::vector<Entry> views_;
   StageSeconds totals_;

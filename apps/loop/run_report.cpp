@@ -7,8 +7,8 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "commands.hpp"
-#include "options/gain_unit.hpp"
+#include "options/gain_names.hpp"
+#include "options/json_text.hpp"
 #include "options/values.hpp"
 
 namespace viewgain::app {
@@ -68,10 +68,18 @@ std::size_t total(const std::map<std::string, std::size_t>& counts) {
 
 }  // namespace
 
-RunReport::RunReport(std::optional<GainModel> ranked_by, Criterion criterion)
-    : ranked_by_(ranked_by),
-      gain_unit_(gain_unit(ranked_by.value_or(GainModel::paper), criterion_name(criterion))),
-      entropy_unit_(gain_unit(GainModel::paper, criterion_name(criterion))) {}
+RunReport::RunReport(const PolicyConfig& policy)
+    : entropy_unit_(gain_unit(GainModel::paper, criterion_name(policy.criterion))) {
+  gain_unit_ = entropy_unit_;  // what a policy without a gain foretells is the paper's
+  if (policy.policy != Policy::gain) return;
+  if (policy.classic) {
+    ranked_by_ = classic_gain_name(policy.classic->gain);
+    gain_unit_ = classic_gain_unit(policy.classic->gain);
+  } else {
+    ranked_by_ = gain_model_name(policy.model);
+    gain_unit_ = gain_unit(policy.model, criterion_name(policy.criterion));
+  }
+}
 
 void RunReport::add_view(const ViewRecord& record, const QualityFigures& quality,
                          double realised_area, const StageSeconds& seconds) {
@@ -149,7 +157,7 @@ const Proposal& RunReport::last_proposal() const {
 ordered_json RunReport::json(StopReason reason) const {
   const Entry& last = views_.back();
   ordered_json json{{"stop_reason", stop_reason_name(reason)}, {"views", views_.size()}};
-  json["gain_model"] = ranked_by_ ? ordered_json(gain_model_name(*ranked_by_)) : ordered_json();
+  json["gain_model"] = ranked_by_.empty() ? ordered_json() : ordered_json(ranked_by_);
   put_figures(json, last.quality, last.record.progress);
   json["travelled"] = last.record.travelled;
   const Proposal& proposal = last_proposal();

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run.hpp"
+
+#include <utility>
+
+namespace viewgain::app {
+namespace {
+
+PolicyConfig with_object(PolicyConfig policy, const RunSetup& setup,
+                         const std::shared_ptr<const Truth>& truth) {
+  policy.object = {setup.stage.scene, truth, setup.simulation};
+  return policy;
+}
+
+}  // namespace
+
+Run::Run(RunSetup setup, std::size_t frames_per_view, const ExecConfig& exec)
+    : setup_(std::move(setup)),
+      truth_(std::make_shared<const Truth>(setup_.stage.scene, setup_.sensor, setup_.visibility,
+                                           exec)),
+      acquisition_(SimulatedSensor(setup_.stage.scene, setup_.sensor, setup_.simulation, exec),
+                   frames_per_view, setup_.planning.stop),
+      model_(setup_.sensor, setup_.model, truth_, exec),
+      generation_(model_, setup_.sensor, setup_.generation, exec),
+      decision_(model_, generation_, setup_.sensor, with_object(setup_.policy, setup_, truth_),
+                exec) {}
+
+PlanningResult Run::go(const std::function<void(const ViewRecord&)>& observer) {
+  return active_view_planning(setup_.start, acquisition_, model_, generation_, decision_,
+                              setup_.planning, observer);
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "values.hpp"
+#include "viewgain/core/box.hpp"
+#include "viewgain/core/pose.hpp"
+
+namespace viewgain::app {
+
+[[nodiscard]] inline nlohmann::ordered_json to_json(const Box& box) {
+  return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
+}
+
+[[nodiscard]] inline nlohmann::ordered_json to_json(const Pose& pose) {
+  const auto& m = pose.m;
+  return {{m[0], m[1], m[2], m[3]},
+          {m[4], m[5], m[6], m[7]},
+          {m[8], m[9], m[10], m[11]},
+          {0.0, 0.0, 0.0, 1.0}};
+}
+
+/// With every text made UTF-8: a file name may be any bytes.
+[[nodiscard]] inline nlohmann::ordered_json with_utf8_text(nlohmann::ordered_json json) {
+  if (json.is_string()) return utf8_text(json.get_ref<const std::string&>());
+  if (json.is_structured()) {
+    for (nlohmann::ordered_json& part : json) part = with_utf8_text(std::move(part));
+  }
+  return json;
+}
+
+/// What run.json and --json hold.
+[[nodiscard]] inline std::string json_text(const nlohmann::ordered_json& json) {
+  return with_utf8_text(json).dump(2) + "\n";
+}
+
+inline void print_json(const nlohmann::ordered_json& json) {
+  std::fputs(json_text(json).c_str(), stdout);
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study_run.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <vector>
+
+#include "loop/run.hpp"
+#include "loop/run_options.hpp"
+#include "loop/run_report.hpp"
+#include "options/json_text.hpp"
+#include "prediction.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/stopwatch.hpp"
+#include "viewgain/core/text.hpp"
+
+namespace viewgain::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+// As the command line of `reconstruct` has them.
+ReconstructOptions options_of(const StudySpec& spec, const StudyRun& run) {
+  CLI::App app("reconstruct");
+  ReconstructOptions options;
+  add_options(app, options);
+  std::vector<std::string> words = reconstruct_words(spec, run);
+  std::reverse(words.begin(), words.end());  // as CLI11 wants them
+  try {
+    app.parse(std::move(words));
+  } catch (const CLI::ParseError& error) {
+    throw Error(ErrorCode::invalid_argument, error.what());
+  }
+  return options;
+}
+
+// Calls `work`; its errors name the run.
+template <typename Work>
+auto named(const StudySpec& spec, const StudyRun& run, Work&& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(error.code(), name_of(spec, run) + ": " + error.what());
+  }
+}
+
+ordered_json prediction_json(const PredictionQuality& quality) {
+  return {{"view", quality.view},
+          {"candidates", quality.outcomes.size()},
+          {"spearman_area", quality.spearman_area},
+          {"spearman_entropy", quality.spearman_entropy},
+          {"top1_share", quality.top1_share}};
+}
+
+std::string rows_of(const PredictionQuality& quality) {
+  std::string rows;
+  for (std::size_t i = 0; i < quality.outcomes.size(); ++i) {
+    const CandidateOutcome& outcome = quality.outcomes[i];
+    rows += std::to_string(quality.view) + "," + std::to_string(i);
+    for (const double value : {outcome.score, outcome.predicted_area, outcome.new_samples,
+                               outcome.new_area, outcome.entropy_removed}) {
+      rows.append(",").append(exact_text(value));
+    }
+    rows += "\n";
+  }
+  return rows;
+}
+
+std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& study_run, int threads,
+                                     const std::stop_token& stop) {
+  const ReconstructOptions options = options_of(spec, study_run);
+  const ExecConfig exec{threads};
+  RunSetup setup = set_up(options, exec);
+  setup.planning.stop = stop;
+  Run run(std::move(setup), options.frames_per_view, exec);
+  RunReport report(run.setup().policy);
+  StudyResult result;
+  ordered_json prediction = ordered_json::array();
+  const std::vector<std::size_t>& views = spec.prediction.views;
+  StageSeconds seconds;
+  const PlanningResult planned = run.go([&](const ViewRecord& record) {
+    for (const auto& [stage, value] : record.seconds) seconds[stage] += value;
+    report.add_view(record, run.model().quality().back(), run.model().realised_area(), seconds);
+    const bool is_asked = std::find(views.begin(), views.end(), record.index + 1) != views.end();
+    if (!is_asked || stop.stop_requested()) return;
+    const Stopwatch watch;
+    const PredictionQuality quality = predict(run, record, spec.prediction.candidates, exec, stop);
+    seconds["prediction"] += watch.seconds();
+    if (quality.outcomes.empty()) return;
+    prediction.push_back(prediction_json(quality));
+    result.prediction_rows += rows_of(quality);
+  });
+  if (stop.stop_requested() || planned.reason == StopReason::interrupted) return std::nullopt;
+  result.run = {{"configuration", study_run.configuration}};
+  result.run.update(report.json(planned.reason));
+  result.run["prediction"] = prediction;
+  return result;
+}
+
+}  // namespace
+
+void check_run(const StudySpec& spec, const StudyRun& run) {
+  named(spec, run, [&] { return set_up(options_of(spec, run), ExecConfig{}); });
+}
+
+std::optional<StudyResult> make_run(const StudySpec& spec, const StudyRun& run, int threads,
+                                    const std::stop_token& stop) {
+  return named(spec, run, [&] { return result_of(spec, run, threads, stop); });
+}
+
+}  // namespace viewgain::app

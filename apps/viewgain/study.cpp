@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "command_line/interrupt.hpp"
+#include "commands.hpp"
+#include "options/described_options.hpp"
+#include "study/markdown.hpp"
+#include "study/plots.hpp"
+#include "study/results.hpp"
+#include "study/runs.hpp"
+#include "study/spec.hpp"
+#include "study/study_run.hpp"
+#include "viewgain/core/atomic_file.hpp"
+#include "viewgain/core/stopwatch.hpp"
+
+namespace viewgain::app {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string spec;
+  std::string out;
+  std::size_t jobs = 0;
+  std::string plots = "on";
+};
+
+// A wrong name is known before hours of work.
+void check_runs(const StudySpec& spec) {
+  std::set<std::size_t> policies;
+  std::set<std::tuple<std::size_t, std::string, double, std::optional<double>>> scenes;
+  for (const StudyRun& run : spec.runs) {
+    const bool has_new_policy = policies.insert(run.policy).second;
+    const bool has_new_scene = scenes.insert({run.object, run.sensor, run.voxel, run.size}).second;
+    if (has_new_policy || has_new_scene) check_run(spec, run);
+  }
+}
+
+std::string time_text(double seconds) {
+  const auto whole = static_cast<long>(std::ceil(seconds));
+  if (whole < 120) return std::to_string(whole) + " s";
+  if (whole < 7200) return std::to_string((whole + 59) / 60) + " min";
+  return std::to_string((whole + 3599) / 3600) + " h";
+}
+
+void print_progress(const StudySpec& spec, const StudyProgress& progress, double seconds) {
+  const std::size_t total = spec.runs.size();
+  if (progress.run == nullptr) {
+    if (progress.done > 0) {
+      std::fprintf(stderr, "%zu of %zu runs are there\n", progress.done, total);
+    }
+    return;
+  }
+  const double left =
+      seconds / static_cast<double>(progress.made) * static_cast<double>(total - progress.done);
+  std::fprintf(stderr, "run %zu of %zu: %s, %.1f s; %s left\n", progress.done, total,
+               name_of(spec, *progress.run).c_str(), progress.seconds, time_text(left).c_str());
+}
+
+// All runs' prediction.csv in one, each row with what its run was.
+std::string predictions_csv(const StudySpec& spec, const StudyFolder& folder) {
+  std::string csv = std::string("object,policy,gain,semantics,seed,sensor,voxel,size,") +
+                    kPredictionColumns + "\n";
+  for (const StudyRun& run : spec.runs) {
+    const StudyPolicy& policy = spec.policies[run.policy];
+    std::string head = csv_text(spec.objects[run.object].name);
+    head.append(",").append(policy.policy).append(",").append(policy.gain).append(",");
+    head.append(policy.semantics).append(",").append(std::to_string(run.seed)).append(",");
+    head.append(csv_text(run.sensor)).append(",").append(short_text(run.voxel)).append(",");
+    if (run.size) head.append(short_text(*run.size));
+    const std::string rows = folder.prediction_rows(run);
+    for (std::size_t begin = 0; begin < rows.size();) {
+      const std::size_t end = rows.find('\n', begin) + 1;
+      csv.append(head).append(",").append(rows, begin, end - begin);
+      begin = end;
+    }
+  }
+  return csv;
+}
+
+void study(const Options& options) {
+  const StudySpec spec = read_study_spec(options.spec);
+  check_runs(spec);
+  const std::filesystem::path dir = options.out;
+  const StudyFolder folder(dir);
+  const std::size_t threads = options.common.threads > 0
+                                  ? static_cast<std::size_t>(options.common.threads)
+                                  : std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t jobs = options.jobs > 0 ? options.jobs : threads;
+  const auto threads_per_run = static_cast<int>(std::max<std::size_t>(1, threads / jobs));
+  const InterruptGuard interrupt;
+  const Stopwatch watch;
+  const bool complete = make_runs(spec, folder, jobs, threads_per_run, interrupt.token(),
+                                  [&](const StudyProgress& progress) {
+                                    if (!options.common.quiet)
+                                      print_progress(spec, progress, watch.seconds());
+                                  });
+  if (!complete) {
+    std::fprintf(stderr, "viewgain: stopped; the same call goes on with what is in %s\n",
+                 options.out.c_str());
+    return;
+  }
+
+  std::vector<ResultRow> rows;
+  for (const StudyRun& run : spec.runs) rows.push_back(row_of(spec, run, folder.read(run)));
+  const nlohmann::ordered_json json = results_json(spec, rows);
+  const std::string table = results_markdown(spec, rows);
+  write_file_atomically(dir / "results.csv", results_csv(spec, rows));
+  write_file_atomically(dir / "table.md", table);
+  if (!spec.prediction.views.empty()) {
+    write_file_atomically(dir / "predictions.csv", predictions_csv(spec, folder));
+  }
+  write_file_atomically(dir / "plots.py", plots_script());
+  write_file_atomically(dir / "results.json", json_text(json));
+  const bool is_drawn = options.plots == "on" && draw_plots(dir / "plots.py");
+  if (options.plots == "on" && !is_drawn) {
+    std::fprintf(stderr, "viewgain: no plots: \"python3 %s\" draws them where matplotlib is\n",
+                 (dir / "plots.py").c_str());
+  }
+  if (options.common.json) {
+    print_json(json);
+  } else {
+    std::printf("%s\nleft in %s: results.csv, results.json, table.md, plots.py%s%s, runs/\n",
+                table.c_str(), options.out.c_str(),
+                spec.prediction.views.empty() ? "" : ", predictions.csv",
+                is_drawn ? ", plots" : "");
+  }
+}
+
+}  // namespace
+
+Command add_study(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* app = program.add_subcommand(
+      "study",
+      "Compares policies and gains: a run of `reconstruct` for every object, policy, seed, sensor, "
+      "voxel and size of a spec, in one table; stopped and called again it goes on.");
+  app->add_option("SPEC", options->spec, "TOML file that says what to compare")->required();
+  app->add_option("--out", options->out, "folder for results; several machines may share it")
+      ->required();
+  app->add_option("--jobs", options->jobs, "runs at once; default: as many as threads")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000}, "count"));
+  switched(*app->add_option("--plots", options->plots, "draw plots, where python3 has matplotlib"));
+  add_common_options(*app, options->common);
+  add_help(*app, kLoopGroup, "study spec.toml --out study");
+  return {app, [options] { study(*options); }};
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <octomap/OcTree.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace viewgain::bench {
+
+/// NBV-Simulation's measure of progress: an OctoMap of 1 cm, hit 0.7, miss 0.4, whose box round the
+/// object starts at p = 0.5, with a scan a view by OctoMap's own insertPointCloud; counted are the
+/// voxels in the box with p > 0.65. A voxel that one scan hit and another passes falls to 0.61, so
+/// that the count can fall.
+class PeerMap {
+ public:
+  static constexpr double kVoxel = 0.01;          ///< [m]
+  static constexpr double kOccupiedAbove = 0.65;  ///< probability
+
+  /// The box is center ± size [m].
+  PeerMap(const Eigen::Vector3d& center, double size);
+
+  /// One scan: where its rays end [m], and from where.
+  void insert(std::span<const octomap::point3d> hits, const Eigen::Vector3d& eye);
+
+  [[nodiscard]] std::size_t occupied() const;
+
+  /// The voxels of 1 cm that the complete model's points lie in: what occupied() is divided by.
+  [[nodiscard]] static std::size_t voxels_of(const std::vector<Eigen::Vector3d>& points);
+
+ private:
+  Eigen::Vector3d low_;   ///< [m]
+  Eigen::Vector3d high_;  ///< [m]
+  octomap::OcTree tree_;
+};
+
+}  // namespace viewgain::bench

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <octomap/OcTree.h>
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+namespace viewgain::bench {
+
+/// A point of the true surface is covered by a reading that is within this of it [m].
+inline constexpr double kCoveredWithin = 0.0025;
+
+/// The share of a surface's points that readings have come near to.
+class PointCoverage {
+ public:
+  explicit PointCoverage(const std::vector<Eigen::Vector3d>& points) : points_(points) {}
+
+  void add(std::span<const octomap::point3d> readings);  ///< world [m]
+
+  [[nodiscard]] double share() const;
+
+ private:
+  const std::vector<Eigen::Vector3d>& points_;
+  std::vector<std::uint8_t> is_covered_ = std::vector<std::uint8_t>(points_.size(), 0);
+};
+
+}  // namespace viewgain::bench

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""A laser line scanner against the SR4000 on one object in the same time, after the paper's Fig. 6.
+
+Runs `viewgain reconstruct` with sensor sr4000, with laser_line chosen line by line, and with a sweep, a
+frame of 480 such lines, and prints as a Markdown table what each has after so many seconds: visible
+surface covered (5 mm), all of it at 2.5 mm, RMS of the surface, entropy removed (each sensor from its
+own prior). The time is that of a robot, not of this program:
+
+    way / speed + views * (settle + frame)      SR4000, sweeps: frame 1 / 20 s, 480 lines / line rate
+    way / speed + lines / line rate             laser_line: lines are taken in motion
+
+    perf/peers/sensors_in_time.py [--viewgain build/release/bin/viewgain] [--mesh build/release/meshes/camel.off]
+                                  [--out build/sensors_in_time] [--seconds 10,20,30,60] [--speed 0.25]
+                                  [--settle 0.5] [--line-rate 50] [--seeds 3] [-- arguments of reconstruct]
+"""
+
+import argparse
+import json
+import math
+import os
+import statistics
+import subprocess
+
+LINES = 480  # of a sweep
+LEAST_WAY = {"SR4000": 0.5, "laser_line": 0.08, "sweeps": 0.5}  # between views, in the mean [m]
+SWEEP = f"""name = "sweep of {LINES} lines"
+min_range = 0.1
+max_range = 1.0
+working_distance = 0.4
+
+[camera]
+width = 640
+height = {LINES}
+fx = 800.0
+fy = 800.0
+cx = 319.5
+cy = {(LINES - 1) / 2}
+
+[noise]
+model = "constant"
+sigma_axial = 0.0002
+sigma_lateral = 0.0002
+"""
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--viewgain", default="build/release/bin/viewgain")
+    parser.add_argument("--mesh", default="build/release/meshes/camel.off")
+    parser.add_argument("--out", default="build/sensors_in_time")
+    parser.add_argument("--seconds", default="10,20,30,60", help="rows of the table; the last is the budget")
+    parser.add_argument("--speed", type=float, default=0.25, help="of the camera [m/s]")
+    parser.add_argument("--settle", type=float, default=0.5, help="before a view [s]")
+    parser.add_argument("--line-rate", type=float, default=50, help="lines a second")
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("extra", nargs="*", help="further arguments of reconstruct, after --")
+    arguments = parser.parse_args()
+    arguments.seconds = [float(s) for s in arguments.seconds.split(",")]
+    return arguments
+
+
+def ways(arguments, budget):
+    """name -> (arguments of reconstruct, seconds a view)."""
+    sweep = os.path.join(arguments.out, "sweep.toml")
+    with open(sweep, "w", encoding="utf-8") as file:
+        file.write(SWEEP)
+    line = 1 / arguments.line_rate
+    each = {"SR4000": arguments.settle + 1 / 20, "laser_line": line, "sweeps": arguments.settle + LINES * line}
+    flags = {"SR4000": ["--sensor", "sr4000"], "sweeps": ["--sensor", sweep],
+             "laser_line": ["--sensor", "laser_line", "--generator", "shell", "--count", "500",
+                            "--travel-speed", str(arguments.speed)]}
+    def most(name):
+        return str(math.ceil(budget / (each[name] + LEAST_WAY[name] / arguments.speed)))
+
+    return {name: (flags[name] + ["--max-views", most(name)], each[name]) for name in each}
+
+
+def run(arguments, name, flags, seed):
+    command = [arguments.viewgain, "reconstruct", arguments.mesh, "--size", "0.35", "--voxel", "0.003125",
+               "--seed", str(seed), "--threads", "1", "--stop-area", "0", "--stop-idle", "0", "--pictures", "off",
+               "--report", "off", "--quiet", "--json", "--out", os.path.join(arguments.out, f"{name}-{seed}")]
+    command += flags + arguments.extra
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise SystemExit(f"{' '.join(command)}: {done.stderr.strip().splitlines()[-1:]}")
+    views = json.loads(done.stdout)["per_view"]
+    if views[-1]["travelled"] < LEAST_WAY[name] * (len(views) - 1):
+        raise SystemExit(f"{name}, seed {seed}: shorter ways than LEAST_WAY, so that the budget was not used up")
+    return views
+
+
+def at(views, seconds, per_view, speed):
+    """What there is after so many seconds; None before the first view."""
+    done = [v for i, v in enumerate(views) if v["travelled"] / speed + (i + 1) * per_view <= seconds]
+    return {"views": len(done), **done[-1]} if done else None
+
+
+def mean(states, key):
+    values = [s[key] for s in states if s[key] is not None]
+    return statistics.fmean(values) if values else float("nan")
+
+
+def cell(states):
+    if any(s is None for s in states):
+        return "-"
+    rms = 1e3 * mean(states, "rms_error")
+    return (f"{mean(states, 'views'):.0f} views: {100 * mean(states, 'coverage_visible'):.1f} %, "
+            f"{100 * mean(states, 'coverage_2_5mm'):.1f} %, {rms:.2f} mm, "
+            f"{mean(states, 'entropy_removed') / 1e3:.0f} knat")
+
+
+def main():
+    arguments = parse_arguments()
+    os.makedirs(arguments.out, exist_ok=True)
+    of = {}
+    for name, (flags, per_view) in ways(arguments, arguments.seconds[-1]).items():
+        of[name] = per_view, [run(arguments, name, flags, seed) for seed in range(1, arguments.seeds + 1)]
+    print("covered of the visible surface at 5 mm, of all at 2.5 mm, RMS of the surface, entropy removed\n")
+    print("| after | " + " | ".join(of) + " |\n|---|" + "---|" * len(of))
+    for seconds in arguments.seconds:
+        cells = [cell([at(views, seconds, per_view, arguments.speed) for views in runs])
+                 for per_view, runs in of.values()]
+        print(f"| {seconds:.0f} s | " + " | ".join(cells) + " |")
+
+
+if __name__ == "__main__":
+    main()
