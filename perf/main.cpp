@@ -4,15 +4,15 @@
 #include <cstdio>
 #include <exception>
 
-#include "benches/approximate_bench.hpp"
 #include "benches/bars.hpp"
-#include "benches/choose_bench.hpp"
 #include "benches/honesty_bench.hpp"
 #include "benches/integrate_bench.hpp"
 #include "benches/iteration_bench.hpp"
 #include "benches/peak_memory.hpp"
 #include "benches/scaling_bench.hpp"
 #include "benches/trace_bench.hpp"
+#include "choose/approximate_bench.hpp"
+#include "choose/choose_bench.hpp"
 #include "environment.hpp"
 #include "model_maps.hpp"
 #include "peers/armadillo_bench.hpp"
@@ -133,6 +133,9 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   choose_app->add_option("--maps", choose.maps, "maps of objects instead of the room")
+      ->check(CLI::Range(0, 200))
+      ->capture_default_str();
+  choose_app->add_option("--tuned", choose.tuned_maps, "the first so many maps are reported apart")
       ->check(CLI::Range(0, 200))
       ->capture_default_str();
   choose_app->add_option("--seed", choose.seed, "of poses, subsets, race and approximate")

@@ -311,7 +311,7 @@ gains : ndarray, (k,), structured
            py::arg("control") = py::none(),
            R"(The k best poses, very probably; see ``best``.
 
-All poses are scored by about 400 of their rays, and the best max(24, 4 k, 3 %) of them in
+All poses are scored by about 400 of their rays, and the best max(24, 4 k, 5 %) of them in
 full (1.6 % by the surface and the combined gain).
 
 Parameters

@@ -26,7 +26,7 @@ constexpr std::size_t kFewPoses = 24;
 
 // All poses are scored by about so many rays of the image, and at least this share of them in full.
 constexpr double kCoarseRays = 400;
-constexpr double kInFull = 0.016, kInFullByPaper = 0.03;
+constexpr double kInFull = 0.016, kInFullByPaper = 0.05;
 
 struct Estimate {
   std::size_t index = 0;

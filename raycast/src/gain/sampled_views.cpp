@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sampled_views.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -10,9 +11,10 @@ namespace {
 
 // Errors as shares of what is gained in voxels that one ray met: of how many small ones there are,
 // more where there are large ones too, since the small ones are then farther off and partly hidden;
-// of large ones. And the error of a lattice as a share of that of as many rays at random. Fitted,
-// see perf/README.md.
-constexpr double kChanceError = 0.028, kMixedError = 0.68, kLoneError = 0.42, kLatticeError = 0.9;
+// of large ones. And the error of a lattice as a share of that of as many rays at random; so few
+// rays as kFewRays know their scatter badly. Fitted, see perf/README.md.
+constexpr double kChanceError = 0.031, kMixedError = 0.73, kLoneError = 0.24;
+constexpr double kLatticeError = 0.87, kFewRays = 760;
 
 // Is the voxel at this place of a leaf free?
 bool is_free_in(const TraceMask& mask, std::uint32_t offset) {
@@ -169,10 +171,10 @@ double SampledViews::standard_error(const SampleTally& tally) const {
   const double scatter = lattices > 1 ? squares / (lattices * (lattices - 1.0)) : 0.0;
   const double chance = tally.gain > 0 ? tally.by_chance / tally.gain : 0.0;
   const double small = tally.by_chance * std::hypot(kChanceError, kMixedError * (1 - chance));
+  const double lattice = kLatticeError * std::hypot(1.0, (1 - chance) * kFewRays / std::max(1U, rays()));
   // What the sample's own rays see is no guess.
   const double guessed = 1 - 1 / step_squared_;
-  return std::hypot(kLatticeError * std::sqrt(scatter), guessed * small,
-                    guessed * kLoneError * tally.lone);
+  return guessed * std::hypot(lattice * std::sqrt(scatter), small, kLoneError * tally.lone);
 }
 
 }  // namespace viewgain::detail

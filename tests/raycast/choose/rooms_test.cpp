@@ -55,17 +55,22 @@ TEST_P(ApproximateInARoom, StandardErrorsCoverTheTruth) {
   const std::vector<ViewGain> truth = evaluator.evaluate(poses);
   std::size_t cases = 0;
   for (const double share : {0.02, 0.1, 0.5}) {
-    std::vector<ApproximateGain> estimates(poses.size());
-    ASSERT_EQ(evaluator.approximate(poses, estimates, {.share = share, .seed = 5}), poses.size());
-    std::size_t within = 0;
+    std::size_t within = 0, count = 0;
     double sum = 0, true_sum = 0;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const double off = std::abs(estimates[i].gain - truth[i].gain);
-      within += off <= 2 * estimates[i].standard_error ? 1U : 0U;
-      sum += estimates[i].gain, true_sum += truth[i].gain;
+    // Poses share a lattice, which may suit a room's walls or not: over some lattices.
+    for (std::uint64_t seed = 2; seed <= 5; ++seed) {
+      std::vector<ApproximateGain> estimates(poses.size());
+      ASSERT_EQ(evaluator.approximate(poses, estimates, {.share = share, .seed = seed}),
+                poses.size());
+      for (std::size_t i = 0; i < poses.size(); ++i, ++count) {
+        const double off = std::abs(estimates[i].gain - truth[i].gain);
+        within += off <= 2 * estimates[i].standard_error ? 1U : 0U;
+        sum += estimates[i].gain, true_sum += truth[i].gain;
+      }
     }
-    const double part = static_cast<double>(within) / static_cast<double>(poses.size());
-    EXPECT_GE(part, GetParam() == GainModel::paper ? 0.85 : 0.75) << share;
+    const double part = static_cast<double>(within) / static_cast<double>(count);
+    EXPECT_GE(part, 0.9) << share;
+    EXPECT_LE(part, 0.99) << share;
     EXPECT_NEAR(sum, true_sum, 0.08 * true_sum) << share;
     ++cases;
   }

@@ -15,6 +15,7 @@ struct ChooseOptions {
   int poses = 500;              ///< in the room
   int subsets = 60;             ///< of 100 of these
   int maps = 0;                 ///< of objects instead of the room, 2,000 poses each
+  int tuned_maps = 20;          ///< the first ones, which estimates were tuned on: reported apart
   std::uint64_t seed = 1;       ///< of poses and subsets, and of race and approximate
   std::string gain = "paper";
   bool json = false;
