@@ -171,7 +171,8 @@ double SampledViews::standard_error(const SampleTally& tally) const {
   const double scatter = lattices > 1 ? squares / (lattices * (lattices - 1.0)) : 0.0;
   const double chance = tally.gain > 0 ? tally.by_chance / tally.gain : 0.0;
   const double small = tally.by_chance * std::hypot(kChanceError, kMixedError * (1 - chance));
-  const double lattice = kLatticeError * std::hypot(1.0, (1 - chance) * kFewRays / std::max(1U, rays()));
+  const double lattice =
+      kLatticeError * std::hypot(1.0, (1 - chance) * kFewRays / std::max(1U, rays()));
   // What the sample's own rays see is no guess.
   const double guessed = 1 - 1 / step_squared_;
   return guessed * std::hypot(lattice * std::sqrt(scatter), small, kLoneError * tally.lone);
