@@ -180,7 +180,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// rays, every so manieth pixel and row, as approximate() does, and the best max(24, 4 k, 5 %)
   /// of them in full (by the other gains 1.6 %), so gains reported are exact. A view is lost if its
   /// 400 rays make it look worse than that many others: by the paper's gain the best of 2,000 poses
-  /// on 3 of 200 maps of objects, 0.3 % of its gain at most (perf/README.md). Images of under
+  /// on 3 to 6 of 200 maps of objects, 0.4 % of its gain at most (perf/README.md). Images of under
   /// 900 rays are all scored in full. By a measure of the user's own: the same two stages, in
   /// which the measure is asked about few rays. Where there are costs, such measures are brought to
   /// the scale of all rays by the median ratio of eight poses that are measured by both. Works with
