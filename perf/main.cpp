@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <exception>
 
-#include "benches/approximate_bench.hpp"
 #include "benches/bars.hpp"
 #include "benches/honesty_bench.hpp"
 #include "benches/integrate_bench.hpp"
@@ -12,6 +11,8 @@
 #include "benches/peak_memory.hpp"
 #include "benches/scaling_bench.hpp"
 #include "benches/trace_bench.hpp"
+#include "choose/approximate_bench.hpp"
+#include "choose/choose_bench.hpp"
 #include "environment.hpp"
 #include "model_maps.hpp"
 #include "peers/armadillo_bench.hpp"
@@ -20,6 +21,7 @@
 #include "peers/view_choice.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace {
 
@@ -109,12 +111,39 @@ int run(int argc, char** argv) {
   viewgain::bench::ApproximateOptions approximate;
   approximate.mesh = viewgain::test::camel_mesh_path();
   CLI::App* approximate_app = app.add_subcommand(
-      "approximate", "accuracy against speed of pixel strides and random sub-bundles");
+      "approximate", "accuracy against speed of pixel strides and of approximate()");
   add_common(*approximate_app, approximate.num_threads, approximate.voxels, approximate.repetitions,
              approximate.mesh, approximate.json);
   approximate_app->add_option("--poses", approximate.poses, "views")
       ->check(CLI::Range(40, 1000000))
       ->capture_default_str();
+
+  viewgain::bench::ChooseOptions choose;
+  CLI::App* choose_app = app.add_subcommand(
+      "choose", "race and approximate against scoring all, in a room or on maps of objects");
+  choose_app->add_option("--threads", choose.num_threads, "threads, 0: all")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  choose_app->add_option("--map", choose.map, "a room's map (.vdb); default: one made in memory")
+      ->check(CLI::ExistingFile);
+  choose_app->add_option("--poses", choose.poses, "in the room")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  choose_app->add_option("--subsets", choose.subsets, "of 100 of these poses, one race each")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  choose_app->add_option("--maps", choose.maps, "maps of objects instead of the room")
+      ->check(CLI::Range(0, 200))
+      ->capture_default_str();
+  choose_app->add_option("--tuned", choose.tuned_maps, "the first so many maps are reported apart")
+      ->check(CLI::Range(0, 200))
+      ->capture_default_str();
+  choose_app->add_option("--seed", choose.seed, "of poses, subsets, race and approximate")
+      ->capture_default_str();
+  choose_app->add_option("--gain", choose.gain, "paper, surface or combined")
+      ->check(CLI::IsMember(viewgain::gain_model_names()))
+      ->capture_default_str();
+  choose_app->add_flag("--json", choose.json, "print JSON");
 
   viewgain::bench::BarsOptions bars;
   bars.mesh = viewgain::test::camel_mesh_path();
@@ -258,6 +287,7 @@ int run(int argc, char** argv) {
   if (honesty_app->parsed()) return viewgain::bench::run_honesty(honesty);
   if (scaling_app->parsed()) return viewgain::bench::run_scaling(scaling);
   if (approximate_app->parsed()) return viewgain::bench::run_approximate(approximate);
+  if (choose_app->parsed()) return viewgain::bench::run_choose(choose);
   if (bars_app->parsed()) return viewgain::bench::run_bars(bars);
   if (memory_app->parsed()) return viewgain::bench::run_memory(memory);
   if (armadillo_app->parsed()) return viewgain::bench::run_armadillo(armadillo);

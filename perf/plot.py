@@ -56,7 +56,7 @@ def plot_bars(axes, result):
 
 
 def plot_approximate(axes, result):
-    for kind, label in (("stride", "pixel stride"), ("share", "random tiles")):
+    for kind, label in (("stride", "pixel stride"), ("share", "approximate: a lattice of rays")):
         ways = [way for way in result["ways"] if way["kind"] == kind]
         axes.plot([way["speed_over_full"] for way in ways],
                   [1 - way["rank_correlation"] for way in ways], marker="o", label=label)

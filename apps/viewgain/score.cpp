@@ -328,11 +328,10 @@ Command add_score(CLI::App& program) {
   auto* selection = app->add_option_group("selection", "at most one of; default: score all poses");
   selection->add_flag(
       "--race", options->race,
-      "the best poses, very probably, by parts of the views: successive halving, or for "
-      "surface and combined two stages");
+      "the best poses, very probably: all by about 400 of their rays, the best of these in full");
   selection
       ->add_option("--approximate", options->approximate,
-                   "SHARE: estimates with standard errors from this share of each view's tiles")
+                   "SHARE: estimates with standard errors from at most this share of each view's rays")
       ->check(CLI::Range(1e-6, 1.0, "share in (0, 1]"));
   selection
       ->add_option(

@@ -89,7 +89,7 @@ class ViewgainTrace : public TraceMethod {
     const auto tiles = tracer_.all_tiles();
     if (way_ == Way::bvh) return tracer_.trace_bvh(frame, tiles, visit);
     thread_local detail::TileBins bins;
-    tracer_.prepare(frame, tiles.size(), bins);
+    tracer_.prepare(frame, bins);
     tracer_.trace(frame, tiles, bins, visit);
   }
 

@@ -44,7 +44,7 @@ void tile_traversal(benchmark::State& state) {
     std::uint32_t hits = 0;
     const detail::PoseFrame& frame = micro.views[next++ % micro.views.size()].frame;
     const auto tiles = micro.tracer.all_tiles();
-    micro.tracer.prepare(frame, tiles.size(), bins);
+    micro.tracer.prepare(frame, bins);
     micro.tracer.trace(frame, tiles, bins,
                        [&](std::size_t, const detail::RayTile& tile) { hits += tile.hit; });
     benchmark::DoNotOptimize(hits);

@@ -133,10 +133,9 @@ py::object best(const Evaluator& self, const py::object& T_world_camera, std::si
 }
 
 py::object race(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
-                double interval, double first_share, double keep, std::uint64_t seed,
-                bool return_gains, Control* control) {
+                std::uint64_t seed, bool return_gains, Control* control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
-  const RaceConfig config{interval, first_share, keep, seed};
+  const RaceConfig config{seed};
   BestViews result;
   run_batch(control, [&](const BatchControl& watched) {
     result = self.evaluator.race(batch.poses, k, config, watched);
@@ -157,9 +156,9 @@ py::object best_set(const Evaluator& self, const py::object& T_world_camera, std
 }
 
 py::object approximate(const Evaluator& self, const py::object& T_world_camera, double share,
-                       int groups, std::size_t anchors, std::uint64_t seed, Control* control) {
+                       std::uint64_t seed, Control* control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
-  const ApproximateConfig config{share, groups, anchors, seed};
+  const ApproximateConfig config{share, seed};
   py::array_t<ApproximateGain> estimates(batch.shape);
   const std::span<ApproximateGain> out(estimates.mutable_data(), batch.poses.size());
   run_batch(control, [&](const BatchControl& watched) {
@@ -308,26 +307,17 @@ indices : ndarray, (k,), int64
 gains : ndarray, (k,), structured
     As from ``evaluate_detailed``; only if return_gains.)")
       .def("race", &race, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
-           py::arg("interval") = race_defaults.interval,
-           py::arg("first_share") = race_defaults.first_share, py::arg("keep") = race_defaults.keep,
            py::arg("seed") = race_defaults.seed, py::arg("return_gains") = false,
            py::arg("control") = py::none(),
            R"(The k best poses, very probably; see ``best``.
 
-By the paper's gain: successive halving on random tiles of the images. By the surface and the
-combined gain all poses are scored by about 400 rays, and max(32, 4 k, 1.5 %) of them in full; the
-parameters below then only have to be in range.
+All poses are scored by about 400 of their rays, and the best max(24, 4 k, 5 %) of them in
+full (1.6 % by the surface and the combined gain).
 
 Parameters
 ----------
-interval : float
-    Half width of a pose's confidence interval [standard errors].
-first_share : float
-    Of the tiles of an image in the first round, then five times as many.
-keep : float
-    Share of the poses that a round leaves at most.
 seed : int
-    Which tiles.
+    Which rays, by the paper's gain; by the others they are in the middle.
 
 Returns
 -------
@@ -346,22 +336,16 @@ gains : ndarray, (<= k,), structured
     What each adds to those before it; only if return_gains.)")
       .def("approximate", &approximate, py::arg("T_world_camera"), py::kw_only(),
            py::arg("share") = approximate_defaults.share,
-           py::arg("groups") = approximate_defaults.groups,
-           py::arg("anchors") = approximate_defaults.anchors,
            py::arg("seed") = approximate_defaults.seed, py::arg("control") = py::none(),
-           R"(Estimates of the gains from a part of each view.
+           R"(Estimates of the gains from a part of each view's rays.
 
 Parameters
 ----------
 T_world_camera : array_like, (..., 4, 4)
 share : float
-    Of a view's tiles that are traced, in (0, 1].
-groups : int
-    Random groups that the standard error comes from, 2 to 64.
-anchors : int
-    Poses scored in full, for the correction of the bias.
+    Of a view's rays that are traced at most, in (0, 1]; at 1 the gain itself, standard error 0.
 seed : int
-    Which tiles.
+    Which rays.
 
 Returns
 -------

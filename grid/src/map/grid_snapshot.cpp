@@ -161,20 +161,55 @@ Eigen::Vector3d GridSnapshot::center(Index3 voxel) const {
   return T_world_grid * voxel_center(voxel, voxel_size);
 }
 
-const SnapshotLeaf* GridSnapshot::find_leaf(Index3 voxel) const {
-  const BlockLattice lattice(min_index, dims);
-  if (!lattice.contains(voxel)) return nullptr;
+namespace {
+
+// The region that holds a voxel of the workspace, if it is listed.
+std::optional<std::size_t> listed_region(const GridSnapshot& snapshot, const BlockLattice& lattice,
+                                         Index3 voxel) {
+  const std::vector<SnapshotRegion>& regions = snapshot.regions;
   const std::uint64_t number = lattice.key(voxel) >> 6U;
   const auto region =
       std::lower_bound(regions.begin(), regions.end(), number,
                        [](const SnapshotRegion& r, std::uint64_t n) { return r.number < n; });
-  if (region == regions.end() || region->number != number) return nullptr;
+  if (region == regions.end() || region->number != number) return std::nullopt;
+  return static_cast<std::size_t>(region - regions.begin());
+}
+
+const SnapshotLeaf* leaf_in(const GridSnapshot& snapshot, std::size_t region, Index3 voxel) {
   const Index3 origin = block_origin(voxel);
-  const auto [first, last] = leaves_of(static_cast<std::size_t>(region - regions.begin()));
+  const auto [first, last] = snapshot.leaves_of(region);
   for (std::uint32_t i = first; i < last; ++i) {
-    if (leaves[i].origin == origin) return &leaves[i];
+    if (snapshot.leaves[i].origin == origin) return &snapshot.leaves[i];
   }
   return nullptr;
+}
+
+}  // namespace
+
+const SnapshotLeaf* GridSnapshot::find_leaf(Index3 voxel) const {
+  const BlockLattice lattice(min_index, dims);
+  if (!lattice.contains(voxel)) return nullptr;
+  const auto region = listed_region(*this, lattice, voxel);
+  return region ? leaf_in(*this, *region, voxel) : nullptr;
+}
+
+bool GridSnapshot::is_free(Index3 voxel) const {
+  const BlockLattice lattice(min_index, dims);
+  if (!lattice.contains(voxel)) return true;
+  const auto in_tile = [&](std::uint32_t first, std::uint32_t last) {
+    return std::any_of(tiles.begin() + first, tiles.begin() + last,
+                       [&](const VoxelBox& tile) { return tile.contains(voxel); });
+  };
+  if (const auto region = listed_region(*this, lattice, voxel)) {
+    if (const SnapshotLeaf* leaf = leaf_in(*this, *region, voxel)) {
+      return !test_bit(leaf->non_free, block_offset(voxel));
+    }
+    const auto [first, last] = tiles_of(*region);
+    if (in_tile(first, last)) return false;
+  }
+  const auto large =
+      regions.empty() ? static_cast<std::uint32_t>(tiles.size()) : regions.front().first_tile;
+  return !in_tile(0, large);
 }
 
 GridSnapshot BeliefGrid::snapshot() const { return snapshot(GridSnapshot{}); }

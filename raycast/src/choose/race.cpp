@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The best views of a batch, very probably: by successive halving, or in two stages where rays go
-// on through unknown voxels.
+// The best views of a batch, very probably: all are scored by few of their rays, the best of these
+// in full.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -13,46 +12,25 @@
 
 #include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
+#include "gain/sampled_views.hpp"
 #include "race_by_measure.hpp"
 #include "ranking.hpp"
-#include "tile_sample.hpp"
+#include "ray_lattices.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
 
-constexpr std::size_t kGroups = 4;
-// Each round traces this many times the tiles of the one before, up to this share of all; the first
-// what was asked for.
-constexpr double kGrowth = 5, kLastShare = 0.25;
-// Fewer tiles a group say nothing.
-constexpr double kLeastTiles = 8;
 // So few poses are scored in full without ado.
-constexpr std::size_t kFewPoses = 32;
+constexpr std::size_t kFewPoses = 24;
 
-void check(const RaceConfig& config) {
-  const auto reject = [](const char* name, double value, const char* rule) {
-    throw Error(ErrorCode::invalid_argument,
-                std::string(name) + " is " + short_text(value) + "; it must be in " + rule);
-  };
-  if (!(config.interval > 0 && config.interval < 1e6)) {
-    reject("interval", config.interval, "(0, 1e6)");
-  }
-  if (!(config.first_share > 0 && config.first_share <= 1)) {
-    reject("first share", config.first_share, "(0, 1]");
-  }
-  if (!(config.keep > 0 && config.keep <= 1)) reject("share to keep", config.keep, "(0, 1]");
-}
-
-// Of the surface and the combined gain all poses are scored by about so many rays of the image, and
-// at least this share of them in full.
+// All poses are scored by about so many rays of the image, and at least this share of them in full.
 constexpr double kCoarseRays = 400;
-constexpr double kInFull = 0.015;
+constexpr double kInFull = 0.016, kInFullByPaper = 0.05;
 
 struct Estimate {
   std::size_t index = 0;
-  double gain = 0, standard_error = 0;
+  double gain = 0;
 };
 
 // The poses that are still in, and what they were compared by.
@@ -71,88 +49,36 @@ struct Field {
 
 using Report = std::function<void(std::size_t done)>;
 
-// Every so manieth pixel and row leave about kCoarseRays.
-int coarse_step(const detail::EvaluatorCore& core) {
-  return static_cast<int>(std::lround(std::sqrt(core.ray_count / kCoarseRays)));
-}
-
 // So many poses are scored in full in the second stage.
-std::size_t in_second_stage(std::size_t k, std::size_t poses) {
-  return std::max({kFewPoses, 4 * k,
-                   static_cast<std::size_t>(std::ceil(kInFull * static_cast<double>(poses)))});
+std::size_t in_second_stage(std::size_t k, std::size_t poses, double share) {
+  return std::max(
+      {kFewPoses, 4 * k, static_cast<std::size_t>(std::ceil(share * static_cast<double>(poses)))});
 }
 
-// Leaves those `few` that score best on every so manieth pixel and row; all where images have no
-// more rays than that. False if it was stopped.
-bool choose_by_coarse_rays(const detail::ViewDriver& driver, const VoxelScene& scene,
-                           std::span<const Pose> T_world_camera, std::size_t few,
-                           std::span<const double> costs, const BatchControl& control,
-                           const Report& report, Field& field) {
+// Leaves those `few` that score best by a lattice of their rays; all where images have no more rays
+// than that. False if it was stopped.
+bool choose_by_few_rays(const detail::ViewDriver& driver, const VoxelScene& scene,
+                        std::span<const Pose> T_world_camera, std::size_t few,
+                        const RaceConfig& config, const BatchControl& control, const Report& report,
+                        Field& field) {
   const detail::EvaluatorCore& core = *driver.core();
-  const int every = coarse_step(core);
-  if (every <= 1) return true;
-  const int stride = core.config.pixel_stride * every;
-  const detail::ViewDriver coarse(scene, std::make_shared<detail::EvaluatorCore>(core, stride));
+  const int step = detail::step_for_rays(core, kCoarseRays);
+  if (step <= 1) return true;
+  const detail::SampledViews coarse(scene, driver,
+                                    driver.surface() == nullptr
+                                        ? detail::random_lattice(core, step, config.seed)
+                                        : detail::centred_lattice(core, step));
   const bool complete = detail::for_each(
       driver, field.poses.size(), control, [&](std::size_t j, detail::ViewDriver::Lease& lease) {
         Estimate& e = field.poses[j];
-        e.gain = coarse.evaluate(T_world_camera[e.index], lease).gain;
-        if (!costs.empty()) e.gain -= costs[e.index];
+        e.gain = coarse.estimate(T_world_camera[e.index], lease).gain;
+        if (!config.costs.empty()) e.gain -= config.costs[e.index];
       });
   if (!complete) return false;
-  field.rays_traced += std::uint64_t{coarse.core()->ray_count} * field.poses.size();
+  field.rays_traced += std::uint64_t{coarse.rays()} * field.poses.size();
   field.sort();
   if (field.poses.size() > few) field.poses.resize(few);
   report(T_world_camera.size() - field.poses.size());
-  return true;
-}
-
-// Successive halving, until there are no more than `few`. False if it was stopped.
-bool choose_by_bundles(const detail::ViewDriver& driver, std::span<const Pose> T_world_camera,
-                       std::size_t k, std::size_t few, const RaceConfig& config,
-                       const BatchControl& control, const Report& report, Field& field) {
-  const detail::TileTable& table = driver.tracer().table();
-  std::vector<Estimate>& poses = field.poses;
-  for (double share = config.first_share;
-       share <= std::max(kLastShare, config.first_share) && poses.size() > few; share *= kGrowth) {
-    // Bundles are nested: each round's begin with those of the round before.
-    const auto per_group = static_cast<std::size_t>(std::max(
-        kLeastTiles, std::round(share * static_cast<double>(table.tile_count) / double{kGroups})));
-    const auto tiles = detail::random_tiles(table, kGroups, per_group, config.seed);
-    std::uint64_t rays = 0;
-    for (const auto& group : tiles) rays += detail::rays_of(table, group);
-    const double part = static_cast<double>(rays) / driver.core()->ray_count;
-    const bool complete = detail::for_each(
-        driver, poses.size(), control, [&](std::size_t j, detail::ViewDriver::Lease& lease) {
-          std::array<double, kGroups> gains;
-          detail::sample(driver, T_world_camera[poses[j].index], tiles, gains, lease);
-          double sum = 0, squares = 0;
-          for (const double gain : gains) sum += gain, squares += gain * gain;
-          constexpr auto n = static_cast<double>(kGroups);
-          poses[j].gain = sum;
-          if (!config.costs.empty()) poses[j].gain -= part * config.costs[poses[j].index];
-          poses[j].standard_error = std::sqrt(std::max(0.0, squares - sum * sum / n) * n / (n - 1));
-        });
-    if (!complete) return false;
-    field.rays_traced += rays * poses.size();
-
-    field.sort();
-    if (poses.size() <= few) break;
-    // Who is left: at most a share, and of those who may still be among the k best.
-    std::vector<double> least;
-    for (const Estimate& e : poses) least.push_back(e.gain - config.interval * e.standard_error);
-    std::nth_element(least.begin(), least.begin() + static_cast<std::ptrdiff_t>(k - 1), least.end(),
-                     std::greater<>());
-    const double to_reach = least[k - 1];
-    const auto kept =
-        static_cast<std::size_t>(std::ceil(config.keep * static_cast<double>(poses.size())));
-    poses.resize(std::min(poses.size(), std::max(few, kept)));
-    std::size_t place = 0;
-    std::erase_if(poses, [&](const Estimate& e) {
-      return place++ >= few && e.gain + config.interval * e.standard_error < to_reach;
-    });
-    report(T_world_camera.size() - poses.size());
-  }
   return true;
 }
 
@@ -160,7 +86,6 @@ bool choose_by_bundles(const detail::ViewDriver& driver, std::span<const Pose> T
 
 RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t k,
                                const RaceConfig& config, const BatchControl& control) const {
-  check(config);
   const std::size_t count = T_world_camera.size();
   detail::check_costs(config.costs, count);
   k = std::min(k, count);
@@ -172,13 +97,13 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
   if (config.measure != nullptr || config.run_measure != nullptr) {
     const detail::EvaluatorCore& core = *impl_->driver.core();
     std::optional<GainEvaluator> coarse;
-    if (const int every = coarse_step(core); every > 1) {
+    if (const int step = detail::step_for_rays(core, kCoarseRays); step > 1) {
       coarse = GainEvaluator(std::make_unique<Impl>(
           impl_->scene,
-          std::make_shared<detail::EvaluatorCore>(core, core.config.pixel_stride * every)));
+          std::make_shared<detail::EvaluatorCore>(core, detail::centred_lattice(core, step))));
     }
     return detail::race_by_measure(*this, coarse ? &*coarse : nullptr, T_world_camera, k,
-                                   in_second_stage(k, count), config, control);
+                                   in_second_stage(k, count, kInFull), config, control);
   }
   // Poses are done when they are out.
   const Report report = [&](std::size_t done) {
@@ -189,15 +114,10 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
   Field field;
   field.poses.resize(count);
   for (std::size_t i = 0; i < count; ++i) field.poses[i].index = i;
-  if (driver.surface() == nullptr) {
-    best.complete = choose_by_bundles(driver, T_world_camera, k, std::max(kFewPoses, 4 * k), config,
-                                      control, report, field);
-  } else {
-    const std::size_t few = in_second_stage(k, count);
-    best.complete =
-        count <= few || choose_by_coarse_rays(driver, *impl_->scene, T_world_camera, few,
-                                              config.costs, control, report, field);
-  }
+  const std::size_t few =
+      in_second_stage(k, count, driver.surface() == nullptr ? kInFullByPaper : kInFull);
+  best.complete = count <= few || choose_by_few_rays(driver, *impl_->scene, T_world_camera, few,
+                                                     config, control, report, field);
   best.rays_traced = field.rays_traced;
   if (!best.complete) return best;
 
@@ -205,13 +125,16 @@ RacedViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t
   std::vector<std::uint8_t> in_field(count, 0);
   for (const Estimate& e : field.poses) in_field[e.index] = 1;
   for (std::size_t i = 0; i < count && field.poses.size() < k; ++i) {
-    if (in_field[i] == 0) field.poses.push_back({i, 0, 0});
+    if (in_field[i] == 0) field.poses.push_back({i, 0});
   }
   for (const Estimate& e : field.poses) best.scored_indices.push_back(e.index);
   std::sort(best.scored_indices.begin(), best.scored_indices.end());
   best.scored_gains.resize(best.scored_indices.size());
-  best.complete = detail::evaluate_some(driver, T_world_camera, best.scored_indices,
-                                        best.scored_gains, control);
+  best.complete = detail::for_each(driver, best.scored_indices.size(), control,
+                                   [&](std::size_t j, detail::ViewDriver::Lease& lease) {
+                                     best.scored_gains[j] = driver.evaluate(
+                                         T_world_camera[best.scored_indices[j]], lease);
+                                   });
   if (!best.complete) {
     // Those that were not reached look like bad poses.
     std::size_t kept = 0;

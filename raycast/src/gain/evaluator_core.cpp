@@ -78,17 +78,6 @@ const Sensor& checked(const Sensor& sensor, const GainConfig& config) {
   return sensor;
 }
 
-// The camera shifted so that the strided rays stand in the middle of those of `full`.
-PinholeCamera centred(const SensorRays& full, int stride) {
-  PinholeCamera camera = full.camera;
-  const auto shift = [&](int rays, int pixels) {
-    return 0.5 * ((rays - 1) * full.pixel_stride - (strided(pixels, stride) - 1) * stride);
-  };
-  camera.cx -= shift(full.table.columns, camera.width);
-  camera.cy -= shift(full.table.rows, camera.height);
-  return camera;
-}
-
 std::uint32_t rays_of(const SensorRays& rays) {
   std::uint32_t count = 0;
   for (const std::uint16_t lanes : rays.table.valid) {
@@ -110,16 +99,16 @@ EvaluatorCore::EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config
       ray_count(rays_of(*rays)),
       pool(exec.num_threads) {}
 
-EvaluatorCore::EvaluatorCore(const EvaluatorCore& full, int pixel_stride)
+EvaluatorCore::EvaluatorCore(const EvaluatorCore& full, const RayLattice& lattice)
     : config(full.config),
       sigmas(full.sigmas),
       working_distance(full.working_distance),
       min_range(full.min_range),
       max_range(full.max_range),
-      rays(std::make_shared<const SensorRays>(centred(*full.rays, pixel_stride), pixel_stride)),
+      rays(std::make_shared<const SensorRays>(*full.rays, lattice)),
       ray_count(rays_of(*rays)),
       pool(1) {
-  config.pixel_stride = pixel_stride;
+  config.pixel_stride = rays->pixel_stride;
 }
 
 double EvaluatorCore::prior_sigma_in(const VoxelScene& scene) const {

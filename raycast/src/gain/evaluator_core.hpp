@@ -22,6 +22,8 @@ namespace viewgain::detail {
 
 /// A voxel that a ray may end in, and what the ray would show there.
 struct SurfaceShare {
+  int lane;     ///< the ray's, in its tile
+  float range;  ///< where the ray enters [voxels]
   Index3 voxel;
   bool is_occupied;
   double probability;              ///< P; occupied: T
@@ -29,12 +31,20 @@ struct SurfaceShare {
   SymmetricMatrix3 information{};  ///< occupied, combined: T Λ_r [m⁻²]
 };
 
+/// A ray of a sample that ends in an occupied voxel.
+struct SampledEnd {
+  std::size_t entry;  ///< of OccupiedSums
+  int lane;
+  double expected;  ///< SampledVoxel's
+};
+
 /// What a thread needs for a view. Serves the views of any scene, one after another.
 struct Workspace {
   TileBins bins;
   std::vector<ViewHit> view_hits;  ///< for a gain of the user's own
   std::vector<ViewRun> view_runs;
-  OccupiedSums occupied;  ///< these three for the surface gain
+  OccupiedSums occupied;  ///< these four for the surface gain
+  std::vector<SampledEnd> sampled_ends;
   std::vector<VoxelVisit> visits;
   std::vector<SurfaceShare> shares;
   std::optional<GainAccumulator> accumulator;  ///< made when first needed
@@ -65,9 +75,8 @@ struct EvaluatorCore {
 
   /// Throws Error(invalid_argument), naming the value, as GainEvaluator's constructor.
   EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config, const ExecConfig& exec);
-  /// The same with another pixel stride, its rays in the middle of those of `full`. Has no threads
-  /// of its own.
-  EvaluatorCore(const EvaluatorCore& full, int pixel_stride);
+  /// The same with some of the rays. Has no threads of its own.
+  EvaluatorCore(const EvaluatorCore& full, const RayLattice& lattice);
 
   /// The sensor's sigmas at range t [m], frontal.
   [[nodiscard]] MeasurementSigmas frontal(double t) const {

@@ -78,6 +78,7 @@ void GainAccumulator::rebind(const SceneData& scene, const GainSettings& setting
 void GainAccumulator::begin() {
   batch_.count = 0;
   hits_ = 0;
+  is_sample_ = false;
   for (std::size_t i = 0; i < touched_count_; ++i) places_[touched_[i]] = kNone;
   for (const std::uint32_t primitive : touched_primitives_) by_primitive_[primitive] = kNone;
   touched_primitives_.clear();
@@ -131,6 +132,7 @@ inline std::uint32_t GainAccumulator::code_of(std::uint32_t primitive, std::uint
 
 void GainAccumulator::flush() {
   kernels_->expand(settings_->sigmas, scene_->snapshot.voxel_size, batch_);
+  if (is_sample_) count_hits();
   // Three loops of independent steps, so that many memory requests are in flight at once.
   const std::size_t count = batch_.count;
   std::uint32_t codes[kBatchSize + kTileRays];
@@ -156,9 +158,34 @@ void GainAccumulator::flush() {
     keep[i] = std::uint64_t{is_new} - 1;
   }
   touched_count_ = touched_count;
+  if (is_sample_) {
+    for (std::size_t i = 0; i < count; ++i) sampled_[hits_ + i].place = places[i];
+  }
   kernels_->accumulate(batch_, places, keep, sums_.data());
   hits_ += static_cast<std::uint32_t>(count);
   batch_.count = 0;
+}
+
+// A voxel's sum has room for two numbers more: its hits, and what they are expected to be.
+void GainAccumulator::count_hits() {
+  for (std::size_t i = 0; i < batch_.count; ++i) {
+    batch_.information_b[i][2] = 1;
+    batch_.information_b[i][3] = 1 / static_cast<double>(batch_.expected[i]);
+  }
+}
+
+void GainAccumulator::begin_sample() {
+  begin();
+  is_sample_ = true;
+  sampled_.clear();
+}
+
+void GainAccumulator::add(const RayTile& tile, const float* expected) {
+  for (std::uint32_t left = tile.hit; left != 0; left &= left - 1) {
+    sampled_.push_back({0, static_cast<std::uint32_t>(std::countr_zero(left))});
+  }
+  std::copy_n(expected, std::popcount(tile.hit), batch_.expected + batch_.count);
+  add(tile);
 }
 
 void GainAccumulator::add(const HitList& hits) {
@@ -221,6 +248,43 @@ GainAccumulator::ClassGain GainAccumulator::finish_class(std::span<const std::ui
     sum += w * (logarithmic ? 0.5 * std::log(each[i]) : each[i]);
   }
   return {sum, posterior.log()};
+}
+
+// What voxels of one class gain with those that they stand for; copies_ are then a hit's share.
+void GainAccumulator::spread(std::span<const std::uint32_t> members, bool is_known,
+                             double rays_each, SampleTally& tally) {
+  for (const std::uint32_t place : members) {
+    VoxelSum& sum = sums_[place];
+    const SampledVoxel voxel(sum.b[2], sum.b[2] / sum.b[3], rays_each);
+    for (double& value : sum.a) value *= voxel.rays_per_hit;
+    for (std::size_t k = 0; k < 2; ++k) sum.b[k] *= voxel.rays_per_hit;
+    copies_[place] = voxel.copies;
+  }
+  sampled_each_.resize(members.size() + kOverhang);
+  LogProduct ratios, posterior;
+  kernels_->finish(settings_->criterion, settings_->prior_information,
+                   {sums_.data(), members.data(), is_known ? known_a_.data() : nullptr,
+                    known_b_.data(), members.size()},
+                   ratios, posterior, sampled_each_.data());
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const std::uint32_t place = members[i];
+    const double hits = sums_[place].b[2], expected = hits / sums_[place].b[3];
+    double gain = settings_->criterion == Criterion::trace ? sampled_each_[i]
+                                                           : 0.5 * std::log(sampled_each_[i]);
+    gain *= copies_[place];
+    if (!settings_->weights.empty()) gain *= weight(touched_[place]);
+    tally.add(gain, hits, expected);
+    copies_[place] = gain / hits;
+  }
+}
+
+void GainAccumulator::finish_sample(double rays_each, SampleTally& tally) {
+  close();
+  look_up();
+  copies_.resize(touched_count_);
+  spread({unknown_.data(), unknown_count_}, false, rays_each, tally);
+  spread({occupied_.data(), occupied_count_}, true, rays_each, tally);
+  for (const SampledHit& hit : sampled_) tally.by_lane[hit.lane] += copies_[hit.place];
 }
 
 GainAccumulator::ClassGain GainAccumulator::explored() {

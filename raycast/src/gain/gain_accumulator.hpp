@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gain_kernels.hpp"
+#include "ray_sample.hpp"
 #include "scene/scene_data.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -68,6 +69,13 @@ class GainAccumulator {
   [[nodiscard]] ClassGain refined();
   void finish(const ClassGain& explored, const ClassGain& refined, ViewGain& result) const;
 
+  /// The same for some of a view's rays, which stand for all: instead of begin(), add() and
+  /// finish(). `expected` has a number for each of the tile's hits, by lane: SampledVoxel's.
+  void begin_sample();
+  void add(const RayTile& tile, const float* expected);
+  /// What the hits' voxels and those that they stand for gain; a ray stands for `rays_each`.
+  void finish_sample(double rays_each, SampleTally& tally);
+
   /// Calls visit(key, known, sum, weight) for every voxel touched so far: its key, Λ_v of an
   /// occupied one (nothing: unknown), ΣΛ_r, w_v. In the same order for the same hits.
   template <typename Visit>
@@ -102,13 +110,22 @@ class GainAccumulator {
     std::uint32_t block = 0;
   };
 
+  // Of a sample, a hit an entry.
+  struct SampledHit {
+    std::uint32_t place;  // in the list of touched voxels
+    std::uint32_t lane;
+  };
+
   void flush();
+  void count_hits();
   std::uint32_t code_of(std::uint32_t primitive, std::uint32_t offset);
   std::uint32_t block_in_box(std::uint64_t key);
   std::uint32_t start_block(std::uint64_t key, const SnapshotLeaf* leaf);
   void look_up();
   [[nodiscard]] ClassGain finish_class(std::span<const std::uint32_t> members, bool is_known,
                                        double* each) const;
+  void spread(std::span<const std::uint32_t> members, bool is_known, double rays_each,
+              SampleTally& tally);
   [[nodiscard]] double weight(std::uint32_t code) const;
 
   std::size_t max_rays_;
@@ -138,6 +155,10 @@ class GainAccumulator {
   std::size_t unknown_count_ = 0, occupied_count_ = 0;
   std::vector<MatrixHalf> known_a_, known_b_;  // of occupied_
   std::vector<double> each_;                   // for weights and for the trace
+  // Of a sample: its hits, and of each touched voxel how many it stands for, then a hit's gain.
+  bool is_sample_ = false;
+  std::vector<SampledHit> sampled_;
+  std::vector<double> copies_, sampled_each_;
 };
 
 }  // namespace viewgain::detail

@@ -32,6 +32,7 @@ struct alignas(64) HitList {
 };
 
 struct HitBatch : HitList {
+  float expected[kCapacity];  ///< of a sample's hits, see GainAccumulator::begin_sample()
   /// Λ_r [m⁻²], filled by expand(): xx yy zz xy and xz yz 0 0.
   alignas(64) double information_a[kCapacity][4], information_b[kCapacity][4];
 };

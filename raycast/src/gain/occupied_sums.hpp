@@ -26,7 +26,8 @@ class OccupiedSums {
       generation_ = 1;
     }
   }
-  void add(Index3 voxel, const SymmetricMatrix3& information) {
+  /// Returns the voxel's entry.
+  std::size_t add(Index3 voxel, const SymmetricMatrix3& information) {
     if (2 * entries_.size() >= slots_.size()) grow();
     Slot& slot = slot_of(voxel);
     if (slot.generation != generation_) {
@@ -35,6 +36,7 @@ class OccupiedSums {
     } else {
       entries_[slot.entry].information += information;
     }
+    return slot.entry;
   }
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
 

@@ -57,7 +57,7 @@ ViewGain evaluate_together(const ViewDriver& driver, const Pose& T_world_camera)
     if (number > 0 && groups->next.load(std::memory_order_relaxed) >= group_count) return;
     ViewDriver::Lease lease(driver);
     TileBins& bins = lease.workspace().bins;
-    tracer.prepare(*frame, table.tile_count, bins);
+    tracer.prepare(*frame, bins);
     std::size_t group;
     if (number > 0) {
       while ((group = groups->next.fetch_add(1)) < group_count) trace(group, bins);

@@ -126,69 +126,127 @@ double SurfaceView::area_of(const RayTile& rays, WalkedTile& tile) const {
   return sum;
 }
 
-void SurfaceView::evaluate(const PoseFrame& frame, Workspace& workspace, ViewGain& result) const {
-  const auto tiles = tracer_.all_tiles();
-  tracer_.prepare(frame, tiles.size(), workspace.bins);
-  evaluate(frame, tiles, workspace, result);
-}
-
-void SurfaceView::sample(const PoseFrame& frame, std::span<const std::vector<std::uint32_t>> groups,
-                         Workspace& workspace, std::span<double> gains) const {
-  std::size_t tile_count = 0;
-  for (const auto& group : groups) tile_count += group.size();
-  tracer_.prepare(frame, tile_count, workspace.bins);
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    ViewGain result;
-    evaluate(frame, groups[i], workspace, result);
-    gains[i] = result.gain;
-  }
-}
-
-template <typename Tiles>
-void SurfaceView::evaluate(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
-                           ViewGain& result) const {
+template <typename Met>
+double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, std::uint32_t& hits,
+                          double* by_lane, Met&& met) const {
   const bool refines = core_.config.model == GainModel::combined;
-  const std::vector<WeightRegion>& weights = core_.config.weights;
   const double V = scene_.snapshot.voxel_size;
+  const auto tiles = tracer_.all_tiles();
+  tracer_.prepare(frame, workspace.bins);
   OccupiedSums& occupied = workspace.occupied;
   occupied.begin();
-  double area = 0;  // [m²]
-  result.hits = 0;
-  if (!weights.empty()) {
-    for_each_share(frame, tiles, workspace, [&](const SurfaceShare& share) {
-      area += share.area;
-      if (!share.is_occupied) return;
-      ++result.hits;
-      if (refines) occupied.add(share.voxel, share.information);
-    });
-  } else {
-    double sum = 0;  // [voxels²]
-    WalkTask task;
-    WalkedTile walked;
-    tracer_.trace(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
-      if (rays.hit == 0) return;
-      set_up(frame, number, rays, task);
-      walk_.area(bricks_, frame, limits_, task, cap_, walked);
-      sum += area_of(rays, walked);
-      result.hits += static_cast<std::uint32_t>(std::popcount(walked.occupied));
-      if (!refines) return;
-      for_each_lane(walked.occupied, [&](int lane) {
-        occupied.add(voxel_at(walked.x[lane], walked.y[lane], walked.z[lane]),
-                     scaled(information(rays, lane, walked.range[lane]),
-                            static_cast<double>(walked.passed[lane])));
-      });
-    });
-    area = sum * V * V;
+  if (!core_.config.weights.empty()) {
+    double area = 0;
+    for_each_share(frame, tiles, workspace,
+                   [&](std::size_t number, const RayTile& rays, const SurfaceShare& share) {
+                     area += share.area;
+                     if (by_lane != nullptr) by_lane[share.lane] += share.area;
+                     if (!share.is_occupied) return;
+                     ++hits;
+                     if (!refines) return;
+                     met(number, rays, share.lane, share.range,
+                         occupied.add(share.voxel, share.information));
+                   });
+    return area;
   }
-  result.area = result.gain = area;
-  if (!refines) return;
+  double sum = 0;  // [voxels²]
+  WalkTask task;
+  WalkedTile walked;
+  tracer_.trace(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
+    if (rays.hit == 0) return;
+    set_up(frame, number, rays, task);
+    walk_.area(bricks_, frame, limits_, task, cap_, walked);
+    sum += area_of(rays, walked);
+    if (by_lane != nullptr) {
+      for_each_lane(rays.hit, [&](int lane) {
+        by_lane[lane] += static_cast<double>(walked.area[lane]) * V * V;
+      });
+    }
+    hits += static_cast<std::uint32_t>(std::popcount(walked.occupied));
+    if (!refines) return;
+    for_each_lane(walked.occupied, [&](int lane) {
+      met(number, rays, lane, walked.range[lane],
+          occupied.add(voxel_at(walked.x[lane], walked.y[lane], walked.z[lane]),
+                       scaled(information(rays, lane, walked.range[lane]),
+                              static_cast<double>(walked.passed[lane]))));
+    });
+  });
+  return sum * V * V;
+}
+
+void SurfaceView::evaluate(const PoseFrame& frame, Workspace& workspace, ViewGain& result) const {
+  result.hits = 0;
+  result.area = result.gain = trace(frame, workspace, result.hits, nullptr,
+                                    [](std::size_t, const RayTile&, int, float, std::size_t) {});
+  if (core_.config.model != GainModel::combined) return;
+  const OccupiedSums& occupied = workspace.occupied;
   double saturated = 0;
   for (const OccupiedSums::Entry& entry : occupied.entries()) {
     saturated += saturated_gain(entry.voxel, entry.information);
   }
   result.occupied_voxels = static_cast<std::uint32_t>(occupied.entries().size());
   result.refinement_saturated = saturated;
-  result.gain = nats_per_area_ * area + core_.config.refinement_weight * saturated;
+  result.gain = nats_per_area_ * result.area + core_.config.refinement_weight * saturated;
+}
+
+double SurfaceView::expected_hits(std::size_t number, const RayTile& rays, int lane, float range,
+                                  Index3 voxel) const {
+  // Unknown voxels do not hide what is behind them.
+  const auto is_exposed = [&](Index3 beside) {
+    const SnapshotLeaf* leaf = scene_.snapshot.find_leaf(beside);
+    return leaf == nullptr || !test_bit(leaf->occupied, block_offset(beside));
+  };
+  const auto before = [](float d) { return d > 0 ? -1 : 1; };
+  const float dx = rays.dx[lane], dy = rays.dy[lane], dz = rays.dz[lane];
+  const float all = std::abs(dx) + std::abs(dy) + std::abs(dz);
+  float exposed = 0;
+  if (is_exposed({voxel.x + before(dx), voxel.y, voxel.z})) exposed += std::abs(dx);
+  if (is_exposed({voxel.x, voxel.y + before(dy), voxel.z})) exposed += std::abs(dy);
+  if (is_exposed({voxel.x, voxel.y, voxel.z + before(dz)})) exposed += std::abs(dz);
+  const auto ray = number * kTileRays + static_cast<std::size_t>(lane);
+  return static_cast<double>((exposed > 0 ? exposed : all) /
+                             (range * range * tracer_.table().solid_angle[ray]));
+}
+
+void SurfaceView::sample(const PoseFrame& frame, Workspace& workspace, double rays_each,
+                         SampleTally& tally) const {
+  const OccupiedSums& occupied = workspace.occupied;
+  std::vector<SampledEnd>& ends = workspace.sampled_ends;
+  ends.clear();
+  std::uint32_t hits = 0;
+  // The rays' solid angles are those of what they stand for, so areas add up to the whole.
+  const double area = trace(
+      frame, workspace, hits, tally.by_lane.data(),
+      [&](std::size_t number, const RayTile& rays, int lane, float range, std::size_t entry) {
+        ends.push_back({entry, lane,
+                        expected_hits(number, rays, lane, range, occupied.entries()[entry].voxel)});
+      });
+  tally.gain = area;
+  if (core_.config.model != GainModel::combined) return;
+  tally.gain *= nats_per_area_;
+  for (double& gain : tally.by_lane) gain *= nats_per_area_;
+  // A voxel's rays, and the sum of 1 / expected, which is then what a ray gains.
+  struct Voxel {
+    double hits = 0, share = 0;
+  };
+  std::vector<Voxel> voxels(occupied.entries().size());
+  for (const SampledEnd& end : ends) {
+    voxels[end.entry].hits += 1;
+    voxels[end.entry].share += 1 / end.expected;
+  }
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    Voxel& voxel = voxels[i];
+    const double expected = voxel.hits / voxel.share;
+    const SampledVoxel stands(voxel.hits, expected, rays_each);
+    const OccupiedSums::Entry& entry = occupied.entries()[i];
+    const double gain = core_.config.refinement_weight * stands.copies *
+                        saturated_gain(entry.voxel, scaled(entry.information, stands.rays_per_hit));
+    tally.add(gain, voxel.hits, expected);
+    voxel.share = gain / voxel.hits;
+  }
+  for (const SampledEnd& end : ends) {
+    tally.by_lane[static_cast<std::size_t>(end.lane)] += voxels[end.entry].share;
+  }
 }
 
 double SurfaceView::saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const {
@@ -249,7 +307,8 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
         }
         passed = 0;
       }
-      SurfaceShare share{voxel_at(first->x, first->y, first->z), true, passed, 0.0};
+      SurfaceShare share{lane, first->begin, voxel_at(first->x, first->y, first->z),
+                         true, passed,       0.0};
       if (core_.config.model == GainModel::combined) {
         share.information = scaled(information(rays, lane, first->begin), passed);
       }
@@ -277,7 +336,7 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
       const double weight = weights.empty() ? 1.0 : task_weight(weights, voxel, V);
       const bool is_new = !std::signbit(visit->rate);
       workspace.shares.push_back(
-          {voxel, false, part, is_new ? part * across * weight * V * V : 0.0});
+          {lane, visit->begin, voxel, false, part, is_new ? part * across * weight * V * V : 0.0});
     }
     passed -= P;
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "evaluator_core.hpp"
+#include "ray_sample.hpp"
 #include "scene/scene_data.hpp"
 #include "trace/ordered_walk.hpp"
 #include "trace/view_tracer.hpp"
@@ -25,19 +26,20 @@ class SurfaceView {
   /// Fills in the gain of the view from an opened pose.
   void evaluate(const PoseFrame& frame, Workspace& workspace, ViewGain& result) const;
 
-  /// The gain of some of the view's tiles by themselves, one a group.
-  void sample(const PoseFrame& frame, std::span<const std::vector<std::uint32_t>> groups,
-              Workspace& workspace, std::span<double> gains) const;
+  /// The gain of a view of which the tracer's rays are a sample; each stands for `rays_each`, and
+  /// counts in `tally` by itself.
+  void sample(const PoseFrame& frame, Workspace& workspace, double rays_each,
+              SampleTally& tally) const;
 
-  /// Calls visit(const SurfaceShare&) for all rays of some tiles, voxel by voxel; a run's share
-  /// is split by length. `workspace`'s bins are prepared for the view.
+  /// Calls visit(tile number, rays, SurfaceShare) for all rays of some tiles, voxel by voxel; a
+  /// run's share is split by length. `workspace`'s bins are prepared for the view.
   template <typename Tiles, typename Visit>
   void for_each_share(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
                       Visit&& visit) const {
     tracer_.trace(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
       workspace.shares.clear();
       if (rays.hit != 0) find_shares(frame, number, rays, workspace);
-      for (const SurfaceShare& share : workspace.shares) visit(share);
+      for (const SurfaceShare& share : workspace.shares) visit(number, rays, share);
     });
   }
 
@@ -61,9 +63,15 @@ class SurfaceView {
   [[nodiscard]] double saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const;
 
  private:
-  template <typename Tiles>
-  void evaluate(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
-                ViewGain& result) const;
+  /// Sums what all tiles meet: calls met(tile number, rays, lane, range, entry of
+  /// workspace.occupied) for each occupied voxel by the combined gain, and adds up in by_lane what
+  /// new surface each lane shows [m²] unless it is null. Returns that of all [m²].
+  template <typename Met>
+  double trace(const PoseFrame& frame, Workspace& workspace, std::uint32_t& hits, double* by_lane,
+               Met&& met) const;
+  /// How many of the tracer's rays would end in an occupied voxel if nothing stood before it.
+  [[nodiscard]] double expected_hits(std::size_t number, const RayTile& rays, int lane, float range,
+                                     Index3 voxel) const;
   void find_visits(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                    Workspace& workspace) const;
   void find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,

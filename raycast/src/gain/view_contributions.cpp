@@ -63,22 +63,24 @@ std::vector<VoxelContribution> surface_contributions(const detail::ViewDriver& d
   std::vector<SymmetricMatrix3> information;  // of parts
   const Index3& base = driver.scene().snapshot.min_index;
   const auto tiles = driver.tracer().all_tiles();
-  driver.tracer().prepare(*frame, tiles.size(), workspace.bins);
-  surface.for_each_share(*frame, tiles, workspace, [&](const detail::SurfaceShare& share) {
-    if (share.is_occupied && !refines) return;
-    const Index3& v = share.voxel;
-    const auto [found, is_new] = places.try_emplace(
-        driver.scene().voxel_key(v.x - base.x, v.y - base.y, v.z - base.z), parts.size());
-    if (is_new) {
-      parts.push_back({v, share.is_occupied ? VoxelState::occupied : VoxelState::unknown});
-      information.emplace_back();
-    }
-    VoxelContribution& part = parts[found->second];
-    ++part.rays;
-    part.expected_rays += share.probability;
-    part.gain += per_area * share.area;
-    information[found->second] += share.information;
-  });
+  driver.tracer().prepare(*frame, workspace.bins);
+  surface.for_each_share(
+      *frame, tiles, workspace,
+      [&](std::size_t, const detail::RayTile&, const detail::SurfaceShare& share) {
+        if (share.is_occupied && !refines) return;
+        const Index3& v = share.voxel;
+        const auto [found, is_new] = places.try_emplace(
+            driver.scene().voxel_key(v.x - base.x, v.y - base.y, v.z - base.z), parts.size());
+        if (is_new) {
+          parts.push_back({v, share.is_occupied ? VoxelState::occupied : VoxelState::unknown});
+          information.emplace_back();
+        }
+        VoxelContribution& part = parts[found->second];
+        ++part.rays;
+        part.expected_rays += share.probability;
+        part.gain += per_area * share.area;
+        information[found->second] += share.information;
+      });
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (parts[i].state != VoxelState::occupied) continue;
     parts[i].gain =

@@ -70,25 +70,13 @@ class ViewDriver {
     if (!frame) return result;
     const auto tiles = tracer_.all_tiles();
     TileBins& bins = lease.workspace().bins;
-    tracer_.prepare(*frame, tiles.size(), bins);
-    consume(*frame, tiles, bins, consumer, result);
+    tracer_.prepare(*frame, bins);
+    consumer.begin();
+    tracer_.trace(*frame, tiles, bins,
+                  [&](std::size_t number, const RayTile& tile) { consumer.add(number, tile); });
+    consumer.finish(result);
     result.status = ViewStatus::ok;
     return result;
-  }
-
-  /// The same of some of a view's tiles, group by group, each begun and finished by itself:
-  /// finish(ViewGain&) is called once a group. False, and no call, if there is nothing to trace.
-  template <typename Consumer>
-  bool groups(const Pose& T_world_camera, std::span<const std::vector<std::uint32_t>> groups,
-              Lease& lease, ViewGain& result, Consumer&& consumer) const {
-    const auto frame = open(T_world_camera, result);
-    if (!frame) return false;
-    std::size_t tile_count = 0;
-    for (const auto& group : groups) tile_count += group.size();
-    TileBins& bins = lease.workspace().bins;
-    tracer_.prepare(*frame, tile_count, bins);
-    for (const auto& group : groups) consume(*frame, group, bins, consumer, result);
-    return true;
   }
 
   /// A view's gain; the accumulator keeps the sums until its next view.
@@ -108,14 +96,6 @@ class ViewDriver {
   [[nodiscard]] const SurfaceView& ordered() const;
 
  private:
-  template <typename Tiles, typename Consumer>
-  void consume(const PoseFrame& frame, const Tiles& tiles, TileBins& bins, Consumer& consumer,
-               ViewGain& result) const {
-    consumer.begin();
-    tracer_.trace(frame, tiles, bins,
-                  [&](std::size_t number, const RayTile& tile) { consumer.add(number, tile); });
-    consumer.finish(result);
-  }
   void bind(Workspace& workspace) const;
   [[nodiscard]] bool is_in_occupied(const PoseFrame& frame) const;
 

@@ -50,7 +50,7 @@ void list_runs(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
   const double V = snapshot.voxel_size;
   const detail::SurfaceView& walk = driver.ordered();
   const auto tiles = driver.tracer().all_tiles();
-  driver.tracer().prepare(frame, tiles.size(), workspace.bins);
+  driver.tracer().prepare(frame, workspace.bins);
   std::vector<ViewRun>& runs = workspace.view_runs;
   runs.clear();
   walk.for_each_visited(

@@ -7,8 +7,9 @@
 
 namespace viewgain::detail {
 
-TileTable::TileTable(const PinholeCamera& camera, int pixel_stride)
-    : columns(strided(camera.width, pixel_stride)), rows(strided(camera.height, pixel_stride)) {
+// Columns and rows are known; ray_at(column, row) is asked once for each lane.
+template <typename RayAt>
+void TileTable::fill(const RayAt& ray_at) {
   const int tile_columns = (columns + kTileEdge - 1) / kTileEdge;
   const int tile_rows = (rows + kTileEdge - 1) / kTileEdge;
   tile_count = static_cast<std::size_t>(tile_columns) * static_cast<std::size_t>(tile_rows);
@@ -17,10 +18,6 @@ TileTable::TileTable(const PinholeCamera& camera, int pixel_stride)
   solid_angle.resize(tile_count * kTileRays);
   cosine.resize(tile_count);
   first_lane.resize(tile_count);
-
-  const std::vector<Eigen::Vector3d> table = camera.ray_table();
-  const std::vector<double> angles = camera.solid_angles(table);
-  const double pixels = static_cast<double>(pixel_stride) * pixel_stride;  // that a ray stands for
   for (std::size_t tile = 0; tile < tile_count; ++tile) {
     const int column0 = static_cast<int>(tile % static_cast<std::size_t>(tile_columns)) * kTileEdge;
     const int row0 = static_cast<int>(tile / static_cast<std::size_t>(tile_columns)) * kTileEdge;
@@ -29,26 +26,54 @@ TileTable::TileTable(const PinholeCamera& camera, int pixel_stride)
     for (int lane = 0; lane < kTileRays; ++lane) {
       const int column = column0 + lane % kTileEdge;
       const int row = row0 + lane / kTileEdge;
-      const int u = std::min(column, columns - 1) * pixel_stride;
-      const int v = std::min(row, rows - 1) * pixel_stride;
-      const std::size_t pixel =
-          static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
-          static_cast<std::size_t>(u);
-      const Eigen::Vector3d direction = table[pixel].normalized();
-      solid_angle[tile * kTileRays + static_cast<std::size_t>(lane)] =
-          static_cast<float>(pixels * angles[pixel]);
-      // A pixel that the distortion model cannot invert has no ray.
-      const bool usable = column < columns && row < rows && direction.allFinite();
-      if (usable) lanes |= 1U << lane;
-      for (int axis = 0; axis < 3; ++axis) {
-        directions[tile * 3 * kTileRays + static_cast<std::size_t>(axis * kTileRays + lane)] =
-            direction.allFinite() ? static_cast<float>(direction[axis]) : (axis == 2 ? 1.0F : 0.0F);
+      const Ray ray = ray_at(std::min(column, columns - 1), std::min(row, rows - 1));
+      solid_angle[tile * kTileRays + static_cast<std::size_t>(lane)] = ray.solid_angle;
+      if (column < columns && row < rows && ray.is_valid) lanes |= 1U << lane;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        directions[tile * 3 * kTileRays + axis * kTileRays + static_cast<std::size_t>(lane)] =
+            ray.direction[axis];
       }
     }
     valid[tile] = static_cast<std::uint16_t>(lanes);
     const float* z = directions.data() + tile * 3 * kTileRays + 2 * kTileRays;
     cosine[tile] = *std::max_element(z, z + kTileRays);
   }
+}
+
+TileTable::TileTable(const PinholeCamera& camera, int pixel_stride)
+    : columns(strided(camera.width, pixel_stride)), rows(strided(camera.height, pixel_stride)) {
+  const std::vector<Eigen::Vector3d> table = camera.ray_table();
+  const std::vector<double> angles = camera.solid_angles(table);
+  const double pixels = static_cast<double>(pixel_stride) * pixel_stride;  // that a ray stands for
+  fill([&](int column, int row) -> Ray {
+    const std::size_t pixel =
+        static_cast<std::size_t>(row * pixel_stride) * static_cast<std::size_t>(camera.width) +
+        static_cast<std::size_t>(column * pixel_stride);
+    const auto angle = static_cast<float>(pixels * angles[pixel]);
+    const Eigen::Vector3d direction = table[pixel].normalized();
+    // A pixel that the distortion model cannot invert has no ray.
+    if (!direction.allFinite()) return {false, angle, {0, 0, 1}};
+    return {true,
+            angle,
+            {static_cast<float>(direction.x()), static_cast<float>(direction.y()),
+             static_cast<float>(direction.z())}};
+  });
+}
+
+TileTable::TileTable(const TileTable& full, const RayLattice& lattice)
+    : columns(strided(full.columns - lattice.column, lattice.step)),
+      rows(strided(full.rows - lattice.row, lattice.step)) {
+  const int tile_columns = (full.columns + kTileEdge - 1) / kTileEdge;
+  const auto pixels = static_cast<float>(lattice.step * lattice.step);
+  fill([&](int column, int row) -> Ray {
+    const int u = lattice.column + column * lattice.step, v = lattice.row + row * lattice.step;
+    const auto tile = static_cast<std::size_t>(v / kTileEdge * tile_columns + u / kTileEdge);
+    const auto lane = static_cast<std::size_t>(v % kTileEdge * kTileEdge + u % kTileEdge);
+    const float* direction = full.directions.data() + tile * 3 * kTileRays + lane;
+    return {(full.valid[tile] >> lane & 1U) != 0,
+            pixels * full.solid_angle[tile * kTileRays + lane],
+            {direction[0], direction[kTileRays], direction[2 * kTileRays]}};
+  });
 }
 
 }  // namespace viewgain::detail

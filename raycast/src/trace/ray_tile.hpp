@@ -22,6 +22,12 @@ inline constexpr int kTileRays = kTileEdge * kTileEdge;
 /// Below every primitive's number as a signed one, so that an obstacle wins a tie with a voxel.
 inline constexpr std::uint32_t kObstaclePrimitive = 0xFFFFFFFFU;
 
+/// Every step-th ray of every step-th row, from that column and row on.
+struct RayLattice {
+  int step = 1;
+  int column = 0, row = 0;
+};
+
 /// Unit directions of a sensor's (strided) pixels in the camera frame, tile by tile: 16 x, 16 y, 16
 /// z. Lanes beyond the image's edge repeat a ray and are not valid.
 struct TileTable {
@@ -35,6 +41,8 @@ struct TileTable {
   std::vector<std::uint32_t> first_lane;  ///< ray index (row by row) of lane 0 of each tile
 
   TileTable(const PinholeCamera& camera, int pixel_stride);
+  /// Some of the rays of another table, in tiles of their own.
+  TileTable(const TileTable& full, const RayLattice& lattice);
 
   [[nodiscard]] std::size_t ray_count() const {
     return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
@@ -45,6 +53,15 @@ struct TileTable {
            static_cast<std::size_t>(lane / kTileEdge) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(lane % kTileEdge);
   }
+
+ private:
+  struct Ray {
+    bool is_valid;
+    float solid_angle;
+    std::array<float, 3> direction;
+  };
+  template <typename RayAt>
+  void fill(const RayAt& ray_at);
 };
 
 /// Cameras farther than this from the workspace's lowest corner [voxels] see nothing: single

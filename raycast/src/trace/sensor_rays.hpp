@@ -18,6 +18,24 @@ struct SensorRays {
 
   SensorRays(const PinholeCamera& c, int stride)
       : camera(c), pixel_stride(stride), table(c, stride), binner(c, stride, table) {}
+
+  /// Some of these rays; nothing is undone anew.
+  SensorRays(const SensorRays& full, const RayLattice& lattice)
+      : camera(moved_to(lattice, full)),
+        pixel_stride(full.pixel_stride * lattice.step),
+        table(full.table, lattice),
+        binner(camera, pixel_stride, table) {}
+
+ private:
+  // The camera whose pixel (0, 0) is the lattice's first ray.
+  [[nodiscard]] static PinholeCamera moved_to(const RayLattice& lattice, const SensorRays& full) {
+    PinholeCamera moved = full.camera;
+    moved.cx -= lattice.column * full.pixel_stride;
+    moved.cy -= lattice.row * full.pixel_stride;
+    moved.width -= lattice.column * full.pixel_stride;
+    moved.height -= lattice.row * full.pixel_stride;
+    return moved;
+  }
 };
 
 }  // namespace viewgain::detail

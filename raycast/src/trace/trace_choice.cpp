@@ -13,8 +13,6 @@ namespace viewgain::detail {
 namespace {
 
 constexpr double kLevelZeroReach = 2e4;
-// For fewer of a view's tiles than this share the BVH is quicker than lists for all tiles.
-constexpr double kLeastListedShare = 0.08;
 
 }  // namespace
 
@@ -48,8 +46,6 @@ ViewChoice choose_tracing(const SceneData& scene, const SensorRays& rays, double
   const double reach = max_range + std::max({dims.x, dims.y, dims.z});
   ViewChoice choice;
   choice.by_lists = !scene.has_obstacles && !rays.camera.has_distortion();
-  choice.least_listed = static_cast<std::size_t>(
-      std::ceil(kLeastListedShare * static_cast<double>(rays.table.tile_count)));
   choice.margin_level = choose_margin_level(reach);
   return choice;
 }

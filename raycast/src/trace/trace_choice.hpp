@@ -16,7 +16,7 @@ namespace viewgain::detail {
 ///   Of many primitives, cells are sorted first, and the primitives of a cell when a tile comes to
 ///   it.
 /// - Embree's BVH, where lists cannot be: obstacles are triangles, and a lens bends the outlines of
-///   boxes. And where lists for all tiles would take longer than tracing the few that are wanted.
+///   boxes.
 
 /// The best instruction set, within VIEWGAIN_ISA, for which Embree has packets of the kernels'
 /// width. Throws Error(backend) if there is none, Error(invalid_argument) as select_isa().
@@ -37,7 +37,6 @@ inline constexpr int kMarginLevels = 9;
 /// How the views of one sensor are traced in one scene.
 struct ViewChoice {
   bool by_lists = false;
-  std::size_t least_listed = 0;  ///< fewer of a view's tiles than this go through the BVH
   int margin_level = 0;
 };
 /// `max_range` in voxels.

@@ -27,9 +27,9 @@ class ViewTracer {
   /// more than 1e-3.
   [[nodiscard]] std::optional<PoseFrame> frame_of(const Pose& T_world_camera) const;
 
-  /// Makes `bins` ready for tracing `tile_count` of the view's tiles.
-  void prepare(const PoseFrame& frame, std::size_t tile_count, TileBins& bins) const {
-    if (choice_.by_lists && !frame.sees_nothing && tile_count >= choice_.least_listed) {
+  /// Makes `bins` ready for tracing the view's tiles.
+  void prepare(const PoseFrame& frame, TileBins& bins) const {
+    if (choice_.by_lists && !frame.sees_nothing) {
       rays_->binner.sort(kernels_.isa, *scene_.scene_boxes, frame, bins);
     } else {
       bins.invalidate();

@@ -61,6 +61,8 @@ def test_choices_agree_with_the_gains(grid, sensor, poses, criterion):
     estimates = evaluator.approximate(poses, share=0.5)
     assert estimates.shape == (60,) and np.all(estimates["standard_error"] >= 0)
     assert np.corrcoef(estimates["gain"], gains)[0, 1] > 0.8
+    whole = evaluator.approximate(poses, share=1)
+    assert np.array_equal(whole["gain"], gains) and np.all(whole["standard_error"] == 0)
 
 
 def test_bad_poses_are_nan_or_refused(evaluator, poses):
@@ -145,8 +147,8 @@ def test_wrong_settings_are_named(grid, sensor, evaluator, poses):
         viewgain.GainEvaluator(None, "sr4000")
     with pytest.raises(TypeError, match="scene"):
         viewgain.GainEvaluator(None, sensor)
-    with pytest.raises(ValueError, match="keep"):
-        evaluator.race(poses, keep=7.0)
+    with pytest.raises(ValueError, match="share"):
+        evaluator.approximate(poses, share=7.0)
 
 
 def test_images_of_a_view(evaluator, poses, sensor):

@@ -134,6 +134,20 @@ TEST(Snapshot, TellsTheStatesOfTheGrid) {
         EXPECT_EQ(faults, 0U);
         EXPECT_EQ(snapshot.dims, grid.dims());
         EXPECT_EQ(snapshot.min_index, grid.min_index());
+        // One layer more on all sides is free, too.
+        std::size_t wrong = 0, asked = 0;
+        const Index3 low = snapshot.min_index, dims = snapshot.dims;
+        for (int x = low.x - 1; x <= low.x + dims.x; x += 3) {
+          for (int y = low.y - 1; y <= low.y + dims.y; ++y) {
+            for (int z = low.z - 1; z <= low.z + dims.z; ++z, ++asked) {
+              const bool is_inside = x >= low.x && x < low.x + dims.x && y >= low.y &&
+                                     y < low.y + dims.y && z >= low.z && z < low.z + dims.z;
+              const bool is_free = !is_inside || grid.state({x, y, z}) == VoxelState::free;
+              wrong += snapshot.is_free({x, y, z}) != is_free ? 1U : 0U;
+            }
+          }
+        }
+        EXPECT_EQ(wrong, 0U) << "of " << asked;
         EXPECT_EQ(snapshot.voxel_size, 0.01);
       }
     }
@@ -152,6 +166,10 @@ TEST(Snapshot, AnUnknownWorkspaceIsAFewBoxes) {
               static_cast<std::uint64_t>(tile.max.z - tile.min.z);
   }
   EXPECT_EQ(volume, grid.voxel_count());
+  for (const Index3 voxel : {Index3{-2000, -2000, -2000}, Index3{0, 5, -7}, Index3{1999, 0, 1}}) {
+    EXPECT_FALSE(snapshot.is_free(voxel));
+  }
+  EXPECT_TRUE(snapshot.is_free({2000, 0, 0}));
 }
 
 TEST(Snapshot, StaysAsItWasAndSharesWhatDidNotChange) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// race() with the surface and the combined gain, which chooses in two stages, against scoring all.
+// race(), which chooses in two stages, by each gain, against scoring all.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace viewgain {
 namespace {
 
-constexpr std::array kModels{GainModel::surface, GainModel::combined};
+constexpr std::array kModels{GainModel::paper, GainModel::surface, GainModel::combined};
 constexpr std::uint64_t kCoarseRays = 24 * 20;  // every fifth pixel and row
 
 Sensor sensor_of(int width, int height) {
@@ -73,9 +73,15 @@ TEST_P(TwoStages, FindsNearlyTheBestAndReportsExactGains) {
     for (const std::size_t k : {std::size_t{1}, std::size_t{12}}) {
       const RacedViews raced = one.race(poses_, k);
       EXPECT_TRUE(raced.complete);
-      ASSERT_EQ(raced.scored_indices.size(), std::max<std::size_t>(32, 4 * k));
-      EXPECT_EQ(raced.rays_traced,
-                poses_.size() * kCoarseRays + raced.scored_indices.size() * one.rays_per_pose());
+      ASSERT_EQ(raced.scored_indices.size(), std::max<std::size_t>(24, 4 * k));
+      // By the paper's gain they begin anywhere in the cells, so that one more or less fits in.
+      const std::uint64_t in_full = raced.scored_indices.size() * one.rays_per_pose();
+      if (GetParam() != GainModel::paper) {
+        EXPECT_EQ(raced.rays_traced, poses_.size() * kCoarseRays + in_full);
+      } else {
+        EXPECT_LE(raced.rays_traced, poses_.size() * kCoarseRays + in_full);
+        EXPECT_GE(raced.rays_traced, poses_.size() * kCoarseRays * 9 / 10 + in_full);
+      }
       EXPECT_TRUE(std::is_sorted(raced.scored_indices.begin(), raced.scored_indices.end()));
       for (std::size_t j = 0; j < raced.scored_indices.size(); ++j) {
         EXPECT_TRUE(test::same_bits(raced.scored_gains[j], all[raced.scored_indices[j]]));
@@ -161,7 +167,7 @@ TEST_P(TwoStages, StopsInEitherStage) {
   const RacedViews whole = one.race(poses_, 2);
   int cases = 0;
   // It is asked before each pose of each stage.
-  for (const std::size_t scored : {std::size_t{0}, std::size_t{5}, std::size_t{31}}) {
+  for (const std::size_t scored : {std::size_t{0}, std::size_t{5}, std::size_t{23}}) {
     SCOPED_TRACE(scored);
     std::size_t asked = 0;
     const RacedViews part =

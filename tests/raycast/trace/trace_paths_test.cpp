@@ -21,7 +21,7 @@ std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vec
   EXPECT_TRUE(test::same_bits(free_choice.evaluate(poses), bvh.evaluate(poses)));
   for (const double share : {0.02, 0.1, 0.4}) {  // few tiles, and lists for some
     std::vector<ApproximateGain> a(poses.size()), b(poses.size());
-    const ApproximateConfig config{.share = share, .groups = 4, .seed = poses.size()};
+    const ApproximateConfig config{.share = share, .seed = poses.size()};
     EXPECT_EQ(free_choice.approximate(poses, a, config), poses.size());
     bvh.approximate(poses, b, config);
     for (std::size_t i = 0; i < poses.size(); ++i) {

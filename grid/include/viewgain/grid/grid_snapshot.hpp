@@ -64,6 +64,10 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   /// The leaf that holds a voxel, null if there is none. O(log regions).
   [[nodiscard]] const SnapshotLeaf* find_leaf(Index3 voxel) const;
 
+  /// Is the voxel neither unknown nor occupied? So is all outside the workspace. O(log regions),
+  /// and as many steps as there are tiles larger than a region where the voxel is in no leaf.
+  [[nodiscard]] bool is_free(Index3 voxel) const;
+
   /// The [first, last) leaves and tiles of a region, by its place in the list.
   [[nodiscard]] std::array<std::uint32_t, 2> leaves_of(std::size_t region) const {
     return {regions[region].first_leaf, region + 1 < regions.size()

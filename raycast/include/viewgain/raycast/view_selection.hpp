@@ -36,19 +36,14 @@ struct VIEWGAIN_EXPORT BestViews {
 struct VIEWGAIN_EXPORT RacedViews : BestViews {
   std::vector<std::size_t> scored_indices;  ///< poses that were scored in full, ascending
   std::vector<ViewGain> scored_gains;       ///< of those; empty with a measure
-  std::uint64_t rays_traced = 0;            ///< of the bundles and of the poses scored in full
+  std::uint64_t rays_traced = 0;            ///< of both stages
 };
 
-/// How GainEvaluator::race() chooses which poses to drop, by the paper's gain.
+/// What GainEvaluator::race() chooses by.
 struct VIEWGAIN_EXPORT RaceConfig {
-  double interval = 2.25;         ///< half width of a pose's confidence interval [standard errors]
-  double first_share = 1.0 / 40;  ///< of the tiles in the first round, in (0, 1]; then five times
-                                  ///< as many, up to a quarter of all
-  double keep = 0.35;             ///< of the poses that a round leaves at most
-  std::uint64_t seed = 1;         ///< which tiles
-  /// As BestConfig::costs; a bundle's gain bears the cost by its share of the rays.
-  std::span<const double> costs{};
-  const ViewMeasure* measure = nullptr;     ///< instead of the evaluator's gain; may be null,
+  std::uint64_t seed = 1;                ///< which rays the first stage takes, by the paper's gain
+  std::span<const double> costs{};       ///< as BestConfig::costs
+  const ViewMeasure* measure = nullptr;  ///< instead of the evaluator's gain; may be null,
   const RunMeasure* run_measure = nullptr;  ///< as may this, of which only one can be given
 };
 
@@ -63,10 +58,8 @@ struct VIEWGAIN_EXPORT ViewSet {
 
 /// How GainEvaluator::approximate() samples a view.
 struct VIEWGAIN_EXPORT ApproximateConfig {
-  double share = 0.1;        ///< of a view's tiles that are traced; in (0, 1]
-  int groups = 8;            ///< sub-bundles that are summed by themselves; 2 to 64
-  std::size_t anchors = 32;  ///< poses scored in full that the correction of the bias rests on
-  std::uint64_t seed = 1;    ///< which tiles
+  double share = 0.1;      ///< of a view's rays that are traced at most; in (0, 1]
+  std::uint64_t seed = 1;  ///< which rays
 };
 
 /// An estimate of a gain, in the unit of the gain.

@@ -145,9 +145,9 @@ VG_API vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* 
 VG_API vg_status vg_best(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                          size_t* indices, double* gains, size_t* found, const vg_watch* watch);
 
-/* The k best poses, very probably, faster: poses are compared by random parts of their images, by
-   about 400 of their rays for VG_GAIN_SURFACE and VG_GAIN_COMBINED, the survivors scored in full.
-   The same for a seed and any number of threads. */
+/* The k best poses, very probably, faster: poses are compared by about 400 of their rays, and the
+   best of these scored in full. `seed` says which rays, for VG_GAIN_PAPER; for the others they are
+   in the middle of the image's cells. The same for a seed and any number of threads. */
 VG_API vg_status vg_race(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                          uint64_t seed, size_t* indices, double* gains, size_t* found,
                          const vg_watch* watch);

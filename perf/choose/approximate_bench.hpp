@@ -15,8 +15,8 @@ struct ApproximateOptions {
   bool json = false;
 };
 
-/// Accuracy against speed of views that are not scored in full, by pixel stride and by random
-/// sub-bundles: rank correlation with the full gains and speed as a multiple of scoring in full,
+/// Accuracy against speed of views that are not scored in full, by pixel stride and by
+/// approximate(): rank correlation with the full gains and speed as a multiple of scoring in full,
 /// all ways in turns. Prints a table or JSON. Returns the exit code, 0.
 int run_approximate(const ApproximateOptions& options);
 

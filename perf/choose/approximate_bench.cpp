@@ -122,7 +122,7 @@ int run_approximate(const ApproximateOptions& options) {
   for (const double share : kShares) {
     const int percent = static_cast<int>(std::lround(100 * share));
     ways.push_back(
-        {std::to_string(percent) + " % of tiles",
+        {std::to_string(percent) + " % of rays",
          "share",
          share,
          [&, share] { (void)evaluators[0].approximate(poses, estimated, {.share = share}); },
