@@ -38,7 +38,7 @@ constexpr std::array kRules{
     Rule{"octomap_over_integrate", 100.0, true},
     Rule{"update_over_build", 0.35, false},
     Rule{"build_ms", 2.0, false},
-    Rule{"race_over_exhaustive", 0.15, false},
+    Rule{"race_over_exhaustive", 0.25, false},
     Rule{"latency_scaling", 0.6, false},
     Rule{"memory_mb", 250.0, false},
     Rule{"surface_over_paper", 0.35, true},

@@ -182,10 +182,15 @@ TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
     EXPECT_EQ(completions({"viewgain", subcommand, "--"}), flags_in_help(subcommand)) << subcommand;
     ++cases;
   }
+  const Set gains{
+      "area_factor",     "average_entropy",        "combined",          "occlusion_aware",
+      "paper",           "proximity_count",        "rear_side_entropy", "rear_side_voxel",
+      "surface",         "surface_frontier_count", "unknown_count",     "unknown_volume",
+      "unobserved_voxel"};
   const std::vector<std::pair<Strings, Set>> values{
-      {{"score", "--gain", ""}, {"paper", "surface", "combined"}},
-      {{"score", "map.vdb", "--gain", "su"}, {"surface"}},
-      {{"score", "--gain", "="}, {"paper", "surface", "combined"}},
+      {{"score", "--gain", ""}, gains},
+      {{"score", "map.vdb", "--gain", "su"}, {"surface", "surface_frontier_count"}},
+      {{"score", "--gain", "="}, gains},
       {{"score", "--gain", "=", "c"}, {"combined"}},
       {{"score", "--feasible", ""}, {"on", "off"}},
       {{"candidates", "--generator", "s"}, {"sphere", "shell", "sequence"}},

@@ -136,12 +136,12 @@ TEST(Snapshot, TellsTheStatesOfTheGrid) {
         EXPECT_EQ(snapshot.min_index, grid.min_index());
         // One layer more on all sides is free, too.
         std::size_t wrong = 0, asked = 0;
-        const Index3 low = snapshot.min_index, dims = snapshot.dims;
-        for (int x = low.x - 1; x <= low.x + dims.x; x += 3) {
-          for (int y = low.y - 1; y <= low.y + dims.y; ++y) {
-            for (int z = low.z - 1; z <= low.z + dims.z; ++z, ++asked) {
-              const bool is_inside = x >= low.x && x < low.x + dims.x && y >= low.y &&
-                                     y < low.y + dims.y && z >= low.z && z < low.z + dims.z;
+        const Index3 first = snapshot.min_index, dims = snapshot.dims;
+        for (int x = first.x - 1; x <= first.x + dims.x; x += 3) {
+          for (int y = first.y - 1; y <= first.y + dims.y; ++y) {
+            for (int z = first.z - 1; z <= first.z + dims.z; ++z, ++asked) {
+              const bool is_inside = x >= first.x && x < first.x + dims.x && y >= first.y &&
+                                     y < first.y + dims.y && z >= first.z && z < first.z + dims.z;
               const bool is_free = !is_inside || grid.state({x, y, z}) == VoxelState::free;
               wrong += snapshot.is_free({x, y, z}) != is_free ? 1U : 0U;
             }
