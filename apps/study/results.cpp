@@ -70,19 +70,25 @@ ResultRow row_of(const StudySpec& spec, const StudyRun& run, const ordered_json&
   return row;
 }
 
+std::string run_columns(const StudySpec& spec, const StudyRun& run) {
+  const StudyPolicy& policy = spec.policies[run.policy];
+  std::string columns = csv_text(spec.objects[run.object].name);
+  columns.append(",").append(policy.policy).append(",").append(policy.gain).append(",");
+  columns.append(policy.semantics).append(",").append(std::to_string(run.seed)).append(",");
+  columns.append(csv_text(run.sensor)).append(",").append(short_text(run.voxel)).append(",");
+  if (run.size) columns.append(short_text(*run.size));
+  return columns;
+}
+
 std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows) {
   std::string csv =
-      "object,policy,gain,semantics,seed,sensor,voxel,size,views,stop_reason,views_to_80,"
+      std::string(kRunColumns) +
+      ",views,stop_reason,views_to_80,"
       "views_to_90,views_to_95,auc,coverage_visible,coverage,rms_error,consistency,outliers,"
       "travelled,spearman_area,spearman_entropy,top1_share,hash,seconds\n";
   for (const ResultRow& row : rows) {
     const StudyRun& run = *row.run;
-    const StudyPolicy& policy = spec.policies[run.policy];
-    csv.append(csv_text(spec.objects[run.object].name)).append(",").append(policy.policy);
-    csv.append(",").append(policy.gain).append(",").append(policy.semantics);
-    csv.append(",").append(std::to_string(run.seed)).append(",").append(csv_text(run.sensor));
-    csv.append(",").append(short_text(run.voxel)).append(",");
-    if (run.size) csv.append(short_text(*run.size));
+    csv.append(run_columns(spec, run));
     csv.append(",").append(std::to_string(row.views)).append(",").append(row.stop_reason);
     for (const auto& views : row.views_to) {
       csv.append(",").append(views ? std::to_string(*views) : "nan");

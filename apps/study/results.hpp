@@ -44,6 +44,11 @@ struct ResultRow {
 /// A text as CSV has it: with a comma, a quote or a line's end in quotes (RFC 4180).
 [[nodiscard]] std::string csv_text(const std::string& text);
 
+/// What says in a line of CSV which run it is of: object, policy, gain, semantics, seed, sensor,
+/// voxel, size.
+inline constexpr const char* kRunColumns = "object,policy,gain,semantics,seed,sensor,voxel,size";
+[[nodiscard]] std::string run_columns(const StudySpec& spec, const StudyRun& run);
+
 /// The contents of results.csv and results.json, a row a run in the spec's order.
 [[nodiscard]] std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows);
 [[nodiscard]] nlohmann::ordered_json results_json(const StudySpec& spec,

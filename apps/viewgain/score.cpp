@@ -330,8 +330,9 @@ Command add_score(CLI::App& program) {
       "--race", options->race,
       "the best poses, very probably: all by about 400 of their rays, the best of these in full");
   selection
-      ->add_option("--approximate", options->approximate,
-                   "SHARE: estimates with standard errors from at most this share of each view's rays")
+      ->add_option(
+          "--approximate", options->approximate,
+          "SHARE: estimates with standard errors from at most this share of each view's rays")
       ->check(CLI::Range(1e-6, 1.0, "share in (0, 1]"));
   selection
       ->add_option(

@@ -68,15 +68,9 @@ void print_progress(const StudySpec& spec, const StudyProgress& progress, double
 
 // All runs' prediction.csv in one, each row with what its run was.
 std::string predictions_csv(const StudySpec& spec, const StudyFolder& folder) {
-  std::string csv = std::string("object,policy,gain,semantics,seed,sensor,voxel,size,") +
-                    kPredictionColumns + "\n";
+  std::string csv = std::string(kRunColumns) + "," + kPredictionColumns + "\n";
   for (const StudyRun& run : spec.runs) {
-    const StudyPolicy& policy = spec.policies[run.policy];
-    std::string head = csv_text(spec.objects[run.object].name);
-    head.append(",").append(policy.policy).append(",").append(policy.gain).append(",");
-    head.append(policy.semantics).append(",").append(std::to_string(run.seed)).append(",");
-    head.append(csv_text(run.sensor)).append(",").append(short_text(run.voxel)).append(",");
-    if (run.size) head.append(short_text(*run.size));
+    const std::string head = run_columns(spec, run);
     const std::string rows = folder.prediction_rows(run);
     for (std::size_t begin = 0; begin < rows.size();) {
       const std::size_t end = rows.find('\n', begin) + 1;

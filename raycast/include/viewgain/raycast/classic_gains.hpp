@@ -124,8 +124,8 @@ class VIEWGAIN_EXPORT ClassicMap {
 /// several rays pass counts with each of them, unless its gain says distinct.
 ///
 /// The voxels are those of rays in double precision: gains agree with voxel by voxel sums to 1e-6
-/// of them, under every instruction set. Thread safety: const members may run from many threads at once.
-/// Determinism: the same bits for any number of threads.
+/// of them, under every instruction set. Thread safety: const members may run from many threads at
+/// once. Determinism: the same bits for any number of threads.
 class VIEWGAIN_EXPORT ClassicGainEvaluator {
  public:
   /// Throws Error(invalid_argument), naming the value: no gain, one twice, a null map, a sensor
