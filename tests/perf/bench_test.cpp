@@ -153,6 +153,41 @@ TEST(Bench, ApproximateComparesStridesAndShares) {
   EXPECT_EQ(kinds, (std::map<std::string, int>{{"full", 1}, {"stride", 6}, {"share", 5}}));
 }
 
+TEST(Bench, ChoosingIsReportedBySensorAndShare) {
+  const Result result = run("choose --json --poses 60 --subsets 2 --seed 3 --threads 2");
+  // So few sets and poses may miss the bars, which is 1.
+  ASSERT_TRUE(result.exit_code == 0 || result.exit_code == 1) << result.exit_code;
+  const Json json = Json::parse(result.out);
+  expect_environment(json, 2);
+  std::set<std::string> sensors;
+  std::size_t estimates = 0;
+  bool is_missed = false;
+  for (const Json& scene : json["scenes"]) {
+    EXPECT_EQ(scene["scene"], "room");
+    sensors.insert(scene["sensor"].get<std::string>());
+    const Json& race = scene["race"];
+    EXPECT_EQ(race["sets"], 2);
+    EXPECT_GE(race["most_given_away"].get<double>(), 0) << race;
+    EXPECT_LT(race["most_given_away"].get<double>(), 0.2) << race;
+    EXPECT_GT(race["time_over_all"].get<double>(), 0) << race;
+    is_missed = is_missed || !race["pass"].get<bool>();
+    for (const Json& a : scene["approximate"]) {
+      const double within = a["within_two_standard_errors"].get<double>();
+      EXPECT_GT(a["estimates"].get<int>(), 40) << a;
+      // 90 to 97 % of many; at a share of 1 all, since nothing is estimated.
+      EXPECT_GT(within, 0.7) << a;
+      if (a["share"] == 1) {
+        EXPECT_EQ(within, 1) << a;
+      }
+      is_missed = is_missed || !a["pass"].get<bool>();
+      ++estimates;
+    }
+  }
+  EXPECT_EQ(sensors, (std::set<std::string>{"kinect_v1", "d435", "sr4000"}));
+  EXPECT_EQ(estimates, 3U * (5 * 3 + 1));
+  EXPECT_EQ(result.exit_code, is_missed ? 1 : 0);
+}
+
 TEST(Bench, BarsAreListedWithTheirFields) {
   const Result result =
       run("bars --json --voxels 32 --large-voxels 48 --poses 8 --repetitions 1 --maps 2 "

@@ -137,6 +137,48 @@ INSTANTIATE_TEST_SUITE_P(Maps, ClassicOracle,
                                          MapFamily::odd_and_far, MapFamily::rotated),
                          test::family_name);
 
+// Rays along diagonals that pass edges of voxels so closely that single precision cannot tell on
+// which side; in double precision it is well known.
+TEST(ClassicOracleTies, StepsThatAreNearlyTiesAreMadeInDoublePrecision) {
+  test::Random random(41);
+  std::vector<Index3> unknown, occupied;
+  for (int i = 0; i < 9000; ++i) {
+    const auto any = [&] { return test::uniform_int(random, 0, 31); };
+    (i % 9 == 0 ? occupied : unknown).push_back({any(), any(), any()});
+  }
+  BeliefGrid grid = test::sparse_map({32, 32, 32}, unknown, VoxelState::unknown);
+  for (const Index3 voxel : occupied) test::set_occupied_with_belief(grid, voxel, random);
+  test::vary_log_odds(grid, random);
+  const Sensor sensor = test::lattice_sensor(9, 7);
+  std::vector<Pose> poses;
+  for (const double off : {1e-9, 3e-8, 1e-7}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d sides(off, -1.7320508 * off, 2.6457513 * off);  // so that none is a tie
+      poses.push_back(test::axis_pose(Eigen::Vector3d(16, 15, 17) + sides, axis, axis != 1));
+    }
+  }
+  for (const Pose& view : poses) grid.append_view(view);
+  const Acquisition acquisition{sensor, 5 * test::kExactVoxel};
+  const test::OctomapOracle oracle(grid, {}, acquisition);
+  const ClassicConfig config{.gains = test::all_classic_gains()};
+  std::size_t checks = 0;
+  for (const std::string& isa : available_isas()) {
+    const test::ScopedIsa scoped(isa);
+    const auto map = ClassicMap::build(VoxelScene::build(grid), grid, acquisition);
+    const std::vector<double> actual = ClassicGainEvaluator(map, sensor, config).evaluate(poses);
+    for (std::size_t pose = 0; pose < poses.size(); ++pose) {
+      const std::array<double, 10> expected = oracle.gains(sensor, config, poses[pose]);
+      for (std::size_t g = 0; g < 10; ++g) {
+        EXPECT_NEAR(actual[pose * 10 + g], expected[g],
+                    kTolerance * std::abs(expected[g]) + kRounding)
+            << "pose " << pose << ", " << isa << " " << classic_gain_names()[g];
+        ++checks;
+      }
+    }
+  }
+  EXPECT_EQ(checks, available_isas().size() * 9 * 10);
+}
+
 // OctoMap's computeRayKeys steps through the voxels that the oracle's walk visits, for rays as
 // OctoMap has them: ends and directions in single precision, steps in double.
 TEST(ClassicOracleWalk, StepsAsOctomapDoes) {
