@@ -87,9 +87,9 @@ class ViewgainTrace : public TraceMethod {
   virtual void for_each_tile(const Pose& T_world_camera, const Visit& visit) const {
     const detail::PoseFrame frame = frame_of(T_world_camera);
     const auto tiles = tracer_.all_tiles();
-    if (way_ == Way::bvh) return tracer_.trace_bvh(frame, tiles, visit);
     thread_local detail::TileBins bins;
-    tracer_.prepare(frame, bins);
+    bins.invalidate();  // nothing sorted: through the BVH
+    if (way_ == Way::as_evaluator) tracer_.prepare(frame, bins);
     tracer_.trace(frame, tiles, bins, visit);
   }
 
@@ -113,13 +113,14 @@ class ViewgainFloor final : public ViewgainTrace {
       : ViewgainTrace("viewgain_floor", task, std::move(scene), Way::bvh), poses_(task.poses) {
     const std::size_t tiles = tracer_.table().tile_count;
     begins_.assign(poses_.size() * tiles + 1, 0);
+    detail::TileBins none;
     for (std::size_t p = 0; p < poses_.size(); ++p) {
-      tracer_.trace_bvh(frame_of(poses_[p]), tracer_.all_tiles(),
-                        [&](std::size_t tile, const detail::RayTile& out) {
-                          const std::vector<detail::TileBox> way = hit_boxes(out);
-                          ways_.insert(ways_.end(), way.begin(), way.end());
-                          begins_[p * tiles + tile + 1] = ways_.size();
-                        });
+      tracer_.trace(frame_of(poses_[p]), tracer_.all_tiles(), none,
+                    [&](std::size_t tile, const detail::RayTile& out) {
+                      const std::vector<detail::TileBox> way = hit_boxes(out);
+                      ways_.insert(ways_.end(), way.begin(), way.end());
+                      begins_[p * tiles + tile + 1] = ways_.size();
+                    });
     }
   }
 

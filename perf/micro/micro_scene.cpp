@@ -31,7 +31,8 @@ MicroScene::MicroScene()
       view.numbers.push_back(number);
       view.leaves.push_back(hit_boxes(tile));
     };
-    tracer.trace_bvh(view.frame, tracer.all_tiles(), note);
+    detail::TileBins none;  // nothing sorted: through the BVH
+    tracer.trace(view.frame, tracer.all_tiles(), none, note);
     views.push_back(std::move(view));
   }
 }

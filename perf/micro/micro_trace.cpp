@@ -24,11 +24,12 @@ void count_rays(benchmark::State& state, std::size_t rays) {
 // All tiles of a view through Embree.
 void packet_traversal(benchmark::State& state) {
   const MicroScene& micro = MicroScene::get();
+  detail::TileBins none;  // nothing sorted: through the BVH
   std::size_t rays = 0, next = 0;
   for (auto _ : state) {
     std::uint32_t hits = 0;
-    micro.tracer.trace_bvh(micro.views[next++ % micro.views.size()].frame, micro.tracer.all_tiles(),
-                           [&](std::size_t, const detail::RayTile& tile) { hits += tile.hit; });
+    micro.tracer.trace(micro.views[next++ % micro.views.size()].frame, micro.tracer.all_tiles(),
+                       none, [&](std::size_t, const detail::RayTile& tile) { hits += tile.hit; });
     benchmark::DoNotOptimize(hits);
     rays += micro.tracer.table().ray_count();
   }

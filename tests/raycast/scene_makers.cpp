@@ -145,16 +145,16 @@ Pose random_rigid(Random& random, double reach) {
   return {q.normalized().toRotationMatrix(), Eigen::Vector3d(shift(), shift(), shift())};
 }
 
-ScopedIsa::ScopedIsa(const std::string& isa) {
-  if (const char* before = std::getenv("VIEWGAIN_ISA")) before_ = before;
-  setenv("VIEWGAIN_ISA", isa.c_str(), 1);
+ScopedVariable::ScopedVariable(const std::string& name, const std::string& value) : name_(name) {
+  if (const char* before = std::getenv(name_.c_str())) before_ = before;
+  setenv(name_.c_str(), value.c_str(), 1);
 }
 
-ScopedIsa::~ScopedIsa() {
+ScopedVariable::~ScopedVariable() {
   if (before_) {
-    setenv("VIEWGAIN_ISA", before_->c_str(), 1);
+    setenv(name_.c_str(), before_->c_str(), 1);
   } else {
-    unsetenv("VIEWGAIN_ISA");
+    unsetenv(name_.c_str());
   }
 }
 

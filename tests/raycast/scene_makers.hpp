@@ -22,16 +22,29 @@ using Random = std::mt19937_64;
 [[nodiscard]] int uniform_int(Random& random, int low, int high);  ///< both ends included
 [[nodiscard]] Pose random_rigid(Random& random, double reach);  ///< translation within +-reach [m]
 
-/// Sets VIEWGAIN_ISA for as long as it lives; scenes built meanwhile use that instruction set.
-class ScopedIsa {
+/// Sets an environment variable for as long as it lives.
+class ScopedVariable {
  public:
-  explicit ScopedIsa(const std::string& isa);
-  ~ScopedIsa();
-  ScopedIsa(const ScopedIsa&) = delete;
-  ScopedIsa& operator=(const ScopedIsa&) = delete;
+  ScopedVariable(const std::string& name, const std::string& value);
+  ~ScopedVariable();
+  ScopedVariable(const ScopedVariable&) = delete;
+  ScopedVariable& operator=(const ScopedVariable&) = delete;
 
  private:
+  std::string name_;
   std::optional<std::string> before_;
+};
+
+/// Scenes built meanwhile use that instruction set.
+class ScopedIsa : ScopedVariable {
+ public:
+  explicit ScopedIsa(const std::string& isa) : ScopedVariable("VIEWGAIN_ISA", isa) {}
+};
+
+/// Evaluators made meanwhile trace that way: `lists` or `bvh`.
+class ScopedTrace : ScopedVariable {
+ public:
+  explicit ScopedTrace(const std::string& way) : ScopedVariable("VIEWGAIN_TRACE", way) {}
 };
 
 /// What the random maps look like.

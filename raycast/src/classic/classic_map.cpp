@@ -134,9 +134,6 @@ std::shared_ptr<const ClassicMap> ClassicMap::build(std::shared_ptr<const VoxelS
                                                     const ExecConfig& exec) {
   const int threads = thread_count(exec.num_threads);
   check(scene.get(), grid, acquisition);
-  if (SceneAccess::data(*scene).has_obstacles) {
-    (void)SceneAccess::data(*scene).tracing->obstacle_bvh();  // its errors on this thread
-  }
   auto data = std::make_unique<ClassicMapData>(std::move(scene), OccupancyCodes(grid));
   if (acquisition && grid.views().empty()) data->occlusion = OcclusionKnown::no_views;
   if (acquisition && !grid.views().empty()) {

@@ -121,7 +121,8 @@ std::vector<RayHit> GainEvaluator::trace(const Pose& T_world_camera) const {
   const ViewDriver& driver = impl_->driver;
   ViewDriver::Lease lease(driver);
   RayHitConsumer consumer{driver.scene(), driver.tracer().table()};
-  driver.view(T_world_camera, lease, consumer, ViewDriver::From::anywhere);
+  driver.view<detail::ViewTracer::Asked::everywhere>(T_world_camera, lease, consumer,
+                                                     ViewDriver::From::anywhere);
   return std::move(consumer.hits);
 }
 

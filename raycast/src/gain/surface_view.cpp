@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "task_weight.hpp"
-#include "trace/obstacle_ranges.hpp"
 #include "trace/scene_tracing.hpp"
 #include "view_driver.hpp"
 
@@ -64,7 +63,6 @@ SurfaceView::SurfaceView(const SceneData& scene, const EvaluatorCore& core,
   cap_ = static_cast<float>(stride * stride * std::numbers::pi * radius * radius / kLeastReadings);
   floor_variance_ = V * V;
   nats_per_area_ = entropy_of_new_voxel(core, prior_information_, floor_variance_) / (V * V);
-  if (scene.has_obstacles) (void)scene.tracing->obstacle_bvh();
 }
 
 WalkLimits SurfaceView::limits_of() const {
@@ -90,8 +88,11 @@ WalkLimits SurfaceView::limits_of() const {
 void SurfaceView::set_up(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                          WalkTask& task) const {
   task.rays = rays;
-  std::fill(task.far, task.far + kTileRays, frame.max_range);
-  if (scene_.has_obstacles) cut_at_obstacles(scene_.tracing->obstacle_bvh(), frame, rays, task.far);
+  if (rays.has_far) {
+    std::copy_n(rays.far, kTileRays, task.far);
+  } else {
+    std::fill_n(task.far, kTileRays, frame.max_range);
+  }
   task.solid_angle = &tracer_.table().solid_angle[number * kTileRays];
 }
 
@@ -152,7 +153,7 @@ double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, std::uin
   double sum = 0;  // [voxels²]
   WalkTask task;
   WalkedTile walked;
-  tracer_.trace(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
+  trace_rays(frame, tiles, workspace, [&](std::size_t number, const RayTile& rays) {
     if (rays.hit == 0) return;
     set_up(frame, number, rays, task);
     walk_.area(bricks_, frame, limits_, task, cap_, walked);

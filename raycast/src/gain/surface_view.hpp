@@ -36,7 +36,7 @@ class SurfaceView {
   template <typename Tiles, typename Visit>
   void for_each_share(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
                       Visit&& visit) const {
-    tracer_.trace(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
+    trace_rays(frame, tiles, workspace, [&](std::size_t number, const RayTile& rays) {
       workspace.shares.clear();
       if (rays.hit != 0) find_shares(frame, number, rays, workspace);
       for (const SurfaceShare& share : workspace.shares) visit(number, rays, share);
@@ -48,7 +48,7 @@ class SurfaceView {
   template <typename Tiles, typename Visit>
   void for_each_visited(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
                         Visit&& visit) const {
-    tracer_.trace(frame, tiles, workspace.bins, [&](std::size_t number, const RayTile& rays) {
+    trace_rays(frame, tiles, workspace, [&](std::size_t number, const RayTile& rays) {
       if (rays.hit == 0) return;
       find_visits(frame, number, rays, workspace);
       visit(number, rays, workspace.visits);
@@ -63,6 +63,12 @@ class SurfaceView {
   [[nodiscard]] double saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const;
 
  private:
+  template <typename Tiles, typename Visit>
+  void trace_rays(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
+                  Visit&& visit) const {
+    tracer_.trace<ViewTracer::Asked::along_rays>(frame, tiles, workspace.bins, visit);
+  }
+
   /// Sums what all tiles meet: calls met(tile number, rays, lane, range, entry of
   /// workspace.occupied) for each occupied voxel by the combined gain, and adds up in by_lane what
   /// new surface each lane shows [m²] unless it is null. Returns that of all [m²].

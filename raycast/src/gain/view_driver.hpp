@@ -62,7 +62,7 @@ class ViewDriver {
 
   /// Traces all tiles of a view into a consumer: begin(); add(tile number, RayTile) for those that
   /// can meet anything; finish(ViewGain&). What the consumer throws goes through.
-  template <typename Consumer>
+  template <ViewTracer::Asked kAsked = ViewTracer::Asked::before_voxels, typename Consumer>
   ViewGain view(const Pose& T_world_camera, Lease& lease, Consumer&& consumer,
                 From from = From::outside_occupied) const {
     ViewGain result;
@@ -72,8 +72,9 @@ class ViewDriver {
     TileBins& bins = lease.workspace().bins;
     tracer_.prepare(*frame, bins);
     consumer.begin();
-    tracer_.trace(*frame, tiles, bins,
-                  [&](std::size_t number, const RayTile& tile) { consumer.add(number, tile); });
+    tracer_.trace<kAsked>(*frame, tiles, bins, [&](std::size_t number, const RayTile& tile) {
+      consumer.add(number, tile);
+    });
     consumer.finish(result);
     result.status = ViewStatus::ok;
     return result;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // A scene is gathered, then made ready for tracing.
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -17,14 +16,10 @@ namespace {
 
 using detail::SceneAccess;
 
-std::shared_ptr<const VoxelScene> make_traceable(std::unique_ptr<detail::SceneData> data) {
+std::shared_ptr<const VoxelScene> make_traceable(std::unique_ptr<detail::SceneData> data,
+                                                 const detail::SceneData* before) {
   data->scene_boxes.emplace(*data, detail::choose_boxes(data->boxes.size()));
-  data->tracing = std::make_shared<const detail::SceneTracing>(*data);
-  if (data->has_obstacles) {
-    const Index3& dims = data->snapshot.dims;
-    const double reach = std::max({dims.x, dims.y, dims.z});
-    (void)data->tracing->bvh(detail::choose_margin_level(reach));
-  }
+  data->tracing = std::make_shared<const detail::SceneTracing>(*data, before);
   return SceneAccess::make(std::move(data));
 }
 
@@ -46,7 +41,8 @@ std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
   hazard.validate();
   return make_traceable(
       detail::gather_scene(std::move(snapshot), std::make_shared<const Obstacles>(obstacles),
-                           std::make_shared<const HazardConfig>(hazard), nullptr));
+                           std::make_shared<const HazardConfig>(hazard), nullptr),
+      nullptr);
 }
 
 std::shared_ptr<const VoxelScene> VoxelScene::update(
@@ -56,7 +52,7 @@ std::shared_ptr<const VoxelScene> VoxelScene::update(
   (void)thread_count(exec.num_threads);
   const detail::SceneData& data = SceneAccess::data(*before);
   return make_traceable(
-      detail::gather_scene(grid.snapshot(data.snapshot), data.obstacles, data.hazard, &data));
+      detail::gather_scene(grid.snapshot(data.snapshot), data.obstacles, data.hazard, &data), &data);
 }
 
 const HazardField& VoxelScene::hazard() const { return data_->tracing->hazard(); }

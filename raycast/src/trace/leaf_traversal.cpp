@@ -41,12 +41,6 @@ HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint3
       args->N == static_cast<unsigned>(kWidth) &&
       hn::AllTrue(du, hn::Eq(hn::LoadU(du, &RTCRayN_id(rays, args->N, 0)), hn::Iota(du, 0U)));
   if (as_sent) {
-    if (query.scene->has_obstacles) {
-      const VU geometry = hn::LoadU(du, &RTCHitN_geomID(hit, args->N, 0));
-      hn::BlendedStore(hn::Set(du, kObstaclePrimitive),
-                       hn::Eq(geometry, hn::Set(du, kObstacleGeometry)), du,
-                       query.tile->primitive + query.lane0);
-    }
     float* tfar = &RTCRayN_tfar(rays, args->N, 0);
     VF range = hn::LoadU(df, tfar);
     const MF active = hn::RebindMask(df, hn::Ne(hn::LoadU(di, args->valid), hn::Zero(di)));
@@ -61,9 +55,6 @@ HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint3
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
     const unsigned lane = RTCRayN_id(rays, args->N, i);
-    if (RTCHitN_geomID(hit, args->N, i) == kObstacleGeometry) {
-      query.tile->primitive[static_cast<unsigned>(query.lane0) + lane] = kObstaclePrimitive;
-    }
     VF range = hn::Set(df, RTCRayN_tfar(rays, args->N, i));
     const MF active = hn::RebindMask(df, hn::Eq(hn::Iota(du, 0U), hn::Set(du, lane)));
     const MF hits = kernel(*query.scene, *query.frame, *query.tile, query.lane0, primitive, slabs,
@@ -115,6 +106,7 @@ void set_up(const TileTable& table, const PoseFrame& frame, std::size_t tile, Ra
   out.valid = table.valid[tile];
   out.hit = 0;
   out.blocked = 0;
+  out.has_far = false;
 }
 
 #if HWY_TARGET == HWY_AVX3
@@ -129,9 +121,7 @@ constexpr auto intersect_packet = intersect4;
 #endif
 static_assert(sizeof(Packet::ray.tfar) == kWidth * sizeof(float));
 
-void trace(const SceneData& scene, RTCScene bvh, const TileTable& table, const PoseFrame& frame,
-           std::size_t tile, RayTile& out) {
-  set_up(table, frame, tile, out);
+void trace(const SceneData& scene, RTCScene bvh, const PoseFrame& frame, RayTile& out) {
   PacketQuery query;
   query.scene = &scene;
   query.frame = &frame;
@@ -150,9 +140,8 @@ void trace(const SceneData& scene, RTCScene bvh, const TileTable& table, const P
     hn::Store(hn::Load(df, out.dx + lane0), df, packet.ray.dir_x);
     hn::Store(hn::Load(df, out.dy + lane0), df, packet.ray.dir_y);
     hn::Store(hn::Load(df, out.dz + lane0), df, packet.ray.dir_z);
-    // Obstacles block at any range; voxels count from min_range on, which the kernels see to.
-    hn::Store(hn::Set(df, scene.has_obstacles ? 0.0F : frame.min_range), df, packet.ray.tnear);
-    hn::Store(hn::Set(df, frame.max_range), df, packet.ray.tfar);
+    hn::Store(hn::Set(df, frame.min_range), df, packet.ray.tnear);
+    hn::Store(hn::Load(df, out.range + lane0), df, packet.ray.tfar);
     hn::Store(hn::Zero(df), df, packet.ray.time);
     hn::Store(hn::Set(du, 0xFFFFFFFFU), du, packet.ray.mask);
     hn::Store(hn::Iota(du, 0U), du, packet.ray.id);
@@ -161,20 +150,14 @@ void trace(const SceneData& scene, RTCScene bvh, const TileTable& table, const P
     hn::Store(none, du, packet.hit.instID[0]);
     intersect_packet(valid, bvh, &packet, &query);
 
-    const VU geometry = hn::Load(du, packet.hit.geomID);
-    const auto ended = hn::And(usable, hn::Ne(geometry, none));
-    const auto in_obstacle = hn::Eq(geometry, hn::Set(du, kObstacleGeometry));
-    const auto in_voxel = hn::AndNot(in_obstacle, ended);
-    hn::Store(hn::Load(df, packet.ray.tfar), df, out.range + lane0);
+    const auto in_voxel =
+        hn::And(usable, hn::Ne(hn::Load(du, packet.hit.geomID), none));
+    hn::BlendedStore(hn::Load(df, packet.ray.tfar), hn::RebindMask(df, in_voxel), df,
+                     out.range + lane0);
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(du, in_voxel, bits);
     out.hit |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U)
                << lane0;
-    std::uint8_t blocked[8] = {};
-    hn::StoreMaskBits(du, in_obstacle, blocked);
-    out.blocked |=
-        (static_cast<std::uint32_t>(blocked[0]) | static_cast<std::uint32_t>(blocked[1]) << 8U)
-        << lane0;
   }
 }
 
@@ -238,7 +221,7 @@ float walk(const SceneData& scene, const PoseFrame& frame, float cosine,
 }  // namespace
 
 const TraceKernels& kernels(Isa isa) {
-  static const TraceKernels table{isa, kWidth, intersect_leaf, intersect_box, trace, set_up, walk};
+  static const TraceKernels table{isa, kWidth, intersect_leaf, intersect_box, set_up, trace, walk};
   return table;
 }
 

@@ -16,7 +16,6 @@ namespace viewgain::detail {
 /// Geometry numbers in the Embree scene.
 inline constexpr unsigned kLeafGeometry = 0;
 inline constexpr unsigned kBoxGeometry = 1;
-inline constexpr unsigned kObstacleGeometry = 2;
 
 /// The tracing kernels of one instruction set.
 struct TraceKernels {
@@ -27,16 +26,15 @@ struct TraceKernels {
   RTCIntersectFunctionN intersect_leaf;
   RTCIntersectFunctionN intersect_box;
 
-  /// Sets up tile number `tile` of the table for a pose and traces it through the scene's BVH.
-  void (*trace)(const SceneData& scene, RTCScene bvh, const TileTable& table,
-                const PoseFrame& frame, std::size_t tile, RayTile& out);
-
-  /// Sets up a tile that has met nothing yet.
+  /// Sets up tile number `tile` of the table for a pose: it has met nothing yet.
   void (*begin)(const TileTable& table, const PoseFrame& frame, std::size_t tile, RayTile& out);
+
+  /// Traces the tile through the scene's BVH.
+  void (*trace)(const SceneData& scene, RTCScene bvh, const PoseFrame& frame, RayTile& out);
 
   /// Traces the tile through a list of primitives, in any order but for their `near`, without the
   /// BVH; lists may follow one another. When they hold all that the tile's rays meet the answer is
-  /// that of `trace`, obstacles apart. `cosine`: no ray of the tile makes a smaller angle with the
+  /// that of `trace`. `cosine`: no ray of the tile makes a smaller angle with the
   /// optical axis. Returns how far along the axis something must begin to be of no more interest.
   float (*walk)(const SceneData& scene, const PoseFrame& frame, float cosine,
                 std::span<const TileBox> primitives, RayTile& out);

@@ -4,12 +4,13 @@
 
 namespace viewgain::detail {
 
-void cut_at_obstacles(RTCScene obstacles, const PoseFrame& frame, const RayTile& rays, float* far) {
+void cut_at_obstacles(RTCScene obstacles, const PoseFrame& frame, const RayTile& rays,
+                      std::uint32_t lanes, float* far) {
   RayQuery query(true);
   RTCRayHit16 packet;
   alignas(64) int valid[kTileRays];
   for (int lane = 0; lane < kTileRays; ++lane) {
-    valid[lane] = (rays.valid >> lane & 1U) != 0 ? -1 : 0;
+    valid[lane] = (lanes >> lane & 1U) != 0 ? -1 : 0;
     packet.ray.org_x[lane] = frame.origin[0];
     packet.ray.org_y[lane] = frame.origin[1];
     packet.ray.org_z[lane] = frame.origin[2];

@@ -7,7 +7,8 @@
 
 namespace viewgain::detail {
 
-/// Shortens far[lane] [voxels] to where the tile's rays meet an obstacle.
-void cut_at_obstacles(RTCScene obstacles, const PoseFrame& frame, const RayTile& rays, float* far);
+/// Shortens far[lane] [voxels] to where the tile's rays of these lanes meet an obstacle.
+void cut_at_obstacles(RTCScene obstacles, const PoseFrame& frame, const RayTile& rays,
+                      std::uint32_t lanes, float* far);
 
 }  // namespace viewgain::detail

@@ -19,7 +19,8 @@ inline constexpr int kTileRays = kTileEdge * kTileEdge;
 /// Of so many pixels every stride-th, the first included.
 [[nodiscard]] inline int strided(int pixels, int stride) { return (pixels - 1) / stride + 1; }
 
-/// Below every primitive's number as a signed one, so that an obstacle wins a tie with a voxel.
+/// What a ray has met at an obstacle; below every primitive's number as a signed one, so that an
+/// obstacle wins a tie with a voxel.
 inline constexpr std::uint32_t kObstaclePrimitive = 0xFFFFFFFFU;
 
 /// Every step-th ray of every step-th row, from that column and row on.
@@ -87,9 +88,11 @@ struct alignas(64) RayTile {
   float range[kTileRays];                             ///< where the ray ends [voxels]
   std::uint32_t primitive[kTileRays];                 ///< leaf or box, kNoPrimitive: no voxel
   std::uint32_t offset[kTileRays];  ///< voxel in the primitive, see scene_data.hpp
+  float far[kTileRays];             ///< where it meets an obstacle [voxels], if that was asked for
   std::uint32_t valid = 0;          ///< one bit a lane
   std::uint32_t hit = 0;            ///< lanes that end in a voxel
   std::uint32_t blocked = 0;        ///< lanes that end at an obstacle
+  bool has_far = false;             ///< is `far` known? Else no obstacle matters
 };
 
 }  // namespace viewgain::detail

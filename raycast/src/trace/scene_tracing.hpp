@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <mutex>
 #include <optional>
 
 #include "device.hpp"
 #include "leaf_traversal.hpp"
+#include "obstacle_scene.hpp"
 #include "scene/brick_table.hpp"
 #include "scene/scene_data.hpp"
 #include "trace_choice.hpp"
@@ -15,19 +17,20 @@
 
 namespace viewgain::detail {
 
-/// What a scene keeps for being traced: its kernels, and Embree's BVH where one is wanted.
+/// What a scene keeps for being traced: its kernels, obstacles, and Embree's BVH of its voxels where
+/// one is wanted.
 class SceneTracing {
  public:
-  /// Of a scene whose primitives are gathered, which owns this.
-  explicit SceneTracing(const SceneData& data)
-      : kernels(trace_kernels(choose_isa())), data_(data) {}
+  /// Of a scene whose primitives are gathered, which owns this; `before`: null, or the scene that
+  /// it is an update of. Throws as ObstacleScene.
+  SceneTracing(const SceneData& data, const SceneData* before)
+      : kernels(trace_kernels(choose_isa())),
+        obstacles(ObstacleScene::of(data, kernels.isa, before)),
+        data_(data) {}
 
-  /// The BVH with boxes of this margin; built when first asked for. Thread safe. Throws
+  /// The BVH of voxels, with boxes of this margin; built when first asked for. Thread safe. Throws
   /// Error(backend), Error(capacity).
   [[nodiscard]] RTCScene bvh(int margin_level) const;
-
-  /// Obstacles alone; the scene has some. As bvh().
-  [[nodiscard]] RTCScene obstacle_bvh() const;
 
   /// Of the scene's unknown voxels; found when first asked for. Thread safe.
   [[nodiscard]] const HazardField& hazard() const;
@@ -37,6 +40,7 @@ class SceneTracing {
   [[nodiscard]] const BrickTable& bricks() const;
 
   const TraceKernels& kernels;
+  const std::shared_ptr<const ObstacleScene> obstacles;  ///< null: none
 
  private:
   struct Bvh {
@@ -45,7 +49,6 @@ class SceneTracing {
   };
   const SceneData& data_;
   mutable std::array<Bvh, kMarginLevels> bvhs_;
-  mutable Bvh obstacles_;
   mutable std::once_flag hazard_once_;
   mutable std::optional<HazardField> hazard_;
   mutable std::once_flag bricks_once_;

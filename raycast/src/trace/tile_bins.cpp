@@ -1,11 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "trace/tile_bins.cpp"
-#include <hwy/foreach_target.h>  // must come before highway.h
-//
-#include <hwy/highway.h>
+#include "tile_bins.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,159 +8,16 @@
 #include <cmath>
 #include <limits>
 
+#include "obstacle_scene.hpp"
 #include "scene/scene_data.hpp"
-#include "tile_bins.hpp"
 
-#ifndef VIEWGAIN_TILE_BINS_ONCE
-#define VIEWGAIN_TILE_BINS_ONCE
-namespace viewgain::detail {
-
-constexpr float kEverywhere = 1e9F;  // beyond every column and row
-
-// Where sixteen boxes lie in the image, in rays; empty if max < min.
-struct ImageBounds {
-  alignas(64) float min_column[kBoxVector], max_column[kBoxVector];
-  alignas(64) float min_row[kBoxVector], max_row[kBoxVector];
-  alignas(64) float near[kBoxVector];  // where it begins along the optical axis [voxels]
-};
-
-struct ImageScale {
-  float scale_x, shift_x, scale_y, shift_y;
-  float nearest;   // along the optical axis [voxels]; what is nearer no ray meets
-  float touching;  // except in boxes that come so close to the axis [voxels]; negative: none
-  float last_column, last_row;
-  float margin;  // by which boxes count as larger [voxels]
-};
-
-struct TileBinKernels {
-  ImageBounds (*bounds_of)(const BoxArrays&, std::size_t first, const PoseFrame&,
-                           const ImageScale&);
-  // One bit for each of sixteen members that cover the tile.
-  std::uint32_t (*covering)(const std::int16_t* column0, const std::int16_t* column1,
-                            const std::int16_t* row0, const std::int16_t* row1, std::int16_t column,
-                            std::int16_t row);
-};
-
-}  // namespace viewgain::detail
-#endif
-
-HWY_BEFORE_NAMESPACE();
-namespace viewgain::detail::HWY_NAMESPACE {
-namespace {
-namespace hn = hwy::HWY_NAMESPACE;
-
-// Rounding moves a bound by less than this many rays.
-constexpr float kRayMargin = 0.05F;
-
-ImageBounds bounds_of(const BoxArrays& boxes, std::size_t first, const PoseFrame& frame,
-                      const ImageScale& image) {
-  constexpr hn::CappedTag<float, kBoxVector> df;
-  using VF = hn::Vec<decltype(df)>;
-  ImageBounds out;
-  const auto& R = frame.rotation;
-  const VF zero = hn::Zero(df), nearest = hn::Set(df, image.nearest);
-  const VF margin = hn::Set(df, image.margin), ray_margin = hn::Set(df, kRayMargin);
-  const VF touching = hn::Set(df, image.touching), opposite = hn::Neg(touching);
-  const VF everywhere = hn::Set(df, kEverywhere), nowhere = hn::Neg(everywhere);
-  for (std::size_t i = 0; i < kBoxVector; i += hn::Lanes(df)) {
-    const std::size_t at = first + i;
-    const VF dx = hn::Sub(hn::LoadU(df, &boxes.center_x[at]), hn::Set(df, frame.origin[0]));
-    const VF dy = hn::Sub(hn::LoadU(df, &boxes.center_y[at]), hn::Set(df, frame.origin[1]));
-    const VF dz = hn::Sub(hn::LoadU(df, &boxes.center_z[at]), hn::Set(df, frame.origin[2]));
-    const VF hx = hn::LoadU(df, &boxes.half_x[at]), hy = hn::LoadU(df, &boxes.half_y[at]),
-             hz = hn::LoadU(df, &boxes.half_z[at]);
-    // The box in the camera's axes: centre and reach along each.
-    const auto along = [&](std::size_t axis, VF& low, VF& high) HWY_ATTR {
-      const VF a = hn::Set(df, R[axis]), b = hn::Set(df, R[3 + axis]), c = hn::Set(df, R[6 + axis]);
-      const VF center = hn::Add(hn::Mul(a, dx), hn::Add(hn::Mul(b, dy), hn::Mul(c, dz)));
-      const VF reach =
-          hn::Add(margin, hn::Add(hn::Mul(hn::Abs(a), hx),
-                                  hn::Add(hn::Mul(hn::Abs(b), hy), hn::Mul(hn::Abs(c), hz))));
-      low = hn::Sub(center, reach);
-      high = hn::Add(center, reach);
-    };
-    VF x_low, x_high, y_low, y_high, z_low, z_high;
-    along(0, x_low, x_high);
-    along(1, y_low, y_high);
-    along(2, z_low, z_high);
-    // Of a box that reaches the camera's plane only the part before it counts.
-    const auto behind = hn::Lt(z_high, nearest);
-    const VF z_near = hn::Max(z_low, nearest);
-    // Rays that count from the camera on may meet what touches it in any direction.
-    const auto beside = [&](VF low, VF high) HWY_ATTR {
-      return hn::And(hn::Le(low, touching), hn::Ge(high, opposite));
-    };
-    const auto touches = hn::And(hn::And(beside(x_low, x_high), beside(y_low, y_high)),
-                                 hn::And(hn::Le(z_low, nearest), hn::Ge(z_high, opposite)));
-    hn::Store(hn::IfThenElse(touches, zero, z_near), df, out.near + i);
-    const VF one = hn::Set(df, 1.0F);
-    const VF by_near = hn::Div(one, z_near);
-    const VF by_far = hn::Div(one, hn::Max(z_high, nearest));
-    const auto project = [&](VF low, VF high, float scale, float shift, float* min_out,
-                             float* max_out) HWY_ATTR {
-      const VF least = hn::Mul(low, hn::IfThenElse(hn::Lt(low, zero), by_near, by_far));
-      const VF most = hn::Mul(high, hn::IfThenElse(hn::Lt(high, zero), by_far, by_near));
-      const VF s = hn::Set(df, scale), o = hn::Set(df, shift);
-      const VF min = hn::Sub(hn::Add(hn::Mul(least, s), o), ray_margin);
-      const VF max = hn::Add(hn::Add(hn::Mul(most, s), o), ray_margin);
-      hn::Store(hn::IfThenElse(touches, nowhere, min), df, min_out + i);
-      hn::Store(hn::IfThenElse(touches, everywhere, hn::IfThenElse(behind, nowhere, max)), df,
-                max_out + i);
-    };
-    project(x_low, x_high, image.scale_x, image.shift_x, out.min_column, out.max_column);
-    project(y_low, y_high, image.scale_y, image.shift_y, out.min_row, out.max_row);
-  }
-  return out;
-}
-
-std::uint32_t covering(const std::int16_t* column0, const std::int16_t* column1,
-                       const std::int16_t* row0, const std::int16_t* row1, std::int16_t column,
-                       std::int16_t row) {
-  constexpr hn::CappedTag<std::int16_t, kBoxVector> d;
-  const auto c = hn::Set(d, column), r = hn::Set(d, row);
-  std::uint32_t bits = 0;
-  for (std::size_t i = 0; i < kBoxVector; i += hn::Lanes(d)) {
-    const auto outside =
-        hn::Or(hn::Or(hn::Gt(hn::LoadU(d, column0 + i), c), hn::Lt(hn::LoadU(d, column1 + i), c)),
-               hn::Or(hn::Gt(hn::LoadU(d, row0 + i), r), hn::Lt(hn::LoadU(d, row1 + i), r)));
-    std::uint8_t part[8] = {};
-    hn::StoreMaskBits(d, hn::Not(outside), part);
-    bits |= (static_cast<std::uint32_t>(part[0]) | static_cast<std::uint32_t>(part[1]) << 8U) << i;
-  }
-  return bits;
-}
-
-}  // namespace
-
-const TileBinKernels& tile_bin_kernels() {
-  static const TileBinKernels table{bounds_of, covering};
-  return table;
-}
-
-}  // namespace viewgain::detail::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
 namespace viewgain::detail {
 namespace {
+
+constexpr float kNothing = -1e9F;  // ImageScale::touching
 
 // Below this a camera's plane is too near to divide by [voxels].
 constexpr float kLeastDepth = 1e-3F;
-
-const TileBinKernels& kernels_of(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::tile_bin_kernels();
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::tile_bin_kernels();
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(tile_bin_kernels)();
-  }
-}
 
 // Tiles of the rays whose numbers lie in [min, max]; false if there are none.
 template <typename Integer>
@@ -189,13 +41,24 @@ bool outline(const ImageBounds& bounds, std::size_t i, const ImageScale& image, 
 // Rounding moves a distance by less.
 float safely_near(float near) { return near - 1e-5F * std::abs(near); }
 
+// How far along the axis any point of a box from the origin is, or a little more.
+float farthest_along_axis(const std::array<float, 3>& size, const PoseFrame& frame) {
+  float sum = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const float along = frame.rotation[3 * a + 2];
+    sum += std::max(along * (size[a] - frame.origin[a]), -along * frame.origin[a]);
+  }
+  return sum + 1.0F + 1e-5F * std::abs(sum);
+}
+
 // Distances along the optical axis in 256 steps: enough to put near boxes first.
 constexpr std::size_t kDistanceSteps = 256;
 
 }  // namespace
 
 TileBinner::TileBinner(const PinholeCamera& camera, int pixel_stride, const TileTable& table)
-    : scale_x_(static_cast<float>(camera.fx / pixel_stride)),
+    : lens_(camera, table),
+      scale_x_(static_cast<float>(camera.fx / pixel_stride)),
       shift_x_(static_cast<float>(camera.cx / pixel_stride)),
       scale_y_(static_cast<float>(camera.fy / pixel_stride)),
       shift_y_(static_cast<float>(camera.cy / pixel_stride)),
@@ -207,23 +70,58 @@ TileBinner::TileBinner(const PinholeCamera& camera, int pixel_stride, const Tile
     const float* z = table.directions.data() + tile * 3 * kTileRays + 2 * kTileRays;
     least_cosine_ = std::min(least_cosine_, *std::min_element(z, z + kTileRays));
   }
-  widest_slope_ = std::max({shift_x_, last_column_ - shift_x_, 1.0F}) / scale_x_ +
-                  std::max({shift_y_, last_row_ - shift_y_, 1.0F}) / scale_y_;
+  widest_slope_ =
+      lens_.is_bent
+          ? std::max(-lens_.low_x, lens_.high_x) + std::max(-lens_.low_y, lens_.high_y)
+          : std::max({shift_x_, last_column_ - shift_x_, 1.0F}) / scale_x_ +
+                std::max({shift_y_, last_row_ - shift_y_, 1.0F}) / scale_y_;
 }
 
-ImageScale TileBinner::image_of(const PoseFrame& frame) const {
+ImageScale TileBinner::image_of(const PoseFrame& frame, float min_range) const {
   // A ray that has gone min_range is at least this far along the axis.
-  const float nearest = 0.999F * frame.min_range * least_cosine_;
-  const float touching = nearest < kLeastDepth ? 1.01F * kLeastDepth * widest_slope_ : -kEverywhere;
-  return {scale_x_, shift_x_,     scale_y_,  shift_y_,          std::max(nearest, kLeastDepth),
-          touching, last_column_, last_row_, frame.extra_margin};
+  const float nearest = 0.999F * min_range * least_cosine_;
+  const float touching = nearest < kLeastDepth ? 1.01F * kLeastDepth * widest_slope_ : kNothing;
+  return {.scale_x = scale_x_,
+          .shift_x = shift_x_,
+          .scale_y = scale_y_,
+          .shift_y = shift_y_,
+          .nearest = std::max(nearest, kLeastDepth),
+          .touching = touching,
+          .last_column = last_column_,
+          .last_row = last_row_,
+          .margin = frame.extra_margin,
+          .lens = lens_};
+}
+
+void TileBinner::mark_obstacles(Isa isa, const ObstacleScene& obstacles, const PoseFrame& frame,
+                                TileBins& bins) const {
+  const ImageBoundsKernels& kernels = image_bounds_kernels(isa);
+  const ImageScale image = image_of(frame, 0);
+  bins.obstacle_near_.assign(tile_count_, TileBins::kNoObstacle);
+  bins.farthest_voxel_ = farthest_along_axis(obstacles.workspace(), frame);
+  const BoxArrays& boxes = obstacles.pieces();
+  const std::size_t count = obstacles.piece_count();
+  for (std::size_t first = 0; first < count; first += kBoxVector) {
+    const ImageBounds bounds = kernels.bounds_of(boxes, first, frame, image);
+    for (std::size_t i = 0; i < std::min(kBoxVector, count - first); ++i) {
+      std::size_t column0 = 0, column1 = 0, row0 = 0, row1 = 0;
+      const float near = safely_near(bounds.near[i]);
+      if (near > frame.max_range || !outline(bounds, i, image, column0, column1, row0, row1)) {
+        continue;
+      }
+      for (std::size_t row = row0; row <= row1; ++row) {
+        float* const tiles = bins.obstacle_near_.data() + row * tile_columns_;
+        for (std::size_t c = column0; c <= column1; ++c) tiles[c] = std::min(tiles[c], near);
+      }
+    }
+  }
 }
 
 void TileBinner::sort(Isa isa, const SceneBoxes& scene, const PoseFrame& frame,
                       TileBins& bins) const {
   bins.valid_ = false;
-  const TileBinKernels& kernels = kernels_of(isa);
-  const ImageScale image = image_of(frame);
+  const ImageBoundsKernels& kernels = image_bounds_kernels(isa);
+  const ImageScale image = image_of(frame, frame.min_range);
 
   // Where each box lies in the image and how far off it is.
   bins.entries_.clear();
@@ -315,9 +213,9 @@ void TileBinner::sort(Isa isa, const SceneBoxes& scene, const PoseFrame& frame,
   bins.valid_ = true;
 }
 
-void TileBinner::project_cell(const TileBinKernels& kernels, const SceneBoxes& scene,
+void TileBinner::project_cell(const ImageBoundsKernels& kernels, const SceneBoxes& scene,
                               const PoseFrame& frame, std::uint32_t cell, TileBins& bins) const {
-  const ImageScale image = image_of(frame);
+  const ImageScale image = image_of(frame, frame.min_range);
   TileBins::Cell& state = bins.cells_[cell];
   state.generation = bins.generation_;
   state.begin = static_cast<std::uint32_t>(bins.member_.size());
@@ -346,7 +244,7 @@ std::span<const TileBox> TileBinner::select(Isa isa, const SceneBoxes& scene,
                                             const PoseFrame& frame, std::uint32_t cell,
                                             std::size_t tile, float of_interest,
                                             TileBins& bins) const {
-  const TileBinKernels& kernels = kernels_of(isa);
+  const ImageBoundsKernels& kernels = image_bounds_kernels(isa);
   const TileBins::Cell& state = bins.cells_[cell];
   if (state.generation != bins.generation_) project_cell(kernels, scene, frame, cell, bins);
   bins.selected_.clear();
@@ -371,4 +269,3 @@ std::span<const TileBox> TileBinner::select(Isa isa, const SceneBoxes& scene,
 }
 
 }  // namespace viewgain::detail
-#endif

@@ -4,10 +4,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "image_bounds.hpp"
 #include "ray_tile.hpp"
 #include "scene/scene_boxes.hpp"
 #include "viewgain/core/camera.hpp"
@@ -15,8 +17,7 @@
 
 namespace viewgain::detail {
 
-struct ImageScale;
-struct TileBinKernels;
+class ObstacleScene;
 
 /// Something that a tile's rays can meet.
 struct TileBox {
@@ -34,6 +35,15 @@ class TileBins {
   [[nodiscard]] std::span<const TileBox> boxes_of(std::size_t tile) const {
     return {boxes_.data() + starts_[tile], boxes_.data() + starts_[tile + 1]};
   }
+  /// How far along the optical axis an obstacle may begin that a tile's rays meet [voxels]; no
+  /// obstacle: kNoObstacle.
+  [[nodiscard]] float obstacle_near(std::size_t tile) const {
+    return obstacle_near_.empty() ? kNoObstacle : obstacle_near_[tile];
+  }
+  static constexpr float kNoObstacle = std::numeric_limits<float>::infinity();
+  void forget_obstacles() { obstacle_near_.clear(); }
+  /// No voxel of the workspace is farther along the axis [voxels]; known where obstacles are.
+  [[nodiscard]] float farthest_voxel() const { return farthest_voxel_; }
   /// Leaves what TileBinner::select() returned last as it is until this is called again.
   void keep_selected() { std::swap(selected_, kept_); }
 
@@ -59,18 +69,24 @@ class TileBins {
   std::vector<std::int16_t> column0_, column1_, row0_, row1_;
   std::vector<TileBox> member_;  // primitives
   std::vector<TileBox> selected_, kept_;
+  std::vector<float> obstacle_near_;  // one a tile; empty: there are none
+  float farthest_voxel_ = 0;
 };
 
 /// Sorts a scene's boxes into the tiles of a view by their outlines in the image. About half of a
 /// view's rays usually pass the object, and of the rest each meets few boxes; projecting all boxes
-/// once tells that for less than walking a BVH tile by tile. For cameras without distortion.
-/// Conservative: no box that a tile's rays can meet at or beyond the least range is missing.
+/// once tells that for less than walking a BVH tile by tile. Conservative: no box that a tile's rays can meet at or beyond the least range is missing.
 class TileBinner {
  public:
   TileBinner(const PinholeCamera& camera, int pixel_stride, const TileTable& table);
 
   /// Fills `bins`; allocates only while they grow. Thread safe.
   void sort(Isa isa, const SceneBoxes& boxes, const PoseFrame& frame, TileBins& bins) const;
+
+  /// Notes in `bins` where in the image obstacles may be, which count from the camera on. Thread
+  /// safe.
+  void mark_obstacles(Isa isa, const ObstacleScene& obstacles, const PoseFrame& frame,
+                      TileBins& bins) const;
 
   /// The primitives of a cell (a box of sorted boxes that stands for many) that a tile's rays can
   /// meet and that begin no farther than `of_interest` along the axis, near ones first. Valid until
@@ -81,11 +97,12 @@ class TileBinner {
                                                 TileBins& bins) const;
 
  private:
-  void project_cell(const TileBinKernels& kernels, const SceneBoxes& scene, const PoseFrame& frame,
-                    std::uint32_t cell, TileBins& bins) const;
-  [[nodiscard]] ImageScale image_of(const PoseFrame& frame) const;
+  void project_cell(const ImageBoundsKernels& kernels, const SceneBoxes& scene,
+                    const PoseFrame& frame, std::uint32_t cell, TileBins& bins) const;
+  [[nodiscard]] ImageScale image_of(const PoseFrame& frame, float min_range) const;
 
-  float scale_x_ = 0, shift_x_ = 0;  // ray column = scale * x / z + shift
+  LensBend lens_;
+  float scale_x_ = 0, shift_x_ = 0;  // ray column = scale * x / z + shift, the lens apart
   float scale_y_ = 0, shift_y_ = 0;
   float last_column_ = 0, last_row_ = 0;
   float least_cosine_ = 1;  // of a ray with the optical axis

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <string>
+#include <string_view>
 
 #include "device.hpp"
 #include "leaf_traversal.hpp"
@@ -13,6 +16,14 @@ namespace viewgain::detail {
 namespace {
 
 constexpr double kLevelZeroReach = 2e4;
+
+bool wishes_lists() {
+  const char* wish = std::getenv("VIEWGAIN_TRACE");
+  if (wish == nullptr || std::string_view(wish) == "lists") return true;
+  if (std::string_view(wish) == "bvh") return false;
+  throw Error(ErrorCode::invalid_argument,
+              std::string("VIEWGAIN_TRACE is '").append(wish).append("', not lists or bvh"));
+}
 
 }  // namespace
 
@@ -40,12 +51,12 @@ int choose_margin_level(double reach) {
   return level;
 }
 
-ViewChoice choose_tracing(const SceneData& scene, const SensorRays& rays, double max_range) {
+ViewChoice choose_tracing(const SceneData& scene, double max_range) {
   // A camera that sees anything is no farther than its range from the workspace.
   const Index3& dims = scene.snapshot.dims;
   const double reach = max_range + std::max({dims.x, dims.y, dims.z});
   ViewChoice choice;
-  choice.by_lists = !scene.has_obstacles && !rays.camera.has_distortion();
+  choice.by_lists = wishes_lists();
   choice.margin_level = choose_margin_level(reach);
   return choice;
 }

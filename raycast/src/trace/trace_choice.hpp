@@ -15,8 +15,9 @@ namespace viewgain::detail {
 /// - Lists of what each tile of a view can meet, made by sorting the scene's boxes into the tiles.
 ///   Of many primitives, cells are sorted first, and the primitives of a cell when a tile comes to
 ///   it.
-/// - Embree's BVH, where lists cannot be: obstacles are triangles, and a lens bends the outlines of
-///   boxes.
+/// - Embree's BVH, if the environment variable VIEWGAIN_TRACE says `bvh`.
+///
+/// Known obstacles are triangles and always traced by Embree, where they can end a ray.
 
 /// The best instruction set, within VIEWGAIN_ISA, for which Embree has packets of the kernels'
 /// width. Throws Error(backend) if there is none, Error(invalid_argument) as select_isa().
@@ -39,8 +40,8 @@ struct ViewChoice {
   bool by_lists = false;
   int margin_level = 0;
 };
-/// `max_range` in voxels.
-[[nodiscard]] ViewChoice choose_tracing(const SceneData& scene, const SensorRays& rays,
-                                        double max_range);
+/// `max_range` in voxels. Throws Error(invalid_argument) for another VIEWGAIN_TRACE than `lists` or
+/// `bvh`.
+[[nodiscard]] ViewChoice choose_tracing(const SceneData& scene, double max_range);
 
 }  // namespace viewgain::detail

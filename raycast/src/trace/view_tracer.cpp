@@ -3,7 +3,11 @@
 #include "view_tracer.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 #include <utility>
+
+#include "obstacle_ranges.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -26,7 +30,7 @@ ViewTracer::ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays>
   min_range_ = static_cast<float>(nearest);
   max_range_ = static_cast<float>(farthest);
   is_out_of_range_ = nearest >= kRayEnd;
-  choice_ = choose_tracing(scene, *rays_, farthest);
+  choice_ = choose_tracing(scene, farthest);
   if (!choice_.by_lists) (void)scene.tracing->bvh(choice_.margin_level);
 }
 
@@ -52,6 +56,96 @@ std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const 
   frame.max_range = max_range_;
   frame.extra_margin = margin_of(choice_.margin_level) - margin_of(0);
   return frame;
+}
+
+void ViewTracer::prepare(const PoseFrame& frame, TileBins& bins) const {
+  bins.invalidate();
+  bins.forget_obstacles();
+  if (frame.sees_nothing) return;
+  if (choice_.by_lists) rays_->binner.sort(kernels_.isa, *scene_.scene_boxes, frame, bins);
+  if (const ObstacleScene* obstacles = scene_.tracing->obstacles.get()) {
+    rays_->binner.mark_obstacles(kernels_.isa, *obstacles, frame, bins);
+  }
+}
+
+void ViewTracer::trace_voxels(const PoseFrame& frame, std::size_t tile, TileBins& bins,
+                              RayTile& out) const {
+  if (bins.valid()) {
+    trace_lists(frame, tile, bins, out);
+  } else {
+    kernels_.trace(scene_, scene_.tracing->bvh(choice_.margin_level), frame, out);
+  }
+}
+
+void ViewTracer::trace_lists(const PoseFrame& frame, std::size_t tile, TileBins& bins,
+                             RayTile& out) const {
+  const SceneBoxes& scene = *scene_.scene_boxes;
+  const float cosine = rays_->table.cosine[tile];
+  if (scene.are_primitives()) {
+    kernels_.walk(scene_, frame, cosine, bins.boxes_of(tile), out);
+    return;
+  }
+  // The primitives of the next cell are chosen, and asked for, while those of this one are walked.
+  float of_interest = std::numeric_limits<float>::max();
+  std::span<const TileBox> waiting;
+  for (const TileBox& cell : bins.boxes_of(tile)) {
+    if (cell.near > of_interest) break;
+    const auto primitives =
+        rays_->binner.select(kernels_.isa, scene, frame, cell.box, tile, of_interest, bins);
+    if (primitives.empty()) continue;
+    for (const TileBox& primitive : primitives) {
+      __builtin_prefetch(&scene_.boxes[primitive.box]);
+      if (primitive.box < scene_.leaf_count) __builtin_prefetch(&scene_.masks[primitive.box]);
+    }
+    if (!waiting.empty()) of_interest = kernels_.walk(scene_, frame, cosine, waiting, out);
+    waiting = primitives;
+    bins.keep_selected();
+  }
+  if (!waiting.empty()) kernels_.walk(scene_, frame, cosine, waiting, out);
+}
+
+void ViewTracer::trace_with_obstacles(const PoseFrame& frame, std::size_t tile, Asked asked,
+                                      TileBins& bins, RayTile& out) const {
+  RTCScene obstacles = scene_.tracing->obstacles->bvh();
+  const float near = bins.obstacle_near(tile);
+  const bool comes_first = bins.valid() && !bins.boxes_of(tile).empty() &&
+                           near <= bins.boxes_of(tile).front().near;
+  const bool is_in_reach = near <= bins.farthest_voxel();
+  if (asked == Asked::everywhere || (is_in_reach && (asked == Asked::along_rays || comes_first))) {
+    // Rays that end early leave fewer boxes to walk.
+    std::copy_n(out.range, kTileRays, out.far);
+    cut_at_obstacles(obstacles, frame, out, out.valid, out.far);
+    out.has_far = true;
+    for (int lane = 0; lane < kTileRays; ++lane) {
+      if (out.far[lane] < out.range[lane]) out.blocked |= 1U << lane;
+    }
+    for (std::uint32_t left = out.blocked; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      out.range[lane] = out.far[lane];
+      out.primitive[lane] = kObstaclePrimitive;
+    }
+    trace_voxels(frame, tile, bins, out);
+    out.blocked &= ~out.hit;
+    return;
+  }
+  trace_voxels(frame, tile, bins, out);
+  float farthest = 0;
+  for (std::uint32_t left = out.hit; left != 0; left &= left - 1) {
+    farthest = std::max(farthest, out.range[std::countr_zero(left)]);
+  }
+  if (out.hit == 0 || near > farthest * rays_->table.cosine[tile]) return;
+  // A little farther than the voxels, since an obstacle wins a tie.
+  alignas(64) float far[kTileRays];
+  for (int lane = 0; lane < kTileRays; ++lane) far[lane] = out.range[lane] * (1.0F + 1e-6F);
+  cut_at_obstacles(obstacles, frame, out, out.hit, far);
+  for (std::uint32_t left = out.hit; left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left);
+    if (far[lane] > out.range[lane]) continue;
+    out.range[lane] = far[lane];
+    out.primitive[lane] = kObstaclePrimitive;
+    out.blocked |= 1U << lane;
+  }
+  out.hit &= ~out.blocked;
 }
 
 }  // namespace viewgain::detail

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <ranges>
@@ -28,36 +28,33 @@ class ViewTracer {
   [[nodiscard]] std::optional<PoseFrame> frame_of(const Pose& T_world_camera) const;
 
   /// Makes `bins` ready for tracing the view's tiles.
-  void prepare(const PoseFrame& frame, TileBins& bins) const {
-    if (choice_.by_lists && !frame.sees_nothing) {
-      rays_->binner.sort(kernels_.isa, *scene_.scene_boxes, frame, bins);
-    } else {
-      bins.invalidate();
-    }
-  }
+  void prepare(const PoseFrame& frame, TileBins& bins) const;
+
+  /// What is asked about obstacles.
+  enum class Asked : std::uint8_t {
+    before_voxels,  ///< which rays end there that would end in a voxel
+    along_rays,     ///< also how far rays could go on: RayTile::far
+    everywhere      ///< also in tiles that meet no voxel
+  };
 
   /// Calls visit(tile number, RayTile) for those of the tiles with these numbers that can meet
   /// anything, in order. `bins` are prepared for the view.
-  template <typename Tiles, typename Visit>
+  template <Asked kAsked = Asked::before_voxels, typename Tiles, typename Visit>
   void trace(const PoseFrame& frame, const Tiles& tiles, TileBins& bins, Visit&& visit) const {
     if (frame.sees_nothing) return;
-    if (!bins.valid()) return trace_bvh(frame, tiles, visit);
     RayTile out;
     for (const std::size_t tile : tiles) {
-      if (bins.boxes_of(tile).empty()) continue;
-      trace_lists(frame, tile, bins, out);
-      visit(tile, out);
-    }
-  }
-
-  /// The same through the BVH, every tile.
-  template <typename Tiles, typename Visit>
-  void trace_bvh(const PoseFrame& frame, const Tiles& tiles, Visit&& visit) const {
-    if (frame.sees_nothing) return;
-    RTCScene bvh = scene_.tracing->bvh(choice_.margin_level);
-    RayTile out;
-    for (const std::size_t tile : tiles) {
-      kernels_.trace(scene_, bvh, rays_->table, frame, tile, out);
+      const bool meets = !bins.valid() || !bins.boxes_of(tile).empty();
+      if (!meets && (kAsked != Asked::everywhere ||
+                     bins.obstacle_near(tile) == TileBins::kNoObstacle)) {
+        continue;
+      }
+      kernels_.begin(rays_->table, frame, tile, out);
+      if (bins.obstacle_near(tile) == TileBins::kNoObstacle) {
+        trace_voxels(frame, tile, bins, out);
+      } else {
+        trace_with_obstacles(frame, tile, kAsked, bins, out);
+      }
       visit(tile, out);
     }
   }
@@ -69,34 +66,11 @@ class ViewTracer {
   [[nodiscard]] const TileTable& table() const { return rays_->table; }
 
  private:
-  // One tile along its list, or from cell to cell.
-  void trace_lists(const PoseFrame& frame, std::size_t tile, TileBins& bins, RayTile& out) const {
-    const SceneBoxes& scene = *scene_.scene_boxes;
-    kernels_.begin(rays_->table, frame, tile, out);
-    const float cosine = rays_->table.cosine[tile];
-    if (scene.are_primitives()) {
-      kernels_.walk(scene_, frame, cosine, bins.boxes_of(tile), out);
-      return;
-    }
-    // The primitives of the next cell are chosen, and asked for, while those of this one are
-    // walked.
-    float of_interest = std::numeric_limits<float>::max();
-    std::span<const TileBox> waiting;
-    for (const TileBox& cell : bins.boxes_of(tile)) {
-      if (cell.near > of_interest) break;
-      const auto primitives =
-          rays_->binner.select(kernels_.isa, scene, frame, cell.box, tile, of_interest, bins);
-      if (primitives.empty()) continue;
-      for (const TileBox& primitive : primitives) {
-        __builtin_prefetch(&scene_.boxes[primitive.box]);
-        if (primitive.box < scene_.leaf_count) __builtin_prefetch(&scene_.masks[primitive.box]);
-      }
-      if (!waiting.empty()) of_interest = kernels_.walk(scene_, frame, cosine, waiting, out);
-      waiting = primitives;
-      bins.keep_selected();
-    }
-    if (!waiting.empty()) kernels_.walk(scene_, frame, cosine, waiting, out);
-  }
+  // One tile that has been set up.
+  void trace_voxels(const PoseFrame& frame, std::size_t tile, TileBins& bins, RayTile& out) const;
+  void trace_lists(const PoseFrame& frame, std::size_t tile, TileBins& bins, RayTile& out) const;
+  void trace_with_obstacles(const PoseFrame& frame, std::size_t tile, Asked asked, TileBins& bins,
+                            RayTile& out) const;
 
   const SceneData& scene_;
   const TraceKernels& kernels_;

@@ -8,12 +8,9 @@
 
 namespace viewgain::detail {
 
-/// A scene's primitives and obstacles in Embree's BVH, for rays of these kernels; boxes count as
-/// larger by `margin` [voxels], against rounding. About 0.3 ms per 1,000 primitives. Throws
+/// A scene's primitives in Embree's BVH, for rays of these kernels; boxes count as larger by
+/// `margin` [voxels], against rounding. About 0.3 ms per 1,000 primitives. Throws
 /// Error(backend), Error(capacity).
 [[nodiscard]] ScenePtr build_bvh(const SceneData& data, const TraceKernels& kernels, float margin);
-
-/// Obstacles alone. Throws Error(backend), Error(capacity).
-[[nodiscard]] ScenePtr build_obstacle_bvh(const SceneData& data, const TraceKernels& kernels);
 
 }  // namespace viewgain::detail

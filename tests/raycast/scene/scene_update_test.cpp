@@ -161,7 +161,7 @@ struct Chain {
   const char* name;
   int voxels;                 ///< along 0.4 m
   std::array<double, 6> cut;  ///< what is cut off the workspace, low and high ends [m]
-  bool has_distortion;        ///< such cameras' rays go through the BVH
+  bool has_distortion;
   bool has_obstacles;
   bool has_cells;  ///< some scene has more primitives than are sorted one by one
 };

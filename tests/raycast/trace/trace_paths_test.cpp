@@ -2,22 +2,29 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // A view is traced through the BVH or along lists of primitives; which one is a matter of speed
-// alone. An obstacle far outside every range makes the evaluator take the BVH for every tile.
+// alone.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "raycast/scene_makers.hpp"
+#include "viewgain/core/error.hpp"
 
 namespace viewgain {
 namespace {
 
-Obstacles out_of_reach() {
-  return {.boxes = {{{1e6, 1e6, 1e6}, {1e6 + 1, 1e6 + 1, 1e6 + 1}}}, .meshes = {}};
+GainEvaluator evaluator_by(const std::string& way, const std::shared_ptr<const VoxelScene>& scene,
+                           const Sensor& sensor, GainModel model = GainModel::paper) {
+  const test::ScopedTrace scoped(way);
+  return GainEvaluator(scene, sensor, {.model = model}, {.num_threads = 1});
 }
 
 // Compares gains and hits of the two ways; returns the number of rays that hit something.
-std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vector<Pose>& poses) {
-  const GainEvaluator free_choice(VoxelScene::build(grid), sensor, {}, {.num_threads = 1});
-  const GainEvaluator bvh(VoxelScene::build(grid, out_of_reach()), sensor, {}, {.num_threads = 1});
+std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vector<Pose>& poses,
+                    const Obstacles& obstacles = {}) {
+  const auto scene = VoxelScene::build(grid, obstacles);
+  const GainEvaluator free_choice = evaluator_by("lists", scene, sensor);
+  const GainEvaluator bvh = evaluator_by("bvh", scene, sensor);
   EXPECT_TRUE(test::same_bits(free_choice.evaluate(poses), bvh.evaluate(poses)));
   for (const double share : {0.02, 0.1, 0.4}) {  // few tiles, and lists for some
     std::vector<ApproximateGain> a(poses.size()), b(poses.size());
@@ -56,6 +63,105 @@ TEST(TracePaths, ListsAndBvhGiveTheSameBits) {
     }
   }
   EXPECT_GT(hits, 50'000U);
+}
+
+// Obstacles in front of voxels, among them and behind them; some cameras have a lens.
+TEST(TracePaths, ObstaclesEndTheSameRaysEitherWay) {
+  std::size_t hits = 0, in_obstacles = 0, walked = 0;
+  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+    test::Random random(900 + seed);
+    const test::RandomMap map = test::random_map(
+        seed % 2 == 0 ? test::MapFamily::salt_and_pepper_1 : test::MapFamily::rotated, random);
+    Sensor sensor = test::random_sensor(map.grid, random);
+    if (seed % 3 == 0) sensor.camera.distortion = {-0.25, 0.08, 2e-3, -3e-3, -0.02};
+    const Box w = map.grid.workspace();
+    const double extent = w.max[0] - w.min[0];
+    const auto point = [&](double reach) {
+      const double r = reach * extent;
+      const Eigen::Vector3d p(test::uniform(random, w.min[0] - r, w.max[0] + r),
+                              test::uniform(random, w.min[1] - r, w.max[1] + r),
+                              test::uniform(random, w.min[2] - r, w.max[2] + r));
+      return Eigen::Vector3d(map.grid.T_world_grid() * p);
+    };
+    Obstacles obstacles;
+    for (int i = 0; i < 4; ++i) {
+      const Eigen::Vector3d low = point(0.4);
+      const double size = test::uniform(random, 0.02, 0.3) * extent;
+      obstacles.boxes.push_back({{low.x(), low.y(), low.z()},
+                                 {low.x() + size, low.y() + 0.3 * size, low.z() + size}});
+    }
+    TriangleMesh& mesh = obstacles.meshes.emplace_back();
+    const int triangles = seed % 4 == 1 ? 3000 : 12;  // more than there are pieces, or few large ones
+    for (int i = 0; i < 3 * triangles; ++i) {
+      const Eigen::Vector3d corner =
+          i % 3 == 0 || triangles < 100
+              ? point(1.5)
+              : Eigen::Vector3d(Eigen::Vector3d::Map(mesh.vertices.back().data()) +
+                                0.05 * extent * test::random_rigid(random, 0).rotation().col(0));
+      mesh.vertices.push_back({corner.x(), corner.y(), corner.z()});
+    }
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(triangles); ++i) {
+      mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    const std::vector<Pose> poses = test::random_poses(map, 6, random);
+    hits += compare(map.grid, sensor, poses, obstacles);
+    const auto scene = VoxelScene::build(map.grid, obstacles);
+    const GainEvaluator lists = evaluator_by("lists", scene, sensor, GainModel::combined);
+    const GainEvaluator bvh = evaluator_by("bvh", scene, sensor, GainModel::combined);
+    const std::vector<ViewGain> gains = lists.evaluate(poses);
+    EXPECT_TRUE(test::same_bits(gains, bvh.evaluate(poses)));
+    walked += test::gaining(gains);
+    for (const Pose& pose : poses) {
+      // What no obstacle ends is what there is without them; no gain needs to know of the others.
+      const std::vector<RayHit> rays = lists.trace(pose);
+      std::uint32_t in_voxels = 0;
+      for (const RayHit& hit : rays) {
+        in_obstacles += hit.kind == RayHit::Kind::obstacle ? 1U : 0U;
+        in_voxels += hit.kind == RayHit::Kind::occupied || hit.kind == RayHit::Kind::unknown ? 1 : 0;
+      }
+      const ViewGain view = evaluator_by("lists", scene, sensor).evaluate(pose);
+      if (view.status == ViewStatus::ok) {
+        EXPECT_EQ(view.hits, in_voxels);
+      }
+    }
+  }
+  EXPECT_GT(hits, 30'000U);
+  EXPECT_GT(in_obstacles, 5'000U);
+  EXPECT_GT(walked, 50U);
+}
+
+// What a strong lens bends, all over the image: nothing that the BVH finds is missing in the lists.
+TEST(TracePaths, StrongLensesSeeTheSameBits) {
+  std::size_t hits = 0;
+  const std::array<std::array<double, 5>, 4> lenses{{{-0.35, 0.12, 0, 0, -0.02},
+                                                     {0.3, 0.1, 4e-3, 5e-3, 0.05},
+                                                     {-0.28, 0.09, -6e-3, 4e-3, 0},
+                                                     {0.25, -0.8, -2e-3, -1e-4, 0.9}}};
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    test::Random random(700 + seed);
+    const test::RandomMap map = test::random_map(
+        seed % 2 == 0 ? test::MapFamily::salt_and_pepper_01 : test::MapFamily::odd_and_far, random);
+    Sensor sensor = test::random_sensor(map.grid, random);
+    sensor.camera.width = 101;
+    sensor.camera.height = 77;
+    sensor.camera.cx = 53.2;
+    sensor.camera.cy = 36.4;
+    sensor.camera.fx = sensor.camera.fy = 72;
+    sensor.camera.distortion = lenses.at(seed % 4);
+    hits += compare(map.grid, sensor, test::random_poses(map, 6, random));
+  }
+  EXPECT_GT(hits, 50'000U);
+}
+
+TEST(TracePaths, AnotherWayIsAnError) {
+  const auto scene = VoxelScene::build(test::sparse_map({8, 8, 8}, {{1, 2, 3}}));
+  try {
+    (void)evaluator_by("octree", scene, test::lattice_sensor(5, 5));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::invalid_argument);
+    EXPECT_STREQ(error.what(), "VIEWGAIN_TRACE is 'octree', not lists or bvh");
+  }
 }
 
 // Rays that count from the camera on, where it touches the faces, edges and corners of voxels: what

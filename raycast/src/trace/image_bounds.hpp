@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "ray_tile.hpp"
+#include "scene/scene_boxes.hpp"
+#include "viewgain/core/camera.hpp"
+#include "viewgain/core/isa.hpp"
+
+namespace viewgain::detail {
+
+/// Where sixteen boxes lie in the image, in rays; empty if max < min.
+struct ImageBounds {
+  alignas(64) float min_column[kBoxVector], max_column[kBoxVector];
+  alignas(64) float min_row[kBoxVector], max_row[kBoxVector];
+  alignas(64) float near[kBoxVector];  ///< where it begins along the optical axis [voxels]
+};
+
+/// A lens, which bends the outlines of boxes. Slopes are x / z and y / z of undistorted rays.
+struct LensBend {
+  bool is_bent = false;
+  float k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;  ///< OpenCV's
+  float low_x = 0, high_x = 0, low_y = 0, high_y = 0;  ///< all rays have slopes between these
+  /// The most that second derivatives of distorted slopes are there: of the column along x and
+  /// along y, of the row along x and along y.
+  float column_xx = 0, column_yy = 0, row_xx = 0, row_yy = 0;
+
+  LensBend() = default;
+  /// For the rays of a table.
+  LensBend(const PinholeCamera& camera, const TileTable& table);
+};
+
+/// From a box in the camera's axes to its image.
+struct ImageScale {
+  float scale_x, shift_x, scale_y, shift_y;  ///< ray column = scale * distorted slope + shift
+  float nearest;   ///< along the optical axis [voxels]; what is nearer no ray meets
+  float touching;  ///< except in boxes that come so close to the axis [voxels]; negative: none
+  float last_column, last_row;
+  float margin;  ///< by which boxes count as larger [voxels]
+  LensBend lens;
+};
+
+/// Kernels of one instruction set.
+struct ImageBoundsKernels {
+  /// Of boxes first to first + 15. Conservative: each ray that meets a box at or beyond the least
+  /// range is within its bounds. With a lens, the outline of a box (a rectangle of slopes) is that
+  /// of its corners and what linear interpolation between them can be wrong by at most.
+  ImageBounds (*bounds_of)(const BoxArrays&, std::size_t first, const PoseFrame&,
+                           const ImageScale&);
+  /// One bit for each of sixteen rectangles of tiles that cover the tile.
+  std::uint32_t (*covering)(const std::int16_t* column0, const std::int16_t* column1,
+                            const std::int16_t* row0, const std::int16_t* row1, std::int16_t column,
+                            std::int16_t row);
+};
+
+/// Kernels of an instruction set that the CPU supports.
+[[nodiscard]] const ImageBoundsKernels& image_bounds_kernels(Isa isa);
+
+}  // namespace viewgain::detail

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "device.hpp"
+#include "scene/scene_data.hpp"
+#include "viewgain/core/isa.hpp"
+
+namespace viewgain::detail {
+
+/// Known obstacles, traced by Embree, in the scene's coordinates, and boxes round pieces of them, by
+/// which a view tells where in the image there may be any: smaller ones near the workspace. All
+/// scenes of a map that follow one another share it. Immutable; thread safe.
+class ObstacleScene {
+ public:
+  /// Of a scene that has some. Throws Error(backend), Error(capacity).
+  ObstacleScene(const SceneData& data, Isa isa);
+
+  /// The one of the scene before, if it is the same for this one, else a new one; null if there are
+  /// no obstacles.
+  [[nodiscard]] static std::shared_ptr<const ObstacleScene> of(const SceneData& data, Isa isa,
+                                                               const SceneData* before);
+
+  [[nodiscard]] RTCScene bvh() const { return bvh_.get(); }
+  [[nodiscard]] const BoxArrays& pieces() const { return pieces_; }
+  [[nodiscard]] std::size_t piece_count() const { return piece_count_; }
+  /// Its size along x, y, z [voxels]; coordinates are from its lowest corner.
+  [[nodiscard]] const std::array<float, 3>& workspace() const { return workspace_; }
+  [[nodiscard]] std::uint64_t bytes() const { return pieces_.bytes(); }
+
+  static constexpr std::size_t kMostPieces = 2048;
+
+ private:
+  Isa isa_;
+  ScenePtr bvh_;
+  BoxArrays pieces_;
+  std::size_t piece_count_ = 0;
+  std::array<float, 3> workspace_;
+};
+
+}  // namespace viewgain::detail
