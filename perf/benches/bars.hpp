@@ -60,6 +60,9 @@ using BarGroup = std::vector<Figure> (*)(const BarsOptions& options);
 [[nodiscard]] std::vector<Figure> surface_figures(const BarsOptions& options);
 /// classic_over_paper: the time of all classic gains together over that of the paper's.
 [[nodiscard]] std::vector<Figure> classic_figures(const BarsOptions& options);
+/// wall_over_free, mesh_over_free, table_over_free, lens_over_pinhole: speeds with obstacles or a
+/// lens over speeds without, the least of the three gains.
+[[nodiscard]] std::vector<Figure> surroundings_figures(const BarsOptions& options);
 /// stages_over_paper, stages_over_paper_combined.
 [[nodiscard]] std::vector<Figure> stages_figures(const BarsOptions& options);
 

@@ -44,6 +44,10 @@ constexpr std::array kRules{
     Rule{"surface_over_paper", 0.35, true},
     Rule{"combined_over_paper", {}, true},
     Rule{"classic_over_paper", 4.0, false},
+    Rule{"wall_over_free", 0.8, true},
+    Rule{"mesh_over_free", 0.8, true},
+    Rule{"table_over_free", 0.8, true},
+    Rule{"lens_over_pinhole", 0.8, true},
     Rule{"stages_over_paper", 0.25, false},
     Rule{"stages_over_paper_combined", {}, false},
     Rule{"hazard_ms_128", 10.0, false},
@@ -60,7 +64,7 @@ constexpr std::array kGroups{
     NamedBarGroup{"update", update_figures},   NamedBarGroup{"search", search_figures},
     NamedBarGroup{"memory", memory_figures},   NamedBarGroup{"decision", decision_figures},
     NamedBarGroup{"surface", surface_figures}, NamedBarGroup{"stages", stages_figures},
-    NamedBarGroup{"classic", classic_figures},
+    NamedBarGroup{"classic", classic_figures}, NamedBarGroup{"surroundings", surroundings_figures},
 };
 
 /// A bar's entry in the list; `is_missed` is set if it is missed.

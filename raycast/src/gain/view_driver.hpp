@@ -70,7 +70,7 @@ class ViewDriver {
     if (!frame) return result;
     const auto tiles = tracer_.all_tiles();
     TileBins& bins = lease.workspace().bins;
-    tracer_.prepare(*frame, bins);
+    tracer_.prepare(*frame, bins, kAsked);
     consumer.begin();
     tracer_.trace<kAsked>(*frame, tiles, bins, [&](std::size_t number, const RayTile& tile) {
       consumer.add(number, tile);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -81,6 +82,19 @@ struct Bounds {
   }
 };
 
+// Boxes round each so many that follow on one another.
+std::vector<Bounds> round_each(const std::vector<Bounds>& boxes, std::size_t size) {
+  std::vector<Bounds> groups;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (i % size == 0) {
+      groups.push_back(boxes[i]);
+    } else {
+      groups.back().add(boxes[i]);
+    }
+  }
+  return groups;
+}
+
 // Few large triangles in smaller ones, those first that are largest for how far off they are.
 void split(std::vector<Triangle>& triangles, const Eigen::Vector3f& center, float radius) {
   constexpr float kFine = 1.0F / 32.0F;
@@ -115,42 +129,38 @@ void split(std::vector<Triangle>& triangles, const Eigen::Vector3f& center, floa
   }
 }
 
-// Ten bits an axis, interleaved: near points have near numbers (Morton's order).
-std::uint32_t morton(const Eigen::Vector3f& unit) {
-  std::uint32_t code = 0;
-  const Eigen::Vector3f scaled = (unit * 1023.0F).cwiseMax(0.0F).cwiseMin(1023.0F);
-  for (unsigned bit = 0; bit < 10; ++bit) {
-    for (Eigen::Index a = 0; a < 3; ++a) {
-      const auto v = static_cast<std::uint32_t>(scaled[a]);
-      code |= (v >> bit & 1U) << (3 * bit + static_cast<unsigned>(a));
-    }
-  }
-  return code;
-}
-
-// Boxes round groups of neighbours.
-std::vector<Bounds> grouped(const std::vector<Triangle>& triangles) {
+// Sorts triangles so that each run of so many that begins at a multiple is close together: halves by
+// the middle along the longest axis, again and again.
+void bring_together(std::span<Triangle> triangles, std::size_t size) {
+  if (triangles.size() <= size) return;
   Bounds all(triangles.front());
   for (const Triangle& t : triangles) all.add(Bounds(t));
-  const Eigen::Vector3f extent = (all.high - all.low).cwiseMax(1e-6F);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> order(triangles.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) {
-    const Triangle& t = triangles[i];
-    order[i] = {morton(((t[0] + t[1] + t[2]) / 3.0F - all.low).cwiseQuotient(extent)), i};
-  }
-  std::sort(order.begin(), order.end());
-  const std::size_t size =
-      (triangles.size() + ObstacleScene::kMostPieces - 1) / ObstacleScene::kMostPieces;
-  std::vector<Bounds> groups;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const Bounds bounds(triangles[order[i].second]);
-    if (i % size == 0) {
-      groups.push_back(bounds);
-    } else {
-      groups.back().add(bounds);
+  Eigen::Index axis = 0;
+  (all.high - all.low).maxCoeff(&axis);
+  const std::size_t runs = (triangles.size() + size - 1) / size, half = (runs + 1) / 2 * size;
+  const auto place = [&](const Triangle& t) { return t[0][axis] + t[1][axis] + t[2][axis]; };
+  std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half),
+                   triangles.end(),
+                   [&](const Triangle& a, const Triangle& b) { return place(a) < place(b); });
+  bring_together(triangles.first(half), size);
+  bring_together(triangles.subspan(half), size);
+}
+
+BoxArrays arrays_of(const std::vector<Bounds>& boxes) {
+  BoxArrays arrays;
+  arrays.resize((boxes.size() + kBoxVector - 1) / kBoxVector * kBoxVector);
+  for (std::size_t i = 0; i < arrays.size(); ++i) {
+    const Bounds& b = boxes[std::min(i, boxes.size() - 1)];
+    // Against rounding where coordinates are large; near the workspace boxes have their margin.
+    const Eigen::Vector3f margin = 1e-6F * (b.low.cwiseAbs() + b.high.cwiseAbs());
+    PrimitiveBox box{};
+    for (Eigen::Index a = 0; a < 3; ++a) {
+      box.min[a] = b.low[a] - margin[a];
+      box.max[a] = b.high[a] + margin[a];
     }
+    arrays.set(i, box);
   }
-  return groups;
+  return arrays;
 }
 
 }  // namespace
@@ -175,20 +185,18 @@ ObstacleScene::ObstacleScene(const SceneData& data, Isa isa)
   if (triangles.empty()) return;
   const Eigen::Vector3f half = 0.5F * Eigen::Vector3f::Map(workspace_.data());
   split(triangles, half, half.norm());
-  const std::vector<Bounds> boxes = grouped(triangles);
-  piece_count_ = boxes.size();
-  pieces_.resize((piece_count_ + kBoxVector - 1) / kBoxVector * kBoxVector);
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const Bounds& b = boxes[std::min(i, piece_count_ - 1)];
-    // Against rounding where coordinates are large; near the workspace boxes have their margin.
-    const Eigen::Vector3f margin = 1e-6F * (b.low.cwiseAbs() + b.high.cwiseAbs());
-    PrimitiveBox box{};
-    for (Eigen::Index a = 0; a < 3; ++a) {
-      box.min[a] = b.low[a] - margin[a];
-      box.max[a] = b.high[a] + margin[a];
-    }
-    pieces_.set(i, box);
+  const std::size_t each = (triangles.size() + kMostPieces - 1) / kMostPieces;
+  bring_together(triangles, each * kBoxVector);
+  for (std::size_t i = 0; i < triangles.size(); i += each * kBoxVector) {
+    const std::size_t count = std::min(each * kBoxVector, triangles.size() - i);
+    bring_together(std::span(triangles).subspan(i, count), each);
   }
+  std::vector<Bounds> boxes;
+  for (const Triangle& t : triangles) boxes.emplace_back(t);
+  boxes = round_each(boxes, each);
+  piece_count_ = boxes.size();
+  pieces_ = arrays_of(boxes);
+  groups_ = arrays_of(round_each(boxes, kBoxVector));
 }
 
 std::shared_ptr<const ObstacleScene> ObstacleScene::of(const SceneData& data, Isa isa,

@@ -27,18 +27,20 @@ class ObstacleScene {
                                                                const SceneData* before);
 
   [[nodiscard]] RTCScene bvh() const { return bvh_.get(); }
+  /// Vector i of the pieces (kBoxVector of them, neighbours) lies in box i of the groups.
   [[nodiscard]] const BoxArrays& pieces() const { return pieces_; }
+  [[nodiscard]] const BoxArrays& groups() const { return groups_; }
   [[nodiscard]] std::size_t piece_count() const { return piece_count_; }
   /// Its size along x, y, z [voxels]; coordinates are from its lowest corner.
   [[nodiscard]] const std::array<float, 3>& workspace() const { return workspace_; }
-  [[nodiscard]] std::uint64_t bytes() const { return pieces_.bytes(); }
+  [[nodiscard]] std::uint64_t bytes() const { return pieces_.bytes() + groups_.bytes(); }
 
   static constexpr std::size_t kMostPieces = 2048;
 
  private:
   Isa isa_;
   ScenePtr bvh_;
-  BoxArrays pieces_;
+  BoxArrays pieces_, groups_;
   std::size_t piece_count_ = 0;
   std::array<float, 3> workspace_;
 };

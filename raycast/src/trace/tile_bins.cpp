@@ -94,25 +94,35 @@ ImageScale TileBinner::image_of(const PoseFrame& frame, float min_range) const {
 }
 
 void TileBinner::mark_obstacles(Isa isa, const ObstacleScene& obstacles, const PoseFrame& frame,
-                                TileBins& bins) const {
+                                bool only_before_voxels, TileBins& bins) const {
   const ImageBoundsKernels& kernels = image_bounds_kernels(isa);
   const ImageScale image = image_of(frame, 0);
   bins.obstacle_near_.assign(tile_count_, TileBins::kNoObstacle);
   bins.farthest_voxel_ = farthest_along_axis(obstacles.workspace(), frame);
-  const BoxArrays& boxes = obstacles.pieces();
+  const float limit =
+      only_before_voxels ? std::min(frame.max_range, bins.farthest_voxel_) : frame.max_range;
+  const auto mark = [&](const ImageBounds& bounds, std::size_t i) {
+    std::size_t column0 = 0, column1 = 0, row0 = 0, row1 = 0;
+    const float near = safely_near(bounds.near[i]);
+    if (near > limit || !outline(bounds, i, image, column0, column1, row0, row1)) return;
+    for (std::size_t row = row0; row <= row1; ++row) {
+      float* const tiles = bins.obstacle_near_.data() + row * tile_columns_;
+      for (std::size_t c = column0; c <= column1; ++c) tiles[c] = std::min(tiles[c], near);
+    }
+  };
   const std::size_t count = obstacles.piece_count();
-  for (std::size_t first = 0; first < count; first += kBoxVector) {
-    const ImageBounds bounds = kernels.bounds_of(boxes, first, frame, image);
-    for (std::size_t i = 0; i < std::min(kBoxVector, count - first); ++i) {
+  const std::size_t groups = (count + kBoxVector - 1) / kBoxVector;
+  for (std::size_t first = 0; first < groups; first += kBoxVector) {
+    const ImageBounds of_groups = kernels.bounds_of(obstacles.groups(), first, frame, image);
+    for (std::size_t g = 0; g < std::min(kBoxVector, groups - first); ++g) {
       std::size_t column0 = 0, column1 = 0, row0 = 0, row1 = 0;
-      const float near = safely_near(bounds.near[i]);
-      if (near > frame.max_range || !outline(bounds, i, image, column0, column1, row0, row1)) {
+      if (safely_near(of_groups.near[g]) > limit ||
+          !outline(of_groups, g, image, column0, column1, row0, row1)) {
         continue;
       }
-      for (std::size_t row = row0; row <= row1; ++row) {
-        float* const tiles = bins.obstacle_near_.data() + row * tile_columns_;
-        for (std::size_t c = column0; c <= column1; ++c) tiles[c] = std::min(tiles[c], near);
-      }
+      const std::size_t at = (first + g) * kBoxVector;
+      const ImageBounds bounds = kernels.bounds_of(obstacles.pieces(), at, frame, image);
+      for (std::size_t i = 0; i < std::min(kBoxVector, count - at); ++i) mark(bounds, i);
     }
   }
 }

@@ -83,10 +83,10 @@ class TileBinner {
   /// Fills `bins`; allocates only while they grow. Thread safe.
   void sort(Isa isa, const SceneBoxes& boxes, const PoseFrame& frame, TileBins& bins) const;
 
-  /// Notes in `bins` where in the image obstacles may be, which count from the camera on. Thread
-  /// safe.
+  /// Notes in `bins` where in the image obstacles may be, which count from the camera on; what lies
+  /// behind all voxels may be left out. Thread safe.
   void mark_obstacles(Isa isa, const ObstacleScene& obstacles, const PoseFrame& frame,
-                      TileBins& bins) const;
+                      bool only_before_voxels, TileBins& bins) const;
 
   /// The primitives of a cell (a box of sorted boxes that stands for many) that a tile's rays can
   /// meet and that begin no farther than `of_interest` along the axis, near ones first. Valid until

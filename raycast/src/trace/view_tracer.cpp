@@ -58,13 +58,13 @@ std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const 
   return frame;
 }
 
-void ViewTracer::prepare(const PoseFrame& frame, TileBins& bins) const {
+void ViewTracer::prepare(const PoseFrame& frame, TileBins& bins, Asked asked) const {
   bins.invalidate();
   bins.forget_obstacles();
   if (frame.sees_nothing) return;
   if (choice_.by_lists) rays_->binner.sort(kernels_.isa, *scene_.scene_boxes, frame, bins);
   if (const ObstacleScene* obstacles = scene_.tracing->obstacles.get()) {
-    rays_->binner.mark_obstacles(kernels_.isa, *obstacles, frame, bins);
+    rays_->binner.mark_obstacles(kernels_.isa, *obstacles, frame, asked != Asked::everywhere, bins);
   }
 }
 

@@ -27,15 +27,15 @@ class ViewTracer {
   /// more than 1e-3.
   [[nodiscard]] std::optional<PoseFrame> frame_of(const Pose& T_world_camera) const;
 
-  /// Makes `bins` ready for tracing the view's tiles.
-  void prepare(const PoseFrame& frame, TileBins& bins) const;
-
   /// What is asked about obstacles.
   enum class Asked : std::uint8_t {
     before_voxels,  ///< which rays end there that would end in a voxel
     along_rays,     ///< also how far rays could go on: RayTile::far
     everywhere      ///< also in tiles that meet no voxel
   };
+
+  /// Makes `bins` ready for tracing the view's tiles, with such questions or fewer.
+  void prepare(const PoseFrame& frame, TileBins& bins, Asked asked = Asked::along_rays) const;
 
   /// Calls visit(tile number, RayTile) for those of the tiles with these numbers that can meet
   /// anything, in order. `bins` are prepared for the view.
