@@ -33,6 +33,7 @@ METHODS = [("viewgain_gain", "viewgain, with its gain"), ("viewgain_trace", "vie
            ("openvdb_hdda", "OpenVDB VolumeHDDA"), ("openvdb_dda", "OpenVDB DDA"),
            ("octomap_cast_ray", "OctoMap castRay"), ("octomap_gain", "OctoMap, with a gain")]
 POLICIES = [("gain:combined", "gain: combined (default)", "#0b7a3b"), ("gain:paper", "gain: the paper's", "#e08000"),
+            ("gain:surface_frontier_count", "surface_frontier_count (MCMF, GMC)", "#7a3fb5"),
             ("frontier", "most unknown voxels", "#1f4fe0"), ("random", "random", "#d81b8a"),
             ("oracle", "knows the object", "#111111")]
 

@@ -52,7 +52,8 @@ std::shared_ptr<const VoxelScene> VoxelScene::update(
   (void)thread_count(exec.num_threads);
   const detail::SceneData& data = SceneAccess::data(*before);
   return make_traceable(
-      detail::gather_scene(grid.snapshot(data.snapshot), data.obstacles, data.hazard, &data), &data);
+      detail::gather_scene(grid.snapshot(data.snapshot), data.obstacles, data.hazard, &data),
+      &data);
 }
 
 const HazardField& VoxelScene::hazard() const { return data_->tracing->hazard(); }

@@ -50,10 +50,10 @@ HWY_INLINE Outline bent(const LensBend& lens, const Outline& slopes) {
     VF radial = hn::MulAdd(hn::Set(df, lens.k3), rr, hn::Set(df, lens.k2));
     radial = hn::MulAdd(radial, rr, hn::Set(df, lens.k1));
     radial = hn::MulAdd(radial, rr, one);
-    const VF u = hn::MulAdd(x, radial, hn::MulAdd(hn::Mul(two, p1), xy,
-                                                  hn::Mul(p2, hn::MulAdd(two, xx, rr))));
-    const VF v = hn::MulAdd(y, radial, hn::MulAdd(hn::Mul(two, p2), xy,
-                                                  hn::Mul(p1, hn::MulAdd(two, yy, rr))));
+    const VF u = hn::MulAdd(x, radial,
+                            hn::MulAdd(hn::Mul(two, p1), xy, hn::Mul(p2, hn::MulAdd(two, xx, rr))));
+    const VF v = hn::MulAdd(y, radial,
+                            hn::MulAdd(hn::Mul(two, p2), xy, hn::Mul(p1, hn::MulAdd(two, yy, rr))));
     out.low_x = hn::Min(out.low_x, u);
     out.high_x = hn::Max(out.high_x, u);
     out.low_y = hn::Min(out.low_y, v);
@@ -129,9 +129,9 @@ ImageBounds bounds_of(const BoxArrays& boxes, std::size_t first, const PoseFrame
       const auto beyond = [&](VF low, VF high, float field_low, float field_high) HWY_ATTR {
         return hn::Or(hn::Gt(low, hn::Set(df, field_high)), hn::Lt(high, hn::Set(df, field_low)));
       };
-      unseen = hn::Or(unseen,
-                      hn::Or(beyond(outline.low_x, outline.high_x, lens.low_x, lens.high_x),
-                             beyond(outline.low_y, outline.high_y, lens.low_y, lens.high_y)));
+      unseen =
+          hn::Or(unseen, hn::Or(beyond(outline.low_x, outline.high_x, lens.low_x, lens.high_x),
+                                beyond(outline.low_y, outline.high_y, lens.low_y, lens.high_y)));
       outline = bent(lens, outline);
     }
     const auto put = [&](VF low, VF high, float scale, float shift, float* min_out,
@@ -198,7 +198,8 @@ LensBend::LensBend(const PinholeCamera& camera, const TileTable& table) {
   }
   constexpr float kWider = 1e-5F;  // than rounding
   low_x -= kWider, high_x += kWider, low_y -= kWider, high_y += kWider;
-  // Of x (1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 x y + p2 (3 x² + y²), term by term, at the largest x, y.
+  // Of x (1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 x y + p2 (3 x² + y²), term by term, at the largest x,
+  // y.
   const double X = std::max(-low_x, high_x), Y = std::max(-low_y, high_y);
   const double A = std::abs(a), B = std::abs(b), E = std::abs(e);
   const auto along = [&](double x, double y, double tangential) {

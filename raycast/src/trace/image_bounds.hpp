@@ -22,7 +22,7 @@ struct ImageBounds {
 /// A lens, which bends the outlines of boxes. Slopes are x / z and y / z of undistorted rays.
 struct LensBend {
   bool is_bent = false;
-  float k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;  ///< OpenCV's
+  float k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;        ///< OpenCV's
   float low_x = 0, high_x = 0, low_y = 0, high_y = 0;  ///< all rays have slopes between these
   /// The most that second derivatives of distorted slopes are there: of the column along x and
   /// along y, of the row along x and along y.

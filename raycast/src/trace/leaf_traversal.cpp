@@ -150,8 +150,7 @@ void trace(const SceneData& scene, RTCScene bvh, const PoseFrame& frame, RayTile
     hn::Store(none, du, packet.hit.instID[0]);
     intersect_packet(valid, bvh, &packet, &query);
 
-    const auto in_voxel =
-        hn::And(usable, hn::Ne(hn::Load(du, packet.hit.geomID), none));
+    const auto in_voxel = hn::And(usable, hn::Ne(hn::Load(du, packet.hit.geomID), none));
     hn::BlendedStore(hn::Load(df, packet.ray.tfar), hn::RebindMask(df, in_voxel), df,
                      out.range + lane0);
     std::uint8_t bits[8] = {};

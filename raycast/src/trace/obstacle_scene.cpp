@@ -63,8 +63,7 @@ struct Soup {
   [[nodiscard]] std::vector<Triangle> triangles() const {
     std::vector<Triangle> all(indices.size() / 3);
     for (std::size_t i = 0; i < indices.size(); ++i) {
-      all[i / 3][i % 3] =
-          Eigen::Vector3f::Map(&vertices[3 * static_cast<std::size_t>(indices[i])]);
+      all[i / 3][i % 3] = Eigen::Vector3f::Map(&vertices[3 * static_cast<std::size_t>(indices[i])]);
     }
     return all;
   }
@@ -116,8 +115,7 @@ void split(std::vector<Triangle>& triangles, const Eigen::Vector3f& center, floa
     std::pop_heap(heap.begin(), heap.end());
     const std::size_t at = heap.back().second;
     const std::size_t edge = longest(triangles[at]).second;
-    const Eigen::Vector3f middle =
-        0.5F * (triangles[at][edge] + triangles[at][(edge + 1) % 3]);
+    const Eigen::Vector3f middle = 0.5F * (triangles[at][edge] + triangles[at][(edge + 1) % 3]);
     Triangle other = triangles[at];
     triangles[at][(edge + 1) % 3] = middle;
     other[edge] = middle;
@@ -129,8 +127,8 @@ void split(std::vector<Triangle>& triangles, const Eigen::Vector3f& center, floa
   }
 }
 
-// Sorts triangles so that each run of so many that begins at a multiple is close together: halves by
-// the middle along the longest axis, again and again.
+// Sorts triangles so that each run of so many that begins at a multiple is close together: halves
+// by the middle along the longest axis, again and again.
 void bring_together(std::span<Triangle> triangles, std::size_t size) {
   if (triangles.size() <= size) return;
   Bounds all(triangles.front());

@@ -13,8 +13,8 @@
 
 namespace viewgain::detail {
 
-/// Known obstacles, traced by Embree, in the scene's coordinates, and boxes round pieces of them, by
-/// which a view tells where in the image there may be any: smaller ones near the workspace. All
+/// Known obstacles, traced by Embree, in the scene's coordinates, and boxes round pieces of them,
+/// by which a view tells where in the image there may be any: smaller ones near the workspace. All
 /// scenes of a map that follow one another share it. Immutable; thread safe.
 class ObstacleScene {
  public:

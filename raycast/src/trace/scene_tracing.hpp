@@ -17,8 +17,8 @@
 
 namespace viewgain::detail {
 
-/// What a scene keeps for being traced: its kernels, obstacles, and Embree's BVH of its voxels where
-/// one is wanted.
+/// What a scene keeps for being traced: its kernels, obstacles, and Embree's BVH of its voxels
+/// where one is wanted.
 class SceneTracing {
  public:
   /// Of a scene whose primitives are gathered, which owns this; `before`: null, or the scene that

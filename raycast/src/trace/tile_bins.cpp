@@ -70,11 +70,10 @@ TileBinner::TileBinner(const PinholeCamera& camera, int pixel_stride, const Tile
     const float* z = table.directions.data() + tile * 3 * kTileRays + 2 * kTileRays;
     least_cosine_ = std::min(least_cosine_, *std::min_element(z, z + kTileRays));
   }
-  widest_slope_ =
-      lens_.is_bent
-          ? std::max(-lens_.low_x, lens_.high_x) + std::max(-lens_.low_y, lens_.high_y)
-          : std::max({shift_x_, last_column_ - shift_x_, 1.0F}) / scale_x_ +
-                std::max({shift_y_, last_row_ - shift_y_, 1.0F}) / scale_y_;
+  widest_slope_ = lens_.is_bent
+                      ? std::max(-lens_.low_x, lens_.high_x) + std::max(-lens_.low_y, lens_.high_y)
+                      : std::max({shift_x_, last_column_ - shift_x_, 1.0F}) / scale_x_ +
+                            std::max({shift_y_, last_row_ - shift_y_, 1.0F}) / scale_y_;
 }
 
 ImageScale TileBinner::image_of(const PoseFrame& frame, float min_range) const {
@@ -207,8 +206,9 @@ void TileBinner::sort(Isa isa, const SceneBoxes& scene, const PoseFrame& frame,
   TileBox* const out = bins.boxes_.data();
   // Backwards, so that each start moves down to where its tile begins.
   for (auto entry = bins.sorted_.rbegin(); entry != bins.sorted_.rend(); ++entry) {
-    for_each_tile(*entry,
-                  [&](std::size_t tile) { out[--starts[tile]] = {entry->box, entry->near}; });
+    for_each_tile(*entry, [&](std::size_t tile) {
+      out[--starts[tile]] = {entry->box, entry->near};
+    });
   }
 
   if (!scene.are_primitives()) {

@@ -75,7 +75,8 @@ class TileBins {
 
 /// Sorts a scene's boxes into the tiles of a view by their outlines in the image. About half of a
 /// view's rays usually pass the object, and of the rest each meets few boxes; projecting all boxes
-/// once tells that for less than walking a BVH tile by tile. Conservative: no box that a tile's rays can meet at or beyond the least range is missing.
+/// once tells that for less than walking a BVH tile by tile. Conservative: no box that a tile's
+/// rays can meet at or beyond the least range is missing.
 class TileBinner {
  public:
   TileBinner(const PinholeCamera& camera, int pixel_stride, const TileTable& table);

@@ -108,8 +108,8 @@ void ViewTracer::trace_with_obstacles(const PoseFrame& frame, std::size_t tile, 
                                       TileBins& bins, RayTile& out) const {
   RTCScene obstacles = scene_.tracing->obstacles->bvh();
   const float near = bins.obstacle_near(tile);
-  const bool comes_first = bins.valid() && !bins.boxes_of(tile).empty() &&
-                           near <= bins.boxes_of(tile).front().near;
+  const bool comes_first =
+      bins.valid() && !bins.boxes_of(tile).empty() && near <= bins.boxes_of(tile).front().near;
   const bool is_in_reach = near <= bins.farthest_voxel();
   if (asked == Asked::everywhere || (is_in_reach && (asked == Asked::along_rays || comes_first))) {
     // Rays that end early leave fewer boxes to walk.

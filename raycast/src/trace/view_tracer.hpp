@@ -45,8 +45,8 @@ class ViewTracer {
     RayTile out;
     for (const std::size_t tile : tiles) {
       const bool meets = !bins.valid() || !bins.boxes_of(tile).empty();
-      if (!meets && (kAsked != Asked::everywhere ||
-                     bins.obstacle_near(tile) == TileBins::kNoObstacle)) {
+      if (!meets &&
+          (kAsked != Asked::everywhere || bins.obstacle_near(tile) == TileBins::kNoObstacle)) {
         continue;
       }
       kernels_.begin(rays_->table, frame, tile, out);

@@ -87,11 +87,12 @@ TEST(TracePaths, ObstaclesEndTheSameRaysEitherWay) {
     for (int i = 0; i < 4; ++i) {
       const Eigen::Vector3d low = point(0.4);
       const double size = test::uniform(random, 0.02, 0.3) * extent;
-      obstacles.boxes.push_back({{low.x(), low.y(), low.z()},
-                                 {low.x() + size, low.y() + 0.3 * size, low.z() + size}});
+      obstacles.boxes.push_back(
+          {{low.x(), low.y(), low.z()}, {low.x() + size, low.y() + 0.3 * size, low.z() + size}});
     }
     TriangleMesh& mesh = obstacles.meshes.emplace_back();
-    const int triangles = seed % 4 == 1 ? 3000 : 12;  // more than there are pieces, or few large ones
+    const int triangles =
+        seed % 4 == 1 ? 3000 : 12;  // more than there are pieces, or few large ones
     for (int i = 0; i < 3 * triangles; ++i) {
       const Eigen::Vector3d corner =
           i % 3 == 0 || triangles < 100
@@ -117,7 +118,8 @@ TEST(TracePaths, ObstaclesEndTheSameRaysEitherWay) {
       std::uint32_t in_voxels = 0;
       for (const RayHit& hit : rays) {
         in_obstacles += hit.kind == RayHit::Kind::obstacle ? 1U : 0U;
-        in_voxels += hit.kind == RayHit::Kind::occupied || hit.kind == RayHit::Kind::unknown ? 1 : 0;
+        in_voxels +=
+            hit.kind == RayHit::Kind::occupied || hit.kind == RayHit::Kind::unknown ? 1 : 0;
       }
       const ViewGain view = evaluator_by("lists", scene, sensor).evaluate(pose);
       if (view.status == ViewStatus::ok) {

@@ -116,9 +116,8 @@ class VIEWGAIN_EXPORT GainEvaluator {
 
   /// The evaluator of another scene, for following a map as it grows: the same sensor and
   /// configuration, and shared with this one the ray table, the threads and what they work in.
-  /// Nothing is computed anew but, where the scene's BVH is wanted and not there yet, that (see
-  /// VoxelScene), and by the surface and the combined gain the hazard of a scene that has none yet
-  /// (some milliseconds); without, it takes some microseconds. Results have the bits of an
+  /// Nothing is computed anew but, by the surface and the combined gain, the hazard of a scene that
+  /// has none yet (some milliseconds); without, it takes some microseconds. Results have the bits of an
   /// evaluator made for that scene. sigma_0 is the configuration's or, unless given, that of the
   /// new scene's map. This evaluator stays as it is, with its scene. Thread safety: both may be
   /// used, moved and destroyed at the same time; while one's call has the threads, a call of the
@@ -187,8 +186,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// obstacles, weights and distortion. Deterministic for a seed and any number of threads.
   /// control.progress counts poses that are out, after each stage. Stopped in the first, it returns
   /// nothing, stopped in the second the best of those that were scored; either is not `complete`.
-  /// Throws Error(invalid_argument) for costs as best() and for two measures; Error(backend),
-  /// Error(capacity) as VoxelScene::build(), if the scene's BVH is wanted and not there yet.
+  /// Throws Error(invalid_argument) for costs as best() and for two measures.
   [[nodiscard]] RacedViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                 const RaceConfig& config = {},
                                 const BatchControl& control = {}) const;

@@ -30,20 +30,18 @@ struct VIEWGAIN_EXPORT Obstacles {
 };
 
 /// An immutable scene to trace: the voxels of a grid that are not free, sorted for lists of what a
-/// view's tiles can meet, and obstacles. Embree's BVH of all of it is built with the scene if there
-/// are obstacles, else with the first evaluator whose camera has lens distortion, or by the first
-/// race() or approximate() that traces a small share of a view's tiles. Owns all that it reads; the
-/// grid may change or go. Copying a shared_ptr of it is how to share it. Thread safety: all members
-/// are const and may run from many threads.
+/// view's tiles can meet, and obstacles in Embree's BVH. Owns all that it reads; the grid may
+/// change or go. Copying a shared_ptr of it is how to share it. Thread safety: all members are
+/// const and may run from many threads.
 class VIEWGAIN_EXPORT VoxelScene {
  public:
-  /// Takes a snapshot of the grid and sorts it (about 0.2 ms per 1,000 leaves; with a BVH 0.5 ms).
-  /// Throws Error(backend) if Embree fails, Error(capacity) beyond 2^23 leaves and tiles,
-  /// Error(invalid_argument) if an obstacle has a vertex that is not finite, an index out of range
-  /// or a box inside out, or for a number of threads out of range. Runs on the calling thread, and
-  /// where a BVH is built on those that the process's TBB has: exec does not limit it.
-  /// Throws as HazardConfig::validate(), too. The hazard of unknown voxels is found when an
-  /// evaluator of the surface or combined gain first wants it (some milliseconds).
+  /// Takes a snapshot of the grid and sorts it (about 0.2 ms per 1,000 leaves), and builds a BVH of
+  /// the obstacles, which update() keeps. Throws Error(backend) if Embree fails, Error(capacity)
+  /// beyond 2^23 leaves and tiles, Error(invalid_argument) if an obstacle has a vertex that is not
+  /// finite, an index out of range or a box inside out, or for a number of threads out of range.
+  /// Runs on the calling thread, and with obstacles on those that the process's TBB has: exec does
+  /// not limit it. Throws as HazardConfig::validate(), too. The hazard of unknown voxels is found
+  /// when an evaluator of the surface or combined gain first wants it (some milliseconds).
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(const BeliefGrid& grid,
                                                                const Obstacles& obstacles = {},
                                                                const ExecConfig& exec = {},
