@@ -19,8 +19,7 @@ using ScenePointer = std::shared_ptr<const VoxelScene>;
 [[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task,
                                                                ScenePointer scene);
 
-/// The same kernel through Embree's BVH for every tile, as the evaluator does where primitives are
-/// many.
+/// The same kernel through Embree's BVH for every tile, as with VIEWGAIN_TRACE=bvh.
 [[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_trace_bvh(const TraceTask& task,
                                                                    ScenePointer scene);
 

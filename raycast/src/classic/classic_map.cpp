@@ -12,8 +12,6 @@
 #include "classic_map_data.hpp"
 #include "classic_rays.hpp"
 #include "ordered_ray.hpp"
-#include "scene/scene_data.hpp"
-#include "trace/scene_tracing.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/text.hpp"
 #include "viewgain/core/thread_pool.hpp"

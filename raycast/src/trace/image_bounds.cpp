@@ -21,7 +21,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Rounding moves a bound by less than this many rays.
 constexpr float kRayMargin = 0.05F;
-constexpr float kEverywhere = 1e9F;  // beyond every column and row
 
 constexpr hn::CappedTag<float, kBoxVector> df;
 using VF = hn::Vec<decltype(df)>;

@@ -12,6 +12,9 @@
 
 namespace viewgain::detail {
 
+/// Beyond every column and row, and farther than any point.
+inline constexpr float kEverywhere = 1e9F;
+
 /// Where sixteen boxes lie in the image, in rays; empty if max < min.
 struct ImageBounds {
   alignas(64) float min_column[kBoxVector], max_column[kBoxVector];

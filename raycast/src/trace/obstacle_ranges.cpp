@@ -4,8 +4,8 @@
 
 namespace viewgain::detail {
 
-void cut_at_obstacles(RTCScene obstacles, const PoseFrame& frame, const RayTile& rays,
-                      std::uint32_t lanes, float* far) {
+std::uint32_t cut_at_obstacles(RTCScene obstacles, const PoseFrame& frame, const RayTile& rays,
+                               std::uint32_t lanes, float* far) {
   RayQuery query(true);
   RTCRayHit16 packet;
   alignas(64) int valid[kTileRays];
@@ -27,9 +27,13 @@ void cut_at_obstacles(RTCScene obstacles, const PoseFrame& frame, const RayTile&
     packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
   }
   intersect16(valid, obstacles, &packet, &query);
+  std::uint32_t met = 0;
   for (int lane = 0; lane < kTileRays; ++lane) {
-    if (valid[lane] != 0) far[lane] = packet.ray.tfar[lane];
+    if (valid[lane] == 0 || packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
+    far[lane] = packet.ray.tfar[lane];
+    met |= 1U << lane;
   }
+  return met;
 }
 
 }  // namespace viewgain::detail

@@ -7,8 +7,9 @@
 
 namespace viewgain::detail {
 
-/// Shortens far[lane] [voxels] to where the tile's rays of these lanes meet an obstacle.
-void cut_at_obstacles(RTCScene obstacles, const PoseFrame& frame, const RayTile& rays,
-                      std::uint32_t lanes, float* far);
+/// Shortens far[lane] [voxels] to where the tile's rays of these lanes meet an obstacle, there too.
+/// Returns the lanes that meet one. Ranges of 0 meet nothing.
+std::uint32_t cut_at_obstacles(RTCScene obstacles, const PoseFrame& frame, const RayTile& rays,
+                               std::uint32_t lanes, float* far);
 
 }  // namespace viewgain::detail

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,7 +17,17 @@
 namespace viewgain::detail {
 namespace {
 
-using Triangle = std::array<Eigen::Vector3f, 3>;
+struct Triangle {
+  std::array<Eigen::Vector3f, 3> corners;
+  float reach;  // largest coordinate of the obstacle triangle that it is a part of
+
+  const Eigen::Vector3f& operator[](std::size_t i) const { return corners[i]; }
+};
+
+// Embree leaves out triangles that reach farther [voxels].
+constexpr float kFarthest = 1e18F;
+// By so much of the largest coordinate Embree's distances, and ours, may be wrong.
+constexpr float kRounding = 1e-6F;
 
 // A box's twelve triangles, added to a mesh.
 void append_box(const Box& box, TriangleMesh& mesh) {
@@ -61,9 +72,17 @@ struct Soup {
   }
 
   [[nodiscard]] std::vector<Triangle> triangles() const {
-    std::vector<Triangle> all(indices.size() / 3);
-    for (std::size_t i = 0; i < indices.size(); ++i) {
-      all[i / 3][i % 3] = Eigen::Vector3f::Map(&vertices[3 * static_cast<std::size_t>(indices[i])]);
+    std::vector<Triangle> all;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+      Triangle triangle{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        triangle.corners.at(k) = Eigen::Vector3f::Map(&vertices[3 * std::size_t{indices[i + k]}]);
+        // Embree does without triangles that are not finite, too.
+        triangle.reach = std::max(triangle.reach, triangle[k].allFinite()
+                                                      ? triangle[k].cwiseAbs().maxCoeff()
+                                                      : std::numeric_limits<float>::infinity());
+      }
+      if (triangle.reach <= kFarthest) all.push_back(triangle);
     }
     return all;
   }
@@ -74,7 +93,8 @@ struct Bounds {
   Eigen::Vector3f low, high;
 
   explicit Bounds(const Triangle& t)
-      : low(t[0].cwiseMin(t[1]).cwiseMin(t[2])), high(t[0].cwiseMax(t[1]).cwiseMax(t[2])) {}
+      : low(t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() - kRounding * t.reach),
+        high(t[0].cwiseMax(t[1]).cwiseMax(t[2]).array() + kRounding * t.reach) {}
   void add(const Bounds& other) {
     low = low.cwiseMin(other.low);
     high = high.cwiseMax(other.high);
@@ -117,8 +137,8 @@ void split(std::vector<Triangle>& triangles, const Eigen::Vector3f& center, floa
     const std::size_t edge = longest(triangles[at]).second;
     const Eigen::Vector3f middle = 0.5F * (triangles[at][edge] + triangles[at][(edge + 1) % 3]);
     Triangle other = triangles[at];
-    triangles[at][(edge + 1) % 3] = middle;
-    other[edge] = middle;
+    triangles[at].corners[(edge + 1) % 3] = middle;
+    other.corners[edge] = middle;
     heap.back().first = size_of(triangles[at]);
     std::push_heap(heap.begin(), heap.end());
     heap.emplace_back(size_of(other), triangles.size());
@@ -149,13 +169,8 @@ BoxArrays arrays_of(const std::vector<Bounds>& boxes) {
   arrays.resize((boxes.size() + kBoxVector - 1) / kBoxVector * kBoxVector);
   for (std::size_t i = 0; i < arrays.size(); ++i) {
     const Bounds& b = boxes[std::min(i, boxes.size() - 1)];
-    // Against rounding where coordinates are large; near the workspace boxes have their margin.
-    const Eigen::Vector3f margin = 1e-6F * (b.low.cwiseAbs() + b.high.cwiseAbs());
     PrimitiveBox box{};
-    for (Eigen::Index a = 0; a < 3; ++a) {
-      box.min[a] = b.low[a] - margin[a];
-      box.max[a] = b.high[a] + margin[a];
-    }
+    for (Eigen::Index a = 0; a < 3; ++a) box.min[a] = b.low[a], box.max[a] = b.high[a];
     arrays.set(i, box);
   }
   return arrays;
@@ -181,6 +196,7 @@ ObstacleScene::ObstacleScene(const SceneData& data, Isa isa)
 
   std::vector<Triangle> triangles = soup.triangles();
   if (triangles.empty()) return;
+  for (const Triangle& t : triangles) rounding_ = std::max(rounding_, kRounding * t.reach);
   const Eigen::Vector3f half = 0.5F * Eigen::Vector3f::Map(workspace_.data());
   split(triangles, half, half.norm());
   const std::size_t each = (triangles.size() + kMostPieces - 1) / kMostPieces;

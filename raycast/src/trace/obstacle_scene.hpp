@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 
 #include "device.hpp"
@@ -33,7 +32,8 @@ class ObstacleScene {
   [[nodiscard]] std::size_t piece_count() const { return piece_count_; }
   /// Its size along x, y, z [voxels]; coordinates are from its lowest corner.
   [[nodiscard]] const std::array<float, 3>& workspace() const { return workspace_; }
-  [[nodiscard]] std::uint64_t bytes() const { return pieces_.bytes() + groups_.bytes(); }
+  /// By how much distances may be wrong [voxels]; above 0.
+  [[nodiscard]] float rounding() const { return rounding_; }
 
   static constexpr std::size_t kMostPieces = 2048;
 
@@ -43,6 +43,7 @@ class ObstacleScene {
   BoxArrays pieces_, groups_;
   std::size_t piece_count_ = 0;
   std::array<float, 3> workspace_;
+  float rounding_ = 1e-6F;
 };
 
 }  // namespace viewgain::detail

@@ -92,7 +92,7 @@ struct alignas(64) RayTile {
   std::uint32_t valid = 0;          ///< one bit a lane
   std::uint32_t hit = 0;            ///< lanes that end in a voxel
   std::uint32_t blocked = 0;        ///< lanes that end at an obstacle
-  bool has_far = false;             ///< is `far` known? Else no obstacle matters
+  bool has_far = false;             ///< is `far` known? Else no obstacle ends a ray beyond a voxel
 };
 
 }  // namespace viewgain::detail

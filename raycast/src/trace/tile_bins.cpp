@@ -14,8 +14,6 @@
 namespace viewgain::detail {
 namespace {
 
-constexpr float kNothing = -1e9F;  // ImageScale::touching
-
 // Below this a camera's plane is too near to divide by [voxels].
 constexpr float kLeastDepth = 1e-3F;
 
@@ -79,7 +77,7 @@ TileBinner::TileBinner(const PinholeCamera& camera, int pixel_stride, const Tile
 ImageScale TileBinner::image_of(const PoseFrame& frame, float min_range) const {
   // A ray that has gone min_range is at least this far along the axis.
   const float nearest = 0.999F * min_range * least_cosine_;
-  const float touching = nearest < kLeastDepth ? 1.01F * kLeastDepth * widest_slope_ : kNothing;
+  const float touching = nearest < kLeastDepth ? 1.01F * kLeastDepth * widest_slope_ : -kEverywhere;
   return {.scale_x = scale_x_,
           .shift_x = shift_x_,
           .scale_y = scale_y_,

@@ -29,9 +29,12 @@ struct TileBox {
 /// many primitives, those of a box are projected when the first tile asks for them.
 class TileBins {
  public:
-  /// False if the boxes could not be projected; then nothing is known of any tile.
+  /// False if nothing is sorted: views then go through the BVH.
   [[nodiscard]] bool valid() const { return valid_; }
-  void invalidate() { valid_ = false; }
+  void invalidate() {
+    valid_ = false;
+    obstacle_near_.clear();
+  }
   [[nodiscard]] std::span<const TileBox> boxes_of(std::size_t tile) const {
     return {boxes_.data() + starts_[tile], boxes_.data() + starts_[tile + 1]};
   }
@@ -41,7 +44,11 @@ class TileBins {
     return obstacle_near_.empty() ? kNoObstacle : obstacle_near_[tile];
   }
   static constexpr float kNoObstacle = std::numeric_limits<float>::infinity();
-  void forget_obstacles() { obstacle_near_.clear(); }
+  /// There may be obstacles anywhere.
+  void expect_obstacles(std::size_t tiles) {
+    obstacle_near_.assign(tiles, 0.0F);
+    farthest_voxel_ = kNoObstacle;
+  }
   /// No voxel of the workspace is farther along the axis [voxels]; known where obstacles are.
   [[nodiscard]] float farthest_voxel() const { return farthest_voxel_; }
   /// Leaves what TileBinner::select() returned last as it is until this is called again.

@@ -17,15 +17,15 @@ namespace {
 
 constexpr double kLevelZeroReach = 2e4;
 
-bool wishes_lists() {
+}  // namespace
+
+TraceWay wished_way() {
   const char* wish = std::getenv("VIEWGAIN_TRACE");
-  if (wish == nullptr || std::string_view(wish) == "lists") return true;
-  if (std::string_view(wish) == "bvh") return false;
+  if (wish == nullptr || std::string_view(wish) == "lists") return TraceWay::lists;
+  if (std::string_view(wish) == "bvh") return TraceWay::bvh;
   throw Error(ErrorCode::invalid_argument,
               std::string("VIEWGAIN_TRACE is '").append(wish).append("', not lists or bvh"));
 }
-
-}  // namespace
 
 Isa choose_isa() {
   const Isa best = select_isa();
@@ -51,12 +51,12 @@ int choose_margin_level(double reach) {
   return level;
 }
 
-ViewChoice choose_tracing(const SceneData& scene, double max_range) {
+ViewChoice choose_tracing(const SceneData& scene, TraceWay way, double max_range) {
   // A camera that sees anything is no farther than its range from the workspace.
   const Index3& dims = scene.snapshot.dims;
   const double reach = max_range + std::max({dims.x, dims.y, dims.z});
   ViewChoice choice;
-  choice.by_lists = wishes_lists();
+  choice.by_lists = way == TraceWay::lists;
   choice.margin_level = choose_margin_level(reach);
   return choice;
 }

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "scene/scene_boxes.hpp"
-#include "sensor_rays.hpp"
+#include "scene/scene_data.hpp"
 #include "viewgain/core/isa.hpp"
 
 namespace viewgain::detail {
@@ -18,6 +18,12 @@ namespace viewgain::detail {
 /// - Embree's BVH, if the environment variable VIEWGAIN_TRACE says `bvh`.
 ///
 /// Known obstacles are triangles and always traced by Embree, where they can end a ray.
+
+enum class TraceWay : std::uint8_t { lists, bvh };
+
+/// What VIEWGAIN_TRACE says, lists if it is not set. Throws Error(invalid_argument) for another
+/// value.
+[[nodiscard]] TraceWay wished_way();
 
 /// The best instruction set, within VIEWGAIN_ISA, for which Embree has packets of the kernels'
 /// width. Throws Error(backend) if there is none, Error(invalid_argument) as select_isa().
@@ -40,8 +46,7 @@ struct ViewChoice {
   bool by_lists = false;
   int margin_level = 0;
 };
-/// `max_range` in voxels. Throws Error(invalid_argument) for another VIEWGAIN_TRACE than `lists` or
-/// `bvh`.
-[[nodiscard]] ViewChoice choose_tracing(const SceneData& scene, double max_range);
+/// `max_range` in voxels.
+[[nodiscard]] ViewChoice choose_tracing(const SceneData& scene, TraceWay way, double max_range);
 
 }  // namespace viewgain::detail

@@ -20,7 +20,7 @@ constexpr double kRayEnd = 4 * kFarthestCamera;
 }  // namespace
 
 ViewTracer::ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays> rays,
-                       double min_range, double max_range)
+                       double min_range, double max_range, TraceWay way)
     : scene_(scene),
       kernels_(scene.tracing->kernels),
       rays_(std::move(rays)),
@@ -30,7 +30,7 @@ ViewTracer::ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays>
   min_range_ = static_cast<float>(nearest);
   max_range_ = static_cast<float>(farthest);
   is_out_of_range_ = nearest >= kRayEnd;
-  choice_ = choose_tracing(scene, farthest);
+  choice_ = choose_tracing(scene, way, farthest);
   if (!choice_.by_lists) (void)scene.tracing->bvh(choice_.margin_level);
 }
 
@@ -60,11 +60,14 @@ std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const 
 
 void ViewTracer::prepare(const PoseFrame& frame, TileBins& bins, Asked asked) const {
   bins.invalidate();
-  bins.forget_obstacles();
   if (frame.sees_nothing) return;
-  if (choice_.by_lists) rays_->binner.sort(kernels_.isa, *scene_.scene_boxes, frame, bins);
-  if (const ObstacleScene* obstacles = scene_.tracing->obstacles.get()) {
+  const ObstacleScene* obstacles = scene_.tracing->obstacles.get();
+  if (choice_.by_lists) {
+    rays_->binner.sort(kernels_.isa, *scene_.scene_boxes, frame, bins);
+    if (obstacles == nullptr) return;
     rays_->binner.mark_obstacles(kernels_.isa, *obstacles, frame, asked != Asked::everywhere, bins);
+  } else if (obstacles != nullptr) {
+    bins.expect_obstacles(rays_->table.tile_count);
   }
 }
 
@@ -106,19 +109,16 @@ void ViewTracer::trace_lists(const PoseFrame& frame, std::size_t tile, TileBins&
 
 void ViewTracer::trace_with_obstacles(const PoseFrame& frame, std::size_t tile, Asked asked,
                                       TileBins& bins, RayTile& out) const {
-  RTCScene obstacles = scene_.tracing->obstacles->bvh();
+  const ObstacleScene& obstacles = *scene_.tracing->obstacles;
   const float near = bins.obstacle_near(tile);
   const bool comes_first =
-      bins.valid() && !bins.boxes_of(tile).empty() && near <= bins.boxes_of(tile).front().near;
+      !bins.valid() || (!bins.boxes_of(tile).empty() && near <= bins.boxes_of(tile).front().near);
   const bool is_in_reach = near <= bins.farthest_voxel();
   if (asked == Asked::everywhere || (is_in_reach && (asked == Asked::along_rays || comes_first))) {
     // Rays that end early leave fewer boxes to walk.
     std::copy_n(out.range, kTileRays, out.far);
-    cut_at_obstacles(obstacles, frame, out, out.valid, out.far);
+    out.blocked = cut_at_obstacles(obstacles.bvh(), frame, out, out.valid, out.far);
     out.has_far = true;
-    for (int lane = 0; lane < kTileRays; ++lane) {
-      if (out.far[lane] < out.range[lane]) out.blocked |= 1U << lane;
-    }
     for (std::uint32_t left = out.blocked; left != 0; left &= left - 1) {
       const int lane = std::countr_zero(left);
       out.range[lane] = out.far[lane];
@@ -133,12 +133,16 @@ void ViewTracer::trace_with_obstacles(const PoseFrame& frame, std::size_t tile, 
   for (std::uint32_t left = out.hit; left != 0; left &= left - 1) {
     farthest = std::max(farthest, out.range[std::countr_zero(left)]);
   }
+  farthest += obstacles.rounding();
   if (out.hit == 0 || near > farthest * rays_->table.cosine[tile]) return;
-  // A little farther than the voxels, since an obstacle wins a tie.
+  // A little farther than the voxels, since an obstacle wins a tie and Embree's distances are
+  // rounded.
   alignas(64) float far[kTileRays];
-  for (int lane = 0; lane < kTileRays; ++lane) far[lane] = out.range[lane] * (1.0F + 1e-6F);
-  cut_at_obstacles(obstacles, frame, out, out.hit, far);
-  for (std::uint32_t left = out.hit; left != 0; left &= left - 1) {
+  for (int lane = 0; lane < kTileRays; ++lane) {
+    far[lane] = out.range[lane] * (1.0F + 1e-6F) + obstacles.rounding();
+  }
+  const std::uint32_t met = cut_at_obstacles(obstacles.bvh(), frame, out, out.hit, far);
+  for (std::uint32_t left = met; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
     if (far[lane] > out.range[lane]) continue;
     out.range[lane] = far[lane];

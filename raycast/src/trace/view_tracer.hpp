@@ -21,7 +21,7 @@ class ViewTracer {
   /// Ranges in metres. Throws Error(backend), Error(capacity) if a BVH is wanted and cannot be
   /// built.
   ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays> rays, double min_range,
-             double max_range);
+             double max_range, TraceWay way = TraceWay::lists);
 
   /// The pose in the scene's coordinates; nothing if it is not finite or its rotation is off by
   /// more than 1e-3.

@@ -231,7 +231,7 @@ TEST(GainOptions, ObstaclesInRandomMapsAgreeWithTheOracle) {
   EXPECT_GE(static_cast<double>(same), 0.999 * static_cast<double>(rays));
 }
 
-// An obstacle's face on a voxel's face: the obstacle wins, whichever the BVH meets first; and a ray
+// An obstacle's face on a voxel's face: the obstacle wins; and a ray
 // through the diagonal that a box face's two triangles share does not slip through.
 TEST(GainOptions, ObstaclesWinTiesAndHaveNoSeams) {
   const double v = kExactVoxel;

@@ -161,7 +161,7 @@ struct Chain {
   const char* name;
   int voxels;                 ///< along 0.4 m
   std::array<double, 6> cut;  ///< what is cut off the workspace, low and high ends [m]
-  bool has_distortion;
+  bool is_by_bvh;             ///< with a lens, too
   bool has_obstacles;
   bool has_cells;  ///< some scene has more primitives than are sorted one by one
 };
@@ -181,10 +181,11 @@ TEST_P(SceneUpdate, AChainOfUpdatesIsWhatBuildsAre) {
   test::Random random(6);
   Sensor sensor = test::random_sensor(map.grid(), random);
   sensor.camera.distortion = {};
-  if (chain.has_distortion) sensor.camera.distortion = {-0.05, 0.01, 1e-3, -1e-3, 0};
+  if (chain.is_by_bvh) sensor.camera.distortion = {-0.05, 0.01, 1e-3, -1e-3, 0};
   sensor.min_range = 0.01;
   sensor.max_range = 1.5;
 
+  const test::ScopedTrace scoped_trace(chain.is_by_bvh ? "bvh" : "lists");
   const std::vector<std::string> isas = available_isas();
   std::vector<std::shared_ptr<const VoxelScene>> scenes;
   for (const std::string& isa : isas) {

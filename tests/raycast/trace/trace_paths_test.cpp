@@ -26,7 +26,7 @@ std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vec
   const GainEvaluator free_choice = evaluator_by("lists", scene, sensor);
   const GainEvaluator bvh = evaluator_by("bvh", scene, sensor);
   EXPECT_TRUE(test::same_bits(free_choice.evaluate(poses), bvh.evaluate(poses)));
-  for (const double share : {0.02, 0.1, 0.4}) {  // few tiles, and lists for some
+  for (const double share : {0.02, 0.1, 0.4}) {
     std::vector<ApproximateGain> a(poses.size()), b(poses.size());
     const ApproximateConfig config{.share = share, .seed = poses.size()};
     EXPECT_EQ(free_choice.approximate(poses, a, config), poses.size());
@@ -73,6 +73,7 @@ TEST(TracePaths, ObstaclesEndTheSameRaysEitherWay) {
     const test::RandomMap map = test::random_map(
         seed % 2 == 0 ? test::MapFamily::salt_and_pepper_1 : test::MapFamily::rotated, random);
     Sensor sensor = test::random_sensor(map.grid, random);
+    if (seed % 5 == 2) sensor.min_range = 0;
     if (seed % 3 == 0) sensor.camera.distortion = {-0.25, 0.08, 2e-3, -3e-3, -0.02};
     const Box w = map.grid.workspace();
     const double extent = w.max[0] - w.min[0];
@@ -130,6 +131,72 @@ TEST(TracePaths, ObstaclesEndTheSameRaysEitherWay) {
   EXPECT_GT(hits, 30'000U);
   EXPECT_GT(in_obstacles, 5'000U);
   EXPECT_GT(walked, 50U);
+}
+
+// Voxels at range 0, before an obstacle, at it, and at the sensor's last range.
+TEST(TracePaths, ObstaclesAtTheEndsOfRangesAreTheSameEitherWay) {
+  std::vector<Index3> unknown;
+  for (int y = 0; y < 16; ++y) {
+    for (int z = 0; z < 16; ++z) {
+      unknown.push_back({11, y, z});
+      if (y < 8) unknown.push_back({4, y, z});
+    }
+  }
+  const BeliefGrid grid = test::sparse_map({16, 16, 16}, unknown, VoxelState::unknown);
+  const double v = test::kExactVoxel;
+  Sensor sensor = test::lattice_sensor(24, 20);
+  sensor.camera.fx = sensor.camera.fy = 40;
+  sensor.camera.cx = 12, sensor.camera.cy = 10;
+  const std::vector<Pose> poses{
+      test::axis_pose({4, 8, 8.5}, 0, true),      // on a face: some rays end at once
+      test::axis_pose({4.5, 7.5, 8.5}, 0, true),  // in a voxel
+      test::axis_pose({-9, 8.5, 8.5}, 0, true)};
+  std::size_t hits = 0, at_once = 0;
+  for (const double last : {7.0, 20.0, 1000.0}) {  // to the second wall, beyond
+    sensor.max_range = last * v;
+    sensor.working_distance = 3 * v;
+    for (const double x : {4.0, 6.0, 11.0, 13.0}) {
+      const Obstacles obstacles{{Box{{x * v, -v, -v}, {(x + 1) * v, 17 * v, 17 * v}}}, {}};
+      hits += compare(grid, sensor, poses, obstacles);
+      const GainEvaluator evaluator =
+          evaluator_by("lists", VoxelScene::build(grid, obstacles), sensor);
+      for (const Pose& pose : poses) {
+        std::uint32_t in_voxels = 0;
+        for (const RayHit& hit : evaluator.trace(pose)) {
+          in_voxels += hit.kind == RayHit::Kind::unknown ? 1U : 0U;
+          at_once += hit.kind == RayHit::Kind::unknown && hit.range == 0 ? 1U : 0U;
+        }
+        EXPECT_EQ(evaluator.evaluate(pose).hits, in_voxels) << last << " " << x;
+      }
+    }
+  }
+  EXPECT_GT(hits, 5000U);
+  EXPECT_GT(at_once, 500U);
+}
+
+// An obstacle that single precision does not hold is left out; the others block as before.
+TEST(TracePaths, ObstaclesBeyondSinglePrecisionHideNothing) {
+  const BeliefGrid grid =
+      test::sparse_map({16, 16, 16}, {{8, 8, 8}, {8, 9, 8}, {9, 2, 3}}, VoxelState::unknown);
+  const double v = test::kExactVoxel;
+  Sensor sensor = test::lattice_sensor(31, 31);
+  sensor.camera.fx = sensor.camera.fy = 20;
+  const Box wall{{-2 * v, 0, -v}, {-v, 8.4 * v, 17 * v}};
+  const Obstacles alone{{wall}, {}};
+  const std::vector<Pose> poses{test::axis_pose({-9, 8.5, 8.5}, 0, true)};
+  std::size_t blocked = 0;
+  for (const double huge : {1e12, 1e25, 1e37, 1e300}) {
+    const Obstacles both{{wall, Box{{-huge, -huge, -huge}, {huge, huge, -1e9}}}, {}};
+    (void)compare(grid, sensor, poses, both);
+    const std::vector<RayHit>
+        a = evaluator_by("lists", VoxelScene::build(grid, alone), sensor).trace(poses[0]),
+        b = evaluator_by("lists", VoxelScene::build(grid, both), sensor).trace(poses[0]);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].kind, b[i].kind) << huge << " " << i;
+      blocked += b[i].kind == RayHit::Kind::obstacle ? 1U : 0U;
+    }
+  }
+  EXPECT_GT(blocked, 4U * 20U);
 }
 
 // What a strong lens bends, all over the image: nothing that the BVH finds is missing in the lists.

@@ -104,10 +104,11 @@ struct VIEWGAIN_EXPORT RayHit {
 /// scored and are kept. Determinism: the same bits for any number of threads, run after run.
 class VIEWGAIN_EXPORT GainEvaluator {
  public:
-  /// Undoes the lens distortion once. Throws Error(invalid_argument), naming the value, for a null
-  /// scene, a sensor that is not valid or whose sigmas differ by a factor over 1e4, a stride below
-  /// 1, a prior outside 1e-6..1e3 m, a weight or range that is negative or not finite, min_range >=
-  /// max_range, or a weight box inside out.
+  /// Undoes the lens distortion once. The environment variable VIEWGAIN_TRACE, `lists` or `bvh`,
+  /// forces a way to trace; results are the same bits. Throws Error(invalid_argument), naming the
+  /// value, for a null scene, a sensor that is not valid or whose sigmas differ by a factor over
+  /// 1e4, a stride below 1, a prior outside 1e-6..1e3 m, a weight or range that is negative or not
+  /// finite, min_range >= max_range, or a weight box inside out.
   GainEvaluator(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
                 const GainConfig& config = {}, const ExecConfig& exec = {});
   ~GainEvaluator();
@@ -117,9 +118,9 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// The evaluator of another scene, for following a map as it grows: the same sensor and
   /// configuration, and shared with this one the ray table, the threads and what they work in.
   /// Nothing is computed anew but, by the surface and the combined gain, the hazard of a scene that
-  /// has none yet (some milliseconds); without, it takes some microseconds. Results have the bits of an
-  /// evaluator made for that scene. sigma_0 is the configuration's or, unless given, that of the
-  /// new scene's map. This evaluator stays as it is, with its scene. Thread safety: both may be
+  /// has none yet (some milliseconds); without, it takes some microseconds. Results have the bits
+  /// of an evaluator made for that scene. sigma_0 is the configuration's or, unless given, that of
+  /// the new scene's map. This evaluator stays as it is, with its scene. Thread safety: both may be
   /// used, moved and destroyed at the same time; while one's call has the threads, a call of the
   /// other runs on its caller. Throws Error(invalid_argument) for a null scene or a map whose prior
   /// sigma is outside 1e-6..1e3 m, Error(backend), Error(capacity) as VoxelScene::build().
