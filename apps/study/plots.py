@@ -108,7 +108,7 @@ def calibration(rows, groups, names, path):
         one.set_xlabel("expected new surface [cm²]")
     for one in axes:
         one.plot([0, most], [0, most], color="#888888", linewidth=1, label="as promised")
-    axes[0].set_ylabel("truly new surface [cm²], means of eighths of the candidates")
+    axes[0].set_ylabel("truly new surface [cm²], by eighths")
     finish(figure, axes, path)
 
 

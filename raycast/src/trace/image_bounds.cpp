@@ -88,19 +88,19 @@ ImageBounds bounds_of(const BoxArrays& boxes, std::size_t first, const PoseFrame
     const VF hx = hn::LoadU(df, &boxes.half_x[at]), hy = hn::LoadU(df, &boxes.half_y[at]),
              hz = hn::LoadU(df, &boxes.half_z[at]);
     // The box in the camera's axes: centre and reach along each.
-    const auto along = [&](std::size_t axis, VF& low, VF& high) HWY_ATTR {
+    const auto along = [&](std::size_t axis, VF& center, VF& low, VF& high) HWY_ATTR {
       const VF a = hn::Set(df, R[axis]), b = hn::Set(df, R[3 + axis]), c = hn::Set(df, R[6 + axis]);
-      const VF center = hn::Add(hn::Mul(a, dx), hn::Add(hn::Mul(b, dy), hn::Mul(c, dz)));
+      center = hn::Add(hn::Mul(a, dx), hn::Add(hn::Mul(b, dy), hn::Mul(c, dz)));
       const VF reach =
           hn::Add(margin, hn::Add(hn::Mul(hn::Abs(a), hx),
                                   hn::Add(hn::Mul(hn::Abs(b), hy), hn::Mul(hn::Abs(c), hz))));
       low = hn::Sub(center, reach);
       high = hn::Add(center, reach);
     };
-    VF x_low, x_high, y_low, y_high, z_low, z_high;
-    along(0, x_low, x_high);
-    along(1, y_low, y_high);
-    along(2, z_low, z_high);
+    VF x, y, z, x_low, x_high, y_low, y_high, z_low, z_high;
+    along(0, x, x_low, x_high);
+    along(1, y, y_low, y_high);
+    along(2, z, z_low, z_high);
     // Of a box that reaches the camera's plane only the part before it counts.
     const auto behind = hn::Lt(z_high, nearest);
     const VF z_near = hn::Max(z_low, nearest);
@@ -120,7 +120,25 @@ ImageBounds bounds_of(const BoxArrays& boxes, std::size_t first, const PoseFrame
     const auto most = [&](VF high) HWY_ATTR {
       return hn::Mul(high, hn::IfThenElse(hn::Lt(high, zero), by_far, by_near));
     };
-    Outline outline{least(x_low), most(x_high), least(y_low), most(y_high)};
+    // x / z = s + (x - s z) / z for any s. With the slope of the centre for s, depth and sideways
+    // extent of a box beside the axis, which go together, are not counted twice.
+    const VF by_center = hn::Div(one, hn::Max(z, nearest));
+    const auto slopes = [&](std::size_t axis, VF center, VF low, VF high, VF& least_slope,
+                            VF& most_slope) HWY_ATTR {
+      const VF s = hn::Mul(center, by_center);
+      const auto extent = [&](std::size_t k, VF half) HWY_ATTR {
+        const VF r = hn::Sub(hn::Set(df, R[3 * k + axis]), hn::Mul(s, hn::Set(df, R[3 * k + 2])));
+        return hn::Mul(hn::Abs(r), half);
+      };
+      const VF off = hn::Sub(center, hn::Mul(s, z));
+      const VF reach = hn::Add(hn::MulAdd(hn::Abs(s), margin, margin),
+                               hn::Add(extent(0, hx), hn::Add(extent(1, hy), extent(2, hz))));
+      least_slope = hn::Max(least(low), hn::Add(s, least(hn::Sub(off, reach))));
+      most_slope = hn::Min(most(high), hn::Add(s, most(hn::Add(off, reach))));
+    };
+    Outline outline;
+    slopes(0, x, x_low, x_high, outline.low_x, outline.high_x);
+    slopes(1, y, y_low, y_high, outline.low_y, outline.high_y);
     auto unseen = behind;
     if (image.lens.is_bent) {
       const LensBend& lens = image.lens;

@@ -17,10 +17,10 @@ namespace {
 // Below this a camera's plane is too near to divide by [voxels].
 constexpr float kLeastDepth = 1e-3F;
 
-// Tiles of the rays whose numbers lie in [min, max]; false if there are none.
+// Tiles of the rays whose numbers, whole ones, lie in [min, max]; false if there are none.
 template <typename Integer>
 bool tile_range(float min, float max, float last, Integer& first_tile, Integer& last_tile) {
-  const float low = std::max(min, 0.0F), high = std::min(max, last);
+  const float low = std::ceil(std::max(min, 0.0F)), high = std::floor(std::min(max, last));
   if (!(low <= high)) return false;
   first_tile = static_cast<Integer>(static_cast<int>(low) / kTileEdge);
   last_tile = static_cast<Integer>(static_cast<int>(high) / kTileEdge);
@@ -36,6 +36,19 @@ bool outline(const ImageBounds& bounds, std::size_t i, const ImageScale& image, 
          tile_range(bounds.min_row[i], bounds.max_row[i], image.last_row, row0, row1);
 }
 
+// Appends those of so many boxes that are in the image.
+template <typename Entry, typename Name>
+void append_seen(const ImageBounds& bounds, const ImageScale& image, std::size_t count,
+                 std::vector<Entry>& out, const Name& name) {
+  for (std::size_t i = 0; i < count; ++i) {
+    Entry entry{};
+    if (!outline(bounds, i, image, entry.column0, entry.column1, entry.row0, entry.row1)) continue;
+    entry.box = name(i);
+    entry.near = bounds.near[i];
+    out.push_back(entry);
+  }
+}
+
 // Rounding moves a distance by less.
 float safely_near(float near) { return near - 1e-5F * std::abs(near); }
 
@@ -49,8 +62,34 @@ float farthest_along_axis(const std::array<float, 3>& size, const PoseFrame& fra
   return sum + 1.0F + 1e-5F * std::abs(sum);
 }
 
-// Distances along the optical axis in 256 steps: enough to put near boxes first.
-constexpr std::size_t kDistanceSteps = 256;
+// Puts entries in order of distance along the optical axis, in steps: a counting sort. They count
+// as being as near as their step begins, less the rounding, so that no later one is nearer.
+template <std::size_t kSteps, typename Entry>
+void sort_by_distance(const std::vector<Entry>& entries, std::vector<Entry>& sorted) {
+  sorted.resize(entries.size());
+  if (entries.empty()) return;
+  float nearest = entries.front().near, farthest = nearest;
+  for (const Entry& entry : entries) {
+    nearest = std::min(nearest, entry.near);
+    farthest = std::max(farthest, entry.near);
+  }
+  std::array<std::uint32_t, kSteps + 1> begins{};
+  const float step = std::max(farthest - nearest, 1e-6F) / static_cast<float>(kSteps - 1);
+  const auto step_of = [&](const Entry& entry) {
+    return std::min(static_cast<std::size_t>((entry.near - nearest) / step), kSteps - 1);
+  };
+  for (const Entry& entry : entries) ++begins[step_of(entry) + 1];
+  for (std::size_t i = 0; i < kSteps; ++i) begins[i + 1] += begins[i];
+  for (const Entry& entry : entries) {
+    const std::size_t at = step_of(entry);
+    Entry& out = sorted[begins[at]++];
+    out = entry;
+    out.near = safely_near(nearest + static_cast<float>(at) * step);
+  }
+}
+
+// Of a view's boxes, and of a cell's.
+constexpr std::size_t kViewSteps = 256, kCellSteps = 32;
 
 }  // namespace
 
@@ -130,41 +169,15 @@ void TileBinner::sort(Isa isa, const SceneBoxes& scene, const PoseFrame& frame,
   const ImageBoundsKernels& kernels = image_bounds_kernels(isa);
   const ImageScale image = image_of(frame, frame.min_range);
 
-  // Where each box lies in the image and how far off it is.
+  // Where each box lies in the image and how far off it is; near ones first.
   bins.entries_.clear();
   bins.starts_.resize(tile_count_ + 1);
-  float nearest = std::numeric_limits<float>::max(), farthest = 0;
   for (std::size_t first = 0; first < scene.count; first += kBoxVector) {
     const ImageBounds bounds = kernels.bounds_of(scene.boxes, first, frame, image);
-    const std::size_t count = std::min(kBoxVector, scene.count - first);
-    for (std::size_t i = 0; i < count; ++i) {
-      TileBins::Entry entry{};
-      if (!outline(bounds, i, image, entry.column0, entry.column1, entry.row0, entry.row1)) {
-        continue;
-      }
-      entry.box = static_cast<std::uint32_t>(first + i);
-      entry.near = bounds.near[i];
-      nearest = std::min(nearest, entry.near);
-      farthest = std::max(farthest, entry.near);
-      bins.entries_.push_back(entry);
-    }
+    append_seen(bounds, image, std::min(kBoxVector, scene.count - first), bins.entries_,
+                [&](std::size_t i) { return static_cast<std::uint32_t>(first + i); });
   }
-
-  // Near boxes first: a counting sort. A list's `near` is that of the step, less the rounding.
-  std::array<std::uint32_t, kDistanceSteps + 1> begins{};
-  const float step = std::max(farthest - nearest, 1e-6F) / static_cast<float>(kDistanceSteps - 1);
-  const auto step_of = [&](const TileBins::Entry& entry) {
-    return std::min(static_cast<std::size_t>((entry.near - nearest) / step), kDistanceSteps - 1);
-  };
-  for (const TileBins::Entry& entry : bins.entries_) ++begins[step_of(entry) + 1];
-  for (std::size_t i = 0; i < kDistanceSteps; ++i) begins[i + 1] += begins[i];
-  bins.sorted_.resize(bins.entries_.size());
-  for (const TileBins::Entry& entry : bins.entries_) {
-    const std::size_t at = step_of(entry);
-    TileBins::Entry& sorted = bins.sorted_[begins[at]++];
-    sorted = entry;
-    sorted.near = safely_near(nearest + static_cast<float>(at) * step);
-  }
+  sort_by_distance<kViewSteps>(bins.entries_, bins.sorted_);
 
   // Each tile's boxes side by side: count, then fill.
   const auto for_each_tile = [&](const TileBins::Entry& entry, auto&& visit) {
@@ -224,27 +237,29 @@ void TileBinner::sort(Isa isa, const SceneBoxes& scene, const PoseFrame& frame,
 void TileBinner::project_cell(const ImageBoundsKernels& kernels, const SceneBoxes& scene,
                               const PoseFrame& frame, std::uint32_t cell, TileBins& bins) const {
   const ImageScale image = image_of(frame, frame.min_range);
+  bins.entries_.clear();
+  for (std::size_t at = scene.first[cell]; at < scene.first[cell + 1]; at += kBoxVector) {
+    const ImageBounds bounds = kernels.bounds_of(scene.members, at, frame, image);
+    std::size_t count = kBoxVector;
+    while (scene.primitives[at + count - 1] == kNoPrimitive) --count;
+    append_seen(bounds, image, count, bins.entries_,
+                [&](std::size_t i) { return scene.primitives[at + i]; });
+  }
+  sort_by_distance<kCellSteps>(bins.entries_, bins.sorted_);
+
   TileBins::Cell& state = bins.cells_[cell];
   state.generation = bins.generation_;
   state.begin = static_cast<std::uint32_t>(bins.member_.size());
-  const auto append = [&](std::int16_t column0, std::int16_t column1, std::int16_t row0,
-                          std::int16_t row1, const TileBox& member) {
-    bins.column0_.push_back(column0), bins.column1_.push_back(column1);
-    bins.row0_.push_back(row0), bins.row1_.push_back(row1);
-    bins.member_.push_back(member);
+  const auto append = [&](const TileBins::Entry& entry) {
+    bins.column0_.push_back(static_cast<std::int16_t>(entry.column0));
+    bins.column1_.push_back(static_cast<std::int16_t>(entry.column1));
+    bins.row0_.push_back(static_cast<std::int16_t>(entry.row0));
+    bins.row1_.push_back(static_cast<std::int16_t>(entry.row1));
+    bins.member_.push_back({entry.box, entry.near});
   };
-  for (std::size_t at = scene.first[cell]; at < scene.first[cell + 1]; at += kBoxVector) {
-    const ImageBounds bounds = kernels.bounds_of(scene.members, at, frame, image);
-    for (std::size_t i = 0; i < kBoxVector; ++i) {
-      const std::uint32_t primitive = scene.primitives[at + i];
-      if (primitive == kNoPrimitive) break;
-      std::int16_t column0 = 0, column1 = 0, row0 = 0, row1 = 0;
-      if (outline(bounds, i, image, column0, column1, row0, row1)) {
-        append(column0, column1, row0, row1, {primitive, safely_near(bounds.near[i])});
-      }
-    }
-  }
-  while (bins.member_.size() % kBoxVector != 0) append(1, 0, 1, 0, {kNoPrimitive, 0});
+  for (const TileBins::Entry& entry : bins.sorted_) append(entry);
+  // Columns 1 to 0: covers no tile.
+  while (bins.member_.size() % kBoxVector != 0) append({kNoPrimitive, 0, 1, 0, 1, 0});
   state.end = static_cast<std::uint32_t>(bins.member_.size());
 }
 
@@ -258,19 +273,12 @@ std::span<const TileBox> TileBinner::select(Isa isa, const SceneBoxes& scene,
   bins.selected_.clear();
   const auto column = static_cast<std::int16_t>(tile % tile_columns_);
   const auto row = static_cast<std::int16_t>(tile / tile_columns_);
-  for (std::size_t at = state.begin; at < state.end; at += kBoxVector) {
+  for (std::size_t at = state.begin; at < state.end && bins.member_[at].near <= of_interest;
+       at += kBoxVector) {
     std::uint32_t bits = kernels.covering(&bins.column0_[at], &bins.column1_[at], &bins.row0_[at],
                                           &bins.row1_[at], column, row);
     for (; bits != 0; bits &= bits - 1) {
-      const TileBox member = bins.member_[at + static_cast<std::size_t>(std::countr_zero(bits))];
-      if (member.near > of_interest) continue;
-      // They are few: sorted as they come.
-      bins.selected_.push_back(member);
-      std::size_t i = bins.selected_.size() - 1;
-      for (; i > 0 && bins.selected_[i - 1].near > member.near; --i) {
-        bins.selected_[i] = bins.selected_[i - 1];
-      }
-      bins.selected_[i] = member;
+      bins.selected_.push_back(bins.member_[at + static_cast<std::size_t>(std::countr_zero(bits))]);
     }
   }
   return bins.selected_;
