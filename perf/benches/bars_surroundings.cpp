@@ -4,11 +4,10 @@
 // What known obstacles and a lens cost: views per second with them over views per second without.
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
 
 #include "bars.hpp"
 #include "measure.hpp"
+#include "mesh/shapes.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/text.hpp"
@@ -34,30 +33,8 @@ Obstacles wall() {
 /// What the object stands on: the workspace's lowest centimetre is in it.
 Obstacles table() { return {.boxes = {{{-0.6, -0.21, -0.6}, {0.6, -0.19, 0.6}}}, .meshes = {}}; }
 
-/// A sphere round cameras and object, 10,000 triangles.
-Obstacles surrounding_mesh() {
-  constexpr std::uint32_t kAround = 100, kUp = 51;
-  constexpr double kRadius = 1.5;
-  Obstacles obstacles;
-  TriangleMesh& mesh = obstacles.meshes.emplace_back();
-  for (std::uint32_t j = 0; j <= kUp; ++j) {
-    const double polar = std::numbers::pi * j / kUp;
-    for (std::uint32_t i = 0; i < kAround; ++i) {
-      const double azimuth = 2 * std::numbers::pi * i / kAround;
-      mesh.vertices.push_back({kRadius * std::sin(polar) * std::cos(azimuth),
-                               kRadius * std::sin(polar) * std::sin(azimuth),
-                               kRadius * std::cos(polar)});
-    }
-  }
-  for (std::uint32_t j = 0; j < kUp; ++j) {
-    for (std::uint32_t i = 0; i < kAround; ++i) {
-      const std::uint32_t a = j * kAround + i, b = j * kAround + (i + 1) % kAround;
-      if (j > 0) mesh.triangles.push_back({a, b, a + kAround});
-      if (j + 1 < kUp) mesh.triangles.push_back({b, b + kAround, a + kAround});
-    }
-  }
-  return obstacles;
-}
+/// A sphere round cameras and object, 10,200 triangles.
+Obstacles surrounding_mesh() { return {.boxes = {}, .meshes = {test::sphere_mesh(1.5, 51)}}; }
 
 struct Setting {
   std::shared_ptr<const VoxelScene> scene;

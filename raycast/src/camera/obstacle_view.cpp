@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scene/gather_scene.hpp"
+#include "scene/obstacle_mesh.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
@@ -20,34 +21,11 @@ namespace {
 
 constexpr std::size_t kPixelChunk = 1024;
 
-void append(TriangleMesh& mesh, const TriangleMesh& part) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
-  for (const auto& t : part.triangles) {
-    mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  }
-}
-
-TriangleMesh mesh_of(const Box& box) {
-  TriangleMesh mesh;
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    auto& vertex = mesh.vertices.emplace_back();
-    for (unsigned a = 0; a < 3; ++a) {
-      vertex[a] = (corner >> a & 1U) != 0 ? box.max[a] : box.min[a];
-    }
-  }
-  mesh.triangles.assign(kBoxTriangles.begin(), kBoxTriangles.end());
-  return mesh;
-}
-
 }  // namespace
 
 TriangleMesh mesh_of(const Obstacles& obstacles) {
   detail::check_obstacles(obstacles);
-  TriangleMesh all;
-  for (const Box& box : obstacles.boxes) append(all, mesh_of(box));
-  for (const TriangleMesh& mesh : obstacles.meshes) append(all, mesh);
-  return all;
+  return detail::join_obstacles(obstacles);
 }
 
 struct ObstacleView::Impl {

@@ -32,7 +32,7 @@ void cut(const SceneData& data, const ClassicTable& table, const ClassicFrame& f
     far[lane] = static_cast<float>(std::min(tile.far[lane], 4 * kFarthestCamera));
   }
   const std::array<float, kTileRays> before = std::to_array(far);
-  cut_at_obstacles(data.tracing->obstacles->bvh(), single, rays, rays.valid, far);
+  cut_at_obstacles(*data.tracing->obstacles, single, rays, rays.valid, far);
   for (int lane = 0; lane < kTileRays; ++lane) {
     if (far[lane] < before[static_cast<std::size_t>(lane)]) {
       tile.far[lane] = std::min(tile.far[lane], static_cast<double>(far[lane]));

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "scene/obstacle_mesh.hpp"
 #include "scene_tracing.hpp"
 
 namespace viewgain::detail {
@@ -29,22 +30,6 @@ constexpr float kFarthest = 1e18F;
 // By so much of the largest coordinate Embree's distances, and ours, may be wrong.
 constexpr float kRounding = 1e-6F;
 
-// A box's twelve triangles, added to a mesh.
-void append_box(const Box& box, TriangleMesh& mesh) {
-  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    mesh.vertices.push_back({(corner & 1U) != 0 ? box.max[0] : box.min[0],
-                             (corner & 2U) != 0 ? box.max[1] : box.min[1],
-                             (corner & 4U) != 0 ? box.max[2] : box.min[2]});
-  }
-  constexpr std::array<std::array<std::uint32_t, 4>, 6> kFaces{
-      {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}}};
-  for (const auto& f : kFaces) {
-    mesh.triangles.push_back({base + f[0], base + f[1], base + f[2]});
-    mesh.triangles.push_back({base + f[0], base + f[2], base + f[3]});
-  }
-}
-
 // Obstacles in the scene's coordinates: voxels from the workspace's lowest corner.
 struct Soup {
   std::vector<float> vertices;
@@ -54,21 +39,15 @@ struct Soup {
     const Pose T_grid_world = data.snapshot.T_world_grid.inverse();
     const Eigen::Vector3d base(data.snapshot.min_index.x, data.snapshot.min_index.y,
                                data.snapshot.min_index.z);
-    const auto append = [&](const TriangleMesh& mesh) {
-      const auto first = static_cast<unsigned>(vertices.size() / 3);
-      for (const auto& v : mesh.vertices) {
-        const Eigen::Vector3d p_world(v[0], v[1], v[2]);
-        const Eigen::Vector3d p = (T_grid_world * p_world) / data.snapshot.voxel_size - base;
-        for (const double c : p) vertices.push_back(static_cast<float>(c));
-      }
-      for (const auto& triangle : mesh.triangles) {
-        for (const std::uint32_t index : triangle) indices.push_back(first + index);
-      }
-    };
-    TriangleMesh boxes;
-    for (const Box& box : data.obstacles->boxes) append_box(box, boxes);
-    append(boxes);
-    for (const TriangleMesh& mesh : data.obstacles->meshes) append(mesh);
+    const TriangleMesh mesh = join_obstacles(*data.obstacles);
+    for (const auto& v : mesh.vertices) {
+      const Eigen::Vector3d p_world(v[0], v[1], v[2]);
+      const Eigen::Vector3d p = (T_grid_world * p_world) / data.snapshot.voxel_size - base;
+      for (const double c : p) vertices.push_back(static_cast<float>(c));
+    }
+    for (const auto& triangle : mesh.triangles) {
+      indices.insert(indices.end(), triangle.begin(), triangle.end());
+    }
   }
 
   [[nodiscard]] std::vector<Triangle> triangles() const {

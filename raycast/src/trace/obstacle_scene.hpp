@@ -26,6 +26,7 @@ class ObstacleScene {
                                                                const SceneData* before);
 
   [[nodiscard]] RTCScene bvh() const { return bvh_.get(); }
+  [[nodiscard]] Isa isa() const { return isa_; }
   /// Vector i of the pieces (kBoxVector of them, neighbours) lies in box i of the groups.
   [[nodiscard]] const BoxArrays& pieces() const { return pieces_; }
   [[nodiscard]] const BoxArrays& groups() const { return groups_; }

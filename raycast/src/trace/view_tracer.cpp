@@ -117,7 +117,7 @@ void ViewTracer::trace_with_obstacles(const PoseFrame& frame, std::size_t tile, 
   if (asked == Asked::everywhere || (is_in_reach && (asked == Asked::along_rays || comes_first))) {
     // Rays that end early leave fewer boxes to walk.
     std::copy_n(out.range, kTileRays, out.far);
-    out.blocked = cut_at_obstacles(obstacles.bvh(), frame, out, out.valid, out.far);
+    out.blocked = cut_at_obstacles(obstacles, frame, out, out.valid, out.far);
     out.has_far = true;
     for (std::uint32_t left = out.blocked; left != 0; left &= left - 1) {
       const int lane = std::countr_zero(left);
@@ -141,7 +141,7 @@ void ViewTracer::trace_with_obstacles(const PoseFrame& frame, std::size_t tile, 
   for (int lane = 0; lane < kTileRays; ++lane) {
     far[lane] = out.range[lane] * (1.0F + 1e-6F) + obstacles.rounding();
   }
-  const std::uint32_t met = cut_at_obstacles(obstacles.bvh(), frame, out, out.hit, far);
+  const std::uint32_t met = cut_at_obstacles(obstacles, frame, out, out.hit, far);
   for (std::uint32_t left = met; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
     if (far[lane] > out.range[lane]) continue;
