@@ -77,10 +77,15 @@ class Workers {
  private:
   void look() {
     for (std::size_t i = 0; i < is_there_.size(); ++i) {
-      if (is_there_[i] || !folder_.has(spec_.runs[i])) continue;
-      is_there_[i] = true;
-      ++progress_.done;
+      if (!is_there_[i] && folder_.has(spec_.runs[i])) count(i);
     }
+  }
+
+  // Once a run, whoever sees it first: its maker or another worker that looks.
+  void count(std::size_t i) {
+    if (is_there_[i]) return;
+    is_there_[i] = true;
+    ++progress_.done;
   }
 
   bool is_over() {
@@ -99,8 +104,7 @@ class Workers {
       if (!folder_.has(run) && !claims_.take(run.hash)) continue;
       if (folder_.has(run)) {  // another one may just have made it
         claims_.give_back(run.hash);
-        is_there_[i] = true;
-        ++progress_.done;
+        count(i);
         continue;
       }
       is_under_way_[i] = true;
@@ -121,8 +125,7 @@ class Workers {
     const std::lock_guard lock(mutex_);
     is_under_way_[i] = false;
     if (!result) return;
-    is_there_[i] = true;
-    ++progress_.done;
+    count(i);
     ++progress_.made;
     progress_.run = &run;
     progress_.seconds = watch.seconds();
