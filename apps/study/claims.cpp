@@ -93,7 +93,8 @@ bool Claims::is_abandoned(const fs::path& file) const {
   const std::size_t at = owner.rfind(' ');
   if (at != std::string::npos && owner.substr(0, at) == machine()) {
     const pid_t process = static_cast<pid_t>(std::atol(owner.c_str() + at + 1));
-    return process > 0 && ::kill(process, 0) != 0 && errno == ESRCH;
+    if (process > 0 && ::kill(process, 0) != 0 && errno == ESRCH) return true;
+    // It may be another process by now.
   }
   std::error_code failed;
   const fs::file_time_type touched = fs::last_write_time(file, failed);

@@ -153,6 +153,16 @@ std::string with_error(const std::vector<double>& values) {
   return mean.count == 0 ? "-" : fixed(mean.mean, 2).append(" ± ").append(fixed(mean.error, 2));
 }
 
+// What a run's predictions say after so many views, or after any if `view` is 0.
+std::vector<double> prediction_figures(const ResultRow& row, const char* key, std::size_t view) {
+  std::vector<double> found;
+  for (const auto& entry : row.prediction) {
+    if (view != 0 && entry.at("view") != view) continue;
+    if (entry.at(key).is_number()) found.push_back(entry.at(key).get<double>());
+  }
+  return found;
+}
+
 std::string prediction(const Group& group) {
   const StudySpec& spec = group.spec;
   if (spec.prediction.views.empty()) return "";
@@ -160,7 +170,8 @@ std::string prediction(const Group& group) {
       "\nWhat scores say of candidates, " + std::to_string(spec.prediction.candidates) +
       " each time: Spearman's rank correlation with the truly new samples after so many views, "
       "the mean of these, that with the entropy truly removed, and the favourite's share of what "
-      "the best candidate brings; ± standard errors over runs\n\n| policy |";
+      "the best candidate brings; ± standard errors over runs. Where all scores are equal there is "
+      "no figure; the means are over the others\n\n| policy |";
   std::string line = "|---|";
   for (const std::size_t view : spec.prediction.views) {
     text.append(" ").append(std::to_string(view)).append(" |");
@@ -169,17 +180,15 @@ std::string prediction(const Group& group) {
   text += " all | entropy | favourite |\n" + line + "---|---|---|\n";
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
     const Rows rows = group.of(policy);
-    const auto values = [&](const char* key, std::size_t view) {  // view 0: all
+    const auto values = [&](const char* key, std::size_t view) {  // a figure a run; view 0: all
       std::vector<double> found;
       for (const ResultRow* row : rows) {
-        for (const auto& entry : row->prediction) {
-          if (view != 0 && entry.at("view") != view) continue;
-          if (entry.at(key).is_number()) found.push_back(entry.at(key).get<double>());
-        }
+        // Views of one run are not independent: they count as one.
+        found.push_back(mean_of(prediction_figures(*row, key, view)).mean);
       }
       return found;
     };
-    if (values("top1_share", 0).empty()) continue;
+    if (mean_of(values("spearman_area", 0)).count == 0) continue;
     text.append("| ").append(spec.policies[policy].name);
     for (const std::size_t view : spec.prediction.views) {
       text.append(" | ").append(with_error(values("spearman_area", view)));

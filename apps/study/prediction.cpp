@@ -69,7 +69,7 @@ PredictionQuality predict(Run& run, const ViewRecord& record, std::size_t count,
     }
     const TrueOutcome outcome = oracle.outcome_of(candidates[i].T_world_camera);
     const double new_samples = static_cast<double>(outcome.covered) - covered;
-    quality.outcomes.push_back({scores->score[i], scores->area[i], new_samples,
+    quality.outcomes.push_back({candidates[i], scores->score[i], scores->area[i], new_samples,
                                 new_samples * run.truth()->area_per_sample(),
                                 outcome.entropy_removed - record.progress.entropy_removed});
   }
@@ -78,13 +78,17 @@ PredictionQuality predict(Run& run, const ViewRecord& record, std::size_t count,
   quality.spearman_area = spearman(score, added);
   quality.spearman_entropy =
       spearman(score, column(quality.outcomes, &CandidateOutcome::entropy_removed));
-  // Ties go to the lower index, as in the loop; NaN is never the favourite.
+  // Ties go to the lower index, as in the loop; NaN is never the favourite. A score that is the
+  // same for all has none.
   std::size_t favourite = 0;
   for (std::size_t i = 1; i < score.size(); ++i) {
     if (score[i] > score[favourite] || std::isnan(score[favourite])) favourite = i;
   }
   const double most = added.empty() ? 0 : *std::max_element(added.begin(), added.end());
-  quality.top1_share = most > 0 ? added[favourite] / most : std::nan("");
+  const bool has_favourite = std::any_of(score.begin(), score.end(), [&](double value) {
+    return std::isfinite(value) && value != score[favourite];
+  });
+  quality.top1_share = has_favourite && most > 0 ? added[favourite] / most : std::nan("");
   return quality;
 }
 

@@ -12,6 +12,7 @@ namespace viewgain::app {
 
 /// What a candidate was said to bring, and what it truly brings.
 struct CandidateOutcome {
+  Candidate candidate;
   double score;            ///< by what the policy ranks by; its unit
   double predicted_area;   ///< new surface to be expected [m²]; NaN where the gain does not say
   double new_samples;      ///< of the mesh, that the map's points cover afterwards and not before
@@ -24,7 +25,8 @@ struct PredictionQuality {
   std::size_t view = 0;         ///< after so many views
   double spearman_area = 0;     ///< of the score with the truly new samples
   double spearman_entropy = 0;  ///< of the score with the entropy removed
-  double top1_share = 0;        ///< new samples of the favourite / of the best candidate
+  double top1_share = 0;        ///< new samples of the favourite / of the best candidate; NaN
+                                ///< where no score is above another
   std::vector<CandidateOutcome> outcomes;
 };
 

@@ -48,6 +48,7 @@ ResultRow row_of(const StudySpec& spec, const StudyRun& run, const ordered_json&
   row.run = &run;
   row.views = json.at("views").get<std::size_t>();
   row.stop_reason = json.at("stop_reason").get<std::string>();
+  (void)json.at("per_view").at(0);  // there is one
   for (const ordered_json& view : json.at("per_view")) {
     const double coverage = number_of(view.at("coverage_visible"));
     row.coverage_by_view.push_back(std::isnan(coverage) ? 0 : coverage);
@@ -67,6 +68,7 @@ ResultRow row_of(const StudySpec& spec, const StudyRun& run, const ordered_json&
   row.travelled = number_of(json.at("travelled"));
   row.seconds = number_of(json.at("seconds").at("total"));
   row.prediction = json.at("prediction");
+  row.isa = json.at("isa").get<std::string>();
   return row;
 }
 
@@ -85,7 +87,7 @@ std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& row
       std::string(kRunColumns) +
       ",views,stop_reason,views_to_80,"
       "views_to_90,views_to_95,auc,coverage_visible,coverage,rms_error,consistency,outliers,"
-      "travelled,spearman_area,spearman_entropy,top1_share,hash,seconds\n";
+      "travelled,spearman_area,spearman_entropy,top1_share,hash,isa,seconds\n";
   for (const ResultRow& row : rows) {
     const StudyRun& run = *row.run;
     csv.append(run_columns(spec, run));
@@ -100,7 +102,8 @@ std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& row
           mean_over_views(row.prediction, "top1_share")}) {
       csv.append(",").append(exact_text(value));
     }
-    csv.append(",").append(run.hash).append(",").append(exact_text(row.seconds)).append("\n");
+    csv.append(",").append(run.hash).append(",").append(row.isa);
+    csv.append(",").append(exact_text(row.seconds)).append("\n");
   }
   return csv;
 }
@@ -134,6 +137,7 @@ ordered_json results_json(const StudySpec& spec, const std::vector<ResultRow>& r
     json["coverage_by_view"] = row.coverage_by_view;
     json["prediction"] = row.prediction;
     json["hash"] = run.hash;
+    json["isa"] = row.isa;
     json["seconds"] = row.seconds;
     results.push_back(std::move(json));
   }

@@ -30,6 +30,7 @@ struct ResultRow {
   double consistency = 0;  ///< of the points
   double outliers = 0;
   double travelled = 0;  ///< [m]
+  std::string isa;       ///< instruction set that the run was made with
   double seconds = 0;
   nlohmann::ordered_json prediction;  ///< as in results.json
 
@@ -37,7 +38,7 @@ struct ResultRow {
   [[nodiscard]] double counted_views_to(std::size_t goal) const;
 };
 
-/// From a run's run.json.
+/// From a run's run.json. Throws nlohmann::json::exception where something is missing in it.
 [[nodiscard]] ResultRow row_of(const StudySpec& spec, const StudyRun& run,
                                const nlohmann::ordered_json& json);
 

@@ -177,6 +177,7 @@ std::string StudyFolder::prediction_rows(const StudyRun& run) const {
   if (text.substr(0, head) != kPredictionColumns) {
     throw Error(ErrorCode::format, path.string() + ": line 1: must be " + kPredictionColumns);
   }
+  if (text.back() != '\n') throw Error(ErrorCode::format, path.string() + ": is cut off");
   return text.substr(head + 1);
 }
 

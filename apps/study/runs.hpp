@@ -33,14 +33,13 @@ class StudyFolder {
   [[nodiscard]] bool has(const StudyRun& run) const;
   /// run.json. Throws Error(format) that names the file if it is not that of this run.
   [[nodiscard]] nlohmann::ordered_json read(const StudyRun& run) const;
-  /// prediction.csv without its head.
+  /// prediction.csv without its head. Throws Error(io), Error(format).
   [[nodiscard]] std::string prediction_rows(const StudyRun& run) const;
   void write(const StudyRun& run, const StudyResult& result) const;
   [[nodiscard]] std::filesystem::path runs() const { return dir_ / "runs"; }
-
- private:
   [[nodiscard]] std::filesystem::path file(const StudyRun& run, const char* name) const;
 
+ private:
   std::filesystem::path dir_;
 };
 

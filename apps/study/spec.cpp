@@ -11,10 +11,13 @@
 #include <utility>
 
 #include "formats/src/toml_table.hpp"
+#include "options/gain_names.hpp"
 #include "options/values.hpp"
+#include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
 #include "viewgain/core/mix64.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/raycast/classic_gains.hpp"
 #include "viewgain/version.hpp"
 
 namespace viewgain::app {
@@ -23,6 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
+constexpr int kRunFormat = 2;  // of run.json and prediction.csv; grows when one changes
 constexpr std::size_t kMostRuns = 1'000'000;
 constexpr std::int64_t kMostViews = 1000, kMostCandidates = 100'000;
 
@@ -112,12 +116,24 @@ StudyPolicy policy_of(TableReader& reader, const std::string& name) {
     }
   }
   const bool by_gain = policy.policy == "gain";
-  if (by_gain == policy.gain.empty()) {
+  if (by_gain == policy.gain.empty() || name.ends_with(':')) {
     reader.fail("policies", "holds \"" + name +
                                 "\"; a policy is \"gain:NAME\" (\"gain:combined\") or another one "
                                 "of reconstruct's (\"frontier\")");
   }
+  if (by_gain) {
+    try {
+      check_one_of("--gain", policy.gain, all_gain_names(), "gain");
+    } catch (const Error& error) {
+      reader.fail("policies", "holds \"" + name + "\": " + error.what());
+    }
+  }
   return policy;
+}
+
+// Where nothing is said it is the first.
+std::string semantics_of(const StudyPolicy& policy) {
+  return policy.semantics.empty() ? gain_semantics_names().front() : policy.semantics;
 }
 
 std::vector<StudyObject> objects_of(TableReader& reader, const fs::path& folder) {
@@ -126,7 +142,7 @@ std::vector<StudyObject> objects_of(TableReader& reader, const fs::path& folder)
   for (const std::string& file : texts(reader, "objects")) {
     StudyObject object{fs::path(file).stem().string(), (folder / file).lexically_normal()};
     if (!fs::is_regular_file(object.mesh)) {
-      reader.fail("objects", "holds \"" + file + "\": no such file as " + object.mesh.string());
+      reader.fail("objects", "holds \"" + file + "\": no file at " + object.mesh.string());
     }
     if (!names.insert(object.name).second) {
       reader.fail("objects", "holds two objects of the name \"" + object.name + "\"");
@@ -150,21 +166,44 @@ std::vector<std::string> flags_of(TableReader& reader) {
   std::vector<std::string> flags;
   for (const toml::node& node : list_of(reader, "flags")) {
     const auto* text = node.as_string();
-    if (text == nullptr) reader.fail("flags", "must be a list of texts, as on the command line");
+    if (text == nullptr || !text->get().starts_with("--") || text->get().size() < 3) {
+      reader.fail("flags", "must be a list of texts like \"--up=y\"");
+    }
     const std::string flag = text->get().substr(0, text->get().find('='));
     if (own_flags().contains(flag)) {
       reader.fail("flags", "holds " + flag + ", which the study sets itself");
     }
+    if (flag == "--help") reader.fail("flags", "holds --help, which is no setting of a run");
     flags.push_back(text->get());
   }
   return flags;
 }
 
-// By its contents where it is a file.
+std::string identity_of(const std::string& value);
+
+// The texts of a TOML file that name files beside it, each by its contents.
+void add_files_named_in(const toml::node& node, const fs::path& folder, std::string& identities) {
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, value] : *table) add_files_named_in(value, folder, identities);
+  } else if (const toml::array* list = node.as_array()) {
+    for (const toml::node& value : *list) add_files_named_in(value, folder, identities);
+  } else if (const auto* text = node.as_string()) {
+    std::error_code ignored;
+    const fs::path file = folder / text->get();
+    if (fs::is_regular_file(file, ignored)) identities += " " + identity_of(file.string());
+  }
+}
+
+// By its contents where it is a file, and by those of the files that a TOML file names.
 std::string identity_of(const std::string& value) {
   std::error_code ignored;
   if (!fs::is_regular_file(value, ignored)) return value;
-  return "file " + hash_of(file_bytes(value));
+  const fs::path file = value;
+  std::string identities = hash_of(file_bytes(file));
+  if (file.extension() == ".toml") {
+    add_files_named_in(read_toml(file), file.parent_path(), identities);
+  }
+  return "file " + identities;
 }
 
 std::vector<std::string> identities_of(const std::vector<std::string>& flags) {
@@ -203,14 +242,23 @@ StudySpec read_study_spec(const fs::path& path) {
   const fs::path folder = path.parent_path();
   StudySpec spec;
   spec.objects = objects_of(reader, folder);
+  std::set<std::string> policies;
   for (const std::string& name : texts(reader, "policies")) {
     spec.policies.push_back(policy_of(reader, name));
+    const StudyPolicy& policy = spec.policies.back();
+    if (!policies.insert(policy.policy + ":" + policy.gain + ":" + semantics_of(policy)).second) {
+      reader.fail("policies", "holds \"" + name + "\" twice: paper is the semantics unless said");
+    }
   }
   const std::vector<std::int64_t> seeds = whole_numbers(reader, "seeds", 0, INT64_MAX);
   std::vector<std::string> sensors = texts(reader, "sensors");
   for (std::string& sensor : sensors) {
     if (is_sensor_file(sensor)) sensor = (folder / sensor).lexically_normal().string();
-    (void)load_sensor(sensor);  // refuses what is none, before the first run
+    try {
+      (void)load_sensor(sensor);  // refuses what is none, before the first run
+    } catch (const Error& error) {
+      reader.fail("sensors", error.what());
+    }
   }
   const std::vector<double> voxels = lengths(reader, "voxels");
   std::vector<std::optional<double>> sizes;
@@ -250,6 +298,7 @@ StudySpec read_study_spec(const fs::path& path) {
                            {},     {}};
               run.configuration = {
                   {"version", VIEWGAIN_VERSION},
+                  {"format", kRunFormat},
                   {"object", spec.objects[object].name},
                   {"mesh", meshes[object]},
                   {"policy", spec.policies[policy].name},

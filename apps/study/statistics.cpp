@@ -56,7 +56,8 @@ MeanWithError mean_of(std::span<const double> values) {
   for (const double value : values) {
     if (std::isfinite(value)) squares += (value - result.mean) * (value - result.mean);
   }
-  if (result.count > 1) result.error = std::sqrt(squares / (n - 1) / n);
+  result.error = result.count > 1 ? std::sqrt(squares / (n - 1) / n)
+                                  : std::numeric_limits<double>::quiet_NaN();
   return result;
 }
 

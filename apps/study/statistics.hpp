@@ -15,8 +15,8 @@ namespace viewgain::app {
 /// not count. NaN with fewer than two pairs, or where one side is the same throughout.
 [[nodiscard]] double spearman(std::span<const double> a, std::span<const double> b);
 
-/// Mean, and its standard error; NaN of none, the error 0 of one. Values that are not finite do not
-/// count.
+/// Mean, and its standard error; NaN of none, the error NaN of one. Values that are not finite do
+/// not count.
 struct MeanWithError {
   double mean, error;
   std::size_t count;

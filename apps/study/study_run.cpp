@@ -11,7 +11,9 @@
 #include "loop/run_report.hpp"
 #include "options/json_text.hpp"
 #include "prediction.hpp"
+#include "results.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/isa.hpp"
 #include "viewgain/core/stopwatch.hpp"
 #include "viewgain/core/text.hpp"
 
@@ -62,6 +64,13 @@ std::string rows_of(const PredictionQuality& quality) {
                                outcome.new_area, outcome.entropy_removed}) {
       rows.append(",").append(exact_text(value));
     }
+    const Pose& T_world_camera = outcome.candidate.T_world_camera;
+    const Eigen::Vector3d t = T_world_camera.translation();
+    const Eigen::Quaterniond q(T_world_camera.rotation());
+    rows.append(",").append(csv_text(outcome.candidate.generator));
+    for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
+      rows.append(",").append(exact_text(value));
+    }
     rows += "\n";
   }
   return rows;
@@ -95,6 +104,7 @@ std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& stud
   result.run = {{"configuration", study_run.configuration}};
   result.run.update(report.json(planned.reason));
   result.run["prediction"] = prediction;
+  result.run["isa"] = isa_name(select_isa());
   return result;
 }
 

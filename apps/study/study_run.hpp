@@ -19,7 +19,8 @@ struct StudyResult {
 
 /// The columns of prediction.csv.
 inline constexpr const char* kPredictionColumns =
-    "view,candidate,score,predicted_area,new_samples,new_area,entropy_removed";
+    "view,candidate,score,predicted_area,new_samples,new_area,entropy_removed,"
+    "generator,tx,ty,tz,qx,qy,qz,qw";
 
 /// Checks a run's flags and files without running it. Throws Error, naming the run.
 void check_run(const StudySpec& spec, const StudyRun& run);

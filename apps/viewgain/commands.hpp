@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <string>
 
 #include "options/common_options.hpp"
 #include "options/json_text.hpp"
@@ -15,6 +16,11 @@ namespace viewgain::app {
 struct Command {
   CLI::App* app = nullptr;
   std::function<void()> run;
+};
+
+/// Thrown by a command that a signal stopped before it was done: one line, exit code 130.
+struct Stopped {
+  std::string message;
 };
 
 [[nodiscard]] Command add_simulate(CLI::App& program);

@@ -23,6 +23,7 @@ namespace {
 
 constexpr int kInternalError = 1;
 constexpr int kBadInput = 2;
+constexpr int kStopped = 130;  // as shells have it for SIGINT
 
 // One line, whatever a message or a file name holds.
 int report(std::string message, int exit_code) {
@@ -114,6 +115,8 @@ int main(int argc, char** argv) {
   } catch (const viewgain::Error& error) {
     const bool internal = error.code() == viewgain::ErrorCode::backend;
     return report(error.what(), internal ? kInternalError : kBadInput);
+  } catch (const viewgain::app::Stopped& stopped) {
+    return report(stopped.message, kStopped);
   } catch (const std::bad_alloc&) {
     return report("out of memory", kInternalError);
   } catch (const std::exception& error) {

@@ -8,6 +8,7 @@
 #include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/core/pose.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -102,7 +103,7 @@ class CloudSource : public ReadingSource {
     if (options.poses.empty()) {
       if (options.origin == "viewpoint") return;
       const std::vector<double> at = parse_numbers("--origin", options.origin, 3, 3);
-      origin_ = Pose(Eigen::Matrix3d::Identity(), Eigen::Vector3d(at[0], at[1], at[2]));
+      origin_.emplace(at[0], at[1], at[2]);
       return;
     }
     poses_ = read_tum(options.poses);
@@ -126,7 +127,7 @@ class CloudSource : public ReadingSource {
         point = {p.x(), p.y(), p.z()};
       }
     } else if (origin_) {
-      T_world_sensor_ = *origin_;
+      T_world_sensor_ = looking_at_points(*origin_);
     } else if (cloud_.viewpoint) {
       T_world_sensor_ = *cloud_.viewpoint;
     } else {
@@ -142,13 +143,26 @@ class CloudSource : public ReadingSource {
   }
 
  private:
+  // Points in the world say where their sensor stood but not how it was turned: towards their
+  // middle. Lines are carved the same; what asks for the views of a map has a view to look at.
+  [[nodiscard]] Pose looking_at_points(const Eigen::Vector3d& origin) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double count = 0;
+    for (const auto& point : cloud_.points) {
+      const Eigen::Vector3d p(point[0], point[1], point[2]);
+      if (p.allFinite()) sum += p, ++count;
+    }
+    const bool has_direction = count > 0 && sum / count != origin && origin.allFinite();
+    return has_direction ? look_at(origin, sum / count) : Pose(Eigen::Matrix3d::Identity(), origin);
+  }
+
   std::vector<std::string> files_;
   Sensor sensor_;
   std::optional<double> support_plane_;
   CloudIntegrator integrator_;
-  PoseList poses_;              // empty: the points are in the world
-  std::optional<Pose> origin_;  // of all clouds; nothing: each has its own
-  PointCloud cloud_;            // in the world
+  PoseList poses_;                         // empty: the points are in the world
+  std::optional<Eigen::Vector3d> origin_;  // of all clouds; nothing: each has its own
+  PointCloud cloud_;                       // in the world
   Pose T_world_sensor_;
 };
 

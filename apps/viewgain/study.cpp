@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <tuple>
 #include <vector>
@@ -21,6 +22,8 @@
 #include "study/spec.hpp"
 #include "study/study_run.hpp"
 #include "viewgain/core/atomic_file.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
 #include "viewgain/core/stopwatch.hpp"
 
 namespace viewgain::app {
@@ -35,13 +38,18 @@ struct Options {
 };
 
 // A wrong name is known before hours of work.
-void check_runs(const StudySpec& spec) {
+void check_runs(const StudySpec& spec, const std::string& file) {
   std::set<std::size_t> policies;
   std::set<std::tuple<std::size_t, std::string, double, std::optional<double>>> scenes;
   for (const StudyRun& run : spec.runs) {
     const bool has_new_policy = policies.insert(run.policy).second;
     const bool has_new_scene = scenes.insert({run.object, run.sensor, run.voxel, run.size}).second;
-    if (has_new_policy || has_new_scene) check_run(spec, run);
+    if (!has_new_policy && !has_new_scene) continue;
+    try {
+      check_run(spec, run);
+    } catch (const Error& error) {
+      throw Error(error.code(), file + ": " + error.what());
+    }
   }
 }
 
@@ -81,10 +89,32 @@ std::string predictions_csv(const StudySpec& spec, const StudyFolder& folder) {
   return csv;
 }
 
+// A study's folder has runs/; another one that is not empty is somebody else's.
+void check_folder(const std::filesystem::path& dir) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(dir, ignored) || std::filesystem::is_empty(dir, ignored) ||
+      std::filesystem::is_directory(dir / "runs", ignored)) {
+    return;
+  }
+  throw Error(ErrorCode::invalid_argument,
+              "--out " + dir.string() + ": has files, but no runs/ of a study; name a new folder");
+}
+
+ResultRow row_in(const StudyFolder& folder, const StudySpec& spec, const StudyRun& run) {
+  const nlohmann::ordered_json json = folder.read(run);
+  try {
+    return row_of(spec, run, json);
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(ErrorCode::format, folder.file(run, "run.json").string() + ": " + error.what() +
+                                       "; a run whose folder is removed is made again");
+  }
+}
+
 void study(const Options& options) {
   const StudySpec spec = read_study_spec(options.spec);
-  check_runs(spec);
+  check_runs(spec, options.spec);
   const std::filesystem::path dir = options.out;
+  check_folder(dir);
   const StudyFolder folder(dir);
   const std::size_t threads = options.common.threads > 0
                                   ? static_cast<std::size_t>(options.common.threads)
@@ -99,20 +129,25 @@ void study(const Options& options) {
                                       print_progress(spec, progress, watch.seconds());
                                   });
   if (!complete) {
-    std::fprintf(stderr, "viewgain: stopped; the same call goes on with what is in %s\n",
-                 options.out.c_str());
-    return;
+    throw Stopped{"stopped; the same call goes on with what is in " + options.out};
   }
 
   std::vector<ResultRow> rows;
-  for (const StudyRun& run : spec.runs) rows.push_back(row_of(spec, run, folder.read(run)));
+  for (const StudyRun& run : spec.runs) rows.push_back(row_in(folder, spec, run));
   const nlohmann::ordered_json json = results_json(spec, rows);
   const std::string table = results_markdown(spec, rows);
+  const bool has_predictions = !spec.prediction.views.empty();
+  const std::string predictions = has_predictions ? predictions_csv(spec, folder) : "";
+  // Nothing of another spec stays beside what is of this one.
+  for (const char* name :
+       {"predictions.csv", "coverage.png", "prediction.png", "calibration.png"}) {
+    std::error_code ignored;
+    std::filesystem::remove(dir / name, ignored);
+  }
+  write_file_atomically(dir / "spec.toml", file_bytes(options.spec));
   write_file_atomically(dir / "results.csv", results_csv(spec, rows));
   write_file_atomically(dir / "table.md", table);
-  if (!spec.prediction.views.empty()) {
-    write_file_atomically(dir / "predictions.csv", predictions_csv(spec, folder));
-  }
+  if (has_predictions) write_file_atomically(dir / "predictions.csv", predictions);
   write_file_atomically(dir / "plots.py", plots_script());
   write_file_atomically(dir / "results.json", json_text(json));
   const bool is_drawn = options.plots == "on" && draw_plots(dir / "plots.py");
@@ -123,10 +158,10 @@ void study(const Options& options) {
   if (options.common.json) {
     print_json(json);
   } else {
-    std::printf("%s\nleft in %s: results.csv, results.json, table.md, plots.py%s%s, runs/\n",
-                table.c_str(), options.out.c_str(),
-                spec.prediction.views.empty() ? "" : ", predictions.csv",
-                is_drawn ? ", plots" : "");
+    std::printf(
+        "%s\nleft in %s: spec.toml, results.csv, results.json, table.md, plots.py%s%s, runs/\n",
+        table.c_str(), options.out.c_str(), has_predictions ? ", predictions.csv" : "",
+        is_drawn ? ", plots" : "");
   }
 }
 

@@ -101,6 +101,20 @@ TEST_F(ClaimsTest, OfAnotherMachineIsTakenOverWhenItIsOld) {
   EXPECT_NE(text("b.claim"), "elsewhere 0-0 1");
 }
 
+TEST_F(ClaimsTest, OfAProcessNumberInUseAgainIsTakenOverWhenItIsOld) {
+  {
+    app::Claims former(folder);
+    ASSERT_TRUE(former.take("a"));
+    fs::copy_file(folder / "a.claim", folder / "b.claim");  // of this process, which has no such
+    fs::copy_file(folder / "a.claim", folder / "c.claim");
+  }
+  fs::last_write_time(folder / "c.claim",
+                      fs::last_write_time(folder / "b.claim") - std::chrono::seconds(61));
+  app::Claims claims(folder);
+  EXPECT_FALSE(claims.take("b"));
+  EXPECT_TRUE(claims.take("c"));
+}
+
 TEST_F(ClaimsTest, IsTouchedWhileItsOwnerLives) {
   app::Claims claims(folder);
   ASSERT_TRUE(claims.take("a"));

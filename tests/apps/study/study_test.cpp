@@ -71,7 +71,7 @@ TEST_F(Study, LeavesWhatItSays) {
   const json printed = json::parse(run_well(study("out", {"--json", "--plots", "off"})));
   EXPECT_EQ(printed, json::parse(read("out/results.json")));
   EXPECT_EQ(list("out"), (Strings{"plots.py", "predictions.csv", "results.csv", "results.json",
-                                  "runs", "table.md"}));
+                                  "runs", "spec.toml", "table.md"}));
   EXPECT_EQ(list("out/runs").size(), 6U);
   ASSERT_EQ(printed.size(), 6U);
   std::size_t cases = 0;
@@ -108,12 +108,15 @@ TEST_F(Study, PredictionIsThatOfItsRows) {
   std::getline(lines, line);
   EXPECT_EQ(line,
             "object,policy,gain,semantics,seed,sensor,voxel,size,view,candidate,score,"
-            "predicted_area,new_samples,new_area,entropy_removed");
+            "predicted_area,new_samples,new_area,entropy_removed,generator,tx,ty,tz,qx,qy,qz,qw");
   while (std::getline(lines, line)) {
     std::istringstream in(line);
     Strings cells;
     for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
-    ASSERT_EQ(cells.size(), 15U);
+    ASSERT_EQ(cells.size(), 23U);
+    EXPECT_NEAR(std::hypot(std::hypot(std::stod(cells[19]), std::stod(cells[20])),
+                           std::hypot(std::stod(cells[21]), std::stod(cells[22]))),
+                1, 1e-12);
     auto& column = columns[cells[1] + cells[4] + "/" + cells[8]];
     column.resize(3);
     column[0].push_back(std::stod(cells[10]));
@@ -199,7 +202,7 @@ TEST_F(Study, AWishToStopLeavesWhatIsWhole) {
   }
   ASSERT_EQ(::kill(child, SIGINT), 0);
   ASSERT_EQ(::waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 130) << status;
   EXPECT_EQ(list("out"), Strings{"runs"});
   EXPECT_LT(runs_in("out"), 6U);
   EXPECT_EQ(list("out/runs").size(), runs_in("out"));
@@ -220,10 +223,45 @@ TEST_F(Study, WrongNamesAreKnownBeforeTheFirstRun) {
     const test::ProgramResult result = run({"study", "wrong.toml", "--out", "out"});
     EXPECT_EQ(result.exit_code, 2) << to;
     EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("wrong.toml"), std::string::npos) << result.err;
     EXPECT_FALSE(fs::exists(dir / "out")) << to;
     ++cases;
   }
   EXPECT_EQ(cases, 5U);
+}
+
+TEST_F(Study, DamagedRunsAreNamedAndNothingIsLeft) {
+  run_well(study("out", {"--plots", "off"}));
+  const std::string hash = json::parse(read("out/results.json"))[0]["hash"];
+  const std::string folder = "out/runs/" + hash + "/";
+  std::size_t cases = 0;
+  for (const auto& [name, from] :
+       std::vector<std::pair<std::string, std::string>>{{"run.json", "\"per_view\""},
+                                                        {"run.json", "\"stop_reason\""},
+                                                        {"prediction.csv", "\n"}}) {
+    for (const char* of_before : {"results.csv", "results.json", "predictions.csv"}) {
+      fs::remove(dir / "out" / of_before);
+    }
+    const std::string whole = read(folder + name);
+    std::string text = whole;
+    text.replace(text.rfind(from), from.size(), name == "run.json" ? "\"other\"" : "");
+    write(folder + name, text);
+    const test::ProgramResult result = run(study("out", {"--plots", "off"}));
+    EXPECT_EQ(result.exit_code, 2) << from;
+    EXPECT_NE(result.err.find(hash + "/" + name), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(dir / "out/results.csv")) << from;
+    write(folder + name, whole);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3U);
+}
+
+TEST_F(Study, AFolderOfOtherThingsIsRefused) {
+  write("other/notes.txt", "mine");
+  const test::ProgramResult result = run(study("other"));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("other"), std::string::npos) << result.err;
+  EXPECT_EQ(list("other"), Strings{"notes.txt"});
 }
 
 TEST_F(Study, PlotsAreDrawnByTheScriptItLeaves) {
