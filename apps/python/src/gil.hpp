@@ -47,7 +47,10 @@ class WithGil {
   WithGil& operator=(const WithGil&) = delete;
 
  private:
+  // PyGILState_Ensure asks nobody: when the interpreter has forgotten this thread it makes a state
+  // for it in an interpreter that is no more.
   static PyGILState_STATE ensure() noexcept {
+    if (Py_IsInitialized() == 0) stay();
     try {
       return PyGILState_Ensure();
     } catch (...) {
