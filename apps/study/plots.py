@@ -69,6 +69,7 @@ def coverage(runs, groups, names, path):
             one.fill_between(views, [m - e for m, e in points], [m + e for m, e in points], alpha=0.15, linewidth=0,
                              color=style(i)["color"])
         one.set_xlabel("views")
+        one.xaxis.get_major_locator().set_params(integer=True)
     axes[0].set_ylabel("visible surface covered [%], mean ± standard error")
     finish(figure, axes, path)
 
@@ -87,6 +88,7 @@ def prediction(runs, groups, names, path):
                 points = [(view, *mean_and_error(v)) for view, v in sorted(values.items())]
                 one.errorbar(*zip(*points), label=name, marker="o", markersize=3, capsize=2, **style(i))
         one.set_xlabel("after so many views")
+        one.xaxis.get_major_locator().set_params(integer=True)
     axes[0].set_ylabel("Spearman: score and truly new surface")
     finish(figure, axes, path)
 
