@@ -23,7 +23,6 @@
 #include "study/study_run.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
 #include "viewgain/core/stopwatch.hpp"
 
 namespace viewgain::app {
@@ -89,11 +88,14 @@ std::string predictions_csv(const StudySpec& spec, const StudyFolder& folder) {
   return csv;
 }
 
-// A study's folder has runs/; another one that is not empty is somebody else's.
-void check_folder(const std::filesystem::path& dir) {
+// A study's folder has runs/; another one that holds more than the spec is somebody else's.
+void check_folder(const std::filesystem::path& dir, const std::filesystem::path& spec) {
   std::error_code ignored;
-  if (!std::filesystem::is_directory(dir, ignored) || std::filesystem::is_empty(dir, ignored) ||
-      std::filesystem::is_directory(dir / "runs", ignored)) {
+  if (std::filesystem::is_directory(dir / "runs", ignored)) return;
+  const std::filesystem::directory_iterator entries(dir, ignored);  // none if it is not there
+  if (std::all_of(begin(entries), end(entries), [&](const auto& entry) {
+        return std::filesystem::equivalent(entry.path(), spec, ignored);
+      })) {
     return;
   }
   throw Error(ErrorCode::invalid_argument,
@@ -114,7 +116,7 @@ void study(const Options& options) {
   const StudySpec spec = read_study_spec(options.spec);
   check_runs(spec, options.spec);
   const std::filesystem::path dir = options.out;
-  check_folder(dir);
+  check_folder(dir, options.spec);
   const StudyFolder folder(dir);
   const std::size_t threads = options.common.threads > 0
                                   ? static_cast<std::size_t>(options.common.threads)
@@ -144,7 +146,6 @@ void study(const Options& options) {
     std::error_code ignored;
     std::filesystem::remove(dir / name, ignored);
   }
-  write_file_atomically(dir / "spec.toml", file_bytes(options.spec));
   write_file_atomically(dir / "results.csv", results_csv(spec, rows));
   write_file_atomically(dir / "table.md", table);
   if (has_predictions) write_file_atomically(dir / "predictions.csv", predictions);
@@ -158,10 +159,9 @@ void study(const Options& options) {
   if (options.common.json) {
     print_json(json);
   } else {
-    std::printf(
-        "%s\nleft in %s: spec.toml, results.csv, results.json, table.md, plots.py%s%s, runs/\n",
-        table.c_str(), options.out.c_str(), has_predictions ? ", predictions.csv" : "",
-        is_drawn ? ", plots" : "");
+    std::printf("%s\nleft in %s: results.csv, results.json, table.md, plots.py%s%s, runs/\n",
+                table.c_str(), options.out.c_str(), has_predictions ? ", predictions.csv" : "",
+                is_drawn ? ", plots" : "");
   }
 }
 

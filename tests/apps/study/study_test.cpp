@@ -71,7 +71,7 @@ TEST_F(Study, LeavesWhatItSays) {
   const json printed = json::parse(run_well(study("out", {"--json", "--plots", "off"})));
   EXPECT_EQ(printed, json::parse(read("out/results.json")));
   EXPECT_EQ(list("out"), (Strings{"plots.py", "predictions.csv", "results.csv", "results.json",
-                                  "runs", "spec.toml", "table.md"}));
+                                  "runs", "table.md"}));
   EXPECT_EQ(list("out/runs").size(), 6U);
   ASSERT_EQ(printed.size(), 6U);
   std::size_t cases = 0;
@@ -262,6 +262,14 @@ TEST_F(Study, AFolderOfOtherThingsIsRefused) {
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.err.find("other"), std::string::npos) << result.err;
   EXPECT_EQ(list("other"), Strings{"notes.txt"});
+  // The spec may lie there, and stays as it is.
+  write("home/my.toml",
+        "objects = [\"../cube.off\"]\npolicies = [\"random\"]\nseeds = [1]\n"
+        "sensors = [\"../tof.toml\"]\nvoxels = [0.0125]\nsizes = [0.15]\nmax_views = 1\n");
+  const std::string spec = read("home/my.toml");
+  run_well({"study", "home/my.toml", "--out", "home", "--plots", "off", "--quiet"});
+  EXPECT_TRUE(fs::exists(dir / "home/results.csv"));
+  EXPECT_EQ(read("home/my.toml"), spec);
 }
 
 TEST_F(Study, PlotsAreDrawnByTheScriptItLeaves) {
