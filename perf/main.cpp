@@ -8,8 +8,6 @@
 #include "benches/honesty_bench.hpp"
 #include "benches/integrate_bench.hpp"
 #include "benches/iteration_bench.hpp"
-#include "benches/peak_memory.hpp"
-#include "benches/scaling_bench.hpp"
 #include "benches/trace_bench.hpp"
 #include "choose/approximate_bench.hpp"
 #include "choose/choose_bench.hpp"
@@ -19,6 +17,9 @@
 #include "peers/frames_bench.hpp"
 #include "peers/hemisphere_bench.hpp"
 #include "peers/view_choice.hpp"
+#include "sizes/hall_bench.hpp"
+#include "sizes/peak_memory.hpp"
+#include "sizes/scaling_bench.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -183,6 +184,23 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   memory_app->add_option("--mesh", memory.mesh, "the camel's mesh file")->capture_default_str();
 
+  viewgain::bench::HallOptions hall;
+  CLI::App* hall_app =
+      app.add_subcommand("hall", "memory and speed of the map of a hall of 20 m x 20 m x 3 m");
+  hall_app->add_option("--threads", hall.num_threads, "threads, 0: all")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  hall_app->add_option("--voxel", hall.voxel, "voxel size [m]")
+      ->check(CLI::Range(0.005, 1.0))
+      ->capture_default_str();
+  hall_app->add_option("--frames", hall.frames, "on the way through the hall")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  hall_app->add_option("--poses", hall.poses, "scored in the end")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  hall_app->add_flag("--json", hall.json, "print JSON");
+
   viewgain::bench::ArmadilloOptions armadillo;
   CLI::App* armadillo_app = app.add_subcommand(
       "armadillo",
@@ -290,6 +308,7 @@ int run(int argc, char** argv) {
   if (choose_app->parsed()) return viewgain::bench::run_choose(choose);
   if (bars_app->parsed()) return viewgain::bench::run_bars(bars);
   if (memory_app->parsed()) return viewgain::bench::run_memory(memory);
+  if (hall_app->parsed()) return viewgain::bench::run_hall(hall);
   if (armadillo_app->parsed()) return viewgain::bench::run_armadillo(armadillo);
   if (hemisphere_app->parsed()) return viewgain::bench::run_hemisphere(hemisphere);
   if (frames_app->parsed()) return viewgain::bench::run_frames(frames);

@@ -31,7 +31,9 @@ Json to_json(const TraceOptions& options, const TraceRun& run) {
                                {"rays_per_second", median(entry->rates)},
                                {"p05", quantile(entry->rates, 0.05)},
                                {"p95", quantile(entry->rates, 0.95)},
-                               {"poses", entry->poses.size()}});
+                               {"poses", entry->poses.size()},
+                               {"untraced", entry->shares.untraced},
+                               {"embree", entry->shares.embree}});
   }
   json["embree_variant"] = run.embree->name;
   for (const TraceEntry& entry : run.entries) {
@@ -63,15 +65,16 @@ void print_table(const Json& json) {
               json["isa"].get<std::string>().c_str(), json["cpu"].get<std::string>().c_str());
   std::printf("scene: %d leaves and boxes, built in %.2f ms (median)\n\n",
               json["scene_primitives"].get<int>(), json["scene_build_ms"]["median"].get<double>());
-  std::printf("%-18s %12s %8s %8s %6s  %s\n", "method", "Mrays/s", "p05", "p95", "poses",
-              "rays in the oracle's voxel");
+  std::printf("%-18s %12s %8s %8s %6s %9s %9s  %s\n", "method", "Mrays/s", "p05", "p95", "poses",
+              "untraced", "by Embree", "rays in the oracle's voxel");
   for (const Json& method : json["methods"]) {
     const auto name = method["name"].get<std::string>();
-    std::printf("%-18s %12.3f %8.3f %8.3f %6d  %.6f, %d ties, %d wrong\n", name.c_str(),
-                method["rays_per_second"].get<double>() / 1e6, method["p05"].get<double>() / 1e6,
-                method["p95"].get<double>() / 1e6, method["poses"].get<int>(),
-                json["agreement"][name].get<double>(), json["ties"][name].get<int>(),
-                json["wrong"][name].get<int>());
+    std::printf("%-18s %12.3f %8.3f %8.3f %6d %8.1f%% %8.1f%%  %.6f, %d ties, %d wrong\n",
+                name.c_str(), method["rays_per_second"].get<double>() / 1e6,
+                method["p05"].get<double>() / 1e6, method["p95"].get<double>() / 1e6,
+                method["poses"].get<int>(), 100 * method["untraced"].get<double>(),
+                100 * method["embree"].get<double>(), json["agreement"][name].get<double>(),
+                json["ties"][name].get<int>(), json["wrong"][name].get<int>());
   }
   std::printf("\nembree_quads is \"%s\", the best robust one of:\n",
               json["embree_variant"].get<std::string>().c_str());

@@ -32,7 +32,7 @@ std::vector<TraceEntry> make_entries(const TraceTask& task, const ScenePointer& 
   const std::vector<Pose> all(task.poses.begin(), task.poses.end());
   const auto least = static_cast<std::size_t>(4 * task.num_threads);
   std::vector<TraceEntry> entries;
-  entries.emplace_back(make_viewgain_gain(task, scene), all);
+  for (auto& method : make_viewgain_gains(task, scene)) entries.emplace_back(std::move(method), all);
   entries.emplace_back(make_viewgain_trace(task, scene), all);
   entries.emplace_back(make_viewgain_trace_bvh(task, scene), all);
   entries.emplace_back(make_viewgain_floor(task, scene), all);
@@ -134,6 +134,7 @@ TraceRun run_trace_methods(const TraceOptions& options) {
     entry.agreement = expected.compare(*entry.method, entry.poses, pool);
   }
   measure(run.entries, options.repetitions, pool);
+  for (TraceEntry& entry : run.entries) entry.shares = entry.method->shares(entry.poses);
   for (TraceEntry& entry : run.entries) entry.method.reset();
   summarize(run);
   return run;

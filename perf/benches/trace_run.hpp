@@ -22,6 +22,7 @@ struct TraceEntry {
   std::vector<Pose> poses;
   std::vector<double> rates;  ///< rays per second, one a repetition
   Agreement agreement;
+  RayShares shares;
 
   /// One of Embree's quad variants.
   [[nodiscard]] bool is_embree() const;

@@ -98,6 +98,8 @@ class EmbreeQuads final : public TraceMethod {
         max_range_(static_cast<float>(task.sensor.max_range / task.map.voxel_size)),
         coherent_(coherent) {}
 
+  [[nodiscard]] RayShares shares(std::span<const Pose>) const override { return {0, 1}; }
+
   void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
     const Pose T_grid_camera = T_grid_world_ * T_world_camera;
     const Eigen::Vector3f origin =

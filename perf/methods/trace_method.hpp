@@ -27,6 +27,13 @@ struct TraceTask {
   int num_threads = 1;
 };
 
+/// Of a view's rays, what is not evident from a rate.
+struct RayShares {
+  double untraced =
+      0;  ///< belong to a tile of pixels that can meet nothing, and cost next to nothing
+  double embree = 0;  ///< are traced by Embree
+};
+
 /// A way to find the first voxel that is not free along every ray of a view.
 /// Thread safety: const members may run from many threads.
 class TraceMethod {
@@ -46,6 +53,9 @@ class TraceMethod {
   /// What is timed: all rays of all poses, on all threads of the pool, by pose. Unless a method has
   /// its own way, trace() into a buffer of the thread.
   virtual void run(std::span<const Pose> poses, ThreadPool& pool);
+
+  /// Over all rays of these poses.
+  [[nodiscard]] virtual RayShares shares(std::span<const Pose>) const { return {}; }
 
  private:
   std::string name_;

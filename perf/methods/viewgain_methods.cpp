@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <stdexcept>
 #include <vector>
 
@@ -14,37 +15,6 @@
 
 namespace viewgain::bench {
 namespace {
-
-class ViewgainGain final : public TraceMethod {
- public:
-  ViewgainGain(const TraceTask& task, ScenePointer scene)
-      : TraceMethod("viewgain_gain", task.sensor.camera.ray_table().size()),
-        map_(task.map),
-        evaluator_(std::move(scene), task.sensor, {}, {.num_threads = task.num_threads}) {}
-
-  void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
-    const std::vector<RayHit> hits = evaluator_.trace(T_world_camera);
-    const auto ends = std::count_if(
-        hits.begin(), hits.end(), [](const RayHit& hit) { return hit.kind != RayHit::Kind::none; });
-    if (evaluator_.evaluate(T_world_camera).hits != ends) {
-      throw std::runtime_error("the gain was made of other hits than trace() gives");
-    }
-    std::transform(hits.begin(), hits.end(), endings.begin(), [&](const RayHit& hit) {
-      return hit.kind == RayHit::Kind::none ? kMiss : static_cast<Ending>(map_.position(hit.voxel));
-    });
-  }
-
-  /// On the evaluator's own threads, as many as the pool has.
-  void run(std::span<const Pose> poses, ThreadPool&) override {
-    results_.resize(poses.size());
-    evaluator_.evaluate(poses, results_);
-  }
-
- private:
-  const oracle::DenseMap& map_;
-  GainEvaluator evaluator_;
-  std::vector<ViewGain> results_;
-};
 
 /// Traces alone.
 class ViewgainTrace : public TraceMethod {
@@ -80,6 +50,17 @@ class ViewgainTrace : public TraceMethod {
     });
   }
 
+  [[nodiscard]] RayShares shares(std::span<const Pose> poses) const override {
+    std::size_t traced = 0;
+    for (const Pose& pose : poses) {
+      for_each_tile(pose, [&](std::size_t, const detail::RayTile& tile) {
+        traced += static_cast<std::size_t>(std::popcount(tile.valid));
+      });
+    }
+    const auto all = static_cast<double>(poses.size() * rays_per_pose());
+    return {1 - static_cast<double>(traced) / all, way_ == Way::bvh ? 1.0 : 0.0};
+  }
+
  protected:
   using Visit = std::function<void(std::size_t, const detail::RayTile&)>;
 
@@ -110,7 +91,8 @@ class ViewgainTrace : public TraceMethod {
 class ViewgainFloor final : public ViewgainTrace {
  public:
   ViewgainFloor(const TraceTask& task, ScenePointer scene)
-      : ViewgainTrace("viewgain_floor", task, std::move(scene), Way::bvh), poses_(task.poses) {
+      : ViewgainTrace("viewgain_floor", task, std::move(scene), Way::as_evaluator),
+        poses_(task.poses) {
     const std::size_t tiles = tracer_.table().tile_count;
     begins_.assign(poses_.size() * tiles + 1, 0);
     detail::TileBins none;
@@ -146,10 +128,58 @@ class ViewgainFloor final : public ViewgainTrace {
   std::vector<std::size_t> begins_;
 };
 
+/// A gain of each pose.
+class ViewgainGain final : public TraceMethod {
+ public:
+  ViewgainGain(std::string name, const TraceTask& task, const ScenePointer& scene, GainModel model)
+      : TraceMethod(std::move(name), task.sensor.camera.ray_table().size()),
+        map_(task.map),
+        model_(model),
+        evaluator_(scene, task.sensor, {.model = model}, {.num_threads = task.num_threads}),
+        tracing_("", task, scene, ViewgainTrace::Way::as_evaluator) {}
+
+  void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
+    const std::vector<RayHit> hits = evaluator_.trace(T_world_camera);
+    const auto ends = std::count_if(
+        hits.begin(), hits.end(), [](const RayHit& hit) { return hit.kind != RayHit::Kind::none; });
+    const ViewGain gain = evaluator_.evaluate(T_world_camera);
+    if (model_ == GainModel::paper && gain.hits != ends) {
+      throw std::runtime_error("the gain was made of other hits than trace() gives");
+    }
+    std::transform(hits.begin(), hits.end(), endings.begin(), [&](const RayHit& hit) {
+      return hit.kind == RayHit::Kind::none ? kMiss : static_cast<Ending>(map_.position(hit.voxel));
+    });
+  }
+
+  /// On the evaluator's own threads, as many as the pool has.
+  void run(std::span<const Pose> poses, ThreadPool&) override {
+    results_.resize(poses.size());
+    evaluator_.evaluate(poses, results_);
+  }
+
+  [[nodiscard]] RayShares shares(std::span<const Pose> poses) const override {
+    return tracing_.shares(poses);
+  }
+
+ private:
+  const oracle::DenseMap& map_;
+  GainModel model_;
+  GainEvaluator evaluator_;
+  ViewgainTrace tracing_;
+  std::vector<ViewGain> results_;
+};
+
 }  // namespace
 
-std::unique_ptr<TraceMethod> make_viewgain_gain(const TraceTask& task, ScenePointer scene) {
-  return std::make_unique<ViewgainGain>(task, std::move(scene));
+std::vector<std::unique_ptr<TraceMethod>> make_viewgain_gains(const TraceTask& task,
+                                                              const ScenePointer& scene) {
+  std::vector<std::unique_ptr<TraceMethod>> methods;
+  for (const auto& [name, model] : {std::pair("viewgain_gain", GainModel::paper),
+                                    std::pair("viewgain_surface", GainModel::surface),
+                                    std::pair("viewgain_combined", GainModel::combined)}) {
+    methods.push_back(std::make_unique<ViewgainGain>(name, task, scene, model));
+  }
+  return methods;
 }
 
 std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task, ScenePointer scene) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "trace_method.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
@@ -11,9 +12,10 @@ namespace viewgain::bench {
 
 using ScenePointer = std::shared_ptr<const VoxelScene>;
 
-/// GainEvaluator::evaluate on a batch: tracing, sums by voxel, entropies.
-[[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_gain(const TraceTask& task,
-                                                              ScenePointer scene);
+/// GainEvaluator::evaluate on a batch: tracing, sums by voxel, entropies (`viewgain_gain`); the
+/// same by the surface and by the combined gain.
+[[nodiscard]] std::vector<std::unique_ptr<TraceMethod>> make_viewgain_gains(
+    const TraceTask& task, const ScenePointer& scene);
 
 /// Its tracing alone: each tile's endings as the gain takes them.
 [[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task,

@@ -66,10 +66,17 @@ TEST(Bench, AllWaysToTraceAgree) {
     EXPECT_LE(method["p05"], method["p95"]) << name;
     EXPECT_GE(json["agreement"][name].get<double>(), 0.9999) << name;
     EXPECT_EQ(json["wrong"][name], 0) << name;
+    // Only our lists of boxes pass over tiles; only the BVHs are Embree's.
+    const bool lists = name.starts_with("viewgain_") && name != "viewgain_trace_bvh";
+    EXPECT_EQ(method["untraced"].get<double>() > 0.1, lists) << name;
+    EXPECT_LT(method["untraced"].get<double>(), 0.9) << name;
+    EXPECT_EQ(method["embree"], name == "embree_quads" || name == "viewgain_trace_bvh" ? 1 : 0)
+        << name;
   }
   for (const char* name :
-       {"viewgain_gain", "viewgain_trace", "viewgain_floor", "embree_quads", "dense_dda",
-        "openvdb_dda", "openvdb_hdda", "octomap_cast_ray", "octomap_gain"}) {
+       {"viewgain_gain", "viewgain_surface", "viewgain_combined", "viewgain_trace",
+        "viewgain_trace_bvh", "viewgain_floor", "embree_quads", "dense_dda", "openvdb_dda",
+        "openvdb_hdda", "octomap_cast_ray", "octomap_gain"}) {
     EXPECT_EQ(names.count(name), 1U) << name;
   }
   EXPECT_EQ(json["embree_variants"].size(), 12U);
@@ -99,7 +106,7 @@ TEST(Bench, AllWaysToTraceAgreeOnAMapThatIsNoMultipleOfEight) {
     EXPECT_EQ(wrong, 0) << name;
     ++compared;
   }
-  EXPECT_EQ(compared, 10);
+  EXPECT_EQ(compared, 12);
 }
 
 TEST(Bench, ScalingAgreesForAllSizesRaysAndThreads) {
@@ -127,6 +134,23 @@ TEST(Bench, ScalingAgreesForAllSizesRaysAndThreads) {
   EXPECT_EQ(cases.count("camel-24 950 2"), 1U);
   ASSERT_EQ(json["memory"].size(), 2U);
   EXPECT_GT(json["memory"][1]["map_bytes"], 0);
+}
+
+TEST(Bench, AHallIsMappedScoredAndForgotten) {
+  const Result result = run("hall --json --voxel 0.2 --frames 12 --poses 4 --threads 2");
+  ASSERT_EQ(result.exit_code, 0) << result.out;
+  const Json json = Json::parse(result.out);
+  expect_environment(json, 2);
+  EXPECT_EQ(json["voxels"], 100 * 100 * 15);
+  EXPECT_EQ(json["rays_per_view"], 640 * 480);
+  EXPECT_GT(json["free"], 1000);
+  EXPECT_GT(json["occupied"], 300);
+  EXPECT_GT(json["forgotten"], 1000);
+  EXPECT_LT(json["map_mb_after"], json["map_mb"]);
+  for (const char* figure :
+       {"peak_map_and_scene_mb", "build_ms", "update_ms", "views_per_second", "forget_ms"}) {
+    EXPECT_GT(json[figure].get<double>(), 0) << figure;
+  }
 }
 
 TEST(Bench, ApproximateComparesStridesAndShares) {

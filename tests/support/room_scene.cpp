@@ -6,7 +6,6 @@
 #include <memory>
 #include <numbers>
 
-#include "viewgain/core/box.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/mix64.hpp"
 #include "viewgain/grid/integrate.hpp"
@@ -25,7 +24,9 @@ const std::vector<Box> kFurniture{
     {{-0.3, 0.5, 0.0}, {0.15, 0.9, 0.46}},   {{0.4, 1.2, 0.74}, {0.75, 1.5, 0.98}},
     {{-1.5, 1.55, 0.0}, {-1.42, 1.63, 1.7}}, {{-2.5, -0.1, 2.4}, {2.5, 0.1, 2.6}}};
 
-void add(TriangleMesh& mesh, const Box& box) {
+}  // namespace
+
+void add_box(TriangleMesh& mesh, const Box& box) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (unsigned corner = 0; corner < 8; ++corner) {
     mesh.vertices.push_back({(corner & 1U ? box.max : box.min)[0],
@@ -40,12 +41,10 @@ void add(TriangleMesh& mesh, const Box& box) {
   }
 }
 
-}  // namespace
-
 BeliefGrid room_grid(double voxel_size, const Sensor& sensor, int frames, const ExecConfig& exec) {
   TriangleMesh mesh;
-  add(mesh, kRoom);
-  for (const Box& box : kFurniture) add(mesh, box);
+  add_box(mesh, kRoom);
+  for (const Box& box : kFurniture) add_box(mesh, box);
   const SimulatedSensor camera(std::make_shared<const SurfaceScene>(std::move(mesh), exec), sensor,
                                {.noise = true}, exec);
   Box workspace = kRoom;

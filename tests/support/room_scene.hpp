@@ -5,12 +5,17 @@
 #include <cstdint>
 #include <vector>
 
+#include "viewgain/core/box.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
 
 namespace viewgain::test {
+
+/// Appends the twelve triangles of a box.
+void add_box(TriangleMesh& mesh, const Box& box);
 
 /// The map of a furnished room of 5 m × 4 m × 2.6 m, half of which a depth camera has seen from
 /// near its middle: noisy frames, which look round to the left. Its workspace is the room and 0.2 m

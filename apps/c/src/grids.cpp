@@ -192,6 +192,18 @@ vg_status vg_grid_set(vg_grid* grid, const int32_t* voxels, const float* log_odd
   });
 }
 
+vg_status vg_grid_forget(vg_grid* grid, const double min[3], const double max[3],
+                         uint64_t* forgotten) {
+  return guarded([&] {
+    require(grid, "grid");
+    require(min, "min");
+    require(max, "max");
+    const std::uint64_t count =
+        grid->grid.forget({{min[0], min[1], min[2]}, {max[0], max[1], max[2]}});
+    if (forgotten != nullptr) *forgotten = count;
+  });
+}
+
 vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds, size_t capacity,
                            size_t* found) {
   return guarded([&] {

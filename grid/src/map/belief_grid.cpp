@@ -19,6 +19,7 @@
 #include "grid_storage.hpp"
 #include "rigid_view.hpp"
 #include "viewgain/core/error.hpp"
+#include "voxels_in.hpp"
 
 namespace viewgain {
 namespace {
@@ -247,6 +248,68 @@ void BeliefGrid::set(std::span<const VoxelValue> voxels) {
     set_in_block(s, std::span(first, last));
   }
   ++s.time;
+}
+
+std::uint64_t BeliefGrid::forget(const Box& region) {
+  GridStorage& s = *storage_;
+  const VoxelBox range = voxels_in(*this, region);
+  const auto part_of = [&](Index3 origin, int size) {
+    return range.intersection(VoxelBox::from_dims(origin, {size, size, size}));
+  };
+  // A list first: the tree must not change while it is visited.
+  std::vector<VoxelBox> known_tiles;
+  std::vector<Index3> leaves;
+  visit_blocks(
+      s,
+      [&](const CodeLeaf&, Index3 origin) {
+        if (part_of(origin, kBlockSize).volume() > 0) leaves.push_back(origin);
+      },
+      [&](Index3 origin, int size, std::uint8_t code) {
+        const VoxelBox part = part_of(origin, size);
+        if (code != kUnknownCode && part.volume() > 0) known_tiles.push_back(part);
+      });
+
+  std::uint64_t forgotten = 0;
+  for (const VoxelBox& part : known_tiles) {
+    forgotten += part.volume();
+    const auto region_of = [](std::int32_t v) { return v & ~(kRegionSize - 1); };
+    for (std::int32_t x = region_of(part.min.x); x < part.max.x; x += kRegionSize) {
+      for (std::int32_t y = region_of(part.min.y); y < part.max.y; y += kRegionSize) {
+        for (std::int32_t z = region_of(part.min.z); z < part.max.z; z += kRegionSize) {
+          s.mark_changed(s.lattice.key({x, y, z}));
+        }
+      }
+    }
+    s.tree.sparseFill({to_coord(part.min), {part.max.x - 1, part.max.y - 1, part.max.z - 1}},
+                      kUnknownCode, true);
+  }
+  for (const Index3& origin : leaves) {
+    std::array<std::uint8_t, kBlockVoxels> codes;
+    std::memcpy(codes.data(), s.tree.probeConstLeaf(to_coord(origin))->buffer().data(),
+                kBlockVoxels);
+    std::uint64_t known = 0;
+    for_each_bit(block_mask(range, origin), [&](unsigned offset) {
+      known += codes[offset] != kUnknownCode ? 1U : 0U;
+      codes[offset] = kUnknownCode;
+    });
+    if (known == 0) continue;
+    forgotten += known;
+    s.mark_changed(s.lattice.key(origin));
+    s.put_block(origin, codes.data());
+  }
+  for (auto entry = s.beliefs.begin(); entry != s.beliefs.end();) {
+    const BeliefBlock& block = *entry->second;
+    LeafMask left = block_mask(range, s.lattice.origin(entry->first));
+    for (std::size_t i = 0; i < left.size(); ++i) left[i] = block.mask[i] & ~left[i];
+    if (left == LeafMask{}) {
+      entry = s.beliefs.erase(entry);
+      continue;
+    }
+    if (left != block.mask) entry->second = reshaped(&block, left);
+    ++entry;
+  }
+  ++s.time;
+  return forgotten;
 }
 
 void BeliefGrid::for_each_occupied(const std::function<void(const OccupiedVoxel&)>& visit) const {

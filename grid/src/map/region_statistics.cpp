@@ -2,44 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/grid/region_statistics.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "block_lattice.hpp"
-#include "viewgain/core/error.hpp"
+#include "voxels_in.hpp"
 
 namespace viewgain {
-namespace {
-
-using namespace detail;
-
-// The voxels of the workspace whose centres lie in the region.
-VoxelBox voxels_in(const BeliefGrid& grid, const Box& region) {
-  const VoxelBox workspace = VoxelBox::from_dims(grid.min_index(), grid.dims());
-  // The first index i with (i + 1/2) V >= x, kept within what an integer can hold.
-  const auto first = [&](double x, std::int32_t low, std::int32_t high) {
-    return static_cast<std::int32_t>(std::clamp(std::ceil(x / grid.voxel_size() - 0.5),
-                                                static_cast<double>(low),
-                                                static_cast<double>(high)));
-  };
-  const Index3 &low = workspace.min, &high = workspace.max;
-  return {{first(region.min[0], low.x, high.x), first(region.min[1], low.y, high.y),
-           first(region.min[2], low.z, high.z)},
-          {first(region.max[0], low.x, high.x), first(region.max[1], low.y, high.y),
-           first(region.max[2], low.z, high.z)}};
-}
-
-}  // namespace
-
 RegionStatistics region_statistics(const BeliefGrid& grid, const Box& region, Criterion criterion) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (std::isnan(region.min[axis]) || std::isnan(region.max[axis])) {
-      throw Error(ErrorCode::invalid_argument,
-                  std::string("region: a bound along ") + "xyz"[axis] + " is not a number");
-    }
-  }
+  using namespace detail;
   const VoxelBox range = voxels_in(grid, region);
   const SymmetricMatrix3 prior =
       SymmetricMatrix3::identity(1.0 / (grid.prior_sigma() * grid.prior_sigma()));

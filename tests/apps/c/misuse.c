@@ -123,6 +123,9 @@ static void of_grids(const char* folder) {
   CHECK_FAILS(vg_grid_set(map, NULL, &log_odds, 1), VG_INVALID_ARGUMENT, "voxels is null");
   CHECK_FAILS(vg_grid_set(map, dims, NULL, 1), VG_INVALID_ARGUMENT, "log_odds is null");
   CHECK_FAILS(vg_grid_set(map, vast, &log_odds, 1), VG_INVALID_ARGUMENT, "workspace");
+  CHECK_FAILS(vg_grid_forget(NULL, point, point, NULL), VG_INVALID_ARGUMENT, "grid is null");
+  CHECK_FAILS(vg_grid_forget(map, NULL, point, NULL), VG_INVALID_ARGUMENT, "min is null");
+  CHECK_FAILS(vg_grid_forget(map, point, NULL, NULL), VG_INVALID_ARGUMENT, "max is null");
   CHECK_FAILS(vg_grid_occupied(NULL, voxel, NULL, 1, &found), VG_INVALID_ARGUMENT, "grid is null");
   CHECK_FAILS(vg_grid_occupied(map, NULL, NULL, 1, &found), VG_INVALID_ARGUMENT, "voxels is null");
   CHECK_FAILS(vg_grid_occupied(map, voxel, NULL, 1, NULL), VG_INVALID_ARGUMENT, "found is null");

@@ -29,6 +29,9 @@ static void sensors_and_grids(const char* folder) {
   const double points[2][3] = {{-0.19, 0.19, -0.0875}, {1, 0, 0}};
   int32_t voxels[2][3];
   float log_odds[2] = {2, 2};
+  const double nowhere[3] = {-INFINITY, -INFINITY, -INFINITY};
+  const double everywhere[3] = {INFINITY, INFINITY, INFINITY};
+  uint64_t forgotten = 0;
   size_t found = 0;
 
   vg_sensor_init(&sensor, sizeof sensor);
@@ -67,6 +70,10 @@ static void sensors_and_grids(const char* folder) {
   CHECK(states[15 * MAP_EDGE + 4] == 1);
   CHECK_OK(vg_grid_occupied(copy, voxels[0], log_odds, 2, &found));
   CHECK(voxels[0][2] == 4 && voxels[1][2] == 4 && log_odds[1] > 0.8F);
+  CHECK_OK(vg_grid_forget(copy, nowhere, everywhere, &forgotten));
+  CHECK_OK(vg_grid_get_info(copy, &info));
+  CHECK(forgotten > 50 && info.unknown == MAP_VOXELS && info.occupied == 0);
+  CHECK_OK(vg_grid_forget(copy, nowhere, everywhere, NULL));
   vg_grid_release(copy);
 
   CHECK_OK(vg_grid_hash(grid, hash));

@@ -64,14 +64,28 @@ class ChangingMap {
         set_region(i - 1, -1.0F, 1.0);
         break;
       default:
-        grid_ = grid_.clone();  // and nothing else
+        grid_ = grid_.clone();  // and nothing else, or
+        if (i % 12 == 5) forget();
     }
   }
+
+  [[nodiscard]] std::uint64_t forgotten() const { return forgotten_; }
 
  private:
   void see(int view, const std::vector<test::Sphere>& spheres) {
     const Pose pose = test::ring_view(view);
     integrator_.integrate(grid_, test::see_spheres(sensor_, pose, spheres), pose);
+  }
+
+  /// A box, aligned to nothing, through the lower half.
+  void forget() {
+    Box region = grid_.workspace();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double low = region.min[k], size = region.max[k] - low;
+      region.min[k] = low + test::uniform(random_, 0, 0.3) * size;
+      region.max[k] = low + test::uniform(random_, 0.5, 0.7) * size;
+    }
+    forgotten_ += grid_.forget(region);
   }
 
   /// Some voxels of one of the cubes of 32³ that the workspace touches.
@@ -94,6 +108,7 @@ class ChangingMap {
   BeliefGrid grid_;
   Sensor sensor_;
   FrameIntegrator integrator_;
+  std::uint64_t forgotten_ = 0;
 };
 
 /// What the changes of a map have come to.
@@ -246,6 +261,7 @@ TEST_P(SceneUpdate, AChainOfUpdatesIsWhatBuildsAre) {
   EXPECT_GT(changes.emptied, 100U);
   EXPECT_GT(changes.back_again, 30U);
   EXPECT_GT(changes.regions_emptied, 2U);
+  EXPECT_GT(map.forgotten(), 10000U);
   if (!chain.has_obstacles) {
     for (std::size_t k = 0; k < isas.size(); ++k) {
       EXPECT_EQ(tallies[k].rays, kChanges / 5 * kPoses * 25 * 19) << isas[k];

@@ -161,6 +161,32 @@ Raises
 ------
 ValueError
     A shape, a voxel outside the workspace or a log-odds that is NaN; the grid is unchanged then.)")
+      .def(
+          "forget",
+          [](SharedGrid& grid, const py::object& region) {
+            const Box bounds = box(region, "region");
+            std::uint64_t count = 0;
+            grid.write([&](BeliefGrid& g) { count = g.forget(bounds); });
+            return count;
+          },
+          py::arg("region"),
+          R"(Makes voxels unknown again, for what has moved and for maps that follow a robot; views stay.
+
+Parameters
+----------
+region : array_like, (2, 3)
+    Lowest and highest corner of a box in the grid's frame [m]; bounds may be infinite. A voxel belongs to
+    it if its centre does.
+
+Returns
+-------
+int
+    How many of the voxels were known.
+
+Raises
+------
+ValueError
+    A shape, or a bound that is not a number.)")
       .def("occupied", &occupied,
            R"(The occupied voxels; equal maps give the same order.
 

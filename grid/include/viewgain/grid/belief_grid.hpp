@@ -124,6 +124,13 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// refused.
   void set(std::span<const VoxelValue> voxels);
 
+  /// Makes the voxels of the workspace unknown again whose centres lie in a region of the grid's
+  /// frame [m]; bounds may be infinite. They have no log-odds and no belief afterwards; views and
+  /// hazard counters stay as they are. For what has moved, and for maps that follow a robot. Returns
+  /// how many of the voxels were known. Costs a pass over the map's blocks. Throws
+  /// Error(invalid_argument) for a bound that is not a number.
+  std::uint64_t forget(const Box& region);
+
   /// Visits the occupied voxels: by leaves in the order of snapshot().leaves, in a leaf [x][y][z]
   /// with z fastest. Equal maps give the same order. The visit must not change the grid. Costs a
   /// snapshot.

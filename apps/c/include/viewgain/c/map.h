@@ -120,6 +120,12 @@ VG_API vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size
 VG_API vg_status vg_grid_set(vg_grid* grid, const int32_t* voxels, const float* log_odds,
                              size_t count);
 
+/* Makes the voxels unknown again whose centres lie in a box of the grid's frame [m]; bounds may be
+   infinite. Views stay. *forgotten, or null: how many of them were known. VG_INVALID_ARGUMENT: a
+   bound that is not a number. */
+VG_API vg_status vg_grid_forget(vg_grid* grid, const double min[3], const double max[3],
+                                uint64_t* forgotten);
+
 /* The occupied voxels, 3 indices each, on the lattice; equal maps give the same order. Fills at
    most `capacity` of them and says in *found how many there are. log_odds or null: not wanted. */
 VG_API vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds,

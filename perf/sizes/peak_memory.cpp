@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "peak_memory.hpp"
 
-#include <malloc.h>
 #include <sys/wait.h>
 
 #include <array>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "environment.hpp"
+#include "resident_memory.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/thread_pool.hpp"
@@ -19,18 +18,6 @@
 
 namespace viewgain::bench {
 namespace {
-
-/// A figure of /proc/self/status [byte], 0 if there is none.
-std::uint64_t status_bytes(const std::string& key) {
-  std::ifstream file("/proc/self/status");
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind(key + ":", 0) == 0) return 1024 * std::stoull(line.substr(key.size() + 1));
-  }
-  return 0;
-}
-
-/// Starts VmHWM anew from what is resident now.
-void reset_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
 std::string quoted(const std::string& text) {
   std::string result = "'";
@@ -43,9 +30,8 @@ std::string quoted(const std::string& text) {
 int run_memory(const MemoryOptions& options) {
   const ExecConfig exec{.num_threads = ThreadPool(options.num_threads).num_threads()};
   const auto views = test::camel_views(static_cast<std::size_t>(options.views), options.mesh);
-  malloc_trim(0);  // what making the frames left behind
-  reset_peak();
-  const std::uint64_t before = status_bytes("VmRSS");
+  reset_peak_memory();  // making the frames left something behind
+  const std::uint64_t before = resident_bytes();
   BeliefGrid grid = test::empty_camel_grid(options.voxels);
   FrameIntegrator integrator(sensor_preset("sr4000"), {}, exec);
   std::shared_ptr<const VoxelScene> scene;
@@ -53,7 +39,7 @@ int run_memory(const MemoryOptions& options) {
     integrator.integrate(grid, view.frame, view.T_world_camera);
   }
   scene = VoxelScene::build(grid, {}, exec);
-  const std::uint64_t peak = status_bytes("VmHWM");
+  const std::uint64_t peak = peak_resident_bytes();
 
   nlohmann::ordered_json json{{"scene", "camel-" + std::to_string(options.voxels)},
                               {"views", options.views},
