@@ -3,22 +3,21 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "trace/ray_tile.hpp"
-#include "trace/tile_bins.hpp"
 
 namespace viewgain::bench {
 
-/// The distinct primitives that a traced tile's rays end in, in the order of the lanes, as the
-/// kernel's walk takes them.
-[[nodiscard]] inline std::vector<detail::TileBox> hit_boxes(const detail::RayTile& tile) {
-  std::vector<detail::TileBox> boxes;
+/// The distinct primitives that a traced tile's rays end in, in the order of the lanes.
+[[nodiscard]] inline std::vector<std::uint32_t> hit_boxes(const detail::RayTile& tile) {
+  std::vector<std::uint32_t> boxes;
   for (std::size_t lane = 0; lane < detail::kTileRays; ++lane) {
     if ((tile.hit >> lane & 1U) == 0) continue;
-    const auto is_same = [&](const detail::TileBox& b) { return b.box == tile.primitive[lane]; };
+    const auto is_same = [&](std::uint32_t b) { return b == tile.primitive[lane]; };
     if (std::none_of(boxes.begin(), boxes.end(), is_same)) {
-      boxes.push_back({tile.primitive[lane], 0.0F});
+      boxes.push_back(tile.primitive[lane]);
     }
   }
   return boxes;

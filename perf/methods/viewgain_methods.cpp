@@ -19,7 +19,7 @@ namespace {
 /// Traces alone.
 class ViewgainTrace : public TraceMethod {
  public:
-  enum class Way : std::uint8_t { as_evaluator, bvh };
+  using Way = detail::TraceWay;
 
   ViewgainTrace(std::string name, const TraceTask& task, ScenePointer scene, Way way)
       : TraceMethod(std::move(name), task.sensor.camera.ray_table().size()),
@@ -27,7 +27,7 @@ class ViewgainTrace : public TraceMethod {
         scene_(std::move(scene)),
         data_(detail::SceneAccess::data(*scene_)),
         tracer_(data_, std::make_shared<const detail::SensorRays>(task.sensor.camera, 1),
-                task.sensor.min_range, task.sensor.max_range),
+                task.sensor.min_range, task.sensor.max_range, way),
         way_(way) {}
 
   void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
@@ -67,11 +67,9 @@ class ViewgainTrace : public TraceMethod {
   /// The tiles that may have hit something.
   virtual void for_each_tile(const Pose& T_world_camera, const Visit& visit) const {
     const detail::PoseFrame frame = frame_of(T_world_camera);
-    const auto tiles = tracer_.all_tiles();
-    thread_local detail::TileBins bins;
-    bins.invalidate();  // nothing sorted: through the BVH
-    if (way_ == Way::as_evaluator) tracer_.prepare(frame, bins);
-    tracer_.trace(frame, tiles, bins, visit);
+    thread_local detail::ViewSweep sweep;
+    tracer_.prepare(frame, sweep);
+    tracer_.trace(frame, sweep, visit);
   }
 
   [[nodiscard]] detail::PoseFrame frame_of(const Pose& T_world_camera) const {
@@ -91,18 +89,22 @@ class ViewgainTrace : public TraceMethod {
 class ViewgainFloor final : public ViewgainTrace {
  public:
   ViewgainFloor(const TraceTask& task, ScenePointer scene)
-      : ViewgainTrace("viewgain_floor", task, std::move(scene), Way::as_evaluator),
-        poses_(task.poses) {
+      : ViewgainTrace("viewgain_floor", task, std::move(scene), Way::sweep), poses_(task.poses) {
     const std::size_t tiles = tracer_.table().tile_count;
     begins_.assign(poses_.size() * tiles + 1, 0);
-    detail::TileBins none;
+    detail::ViewSweep sweep;
     for (std::size_t p = 0; p < poses_.size(); ++p) {
-      tracer_.trace(frame_of(poses_[p]), tracer_.all_tiles(), none,
-                    [&](std::size_t tile, const detail::RayTile& out) {
-                      const std::vector<detail::TileBox> way = hit_boxes(out);
-                      ways_.insert(ways_.end(), way.begin(), way.end());
-                      begins_[p * tiles + tile + 1] = ways_.size();
-                    });
+      const detail::PoseFrame frame = frame_of(poses_[p]);
+      tracer_.prepare(frame, sweep);
+      tracer_.trace(frame, sweep, [&](std::size_t tile, const detail::RayTile& out) {
+        const std::vector<std::uint32_t> way = hit_boxes(out);
+        ways_.insert(ways_.end(), way.begin(), way.end());
+        begins_[p * tiles + tile + 1] = ways_.size();
+      });
+    }
+    // Tiles that meet nothing have none.
+    for (std::size_t i = 1; i < begins_.size(); ++i) {
+      begins_[i] = std::max(begins_[i], begins_[i - 1]);
     }
   }
 
@@ -115,16 +117,17 @@ class ViewgainFloor final : public ViewgainTrace {
     for (std::size_t tile = 0; tile < tiles; ++tile) {
       const std::size_t i = static_cast<std::size_t>(pose) * tiles + tile;
       if (begins_[i] == begins_[i + 1]) continue;  // known to miss everything
-      const std::span<const detail::TileBox> way(&ways_[begins_[i]], begins_[i + 1] - begins_[i]);
       data_.tracing->kernels.begin(tracer_.table(), frame, tile, out);
-      data_.tracing->kernels.walk(data_, frame, 1.0F, way, out);
+      for (std::size_t k = begins_[i]; k < begins_[i + 1]; ++k) {
+        data_.tracing->kernels.visit(data_, frame, ways_[k], out);
+      }
       visit(tile, out);
     }
   }
 
  private:
   std::span<const Pose> poses_;
-  std::vector<detail::TileBox> ways_;
+  std::vector<std::uint32_t> ways_;
   std::vector<std::size_t> begins_;
 };
 
@@ -136,7 +139,7 @@ class ViewgainGain final : public TraceMethod {
         map_(task.map),
         model_(model),
         evaluator_(scene, task.sensor, {.model = model}, {.num_threads = task.num_threads}),
-        tracing_("", task, scene, ViewgainTrace::Way::as_evaluator) {}
+        tracing_("", task, scene, ViewgainTrace::Way::sweep) {}
 
   void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
     const std::vector<RayHit> hits = evaluator_.trace(T_world_camera);
@@ -184,7 +187,7 @@ std::vector<std::unique_ptr<TraceMethod>> make_viewgain_gains(const TraceTask& t
 
 std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task, ScenePointer scene) {
   return std::make_unique<ViewgainTrace>("viewgain_trace", task, std::move(scene),
-                                         ViewgainTrace::Way::as_evaluator);
+                                         ViewgainTrace::Way::sweep);
 }
 
 std::unique_ptr<TraceMethod> make_viewgain_trace_bvh(const TraceTask& task, ScenePointer scene) {

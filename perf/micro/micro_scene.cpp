@@ -19,9 +19,7 @@ MicroScene::MicroScene()
       frames(test::camel_views(4)),
       grid(test::camel_grid(kVoxels, {frames.begin(), frames.begin() + 3})),
       scene(VoxelScene::build(grid, {}, {.num_threads = 1})),
-      tracer(detail::SceneAccess::data(*scene),
-             std::make_shared<const detail::SensorRays>(sensor.camera, 1), sensor.min_range,
-             sensor.max_range) {
+      tracer(make_tracer(detail::TraceWay::sweep)) {
   for (const Pose& pose : sphere_poses(kViews, 0.6)) {
     View view;
     view.frame = tracer.frame_of(pose).value();
@@ -31,10 +29,17 @@ MicroScene::MicroScene()
       view.numbers.push_back(number);
       view.leaves.push_back(hit_boxes(tile));
     };
-    detail::TileBins none;  // nothing sorted: through the BVH
-    tracer.trace(view.frame, tracer.all_tiles(), none, note);
+    detail::ViewSweep sweep;
+    tracer.prepare(view.frame, sweep);
+    tracer.trace(view.frame, sweep, note);
     views.push_back(std::move(view));
   }
+}
+
+detail::ViewTracer MicroScene::make_tracer(detail::TraceWay way) const {
+  return {detail::SceneAccess::data(*scene),
+          std::make_shared<const detail::SensorRays>(sensor.camera, 1), sensor.min_range,
+          sensor.max_range, way};
 }
 
 const MicroScene& MicroScene::get() {

@@ -24,9 +24,12 @@ class MicroScene {
   struct View {
     detail::PoseFrame frame;
     std::vector<detail::RayTile> tiles;
-    std::vector<std::size_t> numbers;                  ///< tile i's in the table
-    std::vector<std::vector<detail::TileBox>> leaves;  ///< of tile i
+    std::vector<std::size_t> numbers;                ///< tile i's in the table
+    std::vector<std::vector<std::uint32_t>> leaves;  ///< of tile i
   };
+
+  /// Of the same views, one way or the other.
+  [[nodiscard]] detail::ViewTracer make_tracer(detail::TraceWay way) const;
 
   Sensor sensor;
   std::vector<test::CamelView> frames;  ///< three make the map, the fourth is new

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Finding the first voxel that is not free: packets through the BVH, tiles along lists, leaves
+// Finding the first voxel that is not free: by sweeping, through the BVH, in leaves
 // known beforehand; and going on from there.
 #include <benchmark/benchmark.h>
 
@@ -21,35 +21,19 @@ void count_rays(benchmark::State& state, std::size_t rays) {
       benchmark::Counter(static_cast<double>(rays), benchmark::Counter::kIsRate);
 }
 
-// All tiles of a view through Embree.
-void packet_traversal(benchmark::State& state) {
+// Whole views: swept, as the evaluator does, or all tiles through Embree.
+void view_traversal(benchmark::State& state, detail::TraceWay way) {
   const MicroScene& micro = MicroScene::get();
-  detail::TileBins none;  // nothing sorted: through the BVH
-  std::size_t rays = 0, next = 0;
-  for (auto _ : state) {
-    std::uint32_t hits = 0;
-    micro.tracer.trace(micro.views[next++ % micro.views.size()].frame, micro.tracer.all_tiles(),
-                       none, [&](std::size_t, const detail::RayTile& tile) { hits += tile.hit; });
-    benchmark::DoNotOptimize(hits);
-    rays += micro.tracer.table().ray_count();
-  }
-  count_rays(state, rays);
-}
-
-// The way of the evaluator: boxes sorted into tiles, then lists where there are few.
-void tile_traversal(benchmark::State& state) {
-  const MicroScene& micro = MicroScene::get();
-  detail::TileBins bins;
+  const detail::ViewTracer tracer = micro.make_tracer(way);
+  detail::ViewSweep sweep;
   std::size_t rays = 0, next = 0;
   for (auto _ : state) {
     std::uint32_t hits = 0;
     const detail::PoseFrame& frame = micro.views[next++ % micro.views.size()].frame;
-    const auto tiles = micro.tracer.all_tiles();
-    micro.tracer.prepare(frame, bins);
-    micro.tracer.trace(frame, tiles, bins,
-                       [&](std::size_t, const detail::RayTile& tile) { hits += tile.hit; });
+    tracer.prepare(frame, sweep);
+    tracer.trace(frame, sweep, [&](std::size_t, const detail::RayTile& tile) { hits += tile.hit; });
     benchmark::DoNotOptimize(hits);
-    rays += micro.tracer.table().ray_count();
+    rays += tracer.table().ray_count();
   }
   count_rays(state, rays);
 }
@@ -65,7 +49,9 @@ void leaf_dda(benchmark::State& state, Isa isa) {
     const MicroScene::View& view = micro.views[next++ % micro.views.size()];
     for (std::size_t i = 0; i < view.tiles.size(); ++i) {
       kernels.begin(micro.tracer.table(), view.frame, view.numbers[i], out);
-      kernels.walk(scene, view.frame, 1.0F, view.leaves[i], out);
+      for (const std::uint32_t leaf : view.leaves[i]) {
+        kernels.visit(scene, view.frame, leaf, out);
+      }
       benchmark::DoNotOptimize(out.hit);
     }
     rays += view.tiles.size() * detail::kTileRays;
@@ -104,8 +90,8 @@ void ordered_walk(benchmark::State& state, Isa isa) {
 }  // namespace
 
 void register_trace_benchmarks() {
-  benchmark::RegisterBenchmark("packet_traversal", packet_traversal);
-  benchmark::RegisterBenchmark("tile_traversal", tile_traversal);
+  benchmark::RegisterBenchmark("view_traversal/sweep", view_traversal, detail::TraceWay::sweep);
+  benchmark::RegisterBenchmark("view_traversal/bvh", view_traversal, detail::TraceWay::bvh);
   for (const Isa isa : micro_isas()) {
     const std::string name(isa_name(isa));
     benchmark::RegisterBenchmark(("leaf_dda/" + name).c_str(), leaf_dda, isa);

@@ -41,7 +41,7 @@ class ScopedIsa : ScopedVariable {
   explicit ScopedIsa(const std::string& isa) : ScopedVariable("VIEWGAIN_ISA", isa) {}
 };
 
-/// Evaluators made meanwhile trace that way: `lists` or `bvh`.
+/// Evaluators made meanwhile trace that way: `sweep` or `bvh`.
 class ScopedTrace : ScopedVariable {
  public:
   explicit ScopedTrace(const std::string& way) : ScopedVariable("VIEWGAIN_TRACE", way) {}

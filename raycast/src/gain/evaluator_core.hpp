@@ -15,6 +15,7 @@
 #include "trace/ordered_walk.hpp"
 #include "trace/sensor_rays.hpp"
 #include "trace/trace_choice.hpp"
+#include "trace/view_sweep.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -41,7 +42,7 @@ struct SampledEnd {
 
 /// What a thread needs for a view. Serves the views of any scene, one after another.
 struct Workspace {
-  TileBins bins;
+  ViewSweep sweep;
   std::vector<ViewHit> view_hits;  ///< for a gain of the user's own
   std::vector<ViewRun> view_runs;
   OccupiedSums occupied;  ///< these four for the surface gain
@@ -52,10 +53,14 @@ struct Workspace {
   std::uint64_t bound_to = 0;                  ///< number of the driver whose scene it sums for
 };
 
-/// A view's tiles in groups, which any thread may trace; their hits are added up in order.
-struct TileGroups {
-  explicit TileGroups(std::size_t count) : hits(count), is_traced(count) {}
-  std::vector<HitList> hits;
+/// A view's strips, which any thread may trace; their hits are added up in order.
+struct ViewStrips {
+  struct Hits {
+    std::vector<HitList> lists;
+    std::size_t count = 0;  ///< of lists that are in use
+  };
+  explicit ViewStrips(std::size_t strips) : hits(strips), is_traced(strips) {}
+  std::vector<Hits> hits;  ///< of each strip
   std::vector<std::atomic<bool>> is_traced;
   std::atomic<std::size_t> next{0};  ///< to be traced
 };
@@ -72,7 +77,7 @@ struct EvaluatorCore {
   std::uint32_t ray_count = 0;  ///< of the rays that a lens has
   ThreadPool pool;
   IdleList<Workspace> workspaces;
-  IdleList<TileGroups> tile_groups;
+  IdleList<ViewStrips> view_strips;
   std::atomic<std::uint64_t> drivers{0};  ///< made so far
 
   /// Throws Error(invalid_argument), naming the value, as GainEvaluator's constructor.

@@ -3,15 +3,15 @@
 #include "one_view.hpp"
 
 #include <algorithm>
-#include <ranges>
 #include <thread>
+#include <vector>
 
 #include "trace/scene_tracing.hpp"
 
 namespace viewgain::detail {
 namespace {
 
-constexpr std::size_t kTilesPerGroup = kBatchSize / kTileRays;
+constexpr std::size_t kStripsPerThread = 3;
 
 }  // namespace
 
@@ -22,26 +22,33 @@ ViewGain evaluate_together(const ViewDriver& driver, const Pose& T_world_camera)
   const ViewTracer& tracer = driver.tracer();
   EvaluatorCore& core = *driver.core();
   const GainKernels& kernels = gain_kernels(driver.scene().tracing->kernels.isa);
-  const TileTable& table = tracer.table();
-  const std::size_t group_count = (table.tile_count + kTilesPerGroup - 1) / kTilesPerGroup;
+  // Some for each thread, since they take unlike times.
+  const std::size_t rows = tracer.table().tile_rows();
+  const auto wanted = kStripsPerThread * static_cast<std::size_t>(core.pool.num_threads());
+  const std::size_t strip_rows = std::max<std::size_t>(rows / wanted, 1);
+  const std::size_t strip_count = (rows + strip_rows - 1) / strip_rows;
 
-  std::unique_ptr<TileGroups> groups = core.tile_groups.take();
-  if (!groups) groups = std::make_unique<TileGroups>(group_count);
-  for (auto& is_traced : groups->is_traced) is_traced.store(false, std::memory_order_relaxed);
-  groups->next = 0;
+  std::unique_ptr<ViewStrips> strips = core.view_strips.take();
+  if (!strips) strips = std::make_unique<ViewStrips>(strip_count);
+  for (auto& is_traced : strips->is_traced) is_traced.store(false, std::memory_order_relaxed);
+  strips->next = 0;
 
-  const auto trace = [&](std::size_t group, TileBins& bins) {
-    HitList& hits = groups->hits[group];
+  const auto trace = [&](std::size_t strip, ViewSweep& sweep) {
+    ViewStrips::Hits& hits = strips->hits[strip];
     hits.count = 0;
-    const std::size_t end = std::min((group + 1) * kTilesPerGroup, table.tile_count);
-    tracer.trace(*frame, std::views::iota(group * kTilesPerGroup, end), bins,
-                 [&](std::size_t, const RayTile& tile) {
-                   if (tile.hit != 0) kernels.append(tile, hits);
-                 });
-    groups->is_traced[group].store(true, std::memory_order_release);
+    const TileRows of_strip{strip * strip_rows, std::min((strip + 1) * strip_rows, rows)};
+    tracer.trace_strip(*frame, of_strip, sweep, [&](std::size_t, const RayTile& tile) {
+      if (tile.hit == 0) return;
+      if (hits.count == 0 || hits.lists[hits.count - 1].count >= kBatchSize) {
+        if (hits.lists.size() == hits.count) hits.lists.emplace_back();
+        hits.lists[hits.count++].count = 0;
+      }
+      kernels.append(tile, hits.lists[hits.count - 1]);
+    });
+    strips->is_traced[strip].store(true, std::memory_order_release);
   };
-  // Each thread sorts the boxes for itself, which takes less than reading another core's lists.
-  // Number 0 adds up, and traces while the next group is not there yet. In the end number 1, if
+  // Each thread finds the cells for itself, which takes less than reading another core's lists.
+  // Number 0 adds up, and traces while the next strip is not there yet. In the end number 1, if
   // it is there, finishes the occupied voxels while number 0 does the unknown ones. Each waits only
   // for what another is doing already.
   std::atomic<bool> has_failed{false};  // out of memory: nobody waits for what will not come
@@ -54,13 +61,13 @@ ViewGain evaluate_together(const ViewDriver& driver, const Pose& T_world_camera)
     is_refined.store(true, std::memory_order_release);
   };
   const auto work = [&](std::size_t number) {
-    if (number > 0 && groups->next.load(std::memory_order_relaxed) >= group_count) return;
+    if (number > 0 && strips->next.load(std::memory_order_relaxed) >= strip_count) return;
     ViewDriver::Lease lease(driver);
-    TileBins& bins = lease.workspace().bins;
-    tracer.prepare(*frame, bins);
-    std::size_t group;
+    ViewSweep& sweep = lease.workspace().sweep;
+    tracer.prepare(*frame, sweep);
+    std::size_t strip;
     if (number > 0) {
-      while ((group = groups->next.fetch_add(1)) < group_count) trace(group, bins);
+      while ((strip = strips->next.fetch_add(1)) < strip_count) trace(strip, sweep);
       if (number > 1) return;
       GainAccumulator* whole;
       while ((whole = closed.load(std::memory_order_acquire)) == nullptr && !has_failed) {
@@ -71,12 +78,12 @@ ViewGain evaluate_together(const ViewDriver& driver, const Pose& T_world_camera)
     }
     GainAccumulator& accumulator = lease.accumulator();
     accumulator.begin();
-    for (std::size_t added = 0; added < group_count && !has_failed;) {
-      if (groups->is_traced[added].load(std::memory_order_acquire)) {
-        if (groups->hits[added].count > 0) accumulator.add(groups->hits[added]);
-        ++added;
-      } else if ((group = groups->next.fetch_add(1)) < group_count) {
-        trace(group, bins);
+    for (std::size_t added = 0; added < strip_count && !has_failed;) {
+      if (strips->is_traced[added].load(std::memory_order_acquire)) {
+        const ViewStrips::Hits& hits = strips->hits[added++];
+        for (std::size_t i = 0; i < hits.count; ++i) accumulator.add(hits.lists[i]);
+      } else if ((strip = strips->next.fetch_add(1)) < strip_count) {
+        trace(strip, sweep);
       } else {
         std::this_thread::yield();
       }
@@ -99,7 +106,7 @@ ViewGain evaluate_together(const ViewDriver& driver, const Pose& T_world_camera)
                              }
                            });
   result.status = ViewStatus::ok;
-  core.tile_groups.give_back(std::move(groups));
+  core.view_strips.give_back(std::move(strips));
   return result;
 }
 

@@ -132,28 +132,26 @@ double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, std::uin
                           double* by_lane, Met&& met) const {
   const bool refines = core_.config.model == GainModel::combined;
   const double V = scene_.snapshot.voxel_size;
-  const auto tiles = tracer_.all_tiles();
-  tracer_.prepare(frame, workspace.bins);
+  tracer_.prepare(frame, workspace.sweep);
   OccupiedSums& occupied = workspace.occupied;
   occupied.begin();
   if (!core_.config.weights.empty()) {
     double area = 0;
-    for_each_share(frame, tiles, workspace,
-                   [&](std::size_t number, const RayTile& rays, const SurfaceShare& share) {
-                     area += share.area;
-                     if (by_lane != nullptr) by_lane[share.lane] += share.area;
-                     if (!share.is_occupied) return;
-                     ++hits;
-                     if (!refines) return;
-                     met(number, rays, share.lane, share.range,
-                         occupied.add(share.voxel, share.information));
-                   });
+    for_each_share(
+        frame, workspace, [&](std::size_t number, const RayTile& rays, const SurfaceShare& share) {
+          area += share.area;
+          if (by_lane != nullptr) by_lane[share.lane] += share.area;
+          if (!share.is_occupied) return;
+          ++hits;
+          if (!refines) return;
+          met(number, rays, share.lane, share.range, occupied.add(share.voxel, share.information));
+        });
     return area;
   }
   double sum = 0;  // [voxels²]
   WalkTask task;
   WalkedTile walked;
-  trace_rays(frame, tiles, workspace, [&](std::size_t number, const RayTile& rays) {
+  trace_rays(frame, workspace, [&](std::size_t number, const RayTile& rays) {
     if (rays.hit == 0) return;
     set_up(frame, number, rays, task);
     walk_.area(bricks_, frame, limits_, task, cap_, walked);

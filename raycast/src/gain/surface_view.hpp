@@ -31,24 +31,22 @@ class SurfaceView {
   void sample(const PoseFrame& frame, Workspace& workspace, double rays_each,
               SampleTally& tally) const;
 
-  /// Calls visit(tile number, rays, SurfaceShare) for all rays of some tiles, voxel by voxel; a
-  /// run's share is split by length. `workspace`'s bins are prepared for the view.
-  template <typename Tiles, typename Visit>
-  void for_each_share(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
-                      Visit&& visit) const {
-    trace_rays(frame, tiles, workspace, [&](std::size_t number, const RayTile& rays) {
+  /// Calls visit(tile number, rays, SurfaceShare) for all rays, voxel by voxel; a
+  /// run's share is split by length. `workspace` is prepared for the view.
+  template <typename Visit>
+  void for_each_share(const PoseFrame& frame, Workspace& workspace, Visit&& visit) const {
+    trace_rays(frame, workspace, [&](std::size_t number, const RayTile& rays) {
       workspace.shares.clear();
       if (rays.hit != 0) find_shares(frame, number, rays, workspace);
       for (const SurfaceShare& share : workspace.shares) visit(number, rays, share);
     });
   }
 
-  /// Calls visit(tile number, rays, visits) for those of some tiles whose rays meet anything: what
+  /// Calls visit(tile number, rays, visits) for the tiles whose rays meet anything: what
   /// they visit, each ray's in one piece and in order.
-  template <typename Tiles, typename Visit>
-  void for_each_visited(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
-                        Visit&& visit) const {
-    trace_rays(frame, tiles, workspace, [&](std::size_t number, const RayTile& rays) {
+  template <typename Visit>
+  void for_each_visited(const PoseFrame& frame, Workspace& workspace, Visit&& visit) const {
+    trace_rays(frame, workspace, [&](std::size_t number, const RayTile& rays) {
       if (rays.hit == 0) return;
       find_visits(frame, number, rays, workspace);
       visit(number, rays, workspace.visits);
@@ -63,10 +61,9 @@ class SurfaceView {
   [[nodiscard]] double saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const;
 
  private:
-  template <typename Tiles, typename Visit>
-  void trace_rays(const PoseFrame& frame, const Tiles& tiles, Workspace& workspace,
-                  Visit&& visit) const {
-    tracer_.trace<ViewTracer::Asked::along_rays>(frame, tiles, workspace.bins, visit);
+  template <typename Visit>
+  void trace_rays(const PoseFrame& frame, Workspace& workspace, Visit&& visit) const {
+    tracer_.trace<ViewTracer::Asked::along_rays>(frame, workspace.sweep, visit);
   }
 
   /// Sums what all tiles meet: calls met(tile number, rays, lane, range, entry of

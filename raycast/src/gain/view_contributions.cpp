@@ -62,10 +62,9 @@ std::vector<VoxelContribution> surface_contributions(const detail::ViewDriver& d
   std::vector<VoxelContribution> parts;
   std::vector<SymmetricMatrix3> information;  // of parts
   const Index3& base = driver.scene().snapshot.min_index;
-  const auto tiles = driver.tracer().all_tiles();
-  driver.tracer().prepare(*frame, workspace.bins);
+  driver.tracer().prepare(*frame, workspace.sweep);
   surface.for_each_share(
-      *frame, tiles, workspace,
+      *frame, workspace,
       [&](std::size_t, const detail::RayTile&, const detail::SurfaceShare& share) {
         if (share.is_occupied && !refines) return;
         const Index3& v = share.voxel;

@@ -68,11 +68,10 @@ class ViewDriver {
     ViewGain result;
     const auto frame = open(T_world_camera, result, from);
     if (!frame) return result;
-    const auto tiles = tracer_.all_tiles();
-    TileBins& bins = lease.workspace().bins;
-    tracer_.prepare(*frame, bins, kAsked);
+    ViewSweep& sweep = lease.workspace().sweep;
+    tracer_.prepare(*frame, sweep, kAsked);
     consumer.begin();
-    tracer_.trace<kAsked>(*frame, tiles, bins, [&](std::size_t number, const RayTile& tile) {
+    tracer_.trace<kAsked>(*frame, sweep, [&](std::size_t number, const RayTile& tile) {
       consumer.add(number, tile);
     });
     consumer.finish(result);

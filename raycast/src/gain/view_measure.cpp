@@ -49,12 +49,11 @@ void list_runs(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
   const GridSnapshot& snapshot = driver.scene().snapshot;
   const double V = snapshot.voxel_size;
   const detail::SurfaceView& walk = driver.ordered();
-  const auto tiles = driver.tracer().all_tiles();
-  driver.tracer().prepare(frame, workspace.bins);
+  driver.tracer().prepare(frame, workspace.sweep);
   std::vector<ViewRun>& runs = workspace.view_runs;
   runs.clear();
   walk.for_each_visited(
-      frame, tiles, workspace,
+      frame, workspace,
       [&](std::size_t number, const detail::RayTile& rays,
           const std::vector<detail::VoxelVisit>& visits) {
         ViewRun run;

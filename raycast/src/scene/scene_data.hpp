@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "scene_boxes.hpp"
+#include "scene_cells.hpp"
 #include "viewgain/grid/hazard.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
@@ -65,7 +65,7 @@ struct SceneData {
   std::shared_ptr<const Obstacles> obstacles;  ///< never null; shared by the scenes of a map
   bool has_obstacles = false;
   std::shared_ptr<const HazardConfig> hazard;  ///< never null; shared by the scenes of a map
-  std::optional<SceneBoxes> scene_boxes;       ///< for sorting into the tiles of a view
+  std::optional<SceneCells> cells;             ///< for sweeping views
   /// Kernels and BVH: what the room trace keeps with a scene; opaque here.
   std::shared_ptr<const SceneTracing> tracing;
 

@@ -28,8 +28,8 @@ std::uint64_t VoxelScene::bytes() const noexcept {
                       data_->boxes.size() * sizeof(detail::PrimitiveBox) +
                       data_->block_keys.size() * sizeof(std::uint64_t) +
                       data_->leaf_source.size() * (sizeof(std::uint32_t) + sizeof(std::uint8_t)) +
-                      data_->regions.size() * sizeof(detail::SceneRegion) +
-                      data_->scene_boxes->bytes() + data_->obstacles->boxes.size() * sizeof(Box);
+                      data_->regions.size() * sizeof(detail::SceneRegion) + data_->cells->bytes() +
+                      data_->obstacles->boxes.size() * sizeof(Box);
   for (const TriangleMesh& mesh : data_->obstacles->meshes) bytes += bytes_of(mesh);
   return bytes;
 }

@@ -18,7 +18,7 @@ using detail::SceneAccess;
 
 std::shared_ptr<const VoxelScene> make_traceable(std::unique_ptr<detail::SceneData> data,
                                                  const detail::SceneData* before) {
-  data->scene_boxes.emplace(*data, detail::choose_boxes(data->boxes.size()));
+  data->cells.emplace(*data);
   data->tracing = std::make_shared<const detail::SceneTracing>(*data, before);
   return SceneAccess::make(std::move(data));
 }

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "ray_tile.hpp"
-#include "scene/scene_boxes.hpp"
+#include "scene/scene_cells.hpp"
 #include "viewgain/core/camera.hpp"
 #include "viewgain/core/isa.hpp"
 
@@ -15,11 +15,21 @@ namespace viewgain::detail {
 /// Beyond every column and row, and farther than any point.
 inline constexpr float kEverywhere = 1e9F;
 
-/// Where sixteen boxes lie in the image, in rays; empty if max < min.
+/// Rays of the image, the last ones included.
+struct ImageRect {
+  std::int32_t column0, column1, row0, row1;
+};
+
+/// Which rays sixteen boxes can meet.
 struct ImageBounds {
-  alignas(64) float min_column[kBoxVector], max_column[kBoxVector];
-  alignas(64) float min_row[kBoxVector], max_row[kBoxVector];
+  alignas(64) std::int32_t column0[kBoxVector], column1[kBoxVector];
+  alignas(64) std::int32_t row0[kBoxVector], row1[kBoxVector];
   alignas(64) float near[kBoxVector];  ///< where it begins along the optical axis [voxels]
+  std::uint32_t seen = 0;              ///< one bit a box: is there any ray?
+
+  [[nodiscard]] ImageRect rect(std::size_t i) const {
+    return {column0[i], column1[i], row0[i], row1[i]};
+  }
 };
 
 /// A lens, which bends the outlines of boxes. Slopes are x / z and y / z of undistorted rays.
@@ -51,12 +61,8 @@ struct ImageBoundsKernels {
   /// Of boxes first to first + 15. Conservative: each ray that meets a box at or beyond the least
   /// range is within its bounds. With a lens, the outline of a box (a rectangle of slopes) is that
   /// of its corners and what linear interpolation between them can be wrong by at most.
-  ImageBounds (*bounds_of)(const BoxArrays&, std::size_t first, const PoseFrame&,
-                           const ImageScale&);
-  /// One bit for each of sixteen rectangles of tiles that cover the tile.
-  std::uint32_t (*covering)(const std::int16_t* column0, const std::int16_t* column1,
-                            const std::int16_t* row0, const std::int16_t* row1, std::int16_t column,
-                            std::int16_t row);
+  void (*bounds_of)(const BoxArrays&, std::size_t first, const PoseFrame&, const ImageScale&,
+                    ImageBounds& out);
 };
 
 /// Kernels of an instruction set that the CPU supports.

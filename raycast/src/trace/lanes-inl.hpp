@@ -32,6 +32,17 @@ using MF = hn::Mask<DF>;
 using MI = hn::Mask<DI>;
 constexpr int kWidth = static_cast<int>(hn::MaxLanes(df));
 
+// The lanes whose bits are set, and the bits of lanes.
+HWY_INLINE MF mask_of(std::uint32_t bits) {
+  const VU lane_bits = hn::Shl(hn::Set(du, 1U), hn::Iota(du, 0U));
+  return hn::RebindMask(df, hn::TestBit(hn::Set(du, bits), lane_bits));
+}
+HWY_INLINE std::uint32_t bits_of(MF lanes) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(df, lanes, bits);
+  return static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U;
+}
+
 }  // namespace
 }  // namespace viewgain::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -28,12 +28,27 @@ struct PacketQuery : RayQuery {
   int lane0 = 0;
 };
 
+// The lanes that a primitive ends; their ends are kept in the tile.
+template <typename Kernel>
+HWY_INLINE MF meet(const PacketQuery& query, std::uint32_t primitive, const Slabs& slabs, MF active,
+                   VF& range, Kernel kernel) {
+  RayTile& tile = *query.tile;
+  LaneEnds ends{range, hn::Load(du, tile.primitive + query.lane0),
+                hn::Load(du, tile.offset + query.lane0)};
+  const MF hits = kernel(*query.scene, *query.frame, rays_of(tile, query.lane0), primitive, slabs,
+                         active, ends);
+  range = ends.range;
+  hn::Store(ends.primitive, du, tile.primitive + query.lane0);
+  hn::Store(ends.offset, du, tile.offset + query.lane0);
+  return hits;
+}
+
 // Embree's callback. Almost always the packet is the one that was sent, N = kWidth with lanes in
 // order; else each ray is looked up by the lane in its id and goes through the same kernel alone.
 template <typename Kernel>
 HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint32_t primitive,
                           Kernel kernel) {
-  PacketQuery& query = query_of<PacketQuery>(args);
+  const PacketQuery& query = query_of<PacketQuery>(args);
   const Slabs slabs = slabs_of(query.scene->boxes[primitive], *query.frame);
   RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
@@ -44,8 +59,7 @@ HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint3
     float* tfar = &RTCRayN_tfar(rays, args->N, 0);
     VF range = hn::LoadU(df, tfar);
     const MF active = hn::RebindMask(df, hn::Ne(hn::LoadU(di, args->valid), hn::Zero(di)));
-    const MF hits = kernel(*query.scene, *query.frame, *query.tile, query.lane0, primitive, slabs,
-                           active, range);
+    const MF hits = meet(query, primitive, slabs, active, range, kernel);
     if (hn::AllFalse(df, hits)) return;
     hn::StoreU(range, df, tfar);
     hn::BlendedStore(hn::Set(du, args->geomID), hn::RebindMask(du, hits), du,
@@ -57,8 +71,7 @@ HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint3
     const unsigned lane = RTCRayN_id(rays, args->N, i);
     VF range = hn::Set(df, RTCRayN_tfar(rays, args->N, i));
     const MF active = hn::RebindMask(df, hn::Eq(hn::Iota(du, 0U), hn::Set(du, lane)));
-    const MF hits = kernel(*query.scene, *query.frame, *query.tile, query.lane0, primitive, slabs,
-                           active, range);
+    const MF hits = meet(query, primitive, slabs, active, range, kernel);
     if (hn::AllFalse(df, hits)) continue;
     HWY_ALIGN float ranges[kWidth];
     hn::Store(range, df, ranges);
@@ -131,8 +144,7 @@ void trace(const SceneData& scene, RTCScene bvh, const PoseFrame& frame, RayTile
     query.lane0 = lane0;
     Packet packet;
     alignas(64) int valid[kWidth];
-    const VU lane_bits = hn::Shl(hn::Set(du, 1U), hn::Iota(du, static_cast<std::uint32_t>(lane0)));
-    const auto usable = hn::TestBit(hn::Set(du, out.valid), lane_bits);
+    const auto usable = hn::RebindMask(du, mask_of(out.valid >> lane0));
     hn::Store(hn::BitCast(di, hn::VecFromMask(du, usable)), di, valid);
     hn::Store(hn::Set(df, frame.origin[0]), df, packet.ray.org_x);
     hn::Store(hn::Set(df, frame.origin[1]), df, packet.ray.org_y);
@@ -153,74 +165,34 @@ void trace(const SceneData& scene, RTCScene bvh, const PoseFrame& frame, RayTile
     const auto in_voxel = hn::And(usable, hn::Ne(hn::Load(du, packet.hit.geomID), none));
     hn::BlendedStore(hn::Load(df, packet.ray.tfar), hn::RebindMask(df, in_voxel), df,
                      out.range + lane0);
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(du, in_voxel, bits);
-    out.hit |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U)
-               << lane0;
+    out.hit |= bits_of(hn::RebindMask(df, in_voxel)) << lane0;
   }
 }
 
-float walk(const SceneData& scene, const PoseFrame& frame, float cosine,
-           std::span<const TileBox> primitives, RayTile& out) {
-  constexpr int kParts = kTileRays / kWidth;
-  VF range[kParts];
-  MF active[kParts], hits[kParts];
-  for (int part = 0; part < kParts; ++part) {
-    const int lane0 = part * kWidth;
-    range[part] = hn::Load(df, out.range + lane0);
-    const VU lane_bits = hn::Shl(hn::Set(du, 1U), hn::Iota(du, static_cast<std::uint32_t>(lane0)));
-    active[part] = hn::RebindMask(df, hn::TestBit(hn::Set(du, out.valid), lane_bits));
-    hits[part] = hn::MaskFromVec(hn::Zero(df));
+void visit(const SceneData& scene, const PoseFrame& frame, std::uint32_t primitive, RayTile& out) {
+  PacketQuery query;
+  query.scene = &scene;
+  query.frame = &frame;
+  query.tile = &out;
+  const Slabs slabs = slabs_of(scene.boxes[primitive], frame);
+  for (query.lane0 = 0; query.lane0 < kTileRays; query.lane0 += kWidth) {
+    VF range = hn::Load(df, out.range + query.lane0);
+    const MF active = mask_of(out.valid >> query.lane0);
+    const auto each = [&](auto kernel)
+                          HWY_ATTR { return meet(query, primitive, slabs, active, range, kernel); };
+    const MF hits =
+        primitive < scene.leaf_count
+            ? each([](auto&&... a) HWY_ATTR { return walk_leaf(static_cast<decltype(a)>(a)...); })
+            : each([](auto&&... a) HWY_ATTR { return enter_box(static_cast<decltype(a)>(a)...); });
+    hn::Store(range, df, out.range + query.lane0);
+    out.hit |= bits_of(hits) << query.lane0;
   }
-  // A ray of range t is at most t * cosine along the axis.
-  const auto depth = [&]() HWY_ATTR {
-    VF farthest = hn::IfThenElseZero(active[0], range[0]);
-    for (int part = 1; part < kParts; ++part) {
-      farthest = hn::Max(farthest, hn::IfThenElseZero(active[part], range[part]));
-    }
-    return cosine * hn::GetLane(hn::MaxOfLanes(df, farthest));
-  };
-  float of_interest = depth();
-  // In a large scene neither boxes nor masks are in the near caches: ask for them ahead.
-  constexpr std::size_t kAhead = 3;
-  const auto fetch = [&](std::size_t i) {
-    if (i >= primitives.size()) return;
-    const std::uint32_t primitive = primitives[i].box;
-    __builtin_prefetch(&scene.boxes[primitive]);
-    if (primitive < scene.leaf_count) __builtin_prefetch(&scene.masks[primitive]);
-  };
-  for (std::size_t i = 0; i < kAhead; ++i) fetch(i);
-  for (std::size_t i = 0; i < primitives.size(); ++i) {
-    const TileBox entry = primitives[i];
-    if (entry.near > of_interest) break;
-    fetch(i + kAhead);
-    const Slabs slabs = slabs_of(scene.boxes[entry.box], frame);
-    const bool is_leaf = entry.box < scene.leaf_count;
-    for (int part = 0; part < kParts; ++part) {
-      const int lane0 = part * kWidth;
-      const MF more =
-          is_leaf
-              ? walk_leaf(scene, frame, out, lane0, entry.box, slabs, active[part], range[part])
-              : enter_box(scene, frame, out, lane0, entry.box, slabs, active[part], range[part]);
-      hits[part] = hn::Or(hits[part], more);
-    }
-    of_interest = depth();
-  }
-  for (int part = 0; part < kParts; ++part) {
-    const int lane0 = part * kWidth;
-    hn::Store(range[part], df, out.range + lane0);
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(df, hits[part], bits);
-    out.hit |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U)
-               << lane0;
-  }
-  return of_interest;
 }
 
 }  // namespace
 
 const TraceKernels& kernels(Isa isa) {
-  static const TraceKernels table{isa, kWidth, intersect_leaf, intersect_box, set_up, trace, walk};
+  static const TraceKernels table{isa, kWidth, intersect_leaf, intersect_box, set_up, trace, visit};
   return table;
 }
 

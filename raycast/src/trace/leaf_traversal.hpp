@@ -3,12 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "embree_compat.hpp"
 #include "ray_tile.hpp"
 #include "scene/scene_data.hpp"
-#include "tile_bins.hpp"
 #include "viewgain/core/isa.hpp"
 
 namespace viewgain::detail {
@@ -32,12 +30,10 @@ struct TraceKernels {
   /// Traces the tile through the scene's BVH.
   void (*trace)(const SceneData& scene, RTCScene bvh, const PoseFrame& frame, RayTile& out);
 
-  /// Traces the tile through a list of primitives, in any order but for their `near`, without the
-  /// BVH; lists may follow one another. When they hold all that the tile's rays meet the answer is
-  /// that of `trace`. `cosine`: no ray of the tile makes a smaller angle with the
-  /// optical axis. Returns how far along the axis something must begin to be of no more interest.
-  float (*walk)(const SceneData& scene, const PoseFrame& frame, float cosine,
-                std::span<const TileBox> primitives, RayTile& out);
+  /// Traces the tile through one primitive. After all that its rays meet, in any order, the answer
+  /// is that of `trace`.
+  void (*visit)(const SceneData& scene, const PoseFrame& frame, std::uint32_t primitive,
+                RayTile& out);
 };
 
 /// Kernels of an instruction set that the CPU supports.

@@ -53,6 +53,21 @@ HWY_INLINE Interval intersect_slabs(VF ix, VF iy, VF iz, const Slabs& box, float
   return {enter, exit};
 }
 
+// Rays of a packet: unit directions and their inverses.
+struct LaneRays {
+  VF dx, dy, dz, ix, iy, iz;
+};
+HWY_INLINE LaneRays rays_of(const RayTile& tile, int lane0) {
+  const auto load = [&](const float* from) HWY_ATTR { return hn::Load(df, from + lane0); };
+  return {load(tile.dx), load(tile.dy), load(tile.dz), load(tile.ix), load(tile.iy), load(tile.iz)};
+}
+
+// Where they end so far.
+struct LaneEnds {
+  VF range;
+  VU primitive, offset;
+};
+
 // Which lanes may take a hit at `enter` from `primitive`: nearer than what they have, or as near
 // and of a lower number, so that the order in which the BVH is walked does not show.
 HWY_INLINE MF is_nearer(VF enter, VF range, VU held, std::uint32_t primitive) {
@@ -61,44 +76,58 @@ HWY_INLINE MF is_nearer(VF enter, VF range, VU held, std::uint32_t primitive) {
   return hn::Or(hn::Lt(enter, range), hn::And(hn::Eq(enter, range), lower));
 }
 
-// Bits of the mask for voxel offsets: the words that hold them.
-HWY_INLINE VU mask_words(const TraceMask& mask, VU offset) {
-  // Lanes that are done may have left the leaf; the lookup must not leave the mask.
-  const VU word = hn::And(hn::ShiftRight<5>(offset), hn::Set(du, 15U));
+HWY_INLINE void take(MF hits, VF range, std::uint32_t primitive, VU offset, LaneEnds& ends) {
+  const auto hits_u = hn::RebindMask(du, hits);
+  ends.range = hn::IfThenElse(hits, range, ends.range);
+  ends.primitive = hn::IfThenElse(hits_u, hn::Set(du, primitive), ends.primitive);
+  ends.offset = hn::IfThenElse(hits_u, offset, ends.offset);
+}
+
+// Is the bit of a voxel's offset set? Lanes that are done may have left the leaf: any answer will
+// do for them, but the lookup must not leave the mask.
+HWY_INLINE MF is_solid(const TraceMask& mask, VU offset) {
+  const VU word = hn::ShiftRight<5>(offset);
 #if HWY_TARGET == HWY_AVX3
-  return hn::TableLookupLanes(hn::Load(du, mask.words.data()), hn::IndicesFromVec(du, word));
-#elif HWY_TARGET == HWY_AVX2
+  // Permutations and rotations take their counts modulo 16 and 32.
+  const VU words{_mm512_permutexvar_epi32(word.raw, hn::Load(du, mask.words.data()).raw)};
+  const VU bit{_mm512_rolv_epi32(_mm512_set1_epi32(1), offset.raw)};
+  return hn::RebindMask(df, hn::TestBit(words, bit));
+#else
+  const VU bit = hn::Shl(hn::Set(du, 1U), hn::And(offset, hn::Set(du, 31U)));
+#if HWY_TARGET == HWY_AVX2
   // Two lookups in registers take less than a third of the time of a gather.
   const auto in_half = hn::IndicesFromVec(du, hn::And(word, hn::Set(du, 7U)));
   const VU low = hn::TableLookupLanes(hn::Load(du, mask.words.data()), in_half);
   const VU high = hn::TableLookupLanes(hn::Load(du, mask.words.data() + 8), in_half);
-  return hn::IfThenElse(hn::TestBit(word, hn::Set(du, 8U)), high, low);
+  const VU words = hn::IfThenElse(hn::TestBit(word, hn::Set(du, 8U)), high, low);
 #else
-  return hn::GatherIndex(du, mask.words.data(), hn::BitCast(di, word));
+  const VU words =
+      hn::GatherIndex(du, mask.words.data(), hn::BitCast(di, hn::And(word, hn::Set(du, 15U))));
+#endif
+  return hn::RebindMask(df, hn::TestBit(words, bit));
 #endif
 }
 
 // Walks the voxels of a leaf along the active rays and notes the first one whose bit is set, if it
-// is nearer than what the ray has. Returns the lanes that took a hit; `range` is updated.
-HWY_INLINE MF walk_leaf(const SceneData& scene, const PoseFrame& frame, RayTile& tile, int lane0,
-                        std::uint32_t leaf, const Slabs& slabs, MF active, VF& range) {
-  const VF ix = hn::Load(df, tile.ix + lane0), iy = hn::Load(df, tile.iy + lane0),
-           iz = hn::Load(df, tile.iz + lane0);
+// is nearer than what the ray has. Returns the lanes that took a hit, whose ends are updated.
+HWY_INLINE MF walk_leaf(const SceneData& scene, const PoseFrame& frame, const LaneRays& rays,
+                        std::uint32_t leaf, const Slabs& slabs, MF active, LaneEnds& ends) {
+  const VF ix = rays.ix, iy = rays.iy, iz = rays.iz;
   const Interval slab = intersect_slabs(ix, iy, iz, slabs, frame.min_range);
-  active = hn::And(active, hn::And(hn::Lt(slab.enter, slab.exit), hn::Le(slab.enter, range)));
+  active = hn::And(active, hn::And(hn::Lt(slab.enter, slab.exit), hn::Le(slab.enter, ends.range)));
   if (hn::AllFalse(df, active)) return active;
 
   const PrimitiveBox& box = scene.boxes[leaf];
   // The voxel at the entry point; rounding may name a neighbour, whose visit then has no length.
   const VF zero = hn::Zero(df), one = hn::Set(df, 1.0F);
   VF t = slab.enter;
-  const auto cell = [&](const float* direction, VF lo, std::size_t axis) HWY_ATTR {
-    const VF p = hn::Sub(hn::Mul(hn::Load(df, direction + lane0), t), lo);
+  const auto cell = [&](VF direction, VF lo, std::size_t axis) HWY_ATTR {
+    const VF p = hn::Sub(hn::Mul(direction, t), lo);
     const VF last = hn::Set(df, (box.max[axis] - box.min[axis]) - 1.0F);
     return hn::ConvertTo(di, hn::Min(hn::Max(p, zero), last));
   };
-  const auto cx = cell(tile.dx, slabs.lo_x, 0), cy = cell(tile.dy, slabs.lo_y, 1),
-             cz = cell(tile.dz, slabs.lo_z, 2);
+  const auto cx = cell(rays.dx, slabs.lo_x, 0), cy = cell(rays.dy, slabs.lo_y, 1),
+             cz = cell(rays.dz, slabs.lo_z, 2);
   VU offset =
       hn::Add(hn::Set(du, box.first_offset),
               hn::BitCast(du, hn::Or(hn::ShiftLeft<6>(cx), hn::Or(hn::ShiftLeft<3>(cy), cz))));
@@ -121,72 +150,60 @@ HWY_INLINE MF walk_leaf(const SceneData& scene, const PoseFrame& frame, RayTile&
   const auto first_plane = [&](auto c, VF step, float low) HWY_ATTR {
     return hn::Add(hn::Add(hn::Set(df, low), hn::ConvertTo(df, c)), hn::Max(step, zero));
   };
-  const VF px = first_plane(cx, step_x, box.min[0]), py = first_plane(cy, step_y, box.min[1]),
-           pz = first_plane(cz, step_z, box.min[2]);
+  VF px = first_plane(cx, step_x, box.min[0]), py = first_plane(cy, step_y, box.min[1]),
+     pz = first_plane(cz, step_z, box.min[2]);
   VF tx = hn::Mul(hn::Sub(px, ox), ix), ty = hn::Mul(hn::Sub(py, oy), iy),
      tz = hn::Mul(hn::Sub(pz, oz), iz);
   // The planes after those; where they are met is computed before it is known who steps.
-  VF qx = hn::Add(px, step_x), qy = hn::Add(py, step_y), qz = hn::Add(pz, step_z);
+  px = hn::Add(px, step_x), py = hn::Add(py, step_y), pz = hn::Add(pz, step_z);
 
   const TraceMask& mask = scene.masks[leaf];
-  const VU bit = hn::Set(du, 1U), low_five = hn::Set(du, 31U);
   // Where lanes end is noted in registers and compared with what they have once, after the walk:
   // when a lane ends cannot be predicted.
   MF found = hn::MaskFromVec(zero);
   VF found_t = t;
   VU found_offset = offset;
   while (true) {
-    const VF nx = hn::Mul(hn::Sub(qx, ox), ix);
-    const VF ny = hn::Mul(hn::Sub(qy, oy), iy);
-    const VF nz = hn::Mul(hn::Sub(qz, oz), iz);
+    const VF nx = hn::Mul(hn::Sub(px, ox), ix), ny = hn::Mul(hn::Sub(py, oy), iy),
+             nz = hn::Mul(hn::Sub(pz, oz), iz);
     const VF next = hn::Min(tx, hn::Min(ty, tz));
-    const VU word = mask_words(mask, offset);
-    const MF solid = hn::RebindMask(df, hn::TestBit(word, hn::Shl(bit, hn::And(offset, low_five))));
     // A visit of no length does not count.
-    const MF ends = hn::And(hn::And(active, solid), hn::Lt(t, next));
-    found = hn::Or(found, ends);
-    found_t = hn::IfThenElse(ends, t, found_t);
-    found_offset = hn::IfThenElse(hn::RebindMask(du, ends), offset, found_offset);
-    // Axes whose planes are met at the same t step together, over the edge or the corner.
-    const MF over_x = hn::Le(tx, next), over_y = hn::Le(ty, next), over_z = hn::Le(tz, next);
+    const MF stops = hn::And(hn::And(active, is_solid(mask, offset)), hn::Lt(t, next));
+    found = hn::Or(found, stops);
+    found_t = hn::IfThenElse(stops, t, found_t);
+    found_offset = hn::IfThenElse(hn::RebindMask(du, stops), offset, found_offset);
     t = hn::Max(t, next);
     // At the plane where the box ends t equals slab.exit exactly, so no index leaves it.
-    active = hn::And(hn::AndNot(ends, active), hn::Lt(t, slab.exit));
+    active = hn::And(hn::AndNot(stops, active), hn::Lt(t, slab.exit));
     if (hn::AllFalse(df, active)) break;
-    tx = hn::IfThenElse(over_x, nx, tx);
-    ty = hn::IfThenElse(over_y, ny, ty);
-    tz = hn::IfThenElse(over_z, nz, tz);
-    qx = hn::Add(qx, hn::IfThenElseZero(over_x, step_x));
-    qy = hn::Add(qy, hn::IfThenElseZero(over_y, step_y));
-    qz = hn::Add(qz, hn::IfThenElseZero(over_z, step_z));
-    offset = hn::Add(offset, hn::IfThenElseZero(hn::RebindMask(du, over_x), offset_x));
-    offset = hn::Add(offset, hn::IfThenElseZero(hn::RebindMask(du, over_y), offset_y));
-    offset = hn::Add(offset, hn::IfThenElseZero(hn::RebindMask(du, over_z), offset_z));
+    // Axes whose planes are met at the same t step together, over the edge or the corner.
+    const auto step = [&](VF& plane_t, VF next_t, VF& plane, VF by, VU offset_by) HWY_ATTR {
+      const MF over = hn::Le(plane_t, next);
+      plane_t = hn::IfThenElse(over, next_t, plane_t);
+      plane = hn::IfThenElse(over, hn::Add(plane, by), plane);
+      offset = hn::IfThenElse(hn::RebindMask(du, over), hn::Add(offset, offset_by), offset);
+    };
+    step(tx, nx, px, step_x, offset_x);
+    step(ty, ny, py, step_y, offset_y);
+    step(tz, nz, pz, step_z, offset_z);
   }
-  const VU held = hn::Load(du, tile.primitive + lane0);
-  const MF hits = hn::And(found, is_nearer(found_t, range, held, leaf));
-  range = hn::IfThenElse(hits, found_t, range);
-  const auto hits_u = hn::RebindMask(du, hits);
-  hn::Store(hn::IfThenElse(hits_u, hn::Set(du, leaf), held), du, tile.primitive + lane0);
-  hn::BlendedStore(found_offset, hits_u, du, tile.offset + lane0);
+  const MF hits = hn::And(found, is_nearer(found_t, ends.range, ends.primitive, leaf));
+  take(hits, found_t, leaf, found_offset, ends);
   return hits;
 }
 
 // The entry into a box of unknown voxels.
-HWY_INLINE MF enter_box(const SceneData& scene, const PoseFrame& frame, RayTile& tile, int lane0,
-                        std::uint32_t primitive, const Slabs& slabs, MF active, VF& range) {
+HWY_INLINE MF enter_box(const SceneData& scene, const PoseFrame& frame, const LaneRays& rays,
+                        std::uint32_t primitive, const Slabs& slabs, MF active, LaneEnds& ends) {
   const PrimitiveBox& box = scene.boxes[primitive];
-  const Interval slab =
-      intersect_slabs(hn::Load(df, tile.ix + lane0), hn::Load(df, tile.iy + lane0),
-                      hn::Load(df, tile.iz + lane0), slabs, frame.min_range);
-  const VU held = hn::Load(du, tile.primitive + lane0);
-  const MF hits = hn::And(active, hn::And(hn::Lt(slab.enter, slab.exit),
-                                          is_nearer(slab.enter, range, held, primitive)));
+  const Interval slab = intersect_slabs(rays.ix, rays.iy, rays.iz, slabs, frame.min_range);
+  const MF hits =
+      hn::And(active, hn::And(hn::Lt(slab.enter, slab.exit),
+                              is_nearer(slab.enter, ends.range, ends.primitive, primitive)));
   if (hn::AllFalse(df, hits)) return hits;
   // An entry point on an inner plane belongs to the side that the ray goes to: the visit of the
   // other has no length.
-  const auto cell = [&](const float* direction, VF lo, std::size_t axis) HWY_ATTR {
-    const VF d = hn::Load(df, direction + lane0);
+  const auto cell = [&](VF d, VF lo, std::size_t axis) HWY_ATTR {
     const VF p = hn::Sub(hn::Mul(d, slab.enter), lo);
     const VF floor = hn::Floor(p);
     const MF below = hn::And(hn::Lt(d, hn::Zero(df)), hn::Eq(floor, p));
@@ -196,12 +213,9 @@ HWY_INLINE MF enter_box(const SceneData& scene, const PoseFrame& frame, RayTile&
   };
   const int bits = primitive < scene.block_count ? kBlockBits : kBoxBits;
   const VU offset = hn::Or(
-      hn::ShiftLeftSame(cell(tile.dx, slabs.lo_x, 0), 2 * bits),
-      hn::Or(hn::ShiftLeftSame(cell(tile.dy, slabs.lo_y, 1), bits), cell(tile.dz, slabs.lo_z, 2)));
-  range = hn::IfThenElse(hits, slab.enter, range);
-  const auto hits_u = hn::RebindMask(du, hits);
-  hn::Store(hn::IfThenElse(hits_u, hn::Set(du, primitive), held), du, tile.primitive + lane0);
-  hn::BlendedStore(offset, hits_u, du, tile.offset + lane0);
+      hn::ShiftLeftSame(cell(rays.dx, slabs.lo_x, 0), 2 * bits),
+      hn::Or(hn::ShiftLeftSame(cell(rays.dy, slabs.lo_y, 1), bits), cell(rays.dz, slabs.lo_z, 2)));
+  take(hits, slab.enter, primitive, offset, ends);
   return hits;
 }
 

@@ -45,6 +45,12 @@ struct TileTable {
   /// Some of the rays of another table, in tiles of their own.
   TileTable(const TileTable& full, const RayLattice& lattice);
 
+  [[nodiscard]] std::size_t tile_columns() const {
+    return static_cast<std::size_t>((columns + kTileEdge - 1) / kTileEdge);
+  }
+  [[nodiscard]] std::size_t tile_rows() const {
+    return static_cast<std::size_t>((rows + kTileEdge - 1) / kTileEdge);
+  }
   [[nodiscard]] std::size_t ray_count() const {
     return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   }

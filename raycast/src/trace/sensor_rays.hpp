@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "image_projector.hpp"
 #include "ray_tile.hpp"
-#include "tile_bins.hpp"
 #include "viewgain/core/camera.hpp"
 
 namespace viewgain::detail {
@@ -14,17 +14,17 @@ struct SensorRays {
   PinholeCamera camera;
   int pixel_stride;
   TileTable table;
-  TileBinner binner;
+  ImageProjector projector;
 
   SensorRays(const PinholeCamera& c, int stride)
-      : camera(c), pixel_stride(stride), table(c, stride), binner(c, stride, table) {}
+      : camera(c), pixel_stride(stride), table(c, stride), projector(c, stride, table) {}
 
   /// Some of these rays; nothing is undone anew.
   SensorRays(const SensorRays& full, const RayLattice& lattice)
       : camera(moved_to(lattice, full)),
         pixel_stride(full.pixel_stride * lattice.step),
         table(full.table, lattice),
-        binner(camera, pixel_stride, table) {}
+        projector(camera, pixel_stride, table) {}
 
  private:
   // The camera whose pixel (0, 0) is the lattice's first ray.

@@ -21,10 +21,10 @@ constexpr double kLevelZeroReach = 2e4;
 
 TraceWay wished_way() {
   const char* wish = std::getenv("VIEWGAIN_TRACE");
-  if (wish == nullptr || std::string_view(wish) == "lists") return TraceWay::lists;
+  if (wish == nullptr || std::string_view(wish) == "sweep") return TraceWay::sweep;
   if (std::string_view(wish) == "bvh") return TraceWay::bvh;
   throw Error(ErrorCode::invalid_argument,
-              std::string("VIEWGAIN_TRACE is '").append(wish).append("', not lists or bvh"));
+              std::string("VIEWGAIN_TRACE is '").append(wish).append("', not sweep or bvh"));
 }
 
 Isa choose_isa() {
@@ -40,11 +40,6 @@ Isa choose_isa() {
   throw Error(ErrorCode::backend, "this build of Embree has no ray packets");
 }
 
-SceneBoxes::Kind choose_boxes(std::size_t primitive_count) {
-  return primitive_count <= SceneBoxes::kMaxCells ? SceneBoxes::Kind::primitives
-                                                  : SceneBoxes::Kind::cells;
-}
-
 int choose_margin_level(double reach) {
   int level = 0;
   while (level + 1 < kMarginLevels && reach > std::ldexp(kLevelZeroReach, level)) ++level;
@@ -56,7 +51,7 @@ ViewChoice choose_tracing(const SceneData& scene, TraceWay way, double max_range
   const Index3& dims = scene.snapshot.dims;
   const double reach = max_range + std::max({dims.x, dims.y, dims.z});
   ViewChoice choice;
-  choice.by_lists = way == TraceWay::lists;
+  choice.by_sweep = way == TraceWay::sweep;
   choice.margin_level = choose_margin_level(reach);
   return choice;
 }

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 #include <utility>
 
+#include "cell_sweep.hpp"
 #include "obstacle_ranges.hpp"
 
 namespace viewgain::detail {
@@ -31,7 +31,7 @@ ViewTracer::ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays>
   max_range_ = static_cast<float>(farthest);
   is_out_of_range_ = nearest >= kRayEnd;
   choice_ = choose_tracing(scene, way, farthest);
-  if (!choice_.by_lists) (void)scene.tracing->bvh(choice_.margin_level);
+  if (!choice_.by_sweep) (void)scene.tracing->bvh(choice_.margin_level);
 }
 
 std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const {
@@ -58,98 +58,112 @@ std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const 
   return frame;
 }
 
-void ViewTracer::prepare(const PoseFrame& frame, TileBins& bins, Asked asked) const {
-  bins.invalidate();
+void ViewTracer::prepare(const PoseFrame& frame, ViewSweep& sweep, Asked asked) const {
+  sweep.obstacles.clear();
   if (frame.sees_nothing) return;
   const ObstacleScene* obstacles = scene_.tracing->obstacles.get();
-  if (choice_.by_lists) {
-    rays_->binner.sort(kernels_.isa, *scene_.scene_boxes, frame, bins);
+  if (choice_.by_sweep) {
+    const ImageBoundsKernels& kernels = image_bounds_kernels(kernels_.isa);
+    sweep.see(kernels, *scene_.cells, frame, rays_->projector.scale_for(frame, frame.min_range));
     if (obstacles == nullptr) return;
-    rays_->binner.mark_obstacles(kernels_.isa, *obstacles, frame, asked != Asked::everywhere, bins);
+    sweep.obstacles.mark(kernels, *obstacles, frame, rays_->projector.scale_for(frame, 0),
+                         rays_->table, asked != Asked::everywhere);
   } else if (obstacles != nullptr) {
-    bins.expect_obstacles(rays_->table.tile_count);
+    sweep.obstacles.expect(rays_->table.tile_count);
   }
 }
 
-void ViewTracer::trace_voxels(const PoseFrame& frame, std::size_t tile, TileBins& bins,
-                              RayTile& out) const {
-  if (bins.valid()) {
-    trace_lists(frame, tile, bins, out);
-  } else {
-    kernels_.trace(scene_, scene_.tracing->bvh(choice_.margin_level), frame, out);
-  }
-}
+// Sets a tile up for a view, and cuts its rays at obstacles that are asked for before voxels: rays
+// that end early meet fewer.
+class ViewTracer::SetUp final : public TileMaker {
+ public:
+  SetUp(const ViewTracer& tracer, const PoseFrame& frame, Asked asked,
+        const ObstacleMarks& obstacles)
+      : tracer_(tracer), frame_(frame), asked_(asked), obstacles_(obstacles) {}
 
-void ViewTracer::trace_lists(const PoseFrame& frame, std::size_t tile, TileBins& bins,
-                             RayTile& out) const {
-  const SceneBoxes& scene = *scene_.scene_boxes;
-  const float cosine = rays_->table.cosine[tile];
-  if (scene.are_primitives()) {
-    kernels_.walk(scene_, frame, cosine, bins.boxes_of(tile), out);
-    return;
-  }
-  // The primitives of the next cell are chosen, and asked for, while those of this one are walked.
-  float of_interest = std::numeric_limits<float>::max();
-  std::span<const TileBox> waiting;
-  for (const TileBox& cell : bins.boxes_of(tile)) {
-    if (cell.near > of_interest) break;
-    const auto primitives =
-        rays_->binner.select(kernels_.isa, scene, frame, cell.box, tile, of_interest, bins);
-    if (primitives.empty()) continue;
-    for (const TileBox& primitive : primitives) {
-      __builtin_prefetch(&scene_.boxes[primitive.box]);
-      if (primitive.box < scene_.leaf_count) __builtin_prefetch(&scene_.masks[primitive.box]);
+  void make(std::size_t tile, float near_voxel, RayTile& out) const override {
+    tracer_.kernels_.begin(tracer_.rays_->table, frame_, tile, out);
+    const float near = obstacles_.near(tile);
+    if (near == ObstacleMarks::kNoObstacle) return;
+    if (asked_ == Asked::everywhere || (near <= obstacles_.farthest_voxel() &&
+                                        (asked_ == Asked::along_rays || near <= near_voxel))) {
+      tracer_.ask_first(frame_, out);
     }
-    if (!waiting.empty()) of_interest = kernels_.walk(scene_, frame, cosine, waiting, out);
-    waiting = primitives;
-    bins.keep_selected();
   }
-  if (!waiting.empty()) kernels_.walk(scene_, frame, cosine, waiting, out);
+
+ private:
+  const ViewTracer& tracer_;
+  const PoseFrame& frame_;
+  Asked asked_;
+  const ObstacleMarks& obstacles_;
+};
+
+void ViewTracer::sweep_strip(const PoseFrame& frame, TileRows strip, Asked asked,
+                             ViewSweep& sweep) const {
+  const SetUp maker(*this, frame, asked, sweep.obstacles);
+  StripRays& rays = sweep.strip;
+  rays.begin(rays_->table, strip, maker);
+  if (!choice_.by_sweep) return;
+  if (asked == Asked::everywhere && scene_.has_obstacles) {
+    for (std::size_t i = 0; i < rays.tile_count(); ++i) {
+      if (sweep.obstacles.near(rays.first_tile() + i) == ObstacleMarks::kNoObstacle) continue;
+      (void)rays.meet(i, 0);
+    }
+  }
+  const CellSweep sweep_cell = cell_sweep(kernels_.isa);
+  const ImageScale image = rays_->projector.scale_for(frame, frame.min_range);
+  for (const SeenCell& cell : sweep.seen) {
+    sweep_cell(scene_, cell, frame, image, sweep.camera_block, rays);
+  }
 }
 
-void ViewTracer::trace_with_obstacles(const PoseFrame& frame, std::size_t tile, Asked asked,
-                                      TileBins& bins, RayTile& out) const {
+void ViewTracer::finish(const PoseFrame& frame, std::size_t tile, const ObstacleMarks& obstacles,
+                        RayTile& rays) const {
+  if (!choice_.by_sweep) {
+    kernels_.begin(rays_->table, frame, tile, rays);
+    if (scene_.has_obstacles) ask_first(frame, rays);
+    kernels_.trace(scene_, scene_.tracing->bvh(choice_.margin_level), frame, rays);
+  } else if (scene_.has_obstacles && !rays.has_far) {
+    ask_afterwards(frame, tile, obstacles.near(tile), rays);
+  }
+  rays.blocked &= ~rays.hit;
+}
+
+void ViewTracer::ask_first(const PoseFrame& frame, RayTile& rays) const {
+  std::copy_n(rays.range, kTileRays, rays.far);
+  rays.blocked = cut_at_obstacles(*scene_.tracing->obstacles, frame, rays, rays.valid, rays.far);
+  rays.has_far = true;
+  for (std::uint32_t left = rays.blocked; left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left);
+    rays.range[lane] = rays.far[lane];
+    rays.primitive[lane] = kObstaclePrimitive;
+  }
+}
+
+void ViewTracer::ask_afterwards(const PoseFrame& frame, std::size_t tile, float near,
+                                RayTile& rays) const {
   const ObstacleScene& obstacles = *scene_.tracing->obstacles;
-  const float near = bins.obstacle_near(tile);
-  const bool comes_first =
-      !bins.valid() || (!bins.boxes_of(tile).empty() && near <= bins.boxes_of(tile).front().near);
-  const bool is_in_reach = near <= bins.farthest_voxel();
-  if (asked == Asked::everywhere || (is_in_reach && (asked == Asked::along_rays || comes_first))) {
-    // Rays that end early leave fewer boxes to walk.
-    std::copy_n(out.range, kTileRays, out.far);
-    out.blocked = cut_at_obstacles(obstacles, frame, out, out.valid, out.far);
-    out.has_far = true;
-    for (std::uint32_t left = out.blocked; left != 0; left &= left - 1) {
-      const int lane = std::countr_zero(left);
-      out.range[lane] = out.far[lane];
-      out.primitive[lane] = kObstaclePrimitive;
-    }
-    trace_voxels(frame, tile, bins, out);
-    out.blocked &= ~out.hit;
-    return;
-  }
-  trace_voxels(frame, tile, bins, out);
   float farthest = 0;
-  for (std::uint32_t left = out.hit; left != 0; left &= left - 1) {
-    farthest = std::max(farthest, out.range[std::countr_zero(left)]);
+  for (std::uint32_t left = rays.hit; left != 0; left &= left - 1) {
+    farthest = std::max(farthest, rays.range[std::countr_zero(left)]);
   }
   farthest += obstacles.rounding();
-  if (out.hit == 0 || near > farthest * rays_->table.cosine[tile]) return;
+  if (rays.hit == 0 || near > farthest * rays_->table.cosine[tile]) return;
   // A little farther than the voxels, since an obstacle wins a tie and Embree's distances are
   // rounded.
   alignas(64) float far[kTileRays];
   for (int lane = 0; lane < kTileRays; ++lane) {
-    far[lane] = out.range[lane] * (1.0F + 1e-6F) + obstacles.rounding();
+    far[lane] = rays.range[lane] * (1.0F + 1e-6F) + obstacles.rounding();
   }
-  const std::uint32_t met = cut_at_obstacles(obstacles, frame, out, out.hit, far);
+  const std::uint32_t met = cut_at_obstacles(obstacles, frame, rays, rays.hit, far);
   for (std::uint32_t left = met; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
-    if (far[lane] > out.range[lane]) continue;
-    out.range[lane] = far[lane];
-    out.primitive[lane] = kObstaclePrimitive;
-    out.blocked |= 1U << lane;
+    if (far[lane] > rays.range[lane]) continue;
+    rays.range[lane] = far[lane];
+    rays.primitive[lane] = kObstaclePrimitive;
+    rays.blocked |= 1U << lane;
+    rays.hit &= ~(1U << lane);
   }
-  out.hit &= ~out.blocked;
 }
 
 }  // namespace viewgain::detail

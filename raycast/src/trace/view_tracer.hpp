@@ -2,15 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <ranges>
+#include <utility>
 
 #include "scene/scene_data.hpp"
 #include "scene_tracing.hpp"
 #include "sensor_rays.hpp"
 #include "trace_choice.hpp"
+#include "view_sweep.hpp"
 
 namespace viewgain::detail {
 
@@ -21,7 +23,7 @@ class ViewTracer {
   /// Ranges in metres. Throws Error(backend), Error(capacity) if a BVH is wanted and cannot be
   /// built.
   ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays> rays, double min_range,
-             double max_range, TraceWay way = TraceWay::lists);
+             double max_range, TraceWay way = TraceWay::sweep);
 
   /// The pose in the scene's coordinates; nothing if it is not finite or its rotation is off by
   /// more than 1e-3.
@@ -34,43 +36,48 @@ class ViewTracer {
     everywhere      ///< also in tiles that meet no voxel
   };
 
-  /// Makes `bins` ready for tracing the view's tiles, with such questions or fewer.
-  void prepare(const PoseFrame& frame, TileBins& bins, Asked asked = Asked::along_rays) const;
+  /// Makes `sweep` ready for tracing the view's strips, with such questions or fewer.
+  void prepare(const PoseFrame& frame, ViewSweep& sweep, Asked asked = Asked::along_rays) const;
 
-  /// Calls visit(tile number, RayTile) for those of the tiles with these numbers that can meet
-  /// anything, in order. `bins` are prepared for the view.
-  template <Asked kAsked = Asked::before_voxels, typename Tiles, typename Visit>
-  void trace(const PoseFrame& frame, const Tiles& tiles, TileBins& bins, Visit&& visit) const {
+  /// Calls visit(tile number, RayTile) for those of a strip's tiles that can meet anything, in
+  /// order. `sweep` is prepared for the view.
+  template <Asked kAsked = Asked::before_voxels, typename Visit>
+  void trace_strip(const PoseFrame& frame, TileRows strip, ViewSweep& sweep, Visit&& visit) const {
     if (frame.sees_nothing) return;
-    RayTile out;
-    for (const std::size_t tile : tiles) {
-      const bool meets = !bins.valid() || !bins.boxes_of(tile).empty();
-      if (!meets &&
-          (kAsked != Asked::everywhere || bins.obstacle_near(tile) == TileBins::kNoObstacle)) {
-        continue;
-      }
-      kernels_.begin(rays_->table, frame, tile, out);
-      if (bins.obstacle_near(tile) == TileBins::kNoObstacle) {
-        trace_voxels(frame, tile, bins, out);
-      } else {
-        trace_with_obstacles(frame, tile, kAsked, bins, out);
-      }
-      visit(tile, out);
+    sweep_strip(frame, strip, kAsked, sweep);
+    StripRays& strip_rays = sweep.strip;
+    for (std::size_t i = 0; i < strip_rays.tile_count(); ++i) {
+      if (choice_.by_sweep && !strip_rays.is_met(i)) continue;
+      RayTile& rays = strip_rays.tile(i);
+      finish(frame, strip_rays.first_tile() + i, sweep.obstacles, rays);
+      visit(strip_rays.first_tile() + i, std::as_const(rays));
+    }
+  }
+  /// The same for all tiles of the view.
+  template <Asked kAsked = Asked::before_voxels, typename Visit>
+  void trace(const PoseFrame& frame, ViewSweep& sweep, Visit&& visit) const {
+    // In strips whose rays stay in the near caches.
+    const std::size_t rows = table().tile_rows(),
+                      most = std::max<std::size_t>(kStripTiles / table().tile_columns(), 4);
+    for (std::size_t begin = 0; begin < rows; begin += most) {
+      trace_strip<kAsked>(frame, {begin, std::min(begin + most, rows)}, sweep, visit);
     }
   }
 
-  /// The numbers of all tiles.
-  [[nodiscard]] auto all_tiles() const {
-    return std::views::iota(std::size_t{0}, rays_->table.tile_count);
-  }
   [[nodiscard]] const TileTable& table() const { return rays_->table; }
 
  private:
-  // One tile that has been set up.
-  void trace_voxels(const PoseFrame& frame, std::size_t tile, TileBins& bins, RayTile& out) const;
-  void trace_lists(const PoseFrame& frame, std::size_t tile, TileBins& bins, RayTile& out) const;
-  void trace_with_obstacles(const PoseFrame& frame, std::size_t tile, Asked asked, TileBins& bins,
-                            RayTile& out) const;
+  class SetUp;
+  static constexpr std::size_t kStripTiles = 1600;
+
+  void sweep_strip(const PoseFrame& frame, TileRows strip, Asked asked, ViewSweep& sweep) const;
+  /// What a tile's rays meet apart from what they were swept over.
+  void finish(const PoseFrame& frame, std::size_t tile, const ObstacleMarks& obstacles,
+              RayTile& rays) const;
+  /// Obstacles that are asked for before voxels: rays that end early have fewer to meet.
+  void ask_first(const PoseFrame& frame, RayTile& rays) const;
+  /// And those that are asked for behind.
+  void ask_afterwards(const PoseFrame& frame, std::size_t tile, float near, RayTile& rays) const;
 
   const SceneData& scene_;
   const TraceKernels& kernels_;

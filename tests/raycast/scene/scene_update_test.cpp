@@ -200,7 +200,7 @@ TEST_P(SceneUpdate, AChainOfUpdatesIsWhatBuildsAre) {
   sensor.min_range = 0.01;
   sensor.max_range = 1.5;
 
-  const test::ScopedTrace scoped_trace(chain.is_by_bvh ? "bvh" : "lists");
+  const test::ScopedTrace scoped_trace(chain.is_by_bvh ? "bvh" : "sweep");
   const std::vector<std::string> isas = available_isas();
   std::vector<std::shared_ptr<const VoxelScene>> scenes;
   for (const std::string& isa : isas) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Scenes of more primitives than are sorted one by one: boxes stand for cells of many. Rays and
-// gains against the oracle under each instruction set, for each size of cell.
+// Scenes of many primitives and of many cells. Rays and gains against the oracle under each
+// instruction set, also where cells are few in nodes of 128³ voxels and where they are many.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,14 +17,14 @@
 namespace viewgain {
 namespace {
 
-/// So many boxes are sorted into a view's tiles; for more, cells twice as large are taken.
-constexpr std::size_t kMostBoxes = 4096;
+/// Of cubes, as many as are in use at least, or at most.
+constexpr std::size_t kManyCubes = 4096;
 
 /// A map of free voxels and, in every cube of `cube` voxels an edge, some specks. Those of many
 /// cells are slabs of four voxels with a border of cells in their middle.
 struct Layout {
   const char* name;
-  int cell;  ///< voxels an edge of the cells that its scene's primitives are grouped by
+  int coarse;  ///< voxels an edge of cubes of which few are in use; of half of that, many are
   Index3 min, dims;
   int cube;
   int specks;
@@ -140,11 +140,11 @@ TEST_P(CellsOracle, AgreesUnderEachInstructionSet) {
   test::Random random(31);
   const BeliefGrid grid = map_of(layout, random);
   const GridSnapshot snapshot = grid.snapshot();
-  ASSERT_GT(snapshot.leaves.size(), kMostBoxes);
-  if (layout.cell > 32) {
-    ASSERT_GT(cubes_in_use(snapshot, layout.cell / 2), kMostBoxes);
+  ASSERT_GT(snapshot.leaves.size(), kManyCubes);
+  if (layout.coarse > 32) {
+    ASSERT_GT(cubes_in_use(snapshot, layout.coarse / 2), kManyCubes);
   }
-  ASSERT_LE(cubes_in_use(snapshot, layout.cell), kMostBoxes);
+  ASSERT_LE(cubes_in_use(snapshot, layout.coarse), kManyCubes);
 
   const oracle::DenseMap map(grid);
   const Sensor sensor = sensor_of(layout);
@@ -161,7 +161,7 @@ TEST_P(CellsOracle, AgreesUnderEachInstructionSet) {
       const test::ScopedIsa scoped(isas[i]);
       const auto scene = VoxelScene::build(snapshot, {}, {.num_threads = 1});
       ASSERT_EQ(scene->isa(), isas[i]);
-      ASSERT_GT(scene->primitive_count(), kMostBoxes);
+      ASSERT_GT(scene->primitive_count(), kManyCubes);
       const GainEvaluator evaluator(scene, sensor, {}, {.num_threads = 1});
       const std::vector<RayHit> own = evaluator.trace(pose);
       tallies[i].add(map, sensor, pose, expected, own, tolerance);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A view is traced through the BVH or along lists of primitives; which one is a matter of speed
+// A view is swept by its primitives or traced through the BVH; which one is a matter of speed
 // alone.
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ GainEvaluator evaluator_by(const std::string& way, const std::shared_ptr<const V
 std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vector<Pose>& poses,
                     const Obstacles& obstacles = {}) {
   const auto scene = VoxelScene::build(grid, obstacles);
-  const GainEvaluator free_choice = evaluator_by("lists", scene, sensor);
+  const GainEvaluator free_choice = evaluator_by("sweep", scene, sensor);
   const GainEvaluator bvh = evaluator_by("bvh", scene, sensor);
   EXPECT_TRUE(test::same_bits(free_choice.evaluate(poses), bvh.evaluate(poses)));
   for (const double share : {0.02, 0.1, 0.4}) {
@@ -50,7 +50,7 @@ std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vec
   return hits;
 }
 
-TEST(TracePaths, ListsAndBvhGiveTheSameBits) {
+TEST(TracePaths, SweepAndBvhGiveTheSameBits) {
   std::size_t hits = 0;
   for (const test::MapFamily family :
        {test::MapFamily::salt_and_pepper_01, test::MapFamily::salt_and_pepper_30,
@@ -108,21 +108,21 @@ TEST(TracePaths, ObstaclesEndTheSameRaysEitherWay) {
     const std::vector<Pose> poses = test::random_poses(map, 6, random);
     hits += compare(map.grid, sensor, poses, obstacles);
     const auto scene = VoxelScene::build(map.grid, obstacles);
-    const GainEvaluator lists = evaluator_by("lists", scene, sensor, GainModel::combined);
+    const GainEvaluator swept = evaluator_by("sweep", scene, sensor, GainModel::combined);
     const GainEvaluator bvh = evaluator_by("bvh", scene, sensor, GainModel::combined);
-    const std::vector<ViewGain> gains = lists.evaluate(poses);
+    const std::vector<ViewGain> gains = swept.evaluate(poses);
     EXPECT_TRUE(test::same_bits(gains, bvh.evaluate(poses)));
     walked += test::gaining(gains);
     for (const Pose& pose : poses) {
       // What no obstacle ends is what there is without them; no gain needs to know of the others.
-      const std::vector<RayHit> rays = lists.trace(pose);
+      const std::vector<RayHit> rays = swept.trace(pose);
       std::uint32_t in_voxels = 0;
       for (const RayHit& hit : rays) {
         in_obstacles += hit.kind == RayHit::Kind::obstacle ? 1U : 0U;
         in_voxels +=
             hit.kind == RayHit::Kind::occupied || hit.kind == RayHit::Kind::unknown ? 1 : 0;
       }
-      const ViewGain view = evaluator_by("lists", scene, sensor).evaluate(pose);
+      const ViewGain view = evaluator_by("sweep", scene, sensor).evaluate(pose);
       if (view.status == ViewStatus::ok) {
         EXPECT_EQ(view.hits, in_voxels);
       }
@@ -159,7 +159,7 @@ TEST(TracePaths, ObstaclesAtTheEndsOfRangesAreTheSameEitherWay) {
       const Obstacles obstacles{{Box{{x * v, -v, -v}, {(x + 1) * v, 17 * v, 17 * v}}}, {}};
       hits += compare(grid, sensor, poses, obstacles);
       const GainEvaluator evaluator =
-          evaluator_by("lists", VoxelScene::build(grid, obstacles), sensor);
+          evaluator_by("sweep", VoxelScene::build(grid, obstacles), sensor);
       for (const Pose& pose : poses) {
         std::uint32_t in_voxels = 0;
         for (const RayHit& hit : evaluator.trace(pose)) {
@@ -189,8 +189,8 @@ TEST(TracePaths, ObstaclesBeyondSinglePrecisionHideNothing) {
     const Obstacles both{{wall, Box{{-huge, -huge, -huge}, {huge, huge, -1e9}}}, {}};
     (void)compare(grid, sensor, poses, both);
     const std::vector<RayHit>
-        a = evaluator_by("lists", VoxelScene::build(grid, alone), sensor).trace(poses[0]),
-        b = evaluator_by("lists", VoxelScene::build(grid, both), sensor).trace(poses[0]);
+        a = evaluator_by("sweep", VoxelScene::build(grid, alone), sensor).trace(poses[0]),
+        b = evaluator_by("sweep", VoxelScene::build(grid, both), sensor).trace(poses[0]);
     for (std::size_t i = 0; i < a.size(); ++i) {
       EXPECT_EQ(a[i].kind, b[i].kind) << huge << " " << i;
       blocked += b[i].kind == RayHit::Kind::obstacle ? 1U : 0U;
@@ -199,7 +199,7 @@ TEST(TracePaths, ObstaclesBeyondSinglePrecisionHideNothing) {
   EXPECT_GT(blocked, 4U * 20U);
 }
 
-// What a strong lens bends, all over the image: nothing that the BVH finds is missing in the lists.
+// What a strong lens bends, all over the image: nothing that the BVH finds is missed by the sweep.
 TEST(TracePaths, StrongLensesSeeTheSameBits) {
   std::size_t hits = 0;
   const std::array<std::array<double, 5>, 4> lenses{{{-0.35, 0.12, 0, 0, -0.02},
@@ -229,7 +229,7 @@ TEST(TracePaths, AnotherWayIsAnError) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::invalid_argument);
-    EXPECT_STREQ(error.what(), "VIEWGAIN_TRACE is 'octree', not lists or bvh");
+    EXPECT_STREQ(error.what(), "VIEWGAIN_TRACE is 'octree', not sweep or bvh");
   }
 }
 
@@ -295,8 +295,8 @@ TEST(TracePaths, FarCamerasSeeTheSameBits) {
   EXPECT_GT(hits, 5U * 10U * 61U * 47U / 4);
 }
 
-// More primitives than are listed one by one: boxes stand for cells of many.
-TEST(TracePaths, ManyPrimitivesUnderCoarseBoxesGiveTheSameBits) {
+// Thousands of primitives that each hold a single voxel.
+TEST(TracePaths, ManyPrimitivesGiveTheSameBits) {
   constexpr int kEdge = 144;
   std::vector<Index3> unknown;
   for (int x = 3; x < kEdge; x += 8) {
@@ -319,7 +319,7 @@ TEST(TracePaths, ManyPrimitivesUnderCoarseBoxesGiveTheSameBits) {
   EXPECT_GT(compare(grid, sensor, poses), 500U);
 }
 
-// More regions than are listed one by one: cells of 64³ voxels.
+// Thousands of regions.
 TEST(TracePaths, ManyRegionsGiveTheSameBits) {
   constexpr int kEdge = 544, kRegion = 32;
   std::vector<Index3> unknown;

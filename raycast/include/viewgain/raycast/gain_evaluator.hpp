@@ -104,7 +104,7 @@ struct VIEWGAIN_EXPORT RayHit {
 /// scored and are kept. Determinism: the same bits for any number of threads, run after run.
 class VIEWGAIN_EXPORT GainEvaluator {
  public:
-  /// Undoes the lens distortion once. The environment variable VIEWGAIN_TRACE, `lists` or `bvh`,
+  /// Undoes the lens distortion once. The environment variable VIEWGAIN_TRACE, `sweep` or `bvh`,
   /// forces a way to trace; results are the same bits. Throws Error(invalid_argument), naming the
   /// value, for a null scene, a sensor that is not valid or whose sigmas differ by a factor over
   /// 1e4, a stride below 1, a prior outside 1e-6..1e3 m, a weight or range that is negative or not

@@ -29,8 +29,8 @@ struct VIEWGAIN_EXPORT Obstacles {
   std::vector<TriangleMesh> meshes;
 };
 
-/// An immutable scene to trace: the voxels of a grid that are not free, sorted for lists of what a
-/// view's tiles can meet, and obstacles in Embree's BVH. Owns all that it reads; the grid may
+/// An immutable scene to trace: the voxels of a grid that are not free, by cells, to be swept from
+/// near to far, and obstacles in Embree's BVH. Owns all that it reads; the grid may
 /// change or go. Copying a shared_ptr of it is how to share it. Thread safety: all members are
 /// const and may run from many threads.
 class VIEWGAIN_EXPORT VoxelScene {

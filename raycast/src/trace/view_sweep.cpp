@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "view_sweep.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+#include "scene/scene_data.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+// Distances of a node's regions to the camera's, three axes added up: 0 to 9.
+constexpr std::uint32_t kPartKeys = 10;
+
+}  // namespace
+
+void ViewSweep::see(const ImageBoundsKernels& kernels, const SceneCells& cells,
+                    const PoseFrame& frame, const ImageScale& image) {
+  // The camera's place on the lattices; beyond the scene only its side matters.
+  std::array<std::int32_t, 3> node{}, part{};
+  std::uint32_t farthest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::int32_t voxel =
+        cells.base[k] + static_cast<std::int32_t>(std::floor(frame.origin[k]));
+    camera_block[k] = voxel >> 3;
+    node[k] = voxel >> 7;
+    part[k] = voxel >> 5;
+    const std::int32_t at = std::clamp(node[k], cells.min_node[k], cells.max_node[k]);
+    farthest +=
+        static_cast<std::uint32_t>(std::max(at - cells.min_node[k], cells.max_node[k] - at));
+    node[k] = at;
+  }
+  found_.clear();
+  keys_.clear();
+  ImageBounds bounds;
+  for (std::size_t first = 0; first < cells.count(); first += kBoxVector) {
+    kernels.bounds_of(cells.boxes, first, frame, image, bounds);
+    std::uint32_t bits = bounds.seen;
+    if (cells.count() - first < kBoxVector) bits &= (1U << (cells.count() - first)) - 1U;
+    for (; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(bits));
+      const CellPlace& place = cells.places[first + i];
+      std::uint32_t key = 0;
+      if (!place.is_larger) {
+        std::int32_t nodes = 0, parts = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          nodes += std::abs(place.node[k] - node[k]);
+          const std::int32_t low = place.node[k] * 4;
+          parts += std::abs(low + place.part[k] - std::clamp(part[k], low, low + 3));
+        }
+        key = 1 + static_cast<std::uint32_t>(nodes) * kPartKeys + static_cast<std::uint32_t>(parts);
+      }
+      found_.push_back({static_cast<std::uint32_t>(first + i), bounds.near[i], bounds.rect(i)});
+      keys_.push_back(key);
+    }
+  }
+  // In order of their keys.
+  begins_.assign(2 + (farthest + 1) * kPartKeys, 0);
+  for (const std::uint32_t key : keys_) ++begins_[key + 1];
+  for (std::size_t i = 0; i + 1 < begins_.size(); ++i) begins_[i + 1] += begins_[i];
+  seen.resize(found_.size());
+  for (std::size_t i = 0; i < found_.size(); ++i) seen[begins_[keys_[i]]++] = found_[i];
+}
+
+}  // namespace viewgain::detail
