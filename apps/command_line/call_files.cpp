@@ -44,7 +44,8 @@ constexpr std::array kFileOptions{
     FileOption{"OUT", Kind::output},       FileOption{"--picture", Kind::picture},
     FileOption{"--out", Kind::output},     FileOption{"--save-config", Kind::output},
     FileOption{"INPUT", Kind::run},        FileOption{"--report", Kind::page},
-    FileOption{"SPEC", Kind::input}};
+    FileOption{"SPEC", Kind::input},       FileOption{"--truth", Kind::input},
+    FileOption{"--points", Kind::output}};
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 

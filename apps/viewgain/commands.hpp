@@ -30,6 +30,7 @@ struct Stopped {
 [[nodiscard]] Command add_candidates(CLI::App& program);
 [[nodiscard]] Command add_info(CLI::App& program);
 [[nodiscard]] Command add_convert(CLI::App& program);
+[[nodiscard]] Command add_surface(CLI::App& program);
 [[nodiscard]] Command add_render(CLI::App& program);
 [[nodiscard]] Command add_sensors(CLI::App& program);
 [[nodiscard]] Command add_study(CLI::App& program);

@@ -24,14 +24,22 @@ std::vector<float> point_sigmas(const PointArrays& points) {
 
 }  // namespace
 
+void write_surfaces(const SurfaceMesh& surface, const std::vector<FusedPoint>& points,
+                    const std::filesystem::path& surface_file,
+                    const std::filesystem::path& points_file) {
+  if (!surface_file.empty()) {
+    const std::vector<double> sigmas = surface_sigmas(surface, points);
+    write_ply(surface_file, {surface.vertices, surface.normals,
+                             std::vector<float>(sigmas.begin(), sigmas.end()), surface.triangles});
+  }
+  if (points_file.empty()) return;
+  const PointArrays arrays = arrays_of(points);
+  write_ply(points_file, {arrays.positions, arrays.normals, point_sigmas(arrays)});
+}
+
 void write_surfaces(const SurfaceModel& model, const std::filesystem::path& surface_file,
                     const std::filesystem::path& points_file) {
-  const PointArrays points = arrays_of(model.points());
-  const SurfaceMesh& surface = model.surface();
-  const std::vector<double> sigmas = surface_sigmas(surface, model.points());
-  write_ply(surface_file, {surface.vertices, surface.normals,
-                           std::vector<float>(sigmas.begin(), sigmas.end()), surface.triangles});
-  write_ply(points_file, {points.positions, points.normals, point_sigmas(points)});
+  write_surfaces(model.surface(), model.points(), surface_file, points_file);
 }
 
 }  // namespace viewgain

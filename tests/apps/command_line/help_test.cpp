@@ -25,8 +25,9 @@ using nlohmann::json;
 using Strings = std::vector<std::string>;
 
 // In an order in which the examples of their help find what they name.
-const Strings kSubcommands{"simulate", "integrate", "score",   "candidates", "reconstruct",
-                           "render",   "info",      "convert", "sensors",    "study"};
+const Strings kSubcommands{"simulate",    "integrate", "score",  "candidates",
+                           "reconstruct", "render",    "info",   "convert",
+                           "sensors",     "study",     "surface"};
 
 Strings words_of(const std::string& text) {
   std::istringstream in(text);
@@ -129,7 +130,7 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
     run_example(calls[0]);
     ++cases;
   }
-  EXPECT_EQ(cases, 10U);
+  EXPECT_EQ(cases, 11U);
 }
 
 TEST_F(Help, ManPagesHaveEveryFlag) {
@@ -167,7 +168,7 @@ TEST_F(Help, ManPagesAreShownWithoutAWarning) {
     EXPECT_NE(shown.find("SEE ALSO"), std::string::npos) << page;
     ++cases;
   }
-  EXPECT_EQ(cases, 11U);
+  EXPECT_EQ(cases, 12U);
 }
 
 TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
@@ -176,7 +177,8 @@ TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
   Set subcommands(kSubcommands.begin(), kSubcommands.end());
   subcommands.insert({"--help", "--version"});
   EXPECT_EQ(completions({"viewgain", ""}), subcommands);
-  EXPECT_EQ(completions({"viewgain", "s"}), (Set{"score", "sensors", "simulate", "study"}));
+  EXPECT_EQ(completions({"viewgain", "s"}),
+            (Set{"score", "sensors", "simulate", "study", "surface"}));
   std::size_t cases = 0;
   for (const std::string& subcommand : kSubcommands) {
     EXPECT_EQ(completions({"viewgain", subcommand, "--"}), flags_in_help(subcommand)) << subcommand;
@@ -209,7 +211,7 @@ TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
     EXPECT_EQ(completions(line), expected) << words[0] << ' ' << words[1];
     ++cases;
   }
-  EXPECT_EQ(cases, 24U);
+  EXPECT_EQ(cases, 25U);
 }
 
 TEST_F(Help, ZshHasEveryFlag) {

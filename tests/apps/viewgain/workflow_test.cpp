@@ -445,6 +445,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--out --picture --report --json --threads =log_diagonal =10 [m]"},
       {"sensors", "NAME --json --threads"},
       {"study", "SPEC --out --jobs --plots --json --threads"},
+      {"surface", "MAP --out --points --truth --size --recenter --up --json --threads =off =z [m]"},
       {"info", "MAP --hash --criterion --region --json --threads =log_diagonal"},
       {"candidates",
        "MAP --generator --sensor --count --distance --center --reach --body --support-plane "
@@ -487,7 +488,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 203);
+  EXPECT_EQ(words, 215);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

@@ -3,14 +3,24 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "viewgain/core/export.hpp"
+#include "viewgain/grid/fused_points.hpp"
+#include "viewgain/mesh/surface.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 
 namespace viewgain {
 
-/// Writes the model's surface and its points as PLY, each vertex with its normal and its standard
-/// deviation along it (`sigma` [m]). Atomic, each file for itself. Throws Error(io).
+/// Writes a surface and the points that it goes through as PLY, each vertex with its normal and its
+/// standard deviation along it (`sigma` [m]). Atomic, each file for itself; an empty name: not
+/// written. Throws Error(io).
+VIEWGAIN_EXPORT void write_surfaces(const SurfaceMesh& surface,
+                                    const std::vector<FusedPoint>& points,
+                                    const std::filesystem::path& surface_file,
+                                    const std::filesystem::path& points_file);
+
+/// The same of a model.
 VIEWGAIN_EXPORT void write_surfaces(const SurfaceModel& model,
                                     const std::filesystem::path& surface_file,
                                     const std::filesystem::path& points_file);
