@@ -4,6 +4,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -29,7 +30,18 @@ namespace {
 namespace fs = std::filesystem;
 
 // What the value of an option names.
-enum class Kind { input, reach, frames, run, output, picture, page, frames_output, run_output };
+enum class Kind {
+  input,
+  reach,
+  folder,
+  frames,
+  run,
+  output,
+  picture,
+  page,
+  frames_output,
+  run_output
+};
 struct FileOption {
   std::string_view name;
   Kind kind;
@@ -45,7 +57,8 @@ constexpr std::array kFileOptions{
     FileOption{"--out", Kind::output},     FileOption{"--save-config", Kind::output},
     FileOption{"INPUT", Kind::run},        FileOption{"--report", Kind::page},
     FileOption{"SPEC", Kind::input},       FileOption{"--truth", Kind::input},
-    FileOption{"--points", Kind::output}};
+    FileOption{"--points", Kind::output},  FileOption{"SOURCE", Kind::folder},
+    FileOption{"--mask", Kind::folder}};
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 
@@ -62,7 +75,7 @@ struct NamedFile {
 
 Kind kind_of(const FileOption& option, const std::string& subcommand) {
   if (option.name != "--out") return option.kind;
-  if (subcommand == "simulate") return Kind::frames_output;
+  if (subcommand == "simulate" || subcommand == "import") return Kind::frames_output;
   if (subcommand == "render") return Kind::picture;
   return subcommand == "reconstruct" || subcommand == "study" ? Kind::run_output : option.kind;
 }
@@ -126,7 +139,14 @@ std::vector<Identity> identities(const NamedFile& file) {
   return found;
 }
 
+// Of a folder any file may be read.
+bool lies_in(const NamedFile& file, const NamedFile& folder) {
+  const fs::path inner = Identity(file.path).path, outer = Identity(folder.path).path;
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
 bool have_a_common_file(const NamedFile& a, const NamedFile& b) {
+  if (b.kind == Kind::folder) return lies_in(a, b);
   const std::vector<Identity> of_b = identities(b);
   for (const Identity& file : identities(a)) {
     for (const Identity& other : of_b) {

@@ -9,7 +9,9 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "viewgain/core/atomic_file.hpp"
@@ -75,6 +77,35 @@ bool decode_rgb(png_structp png, png_infop info, PngState& state, RgbImage& imag
   return true;
 }
 
+// snprintf into a string of fixed size keeps it free of temporaries.
+bool has_size(png_structp png, png_infop info, PngState& state, int width, int height) {
+  const png_uint_32 columns = png_get_image_width(png, info);
+  const png_uint_32 rows = png_get_image_height(png, info);
+  if (columns == static_cast<png_uint_32>(width) && rows == static_cast<png_uint_32>(height)) {
+    return true;
+  }
+  std::snprintf(state.message.data(), state.message.size(),
+                "the image has %lux%lu pixels, not %dx%d", static_cast<unsigned long>(columns),
+                static_cast<unsigned long>(rows), width, height);
+  return false;
+}
+
+bool decode_gray8(png_structp png, png_infop info, PngState& state, Gray8Image& image) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  png_set_read_fn(png, &state, read_bytes);
+  png_read_info(png, info);
+  if (png_get_bit_depth(png, info) > 8 || png_get_color_type(png, info) != PNG_COLOR_TYPE_GRAY) {
+    png_error(png, "not a grayscale image of 1 to 8 bits");
+  }
+  if (!has_size(png, info, state, image.width, image.height)) return false;
+  png_set_packing(png);  // a byte a pixel
+  (void)png_set_interlace_handling(png);
+  png_read_update_info(png, info);
+  png_read_image(png, state.rows.data());
+  png_read_end(png, nullptr);
+  return true;
+}
+
 bool decode(png_structp png, png_infop info, PngState& state, GrayImage& image) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &state, read_bytes);
@@ -82,15 +113,7 @@ bool decode(png_structp png, png_infop info, PngState& state, GrayImage& image) 
   if (png_get_bit_depth(png, info) != 16 || png_get_color_type(png, info) != PNG_COLOR_TYPE_GRAY) {
     png_error(png, "not a 16-bit grayscale image");
   }
-  if (png_get_image_width(png, info) != static_cast<png_uint_32>(image.width) ||
-      png_get_image_height(png, info) != static_cast<png_uint_32>(image.height)) {
-    // snprintf into a string of fixed size keeps this function free of temporaries.
-    std::snprintf(
-        state.message.data(), state.message.size(), "the image has %lux%lu pixels, not %dx%d",
-        static_cast<unsigned long>(png_get_image_width(png, info)),
-        static_cast<unsigned long>(png_get_image_height(png, info)), image.width, image.height);
-    return false;
-  }
+  if (!has_size(png, info, state, image.width, image.height)) return false;
   png_set_swap(png);  // PNG is big-endian, this machine is not
   (void)png_set_interlace_handling(png);
   png_read_update_info(png, info);
@@ -169,23 +192,57 @@ void read_image(const std::filesystem::path& path, PngState& state, const Decode
   }
 }
 
-}  // namespace
-
-GrayImage read_gray_png(const std::filesystem::path& path, int width, int height) {
+// An image to read into, of which `state` knows the rows.
+template <typename Image>
+Image blank_image(const std::filesystem::path& path, int width, int height, PngState& state) {
   if (width <= 0 || height <= 0) {
     fail(ErrorCode::invalid_argument, path,
          "asked for as " + std::to_string(width) + " x " + std::to_string(height) + " px");
   }
-  PngState state;
-  GrayImage image{width, height, {}};
+  Image image{width, height, {}};
   const auto columns = static_cast<std::size_t>(width);
   image.pixels.resize(columns * static_cast<std::size_t>(height));
   for (std::size_t v = 0; v < static_cast<std::size_t>(height); ++v) {
     state.rows.push_back(reinterpret_cast<png_bytep>(image.pixels.data() + v * columns));
   }
+  return image;
+}
+
+}  // namespace
+
+GrayImage read_gray_png(const std::filesystem::path& path, int width, int height) {
+  PngState state;
+  auto image = blank_image<GrayImage>(path, width, height, state);
   read_image(path, state,
              [&](png_structp png, png_infop info) { return decode(png, info, state, image); });
   return image;
+}
+
+Gray8Image read_gray8_png(const std::filesystem::path& path, int width, int height) {
+  PngState state;
+  auto image = blank_image<Gray8Image>(path, width, height, state);
+  read_image(path, state, [&](png_structp png, png_infop info) {
+    return decode_gray8(png, info, state, image);
+  });
+  return image;
+}
+
+std::array<int, 2> png_size(const std::filesystem::path& path) {
+  constexpr std::string_view kBegin("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
+  const std::string head = file_head(path, kBegin.size() + 8);
+  const auto number = [&head](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) {
+      value = value << 8U | static_cast<unsigned char>(head[i]);
+    }
+    return value;
+  };
+  constexpr std::uint32_t kMost = std::numeric_limits<std::int32_t>::max();
+  if (head.size() < kBegin.size() + 8 || !head.starts_with(kBegin) ||
+      number(kBegin.size()) > kMost || number(kBegin.size() + 4) > kMost) {
+    fail(ErrorCode::format, path, "not a usable image: not a PNG file");
+  }
+  return {static_cast<int>(number(kBegin.size())), static_cast<int>(number(kBegin.size() + 4))};
 }
 
 RgbImage read_rgb_png(const std::filesystem::path& path) {

@@ -61,7 +61,8 @@ void remove_leftovers(const fs::path& folder, const std::string& prefix) {
 
 // What says that the other files are there comes after them.
 bool is_record(const fs::path& file) {
-  return file == "run.json" || file == "poses.txt" || file == "simulated.txt";
+  return file == "run.json" || file == "poses.txt" || file == "simulated.txt" ||
+         file == "imported.txt";
 }
 
 }  // namespace

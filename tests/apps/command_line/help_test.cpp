@@ -3,6 +3,7 @@
 
 // The help's examples work; man pages and completion say what the help says.
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -16,6 +17,7 @@
 
 #include "apps/program_runner.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/png.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain {
@@ -25,9 +27,9 @@ using nlohmann::json;
 using Strings = std::vector<std::string>;
 
 // In an order in which the examples of their help find what they name.
-const Strings kSubcommands{"simulate",    "integrate", "score",  "candidates",
-                           "reconstruct", "render",    "info",   "convert",
-                           "sensors",     "study",     "surface"};
+const Strings kSubcommands{"simulate",   "import",      "integrate", "score",
+                           "candidates", "reconstruct", "render",    "info",
+                           "convert",    "sensors",     "study",     "surface"};
 
 Strings words_of(const std::string& text) {
   std::istringstream in(text);
@@ -102,9 +104,10 @@ TEST_F(Help, GroupsSubcommandsByTaskAndItsExamplesWork) {
   const std::string help = run_well({"--help"});
   std::size_t last = 0;
   for (const char* line :
-       {"\nThe whole loop:\n  reconstruct ", "\nMake a map:\n  simulate ", "\n  integrate ",
-        "\nChoose views:\n  score ", "\n  candidates ", "\nLook and convert:\n  info ",
-        "\n  convert ", "\n  render ", "\n  sensors ", "\nExamples:\n  viewgain "}) {
+       {"\nThe whole loop:\n  reconstruct ", "\nMake a map:\n  simulate ", "\n  import ",
+        "\n  integrate ", "\nChoose views:\n  score ", "\n  candidates ",
+        "\nLook and convert:\n  info ", "\n  surface ", "\n  convert ", "\n  render ",
+        "\n  sensors ", "\nExamples:\n  viewgain "}) {
     const std::size_t at = help.find(line);
     ASSERT_NE(at, std::string::npos) << line;
     EXPECT_GT(at + 1, last) << line;
@@ -122,6 +125,10 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
   write("spec.toml",
         "objects = [\"mesh.off\"]\npolicies = [\"frontier\"]\nseeds = [1]\nsensors = "
         "[\"sr4000\"]\nvoxels = [0.02]\nsizes = [0.3]\nmax_views = 1\n");
+  std::filesystem::create_directories(dir / "scene/depth");
+  write_png(dir / "scene/depth/0.png", GrayImage{4, 3, std::vector<std::uint16_t>(12, 1000)});
+  write("scene/pose/0.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  write("scene/intrinsic/intrinsic_depth.txt", "4 0 2 0\n0 4 1 0\n0 0 1 0\n0 0 0 1\n");
   std::size_t cases = 0;
   for (const std::string& subcommand : kSubcommands) {
     const std::vector<Strings> calls = examples({subcommand});
@@ -130,7 +137,7 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
     run_example(calls[0]);
     ++cases;
   }
-  EXPECT_EQ(cases, 11U);
+  EXPECT_EQ(cases, 12U);
 }
 
 TEST_F(Help, ManPagesHaveEveryFlag) {
@@ -168,7 +175,7 @@ TEST_F(Help, ManPagesAreShownWithoutAWarning) {
     EXPECT_NE(shown.find("SEE ALSO"), std::string::npos) << page;
     ++cases;
   }
-  EXPECT_EQ(cases, 12U);
+  EXPECT_EQ(cases, 13U);
 }
 
 TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
@@ -199,6 +206,8 @@ TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
       {{"reconstruct", "--generator", "b"}, {"boundary"}},
       {{"reconstruct", "--policy", "f"}, {"frontier", "fibonacci"}},
       {{"integrate", "--carve", ""}, {"cones", "lines"}},
+      {{"import", "scene", "--format", ""}, {"tum", "bop", "scannet", "icl-nuim"}},
+      {{"import", "scene", "--format", "s"}, {"scannet"}},
       {{"simulate", "--sensor", "k"}, {"kinect_v1"}},
       {{"sensors", "d"}, {"d435"}},
       // A number or a file's name: bash looks for files.
@@ -211,7 +220,7 @@ TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
     EXPECT_EQ(completions(line), expected) << words[0] << ' ' << words[1];
     ++cases;
   }
-  EXPECT_EQ(cases, 25U);
+  EXPECT_EQ(cases, 28U);
 }
 
 TEST_F(Help, ZshHasEveryFlag) {

@@ -434,6 +434,9 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--calibrate-hazard --support-plane --prior-sigma --with-covariance --out --map --json "
        "--threads =carve "
        "=cones =probabilistic =viewpoint 1e-4 [m]"},
+      {"import",
+       "SOURCE --format --sensor --intrinsics --max-time-gap --mask --out --json --threads =0.02 "
+       "[s] [px]"},
       {"convert",
        "IN OUT --workspace --prior-sigma --sensor --with-covariance --json --threads .ot [m]"},
       {"score",
@@ -488,7 +491,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 215);
+  EXPECT_EQ(words, 227);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

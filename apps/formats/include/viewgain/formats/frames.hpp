@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/png.hpp"
 #include "viewgain/formats/staged_folder.hpp"
 
 namespace viewgain {
@@ -38,9 +41,10 @@ struct VIEWGAIN_EXPORT FrameSequence {
 
 /// Opens either layout: poses.txt + frame-NNNNNN.depth.png (line i is frame i) + sensor.toml, or
 /// frame-NNNNNN.depth.png + frame-NNNNNN.pose.txt + camera-intrinsics.txt, whose numbers may have
-/// gaps. The scale is, unless given, 1e-4 m per unit where there are poses.txt and sensor.toml,
-/// else 1e-3. Beside a depth image there may be a frame-NNNNNN.amplitude.png. `sensor`: preset or
-/// .toml file, empty for the folder's own. Throws Error naming the file that is missing or wrong.
+/// gaps. The scale is, unless given, what depth-scale.txt says [m per unit], without one 1e-4 where
+/// there are poses.txt and sensor.toml, else 1e-3. Beside a depth image there may be a
+/// frame-NNNNNN.amplitude.png. `sensor`: preset or .toml file, empty for the folder's own. Throws
+/// Error naming the file that is missing or wrong.
 [[nodiscard]] VIEWGAIN_EXPORT FrameSequence open_frames(const std::filesystem::path& dir,
                                                         const std::string& sensor = {},
                                                         std::optional<double> depth_scale = {});
@@ -52,8 +56,8 @@ struct VIEWGAIN_EXPORT FrameSequence {
 load_frame(const FrameSequence& frames, std::size_t index,
            OutOfRangeMeaning meaning = OutOfRangeMeaning::carve);
 
-/// The files of `dir` that make up frames of either layout, and what `simulate` leaves with them,
-/// relative to it; none if there is no such folder.
+/// The files of `dir` that make up frames of either layout, and what `simulate` and `import` leave
+/// with them, relative to it; none if there is no such folder.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::filesystem::path> frame_files(
     const std::filesystem::path& dir);
 
@@ -82,6 +86,34 @@ class VIEWGAIN_EXPORT FramesWriter {
   StagedFolder staged_;
   std::size_t written_ = 0;     // frames
   int width_ = 0, height_ = 0;  // of them [px]
+};
+
+/// Writes frames in the recorded layout, depth images as they are, into a folder that appears, or
+/// changes, only when all is written. imported.txt in it lists the files; only those are ever
+/// replaced.
+class VIEWGAIN_EXPORT RecordedFramesWriter {
+ public:
+  /// Throws Error(io), and Error(invalid_argument) if the folder holds frames, poses or a sensor
+  /// that no RecordedFramesWriter has written.
+  explicit RecordedFramesWriter(const std::filesystem::path& dir);
+
+  /// Writes frame-NNNNNN.depth.png and frame-NNNNNN.pose.txt, NNNNNN being the number. Throws
+  /// Error(io), and Error(invalid_argument) for a number that was written, an image that is none or
+  /// of another size than the first, or a pose that is no rigid transform (1e-3).
+  void write_frame(std::uint64_t number, const GrayImage& depth, const Pose& T_world_camera);
+
+  /// Writes camera-intrinsics.txt, depth-scale.txt and, where a sensor is given, sensor.toml with
+  /// this camera in it, and puts all in the place of an earlier import. Throws Error(io), and
+  /// Error(invalid_argument) without a frame, for a camera of another size or a scale that is not
+  /// positive and finite.
+  void commit(const PinholeCamera& camera, double depth_scale,
+              const std::optional<Sensor>& sensor = {});
+
+ private:
+  std::vector<std::filesystem::path> earlier_;
+  StagedFolder staged_;
+  std::set<std::string> files_;  // written
+  int width_ = 0, height_ = 0;   // of the images [px]
 };
 
 }  // namespace viewgain

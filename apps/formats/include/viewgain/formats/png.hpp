@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -41,6 +42,15 @@ struct VIEWGAIN_EXPORT Gray8Image {
 /// Reads an 8-bit RGB PNG of at most 16,384 px a side; raw values, no gamma. Throws as
 /// read_gray_png().
 [[nodiscard]] VIEWGAIN_EXPORT RgbImage read_rgb_png(const std::filesystem::path& path);
+
+/// Reads a grayscale PNG of 1 to 8 bits of exactly this size; raw values, widened to 8 bits. Throws
+/// as read_gray_png().
+[[nodiscard]] VIEWGAIN_EXPORT Gray8Image read_gray8_png(const std::filesystem::path& path,
+                                                        int width, int height);
+
+/// Width and height of a PNG [px], from the file's first bytes. Throws Error(io) if it cannot be
+/// read and Error(format), naming it, if it does not begin as a PNG does.
+[[nodiscard]] VIEWGAIN_EXPORT std::array<int, 2> png_size(const std::filesystem::path& path);
 
 /// What write_png writes. Throws Error(invalid_argument) as it does.
 [[nodiscard]] VIEWGAIN_EXPORT std::string png_bytes(const RgbImage& image);

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/formats/png.hpp"
+
+namespace viewgain {
+
+/// A folder of masks, which say where depth images show what is no part of the scene, as the arm
+/// that carries the camera. The mask of a depth image has the image's name and size; it is a
+/// grayscale PNG of 1 to 8 bits. 0: the pixel counts; any other value: it says nothing.
+/// Thread safety: const members may run from many threads.
+class VIEWGAIN_EXPORT MaskFolder {
+ public:
+  /// Throws Error(io), naming it, if there is no such folder.
+  explicit MaskFolder(std::filesystem::path folder);
+
+  /// The mask of the depth image of this name; nothing where the folder has none. Throws Error(io)
+  /// or Error(format), naming the file, for one that cannot be used.
+  [[nodiscard]] std::optional<Gray8Image> mask_of(const std::filesystem::path& image, int width,
+                                                  int height) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// Makes the pixels invalid (0) that the mask says; returns how many were not invalid before.
+/// Throws Error(invalid_argument) if the sizes differ.
+VIEWGAIN_EXPORT std::uint64_t apply_mask(const Gray8Image& mask, GrayImage& depth);
+VIEWGAIN_EXPORT std::uint64_t apply_mask(const Gray8Image& mask, DepthFrame& frame);
+
+}  // namespace viewgain

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "frame_names.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cinttypes>
+#include <cstdio>
+
+namespace viewgain {
+
+std::string frame_name(std::uint64_t index, std::string_view suffix) {
+  std::array<char, 32> number{};
+  std::snprintf(number.data(), number.size(), "%06" PRIu64, index);
+  return std::string(kFramePrefix) + number.data() + std::string(suffix);
+}
+
+std::optional<std::string> frame_number(const std::string& name, std::string_view suffix) {
+  if (!name.starts_with(kFramePrefix) || !name.ends_with(suffix)) return std::nullopt;
+  if (name.size() <= kFramePrefix.size() + suffix.size()) return std::nullopt;
+  const std::string digits =
+      name.substr(kFramePrefix.size(), name.size() - kFramePrefix.size() - suffix.size());
+  if (digits.size() > 18 || !std::all_of(digits.begin(), digits.end(),
+                                         [](unsigned char c) { return std::isdigit(c) != 0; })) {
+    return std::nullopt;
+  }
+  return digits;
+}
+
+}  // namespace viewgain

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace viewgain {
+
+// The files in a folder of frames.
+inline constexpr std::string_view kFramePrefix = "frame-";
+inline constexpr std::string_view kDepthSuffix = ".depth.png";
+inline constexpr std::string_view kAmplitudeSuffix = ".amplitude.png";
+inline constexpr std::string_view kPoseSuffix = ".pose.txt";
+inline constexpr std::array kFrameSuffixes{kDepthSuffix, kAmplitudeSuffix, kPoseSuffix};
+inline constexpr const char* kPoses = "poses.txt";
+inline constexpr const char* kSensor = "sensor.toml";
+inline constexpr const char* kIntrinsics = "camera-intrinsics.txt";
+inline constexpr const char* kSimulated = "simulated.txt";
+inline constexpr const char* kScale = "depth-scale.txt";
+inline constexpr const char* kImported = "imported.txt";
+inline constexpr std::array kNames{kPoses, kSensor, kIntrinsics, kSimulated, kScale, kImported};
+
+/// "frame-000050.depth.png" of 50 and ".depth.png".
+[[nodiscard]] std::string frame_name(std::uint64_t index, std::string_view suffix);
+
+/// "000050" of "frame-000050.depth.png"; nothing for other names.
+[[nodiscard]] std::optional<std::string> frame_number(const std::string& name,
+                                                      std::string_view suffix);
+
+}  // namespace viewgain

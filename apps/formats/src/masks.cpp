@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/formats/masks.hpp"
+
+#include <cstddef>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "folders.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+namespace {
+
+template <typename Value>
+std::uint64_t apply(const Gray8Image& mask, int width, int height, std::vector<Value>& depth) {
+  if (mask.width != width || mask.height != height || mask.pixels.size() != depth.size()) {
+    throw Error(ErrorCode::invalid_argument, "a mask of " + std::to_string(mask.width) + " x " +
+                                                 std::to_string(mask.height) +
+                                                 " px for an image of " + std::to_string(width) +
+                                                 " x " + std::to_string(height) + " px");
+  }
+  std::uint64_t removed = 0;
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (mask.pixels[i] == 0) continue;
+    removed += depth[i] != Value{0} ? 1 : 0;
+    depth[i] = Value{0};
+  }
+  return removed;
+}
+
+}  // namespace
+
+MaskFolder::MaskFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder_, ignored)) {
+    throw Error(ErrorCode::io, folder_.string() + ": no such folder");
+  }
+}
+
+std::optional<Gray8Image> MaskFolder::mask_of(const std::filesystem::path& image, int width,
+                                              int height) const {
+  const std::filesystem::path file = folder_ / image.filename();
+  if (!is_there(file)) return std::nullopt;
+  return read_gray8_png(file, width, height);
+}
+
+std::uint64_t apply_mask(const Gray8Image& mask, GrayImage& depth) {
+  return apply(mask, depth.width, depth.height, depth.pixels);
+}
+
+std::uint64_t apply_mask(const Gray8Image& mask, DepthFrame& frame) {
+  static_assert(DepthFrame::kInvalid == 0.0F);
+  return apply(mask, frame.width, frame.height, frame.depth);
+}
+
+}  // namespace viewgain

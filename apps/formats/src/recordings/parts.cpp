@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "recordings/parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+#include "folders.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
+#include "viewgain/core/text.hpp"
+
+namespace viewgain {
+
+namespace fs = std::filesystem;
+
+TimedPoses read_timed_poses(const fs::path& path) {
+  TimedPoses poses{read_tum(path), {}};
+  const std::string bytes = file_bytes(path);
+  for (LineReader line(path.string(), bytes); line.next();) {
+    if (line.words().empty() || line.words().front().front() == '#') continue;
+    double square = 0;  // of the quaternion's norm
+    for (std::size_t i = 4; i < 8; ++i) square += line.number(i) * line.number(i);
+    poses.mended.push_back(std::abs(std::sqrt(square) - 1) > kUnnoticedRotation);
+  }
+  return poses;
+}
+
+std::map<std::uint64_t, fs::path> numbered_images(const fs::path& folder) {
+  constexpr std::size_t kMostDigits = 18;
+  std::map<std::uint64_t, fs::path> images;
+  for (const fs::path& name : names_in(folder)) {
+    const std::string digits = name.stem().string();
+    if (name.extension() != ".png" || digits.empty() || digits.size() > kMostDigits ||
+        digits.find_first_not_of("0123456789") != std::string::npos) {
+      continue;
+    }
+    const auto [other, is_new] = images.emplace(std::stoull(digits), folder / name);
+    if (!is_new) {
+      throw Error(ErrorCode::format,
+                  (folder / name).string() + ": has the same number as " + other->second.string());
+    }
+  }
+  if (images.empty()) {
+    throw Error(ErrorCode::io, folder.string() + ": no folder with images called NUMBER.png");
+  }
+  return images;
+}
+
+PinholeCamera camera_of_matrix(const std::array<double, 9>& k, const std::string& name) {
+  const bool is_finite =
+      std::all_of(k.begin(), k.end(), [](double value) { return std::isfinite(value); });
+  if (!is_finite || !(k[0] > 0) || k[4] == 0 || k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 ||
+      k[8] != 1) {
+    throw Error(ErrorCode::format, name +
+                                       ": must have the form fx 0 cx, 0 fy cy, 0 0 1 (no skew), fx "
+                                       "positive and fy not 0");
+  }
+  PinholeCamera camera;
+  camera.fx = k[0], camera.cx = k[2];
+  camera.fy = k[4], camera.cy = k[5];
+  return camera;
+}
+
+void refuse_camera(const RecordingConfig& config, const fs::path& source) {
+  if (!config.camera) return;
+  throw Error(ErrorCode::invalid_argument,
+              source.string() + ": a recording of this format has intrinsics of its own");
+}
+
+}  // namespace viewgain

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/recordings.hpp"
+
+namespace viewgain {
+
+// The formats, a file each. They leave the camera's size, the frames of other sizes and reversed
+// rows to open_recording().
+[[nodiscard]] Recording open_tum(const std::filesystem::path& source,
+                                 const RecordingConfig& config);
+[[nodiscard]] Recording open_bop(const std::filesystem::path& source,
+                                 const RecordingConfig& config);
+[[nodiscard]] Recording open_scannet(const std::filesystem::path& source,
+                                     const RecordingConfig& config);
+[[nodiscard]] Recording open_icl_nuim(const std::filesystem::path& source,
+                                      const RecordingConfig& config);
+
+/// How far off a rotation may be, and from where on it is mended.
+inline constexpr double kMendableRotation = 1e-2;
+inline constexpr double kUnnoticedRotation = 1e-9;
+
+/// The depth images of TUM and of what is like it [m per unit].
+inline constexpr double kTumDepthUnit = 1.0 / 5000;
+
+/// A TUM file's poses, and which of them were mended.
+struct TimedPoses {
+  PoseList list;
+  std::vector<bool> mended;
+};
+/// Throws as read_tum().
+[[nodiscard]] TimedPoses read_timed_poses(const std::filesystem::path& path);
+
+/// The folder's images that are called NUMBER.png, by number. Throws Error(io) if there are none
+/// and Error(format), naming the file, for two of one number.
+[[nodiscard]] std::map<std::uint64_t, std::filesystem::path> numbered_images(
+    const std::filesystem::path& folder);
+
+/// The camera of a 3x3 matrix, row by row. Throws Error(format), beginning with `name`, unless it
+/// is fx 0 cx, 0 fy cy, 0 0 1 with fx > 0, fy not 0 and all numbers finite.
+[[nodiscard]] PinholeCamera camera_of_matrix(const std::array<double, 9>& k,
+                                             const std::string& name);
+
+/// Throws Error(invalid_argument) if the config has a camera: this format has its own.
+void refuse_camera(const RecordingConfig& config, const std::filesystem::path& source);
+
+}  // namespace viewgain

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "folders.hpp"
+#include "recordings/parts.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
+#include "viewgain/core/text.hpp"
+
+namespace viewgain {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMillimetre = 1e-3;  // [m]
+
+std::vector<double> numbers_of(const fs::path& path) {
+  const std::string bytes = file_bytes(path);
+  std::vector<double> numbers;
+  for (LineReader line(path.string(), bytes); line.next();) {
+    for (std::size_t i = 0; i < line.words().size(); ++i) numbers.push_back(line.number(i));
+  }
+  return numbers;
+}
+
+PinholeCamera read_camera(const fs::path& path) {
+  const std::vector<double> m = numbers_of(path);
+  if (m.size() != 16) {
+    throw Error(ErrorCode::format, path.string() + ": expected 16 numbers (a 4x4 matrix), found " +
+                                       std::to_string(m.size()));
+  }
+  return camera_of_matrix({m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, path.string());
+}
+
+// Where tracking was lost all numbers are -inf.
+bool is_lost(const fs::path& path) {
+  for (const double value : numbers_of(path)) {
+    if (!std::isfinite(value)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Recording open_scannet(const fs::path& source, const RecordingConfig& config) {
+  refuse_camera(config, source);
+  Recording recording;
+  recording.camera = read_camera(source / "intrinsic" / "intrinsic_depth.txt");
+  recording.depth_scale = kMillimetre;
+  for (const auto& [number, image] : numbered_images(source / "depth")) {
+    const fs::path pose = source / "pose" / (image.stem().string() + ".txt");
+    if (!is_there(pose)) {
+      ++recording.dropped["no_pose"];
+    } else if (is_lost(pose)) {
+      ++recording.dropped["lost"];
+    } else {
+      bool mended = false;
+      recording.frames.push_back({number, image, read_pose_matrix(pose, &mended)});
+      recording.orthonormalized += mended ? 1 : 0;
+    }
+  }
+  return recording;
+}
+
+}  // namespace viewgain

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recordings/parts.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/file_bytes.hpp"
+#include "viewgain/core/text.hpp"
+
+namespace viewgain {
+namespace {
+
+// Poses in the order of their times, whatever order the file has.
+class PosesInTime {
+ public:
+  explicit PosesInTime(const TimedPoses& poses) : times_(poses.list.timestamps) {
+    order_.resize(times_.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::stable_sort(order_.begin(), order_.end(),
+                     [this](std::size_t a, std::size_t b) { return times_[a] < times_[b]; });
+  }
+
+  // The pose nearest in time, the earlier of two; nothing if it is farther than the gap.
+  [[nodiscard]] std::optional<std::size_t> nearest(double time, double gap) const {
+    const auto after =
+        std::lower_bound(order_.begin(), order_.end(), time,
+                         [this](std::size_t pose, double wanted) { return times_[pose] < wanted; });
+    std::optional<std::size_t> best;
+    const auto offer = [&](std::size_t pose) {
+      const double off = std::abs(times_[pose] - time);
+      if (off <= gap && (!best || off < std::abs(times_[*best] - time))) best = pose;
+    };
+    if (after != order_.begin()) offer(*(after - 1));
+    if (after != order_.end()) offer(*after);
+    return best;
+  }
+
+ private:
+  const std::vector<double>& times_;
+  std::vector<std::size_t> order_;
+};
+
+}  // namespace
+
+Recording open_tum(const std::filesystem::path& source, const RecordingConfig& config) {
+  if (!config.camera) {
+    throw Error(ErrorCode::invalid_argument,
+                source.string() + ": a TUM recording does not say its intrinsics");
+  }
+  const std::filesystem::path list = source / "depth.txt";
+  const std::string bytes = file_bytes(list);
+  const TimedPoses poses = read_timed_poses(source / "groundtruth.txt");
+  const PosesInTime in_time(poses);
+  Recording recording;
+  recording.camera = *config.camera;
+  recording.depth_scale = kTumDepthUnit;
+  std::uint64_t number = 0;
+  for (LineReader line(list.string(), bytes); line.next();) {
+    if (line.words().empty() || line.words().front().front() == '#') continue;
+    if (line.words().size() != 2) {
+      line.fail("expected a timestamp and an image, found " + std::to_string(line.words().size()) +
+                " words");
+    }
+    const auto pose = in_time.nearest(line.finite_number(0), config.max_time_gap);
+    if (pose) {
+      recording.frames.push_back({number, source / line.words()[1], poses.list.poses[*pose]});
+      recording.orthonormalized += poses.mended[*pose] ? 1 : 0;
+    } else {
+      ++recording.dropped["no_pose"];
+    }
+    ++number;
+  }
+  if (number == 0) throw Error(ErrorCode::format, list.string() + ": names no image");
+  return recording;
+}
+
+}  // namespace viewgain
