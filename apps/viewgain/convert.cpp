@@ -53,7 +53,7 @@ void convert(const Options& options) {
   if (!options.sensor.empty()) sensor = load_sensor(options.sensor);
   const MapOfSensor map = load_map_of_sensor(options.in, sensor ? &*sensor : nullptr, config);
   const BeliefGrid& grid = map.grid;
-  VdbWriteConfig how{options.with_covariance == "on"};
+  VdbWriteConfig how = noting_frames(map.frames, {options.with_covariance == "on"});
   if (map.sensor) how = noting_sensor(*map.sensor, std::move(how));
   const LostInTree lost = save_map(grid, options.out, how);
   warn_of_lost_frame(lost, options.out);

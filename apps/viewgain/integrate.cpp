@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -78,11 +79,14 @@ BeliefGrid new_map(ReadingSource& source, const Options& options) {
   return BeliefGrid(config);
 }
 
-// The map that grows, and whether it had readings of another sensor, or of nobody knows which: then
-// its file does not say which they come from.
+// The map that grows, the sensor of its readings so far and the frames that it has, as far as its
+// file says, and whether its readings were of another sensor, or of nobody knows which: then its
+// file does not say which they come from.
 struct GrownMap {
   BeliefGrid grid;
   bool is_of_two = false;
+  std::optional<Sensor> sensor{};
+  std::set<std::string> frames{};
 };
 
 // An existing map keeps its layout and prior; flags that say something else are an error.
@@ -113,10 +117,12 @@ GrownMap continued_map(const Sensor& sensor, const Options& options) {
       conflict("--workspace", options.workspace, describe(grid.workspace()));
     }
   }
-  return {std::move(grid), is_of_two};
+  return {std::move(grid), is_of_two, std::move(map.sensor), std::move(map.frames)};
 }
 
-double median(std::vector<double> values) {
+// Of no values none.
+std::optional<double> median(std::vector<double> values) {
+  if (values.empty()) return std::nullopt;
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
   return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
@@ -124,18 +130,27 @@ double median(std::vector<double> values) {
 
 struct Totals {
   IntegrationReport sum;
+  std::uint64_t masked_pixels = 0;
   std::uint64_t jump_edge_removed = 0;
+  std::size_t skipped = 0;      // frames that the map has already
   std::vector<double> seconds;  // of each frame's integration, reading the image not counted
 };
 
-Totals integrate_all(ReadingSource& source, const Options& options, BeliefGrid& grid) {
+Totals integrate_all(ReadingSource& source, const Options& options, GrownMap& map) {
   Totals totals;
   Progress progress(part_name(options), options.common.quiet);
   for (std::size_t i = 0; i < source.size(); ++i) {
+    const std::string identity = source.identity(i);
+    if (!identity.empty() && !map.frames.insert(identity).second) {
+      ++totals.skipped;
+      progress.update(i + 1, source.size());
+      continue;
+    }
     source.load(i);
+    totals.masked_pixels += source.masked_pixels();
     totals.jump_edge_removed += source.jump_edge_removed();
     const Stopwatch watch;
-    const IntegrationReport report = source.integrate(grid);
+    const IntegrationReport report = source.integrate(map.grid);
     totals.seconds.push_back(watch.seconds());
     totals.sum.readings += report.readings;
     totals.sum.readings_inside += report.readings_inside;
@@ -151,15 +166,18 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
                    const Totals& totals, const LostInTree& lost, double seconds) {
   const GridStatistics statistics = grid.statistics();
   const Index3 dims = grid.dims();
-  const double frame_seconds = median(totals.seconds);
+  const std::size_t taken = totals.seconds.size();
+  const std::optional<double> frame_seconds = median(totals.seconds);
   if (options.common.json) {
     const std::optional<double> scale = source.depth_scale();
     nlohmann::ordered_json json = {
-        {part_name(options) + std::string("s"), source.size()},
+        {part_name(options) + std::string("s"), taken},
+        {"skipped", totals.skipped},
         {"views", grid.views().size()},
         {"readings", totals.sum.readings},
         {"readings_inside", totals.sum.readings_inside},
         {"plane_readings", totals.sum.plane_readings},
+        {"masked_pixels", totals.masked_pixels},
         {"jump_edge_removed", totals.jump_edge_removed},
         {"out_of_range", totals.sum.out_of_range},
         {"invalid", totals.sum.invalid},
@@ -167,11 +185,12 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
         {"sensor", source.sensor().name},
         {"depth_scale", scale ? nlohmann::ordered_json(*scale) : nullptr}};
     json.update(map_json(grid, statistics));
-    json.update({{"lost_T_world_grid", lost.T_world_grid},
-                 {"hash", grid.content_hash()},
-                 {"out", options.out},
-                 {"seconds", seconds},
-                 {"seconds_per_frame", frame_seconds}});
+    json.update(
+        {{"lost_T_world_grid", lost.T_world_grid},
+         {"hash", grid.content_hash()},
+         {"out", options.out},
+         {"seconds", seconds},
+         {"seconds_per_frame", frame_seconds ? nlohmann::ordered_json(*frame_seconds) : nullptr}});
     print_json(json);
     return;
   }
@@ -183,9 +202,15 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   }
   std::printf(
       "%zu %ss (%s), %s readings, %s of them in the workspace; %s out of range, %s invalid\n",
-      source.size(), part_name(options), source.sensor().name.c_str(),
+      taken, part_name(options), source.sensor().name.c_str(),
       with_commas(totals.sum.readings).c_str(), with_commas(totals.sum.readings_inside).c_str(),
       with_commas(totals.sum.out_of_range).c_str(), with_commas(totals.sum.invalid).c_str());
+  if (totals.skipped > 0) {
+    std::printf("skipped, since the map has them already: %zu\n", totals.skipped);
+  }
+  if (!options.mask.empty()) {
+    std::printf("pixels taken away by masks: %s\n", with_commas(totals.masked_pixels).c_str());
+  }
   if (options.jump_edge_filter != "off") {
     std::printf("flying pixels removed: %s\n", with_commas(totals.jump_edge_removed).c_str());
   }
@@ -202,8 +227,12 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
               with_commas(statistics.unknown).c_str(),
               100 * static_cast<double>(statistics.unknown) / voxels,
               with_commas(statistics.free).c_str(), with_commas(statistics.occupied).c_str());
-  std::printf("%.2f s in all; into the map: %.1f ms per %s (median)\n", seconds,
-              1e3 * frame_seconds, part_name(options));
+  std::printf("%.2f s in all", seconds);
+  if (frame_seconds) {
+    std::printf("; into the map: %.1f ms per %s (median)", 1e3 * *frame_seconds,
+                part_name(options));
+  }
+  std::printf("\n");
   std::printf("%s: hash %s\n", options.out.c_str(), grid.content_hash().c_str());
 }
 
@@ -222,7 +251,7 @@ void check_flags(const Options& options, const CLI::App& app) {
   if (options.clouds.empty()) {
     refuse({"--origin", "--poses"}, "is for clouds (--cloud)");
   } else {
-    refuse({"--depth-scale", "--out-of-range", "--carve", "--jump-edge-filter",
+    refuse({"--depth-scale", "--mask", "--out-of-range", "--carve", "--jump-edge-filter",
             "--jump-edge-two-sided", "--calibrate-hazard"},
            "is for depth frames; clouds carve along lines");
     if (!options.poses.empty()) refuse({"--origin"}, "and --poses exclude each other");
@@ -254,10 +283,14 @@ void integrate(const Options& options, const CLI::App& app) {
   GrownMap map = options.map.empty() ? GrownMap{new_map(*source, options)}
                                      : continued_map(source->sensor(), options);
   BeliefGrid& grid = map.grid;
-  const Totals totals = integrate_all(*source, options, grid);
+  const Totals totals = integrate_all(*source, options, map);
   refuse_empty(options, *source, totals);
-  VdbWriteConfig how{options.with_covariance == "on"};
-  if (!map.is_of_two) how = noting_sensor(source->sensor(), std::move(how));
+  VdbWriteConfig how = noting_frames(map.frames, {options.with_covariance == "on"});
+  if (totals.seconds.empty()) {  // its readings are what they were
+    if (map.sensor) how = noting_sensor(*map.sensor, std::move(how));
+  } else if (!map.is_of_two) {
+    how = noting_sensor(source->sensor(), std::move(how));
+  }
   const LostInTree lost = save_map(grid, options.out, how);
   warn_of_lost_frame(lost, options.out);
   print_summary(options, *source, grid, totals, lost, watch.seconds());
@@ -298,6 +331,9 @@ Command add_integrate(CLI::App& program) {
       "--depth-scale", options->depth_scale,
       "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
       "sensor.toml), else 1e-3");
+  app->add_option("--mask", options->mask,
+                  "folder of grayscale PNGs with the depth images' names: where they are not 0, an "
+                  "image says nothing");
   one_of(*app->add_option(
                  "--out-of-range", options->out_of_range,
                  "what 65535 says: carve (nothing up to the maximal range) or invalid (no reading)")
@@ -332,7 +368,8 @@ Command add_integrate(CLI::App& program) {
                  ->capture_default_str());
   app->add_option("--out", options->out, "map to write (.vdb, or OctoMap's .ot)")->required();
   app->add_option("--map", options->map,
-                  "map to continue (.vdb, .ot, .bt); its voxel size, workspace and prior hold");
+                  "map to continue (.vdb, .ot, .bt); its voxel size, workspace and prior hold, and "
+                  "frames that a .vdb has already, by name and content, are skipped");
   add_common_options(*app, options->common);
   add_help(*app, kMapGroup,
            "integrate frames --voxel 0.005 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out map.vdb");

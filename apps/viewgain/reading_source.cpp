@@ -11,6 +11,7 @@
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/cloud_io.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
@@ -49,15 +50,28 @@ class FrameSource : public ReadingSource {
         parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided == "on");
     if (config) filter_.emplace(frames_.sensor.camera, *config);
     if (options.calibrate_hazard == "on") calibration_.emplace(frames_.sensor, support_plane_);
+    if (!options.mask.empty()) {
+      masks_.emplace(options.mask);
+      masks_->require_mask_of_any(frames_.images);
+    }
   }
 
   [[nodiscard]] const Sensor& sensor() const override { return frames_.sensor; }
   [[nodiscard]] std::size_t size() const override { return frames_.images.size(); }
   [[nodiscard]] std::size_t orthonormalized() const override { return frames_.orthonormalized; }
 
+  [[nodiscard]] std::string identity(std::size_t index) const override {
+    return frame_identity(frames_, index);
+  }
+
   void load(std::size_t index) override {
     index_ = index;
     frame_ = load_frame(frames_, index, meaning_);
+    masked_ = 0;
+    if (masks_) {
+      const auto mask = masks_->mask_of(frames_.images[index], frame_.width, frame_.height);
+      if (mask) masked_ = apply_mask(*mask, frame_);
+    }
     removed_ = filter_ ? filter_->apply(frame_) : 0;
   }
   [[nodiscard]] std::optional<Box> bounds() const override {
@@ -70,6 +84,7 @@ class FrameSource : public ReadingSource {
     }
     return integrator_.integrate(grid, frame_, T_world_camera);
   }
+  [[nodiscard]] std::uint64_t masked_pixels() const override { return masked_; }
   [[nodiscard]] std::uint64_t jump_edge_removed() const override { return removed_; }
   [[nodiscard]] std::optional<double> depth_scale() const override { return frames_.depth_scale; }
 
@@ -77,11 +92,13 @@ class FrameSource : public ReadingSource {
   FrameSequence frames_;
   OutOfRangeMeaning meaning_;
   std::optional<double> support_plane_;
+  std::optional<MaskFolder> masks_;
   std::optional<JumpEdgeFilter> filter_;
   std::optional<HazardCalibration> calibration_;
   FrameIntegrator integrator_;
   std::size_t index_ = 0;
   DepthFrame frame_;
+  std::uint64_t masked_ = 0;
   std::uint64_t removed_ = 0;
 };
 

@@ -26,6 +26,7 @@ struct IntegrateOptions {
   std::string workspace;
   std::string sensor;
   std::optional<double> depth_scale;
+  std::string mask;
   std::string out_of_range = "carve";
   std::string carve = "cones";
   std::string occupancy = "probabilistic";
@@ -54,10 +55,15 @@ class ReadingSource {
   /// Poses that were off and were mended.
   [[nodiscard]] virtual std::size_t orthonormalized() const = 0;
 
+  /// By name and content, for the map to remember; empty: it is not remembered.
+  [[nodiscard]] virtual std::string identity(std::size_t /*index*/) const { return {}; }
+
   virtual void load(std::size_t index) = 0;
   /// Of the part's readings, world frame [m].
   [[nodiscard]] virtual std::optional<Box> bounds() const = 0;
   virtual IntegrationReport integrate(BeliefGrid& grid) = 0;
+  /// Pixels of the loaded part with a depth that its mask took.
+  [[nodiscard]] virtual std::uint64_t masked_pixels() const { return 0; }
   /// Readings of the loaded part that the jump-edge filter took.
   [[nodiscard]] virtual std::uint64_t jump_edge_removed() const { return 0; }
   /// Metres per unit of depth images; nothing for clouds.

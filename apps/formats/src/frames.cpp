@@ -3,8 +3,12 @@
 #include "viewgain/formats/frames.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cinttypes>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <map>
 #include <string_view>
 #include <system_error>
@@ -14,6 +18,7 @@
 #include "frame_names.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
+#include "viewgain/core/mix64.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/text.hpp"
 #include "viewgain/formats/png.hpp"
@@ -42,6 +47,12 @@ fs::path amplitude_path(const fs::path& depth_image) {
   std::string name = depth_image.filename().string();
   name.replace(name.size() - kDepthSuffix.size(), kDepthSuffix.size(), kAmplitudeSuffix);
   return depth_image.parent_path() / name;
+}
+
+void check_index(const FrameSequence& frames, std::size_t index) {
+  if (index < frames.images.size()) return;
+  throw Error(ErrorCode::invalid_argument, "there is no frame " + std::to_string(index) + " of " +
+                                               std::to_string(frames.images.size()));
 }
 
 // Nine numbers of a 3x3 matrix fx 0 cx / 0 fy cy / 0 0 1.
@@ -151,10 +162,7 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
 }
 
 DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRangeMeaning meaning) {
-  if (index >= frames.images.size()) {
-    throw Error(ErrorCode::invalid_argument, "there is no frame " + std::to_string(index) + " of " +
-                                                 std::to_string(frames.images.size()));
-  }
+  check_index(frames, index);
   const PinholeCamera& camera = frames.sensor.camera;
   const GrayImage image = read_gray_png(frames.images[index], camera.width, camera.height);
   const float out_of_range =
@@ -171,6 +179,24 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRange
     frame.amplitude.push_back(static_cast<float>(value * kAmplitudeUnit));
   }
   return frame;
+}
+
+std::string frame_identity(const FrameSequence& frames, std::size_t index) {
+  check_index(frames, index);
+  std::uint64_t hash = 0;
+  const auto add = [&hash](std::string_view bytes) {
+    hash = mix64(hash ^ bytes.size());
+    for (const char c : bytes) hash = mix64(hash ^ static_cast<unsigned char>(c));
+  };
+  const fs::path& image = frames.images[index];
+  add(file_bytes(image));
+  if (is_there(amplitude_path(image))) add(file_bytes(amplitude_path(image)));
+  for (const double value : frames.poses[index].m) {
+    hash = mix64(hash ^ std::bit_cast<std::uint64_t>(value));
+  }
+  std::array<char, 17> digits{};
+  std::snprintf(digits.data(), digits.size(), "%016" PRIx64, hash);
+  return std::string(digits.data()) + ' ' + image.filename().string();
 }
 
 std::vector<fs::path> frame_files(const fs::path& dir) {

@@ -2,18 +2,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/formats/map_file.hpp"
 
+#include <sstream>
 #include <string>
 #include <utility>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
+#include "viewgain/core/text.hpp"
 #include "viewgain/formats/file_names.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain {
 namespace {
 
-constexpr const char* kSensorNote = "sensor";  // in the metadata of a .vdb: sensor_toml()
+// In the metadata of a .vdb.
+constexpr const char* kSensorNote = "sensor";  // sensor_toml()
+constexpr const char* kFramesNote = "frames";  // frame_identity(), a line each
+
+std::set<std::string> frames_of_note(const std::string& note, const std::string& file) {
+  constexpr std::size_t kDigits = 16;
+  std::set<std::string> frames;
+  std::istringstream lines(note);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.size() < kDigits + 2 || line.find_first_not_of("0123456789abcdef") != kDigits ||
+        line[kDigits] != ' ') {
+      throw Error(ErrorCode::format,
+                  file + ": the note of its frames holds " + viewgain::quoted(line));
+    }
+    frames.insert(line);
+  }
+  return frames;
+}
 
 }  // namespace
 
@@ -29,9 +48,14 @@ MapOfSensor load_map_of_sensor(const std::filesystem::path& path, const Sensor* 
                                OctomapConfig config) {
   if (!is_octomap(path)) {
     VdbMap map = load_vdb_map(path);
-    const auto note = map.notes.find(kSensorNote);
-    if (note == map.notes.end()) return {std::move(map.grid), std::nullopt};
-    return {std::move(map.grid), parse_sensor_toml(note->second, path.string())};
+    MapOfSensor result{std::move(map.grid), std::nullopt};
+    if (const auto note = map.notes.find(kSensorNote); note != map.notes.end()) {
+      result.sensor = parse_sensor_toml(note->second, path.string());
+    }
+    if (const auto note = map.notes.find(kFramesNote); note != map.notes.end()) {
+      result.frames = frames_of_note(note->second, path.string());
+    }
+    return result;
   }
   const std::string bytes = file_bytes(path);  // once: a pipe cannot be opened again
   if (sensor != nullptr && !config.prior_sigma) {
@@ -43,6 +67,14 @@ MapOfSensor load_map_of_sensor(const std::filesystem::path& path, const Sensor* 
 
 VdbWriteConfig noting_sensor(const Sensor& sensor, VdbWriteConfig config) {
   config.notes[kSensorNote] = sensor_toml(sensor);
+  return config;
+}
+
+VdbWriteConfig noting_frames(const std::set<std::string>& frames, VdbWriteConfig config) {
+  if (frames.empty()) return config;
+  std::string& note = config.notes[kFramesNote];
+  note.clear();
+  for (const std::string& frame : frames) note += frame + "\n";
   return config;
 }
 

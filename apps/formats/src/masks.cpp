@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/formats/masks.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <system_error>
@@ -38,6 +39,16 @@ MaskFolder::MaskFolder(std::filesystem::path folder) : folder_(std::move(folder)
   if (!std::filesystem::is_directory(folder_, ignored)) {
     throw Error(ErrorCode::io, folder_.string() + ": no such folder");
   }
+}
+
+void MaskFolder::require_mask_of_any(const std::vector<std::filesystem::path>& images) const {
+  if (std::any_of(images.begin(), images.end(),
+                  [this](const auto& image) { return is_there(folder_ / image.filename()); })) {
+    return;
+  }
+  throw Error(ErrorCode::invalid_argument,
+              folder_.string() + ": has no mask of the name of a depth image" +
+                  (images.empty() ? "" : ", as " + images.front().filename().string()));
 }
 
 std::optional<Gray8Image> MaskFolder::mask_of(const std::filesystem::path& image, int width,

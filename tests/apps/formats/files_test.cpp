@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -130,6 +131,33 @@ TEST_F(Files, StereoWithoutAFocalLengthGoesByTheCameras) {
   sensor.noise = StereoNoise{noise.subpixel, sensor.camera.fx, noise.baseline};
   EXPECT_EQ(read.sigmas(1.0).axial, sensor.sigmas(1.0).axial);
   EXPECT_NE(sensor_error(text + "focal = -1.0\n").find("focal"), std::string::npos);
+}
+
+TEST_F(Files, MapsRememberTheirFrames) {
+  const std::set<std::string> frames{"0123456789abcdef frame-000000.depth.png",
+                                     "fedcba9876543210 frame-000000.depth.png"};
+  save_map(octree_map(), dir / "map.vdb", noting_frames(frames));
+  EXPECT_EQ(load_map_of_sensor(dir / "map.vdb").frames, frames);
+  EXPECT_FALSE(load_map_of_sensor(dir / "map.vdb").sensor);
+  save_map(octree_map(), dir / "map.vdb", noting_frames({}, noting_sensor(sensor_preset("d435"))));
+  EXPECT_TRUE(load_map_of_sensor(dir / "map.vdb").frames.empty());
+  EXPECT_EQ(load_map_of_sensor(dir / "map.vdb").sensor->name, "d435");
+  int cases = 0;
+  for (const char* note : {"frame-000000.depth.png\n", "0123456789abcdef\n", "0123456789abcdef \n",
+                           "0123456789ABCDEF a.png\n", "0123456789abcdef0 a.png\n", "\n"}) {
+    save_vdb(octree_map(), dir / "bad.vdb",
+             {.with_covariance = false, .notes = {{"frames", note}}});
+    try {
+      (void)load_map_of_sensor(dir / "bad.vdb");
+      ADD_FAILURE() << note;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::format);
+      EXPECT_NE(std::string(error.what()).find("bad.vdb"), std::string::npos) << error.what();
+    }
+    ++cases;
+  }
+  EXPECT_EQ(cases, 6);
+  EXPECT_THROW((void)frame_identity(FrameSequence{}, 0), Error);
 }
 
 TEST_F(Files, ATreeIsReadFromAPipeAsFromAFile) {

@@ -15,6 +15,7 @@
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/png.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
@@ -308,9 +309,10 @@ TEST_F(Workflow, DefaultWorkspaceHoldsWhatTheFramesSee) {
 
 TEST_F(Workflow, AMapIsContinued) {
   simulate("frames");
+  simulate("more", {"--center", "0,0,0.01"});
   integrate("frames", "once.vdb");
-  integrate("frames", "twice.vdb", {"--map", "once.vdb"});
-  run_well({"integrate", "frames", "--map", "once.vdb", "--out", "once.vdb"});
+  integrate("more", "twice.vdb", {"--map", "once.vdb"});
+  run_well({"integrate", "more", "--map", "once.vdb", "--out", "once.vdb"});
   EXPECT_EQ(hash("once.vdb"), hash("twice.vdb"));
   EXPECT_EQ(json::parse(run_well({"info", "once.vdb", "--json"})).at("views"), 6);
   int cases = 0;
@@ -325,6 +327,94 @@ TEST_F(Workflow, AMapIsContinued) {
     ++cases;
   }
   EXPECT_EQ(cases, 3);
+}
+
+// A folder that grows can be given again and again.
+TEST_F(Workflow, FramesThatAMapHasAreSkipped) {
+  simulate("frames", {"--frames-per-view", "2", "--noise", "on"});
+  const auto grow = [this](const Strings& more) {
+    Strings arguments{"integrate", "frames", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json::parse(run_well(arguments));
+  };
+  integrate("frames", "all.vdb");
+  // As a camera's driver leaves them, half of them first.
+  const std::string poses = read("frames/poses.txt");
+  std::filesystem::rename(dir / "frames", dir / "later");
+  const auto move = [this](const std::string& file) {
+    std::filesystem::create_directories(dir / "frames");
+    std::filesystem::copy(dir / "later" / file, dir / "frames" / file);
+  };
+  const auto up_to = [&](std::size_t frames) {
+    std::size_t end = 0;
+    for (std::size_t line = 0; line <= frames; ++line) end = poses.find('\n', end) + 1;
+    write("frames/poses.txt", poses.substr(0, end));
+  };
+  const auto names = [](std::size_t i) { return "frame-00000" + std::to_string(i) + ".depth.png"; };
+  move("sensor.toml");
+  for (std::size_t i = 0; i < 3; ++i) move(names(i));
+  up_to(3);
+  integrate("frames", "map.vdb");
+  for (std::size_t i = 3; i < 6; ++i) move(names(i));
+  up_to(6);
+  json grown = grow({"--map", "map.vdb", "--out", "map.vdb"});
+  EXPECT_EQ(grown["frames"], 3);
+  EXPECT_EQ(grown["skipped"], 3);
+  EXPECT_EQ(grown["views"], 6);
+  EXPECT_EQ(hash("map.vdb"), hash("all.vdb"));
+  // All of them, another time: through convert, too, and the file says its sensor still.
+  run_well({"convert", "map.vdb", "again.vdb"});
+  grown = grow({"--map", "again.vdb", "--out", "again.vdb"});
+  EXPECT_EQ(grown["frames"], 0);
+  EXPECT_EQ(grown["skipped"], 6);
+  EXPECT_TRUE(grown["seconds_per_frame"].is_null());
+  EXPECT_EQ(read("again.vdb"), read("map.vdb"));
+  EXPECT_EQ(json::parse(run_well({"info", "again.vdb", "--json"})).at("sensor"), "small");
+  EXPECT_NE(run_well({"integrate", "frames", "--map", "map.vdb", "--out", "map.vdb"})
+                .find("skipped, since the map has them already: 6"),
+            std::string::npos);
+  // Another image of the same name is another frame, and so is one from another pose.
+  write("frames/" + names(1), read("frames/" + names(4)));
+  std::string moved = poses;
+  moved.replace(moved.rfind("\n", moved.size() - 2) + 1, std::string::npos, "5 0 0 -1 0 0 0 1\n");
+  write("frames/poses.txt", moved);
+  grown = grow({"--map", "map.vdb", "--out", "new.vdb"});
+  EXPECT_EQ(grown["frames"], 2);
+  EXPECT_EQ(grown["skipped"], 4);
+  // A tree does not remember.
+  run_well({"convert", "map.vdb", "tree.ot"});
+  EXPECT_EQ(grow({"--map", "tree.ot", "--out", "new.vdb"})["skipped"], 0);
+}
+
+TEST_F(Workflow, MasksSayWhatIsNoPartOfTheScene) {
+  simulate("frames");
+  Gray8Image left{48, 36, std::vector<std::uint8_t>(48 * 36)};
+  for (std::size_t k = 0; k < left.pixels.size(); ++k) left.pixels[k] = k % 48 < 24 ? 255 : 0;
+  std::filesystem::create_directories(dir / "masks");
+  write_png(dir / "masks/frame-000001.depth.png", left);
+  const Strings plain{"integrate", "frames", "--voxel", "0.03", "--json", "--out", "map.vdb"};
+  Strings masked = plain;
+  masked.insert(masked.end(), {"--mask", "masks"});
+  const json all = json::parse(run_well(plain));
+  const json some = json::parse(run_well(masked));
+  EXPECT_EQ(all["masked_pixels"], 0);
+  EXPECT_EQ(some["masked_pixels"], 24 * 36);
+  EXPECT_EQ(some["invalid"], all["invalid"].get<int>() + 24 * 36);
+  std::size_t cases = 0;
+  std::filesystem::create_directories(dir / "empty");
+  for (const char* folder : {"empty", "nowhere"}) {
+    masked.back() = folder;
+    const test::ProgramResult refused = run(masked);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.err.find(folder), std::string::npos) << refused.err;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 2U);
+  const test::ProgramResult cloud =
+      run({"integrate", "--cloud", "cube.ply", "--sensor", "small.toml", "--voxel", "0.03",
+           "--mask", "masks", "--out", "new.vdb"});
+  EXPECT_EQ(cloud.exit_code, 2);
+  EXPECT_NE(cloud.err.find("--mask is for depth frames"), std::string::npos) << cloud.err;
 }
 
 TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
@@ -430,6 +520,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--frames-per-view --amplitude --seed --out --json --threads =1.5 [m]"},
       {"integrate",
        "FRAMES_DIR --cloud --origin --poses --voxel --workspace --sensor --depth-scale "
+       "--mask "
        "--out-of-range --carve --occupancy --jump-edge-filter --jump-edge-two-sided "
        "--calibrate-hazard --support-plane --prior-sigma --with-covariance --out --map --json "
        "--threads =carve "
@@ -491,7 +582,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 227);
+  EXPECT_EQ(words, 228);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

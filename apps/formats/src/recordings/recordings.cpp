@@ -140,7 +140,12 @@ GrayImage load_depth(const Recording& recording, std::size_t index) {
 ImportReport import_recording(const Recording& recording, const fs::path& out,
                               const ImportConfig& config) {
   std::optional<MaskFolder> masks;
-  if (!config.masks.empty()) masks.emplace(config.masks);
+  if (!config.masks.empty()) {
+    masks.emplace(config.masks);
+    std::vector<fs::path> images;
+    for (const RecordedFrame& frame : recording.frames) images.push_back(frame.image);
+    masks->require_mask_of_any(images);
+  }
   RecordedFramesWriter writer(out);
   ImportReport report;
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
@@ -158,11 +163,6 @@ ImportReport import_recording(const Recording& recording, const fs::path& out,
         std::count_if(depth.pixels.begin(), depth.pixels.end(), [](auto z) { return z != 0; }));
     writer.write_frame(frame.number, depth, frame.T_world_camera);
     if (config.progress) config.progress(i + 1, recording.frames.size());
-  }
-  if (masks && report.masks == 0) {
-    throw Error(ErrorCode::invalid_argument,
-                config.masks.string() + ": has no mask of the name of a frame's image, as " +
-                    recording.frames.front().image.filename().string());
   }
   writer.commit(recording.camera, recording.depth_scale, config.sensor);
   return report;

@@ -56,6 +56,13 @@ struct VIEWGAIN_EXPORT FrameSequence {
 load_frame(const FrameSequence& frames, std::size_t index,
            OutOfRangeMeaning meaning = OutOfRangeMeaning::carve);
 
+/// A frame by name and content, "HASH NAME": 16 hexadecimal digits, a blank and the depth image's
+/// file name. The hash is of the bytes of its images and of its pose; folder, sensor and scale do
+/// not count. Throws Error(io) if an image cannot be read, and Error(invalid_argument) for an index
+/// that is not less than the count of images. May be called from many threads.
+[[nodiscard]] VIEWGAIN_EXPORT std::string frame_identity(const FrameSequence& frames,
+                                                         std::size_t index);
+
 /// The files of `dir` that make up frames of either layout, and what `simulate` and `import` leave
 /// with them, relative to it; none if there is no such folder.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::filesystem::path> frame_files(

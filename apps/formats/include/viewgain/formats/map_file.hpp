@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -23,20 +25,26 @@ namespace viewgain {
                                                   const Sensor* sensor = nullptr,
                                                   OctomapConfig config = {});
 
-/// A map and the sensor that its readings come from, where its file says so.
+/// A map, and where its readings come from as far as its file says so.
 struct VIEWGAIN_EXPORT MapOfSensor {
   BeliefGrid grid;
   std::optional<Sensor> sensor;
+  std::set<std::string> frames{};  ///< that went into it, each as frame_identity() has it
 };
 
-/// load_map(), and what noting_sensor() has put into a .vdb. Throws Error(format), naming file and
-/// key, for a note that is no sensor.
+/// load_map(), and what noting_sensor() and noting_frames() have put into a .vdb. Throws
+/// Error(format), naming the file, for a note that is no sensor (and its key) or no list of frames.
 [[nodiscard]] VIEWGAIN_EXPORT MapOfSensor load_map_of_sensor(const std::filesystem::path& path,
                                                              const Sensor* sensor = nullptr,
                                                              OctomapConfig config = {});
 
 /// So that save_map() notes in a .vdb which sensor the map's readings come from.
 [[nodiscard]] VIEWGAIN_EXPORT VdbWriteConfig noting_sensor(const Sensor& sensor,
+                                                           VdbWriteConfig config = {});
+
+/// So that save_map() notes in a .vdb which frames went into the map, each as frame_identity() has
+/// it, and these can be told from new ones.
+[[nodiscard]] VIEWGAIN_EXPORT VdbWriteConfig noting_frames(const std::set<std::string>& frames,
                                                            VdbWriteConfig config = {});
 
 /// Throws Error(invalid_argument) for names that save_map does not write: those that end neither in

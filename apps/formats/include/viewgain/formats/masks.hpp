@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/export.hpp"
@@ -20,6 +21,10 @@ class VIEWGAIN_EXPORT MaskFolder {
  public:
   /// Throws Error(io), naming it, if there is no such folder.
   explicit MaskFolder(std::filesystem::path folder);
+
+  /// Throws Error(invalid_argument), naming the folder, if none of the images has a mask in it: it
+  /// is another recording's.
+  void require_mask_of_any(const std::vector<std::filesystem::path>& images) const;
 
   /// The mask of the depth image of this name; nothing where the folder has none. Throws Error(io)
   /// or Error(format), naming the file, for one that cannot be used.

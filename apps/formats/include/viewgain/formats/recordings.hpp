@@ -100,8 +100,8 @@ struct VIEWGAIN_EXPORT ImportReport {
 };
 
 /// Writes a recording's frames into a folder that open_frames() reads (RecordedFramesWriter), which
-/// appears whole or not at all. Throws as load_depth(), MaskFolder and RecordedFramesWriter do, and
-/// Error(invalid_argument), naming the folder, if no frame has a mask there.
+/// appears whole or not at all. Throws as load_depth(), MaskFolder and RecordedFramesWriter do,
+/// also for masks none of which is of a frame.
 VIEWGAIN_EXPORT ImportReport import_recording(const Recording& recording,
                                               const std::filesystem::path& out,
                                               const ImportConfig& config = {});

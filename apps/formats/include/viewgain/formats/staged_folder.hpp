@@ -28,9 +28,9 @@ class VIEWGAIN_EXPORT StagedFolder {
 
   /// Moves the folder as a whole where there is no target yet. Else moves every file over the one
   /// of its name, so that each name has its old or its new contents at any time, run.json,
-  /// poses.txt, simulated.txt and imported.txt last: new ones stand beside new files. Then removes those of
-  /// `earlier` (relative to the target) that were not written anew, and the folders that this
-  /// leaves empty. Throws Error(io).
+  /// poses.txt, simulated.txt and imported.txt last: new ones stand beside new files. Then removes
+  /// those of `earlier` (relative to the target) that were not written anew, and the folders that
+  /// this leaves empty. Throws Error(io).
   void commit(const std::vector<std::filesystem::path>& earlier);
 
  private:
