@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "registration_readings.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace viewgain::detail {
+namespace {
+
+constexpr int kMaxHalfWindow = 20;   // [px]
+constexpr int kLeastForNormal = 15;  // of 25 readings
+
+class Surroundings {
+ public:
+  Surroundings(const DepthFrame& frame, const Sensor& sensor, std::span<const Eigen::Vector3d> rays,
+               double radius)
+      : frame_(frame), sensor_(sensor), rays_(rays), radius_(radius) {}
+
+  [[nodiscard]] bool is_reading(int u, int v) const {
+    const std::size_t i = index(u, v);
+    const float z = frame_.depth[i];
+    if (!(z > 0) || !std::isfinite(z) || !rays_[i].allFinite() || frame_.shows_known(i)) {
+      return false;
+    }
+    const double range = static_cast<double>(z) * rays_[i].norm();
+    return range >= sensor_.min_range && range <= sensor_.max_range;
+  }
+
+  // Nothing without a normal.
+  [[nodiscard]] std::optional<Reading> reading(int u, int v) const {
+    if (!is_reading(u, v)) return std::nullopt;
+    const std::optional<Eigen::Vector3d> normal = normal_at(u, v);
+    if (!normal) return std::nullopt;
+    const std::size_t i = index(u, v);
+    Reading reading;
+    reading.point = static_cast<double>(frame_.depth[i]) * rays_[i];
+    reading.normal = *normal;
+    const double range = reading.point.norm();
+    const double cosine =
+        frame_.amplitude.empty()
+            ? -normal->dot(reading.point) / range
+            : std::min(1.0, static_cast<double>(frame_.amplitude[i]) * range * range);
+    reading.sigmas = sensor_.sigmas(range, cosine);
+    reading.u = u, reading.v = v;
+    return reading;
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int u, int v) const {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(frame_.width) +
+           static_cast<std::size_t>(u);
+  }
+
+  // A plane n·p = 1 is 1/z = n·(x, y, 1) in the image, linear in n; noise is in z alone.
+  [[nodiscard]] std::optional<Eigen::Vector3d> normal_at(int u, int v) const {
+    const std::size_t center = index(u, v);
+    const double z = static_cast<double>(frame_.depth[center]);
+    const Eigen::Vector3d& ray = rays_[center];
+    const double reach = radius_ / z;  // in x and y
+    const int half_u =
+        std::clamp(static_cast<int>(std::lround(reach * sensor_.camera.fx)), 2, kMaxHalfWindow);
+    const int half_v =
+        std::clamp(static_cast<int>(std::lround(reach * sensor_.camera.fy)), 2, kMaxHalfWindow);
+    // A surface turned by up to 70° reaches that deep.
+    const double deepest =
+        2.75 * std::max(radius_, 2 * z / sensor_.camera.fx) + 3 * sensor_.sigmas(z).axial;
+    Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    int count = 0;
+    for (int a = -2; a <= 2; ++a) {
+      const int y = v + a * half_v / 2;
+      if (y < 0 || y >= frame_.height) continue;
+      for (int b = -2; b <= 2; ++b) {
+        const int x = u + b * half_u / 2;
+        if (x < 0 || x >= frame_.width || !is_reading(x, y)) continue;
+        const std::size_t i = index(x, y);
+        const double depth = static_cast<double>(frame_.depth[i]);
+        if (std::abs(depth - z) > deepest) continue;
+        const Eigen::Vector3d row(rays_[i].x() - ray.x(), rays_[i].y() - ray.y(), 1);
+        normal_matrix += row * row.transpose();
+        right += row / depth;
+        ++count;
+      }
+    }
+    if (count < kLeastForNormal) return std::nullopt;
+    const Eigen::Vector3d plane = normal_matrix.inverse() * right;
+    Eigen::Vector3d toward(plane.x(), plane.y(),
+                           plane.z() - plane.x() * ray.x() - plane.y() * ray.y());
+    toward.normalize();
+    // Of a surface that is seen; what has no such plane is a rim.
+    if (!toward.allFinite() || !(toward.dot(ray) > 0)) return std::nullopt;
+    return -toward;
+  }
+
+  const DepthFrame& frame_;
+  const Sensor& sensor_;
+  std::span<const Eigen::Vector3d> rays_;
+  double radius_;
+};
+
+int level_of(int column, int row) {
+  if (column % 4 == 0 && row % 4 == 0) return 0;
+  return column % 2 == 0 && row % 2 == 0 ? 1 : 2;
+}
+
+}  // namespace
+
+std::vector<Reading> readings_of(const DepthFrame& frame, const Sensor& sensor,
+                                 std::span<const Eigen::Vector3d> rays, double radius,
+                                 std::size_t max_readings, ThreadPool& pool) {
+  const Surroundings surroundings(frame, sensor, rays, radius);
+  const auto height = static_cast<std::size_t>(frame.height);
+  std::vector<std::size_t> of_row(height);
+  pool.for_each_chunk(height, 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      for (int u = 0; u < frame.width; ++u) {
+        if (surroundings.is_reading(u, static_cast<int>(v))) ++of_row[v];
+      }
+    }
+  });
+  std::size_t count = 0;
+  for (const std::size_t n : of_row) count += n;
+  const int stride = std::max(
+      1, static_cast<int>(
+             std::ceil(std::sqrt(static_cast<double>(count) / static_cast<double>(max_readings)))));
+  const std::size_t lattice_rows =
+      (height + static_cast<std::size_t>(stride) - 1) / static_cast<std::size_t>(stride);
+  std::vector<std::vector<Reading>> rows(lattice_rows);
+  pool.for_each_chunk(lattice_rows, 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const int v = static_cast<int>(row) * stride;
+      for (int column = 0; column * stride < frame.width; ++column) {
+        std::optional<Reading> reading = surroundings.reading(column * stride, v);
+        if (!reading) continue;
+        reading->level = level_of(column, static_cast<int>(row));
+        rows[row].push_back(*reading);
+      }
+    }
+  });
+  std::vector<Reading> readings;
+  for (const std::vector<Reading>& row : rows) {
+    readings.insert(readings.end(), row.begin(), row.end());
+  }
+  return readings;
+}
+
+}  // namespace viewgain::detail
