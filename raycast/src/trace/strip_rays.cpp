@@ -15,8 +15,8 @@ void StripRays::begin(const TileTable& table, TileRows strip, const TileMaker& m
   last_row_ = static_cast<std::int32_t>(strip.end) * kTileEdge - 1;
   state_.assign(count, State::not_met);
   if (tiles_.size() < count) {
+    found_.resize(count + 1);  // first: memory may run out in between
     tiles_.resize(count);
-    found_.resize(count + 1);
   }
   const auto valid = table.valid.begin() + static_cast<std::ptrdiff_t>(first_tile_);
   left_in_tile_.assign(valid, valid + static_cast<std::ptrdiff_t>(count));
