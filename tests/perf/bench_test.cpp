@@ -314,7 +314,7 @@ TEST(Bench, MicrobenchmarksRunAndCount) {
     }
     EXPECT_EQ(rates, 1) << name;
   }
-  EXPECT_EQ(parts.size(), 19U);
+  EXPECT_EQ(parts.size(), 18U);
 }
 
 TEST(Bench, OctomapAndOursMakeTheSameMap) {
