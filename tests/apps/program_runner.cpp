@@ -132,4 +132,13 @@ void ProgramTest::write_half_sensor() const {
         "reference_integration_time = 0.0085\nintegration_time = 0.001\n");
 }
 
+void ProgramTest::make_small_run() const {
+  write_cube();
+  write_half_sensor();
+  const ProgramResult made =
+      run({"reconstruct", "cube.off", "--sensor", "tof.toml", "--voxel", "0.00625", "--size", "0.2",
+           "--max-views", "2", "--pictures", "off", "--out", "run", "--json"});
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+}
+
 }  // namespace viewgain::test

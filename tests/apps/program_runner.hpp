@@ -56,6 +56,9 @@ class ProgramTest : public testing::Test {
   /// An SR4000 at half its resolution: tof.toml.
   void write_half_sensor() const;
 
+  /// Two views of a cube of 0.2 m by the half sensor: run/, with cube.off and tof.toml beside it.
+  void make_small_run() const;
+
   std::filesystem::path dir;
 
  private:

@@ -96,6 +96,21 @@ void RegistrationPairs::draw(const Pose& T_world_camera) {
   });
 }
 
+template <typename Visit>
+void RegistrationPairs::for_each_cell_round(const Reading& reading, Visit&& visit) const {
+  const int column = reading.u / cell_, row = reading.v / cell_;
+  for (int y = std::max(0, row - 1); y <= std::min(rows_ - 1, row + 1); ++y) {
+    for (int x = std::max(0, column - 1); x <= std::min(columns_ - 1, column + 1); ++x) {
+      const std::uint64_t key =
+          cells_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
+                 static_cast<std::size_t>(x)]
+              .load(std::memory_order_relaxed);
+      if (key == kEmpty) continue;
+      visit(key);
+    }
+  }
+}
+
 std::int32_t RegistrationPairs::nearest(const Reading& reading, const Pose& T_world_camera,
                                         const PairGates& gates) const {
   const Eigen::Vector3d p_world = T_world_camera * reading.point;
@@ -108,29 +123,21 @@ std::int32_t RegistrationPairs::nearest(const Reading& reading, const Pose& T_wo
   const double along_surface = gates.along_surface * gates.along_surface + slack;
   double best = std::numeric_limits<double>::infinity();
   std::int32_t target = -1;
-  const int column = reading.u / cell_, row = reading.v / cell_;
-  for (int y = std::max(0, row - 1); y <= std::min(rows_ - 1, row + 1); ++y) {
-    for (int x = std::max(0, column - 1); x <= std::min(columns_ - 1, column + 1); ++x) {
-      const std::uint64_t key =
-          cells_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
-                 static_cast<std::size_t>(x)]
-              .load(std::memory_order_relaxed);
-      if (key == kEmpty) continue;
-      const auto i = static_cast<std::uint32_t>(key);
-      const ModelPoint& m = model_.points[i];
-      const Eigen::Vector3d d = p_world - m.point;
-      const double square = d.squaredNorm();
-      if (square >= best) continue;
-      const double e = m.normal.dot(d);
-      const double cosine = m.normal.dot(sight) / range;
-      const double variance = m.variance + lateral + along_ray * cosine * cosine;
-      if (e * e > kGateSigmas * kGateSigmas * (variance + slack)) continue;
-      if (square - e * e > along_surface) continue;
-      if (m.normal.dot(normal) < gates.min_cosine) continue;
-      best = square;
-      target = static_cast<std::int32_t>(i);
-    }
-  }
+  for_each_cell_round(reading, [&](std::uint64_t key) {
+    const auto i = static_cast<std::uint32_t>(key);
+    const ModelPoint& m = model_.points[i];
+    const Eigen::Vector3d d = p_world - m.point;
+    const double square = d.squaredNorm();
+    if (square >= best) return;
+    const double e = m.normal.dot(d);
+    const double cosine = m.normal.dot(sight) / range;
+    const double variance = m.variance + lateral + along_ray * cosine * cosine;
+    if (e * e > kGateSigmas * kGateSigmas * (variance + slack)) return;
+    if (square - e * e > along_surface) return;
+    if (m.normal.dot(normal) < gates.min_cosine) return;
+    best = square;
+    target = static_cast<std::int32_t>(i);
+  });
   return target;
 }
 
@@ -222,20 +229,12 @@ std::vector<Vector6> RegistrationPairs::sums_by_cube(const Pose& T_world_camera)
 
 bool RegistrationPairs::is_behind_surface(const Reading& reading, double margin) const {
   constexpr int kMostOfNine = 6;  // a rim's cells are not all its own
-  const int column = reading.u / cell_, row = reading.v / cell_;
   int before = 0;
-  for (int y = std::max(0, row - 1); y <= std::min(rows_ - 1, row + 1); ++y) {
-    for (int x = std::max(0, column - 1); x <= std::min(columns_ - 1, column + 1); ++x) {
-      const std::uint64_t key =
-          cells_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
-                 static_cast<std::size_t>(x)]
-              .load(std::memory_order_relaxed);
-      if (key == kEmpty) continue;
-      const auto depth =
-          static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32U)));
-      if (depth < reading.point.z() - margin) ++before;
-    }
-  }
+  for_each_cell_round(reading, [&](std::uint64_t key) {
+    const auto depth =
+        static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32U)));
+    if (depth < reading.point.z() - margin) ++before;
+  });
   return before >= kMostOfNine;
 }
 

@@ -87,6 +87,9 @@ class RegistrationPairs {
   };
   [[nodiscard]] Term term(std::size_t reading, const Pose& T_world_camera) const;
   void draw(const Pose& T_world_camera);
+  /// Calls visit(key) for the cells that are not empty among the nine round a reading's pixel.
+  template <typename Visit>
+  void for_each_cell_round(const Reading& reading, Visit&& visit) const;
   [[nodiscard]] std::int32_t nearest(const Reading& reading, const Pose& T_world_camera,
                                      const PairGates& gates) const;
 

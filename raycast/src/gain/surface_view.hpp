@@ -31,8 +31,8 @@ class SurfaceView {
   void sample(const PoseFrame& frame, Workspace& workspace, double rays_each,
               SampleTally& tally) const;
 
-  /// Calls visit(tile number, rays, SurfaceShare) for all rays, voxel by voxel; a
-  /// run's share is split by length. `workspace` is prepared for the view.
+  /// Calls visit(tile number, rays, SurfaceShare) for all rays, voxel by voxel; a run's
+  /// share is split by length. `workspace`'s sweep is prepared for the view.
   template <typename Visit>
   void for_each_share(const PoseFrame& frame, Workspace& workspace, Visit&& visit) const {
     trace_rays(frame, workspace, [&](std::size_t number, const RayTile& rays) {
@@ -42,8 +42,8 @@ class SurfaceView {
     });
   }
 
-  /// Calls visit(tile number, rays, visits) for the tiles whose rays meet anything: what
-  /// they visit, each ray's in one piece and in order.
+  /// Calls visit(tile number, rays, visits) for the tiles whose rays meet anything: what they
+  /// visit, each ray's in one piece and in order.
   template <typename Visit>
   void for_each_visited(const PoseFrame& frame, Workspace& workspace, Visit&& visit) const {
     trace_rays(frame, workspace, [&](std::size_t number, const RayTile& rays) {

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 namespace viewgain::detail {
@@ -27,6 +29,15 @@ struct BoxArrays {
   [[nodiscard]] std::size_t size() const { return center_x.size(); }
   [[nodiscard]] std::size_t bytes() const { return 6 * sizeof(float) * size(); }
 };
+
+/// Along an axis, how far place low + i of the four from `low` on is from the camera's place on the
+/// same lattice; beyond the four only the camera's side matters. Three axes add up to less than
+/// kDistances.
+inline constexpr std::uint32_t kDistances = 10;
+[[nodiscard]] inline std::int32_t distance_in_four(std::int32_t low, std::int32_t i,
+                                                   std::int32_t camera) {
+  return std::abs(low + i - std::clamp(camera, low, low + 3));
+}
 
 /// Where a cell lies on the lattices of 128³ and 32³ voxels of the grid.
 struct CellPlace {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Sweeping the primitives of a cell over the rays that they can end, in windows of 4×4 rays.
-// Compiled once for each instruction set.
+// Sweeping the primitives of a cell over the rays that they can end, tile by tile or, where they
+// are small in the image, in windows of 4×4 rays. Compiled once for each instruction set.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "trace/cell_sweep.cpp"
@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdlib>
 
 #include "cell_sweep.hpp"
 #include "image_bounds-inl.hpp"
@@ -25,8 +24,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Of a region: a primitive a block.
 constexpr std::size_t kMostMembers = 64;
-// Distances of its blocks to the camera's, three axes added up: 0 to 9.
-constexpr std::size_t kKeys = 10;
 
 constexpr std::uint32_t kPacketLanes = (1U << kWidth) - 1U;
 
@@ -150,10 +147,9 @@ void sweep(const SceneData& scene, const SeenCell& seen_cell, const PoseFrame& f
   std::array<std::array<std::uint8_t, 4>, 3> distance;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::int32_t low = place.node[k] * 16 + place.part[k] * 4;
-    const std::int32_t camera = std::clamp(camera_block[k], low, low + 3);
     for (std::int32_t i = 0; i < 4; ++i) {
       distance[k][static_cast<std::size_t>(i)] =
-          static_cast<std::uint8_t>(std::abs(low + i - camera));
+          static_cast<std::uint8_t>(distance_in_four(low, i, camera_block[k]));
     }
   }
   // Are its blocks, of eight voxels, small in the image?
@@ -165,7 +161,7 @@ void sweep(const SceneData& scene, const SeenCell& seen_cell, const PoseFrame& f
   };
   Found found[kMostMembers];
   std::uint8_t keys[kMostMembers], order[kMostMembers];
-  std::uint8_t begins[kKeys + 1] = {};
+  std::uint8_t begins[kDistances + 1] = {};
   std::size_t count = 0;
   ImageBounds bounds;
   for (std::size_t at = cells.first[cell]; at < cells.first[cell + 1]; at += kBoxVector) {
@@ -186,7 +182,7 @@ void sweep(const SceneData& scene, const SeenCell& seen_cell, const PoseFrame& f
       ++begins[key + 1U];
     }
   }
-  for (std::size_t k = 0; k < kKeys; ++k) {
+  for (std::size_t k = 0; k < kDistances; ++k) {
     begins[k + 1] = static_cast<std::uint8_t>(begins[k + 1] + begins[k]);
   }
   for (std::size_t i = 0; i < count; ++i) order[begins[keys[i]]++] = static_cast<std::uint8_t>(i);

@@ -10,17 +10,15 @@ namespace viewgain::detail {
 // Columns and rows are known; ray_at(column, row) is asked once for each lane.
 template <typename RayAt>
 void TileTable::fill(const RayAt& ray_at) {
-  const int tile_columns = (columns + kTileEdge - 1) / kTileEdge;
-  const int tile_rows = (rows + kTileEdge - 1) / kTileEdge;
-  tile_count = static_cast<std::size_t>(tile_columns) * static_cast<std::size_t>(tile_rows);
+  tile_count = tile_columns() * tile_rows();
   directions.resize(tile_count * 3 * kTileRays);
   valid.resize(tile_count);
   solid_angle.resize(tile_count * kTileRays);
   cosine.resize(tile_count);
   first_lane.resize(tile_count);
   for (std::size_t tile = 0; tile < tile_count; ++tile) {
-    const int column0 = static_cast<int>(tile % static_cast<std::size_t>(tile_columns)) * kTileEdge;
-    const int row0 = static_cast<int>(tile / static_cast<std::size_t>(tile_columns)) * kTileEdge;
+    const int column0 = static_cast<int>(tile % tile_columns()) * kTileEdge;
+    const int row0 = static_cast<int>(tile / tile_columns()) * kTileEdge;
     first_lane[tile] = static_cast<std::uint32_t>(row0 * columns + column0);
     unsigned lanes = 0;
     for (int lane = 0; lane < kTileRays; ++lane) {
@@ -63,7 +61,7 @@ TileTable::TileTable(const PinholeCamera& camera, int pixel_stride)
 TileTable::TileTable(const TileTable& full, const RayLattice& lattice)
     : columns(strided(full.columns - lattice.column, lattice.step)),
       rows(strided(full.rows - lattice.row, lattice.step)) {
-  const int tile_columns = (full.columns + kTileEdge - 1) / kTileEdge;
+  const auto tile_columns = static_cast<int>(full.tile_columns());
   const auto pixels = static_cast<float>(lattice.step * lattice.step);
   fill([&](int column, int row) -> Ray {
     const int u = lattice.column + column * lattice.step, v = lattice.row + row * lattice.step;

@@ -50,7 +50,6 @@ class StripRays {
 
   [[nodiscard]] std::size_t first_tile() const { return first_tile_; }
   [[nodiscard]] std::size_t tile_count() const { return state_.size(); }
-  [[nodiscard]] std::size_t tile_columns() const { return tile_columns_; }
   /// Tile i, which has been met.
   [[nodiscard]] RayTile& tile(std::size_t i) { return tiles_[i]; }
   [[nodiscard]] bool is_met(std::size_t i) const { return state_[i] != State::not_met; }

@@ -10,12 +10,6 @@
 #include "scene/scene_data.hpp"
 
 namespace viewgain::detail {
-namespace {
-
-// Distances of a node's regions to the camera's, three axes added up: 0 to 9.
-constexpr std::uint32_t kPartKeys = 10;
-
-}  // namespace
 
 void ViewSweep::see(const ImageBoundsKernels& kernels, const SceneCells& cells,
                     const PoseFrame& frame, const ImageScale& image) {
@@ -48,17 +42,17 @@ void ViewSweep::see(const ImageBoundsKernels& kernels, const SceneCells& cells,
         std::int32_t nodes = 0, parts = 0;
         for (std::size_t k = 0; k < 3; ++k) {
           nodes += std::abs(place.node[k] - node[k]);
-          const std::int32_t low = place.node[k] * 4;
-          parts += std::abs(low + place.part[k] - std::clamp(part[k], low, low + 3));
+          parts += distance_in_four(place.node[k] * 4, place.part[k], part[k]);
         }
-        key = 1 + static_cast<std::uint32_t>(nodes) * kPartKeys + static_cast<std::uint32_t>(parts);
+        key =
+            1 + static_cast<std::uint32_t>(nodes) * kDistances + static_cast<std::uint32_t>(parts);
       }
       found_.push_back({static_cast<std::uint32_t>(first + i), bounds.near[i], bounds.rect(i)});
       keys_.push_back(key);
     }
   }
   // In order of their keys.
-  begins_.assign(2 + (farthest + 1) * kPartKeys, 0);
+  begins_.assign(2 + (farthest + 1) * kDistances, 0);
   for (const std::uint32_t key : keys_) ++begins_[key + 1];
   for (std::size_t i = 0; i + 1 < begins_.size(); ++i) begins_[i + 1] += begins_[i];
   seen.resize(found_.size());

@@ -21,14 +21,7 @@ using Strings = std::vector<std::string>;
 
 class Candidates : public test::ProgramTest {
  protected:
-  Candidates() {
-    write_cube();
-    write_half_sensor();
-    const auto made =
-        run({"reconstruct", "cube.off", "--sensor", "tof.toml", "--voxel", "0.00625", "--size",
-             "0.2", "--max-views", "2", "--pictures", "off", "--out", "run", "--json"});
-    EXPECT_EQ(made.exit_code, 0) << made.err;
-  }
+  Candidates() { make_small_run(); }
 
   [[nodiscard]] json candidates(const std::string& generator, const Strings& more = {}) const {
     Strings arguments{"candidates", "run/map.vdb", "--generator", generator, "--sensor",

@@ -18,14 +18,7 @@ using Strings = std::vector<std::string>;
 
 class Surface : public test::ProgramTest {
  protected:
-  Surface() {
-    write_cube();
-    write_half_sensor();
-    const auto made =
-        run({"reconstruct", "cube.off", "--sensor", "tof.toml", "--voxel", "0.00625", "--size",
-             "0.2", "--max-views", "2", "--pictures", "off", "--out", "run", "--json"});
-    EXPECT_EQ(made.exit_code, 0) << made.err;
-  }
+  Surface() { make_small_run(); }
 };
 
 // The loop's own surface, points and figures come from the same map.

@@ -100,8 +100,8 @@ TEST(Sweep, BoxesLargerThanNodesGiveTheSameBits) {
       GridConfig{.voxel_size = kVoxel,
                  .workspace = {{face(4000), face(-30), face(-5)}, {face(4300), face(90), face(70)}},
                  .prior_sigma = 0.02});
-  // The workspace crosses a boundary of the tree's largest nodes, at 4096; what lies beyond it stays
-  // boxes that are 204 voxels long.
+  // The workspace crosses a boundary of the tree's largest nodes, at 4096; what lies beyond it
+  // stays boxes that are 204 voxels long.
   for (int x = 4000; x < 4050; ++x) {
     for (int y = 0; y < 60; ++y) {
       for (int z = 0; z < 50; ++z) {
