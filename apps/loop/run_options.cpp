@@ -20,6 +20,9 @@ namespace {
 
 constexpr std::size_t kMaxCount = 1'000'000;
 
+const std::string kSensorOfRunHelp =
+    std::string(kSensorHelp) + "; needed with a mesh; default: that of the folder of frames";
+
 auto counted(std::size_t least, std::size_t most) {
   return [=](CLI::Option& option) { option.check(CLI::Range(least, most, "count")); };
 }
@@ -41,8 +44,10 @@ auto named(const std::vector<std::string>& names, const char* what) {
 // Each option once, in the order of run.json's settings. `Options` is ReconstructOptions or const.
 template <typename Options, typename Visitor>
 void describe(Options& o, Visitor& visit) {
-  visit.option("mesh", "MESH", o.mesh, "OFF, OBJ, STL or PLY; centred", needed);
-  visit.option("sensor", "--sensor", o.sensor, kSensorHelp, needed);
+  visit.option("mesh", "MESH", o.mesh,
+               "OFF, OBJ, STL or PLY, centred; or a folder of frames as integrate takes it",
+               needed);
+  visit.option("sensor", "--sensor", o.sensor, kSensorOfRunHelp.c_str(), as_it_is);
   visit.option("voxel", "--voxel", o.voxel, "voxel size [m]", needed);
   visit.option("size", "--size", o.size,
                "scale the object so that its longest side is this [m]; default: the file's own "
@@ -138,6 +143,17 @@ void describe(Options& o, Visitor& visit) {
   visit.option(nullptr, "--report", o.report,
                "write report.html: the run to look at in a browser, in one file", switched);
   visit.option(nullptr, "--out", o.out, "folder to write", needed);
+  visit.option(nullptr, "--depth-scale", o.depth_scale,
+               "of a folder of frames: metres per unit of the images; default: 1e-4 for what "
+               "simulate writes (poses.txt and sensor.toml), else 1e-3",
+               as_it_is);
+  visit.option(
+      nullptr, "--mask", o.mask,
+      "of a folder of frames: folder of grayscale PNGs with the depth images' names: where "
+      "they are not 0, an image says nothing",
+      as_it_is);
+  visit.option(nullptr, "--top", o.top, "of a folder of frames: next views to name at most",
+               counted_with_default(1, kMaxCount));
 }
 
 }  // namespace
@@ -160,6 +176,13 @@ nlohmann::ordered_json settings_json(const ReconstructOptions& options,
 }
 
 void check(const ReconstructOptions& options) {
+  if (options.sensor.empty()) {
+    throw Error(ErrorCode::invalid_argument, "--sensor is needed with a mesh");
+  }
+  if (options.depth_scale || !options.mask.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "--depth-scale and --mask are for a folder of frames, not for a mesh");
+  }
   check_positive("--voxel", options.voxel);
   if (options.size) check_positive("--size", *options.size);
   if (!options.gain.empty() && parse_policy(options.policy) != Policy::gain) {

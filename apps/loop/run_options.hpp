@@ -18,7 +18,7 @@ namespace viewgain::app {
 /// Flags of `viewgain reconstruct`.
 struct ReconstructOptions {
   CommonOptions common;
-  std::string mesh;
+  std::string mesh;  ///< or a folder of frames
   std::string sensor;
   double voxel = 0;
   std::optional<double> size;
@@ -54,6 +54,10 @@ struct ReconstructOptions {
   std::string pictures = "on";
   std::string report = "off";
   std::string out;
+  // Of a folder of frames.
+  std::optional<double> depth_scale;
+  std::string mask;
+  std::size_t top = 10;
 };
 
 /// Declares the flags, with o's values as defaults.
@@ -64,7 +68,7 @@ void add_options(CLI::App& app, ReconstructOptions& o);
 [[nodiscard]] nlohmann::ordered_json settings_json(const ReconstructOptions& options,
                                                    const nlohmann::ordered_json& resolved);
 
-/// Throws Error(invalid_argument), naming the flag, for numbers that no run can have.
+/// Throws Error(invalid_argument), naming the flag, for numbers that no run on a mesh can have.
 void check(const ReconstructOptions& options);
 
 }  // namespace viewgain::app

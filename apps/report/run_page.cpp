@@ -22,13 +22,13 @@ using nlohmann::ordered_json;
 constexpr std::size_t kMaxVertices = 20'000, kMaxTruthVertices = 100'000, kMaxPoints = 1'500,
                       kMaxExpected = 4'000, kMaxExact = 100;
 
-ShownMesh shown_surface(const SurfaceModel& model, const Truth& truth) {
+ShownMesh shown_surface(const SurfaceModel& model, const Truth* truth) {
   const SurfaceMesh& surface = model.surface();
   ShownMesh mesh;
   for (const auto& p : surface.vertices) mesh.add_vertex(p);
   mesh.sigma = surface_sigmas(surface, model.points());
   mesh.triangles = surface.triangles;
-  mesh.error = truth.ground_truth().distances_of(surface.vertices);
+  if (truth != nullptr) mesh.error = truth->ground_truth().distances_of(surface.vertices);
   return thinned(std::move(mesh), kMaxVertices);
 }
 
@@ -144,6 +144,13 @@ ordered_json expected_json(const GainEvaluator& evaluator, const Pose& T_world_c
   return contributions_json(evaluator.scene().snapshot(), voxels, unit);
 }
 
+ordered_json truth_json(const SurfaceScene& object) {
+  ShownMesh truth;
+  for (const auto& p : object.mesh().vertices) truth.add_vertex(p);
+  truth.triangles = object.mesh().triangles;
+  return to_json(thinned(std::move(truth), kMaxTruthVertices));
+}
+
 }  // namespace
 
 RunPage::RunPage(std::string title, const Sensor& sensor, std::string criterion,
@@ -160,7 +167,7 @@ void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
     head_ = page_head("reconstruct", title_, evaluator, sensor_, criterion_);
   }
   ordered_json view{{"pose", pose_rows(record.T_world_camera)},
-                    {"surface", to_json(shown_surface(model, *truth_))},
+                    {"surface", to_json(shown_surface(model, truth_.get()))},
                     {"points", points_json(model.points())}};
   view["boundaries"] = boundaries_json(model.surface(), estimated.runs);
   view["patches"] = patches_json(estimated, generation.config().boundary.estimator.patch_length);
@@ -178,21 +185,20 @@ void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
   }
   view["picture"] = small_picture(picture);
   views_.push_back(std::move(view));
+  indices_.push_back(record.index);
 }
 
-ordered_json RunPage::json(const ordered_json& run, const SurfaceScene& object) const {
+ordered_json RunPage::json(const ordered_json& run, const SurfaceScene* object) const {
   ordered_json page = head_;
   page["settings"] = run.at("settings");
   page["summary"] = run;
   page["summary"].erase("settings");
   page["summary"].erase("per_view");
-  ShownMesh truth;
-  for (const auto& p : object.mesh().vertices) truth.add_vertex(p);
-  truth.triangles = object.mesh().triangles;
-  page["truth"] = to_json(thinned(std::move(truth), kMaxTruthVertices));
+  page["summary"].erase("next");
+  page["truth"] = object == nullptr ? ordered_json() : truth_json(*object);
   page["views"] = views_;
   for (std::size_t i = 0; i < views_.size(); ++i) {
-    page["views"][i]["figures"] = run.at("per_view").at(i);
+    page["views"][i]["figures"] = run.at("per_view").at(indices_[i]);
   }
   return page;
 }

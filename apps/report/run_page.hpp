@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/planning.hpp"
@@ -22,7 +24,8 @@ namespace viewgain::app {
 /// of the camel. Thread safety: one call at a time.
 class RunPage {
  public:
-  /// `title` is what the page calls the run; `criterion` that of the map's entropy.
+  /// `title` is what the page calls the run; `criterion` that of the map's entropy; `truth` null:
+  /// it is not known.
   RunPage(std::string title, const Sensor& sensor, std::string criterion,
           std::shared_ptr<const Truth> truth);
 
@@ -34,15 +37,17 @@ class RunPage {
                 const CandidateGeneration& generation, const EstimatedViews& estimated,
                 const GainEvaluator& evaluator, const RgbImage& picture);
 
-  /// The page's data. `run` is what run.json holds; there must have been a view.
+  /// The page's data. `run` is what run.json holds; there must have been a view. Each view has the
+  /// figures of run.json's view of its index. `object` may be null, too.
   [[nodiscard]] nlohmann::ordered_json json(const nlohmann::ordered_json& run,
-                                            const SurfaceScene& object) const;
+                                            const SurfaceScene* object) const;
 
  private:
   std::string title_, criterion_;
   Sensor sensor_;
   std::shared_ptr<const Truth> truth_;
   nlohmann::ordered_json head_, views_ = nlohmann::ordered_json::array();
+  std::vector<std::size_t> indices_;  ///< of the views
 };
 
 }  // namespace viewgain::app

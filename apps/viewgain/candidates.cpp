@@ -9,23 +9,18 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
 #include "options/choices.hpp"
 #include "options/gain_names.hpp"
-#include "options/hazard_source.hpp"
-#include "options/obstacle_source.hpp"
 #include "options/sensed_map.hpp"
 #include "options/values.hpp"
+#include "view_proposal.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/formats/map_file.hpp"
-#include "viewgain/formats/reach_toml.hpp"
-#include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/planner/pose_sets.hpp"
-#include "viewgain/planner_mesh/candidate_generation.hpp"
-#include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
@@ -36,81 +31,10 @@ constexpr std::string_view kCriterion = "log_diagonal";  // of all gains here
 struct Options {
   CommonOptions common;
   std::string map;
-  std::string generator;
   std::string sensor;
-  std::optional<std::size_t> count;
-  std::optional<double> distance;
-  std::string center;
-  std::string reach;
-  std::string body;
-  std::optional<double> support_plane;
-  std::string gain;
-  std::optional<double> overlap;
-  std::optional<double> region_depth;
-  std::optional<double> object_size;
-  std::string hazard;
-  std::vector<std::string> obstacles;
-  std::uint64_t seed = 1;
+  ProposalOptions proposal;
   std::string out;
 };
-
-Eigen::Vector3d center_of(const Options& options, const BeliefGrid& grid) {
-  if (!options.center.empty()) return parse_point("--center", options.center);
-  const Box box = grid.workspace();
-  return grid.T_world_grid() * Eigen::Vector3d(0.5 * (box.min[0] + box.max[0]),
-                                               0.5 * (box.min[1] + box.max[1]),
-                                               0.5 * (box.min[2] + box.max[2]));
-}
-
-double distance_of(const Options& options, const Sensor& sensor, const BeliefGrid& grid) {
-  if (options.distance) return *options.distance;
-  const Box box = grid.workspace();
-  double longest = 0;
-  for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.max[a] - box.min[a]);
-  return filling_distance(sensor, 0.5 * longest * 0.35 / 0.4);  // the object in its workspace
-}
-
-// What a generator has no use for would be ignored in silence.
-void check(const Options& options) {
-  const bool boundary = options.generator == "boundary", sequence = options.generator == "sequence";
-  if (options.count && (boundary || sequence)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--count goes with sets of poses, not with --generator " + options.generator);
-  }
-  if (boundary && !options.center.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                "--center goes with sets of poses, not with --generator boundary");
-  }
-  if (!boundary && (options.overlap || options.region_depth)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--overlap and --region-depth go with --generator boundary");
-  }
-  if (options.overlap) check_inside_0_1("--overlap", *options.overlap);
-  if (options.region_depth) check_positive("--region-depth", *options.region_depth);
-  if (options.distance) check_positive("--distance", *options.distance);
-  if (options.support_plane) check_finite("--support-plane", *options.support_plane);
-}
-
-GenerationConfig generation_config(const Options& options, const Sensor& sensor,
-                                   const BeliefGrid& grid) {
-  GenerationConfig config = default_generation(sensor, grid.voxel_size());
-  config.at_boundaries = options.generator == "boundary";
-  if (options.distance) config.boundary.working_distance = *options.distance;
-  if (options.overlap) config.boundary.estimator.overlap = *options.overlap;
-  if (options.region_depth) config.boundary.estimator.region_depth = *options.region_depth;
-  if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
-  config.feasibility.support_plane = options.support_plane;
-  if (config.at_boundaries && grid.views().empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                options.map + ": has no views, which boundary candidates need");
-  }
-  if (!config.at_boundaries) {
-    config.sets.push_back(make_pose_set(
-        options.generator, {center_of(options, grid), distance_of(options, sensor, grid),
-                            options.count, options.seed, std::nullopt}));
-  }
-  return config;
-}
 
 // What the candidates gain, and their order: as proposed or, where a gain is asked for, best first.
 struct Order {
@@ -119,19 +43,16 @@ struct Order {
   GainModel model = GainModel::paper;
 };
 
-Order rank(const Options& options, const SurfaceModel& model, const Sensor& sensor,
-           const std::vector<Candidate>& candidates, const ExecConfig& exec) {
+Order rank(const ProposalOptions& options, const GainEvaluator& evaluator,
+           const std::vector<Candidate>& candidates) {
   Order ranking;
   ranking.order.resize(candidates.size());
   std::iota(ranking.order.begin(), ranking.order.end(), std::size_t{0});
   if (options.gain.empty()) return ranking;
-  GainConfig config;
-  config.model = ranking.model = parse_gain_model(options.gain);
-  config.support_plane = options.support_plane;
+  ranking.model = parse_gain_model(options.gain);
   std::vector<Pose> poses;
   for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
-  ranking.gains.resize(poses.size());
-  GainEvaluator(model.scene(), sensor, config, exec).evaluate(poses, ranking.gains);
+  ranking.gains = evaluator.evaluate(poses);
   // NaN last, ties as proposed.
   const auto worth = [&](std::size_t i) {
     const double gain = ranking.gains[i].gain;
@@ -164,30 +85,22 @@ void refuse_none(const Options& options, const Proposal& proposal) {
   const std::string reasons =
       proposal.dropped.empty() ? "" : "; dropped: " + counts_text(proposal.dropped);
   throw Error(ErrorCode::invalid_argument, options.map + ": no candidate of --generator " +
-                                               options.generator + " is feasible" + reasons +
-                                               "; no poses are written");
+                                               options.proposal.generator + " is feasible" +
+                                               reasons + "; no poses are written");
 }
 
 void candidates(const Options& options) {
-  check(options);
+  check(options.proposal);
   const ExecConfig exec{options.common.threads};
-  const bool by_hazard =
-      !options.gain.empty() && parse_gain_model(options.gain) != GainModel::paper;
-  if (!by_hazard && (options.object_size || !options.hazard.empty())) {
-    throw Error(ErrorCode::invalid_argument,
-                "--object-size and --hazard go with --gain surface or combined");
-  }
-  auto [grid, sensor] = load_sensed_map(options.map, options.sensor);
-  if (!options.body.empty()) sensor.body_size = parse_size("--body", options.body);
-  const GenerationConfig config = generation_config(options, sensor, grid);
-
-  SurfaceModelConfig model_config;
-  model_config.map.hazard = hazard_source(options.hazard, options.object_size, grid);
-  model_config.map.obstacles = obstacles_of(options.obstacles);
-  const SurfaceModel model(std::move(grid), sensor, model_config, exec);
+  SensedMap map = load_sensed_map(options.map, options.sensor);
+  const Sensor sensor = with_body(std::move(map.sensor), options.proposal);
+  const GenerationConfig config =
+      generation_config(options.proposal, sensor, map.grid, options.map);
+  const SurfaceModel model = model_of(std::move(map.grid), sensor, options.proposal, exec);
   CandidateGeneration generation(model, sensor, config, exec);
   const Proposal proposal = generation.generate({});
-  const Order ranking = rank(options, model, sensor, proposal.candidates, exec);
+  const Order ranking = rank(options.proposal, evaluator_of(options.proposal, model, sensor, exec),
+                             proposal.candidates);
   std::vector<Pose> poses;
   for (const std::size_t i : ranking.order) {
     poses.push_back(proposal.candidates[i].T_world_camera);
@@ -196,7 +109,7 @@ void candidates(const Options& options) {
 
   const EstimatedViews& estimated = generation.estimated();
   if (options.common.json) {
-    nlohmann::ordered_json json{{"generator", options.generator},
+    nlohmann::ordered_json json{{"generator", options.proposal.generator},
                                 {"candidates", poses.size()},
                                 {"gain_model", nullptr},
                                 {"gain_unit", nullptr},
@@ -234,7 +147,7 @@ void candidates(const Options& options) {
   for (const Candidate& candidate : proposal.candidates) {
     if (candidate.boundary_class) ++classes[*candidate.boundary_class];
   }
-  std::printf("%zu candidates (%s)", poses.size(), options.generator.c_str());
+  std::printf("%zu candidates (%s)", poses.size(), options.proposal.generator.c_str());
   for (const auto& [boundary_class, count] : classes) {
     std::printf(", %zu %s", count, boundary_class_name(boundary_class).data());
   }
@@ -260,38 +173,18 @@ Command add_candidates(CLI::App& program) {
       "Candidate views for a map, as a poses file for score; --json says for each why it exists or "
       "why it was dropped.");
   Options& o = *options;
-  const EstimatorConfig usual = default_estimator(1.0);
   app->add_option("MAP", o.map, kMapHelp)->required();
-  one_of(*app->add_option("--generator", o.generator,
+  one_of(*app->add_option("--generator", o.proposal.generator,
                           "boundary (open boundaries of the surface in the map), sphere, dome, "
                           "rings, shell or sequence")
               ->required(),
          generator_names(), "generator");
   app->add_option("--sensor", o.sensor, kMapSensorHelp);
-  app->add_option("--count", o.count,
-                  "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
-                  "(default 48)")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
-  app->add_option("--distance", o.distance,
-                  "boundary: from the surface; else from the centre [m]; default: the sensor's "
-                  "working distance; the workspace fills the view");
-  app->add_option("--center", o.center,
-                  "x,y,z that poses look at, world [m]; default: the workspace's centre");
-  app->add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
-  app->add_option("--body", o.body, kBodyHelp);
-  app->add_option("--support-plane", o.support_plane, "height z of a table [m]");
-  app->add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
-  app->add_option("--overlap", o.overlap,
-                  std::string(kOverlapHelp) + "; default: " + short_text(usual.overlap));
-  app->add_option("--region-depth", o.region_depth,
-                  std::string(kRegionDepthHelp) + "; default: " + short_text(usual.region_depth));
+  add_proposal_options(*app, o.proposal);
   one_of(*app->add_option(
-             "--gain", o.gain,
+             "--gain", o.proposal.gain,
              "paper, surface or combined, as in score: order the poses by it, best first"),
          gain_model_names(), "gain");
-  app->add_option("--object-size", o.object_size, kObjectSizeHelp);
-  app->add_option("--hazard", o.hazard, kHazardHelp);
-  add_seed_option(*app, o.seed, "of the shell");
   app->add_option("--out", o.out, "TUM file of camera-to-world poses")->required();
   add_common_options(*app, o.common);
   add_help(*app, kViewsGroup,

@@ -29,6 +29,7 @@ struct Stopped {
 [[nodiscard]] Command add_score(CLI::App& program);
 [[nodiscard]] Command add_reconstruct(CLI::App& program);
 [[nodiscard]] Command add_candidates(CLI::App& program);
+[[nodiscard]] Command add_next(CLI::App& program);
 [[nodiscard]] Command add_info(CLI::App& program);
 [[nodiscard]] Command add_convert(CLI::App& program);
 [[nodiscard]] Command add_surface(CLI::App& program);

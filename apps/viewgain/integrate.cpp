@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -39,30 +38,18 @@ std::string scale_text(const ReadingSource& source) {
                : "";
 }
 
-// What the frames see, half a voxel more on each side: a reading on the face of the box would lie
-// outside of it.
 Box seen_workspace(ReadingSource& source, const Options& options, double voxel) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Box seen{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  bool any = false;
   Progress progress(std::string("bounds of ") + part_name(options), options.common.quiet);
-  for (std::size_t i = 0; i < source.size(); ++i) {
+  const std::optional<Box> seen = workspace_around(source.size(), voxel, [&](std::size_t i) {
     source.load(i);
-    const auto bounds = source.bounds();
     progress.update(i + 1, source.size());
-    if (!bounds) continue;
-    any = true;
-    for (std::size_t k = 0; k < 3; ++k) {
-      seen.min[k] = std::min(seen.min[k], bounds->min[k] - voxel / 2);
-      seen.max[k] = std::max(seen.max[k], bounds->max[k] + voxel / 2);
-    }
-  }
-  if (!any) {
-    throw Error(ErrorCode::invalid_argument,
-                (options.clouds.empty() ? options.frames + ": no frame" : std::string("no cloud")) +
-                    " has a reading" + scale_text(source));
-  }
-  return seen;
+    return source.bounds();
+  });
+  if (seen) return *seen;
+  throw Error(
+      ErrorCode::invalid_argument,
+      (options.clouds.empty() ? options.frames.folder + ": no frame" : std::string("no cloud")) +
+          " has a reading" + scale_text(source));
 }
 
 BeliefGrid new_map(ReadingSource& source, const Options& options) {
@@ -208,7 +195,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   if (totals.skipped > 0) {
     std::printf("skipped, since the map has them already: %zu\n", totals.skipped);
   }
-  if (!options.mask.empty()) {
+  if (!options.frames.mask.empty()) {
     std::printf("pixels taken away by masks: %s\n", with_commas(totals.masked_pixels).c_str());
   }
   if (options.jump_edge_filter != "off") {
@@ -245,7 +232,7 @@ void check_flags(const Options& options, const CLI::App& app) {
       }
     }
   };
-  if (options.frames.empty() == options.clouds.empty()) {
+  if (options.frames.folder.empty() == options.clouds.empty()) {
     throw Error(ErrorCode::invalid_argument, "needs either FRAMES_DIR or --cloud");
   }
   if (options.clouds.empty()) {
@@ -262,9 +249,9 @@ void check_flags(const Options& options, const CLI::App& app) {
 void refuse_empty(const Options& options, const ReadingSource& source, const Totals& totals) {
   if (!options.map.empty() || totals.sum.readings_inside + totals.sum.plane_readings > 0) return;
   throw Error(ErrorCode::invalid_argument,
-              (options.clouds.empty() ? options.frames : options.clouds.front()) + ": none of " +
-                  with_commas(totals.sum.readings) + " readings lies in the workspace" +
-                  scale_text(source));
+              (options.clouds.empty() ? options.frames.folder : options.clouds.front()) +
+                  ": none of " + with_commas(totals.sum.readings) +
+                  " readings lies in the workspace" + scale_text(source));
 }
 
 void integrate(const Options& options, const CLI::App& app) {
@@ -309,7 +296,7 @@ Command add_integrate(CLI::App& program) {
       "frame-NNNNNN.amplitude.png (16 bit, cos/range^2 in 1e-3 m^-2) where there is one. Clouds "
       "are .pcd or .ply files with x, y, z [m]; "
       "each carves the lines from its sensor's origin to its points.");
-  app->add_option("FRAMES_DIR", options->frames, "folder of frames");
+  app->add_option("FRAMES_DIR", options->frames.folder, "folder of frames");
   app->add_option("--cloud", options->clouds, "a point cloud instead; may be repeated")
       ->allow_extra_args(false);
   app->add_option("--origin", options->origin,
@@ -323,19 +310,13 @@ Command add_integrate(CLI::App& program) {
   app->add_option(
       "--workspace", options->workspace,
       "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: what frames or clouds see");
-  app->add_option("--sensor", options->sensor,
+  app->add_option("--sensor", options->frames.sensor,
                   std::string(kSensorHelp) +
                       "; default: FRAMES_DIR/sensor.toml; needed for clouds, of which noise and "
                       "ranges hold");
-  app->add_option(
-      "--depth-scale", options->depth_scale,
-      "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
-      "sensor.toml), else 1e-3");
-  app->add_option("--mask", options->mask,
-                  "folder of grayscale PNGs with the depth images' names: where they are not 0, an "
-                  "image says nothing");
+  add_frame_folder_options(*app, options->frames);
   one_of(*app->add_option(
-                 "--out-of-range", options->out_of_range,
+                 "--out-of-range", options->frames.out_of_range,
                  "what 65535 says: carve (nothing up to the maximal range) or invalid (no reading)")
               ->capture_default_str(),
          {"carve", "invalid"}, "meaning");

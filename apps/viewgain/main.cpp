@@ -68,9 +68,10 @@ int run(int argc, char** argv) {
       viewgain::app::add_reconstruct(program), viewgain::app::add_simulate(program),
       viewgain::app::add_import(program),      viewgain::app::add_integrate(program),
       viewgain::app::add_score(program),       viewgain::app::add_candidates(program),
-      viewgain::app::add_info(program),        viewgain::app::add_surface(program),
-      viewgain::app::add_convert(program),     viewgain::app::add_render(program),
-      viewgain::app::add_sensors(program),     viewgain::app::add_study(program)};
+      viewgain::app::add_next(program),        viewgain::app::add_info(program),
+      viewgain::app::add_surface(program),     viewgain::app::add_convert(program),
+      viewgain::app::add_render(program),      viewgain::app::add_sensors(program),
+      viewgain::app::add_study(program)};
   // For the build alone.
   std::string help_folder;
   CLI::App* help_files =

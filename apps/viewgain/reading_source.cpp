@@ -10,8 +10,6 @@
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/formats/frames.hpp"
-#include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/cloud_io.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
@@ -28,85 +26,66 @@ IntegrationConfig config_of(const IntegrateOptions& options) {
   return config;
 }
 
-FrameSequence frames_of(const IntegrateOptions& options) {
-  if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
-  try {
-    return open_frames(options.frames, options.sensor, options.depth_scale);
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::invalid_argument || !options.sensor.empty()) throw;
-    throw Error(error.code(), std::string(error.what()) + " (--sensor)");
-  }
-}
-
 class FrameSource : public ReadingSource {
  public:
   explicit FrameSource(const IntegrateOptions& options)
-      : frames_(frames_of(options)),
-        meaning_(options.out_of_range == "carve" ? OutOfRangeMeaning::carve
-                                                 : OutOfRangeMeaning::invalid),
+      : folder_(options.frames),
         support_plane_(options.support_plane),
-        integrator_(frames_.sensor, config_of(options), {options.common.threads}) {
+        integrator_(folder_.sensor(), config_of(options), {options.common.threads}) {
     const auto config =
         parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided == "on");
-    if (config) filter_.emplace(frames_.sensor.camera, *config);
-    if (options.calibrate_hazard == "on") calibration_.emplace(frames_.sensor, support_plane_);
-    if (!options.mask.empty()) {
-      masks_.emplace(options.mask);
-      masks_->require_mask_of_any(frames_.images);
-    }
+    if (config) filter_.emplace(folder_.sensor().camera, *config);
+    if (options.calibrate_hazard == "on") calibration_.emplace(folder_.sensor(), support_plane_);
   }
 
-  [[nodiscard]] const Sensor& sensor() const override { return frames_.sensor; }
-  [[nodiscard]] std::size_t size() const override { return frames_.images.size(); }
-  [[nodiscard]] std::size_t orthonormalized() const override { return frames_.orthonormalized; }
+  [[nodiscard]] const Sensor& sensor() const override { return folder_.sensor(); }
+  [[nodiscard]] std::size_t size() const override { return folder_.size(); }
+  [[nodiscard]] std::size_t orthonormalized() const override {
+    return folder_.frames().orthonormalized;
+  }
 
   [[nodiscard]] std::string identity(std::size_t index) const override {
-    return frame_identity(frames_, index);
+    return frame_identity(folder_.frames(), index);
   }
 
   void load(std::size_t index) override {
     index_ = index;
-    frame_ = load_frame(frames_, index, meaning_);
-    masked_ = 0;
-    if (masks_) {
-      const auto mask = masks_->mask_of(frames_.images[index], frame_.width, frame_.height);
-      if (mask) masked_ = apply_mask(*mask, frame_);
-    }
-    removed_ = filter_ ? filter_->apply(frame_) : 0;
+    loaded_ = folder_.load(index);
+    removed_ = filter_ ? filter_->apply(loaded_.frame) : 0;
   }
   [[nodiscard]] std::optional<Box> bounds() const override {
-    return reading_bounds(frames_.sensor, frame_, frames_.poses[index_], {}, support_plane_);
+    return reading_bounds(folder_.sensor(), loaded_.frame, folder_.T_world_camera(index_), {},
+                          support_plane_);
   }
   IntegrationReport integrate(BeliefGrid& grid) override {
-    const Pose& T_world_camera = frames_.poses[index_];
+    const Pose& T_world_camera = folder_.T_world_camera(index_);
     if (calibration_) {
-      calibration_->count(grid, HazardField(grid.snapshot()), frame_, T_world_camera);
+      calibration_->count(grid, HazardField(grid.snapshot()), loaded_.frame, T_world_camera);
     }
-    return integrator_.integrate(grid, frame_, T_world_camera);
+    return integrator_.integrate(grid, loaded_.frame, T_world_camera);
   }
-  [[nodiscard]] std::uint64_t masked_pixels() const override { return masked_; }
+  [[nodiscard]] std::uint64_t masked_pixels() const override { return loaded_.masked_pixels; }
   [[nodiscard]] std::uint64_t jump_edge_removed() const override { return removed_; }
-  [[nodiscard]] std::optional<double> depth_scale() const override { return frames_.depth_scale; }
+  [[nodiscard]] std::optional<double> depth_scale() const override {
+    return folder_.frames().depth_scale;
+  }
 
  private:
-  FrameSequence frames_;
-  OutOfRangeMeaning meaning_;
+  FrameFolder folder_;
   std::optional<double> support_plane_;
-  std::optional<MaskFolder> masks_;
   std::optional<JumpEdgeFilter> filter_;
   std::optional<HazardCalibration> calibration_;
   FrameIntegrator integrator_;
   std::size_t index_ = 0;
-  DepthFrame frame_;
-  std::uint64_t masked_ = 0;
+  FrameFolder::MaskedFrame loaded_;
   std::uint64_t removed_ = 0;
 };
 
 Sensor sensor_of(const IntegrateOptions& options) {
-  if (options.sensor.empty()) {
+  if (options.frames.sensor.empty()) {
     throw Error(ErrorCode::invalid_argument, "--sensor is needed with --cloud");
   }
-  return load_sensor(options.sensor);
+  return load_sensor(options.frames.sensor);
 }
 
 class CloudSource : public ReadingSource {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "options/frame_folder.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"
 
@@ -18,16 +19,12 @@ namespace viewgain::app {
 /// The flags of `integrate`; see its help.
 struct IntegrateOptions {
   CommonOptions common;
-  std::string frames;               ///< FRAMES_DIR; empty: clouds
+  FrameFolderOptions frames;        ///< without a folder: clouds
   std::vector<std::string> clouds;  ///< --cloud
   std::string origin = "viewpoint";
   std::string poses;
   std::optional<double> voxel;
   std::string workspace;
-  std::string sensor;
-  std::optional<double> depth_scale;
-  std::string mask;
-  std::string out_of_range = "carve";
   std::string carve = "cones";
   std::string occupancy = "probabilistic";
   std::string jump_edge_filter = "off";

@@ -12,9 +12,11 @@
 #include "command_line/interrupt.hpp"
 #include "command_line/progress.hpp"
 #include "commands.hpp"
+#include "frame_map.hpp"
 #include "loop/run.hpp"
 #include "loop/run_report.hpp"
 #include "pictures/view_picture.hpp"
+#include "reconstruct_frames.hpp"
 #include "report/page.hpp"
 #include "report/run_page.hpp"
 #include "viewgain/core/atomic_file.hpp"
@@ -82,6 +84,7 @@ std::string run_title(const ReconstructOptions& options, const RunSetup& setup) 
 }
 
 void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
+  if (is_frame_folder(options.mesh)) return reconstruct_frames(options, app);
   if (options.report == "on") check_report_page("--report");
   StageSeconds seconds;
   const ExecConfig exec{options.common.threads};
@@ -139,7 +142,7 @@ void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
   const nlohmann::ordered_json run =
       write_results(folder, setup, options.sensing.seed, model, views, json);
   if (with_report) {
-    write_report(folder.file("report.html"), page.json(run, *setup.stage.scene));
+    write_report(folder.file("report.html"), page.json(run, setup.stage.scene.get()));
   }
   folder.commit();
   if (options.common.json) {
@@ -163,7 +166,8 @@ Command add_reconstruct(CLI::App& program) {
   CLI::App* app = program.add_subcommand(
       "reconstruct",
       "The whole loop on a mesh: acquire with a simulated camera, update map and surface, propose "
-      "views, rank them, move, until little is left to gain.");
+      "views, rank them, move, until little is left to gain. Or on a folder of recorded frames: "
+      "map, surface and the views to take next.");
   add_options(*app, *options);
   return {app, [options, app] { reconstruct(*options, *app); }};
 }

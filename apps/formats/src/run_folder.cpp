@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kFiles{"run.json",    "config.toml", "views.txt",  "map.vdb",
-                            "surface.ply", "points.ply",  "report.html"};
+constexpr std::array kFiles{"run.json", "config.toml", "views.txt",  "next.txt",
+                            "map.vdb",  "surface.ply", "points.ply", "report.html"};
 
 std::string numbered(std::size_t index, const char* ending) {
   std::array<char, 32> number{};

@@ -16,9 +16,9 @@ namespace viewgain {
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::filesystem::path> run_files(
     const std::filesystem::path& dir);
 
-/// The folder that `reconstruct` leaves: run.json, config.toml, views.txt, map.vdb, surface.ply,
-/// points.ply, views/NN.png, views/NN.amplitude.png, maps/NN.vdb. Nothing is in it, and an earlier
-/// run is as it was, until commit().
+/// The folder that `reconstruct` leaves: run.json, config.toml, views.txt, next.txt, map.vdb,
+/// surface.ply, points.ply, report.html, views/NN.png, views/NN.amplitude.png, maps/NN.vdb. Nothing
+/// is in it, and an earlier run is as it was, until commit().
 class VIEWGAIN_EXPORT RunFolder {
  public:
   /// Throws Error(io), and Error(invalid_argument) if the folder holds files of these names without

@@ -12,7 +12,8 @@ function runStory(report, index) {
   const step = report.steps[index];
   const f = step.figures;
   const parts = [];
-  if (index === 0) parts.push("The first view");
+  if (f.frame) parts.push(`Recorded as ${f.frame}`);
+  else if (index === 0) parts.push("The first view");
   else parts.push(f.class ? `Chosen for a ${f.class} boundary` : `Chosen from ${words(f.generator ?? none)}`);
   let shows = `${index > 0 ? ", it" : ""} shows ${withUnit(f.realised_area, "m^2")} of new surface`;
   if (Number.isFinite(f.predicted_area)) shows += `, ${withUnit(f.predicted_area, "m^2")} predicted`;

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "loop/run_options.hpp"
+
+namespace viewgain::app {
+
+/// `viewgain reconstruct` of a folder of recorded frames: they are what it acquires, one after the
+/// other; the views that it would take next end the run. Leaves the folder that a run on a mesh
+/// leaves, and next.txt. Throws Error, naming the flag, for those that only a mesh or a choice of
+/// views has a use for.
+void reconstruct_frames(const ReconstructOptions& options, const CLI::App& app);
+
+}  // namespace viewgain::app

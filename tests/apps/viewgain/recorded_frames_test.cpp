@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// `viewgain reconstruct` and `next` on a folder of frames, as a user would run them.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/program_runner.hpp"
+#include "viewgain/core/pose_io.hpp"
+
+namespace viewgain {
+namespace {
+
+using nlohmann::json;
+using Strings = std::vector<std::string>;
+
+const Strings kMapFlags{"--voxel", "0.01", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2"};
+
+Strings joined(Strings first, const Strings& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+class RecordedFrames : public test::ProgramTest {
+ protected:
+  RecordedFrames() {
+    write_cube();
+    write_half_sensor();
+    run_well({"simulate", "cube.off", "--orbit", "3,0.6,27,0,46", "--sensor", "tof.toml", "--size",
+              "0.2", "--recenter", "on", "--noise", "on", "--out", "frames"});
+  }
+
+  json reconstruct(const std::string& out, const Strings& more = {}) const {
+    const Strings arguments =
+        joined({"reconstruct", "frames", "--out", out, "--json"}, joined(kMapFlags, more));
+    return json::parse(run_well(arguments));
+  }
+
+  // What the folder of a run holds of its own.
+  [[nodiscard]] std::string hash_of(const std::string& map) const {
+    return json::parse(run_well({"info", map, "--json"})).at("hash").get<std::string>();
+  }
+};
+
+// Map, surface and next views are those that the other subcommands make of the same frames.
+TEST_F(RecordedFrames, ReconstructIsIntegrateSurfaceAndNextInOne) {
+  const json run = reconstruct("run", {"--pictures", "off"});
+  EXPECT_EQ(run["views"], 3);
+  EXPECT_EQ(run["stop_reason"], "no_frames");
+  EXPECT_EQ(list("run"), (Strings{"config.toml", "map.vdb", "next.txt", "points.ply", "run.json",
+                                  "surface.ply", "views.txt"}));
+  EXPECT_EQ(json::parse(read("run/run.json")), run);
+  run_well(joined({"integrate", "frames", "--jump-edge-filter", "5", "--calibrate-hazard", "on",
+                   "--out", "map.vdb"},
+                  kMapFlags));
+  EXPECT_EQ(hash_of("run/map.vdb"), hash_of("map.vdb"));
+  EXPECT_EQ(run["map_hash"], hash_of("map.vdb"));
+  run_well({"surface", "map.vdb", "--out", "s.ply", "--points", "p.ply"});
+  EXPECT_EQ(read("run/surface.ply"), read("s.ply"));
+  EXPECT_EQ(read("run/points.ply"), read("p.ply"));
+  const std::vector<Pose> views = read_tum(dir / "run/views.txt").poses;
+  const std::vector<Pose> poses = read_tum(dir / "frames/poses.txt").poses;
+  ASSERT_EQ(views.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LT((views[i].translation() - poses[i].translation()).norm(), 1e-12);
+    EXPECT_LT((views[i].rotation() - poses[i].rotation()).norm(), 1e-12);
+  }
+
+  const json next = json::parse(run_well({"next", "run/map.vdb", "--out", "n.txt", "--json"}));
+  EXPECT_EQ(read("n.txt"), read("run/next.txt"));
+  EXPECT_EQ(next["next"], run["next"]);
+  EXPECT_EQ(next["views"], 3);
+  // Frames that the map has are known as such.
+  const json again = json::parse(
+      run_well({"integrate", "frames", "--map", "run/map.vdb", "--out", "same.vdb", "--json"}));
+  EXPECT_EQ(again["skipped"], 3);
+}
+
+TEST_F(RecordedFrames, NextTakesFramesAsItTakesTheirMap) {
+  const json run = reconstruct("run", {"--pictures", "off", "--top", "4", "--support-plane", "-1"});
+  const json next = json::parse(run_well(
+      joined({"next", "frames", "--top", "4", "--support-plane", "-1", "--json"}, kMapFlags)));
+  EXPECT_EQ(next["next"], run["next"]);
+  EXPECT_EQ(next["next"].size(), 4U);
+  EXPECT_EQ(next["candidates"], run["candidates"]);
+}
+
+// `candidates --gain` has the same order, and the same reasons.
+TEST_F(RecordedFrames, NextNamesTheBestOfTheCandidates) {
+  reconstruct("run", {"--pictures", "off"});
+  std::size_t cases = 0;
+  for (const char* gain : {"paper", "surface", "combined"}) {
+    for (const char* generator : {"boundary", "dome"}) {
+      const json all = json::parse(run_well({"candidates", "run/map.vdb", "--generator", generator,
+                                             "--gain", gain, "--out", "all.txt", "--json"}));
+      const json next = json::parse(run_well({"next", "run/map.vdb", "--generator", generator,
+                                              "--gain", gain, "--top", "5", "--json"}));
+      ASSERT_EQ(next["next"].size(), 5U);
+      EXPECT_EQ(next["candidates"], all["candidates"]);
+      EXPECT_EQ(next["dropped"], all["dropped"]);
+      EXPECT_EQ(next["gain_model"], gain);
+      for (std::size_t i = 0; i < 5; ++i) {
+        const json& one = next["next"][i];
+        const json& same = all["per_candidate"][i];
+        EXPECT_EQ(one["T_world_camera"], same["T_world_camera"]);
+        EXPECT_EQ(one["gain"], same["gain"]);
+        EXPECT_EQ(one["generator"], same["generator"]);
+        EXPECT_EQ(one["class"], same.contains("class") ? same["class"] : json());
+        ++cases;
+      }
+    }
+  }
+  EXPECT_EQ(cases, 30U);
+}
+
+TEST_F(RecordedFrames, NextSaysInWordsWhatItFound) {
+  reconstruct("run", {"--pictures", "off"});
+  const std::string text = run_well({"next", "run/map.vdb", "--top", "2"});
+  EXPECT_NE(text.find("3 views so far"), std::string::npos) << text;
+  EXPECT_NE(text.find("gain [nat]"), std::string::npos) << text;
+  EXPECT_NE(text.find("boundary "), std::string::npos) << text;
+  // Nothing can be reached: that is an answer.
+  write("nowhere.toml", "[[box]]\nmin = [90, 90, 90]\nmax = [91, 91, 91]\n");
+  const std::string none =
+      run_well({"next", "run/map.vdb", "--reach", "nowhere.toml", "--out", "none.txt"});
+  EXPECT_NE(none.find("no view is possible; dropped: "), std::string::npos) << none;
+  EXPECT_NE(none.find("unreachable"), std::string::npos) << none;
+  EXPECT_EQ(read("none.txt"), "# timestamp tx ty tz qx qy qz qw\n");
+}
+
+TEST_F(RecordedFrames, ReportAndPicturesShowTheFrames) {
+  const json run = reconstruct("run", {"--report", "on"});
+  EXPECT_EQ(list("run/views"), (Strings{"00.png", "01.png", "02.png"}));
+  const std::string page = read("run/report.html");
+  EXPECT_NE(page.find("\"truth\":null"), std::string::npos);
+  EXPECT_NE(page.find("frame-000002.depth.png"), std::string::npos);
+  EXPECT_EQ(run["per_view"].size(), 3U);
+  double area = 0;
+  for (const json& view : run["per_view"]) area += view["realised_area"].get<double>();
+  EXPECT_NEAR(area, run["surface_area"].get<double>(), 0.5 * run["surface_area"].get<double>());
+}
+
+TEST_F(RecordedFrames, AnyNumberOfThreadsMakesTheSame) {
+  reconstruct("one", {"--threads", "1", "--pictures", "off"});
+  reconstruct("three", {"--threads", "3", "--pictures", "off"});
+  for (const char* file : {"surface.ply", "points.ply", "next.txt", "views.txt"}) {
+    EXPECT_EQ(read("one/" + std::string(file)), read("three/" + std::string(file))) << file;
+  }
+  EXPECT_EQ(hash_of("one/map.vdb"), hash_of("three/map.vdb"));
+}
+
+TEST_F(RecordedFrames, WhatOnlyAMeshOrAMapHasIsRefused) {
+  reconstruct("run", {"--pictures", "off"});
+  std::filesystem::create_directories(dir / "empty");
+  const Strings frames = joined({"reconstruct", "frames", "--out", "new"}, kMapFlags);
+  const std::vector<std::pair<Strings, std::string>> calls{
+      {joined(frames, {"--size", "0.2"}), "--size"},
+      {joined(frames, {"--policy", "random"}), "--policy"},
+      {joined(frames, {"--max-views", "2"}), "--max-views"},
+      {joined(frames, {"--noise", "on"}), "--noise"},
+      {joined(frames, {"--gain", "frontier_count"}), "--gain"},
+      {joined(frames, {"--mask", "empty"}), "empty"},
+      {{"reconstruct", "empty", "--voxel", "0.01", "--out", "new"}, "empty"},
+      {{"reconstruct", "frames", "--voxel", "0.01", "--workspace", "5,5,5,6,6,6", "--out", "new"},
+       "none of"},
+      {{"reconstruct", "cube.off", "--voxel", "0.01", "--out", "new"}, "--sensor"},
+      {{"reconstruct", "cube.off", "--voxel", "0.01", "--sensor", "tof.toml", "--size", "0.2",
+        "--mask", "empty", "--out", "new"},
+       "--mask"},
+      {{"next", "run/map.vdb", "--voxel", "0.01"}, "--voxel"},
+      {{"next", "frames"}, "--voxel"},
+      {{"next", "run/map.vdb", "--generator", "dome", "--overlap", "0.5"}, "--overlap"},
+      {{"next", "run/map.vdb", "--gain", "paper", "--object-size", "0.5"}, "--object-size"},
+      {{"next", "run/map.vdb", "--out", "run/map.vdb"}, "map.vdb"},
+      {{"next", "none.vdb"}, "none.vdb"}};
+  std::size_t cases = 0;
+  for (const auto& [arguments, named] : calls) {
+    const test::ProgramResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2) << named << result.err;
+    EXPECT_NE(result.err.find(named), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find('\n'), result.err.size() - 1) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(dir / "new")) << named;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 16U);
+}
+
+}  // namespace
+}  // namespace viewgain
