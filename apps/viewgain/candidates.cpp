@@ -17,7 +17,7 @@
 #include "options/gain_names.hpp"
 #include "options/sensed_map.hpp"
 #include "options/values.hpp"
-#include "view_proposal.hpp"
+#include "proposal/view_proposal.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/planner/pose_sets.hpp"

@@ -18,7 +18,7 @@
 #include "options/choices.hpp"
 #include "options/sensed_map.hpp"
 #include "options/values.hpp"
-#include "reading_source.hpp"
+#include "recorded/reading_source.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/stopwatch.hpp"
 #include "viewgain/formats/map_file.hpp"

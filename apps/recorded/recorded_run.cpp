@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "reconstruct_frames.hpp"
+#include "recorded_run.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -20,9 +20,9 @@
 #include "options/next_views.hpp"
 #include "options/values.hpp"
 #include "pictures/view_picture.hpp"
+#include "proposal/view_proposal.hpp"
 #include "report/page.hpp"
 #include "report/run_page.hpp"
-#include "view_proposal.hpp"
 #include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
+#include "options/common_options.hpp"
 #include "options/frame_folder.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"

@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "options/frame_folder.hpp"
-#include "view_proposal.hpp"
+#include "proposal/view_proposal.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/planner/map_model.hpp"
 
