@@ -98,6 +98,7 @@ extern constinit const Layout VIEWGAIN_LAYOUT_TABLE[] = {VIEWGAIN_LAYOUT(Approxi
                                                          VIEWGAIN_LAYOUT(PlanningResult),
                                                          VIEWGAIN_LAYOUT(Pose),
                                                          VIEWGAIN_LAYOUT(PoseList),
+                                                         VIEWGAIN_LAYOUT(PoseSigma),
                                                          VIEWGAIN_LAYOUT(PoseTolerance),
                                                          VIEWGAIN_LAYOUT(Proposal),
                                                          VIEWGAIN_LAYOUT(RaceConfig),

@@ -140,12 +140,47 @@ TEST(Sensor, ValidateNamesTheField) {
   expect_bad("T_flange_camera", [](Sensor& s) {
     s.T_flange_camera = Pose(2 * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
   });
-  EXPECT_EQ(cases, 19);
+  expect_bad("pose_sigma", [](Sensor& s) { s.pose_sigma.translation = -0.001; });
+  expect_bad("pose_sigma", [](Sensor& s) { s.pose_sigma.rotation = kNan; });
+  EXPECT_EQ(cases, 21);
   Sensor touching = sensor_preset("sr4000");
   touching.noise = ShotNoise{.modulation_frequency = 0, .min_amplitude = 0};
   touching.min_range = 0;
   touching.T_flange_camera = look_at({0, 0, 1}, {0, 0, 0});
   EXPECT_NO_THROW(touching.validate());
+}
+
+// Against C + J Σ Jᵀ with J = [I, -[p]x], p the reading's place.
+TEST(Sensor, SigmasOfAReadingHaveThePosesError) {
+  Sensor sensor = sensor_preset("sr4000");
+  EXPECT_EQ(sensor.sigmas(0.7, 0.5).axial, sensor.noise_sigmas(0.7, 0.5).axial);
+  EXPECT_EQ(sensor.sigmas(0.7, 0.5).lateral, sensor.noise_sigmas(0.7, 0.5).lateral);
+  int cases = 0;
+  for (const PoseSigma& pose : {PoseSigma{0.005, 0}, PoseSigma{0, 0.01}, PoseSigma{0.01, 0.0175}}) {
+    sensor.pose_sigma = pose;
+    for (const Eigen::Vector3d& p : {Eigen::Vector3d(0, 0, 0.4), Eigen::Vector3d(0.3, -0.2, 1.1),
+                                     Eigen::Vector3d(-1, 0.5, 3)}) {
+      const auto covariance = [&p](const MeasurementSigmas& s) -> Eigen::Matrix3d {
+        const Eigen::Vector3d d = p.normalized();
+        const Eigen::Matrix3d along = d * d.transpose();
+        return s.axial * s.axial * along +
+               s.lateral * s.lateral * (Eigen::Matrix3d::Identity() - along);
+      };
+      Eigen::Matrix3d cross;
+      cross << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
+      Eigen::Matrix<double, 3, 6> J;
+      J << Eigen::Matrix3d::Identity(), -cross;
+      Eigen::Matrix<double, 6, 1> variances;
+      variances << Eigen::Vector3d::Constant(pose.translation * pose.translation),
+          Eigen::Vector3d::Constant(pose.rotation * pose.rotation);
+      const Eigen::Matrix3d expected = covariance(sensor.noise_sigmas(p.norm(), 0.8)) +
+                                       J * variances.asDiagonal() * J.transpose();
+      EXPECT_LT((covariance(sensor.sigmas(p.norm(), 0.8)) - expected).norm(),
+                1e-12 * expected.norm());
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 9);
 }
 
 TEST(Sensor, DefaultPriorIsNeverSurerThanTwoReadings) {

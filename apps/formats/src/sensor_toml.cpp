@@ -159,6 +159,10 @@ Sensor sensor_of(const toml::table& root, const std::string& file) {
     const std::vector<double> size = reader.numbers("body", *node, 3);
     sensor.body_size = {size[0], size[1], size[2]};
   }
+  if (const toml::node* node = reader.find("pose_sigma"); node != nullptr) {
+    const std::vector<double> sigmas = reader.numbers("pose_sigma", *node, 2);
+    sensor.pose_sigma = {sigmas[0], sigmas[1]};
+  }
   sensor.camera = read_camera(reader.table("camera"));
   sensor.noise = read_noise(reader.table("noise"));
   reader.refuse_unknown_keys();
@@ -192,6 +196,10 @@ std::string sensor_toml(const Sensor& sensor) {
     const auto& size = *sensor.body_size;
     text << "body = [" << toml_float(size[0]) << ", " << toml_float(size[1]) << ", "
          << toml_float(size[2]) << "]  # width, height, depth [m]\n";
+  }
+  if (sensor.pose_sigma != PoseSigma{}) {
+    text << "pose_sigma = [" << toml_float(sensor.pose_sigma.translation) << ", "
+         << toml_float(sensor.pose_sigma.rotation) << "]  # of the poses of frames [m], [rad]\n";
   }
   const PinholeCamera& camera = sensor.camera;
   text << "\n[camera]  # pixel (0,0) has its centre at (0,0); [px]\n"

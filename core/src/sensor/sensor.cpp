@@ -130,6 +130,11 @@ void Sensor::validate() const {
       }
     }
   }
+  for (const double sigma : {pose_sigma.translation, pose_sigma.rotation}) {
+    if (!(std::isfinite(sigma) && sigma >= 0)) {
+      fail("pose_sigma must be finite and not negative, not " + short_text(sigma));
+    }
+  }
 }
 
 const std::vector<std::string>& sensor_preset_names() {

@@ -141,7 +141,7 @@ struct SimulatedSensor::Impl {
     const RayReturn center = trace(view, ray);
     const bool nothing = !(center.range <= sensor.max_range);
     const double range = nothing ? sensor.max_range : std::max(center.range, kMinNoiseRange);
-    const double sigma = sensor.sigmas(range, nothing ? 1.0 : center.cos_incidence).lateral;
+    const double sigma = sensor.noise_sigmas(range, nothing ? 1.0 : center.cos_incidence).lateral;
     const Eigen::Vector3d across_x = Eigen::Vector3d(direction.z(), 0, -direction.x()).normalized();
     const Eigen::Vector3d across_y = direction.cross(across_x);
     return sigma / range * length *

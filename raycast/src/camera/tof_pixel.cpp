@@ -65,7 +65,7 @@ PixelReading TofPixel::disturbed(PixelReading reading, const PixelRandom& random
     reading.range += config_.wiggling * std::sin(4.0 * kTwoPi * true_range / unambiguous_range_);
   }
   if (config_.noise) {
-    const double sigma = sensor_.sigmas(true_range, reading.cos_incidence).axial;
+    const double sigma = sensor_.noise_sigmas(true_range, reading.cos_incidence).axial;
     reading.range += sigma * random.normal(RandomStream::axial);
     // Phase and amplitude come from the same four samples: relative to the amplitude its noise is
     // what the phase's is in radians.

@@ -118,6 +118,25 @@ TEST_F(Files, SensorsAreWrittenAlikeInEveryLocale) {
   EXPECT_TRUE(equal(read_sensor_toml(dir / "sensor.toml"), sensor)) << text;
 }
 
+TEST_F(Files, SensorsSayHowSurePosesAre) {
+  Sensor sensor = sensor_preset("sr4000");
+  EXPECT_EQ(sensor_toml(sensor).find("pose_sigma"), std::string::npos);
+  sensor.pose_sigma = {0.005, 0.0087};
+  const std::string text = sensor_toml(sensor);
+  EXPECT_NE(text.find("pose_sigma = [0.005, 0.0087]"), std::string::npos) << text;
+  write("sensor.toml", text);
+  EXPECT_EQ(read_sensor_toml(dir / "sensor.toml").pose_sigma, sensor.pose_sigma);
+  std::size_t cases = 0;
+  for (const char* bad : {"0.005", "[0.005]", "[0.005, -0.1]", "[nan, 0.0]", "[0.1, 0.1, 0.1]"}) {
+    const std::string key = "pose_sigma = ";
+    std::string damaged = text;
+    damaged.replace(damaged.find(key), key.size() + 15, key + bad);
+    EXPECT_NE(sensor_error(damaged).find("pose_sigma"), std::string::npos) << bad;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5U);
+}
+
 TEST_F(Files, StereoWithoutAFocalLengthGoesByTheCameras) {
   Sensor sensor = sensor_preset("d435");
   StereoNoise noise;

@@ -61,6 +61,23 @@ TEST(Beliefs, TwoPerpendicularReadings) {
   for (std::size_t i = 3; i < 6; ++i) EXPECT_NEAR(L[i], 0.0, 1e-6 * lateral);
 }
 
+// What the pose adds is the same along the ray as a noisier camera; across it grows with the range.
+TEST(Beliefs, ReadingsAreNoSurerThanThePose) {
+  Sensor sensor = one_pixel(ConstantNoise{0.003, 0.001});
+  sensor.pose_sigma = {0.004, 0.01};
+  BeliefGrid grid(kCube);
+  const Eigen::Vector3d target(0.005, 0.005, 0.005);
+  FrameIntegrator(sensor).integrate(grid, one_reading(0.5),
+                                    look_at(target - Eigen::Vector3d(0.5, 0, 0), target));
+  const auto belief = grid.belief({0, 0, 0});
+  ASSERT_TRUE(belief.has_value());
+  const double axial = 1 / (0.003 * 0.003 + 0.004 * 0.004);
+  const double lateral = 1 / (0.001 * 0.001 + 0.004 * 0.004 + 0.005 * 0.005);
+  EXPECT_NEAR(belief->information[0], axial, 1e-6 * axial);
+  EXPECT_NEAR(belief->information[1], lateral, 1e-6 * lateral);
+  EXPECT_NEAR(belief->information[2], lateral, 1e-6 * lateral);
+}
+
 TEST(Beliefs, ExactReadingsOfOnePointFuseToIt) {
   const Eigen::Vector3d target(0.0437, -0.0281, 0.0119);
   GridConfig config = kCube;

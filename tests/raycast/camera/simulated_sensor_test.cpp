@@ -38,6 +38,15 @@ TEST(SimulatedSensor, DepthIsAlongTheOpticalAxis) {
   for (const float z : frame.depth) EXPECT_NEAR(z, 0.75, 1e-5);
 }
 
+// How sure poses are is nothing that the camera knows.
+TEST(SimulatedSensor, NoiseIsTheCamerasAlone) {
+  Sensor sensor = sensor_without_distortion();
+  const SimulationConfig config{.noise = true, .lateral_noise = true};
+  const DepthFrame frame = SimulatedSensor(plane_at(0.75), sensor, config).acquire(Pose{});
+  sensor.pose_sigma = {0.02, 0.02};
+  EXPECT_EQ(SimulatedSensor(plane_at(0.75), sensor, config).acquire(Pose{}), frame);
+}
+
 TEST(SimulatedSensor, BackgroundIsASphereRoundTheOrigin) {
   const Sensor sensor = sensor_without_distortion();
   const SimulatedSensor simulated(far_away(), sensor, {.background_radius = 1.5});

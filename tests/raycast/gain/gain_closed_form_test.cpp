@@ -65,6 +65,20 @@ TEST(GainClosedForm, OneVoxelOneRay) {
   }
 }
 
+// The ray ends 8 m away, where a turn of 1 mrad is 8 mm.
+TEST(GainClosedForm, PosesThatAreNotSureMakeReadingsLessSure) {
+  const BeliefGrid grid = sparse_map({16, 16, 16}, {{6, 6, 6}}, VoxelState::unknown);
+  Sensor sensor = anisotropic();
+  sensor.pose_sigma = {0.01, 0.001};
+  const double axial = std::hypot(kAxial, 0.01), lateral = std::hypot(kLateral, 0.01, 0.008);
+  const double expected =
+      std::log(squared(kPrior) / fused(lateral)) + 0.5 * std::log(squared(kPrior) / fused(axial));
+  const Pose pose = axis_pose({-2, 6.5, 6.5}, 0, true);
+  const double gain = score(grid, sensor, pose, Criterion::log_diagonal).gain;
+  EXPECT_NEAR(gain, expected, 1e-6 * expected);
+  EXPECT_LT(gain, score(grid, anisotropic(), pose, Criterion::log_diagonal).gain);
+}
+
 TEST(GainClosedForm, TwoPerpendicularReadingsInOneVoxel) {
   // The paper's Fig. 3: a voxel seen along x, then along z. Each view is sharp where the other is
   // not.

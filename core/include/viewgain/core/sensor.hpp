@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,14 @@
 #include "viewgain/core/pose.hpp"
 
 namespace viewgain {
+
+/// How far the poses that frames come with may be off: standard deviations, the same in each axis,
+/// about the camera's centre. A value type.
+struct VIEWGAIN_EXPORT PoseSigma {
+  double translation = 0;  ///< of the camera's centre [m]
+  double rotation = 0;     ///< of each component of the rotation vector [rad]
+  bool operator==(const PoseSigma&) const = default;
+};
 
 /// A depth camera: intrinsics, range limits along the ray, noise. A value type.
 struct VIEWGAIN_EXPORT Sensor {
@@ -28,15 +37,29 @@ struct VIEWGAIN_EXPORT Sensor {
   /// which takes the SR4000's otherwise.
   std::optional<std::array<double, 3>> body_size{};
 
-  /// Standard deviations at range t [m]; see sigmas() in noise.hpp.
-  [[nodiscard]] MeasurementSigmas sigmas(double t, double cos_incidence = 1.0) const {
+  PoseSigma pose_sigma{};  ///< zero: poses are exact
+
+  /// Standard deviations of a reading at range t [m] in the camera's frame; see sigmas() in
+  /// noise.hpp.
+  [[nodiscard]] MeasurementSigmas noise_sigmas(double t, double cos_incidence = 1.0) const {
     return viewgain::sigmas(noise, t, camera.fx, cos_incidence);
+  }
+  /// The same in the world, where the pose's error is added: C + J Σ Jᵀ, for a reading along the
+  /// direction d is C + σ_t² I + σ_r² t² (I - d dᵀ). That error is one for all readings of a frame;
+  /// map and gains take readings for independent, so that what many of them say of a voxel is
+  /// surer than it should be.
+  [[nodiscard]] MeasurementSigmas sigmas(double t, double cos_incidence = 1.0) const {
+    const MeasurementSigmas own = noise_sigmas(t, cos_incidence);
+    if (pose_sigma == PoseSigma{}) return own;
+    const double turned = pose_sigma.rotation * t;
+    return {std::hypot(own.axial, pose_sigma.translation),
+            std::hypot(own.lateral, pose_sigma.translation, turned)};
   }
 
   /// Throws Error(invalid_argument), naming the field: camera as in PinholeCamera::validate(),
   /// 0 <= min_range < max_range, working_distance > 0 and within them, all noise parameters
   /// positive and finite (modulation frequency and least amplitude may be 0), T_flange_camera
-  /// rigid (1e-3), body_size positive and finite.
+  /// rigid (1e-3), body_size positive and finite, pose_sigma not negative and finite.
   void validate() const;
 };
 
