@@ -15,12 +15,15 @@
 extern "C" {
 #endif
 
+/* A planner: a map, what was tried, and how to choose. */
 typedef struct vg_planner vg_planner;
 
 /* A candidate that was commanded and not reached, beside VG_INFEASIBLE_; how many there are. */
+/* Further reason: the pose was tried and not reached. How many reasons there are. */
 enum { VG_INFEASIBLE_MISSED = 8, VG_PLANNER_REASONS = 9 };
 
 /* Why to end. */
+/* Why to stop. */
 enum {
   VG_GO_ON = 0,
   VG_STOP_GAIN = 1,          /* the best candidate promises too little */
@@ -31,8 +34,9 @@ enum {
   VG_STOP_MAX_VIEWS = 6
 };
 
+/* What a planner is set up with; fields are as in C++'s PlannerConfig. */
 typedef struct vg_planner_config {
-  size_t struct_size;
+  size_t struct_size;            /* as _init() sets it */
   int32_t num_threads;           /* 0: all; never changes a result */
   int32_t gain;                  /* VG_GAIN_COMBINED */
   double voxel_size;             /* [m]; must be given */
@@ -43,27 +47,31 @@ typedef struct vg_planner_config {
   /* Known obstacles, as in vg_scene_config: they block rays and the body, and readings of them
      carve but do not hit. */
   const double* boxes;
-  size_t box_count;
-  const double* vertices;
-  size_t vertex_count;
-  const uint32_t* triangles;
-  size_t triangle_count;
-  double jump_edge_angle; /* of the filter for flying pixels, 1 to 10 degrees [rad]; 5; 0: off */
+  size_t box_count;          /* how many boxes */
+  const double* vertices;    /* obstacles, world: 3 numbers each */
+  size_t vertex_count;       /* how many vertices */
+  const uint32_t* triangles; /* 3 vertex indices each */
+  size_t triangle_count;     /* how many triangles */
+  double jump_edge_angle;    /* of the filter for flying pixels, 1 to 10 degrees [rad]; 5; 0: off */
   /* The body and where it can be, as in vg_feasibility_config. */
-  int32_t check_feasibility; /* 1; 0: all candidates are possible but those taken or tried */
-  int32_t has_flange;
-  double body_size[3];
-  double T_flange_camera[16];
-  double clearance;
-  int32_t (*reachable)(const double T_world_camera[16], void* user);
-  void* user;
-  uint64_t max_views, idle_views; /* 20 and 3; idle_views 0: never */
-  double stop_gain, stop_area;    /* NaN: the defaults of the gain; 0: never */
+  int32_t check_feasibility;  /* 1; 0: all candidates are possible but those taken or tried */
+  int32_t has_flange;         /* 0: the camera's centre is the middle of the body's front face */
+  double body_size[3];        /* width, height, depth [m] */
+  double T_flange_camera[16]; /* camera to flange, rows */
+  double clearance;           /* round the body [m] */
+  int32_t (*reachable)(const double T_world_camera[16],
+                       void* user); /* may the camera be there? null: anywhere */
+  void* user;                       /* handed to reachable */
+  uint64_t max_views, idle_views;   /* 20 and 3; idle_views 0: never */
+  double stop_gain, stop_area;      /* NaN: the defaults of the gain; 0: never */
 } vg_planner_config;
+/* The defaults. */
 VG_API void vg_planner_config_init(vg_planner_config* config, size_t struct_size);
 
+/* An empty map; the planner keeps copies of what it gets. */
 VG_API vg_status vg_planner_create(const vg_sensor* sensor, const vg_planner_config* config,
                                    vg_planner** planner);
+/* Null does nothing. */
 VG_API void vg_planner_release(vg_planner* planner);
 
 /* Candidates that are proposed from the next vg_planner_propose() on, 16 doubles each. */
@@ -71,7 +79,7 @@ VG_API vg_status vg_planner_add_poses(vg_planner* planner, const double* poses, 
 
 /* What a view brought. */
 typedef struct vg_planner_view {
-  size_t struct_size;
+  size_t struct_size;                            /* as _init() sets it */
   uint64_t view;                                 /* from 0 */
   uint64_t readings, readings_inside;            /* pixels; those in the workspace */
   uint64_t voxels_hit, voxels_crossed;           /* by it */
@@ -80,6 +88,7 @@ typedef struct vg_planner_view {
   double new_area, total_area; /* new surface that it showed, and so far [m^2]; new_area is NaN with
                                   VG_GAIN_PAPER */
 } vg_planner_view;
+/* Makes `view` ready for a call. */
 VG_API void vg_planner_view_init(vg_planner_view* view, size_t struct_size);
 
 /* Puts a frame into the map, as vg_integrate(); `added` or null. */
@@ -91,12 +100,13 @@ VG_API vg_status vg_planner_add(vg_planner* planner, const float* depth, const f
 VG_API vg_status vg_planner_propose(vg_planner* planner, size_t* candidates, size_t* dropped,
                                     size_t reasons);
 
+/* One of the best. */
 typedef struct vg_ranked_view {
-  size_t index; /* of the candidate in the proposal, or of the pose that was given */
-  double T_world_camera[16];
-  double gain;  /* as vg_view_gain's */
-  double area;  /* as vg_view_gain's */
-  double worth; /* the gain less the cost */
+  size_t index;              /* of the candidate in the proposal, or of the pose that was given */
+  double T_world_camera[16]; /* camera to world, rows */
+  double gain;               /* as vg_view_gain's */
+  double area;               /* as vg_view_gain's */
+  double worth;              /* the gain less the cost */
 } vg_ranked_view;
 
 /* The k best candidates of the last proposal, which must have come since the last view, best first.
@@ -126,6 +136,7 @@ VG_API vg_status vg_planner_should_stop(const vg_planner* planner, int32_t* reas
    or not at all; and a planner that goes on from there, bit for bit, with the same sensor, config
    and candidates. */
 VG_API vg_status vg_planner_save(const vg_planner* planner, const char* path);
+/* Goes on where vg_planner_save() was called, by the same sensor and settings. */
 VG_API vg_status vg_planner_load(const char* path, const vg_sensor* sensor,
                                  const vg_planner_config* config, vg_planner** planner);
 

@@ -13,6 +13,7 @@ namespace viewgain {
 /// order is that of the paper's section 5.
 enum class BoundaryClass : std::uint8_t { left, right, top, bottom };
 
+/// Names of the classes, in their order.
 inline constexpr std::array<std::string_view, 4> kBoundaryClassNames{"left", "right", "top",
                                                                      "bottom"};
 

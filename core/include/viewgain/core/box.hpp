@@ -10,8 +10,8 @@ namespace viewgain {
 
 /// Axis-aligned box [m], in the frame that its use names, and whether its faces belong to it.
 struct VIEWGAIN_EXPORT Box {
-  std::array<double, 3> min{};
-  std::array<double, 3> max{};
+  std::array<double, 3> min{};  ///< lowest corner [m]
+  std::array<double, 3> max{};  ///< highest corner, which is not part of it [m]
 
   /// Half-open, [min, max), so that boxes side by side share no point. A ReachRegion, where a
   /// camera may stand on the limit, takes its boxes as closed.

@@ -20,6 +20,7 @@ struct VIEWGAIN_EXPORT PinholeCamera {
   double cx = 0, cy = 0;               ///< principal point [px]
   std::array<double, 5> distortion{};  ///< k1 k2 p1 p2 k3
 
+  /// Does any of the coefficients differ from 0?
   [[nodiscard]] bool has_distortion() const { return distortion != std::array<double, 5>{}; }
 
   /// Throws Error(invalid_argument), naming the field, unless sizes are in 1..16384 and make at

@@ -13,17 +13,21 @@ namespace viewgain {
 /// Symmetric 3x3 matrix, six numbers in the order of the map files: diagonal, then xy, xz, yz. Used
 /// for information matrices Λ = Σ⁻¹ [m⁻²] and covariances Σ [m²]. A value type.
 struct VIEWGAIN_EXPORT SymmetricMatrix3 {
-  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;  ///< its entries
 
+  /// `scale` times the unit matrix.
   [[nodiscard]] static SymmetricMatrix3 identity(double scale = 1.0) {
     return {scale, scale, scale, 0, 0, 0};
   }
+  /// The upper triangle of `m`.
   [[nodiscard]] static SymmetricMatrix3 from(const Eigen::Matrix3d& m) {
     return {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)};
   }
+  /// All nine entries.
   [[nodiscard]] Eigen::Matrix3d matrix() const {
     return (Eigen::Matrix3d() << xx, xy, xz, xy, yy, yz, xz, yz, zz).finished();
   }
+  /// Entry by entry.
   SymmetricMatrix3& operator+=(const SymmetricMatrix3& o) {
     xx += o.xx, yy += o.yy, zz += o.zz, xy += o.xy, xz += o.xz, yz += o.yz;
     return *this;
@@ -32,14 +36,18 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   friend SymmetricMatrix3 operator+(SymmetricMatrix3 a, const SymmetricMatrix3& b) {
     return a += b;
   }
+  /// Matrix times vector.
   [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& v) const {
     return {xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),
             xz * v.x() + yz * v.y() + zz * v.z()};
   }
+  /// Every entry times `s`.
   [[nodiscard]] SymmetricMatrix3 operator*(double s) const {
     return {xx * s, yy * s, zz * s, xy * s, xz * s, yz * s};
   }
+  /// Sum of the diagonal.
   [[nodiscard]] double trace() const { return xx + yy + zz; }
+  /// Expanded along the first row.
   [[nodiscard]] double determinant() const {
     return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
   }
@@ -94,7 +102,7 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
 };
 
 /// Information of one reading along the unit direction d, in d's frame:
-/// Λ_r = a I + (b - a) d dᵀ, a = σ_lat⁻², b = σ_ax⁻² (DESIGN.md section 4).
+/// Λ_r = a I + (b - a) d dᵀ, a = σ_lat⁻², b = σ_ax⁻² (apps/docs/guide/equations.md).
 [[nodiscard]] inline SymmetricMatrix3 measurement_information(const Eigen::Vector3d& d,
                                                               const MeasurementSigmas& sigmas) {
   const double a = 1.0 / (sigmas.lateral * sigmas.lateral);

@@ -19,7 +19,9 @@ enum class Criterion : std::uint8_t {
   trace,            ///< tr Σ [m²]: A-optimality; the same in every frame
 };
 
+/// Names of the criteria, in their order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& criterion_names();
+/// The criterion's name, as parse_criterion() reads it.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view criterion_name(Criterion criterion);
 
 /// Throws Error(invalid_argument) that lists the valid names.

@@ -11,8 +11,8 @@
 
 namespace viewgain {
 
-/// Depth image along the optical axis (z, not range) [m], row by row. Three kinds of pixel
-/// (DESIGN.md section 5): a reading (0 < z < infinity), kInvalid, kOutOfRange. A value type.
+/// Depth image along the optical axis (z, not range) [m], row by row. Three kinds of pixel:
+/// a reading (0 < z < infinity), kInvalid, kOutOfRange. A value type.
 struct VIEWGAIN_EXPORT DepthFrame {
   static constexpr float kInvalid = 0.0F;  ///< says nothing
   static constexpr float kOutOfRange =
@@ -34,6 +34,7 @@ struct VIEWGAIN_EXPORT DepthFrame {
     return !known_depth.empty() && depth[pixel] >= known_depth[pixel];
   }
 
+  /// The depth of pixel (u, v): column, row, both from 0 and unchecked.
   [[nodiscard]] float at(int u, int v) const {
     return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
                  static_cast<std::size_t>(u)];

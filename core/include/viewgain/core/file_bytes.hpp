@@ -13,6 +13,7 @@ namespace viewgain {
 /// The largest file that file_bytes() reads unless told otherwise, and the most that it takes from
 /// a pipe, whose length nobody knows beforehand [bytes].
 inline constexpr std::uint64_t kMostFileBytes = std::uint64_t{1} << 34U;
+/// Default of the most that is read from a pipe [bytes].
 inline constexpr std::uint64_t kMostPipeBytes = std::uint64_t{1} << 30U;
 
 /// All bytes of a regular file or a pipe. Throws Error(io) that names the file if it cannot be

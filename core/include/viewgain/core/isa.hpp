@@ -19,6 +19,7 @@ enum class Isa : std::uint8_t {
   avx512,
 };
 
+/// "avx512", "avx2", "sse4" or "baseline".
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view isa_name(Isa isa);
 
 /// What this CPU and operating system can run, best first. Empty on an x86-64 without SSE4.2.

@@ -50,6 +50,7 @@ struct VIEWGAIN_EXPORT StereoNoise {
   double focal = 0;        ///< [px]; 0: that of the camera, fx
   double baseline = 0.05;  ///< [m]
 
+  /// The focal length that counts [px].
   [[nodiscard]] double focal_with(double fx) const { return focal > 0 ? focal : fx; }
   bool operator==(const StereoNoise&) const = default;
 };
@@ -72,10 +73,11 @@ inline constexpr double kSpeedOfLight = 299'792'458.0;  ///< [m/s]
 
 /// Standard deviations of one measurement, along the ray and across it [m].
 struct VIEWGAIN_EXPORT MeasurementSigmas {
-  double axial = 0;
-  double lateral = 0;
+  double axial = 0;    ///< along the ray [m]
+  double lateral = 0;  ///< across it [m]
 };
 
+/// How a sensor's readings scatter.
 using NoiseModel =
     std::variant<ShotNoise, StructuredLightNoise, StereoNoise, QuadraticNoise, ConstantNoise>;
 
@@ -84,14 +86,19 @@ using NoiseModel =
 /// ray. One overload a model and one for the variant. Thread safe; costs a few flops.
 [[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const ShotNoise&, double t, double fx,
                                                        double cos_incidence);
+/// As above.
 [[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const StructuredLightNoise&, double t,
                                                        double fx, double cos_incidence);
+/// As above.
 [[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const StereoNoise&, double t, double fx,
                                                        double cos_incidence);
+/// As above.
 [[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const QuadraticNoise&, double t, double fx,
                                                        double cos_incidence);
+/// As above.
 [[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const ConstantNoise&, double t, double fx,
                                                        double cos_incidence);
+/// As above, of whichever model it holds.
 [[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const NoiseModel&, double t, double fx,
                                                        double cos_incidence = 1.0);
 

@@ -25,8 +25,8 @@ namespace viewgain {
 
 /// S_i: what the sensor delivered from x_i.
 struct VIEWGAIN_EXPORT Measurements {
-  Pose T_world_camera;
-  std::vector<DepthFrame> frames;
+  Pose T_world_camera;             ///< where they were taken from
+  std::vector<DepthFrame> frames;  ///< one or several
 };
 
 /// DATAACQUISITION: moves the sensor to x_i and measures.
@@ -42,8 +42,8 @@ using StageSeconds = std::map<std::string, double>;
 
 /// How far the representations are, for the stopping rules.
 struct VIEWGAIN_EXPORT ModelProgress {
-  double entropy_removed = 0;  ///< of the whole map [nat, or m² for trace]
-  std::uint64_t unknown_voxels = 0;
+  double entropy_removed = 0;        ///< of the whole map [nat, or m² for trace]
+  std::uint64_t unknown_voxels = 0;  ///< of the workspace
   std::optional<double> coverage{};  ///< in [0, 1], where a ground truth is known
   double surface_area = 0;           ///< of the model's surface [m²]
   StageSeconds seconds{};            ///< what the update's stages took; may be empty
@@ -53,12 +53,13 @@ struct VIEWGAIN_EXPORT ModelProgress {
 class VIEWGAIN_EXPORT RepresentationUpdate {
  public:
   virtual ~RepresentationUpdate() = default;
+  /// Puts them into the model; says how far it is.
   virtual ModelProgress update(const Measurements& measurements) = 0;
 };
 
 /// A pose that could be the next view.
 struct VIEWGAIN_EXPORT Candidate {
-  Pose T_world_camera;
+  Pose T_world_camera;                            ///< where the camera would be
   std::string generator;                          ///< who proposed it
   std::optional<BoundaryClass> boundary_class{};  ///< of the boundary that it looks beyond, if any
   std::optional<std::size_t> number{};            ///< the generator's own number for it, if any
@@ -66,7 +67,7 @@ struct VIEWGAIN_EXPORT Candidate {
 
 /// c_m: the feasible candidates, and how many were dropped and why.
 struct VIEWGAIN_EXPORT Proposal {
-  std::vector<Candidate> candidates;
+  std::vector<Candidate> candidates;           ///< feasible ones
   std::map<std::string, std::size_t> dropped;  ///< reason -> count
 };
 
@@ -77,6 +78,7 @@ inline constexpr std::string_view kUnreachable = "unreachable";
 class VIEWGAIN_EXPORT ViewpointGeneration {
  public:
   virtual ~ViewpointGeneration() = default;
+  /// Proposes what may come after the view from `T_world_camera`.
   virtual Proposal generate(const Pose& T_world_camera) = 0;
 };
 
@@ -99,6 +101,7 @@ struct VIEWGAIN_EXPORT Decision {
 class VIEWGAIN_EXPORT DecisionMaking {
  public:
   virtual ~DecisionMaking() = default;
+  /// One of the candidates, or nothing. `T_world_camera`: where the camera is now.
   virtual std::optional<Decision> decide(const Pose& T_world_camera,
                                          std::span<const Candidate> candidates) = 0;
 };
@@ -114,9 +117,9 @@ inline constexpr double kStopGainShare = 0.01;
 /// stops by it.
 inline constexpr double kStopArea = 1.6e-3;
 
-/// When to stop (DESIGN.md section 9).
+/// When to stop.
 struct VIEWGAIN_EXPORT PlanningConfig {
-  std::size_t max_views = 20;
+  std::size_t max_views = 20;  ///< budget, the first one included
   /// Stop when the best candidate's gain per touched voxel is under this [nat, m² for trace].
   double stop_gain = kStopGain;
   /// stop_gain is a share of the first decision's gain per voxel instead (for trace:
@@ -136,6 +139,7 @@ struct VIEWGAIN_EXPORT PlanningConfig {
   std::stop_token stop{};
 };
 
+/// Why a run ended.
 enum class StopReason : std::uint8_t {
   gain,           ///< the best candidate promises too little
   area,           ///< no candidate promises enough new surface
@@ -146,11 +150,12 @@ enum class StopReason : std::uint8_t {
   coverage,
   interrupted,
 };
+/// Its name, as JSON has it.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view stop_reason_name(StopReason reason);
 
 /// One turn of the loop: the view taken, and the choice of the one after it.
 struct VIEWGAIN_EXPORT ViewRecord {
-  std::size_t index = 0;
+  std::size_t index = 0;                 ///< from 0
   Pose T_world_camera;                   ///< where the measurements say it was taken
   std::optional<Candidate> chosen_as{};  ///< what this view was as a candidate; none for x_0
   double predicted_gain = std::numeric_limits<double>::quiet_NaN();  ///< when it was chosen
@@ -167,9 +172,10 @@ struct VIEWGAIN_EXPORT ViewRecord {
   StageSeconds seconds{};
 };
 
+/// How a run went.
 struct VIEWGAIN_EXPORT PlanningResult {
-  StopReason reason = StopReason::max_views;
-  std::vector<ViewRecord> views;
+  StopReason reason = StopReason::max_views;  ///< why it ended
+  std::vector<ViewRecord> views;              ///< in their order
 };
 
 /// The paper's Algorithm 1 from x_0. Calls the parts in turn on the calling thread and `observer`,

@@ -14,8 +14,9 @@ namespace viewgain {
 /// and alignment do not depend on compiler flags, so it may cross a library boundary, which
 /// Eigen::Isometry3d may not (its alignment follows -march). A value type.
 struct VIEWGAIN_EXPORT Pose {
-  std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< [R | t] by rows
 
+  /// The identity.
   Pose() = default;
 
   /// From Eigen; inline on purpose, so that the caller's alignment rules apply to the argument.
@@ -25,6 +26,7 @@ struct VIEWGAIN_EXPORT Pose {
     }
   }
 
+  /// From a rotation matrix and a translation [m]; not checked.
   Pose(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) m[static_cast<std::size_t>(4 * r + c)] = R(r, c);
@@ -32,6 +34,7 @@ struct VIEWGAIN_EXPORT Pose {
     }
   }
 
+  /// As Eigen's transform.
   [[nodiscard]] Eigen::Isometry3d isometry() const {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.linear() = rotation();
@@ -39,6 +42,7 @@ struct VIEWGAIN_EXPORT Pose {
     return T;
   }
 
+  /// R, a copy.
   [[nodiscard]] Eigen::Matrix3d rotation() const {
     return (Eigen::Matrix3d() << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]).finished();
   }
@@ -46,6 +50,7 @@ struct VIEWGAIN_EXPORT Pose {
   /// [m]
   [[nodiscard]] Eigen::Vector3d translation() const { return {m[3], m[7], m[11]}; }
 
+  /// R p + t: a point of the camera's frame in the world [m].
   [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& p) const {
     return rotation() * p + translation();
   }

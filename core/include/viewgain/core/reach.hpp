@@ -16,15 +16,15 @@ namespace viewgain {
 
 /// Between two spheres round a centre [m].
 struct VIEWGAIN_EXPORT Shell {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double min_radius = 0;
-  double max_radius = 0;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the spheres [m]
+  double min_radius = 0;                             ///< [m]
+  double max_radius = 0;                             ///< [m]
 };
 
 /// The points p with normal · p >= offset [m].
 struct VIEWGAIN_EXPORT HalfSpace {
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  double offset = 0;
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< points inward; need not be unit
+  double offset = 0;                                  ///< normal · p of the plane
 };
 
 /// When two camera poses count as the same view.
@@ -42,17 +42,18 @@ struct VIEWGAIN_EXPORT PoseTolerance {
 /// any) and in every half-space, limits included; if it is among the poses (where there are any);
 /// and if the predicate, where there is one, says so. Empty: everything is reachable.
 struct VIEWGAIN_EXPORT ReachRegion {
-  std::vector<Box> boxes{};
-  std::vector<Shell> shells{};
-  std::vector<HalfSpace> half_spaces{};
-  std::vector<Pose> poses{};  ///< T_world_camera
-  PoseTolerance tolerance{};
+  std::vector<Box> boxes{};              ///< the centre lies in one of them, if there are any
+  std::vector<Shell> shells{};           ///< likewise
+  std::vector<HalfSpace> half_spaces{};  ///< the centre lies in all of them
+  std::vector<Pose> poses{};             ///< T_world_camera
+  PoseTolerance tolerance{};             ///< of the poses
   std::function<bool(const Pose& T_world_camera)> predicate{};  ///< must be thread safe
 
   /// Throws Error(invalid_argument) naming the part for numbers that are not finite, boxes or
   /// shells inside out, a zero normal.
   void validate() const;
 
+  /// May the camera be there? Calls the predicate, if there is one.
   [[nodiscard]] bool contains(const Pose& T_world_camera) const;
 };
 

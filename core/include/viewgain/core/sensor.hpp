@@ -26,12 +26,12 @@ struct VIEWGAIN_EXPORT PoseSigma {
 
 /// A depth camera: intrinsics, range limits along the ray, noise. A value type.
 struct VIEWGAIN_EXPORT Sensor {
-  std::string name;  ///< preset's or file's name, for reports
-  PinholeCamera camera;
-  double min_range = 0;         ///< along the ray [m]
-  double max_range = 0;         ///< along the ray [m]
-  double working_distance = 0;  ///< where it is meant to be used [m]
-  NoiseModel noise;
+  std::string name;                     ///< preset's or file's name, for reports
+  PinholeCamera camera;                 ///< intrinsics, lens
+  double min_range = 0;                 ///< along the ray [m]
+  double max_range = 0;                 ///< along the ray [m]
+  double working_distance = 0;          ///< where it is meant to be used [m]
+  NoiseModel noise;                     ///< how readings scatter
   std::optional<Pose> T_flange_camera;  ///< mounting on the robot's flange, if known
   /// Width, height, depth of the housing [m], if known; see SensorBody in raycast/feasibility.hpp,
   /// which takes the SR4000's otherwise.
@@ -63,7 +63,7 @@ struct VIEWGAIN_EXPORT Sensor {
   void validate() const;
 };
 
-/// The presets of DESIGN.md section 4: sr4000, azure_kinect_nfov, kinect_v1, d435; and laser_line,
+/// The presets: sr4000, azure_kinect_nfov, kinect_v1, d435; and laser_line,
 /// a scanner of one line a pose (640x1 px, 0.2 mm in each direction, 0.1-1.0 m). Those of a maker
 /// have the size of his housing (kinect_v1: about, without its foot), the SR4000 as SensorBody has
 /// it.

@@ -19,7 +19,7 @@ struct VIEWGAIN_EXPORT StopMemory {
   std::size_t idle_views = 0;        ///< the last ones in a row, which brought nothing
   double entropy_removed = 0;        ///< after the last view [nat, or m² for trace]
   std::uint64_t unknown_voxels = 0;  ///< likewise
-  std::size_t decisions = 0;
+  std::size_t decisions = 0;         ///< how many there were
   /// Of the first decision that had one above 0 [nat, m² for trace]; NaN: none yet, or the limit is
   /// no share.
   double first_gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
@@ -28,7 +28,7 @@ struct VIEWGAIN_EXPORT StopMemory {
   std::array<double, 3> area_shares{};
 };
 
-/// The stopping rules of PlanningConfig (DESIGN.md section 9), step by step: what
+/// The stopping rules of PlanningConfig, step by step: what
 /// active_view_planning() asks, for loops that are not its own. Thread safety: one call at a time.
 class VIEWGAIN_EXPORT StopRules {
  public:
@@ -45,6 +45,7 @@ class VIEWGAIN_EXPORT StopRules {
                                                          const Proposal& proposal,
                                                          double surface_area);
 
+  /// What the rules have to remember.
   [[nodiscard]] const StopMemory& memory() const noexcept { return memory_; }
 
  private:

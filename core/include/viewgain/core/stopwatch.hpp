@@ -9,6 +9,7 @@ namespace viewgain {
 /// Seconds since it was made.
 class Stopwatch {
  public:
+  /// Since it was made [s].
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }

@@ -17,6 +17,7 @@ namespace viewgain {
 
 /// The shortest text that reads back as the same number; "nan", "inf" and "-inf" for the others.
 [[nodiscard]] VIEWGAIN_EXPORT std::string short_text(double value);
+/// As above.
 [[nodiscard]] VIEWGAIN_EXPORT std::string short_text(float value);
 
 /// With up to 17 significant digits, so that it reads back as the same double.
@@ -34,10 +35,13 @@ class VIEWGAIN_EXPORT LineReader {
 
   /// Moves to the next line; false at the end.
   bool next();
+  /// Words of the line that was read last.
   [[nodiscard]] const std::vector<std::string_view>& words() const { return words_; }
   /// Behind the current line.
   [[nodiscard]] std::string_view rest() const { return rest_; }
+  /// The file's name, for messages.
   [[nodiscard]] const std::string& name() const { return name_; }
+  /// Number of the line that was read last, from 1.
   [[nodiscard]] std::size_t line() const { return line_; }
 
   /// Throws Error(format): "file:line: what".

@@ -28,6 +28,7 @@ class VIEWGAIN_EXPORT ThreadPool {
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
+  /// How many threads work, the caller's included.
   [[nodiscard]] int num_threads() const noexcept;
 
   /// Calls body(begin, end) for consecutive ranges of at most `chunk` indices that cover [0, count)
@@ -48,7 +49,8 @@ class VIEWGAIN_EXPORT ThreadPool {
  private:
   /// A borrowed callable; alive while run() is.
   struct Task {
-    void* body = nullptr;
+    void* body = nullptr;  ///< the loop's body
+    /// Calls it on a range of indices.
     void (*call)(void*, std::size_t, std::size_t) = nullptr;
   };
   void run(std::size_t count, std::size_t chunk, Task task);

@@ -21,6 +21,7 @@ struct VIEWGAIN_EXPORT Belief {
   std::array<float, 3> information_vector{};  ///< η_v = Σ Λ_r (p_r - voxel centre) [m⁻¹]
   std::uint32_t hits = 0;                     ///< readings that ended here
 
+  /// Λ_v in double precision [m⁻²].
   [[nodiscard]] SymmetricMatrix3 information_matrix() const {
     return {information[0], information[1], information[2],
             information[3], information[4], information[5]};
@@ -43,10 +44,12 @@ struct VIEWGAIN_EXPORT Belief {
 /// One bit per voxel of an 8³ leaf: word x, bit y << 3 | z (OpenVDB's order).
 using LeafMask = std::array<std::uint64_t, 8>;
 
+/// Is the voxel's bit set?
 [[nodiscard]] inline bool test_bit(const LeafMask& mask, unsigned offset) {
   return ((mask[offset >> 6U] >> (offset & 63U)) & 1U) != 0;
 }
 
+/// Sets the voxel's bit.
 inline void set_bit(LeafMask& mask, unsigned offset) {
   mask[offset >> 6U] |= std::uint64_t{1} << (offset & 63U);
 }
@@ -63,8 +66,8 @@ void for_each_bit(const LeafMask& mask, F&& f) {
 
 /// The beliefs of one leaf: those of the voxels in `mask`, in order of their offsets.
 struct VIEWGAIN_EXPORT BeliefBlock {
-  LeafMask mask{};
-  std::vector<Belief> beliefs;
+  LeafMask mask{};              ///< which voxels have one
+  std::vector<Belief> beliefs;  ///< of those, in offset order
 
   /// Position in `beliefs` of the voxel with this offset (x << 6 | y << 3 | z); the bit must be
   /// set.
@@ -74,6 +77,7 @@ struct VIEWGAIN_EXPORT BeliefBlock {
     const std::uint64_t low = (std::uint64_t{1} << (offset & 63U)) - 1U;
     return static_cast<std::size_t>(below + std::popcount(mask[offset >> 6U] & low));
   }
+  /// The voxel's belief; null without one.
   [[nodiscard]] const Belief* find(unsigned offset) const {
     return test_bit(mask, offset) ? &beliefs[rank(offset)] : nullptr;
   }
@@ -81,8 +85,8 @@ struct VIEWGAIN_EXPORT BeliefBlock {
 
 /// A block of beliefs and its lowest voxel, a multiple of 8.
 struct VIEWGAIN_EXPORT BeliefBlockAt {
-  Index3 origin;
-  std::shared_ptr<const BeliefBlock> beliefs;
+  Index3 origin;                               ///< its lowest voxel
+  std::shared_ptr<const BeliefBlock> beliefs;  ///< shared with the map
 
   /// Calls visit(Index3 voxel, const Belief&), voxels in the order [x][y][z] with z fastest.
   template <typename Visit>

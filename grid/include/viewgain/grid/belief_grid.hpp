@@ -39,29 +39,29 @@ struct VIEWGAIN_EXPORT GridConfig {
 
 /// Voxel counts and the paper's measure of progress.
 struct VIEWGAIN_EXPORT GridStatistics {
-  std::uint64_t unknown = 0;  ///< voxels of the workspace never observed
-  std::uint64_t free = 0;
-  std::uint64_t occupied = 0;
-  std::uint64_t bytes = 0;  ///< memory of the map: tree, beliefs, book-keeping
+  std::uint64_t unknown = 0;   ///< voxels of the workspace never observed
+  std::uint64_t free = 0;      ///< voxels known to be free
+  std::uint64_t occupied = 0;  ///< voxels known to be occupied
+  std::uint64_t bytes = 0;     ///< memory of the map: tree, beliefs, book-keeping
   double entropy_removed =
       0;  ///< sum over occupied of H(Λ_0) - H(Λ_0 + Λ_v) [nat, or m² for trace]
 };
 
 /// What BeliefGrid::set() makes of a voxel.
 struct VIEWGAIN_EXPORT VoxelValue {
-  Index3 voxel;
-  float log_odds = 0;  ///< rounded to the nearest step of 0.05 and clamped
-  std::optional<Belief> belief{};
+  Index3 voxel;                    ///< of the workspace
+  float log_odds = 0;              ///< rounded to the nearest step of 0.05 and clamped
+  std::optional<Belief> belief{};  ///< none: the voxel has none afterwards
 };
 
 /// What BeliefGrid::for_each_occupied() shows of a voxel.
 struct VIEWGAIN_EXPORT OccupiedVoxel {
-  Index3 voxel;
-  float log_odds = 0;
+  Index3 voxel;                    ///< of the workspace
+  float log_odds = 0;              ///< above 0
   const Belief* belief = nullptr;  ///< null without one; valid during the visit
 };
 
-/// The belief grid: what is known of a workspace, voxel by voxel (DESIGN.md section 5).
+/// The belief grid: what is known of a workspace, voxel by voxel.
 ///
 /// Voxel (i,j,k) is [i,i+1) x [j,j+1) x [k,k+1) times V in the grid's frame. The workspace is grown
 /// outward to the lattice; a face within 1e-6 voxel of the lattice is not moved. Every voxel starts
@@ -93,11 +93,13 @@ class VIEWGAIN_EXPORT BeliefGrid {
   [[nodiscard]] BeliefGrid clone() const;
 
   [[nodiscard]] double voxel_size() const noexcept;  ///< [m]
+  /// Places the grid's frame in the world.
   [[nodiscard]] const Pose& T_world_grid() const noexcept;
   [[nodiscard]] double prior_sigma() const noexcept;  ///< [m]
   [[nodiscard]] Index3 min_index() const noexcept;    ///< lowest voxel of the workspace
   [[nodiscard]] Index3 dims() const noexcept;         ///< voxels along x, y, z
   [[nodiscard]] Box workspace() const noexcept;       ///< grown to the lattice, grid frame [m]
+  /// How many voxels the workspace has.
   [[nodiscard]] std::uint64_t voxel_count() const noexcept;
 
   /// The voxel that holds a point of the world [m]; nothing outside the workspace, or if the point
@@ -108,7 +110,9 @@ class VIEWGAIN_EXPORT BeliefGrid {
 
   /// Outside the workspace a voxel is unknown, has no log-odds and no belief.
   [[nodiscard]] VoxelState state(Index3 voxel) const;
+  /// Nothing for an unknown voxel.
   [[nodiscard]] std::optional<float> log_odds(Index3 voxel) const;
+  /// Nothing for a voxel that was never hit.
   [[nodiscard]] std::optional<Belief> belief(Index3 voxel) const;
 
   /// Fills the dense array of states, [x][y][z] with z fastest; size must be voxel_count().
@@ -126,8 +130,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
 
   /// Makes the voxels of the workspace unknown again whose centres lie in a region of the grid's
   /// frame [m]; bounds may be infinite. They have no log-odds and no belief afterwards; views and
-  /// hazard counters stay as they are. For what has moved, and for maps that follow a robot. Returns
-  /// how many of the voxels were known. Costs a pass over the map's blocks. Throws
+  /// hazard counters stay as they are. For what has moved, and for maps that follow a robot.
+  /// Returns how many of the voxels were known. Costs a pass over the map's blocks. Throws
   /// Error(invalid_argument) for a bound that is not a number.
   std::uint64_t forget(const Box& region);
 
@@ -147,6 +151,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Throws Error(invalid_argument) for a count that is negative or over 2^40.
   void set_hazard_counters(const HazardCounters& counters);
 
+  /// Voxels by state, memory, and the entropy removed by this criterion. Costs a pass over the
+  /// map's blocks.
   [[nodiscard]] GridStatistics statistics(Criterion criterion = Criterion::log_diagonal) const;
 
   /// 16 hexadecimal digits over states, log-odds, beliefs, layout, prior, views and, if there are

@@ -33,8 +33,8 @@ enum class PointRule : std::uint8_t {
 /// Lengths are in pooling lengths (pooling_of: a voxel, or the sensor's footprint where that is
 /// longer) unless said otherwise.
 struct VIEWGAIN_EXPORT FusedPointsConfig {
-  PointRule rule = PointRule::pooled;
-  std::uint32_t min_hits = 2;  ///< points with fewer readings are left out
+  PointRule rule = PointRule::pooled;  ///< how beliefs become points
+  std::uint32_t min_hits = 2;          ///< points with fewer readings are left out
   /// Pooled points with less than this share of the upper quartile of the evidence within 4 lengths
   /// are left out: the halo that silhouettes leave beside the surface. 0: none. Evidence is the
   /// readings against those to be expected of one frontal view from where they were taken, so that
@@ -49,7 +49,7 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
   std::optional<double> floor_sigma{};
 };
 
-/// The surface points of a map, with honest covariances (DESIGN.md sections 5 and 8). A pooled
+/// The surface points of a map, with honest covariances. A pooled
 /// point starts at each occupied voxel, or cube of voxels (pooling_of), moves along the local
 /// normal to the mean of the readings in its column, those of voxels that have turned free included
 /// (leaving them out would bias the mean away from the camera), and survives if no point with more

@@ -21,7 +21,7 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT SnapshotLeaf {
   Index3 origin;        ///< lowest voxel, a multiple of 8
   LeafMask non_free{};  ///< unknown or occupied
-  LeafMask occupied{};
+  LeafMask occupied{};  ///< of the voxels that are not free, the occupied ones
   std::shared_ptr<const BeliefBlock> beliefs;  ///< null without occupied voxels; else may be null,
                                                ///< may hold free voxels' beliefs too
 };
@@ -31,24 +31,24 @@ struct VIEWGAIN_EXPORT SnapshotRegion {
   std::uint64_t number = 0;   ///< lists of regions rise in it; the same in all snapshots of a grid
   std::uint64_t changed = 0;  ///< when its voxels changed last
   std::uint32_t first_leaf = 0;  ///< a region's leaves rise in their origin's x, then y, then z
-  std::uint32_t first_tile = 0;
+  std::uint32_t first_tile = 0;  ///< of this region, in the list of tiles
 };
 
 /// Everything a scene reads of a grid: an immutable value, safe to share between threads.
 struct VIEWGAIN_EXPORT GridSnapshot {
-  double voxel_size = 0;   ///< [m]
-  double prior_sigma = 0;  ///< [m]
-  Pose T_world_grid;
-  Index3 min_index;  ///< lowest voxel of the workspace
-  Index3 dims;       ///< voxels along x, y, z
-  HazardCounters hazard;
-  std::vector<SnapshotLeaf> leaves;
-  std::vector<VoxelBox> tiles;  ///< of unknown voxels, clipped to the workspace; those larger
-                                ///< than a region first
-  std::vector<SnapshotRegion> regions;
+  double voxel_size = 0;             ///< [m]
+  double prior_sigma = 0;            ///< [m]
+  Pose T_world_grid;                 ///< places the grid's frame
+  Index3 min_index;                  ///< lowest voxel of the workspace
+  Index3 dims;                       ///< voxels along x, y, z
+  HazardCounters hazard;             ///< what frames have said of unknown space
+  std::vector<SnapshotLeaf> leaves;  ///< with a voxel that is not free, region by region
+  std::vector<VoxelBox> tiles;       ///< of unknown voxels, clipped to the workspace; those larger
+                                     ///< than a region first
+  std::vector<SnapshotRegion> regions;  ///< cubes of 32³ voxels that hold any
   /// Which grid it is of and when, for BeliefGrid::snapshot(before); 0: none.
   std::uint64_t grid_number = 0;
-  std::uint64_t time = 0;
+  std::uint64_t time = 0;  ///< of the grid's last change
   /// For a snapshot made from an earlier one: when that was; else 0.
   std::uint64_t shared_until = 0;
 
@@ -59,6 +59,7 @@ struct VIEWGAIN_EXPORT GridSnapshot {
 
   /// As BeliefGrid's.
   [[nodiscard]] std::optional<Index3> index_of(const Eigen::Vector3d& p_world) const;
+  /// Centre of a voxel in the world [m].
   [[nodiscard]] Eigen::Vector3d center(Index3 voxel) const;
 
   /// The leaf that holds a voxel, null if there is none. O(log regions).
@@ -74,6 +75,7 @@ struct VIEWGAIN_EXPORT GridSnapshot {
                                             ? regions[region + 1].first_leaf
                                             : static_cast<std::uint32_t>(leaves.size())};
   }
+  /// First and one past the last of a region's tiles.
   [[nodiscard]] std::array<std::uint32_t, 2> tiles_of(std::size_t region) const {
     return {regions[region].first_tile, region + 1 < regions.size()
                                             ? regions[region + 1].first_tile

@@ -20,7 +20,7 @@
 namespace viewgain {
 
 /// The hazard of unknown space: the rate at which a ray through it meets the surface, by the
-/// distance d from what is known of the surface (DESIGN.md section 6):
+/// distance d from what is known of the surface (apps/docs/guide/surface_gain.md):
 /// h(d) = far_rate + near_rate exp(-d / decay_length), and far_rate beyond 5 decay lengths.
 struct VIEWGAIN_EXPORT HazardModel {
   double near_rate = 25.6;       ///< h_0 [1/m]
@@ -39,6 +39,7 @@ struct VIEWGAIN_EXPORT HazardModel {
     return {0.0, 0.07 * size, rate};
   }
 
+  /// Hazard [1/m] at this distance from known surface [m].
   [[nodiscard]] double rate(double distance) const {
     return distance <= kCut * decay_length
                ? far_rate + near_rate * std::exp(-distance / decay_length)
@@ -54,11 +55,13 @@ struct VIEWGAIN_EXPORT HazardVolume {
   float outside = 0;         ///< [1/m]
 };
 
+/// How likely rays meet the surface in unknown voxels.
 struct VIEWGAIN_EXPORT HazardConfig {
   /// Longest side of the object [m]; unless given that of the box of voxels with evidence, or while
   /// there are none that of the workspace.
   std::optional<double> object_size{};
   std::optional<HazardModel> model{};  ///< unless given HazardModel::for_size
+  /// Rates by place, instead of the model; null: none.
   std::shared_ptr<const HazardVolume> volume{};
   /// Multiplies the start values by what frames have said (GridSnapshot::hazard). A model that is
   /// given, or a volume, stays what it is. Counters go by classes of distance in decay lengths: a

@@ -15,8 +15,8 @@
 
 namespace viewgain {
 
-/// Learns from a sensor's frames how much of unknown space is surface (DESIGN.md section 6,
-/// "Calibration").
+/// Learns from a sensor's frames how much of unknown space is surface
+/// (apps/docs/guide/surface_gain.md).
 ///
 /// Thread safety: one call at a time on one grid.
 class VIEWGAIN_EXPORT HazardCalibration {

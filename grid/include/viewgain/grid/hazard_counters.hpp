@@ -14,6 +14,7 @@ namespace viewgain {
 /// that they would, by class of distance from known surface. Part of a map. Integers, so that every
 /// machine has the same.
 struct VIEWGAIN_EXPORT HazardCounters {
+  /// Classes of distance from known surface.
   static constexpr std::size_t kClasses = 8;
   /// Where the classes end [decay lengths]; the last has no end.
   static constexpr std::array<double, kClasses - 1> kEnds{0.5, 1, 1.5, 2, 3, 4, 5};
@@ -24,12 +25,13 @@ struct VIEWGAIN_EXPORT HazardCounters {
   static constexpr std::int64_t kKeptOf10 = 7;
   static constexpr double kPrior = 2.0 * kFrame / kClasses;  ///< of each class
 
+  /// What was counted at one class of distance.
   struct Class {
     std::int64_t expected = 0;  ///< meetings by the model [1 / kFrame]
     std::int64_t met = 0;       ///< meetings
     bool operator==(const Class&) const = default;
   };
-  std::array<Class, kClasses> classes{};
+  std::array<Class, kClasses> classes{};  ///< the nearest first
 
   /// Class of a distance [decay lengths].
   [[nodiscard]] static constexpr std::size_t class_of(double distance) {
@@ -48,6 +50,7 @@ struct VIEWGAIN_EXPORT HazardCounters {
     return kPrior + static_cast<double>(classes[k].expected);
   }
 
+  /// Has nothing been counted?
   [[nodiscard]] bool empty() const { return *this == HazardCounters{}; }
   bool operator==(const HazardCounters&) const = default;
 };

@@ -24,14 +24,14 @@ enum class Carve : std::uint8_t {
 
 /// How crossings and hits change a voxel's state.
 enum class Occupancy : std::uint8_t {
-  probabilistic,  ///< log-odds, once a voxel a frame (DESIGN.md section 5)
+  probabilistic,  ///< log-odds, once a voxel a frame
   literal,        ///< crossed -> free, encloses a reading -> occupied: the paper's rule
 };
 
 /// What changes the map.
 struct VIEWGAIN_EXPORT IntegrationConfig {
-  Carve carve = Carve::cones;
-  Occupancy occupancy = Occupancy::probabilistic;
+  Carve carve = Carve::cones;                      ///< what a pixel carves
+  Occupancy occupancy = Occupancy::probabilistic;  ///< how states follow
   /// Height z [m] of the table that the object stands on, world. Readings whose point is below it,
   /// or less than 3 σ above it (is_of_plane()), are of the table: they carve as far
   /// as they reach but do not hit.
@@ -46,11 +46,11 @@ struct VIEWGAIN_EXPORT IntegrationReport {
   std::uint64_t out_of_range = 0;     ///< pixels that carve up to max_range
   std::uint64_t invalid = 0;          ///< pixels that say nothing
   std::uint64_t readings_inside = 0;  ///< readings that lie in the workspace
-  std::uint64_t voxels_hit = 0;
-  std::uint64_t voxels_crossed = 0;  ///< and not hit
+  std::uint64_t voxels_hit = 0;       ///< that readings lie in
+  std::uint64_t voxels_crossed = 0;   ///< and not hit
 };
 
-/// Puts depth frames of one sensor into a belief grid (DESIGN.md section 5).
+/// Puts depth frames of one sensor into a belief grid.
 ///
 /// A pixel is a reading if its range along the ray is in [min_range, max_range]; nearer ones are
 /// invalid, farther ones out of range. Readings also carve what lies nearer than min_range. cosθ

@@ -17,8 +17,8 @@ namespace viewgain {
 
 /// What changes the map.
 struct VIEWGAIN_EXPORT CloudIntegrationConfig {
-  Occupancy occupancy = Occupancy::probabilistic;
-  std::optional<double> support_plane{};  ///< as in IntegrationConfig, world z [m]
+  Occupancy occupancy = Occupancy::probabilistic;  ///< how states follow
+  std::optional<double> support_plane{};           ///< as in IntegrationConfig, world z [m]
 };
 
 /// Puts point clouds into a belief grid: the sibling of FrameIntegrator for points that are no

@@ -46,6 +46,7 @@ struct VIEWGAIN_EXPORT OccupancyCodes {
   /// Is it that of an occupied voxel: log-odds above 0?
   [[nodiscard]] static bool is_occupied(std::uint8_t code);
 
+  /// Memory that it takes [bytes].
   [[nodiscard]] std::uint64_t bytes() const {
     return (node_entries.size() + entries.size()) * sizeof(std::uint32_t) + codes.size();
   }

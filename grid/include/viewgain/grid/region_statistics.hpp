@@ -13,9 +13,9 @@ namespace viewgain {
 
 /// How well a part of the workspace is known (the paper's "selected parts").
 struct VIEWGAIN_EXPORT RegionStatistics {
-  std::uint64_t unknown = 0;  ///< voxels
-  std::uint64_t free = 0;
-  std::uint64_t occupied = 0;
+  std::uint64_t unknown = 0;   ///< voxels
+  std::uint64_t free = 0;      ///< voxels
+  std::uint64_t occupied = 0;  ///< voxels
   std::uint64_t hits = 0;      ///< readings that ended in the part, whatever its voxels are now
   double entropy_removed = 0;  ///< of its occupied voxels [nat, or m² for trace]
   /// Mean of √(tr(Λ_v⁻¹ + voxel²/12 I) / 3) over its occupied voxels with a belief [m]; NaN if

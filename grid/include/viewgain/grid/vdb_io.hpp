@@ -12,6 +12,7 @@
 
 namespace viewgain {
 
+/// What goes into the file besides the map.
 struct VIEWGAIN_EXPORT VdbWriteConfig {
   /// Adds covariance_diagonal, covariance_offdiagonal and position, for viewers.
   bool with_covariance = false;
@@ -21,7 +22,7 @@ struct VIEWGAIN_EXPORT VdbWriteConfig {
 
 /// A file of save_vdb, whole.
 struct VIEWGAIN_EXPORT VdbMap {
-  BeliefGrid grid;
+  BeliefGrid grid;                           ///< the map
   std::map<std::string, std::string> notes;  ///< VdbWriteConfig::notes
 };
 

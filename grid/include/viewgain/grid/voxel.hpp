@@ -17,20 +17,21 @@ enum class VoxelState : std::uint8_t { unknown = 0, free = 1, occupied = 2 };
 
 /// Index of a voxel on the grid's lattice (through the origin of the grid's frame).
 struct VIEWGAIN_EXPORT Index3 {
-  std::int32_t x = 0, y = 0, z = 0;
+  std::int32_t x = 0, y = 0, z = 0;  ///< of the voxel [x, x+1) × [y, y+1) × [z, z+1), in voxels
   bool operator==(const Index3&) const = default;
 };
 
 /// A box of voxels: [min, max). It is empty if a side is not positive.
 struct VIEWGAIN_EXPORT VoxelBox {
-  Index3 min;
-  Index3 max;
+  Index3 min;  ///< lowest voxel
+  Index3 max;  ///< one past the highest
 
   /// dims voxels along x, y, z from the lowest voxel on.
   [[nodiscard]] static VoxelBox from_dims(Index3 min, Index3 dims) {
     return {min, {min.x + dims.x, min.y + dims.y, min.z + dims.z}};
   }
 
+  /// Is the voxel in it?
   [[nodiscard]] bool contains(Index3 v) const {
     return v.x >= min.x && v.x < max.x && v.y >= min.y && v.y < max.y && v.z >= min.z &&
            v.z < max.z;

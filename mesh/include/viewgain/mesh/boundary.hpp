@@ -27,8 +27,8 @@ struct VIEWGAIN_EXPORT BoundaryLoop {
 
 /// A piece of a loop whose edges have one class.
 struct VIEWGAIN_EXPORT BoundaryRun {
-  BoundaryClass boundary_class = BoundaryClass::left;
-  std::uint32_t loop = 0;
+  BoundaryClass boundary_class = BoundaryClass::left;  ///< the image side to which the surface ends
+  std::uint32_t loop = 0;                              ///< which one it is a part of
   std::vector<std::uint32_t> vertices;  ///< in the loop's order: one more than edges, unless closed
   std::vector<std::uint32_t> triangles;  ///< the face of each edge
   bool closed = false;                   ///< the whole loop is one run
@@ -36,6 +36,7 @@ struct VIEWGAIN_EXPORT BoundaryRun {
   std::uint32_t view = 0;  ///< the view in whose axes it is classified (the most common)
 };
 
+/// How a boundary is cut into runs.
 struct VIEWGAIN_EXPORT BoundaryConfig {
   double max_view_angle = 80.0 * std::numbers::pi / 180;  ///< between face normal and line of sight
   double min_run_length = 0;   ///< shorter runs join the longer neighbour in their loop [m]; some
@@ -50,7 +51,7 @@ struct VIEWGAIN_EXPORT BoundaryConfig {
 /// more than two faces, or two that turn differently. O(n log n).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<BoundaryLoop> boundary_loops(const SurfaceMesh& surface);
 
-/// Cuts loops into runs (DESIGN.md section 8, step 3). The class of an edge is that of its outward
+/// Cuts loops into runs. The class of an edge is that of its outward
 /// conormal t × n (t along the face's halfedge, n the face's normal) in the image axes of the last
 /// view (T_world_camera) that has the edge's midpoint in its image and range limits at under
 /// max_view_angle: the largest of its components to -x left, +x right, -y top, +y bottom. `sees`,

@@ -24,13 +24,13 @@ struct VIEWGAIN_EXPORT SurfaceSample {
 
 /// Distances of points to the true surface [m].
 struct VIEWGAIN_EXPORT ErrorStatistics {
-  double rms = 0;
+  double rms = 0;          ///< root mean square [m]
   double p95 = 0;          ///< 95th percentile of the distance
   std::size_t points = 0;  ///< 0: the others are NaN
 };
 
-/// DESIGN.md section 10: with z² = e² / (nᵀ Σ n), e the distance to the surface and n the direction
-/// to its nearest point (the surface normal where the distance is 0).
+/// Are the sigmas honest? With z² = e² / (nᵀ Σ n), e the distance to the surface and n the
+/// direction to its nearest point (the surface normal where the distance is 0).
 struct VIEWGAIN_EXPORT Consistency {
   double mean_clipped = 0;   ///< mean of min(z², 25): 1 if honest
   double median = 0;         ///< of z²: 0.455 if honest
@@ -52,6 +52,7 @@ class VIEWGAIN_EXPORT GroundTruth {
   GroundTruth(GroundTruth&&) noexcept;
   GroundTruth& operator=(GroundTruth&&) noexcept;
 
+  /// Of the surface, weighted by area.
   [[nodiscard]] const std::vector<SurfaceSample>& samples() const noexcept;
 
   /// For each sample, the distance to the nearest of the points [m]; infinity without points. This

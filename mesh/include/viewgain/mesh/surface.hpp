@@ -27,6 +27,7 @@ struct VIEWGAIN_EXPORT SurfaceMesh {
   std::vector<std::uint32_t> source;                    ///< index of the input point of each vertex
 };
 
+/// How points become a surface.
 struct VIEWGAIN_EXPORT SurfaceConfig {
   double spacing = 0;  ///< typical distance of neighbouring points [m]; the voxel size
   unsigned smoothing_neighbors = 24;  ///< of the jet fit that smooths the points; 0: no smoothing
@@ -35,7 +36,7 @@ struct VIEWGAIN_EXPORT SurfaceConfig {
   std::size_t min_component = 40;     ///< components of fewer points are outliers and dropped
 };
 
-/// Rebuilds the surface through the points (DESIGN.md section 8): duplicates and small components
+/// Rebuilds the surface through the points: duplicates and small components
 /// dropped, jet smoothing, advancing front (CGAL), components of the mesh with fewer than
 /// min_component vertices dropped, faces turned outward by majority of the hints in each component.
 /// Neighbours whose hints are opposed are not smoothed together. A vertex is at most 1.25 spacings

@@ -16,9 +16,9 @@
 
 namespace viewgain {
 
-/// How boundaries become candidate views (DESIGN.md section 8, steps 3 to 5).
+/// How boundaries become candidate views.
 struct VIEWGAIN_EXPORT EstimatorConfig {
-  BoundaryConfig boundary{};
+  BoundaryConfig boundary{};   ///< how boundaries are cut
   double patch_length = 0.06;  ///< longer runs are cut into pieces of about this length [m]
   double region_depth = 0.05;  ///< how far the region grows inward [m]
   double overlap = 0.5;        ///< share of the next view that shows known surface, in (0, 1)
@@ -28,30 +28,31 @@ struct VIEWGAIN_EXPORT EstimatorConfig {
   /// of 0 is one variant, another is two: first about the boundary's direction v (positive: the
   /// camera moves outward), then about the direction u across it.
   std::vector<double> distances{1.0};
-  std::vector<double> tilts{0.0};
-  std::vector<double> rolls{0.0};
+  std::vector<double> tilts{0.0};  ///< [rad]
+  std::vector<double> rolls{0.0};  ///< about the optical axis [rad]
   Eigen::Vector3d up =
       Eigen::Vector3d::UnitZ();  ///< roll 0: image up is as near to this as it can be
 };
 
 /// A candidate and why it exists.
 struct VIEWGAIN_EXPORT BoundaryCandidate {
-  Pose T_world_camera;
-  BoundaryClass boundary_class = BoundaryClass::left;
-  std::uint32_t run = 0;                             ///< index into EstimatedViews::runs
-  std::uint32_t patch = 0;                           ///< index into patches and regions
-  Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< the extrapolated point it looks at [m]
-  double distance = 0;                               ///< from the target [m]
-  double tilt = 0, roll = 0;                         ///< of the variant [rad]
+  Pose T_world_camera;                                 ///< where the camera would be
+  BoundaryClass boundary_class = BoundaryClass::left;  ///< of its run
+  std::uint32_t run = 0;                               ///< index into EstimatedViews::runs
+  std::uint32_t patch = 0;                             ///< index into patches and regions
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();    ///< the extrapolated point it looks at [m]
+  double distance = 0;                                 ///< from the target [m]
+  double tilt = 0, roll = 0;                           ///< of the variant [rad]
   bool nominal = false;  ///< the untilted, unrolled variant at the first distance
 };
 
+/// Candidates, and the runs and patches that they come from.
 struct VIEWGAIN_EXPORT EstimatedViews {
   std::vector<BoundaryRun> runs;                    ///< loops cut by class
   std::vector<QuadraticPatch> patches;              ///< one a piece of a run
   std::vector<std::vector<std::uint32_t>> regions;  ///< vertices that each patch was fitted to
-  std::vector<std::uint32_t> run_of_patch;
-  std::vector<BoundaryCandidate> candidates;  ///< in the order runs, patches, variants
+  std::vector<std::uint32_t> run_of_patch;          ///< index into runs
+  std::vector<BoundaryCandidate> candidates;        ///< in the order runs, patches, variants
 };
 
 /// The paper's viewpoint estimator (after Kriegel et al., ICRA 2011; published details of the

@@ -42,7 +42,9 @@ enum class ClassicGain : std::uint8_t {
   unknown_count,           ///< distinct unknown voxels [voxels]
   surface_frontier_count,  ///< those of them with a free and an occupied neighbour [voxels]
 };
+/// Names of the gains, in their order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& classic_gain_names();
+/// The gain's name, as parse_classic_gain() reads it.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view classic_gain_name(ClassicGain gain);
 /// Throws Error(invalid_argument) that lists the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT ClassicGain parse_classic_gain(std::string_view name);
@@ -56,15 +58,17 @@ enum class GainSemantics : std::uint8_t {
   paper,    ///< visibility is Π (1 - p); a voxel is unknown if no reading told of it
   shipped,  ///< as ig_active_reconstruction computes it: Π p; unknown, occupied, free by p
 };
+/// "paper", "shipped".
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& gain_semantics_names();
+/// The name of one.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view gain_semantics_name(GainSemantics semantics);
 /// Throws Error(invalid_argument) that lists the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT GainSemantics parse_gain_semantics(std::string_view name);
 
 /// What changes the answer.
 struct VIEWGAIN_EXPORT ClassicConfig {
-  std::vector<ClassicGain> gains;  ///< results are in this order
-  GainSemantics semantics = GainSemantics::paper;
+  std::vector<ClassicGain> gains;                  ///< results are in this order
+  GainSemantics semantics = GainSemantics::paper;  ///< whose words the gains follow
   int pixel_stride = 1;               ///< every s-th pixel of every s-th row, from pixel (0,0)
   std::optional<double> min_range{};  ///< along the ray [m]; the sensor's unless given
   std::optional<double> max_range{};  ///< along the ray [m]; the sensor's unless given
@@ -77,7 +81,7 @@ struct VIEWGAIN_EXPORT ClassicConfig {
 
 /// The sensor that a map's readings came from, and how far behind surfaces what it hid counts.
 struct VIEWGAIN_EXPORT Acquisition {
-  Sensor sensor;
+  Sensor sensor;                 ///< that the map's readings come from
   double occlusion_depth = 0.3;  ///< along its rays, behind where they meet the surface [m]
 };
 
@@ -103,6 +107,7 @@ class VIEWGAIN_EXPORT ClassicMap {
   ClassicMap(const ClassicMap&) = delete;
   ClassicMap& operator=(const ClassicMap&) = delete;
 
+  /// The scene that the map was made of.
   [[nodiscard]] const VoxelScene& scene() const noexcept;
   /// Steps behind a measured surface of an unknown voxel; 0: none known.
   [[nodiscard]] int occlusion_steps(Index3 voxel) const;
@@ -148,11 +153,16 @@ class VIEWGAIN_EXPORT ClassicGainEvaluator {
   /// when the others keep NaN and bad_pose. Throws Error(invalid_argument) if the sizes do not fit.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
                        std::span<ViewStatus> statuses = {}, const BatchControl& control = {}) const;
+  /// The same, into a new array: row i for pose i.
   [[nodiscard]] std::vector<double> evaluate(std::span<const Pose> T_world_camera) const;
 
+  /// What it was made with.
   [[nodiscard]] const ClassicConfig& config() const noexcept;
+  /// What poses are scored against.
   [[nodiscard]] const ClassicMap& map() const noexcept;
+  /// One for each pixel of the strided image.
   [[nodiscard]] std::size_t rays_per_pose() const noexcept;
+  /// Threads that a batch runs on.
   [[nodiscard]] int num_threads() const noexcept;
 
  private:

@@ -25,7 +25,7 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT SensorBody {
   /// Width, height, depth [m]; the SR4000's. Sensor::body_size has another sensor's.
   std::array<double, 3> size{0.065, 0.065, 0.076};
-  std::optional<Pose> T_flange_camera{};
+  std::optional<Pose> T_flange_camera{};  ///< mounting on the flange, if known
 };
 
 /// Why a candidate is dropped; checked in this order, the first one counts.
@@ -39,19 +39,21 @@ enum class Infeasibility : std::uint8_t {
   collision,    ///< the body would overlap voxels that are not free, or the camera be in one
   too_near,     ///< much of the image would show what is nearer than the sensor can measure
 };
+/// Its name, as JSON has it.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view infeasibility_name(Infeasibility reason);
 
+/// What must have room, and where the robot gets.
 struct VIEWGAIN_EXPORT FeasibilityConfig {
-  SensorBody body{};
-  double clearance = 0;  ///< the body is grown by this on each side [m]
-  ReachRegion reach{};
-  PoseTolerance taken_tolerance{};
+  SensorBody body{};                      ///< what must have room
+  double clearance = 0;                   ///< the body is grown by this on each side [m]
+  ReachRegion reach{};                    ///< where the camera may be
+  PoseTolerance taken_tolerance{};        ///< when two poses are the same
   std::optional<double> support_plane{};  ///< its height, world z [m]
   /// Where given: a view is too near if more than max_near_share of its rays that end in the map
   /// end within the sensor's min_range. The expected gain lets such rays pass, so a camera in front
   /// of a wall would seem to see what is behind it.
   std::optional<Sensor> sensor{};
-  double max_near_share = 0.2;
+  double max_near_share = 0.2;  ///< of the rays that end in the map
 };
 
 /// Says which camera poses are possible in a scene: body against its voxels that are not free, its
@@ -93,6 +95,7 @@ class VIEWGAIN_EXPORT FeasibilityChecker {
   [[nodiscard]] std::vector<Infeasibility> check(std::span<const Pose> T_world_camera,
                                                  std::span<const Pose> taken = {}) const;
 
+  /// The scene that poses are held against.
   [[nodiscard]] const VoxelScene& scene() const noexcept;
 
  private:

@@ -30,20 +30,22 @@ struct VIEWGAIN_EXPORT WeightRegion {
   double weight = 1;  ///< w_v >= 0; the last region that holds a voxel counts, 1 outside all
 };
 
-/// What a view's gain counts (DESIGN.md section 6).
+/// What a view's gain counts (apps/docs/guide/equations.md).
 enum class GainModel : std::uint8_t {
   paper,     ///< the paper's: entropy removed where rays first meet what is not free [nat]
   surface,   ///< new surface to be expected, where rays go on through unknown voxels [m²]
   combined,  ///< that in nats, and what refining known surface brings [nat]
 };
+/// Names of the models, in their order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& gain_model_names();
+/// The model's name, as parse_gain_model() reads it.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view gain_model_name(GainModel model);
 /// Throws Error(invalid_argument) that lists the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT GainModel parse_gain_model(std::string_view name);
 
 /// What changes the answer.
 struct VIEWGAIN_EXPORT GainConfig {
-  GainModel model = GainModel::paper;
+  GainModel model = GainModel::paper;  ///< what is counted
   /// Of the paper's gain. The combined gain's refinement is by log_diagonal whatever it says, but
   /// not trace.
   Criterion criterion = Criterion::log_diagonal;
@@ -51,17 +53,19 @@ struct VIEWGAIN_EXPORT GainConfig {
   std::optional<double> prior_sigma{};  ///< sigma_0 [m]; the map's unless given
   std::optional<double> min_range{};    ///< along the ray [m]; the sensor's unless given
   std::optional<double> max_range{};    ///< along the ray [m]; the sensor's unless given
-  std::vector<WeightRegion> weights{};
-  double refinement_weight = 0.3;  ///< combined: w, of refining against finding new surface
+  std::vector<WeightRegion> weights{};  ///< task weights; later ones count
+  double refinement_weight = 0.3;       ///< combined: w, of refining against finding new surface
   /// Height z of a support plane in the world [m]: rays that go down end there (surface, combined).
   std::optional<double> support_plane{};
 };
 
+/// Whether a view could be scored.
 enum class ViewStatus : std::uint8_t {
   ok,
   bad_pose,  ///< a number that is not finite, or a rotation off by more than 1e-3: gain NaN
   camera_in_occupied,  ///< the camera's centre lies in an occupied voxel: gain 0
 };
+/// Its name, as JSON has it.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view view_status_name(ViewStatus status);
 
 /// What a view is expected to bring. Gains in nats, in m² for the criterion trace and for the
@@ -79,23 +83,24 @@ struct VIEWGAIN_EXPORT ViewGain {
   double refinement_saturated = std::numeric_limits<double>::quiet_NaN();
   /// The paper's eq. (6) over the touched voxels: Σ_v Σ_k ln[(Λ_v + ΣΛ_r)⁻¹]_kk, lengths in metres.
   double posterior_entropy = std::numeric_limits<double>::quiet_NaN();
-  std::uint32_t rays = 0;
-  std::uint32_t hits = 0;             ///< rays that end in a voxel
-  std::uint32_t unknown_voxels = 0;   ///< distinct; paper
-  std::uint32_t occupied_voxels = 0;  ///< distinct; paper, combined
-  ViewStatus status = ViewStatus::bad_pose;
+  std::uint32_t rays = 0;                    ///< of the view
+  std::uint32_t hits = 0;                    ///< rays that end in a voxel
+  std::uint32_t unknown_voxels = 0;          ///< distinct; paper
+  std::uint32_t occupied_voxels = 0;         ///< distinct; paper, combined
+  ViewStatus status = ViewStatus::bad_pose;  ///< whether it could be scored
 };
 
 /// Where one ray of a view ends.
 struct VIEWGAIN_EXPORT RayHit {
+  /// What a ray ends in.
   enum class Kind : std::uint8_t { none, unknown, occupied, obstacle };
-  Kind kind = Kind::none;
-  Index3 voxel{};  ///< the voxel it ends in (unknown, occupied)
+  Kind kind = Kind::none;  ///< what it ends in
+  Index3 voxel{};          ///< the voxel it ends in (unknown, occupied)
   double range =
       std::numeric_limits<double>::infinity();  ///< max(range of the entry point, min_range) [m]
 };
 
-/// Scores camera poses against a scene by expected information gain (DESIGN.md section 6).
+/// Scores camera poses against a scene by expected information gain (apps/docs/guide/equations.md).
 ///
 /// A camera that is more than 1e6 voxels away from the workspace sees nothing of it: gain 0.
 ///
@@ -136,6 +141,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// Error(invalid_argument) if the sizes differ.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<ViewGain> results,
                        const BatchControl& control = {}) const;
+  /// The same, into a new array.
   [[nodiscard]] std::vector<ViewGain> evaluate(std::span<const Pose> T_world_camera) const;
 
   /// The user's own gain of a batch, result i for pose i, on all threads of the evaluator, which
@@ -223,12 +229,17 @@ class VIEWGAIN_EXPORT GainEvaluator {
                           const ApproximateConfig& config = {},
                           const BatchControl& control = {}) const;
 
+  /// One for each pixel of the strided image.
   [[nodiscard]] std::size_t rays_per_pose() const noexcept;
   [[nodiscard]] const PinholeCamera& camera() const noexcept;  ///< the sensor's
+  /// What a view's gain counts.
   [[nodiscard]] GainModel model() const noexcept;
+  /// Every so manieth pixel of every so manieth row.
   [[nodiscard]] int pixel_stride() const noexcept;
+  /// Threads that a batch runs on.
   [[nodiscard]] int num_threads() const noexcept;
   [[nodiscard]] double prior_sigma() const noexcept;  ///< [m]
+  /// What poses are scored against.
   [[nodiscard]] const VoxelScene& scene() const noexcept;
 
  private:

@@ -17,7 +17,7 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT SurfaceHit {
   double range =
       std::numeric_limits<double>::infinity();  ///< along the unit direction [m]; infinity: miss
-  std::uint32_t triangle = 0;
+  std::uint32_t triangle = 0;                   ///< which one; 0 for a miss
   Eigen::Vector3d normal =
       Eigen::Vector3d::Zero();  ///< unit, right-hand rule of the triangle's vertices
 };
@@ -38,6 +38,7 @@ class VIEWGAIN_EXPORT SurfaceScene {
       const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
       double max_range = std::numeric_limits<double>::infinity()) const;
 
+  /// The triangles that are traced.
   [[nodiscard]] const TriangleMesh& mesh() const noexcept;
 
  private:

@@ -11,7 +11,7 @@ namespace viewgain {
 
 /// What one voxel adds to the gain of a view; see GainEvaluator::contributions().
 struct VIEWGAIN_EXPORT VoxelContribution {
-  Index3 voxel{};
+  Index3 voxel{};                          ///< of the map
   VoxelState state = VoxelState::unknown;  ///< unknown or occupied
   std::uint32_t rays = 0;                  ///< that end in it; surface, combined: that reach it
   /// Rays that are expected to end in it: as many as `rays` for the paper's gain, else the sum of

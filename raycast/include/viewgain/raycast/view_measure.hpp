@@ -14,7 +14,7 @@ namespace viewgain {
 
 /// A ray of a view that ends in a voxel.
 struct VIEWGAIN_EXPORT ViewHit {
-  Index3 voxel{};
+  Index3 voxel{};                          ///< that the ray ends in
   VoxelState state = VoxelState::unknown;  ///< unknown or occupied
   const Belief* belief = nullptr;     ///< what is known of the voxel; null: nothing; lives with the
                                       ///< scene
@@ -40,7 +40,7 @@ class VIEWGAIN_EXPORT ViewMeasure {
 
 /// What a ray of a view has of one voxel on its way through unknown space.
 struct VIEWGAIN_EXPORT ViewRun {
-  Index3 voxel{};
+  Index3 voxel{};                          ///< that the ray has a part of
   VoxelState state = VoxelState::unknown;  ///< unknown, or occupied: the ray ends there
   const Belief* belief = nullptr;     ///< what is known of the voxel; null: nothing; lives with the
                                       ///< scene

@@ -64,8 +64,8 @@ struct VIEWGAIN_EXPORT ApproximateConfig {
 
 /// An estimate of a gain, in the unit of the gain.
 struct VIEWGAIN_EXPORT ApproximateGain {
-  double gain = std::numeric_limits<double>::quiet_NaN();
-  double standard_error = std::numeric_limits<double>::quiet_NaN();
+  double gain = std::numeric_limits<double>::quiet_NaN();            ///< the estimate
+  double standard_error = std::numeric_limits<double>::quiet_NaN();  ///< of it
 };
 
 }  // namespace viewgain

@@ -25,8 +25,8 @@ struct SceneData;
 /// Known things that are not part of the map: they block rays at any range and gain nothing. World
 /// frame.
 struct VIEWGAIN_EXPORT Obstacles {
-  std::vector<Box> boxes;
-  std::vector<TriangleMesh> meshes;
+  std::vector<Box> boxes;            ///< solid
+  std::vector<TriangleMesh> meshes;  ///< closed ones are solid, open ones sheets
 };
 
 /// An immutable scene to trace: the voxels of a grid that are not free, by cells, to be swept from
@@ -61,6 +61,7 @@ class VIEWGAIN_EXPORT VoxelScene {
   VoxelScene(const VoxelScene&) = delete;
   VoxelScene& operator=(const VoxelScene&) = delete;
 
+  /// What the scene was built from.
   [[nodiscard]] const GridSnapshot& snapshot() const noexcept;
   /// The same object in all scenes that update() has made from one.
   [[nodiscard]] const Obstacles& obstacles() const noexcept;
@@ -77,6 +78,7 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// Leaves and tiles, and the bytes that the scene adds to the snapshot's: primitives, boxes,
   /// obstacles; Embree's BVH and the hazard not counted.
   [[nodiscard]] std::size_t primitive_count() const noexcept;
+  /// Memory that the scene adds to the snapshot's [bytes].
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
  private:

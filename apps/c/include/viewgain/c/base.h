@@ -11,6 +11,7 @@
 #if defined(__GNUC__)
 #define VG_API __attribute__((visibility("default")))
 #else
+/* Marks what the shared library shows. */
 #define VG_API
 #endif
 
@@ -23,7 +24,9 @@ extern "C" {
 VG_API int32_t vg_abi_version(void); /* of the library */
 VG_API const char* vg_version(void); /* "major.minor.patch" of the library */
 
+/* What a call came to: VG_OK or an error of those below. */
 typedef int32_t vg_status;
+/* What a call came to. */
 enum {
   VG_OK = 0,
   VG_INVALID_ARGUMENT = 1, /* a value outside its documented range, or a null pointer */
@@ -44,12 +47,13 @@ VG_API const char* vg_last_error(void);
    whichever thread, never two at once. If it returns nonzero while there is work left the call ends
    soon, with VG_STOPPED. It must not throw or jump out. */
 typedef struct vg_watch {
-  size_t struct_size;
+  size_t struct_size; /* as _init() sets it */
   /* done of total poses: scored (vg_evaluate and its like), in need of no more work (vg_best),
      chosen (vg_best_set); 0 until the end for vg_race. */
   int32_t (*poll)(size_t done, size_t total, void* user);
   void* user; /* may be null */
 } vg_watch;
+/* The defaults. */
 VG_API void vg_watch_init(vg_watch* watch, size_t struct_size);
 
 #ifdef __cplusplus

@@ -16,25 +16,29 @@ extern "C" {
 /* An immutable snapshot of a grid, made for tracing, and known obstacles. */
 typedef struct vg_scene vg_scene;
 
+/* What a scene is built with. */
 typedef struct vg_scene_config {
-  size_t struct_size;
-  int32_t num_threads; /* of the build; 0: all */
-  const double* boxes; /* obstacles, world: 6 numbers each, min x y z, max x y z */
-  size_t box_count;
-  const double* vertices; /* an obstacle mesh, world: 3 numbers each */
-  size_t vertex_count;
+  size_t struct_size;        /* as _init() sets it */
+  int32_t num_threads;       /* of the build; 0: all */
+  const double* boxes;       /* obstacles, world: 6 numbers each, min x y z, max x y z */
+  size_t box_count;          /* how many boxes */
+  const double* vertices;    /* an obstacle mesh, world: 3 numbers each */
+  size_t vertex_count;       /* how many vertices */
   const uint32_t* triangles; /* 3 vertex indices each */
-  size_t triangle_count;
+  size_t triangle_count;     /* how many triangles */
   /* For the surface and the combined gain: longest side of the object [m], NaN (the default): that
-     of what is seen of it; rate at which a ray in unknown voxels meets the surface [1/m], the same
-     everywhere, NaN (the default): by the distance from what is seen. */
-  double object_size, hazard_rate;
+     of what is seen of it. */
+  double object_size;
+  /* Rate at which a ray in unknown voxels meets the surface [1/m], the same everywhere, NaN (the
+     default): by the distance from what is seen. */
+  double hazard_rate;
   /* Instead of hazard_rate, one of the two: a rate for each voxel [1/m], ordered as
      vg_grid_states(); a .vdb file of rates, its grid of floats "hazard" or the only one. */
   const float* hazard_rates;
-  size_t hazard_count; /* of hazard_rates: dims[0] * dims[1] * dims[2] */
-  const char* hazard_file;
+  size_t hazard_count;     /* of hazard_rates: dims[0] * dims[1] * dims[2] */
+  const char* hazard_file; /* null: none */
 } vg_scene_config;
+/* The defaults. */
 VG_API void vg_scene_config_init(vg_scene_config* config, size_t struct_size);
 
 /* config null: no obstacles. */
@@ -45,6 +49,7 @@ VG_API vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* conf
  */
 VG_API vg_status vg_scene_update(const vg_scene* before, const vg_grid* grid, int32_t num_threads,
                                  vg_scene** scene);
+/* Null does nothing. */
 VG_API void vg_scene_release(vg_scene* scene);
 
 /* Counts how often a frame meets the surface in unknown space, before it is integrated; the surface
@@ -57,8 +62,11 @@ VG_API vg_status vg_calibrate_hazard(const vg_integrator* integrator, vg_grid* g
 
 /* ---- Expected gain ---- */
 
+/* Scores poses against a scene. Calls that take it as const may run from many threads at once. */
 typedef struct vg_evaluator vg_evaluator;
 
+/* By what the paper's gain measures uncertainty: 1/2 sum ln of the covariance's diagonal, 1/2 ln of
+   its determinant, its trace [m^2]. */
 enum { VG_LOG_DIAGONAL = 0, VG_LOG_DETERMINANT = 1, VG_TRACE = 2 };
 
 /* What a view's gain counts: entropy removed [nat], new surface to be expected [m^2], or that and
@@ -71,20 +79,22 @@ typedef struct vg_weight_region {
   double weight;                 /* >= 0; 1 outside all regions */
 } vg_weight_region;
 
+/* What changes the answer, and num_threads. */
 typedef struct vg_evaluator_config {
-  size_t struct_size;
-  int32_t criterion;           /* VG_LOG_DIAGONAL */
-  int32_t pixel_stride;        /* 1: every pixel; s: every s-th of every s-th row */
-  int32_t num_threads;         /* 0: all; 1: the caller alone; never changes a gain */
-  double prior_sigma;          /* [m]; NaN (the default): the map's */
-  double min_range, max_range; /* along the ray [m]; NaN (the default): the sensor's */
-  const vg_weight_region* weights;
-  size_t weight_count;
+  size_t struct_size;              /* as _init() sets it */
+  int32_t criterion;               /* VG_LOG_DIAGONAL */
+  int32_t pixel_stride;            /* 1: every pixel; s: every s-th of every s-th row */
+  int32_t num_threads;             /* 0: all; 1: the caller alone; never changes a gain */
+  double prior_sigma;              /* [m]; NaN (the default): the map's */
+  double min_range, max_range;     /* along the ray [m]; NaN (the default): the sensor's */
+  const vg_weight_region* weights; /* task weights of parts of the workspace; null: none */
+  size_t weight_count;             /* how many weights */
   double refinement_weight; /* VG_GAIN_COMBINED: of refining against finding new surface (0.3) */
   double support_plane; /* height z of a table at which rays end [m]; NaN (the default): none; not
                            for VG_GAIN_PAPER */
   int32_t gain;         /* VG_GAIN_PAPER */
 } vg_evaluator_config;
+/* The defaults. */
 VG_API void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_size);
 
 /* config null: the defaults. */
@@ -96,18 +106,24 @@ VG_API vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sen
    so that it takes microseconds; gains are those of an evaluator made for that scene. */
 VG_API vg_status vg_evaluator_with_scene(const vg_evaluator* evaluator, const vg_scene* scene,
                                          vg_evaluator** following);
+/* Null does nothing. */
 VG_API void vg_evaluator_release(vg_evaluator* evaluator);
 
+/* What an evaluator is. */
 typedef struct vg_evaluator_info {
-  size_t struct_size;
+  size_t struct_size;                /* as _init() sets it */
   int32_t image_width, image_height; /* of depth images: the sensor's by the stride [px] */
-  uint64_t rays_per_pose;
-  int32_t num_threads;
-  double prior_sigma; /* [m] */
+  uint64_t rays_per_pose;            /* one for each pixel of the strided image */
+  int32_t num_threads;               /* that the evaluator works with */
+  double prior_sigma;                /* [m] */
 } vg_evaluator_info;
+/* Makes `info` ready for the call below. */
 VG_API void vg_evaluator_info_init(vg_evaluator_info* info, size_t struct_size);
+/* Tells what the evaluator is. */
 VG_API vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluator_info* info);
 
+/* Of vg_view_gain: scored; no rigid transform, gain NaN; the camera's centre is in an occupied
+   voxel, gain 0. */
 enum { VG_VIEW_OK = 0, VG_VIEW_BAD_POSE = 1, VG_VIEW_CAMERA_IN_OCCUPIED = 2 };
 
 /* What a view is expected to bring; gains in nats, in m^2 for VG_TRACE and VG_GAIN_SURFACE. What a
@@ -117,7 +133,7 @@ typedef struct vg_view_gain {
                                      area and refinement_saturated; NaN: a bad pose */
   double exploration, refinement; /* paper: share of unknown and of occupied voxels */
   double posterior_entropy;       /* paper: its eq. (6), lengths in metres */
-  uint32_t rays, hits;
+  uint32_t rays, hits;            /* of the view; that end in a voxel */
   uint32_t unknown_voxels, occupied_voxels; /* distinct */
   int32_t status;                           /* VG_VIEW_ */
   double area;                 /* surface, combined: new surface to be expected [m^2]; else NaN */
@@ -161,6 +177,7 @@ VG_API vg_status vg_best_set(const vg_evaluator* evaluator, const double* poses,
 
 /* ---- Looking at a view ---- */
 
+/* What a ray ends in; VG_HIT_NONE: nothing. */
 enum { VG_HIT_NONE = 0, VG_HIT_UNKNOWN = 1, VG_HIT_OCCUPIED = 2, VG_HIT_OBSTACLE = 3 };
 
 /* Where the rays of a pose end: depth along the optical axis [m], +infinity where a ray meets
@@ -189,8 +206,11 @@ VG_API vg_status vg_contributions(const vg_evaluator* evaluator, const double T_
 
 /* ---- Which poses are possible ---- */
 
+/* Says which poses are possible in a scene. Calls that take it as const may run from many threads
+   at once. */
 typedef struct vg_feasibility vg_feasibility;
 
+/* Why a pose is impossible; checked in this order, the first one counts. */
 enum {
   VG_FEASIBLE = 0,
   VG_INFEASIBLE_BAD_POSE = 1,
@@ -202,8 +222,9 @@ enum {
   VG_INFEASIBLE_TOO_NEAR = 7     /* much of the image would be nearer than the sensor can measure */
 };
 
+/* What must have room, and where the robot gets. */
 typedef struct vg_feasibility_config {
-  size_t struct_size;
+  size_t struct_size;         /* as _init() sets it */
   double body_size[3];        /* width, height, depth of the housing [m]; 0.065 0.065 0.076 */
   int32_t has_flange;         /* nonzero: T_flange_camera counts; else the camera is in the */
   double T_flange_camera[16]; /* middle of the body's front face */
@@ -219,6 +240,7 @@ typedef struct vg_feasibility_config {
   void* user;          /* may be null */
   int32_t num_threads; /* 0: all; 1: the caller alone; never changes a reason */
 } vg_feasibility_config;
+/* The defaults. */
 VG_API void vg_feasibility_config_init(vg_feasibility_config* config, size_t struct_size);
 
 /* config null: the defaults. */
@@ -236,6 +258,7 @@ VG_API vg_status vg_feasibility_check(const vg_feasibility* feasibility, const d
    `feasibility` stays as it is. Takes microseconds. */
 VG_API vg_status vg_feasibility_with_scene(const vg_feasibility* feasibility, const vg_scene* scene,
                                            vg_feasibility** following);
+/* Null does nothing. */
 VG_API void vg_feasibility_release(vg_feasibility* feasibility);
 
 /* ---- Poses ---- */

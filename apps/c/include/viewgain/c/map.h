@@ -28,7 +28,7 @@ enum {
 
 /* A depth camera. Pixel (0,0) has its centre at (0,0), as in OpenCV. */
 typedef struct vg_sensor {
-  size_t struct_size;
+  size_t struct_size;          /* as _init() sets it */
   int32_t width, height;       /* [px] */
   double fx, fy, cx, cy;       /* [px] */
   double distortion[5];        /* k1 k2 p1 p2 k3 */
@@ -49,15 +49,18 @@ VG_API vg_status vg_default_prior_sigma(double voxel_size, const vg_sensor* sens
 
 /* ---- Belief grids ---- */
 
+/* A map of what is known of a workspace. Nothing may run beside a call that changes it. */
 typedef struct vg_grid vg_grid;
 
+/* How a map is laid out. */
 typedef struct vg_grid_config {
-  size_t struct_size;
+  size_t struct_size;            /* as _init() sets it */
   double voxel_size;             /* [m] */
   double box_min[3], box_max[3]; /* the workspace, in the grid's frame; grown to whole voxels */
   double T_world_grid[16];       /* identity */
   double prior_sigma;            /* of an unknown voxel [m] */
 } vg_grid_config;
+/* The defaults. */
 VG_API void vg_grid_config_init(vg_grid_config* config, size_t struct_size);
 
 /* An empty map: every voxel of the workspace is unknown. */
@@ -70,23 +73,28 @@ VG_API vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3
                                      vg_grid** grid);
 
 VG_API vg_status vg_grid_load(const char* path, vg_grid** grid); /* a .vdb file of viewgain */
+/* Writes the map as .vdb, whole or not at all. */
 VG_API vg_status vg_grid_save(const vg_grid* grid, const char* path);
 
 /* OctoMap's .ot and .bt: the states, and a .ot's log-odds; the workspace is the box of the known
    voxels. prior_sigma [m], 0: half a voxel. Saving writes a .ot, in the world's frame where
    T_world_grid is a shift by whole voxels, else in the grid's own. */
 VG_API vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** grid);
+/* Writes states and log-odds as OctoMap's .ot. */
 VG_API vg_status vg_grid_save_octomap(const vg_grid* grid, const char* path);
+/* A deep copy. */
 VG_API vg_status vg_grid_clone(const vg_grid* grid, vg_grid** copy);
+/* Null does nothing. */
 VG_API void vg_grid_release(vg_grid* grid);
 
+/* What a map is, and how far. */
 typedef struct vg_grid_info {
-  size_t struct_size;
-  int32_t min_index[3]; /* lowest voxel of the workspace on the grid's lattice */
-  int32_t dims[3];      /* voxels along x, y, z */
-  double voxel_size;    /* [m] */
-  double prior_sigma;   /* [m] */
-  double T_world_grid[16];
+  size_t struct_size;               /* as _init() sets it */
+  int32_t min_index[3];             /* lowest voxel of the workspace on the grid's lattice */
+  int32_t dims[3];                  /* voxels along x, y, z */
+  double voxel_size;                /* [m] */
+  double prior_sigma;               /* [m] */
+  double T_world_grid[16];          /* grid to world, rows */
   uint64_t unknown, free, occupied; /* voxels */
   uint64_t views;                   /* frames integrated */
   uint64_t bytes;                   /* memory */
@@ -95,13 +103,16 @@ typedef struct vg_grid_info {
                                        distance from known surface, before rates are made to fall
                                        with it: vg_calibrate_hazard() */
 } vg_grid_info;
+/* Makes `info` ready for the call below. */
 VG_API void vg_grid_info_init(vg_grid_info* info, size_t struct_size);
+/* Tells what the map is. */
 VG_API vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info);
 
 /* The dense array of states; count must be dims[0] * dims[1] * dims[2]. */
 VG_API vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count);
 
 /* In all three places where there is no voxel. */
+/* The index of no voxel. */
 enum { VG_NO_VOXEL = INT32_MIN };
 
 /* The voxels that hold points of the world, 3 numbers each [m]: 3 indices each, on the lattice
@@ -136,26 +147,36 @@ VG_API vg_status vg_grid_hash(const vg_grid* grid, char hash[17]);
 
 /* ---- Depth frames ---- */
 
+/* Puts depth frames of one sensor into maps. One call at a time. */
 typedef struct vg_integrator vg_integrator;
 
+/* What a pixel is: a cone, which carves the voxels whose centres lie in it, or a line. */
 enum { VG_CARVE_CONES = 0, VG_CARVE_LINES = 1 };
+/* How a map follows: by log-odds, or crossed is free and hit is occupied. */
 enum { VG_OCCUPANCY_PROBABILISTIC = 0, VG_OCCUPANCY_LITERAL = 1 };
 
+/* What changes the map. */
 typedef struct vg_integrator_config {
-  size_t struct_size;
+  size_t struct_size;   /* as _init() sets it */
   int32_t carve;        /* VG_CARVE_CONES */
   int32_t occupancy;    /* VG_OCCUPANCY_PROBABILISTIC */
   int32_t num_threads;  /* 0: all; 1: the caller alone; never changes the map */
   double support_plane; /* height of the table, world z [m]; NaN (the default): none */
 } vg_integrator_config;
+/* The defaults. */
 VG_API void vg_integrator_config_init(vg_integrator_config* config, size_t struct_size);
 
 /* Counts of one frame. */
 typedef struct vg_integration_report {
-  size_t struct_size;
-  uint64_t readings, plane_readings, out_of_range, invalid, readings_inside;
-  uint64_t voxels_hit, voxels_crossed;
+  size_t struct_size;                  /* as _init() sets it */
+  uint64_t readings;                   /* pixels with a depth in the sensor's range */
+  uint64_t plane_readings;             /* such pixels that see the support plane, not in readings */
+  uint64_t out_of_range;               /* pixels that carve up to max_range */
+  uint64_t invalid;                    /* pixels that say nothing */
+  uint64_t readings_inside;            /* readings that lie in the workspace */
+  uint64_t voxels_hit, voxels_crossed; /* voxels that readings lie in; voxels crossed and not hit */
 } vg_integration_report;
+/* Makes `report` ready for a call. */
 VG_API void vg_integration_report_init(vg_integration_report* report, size_t struct_size);
 
 /* Puts frames of one sensor into maps. config null: the defaults. */
@@ -168,6 +189,7 @@ VG_API vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrat
 VG_API vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* depth,
                               const float* amplitude, const double T_world_camera[16],
                               vg_integration_report* report);
+/* Null does nothing. */
 VG_API void vg_integrator_release(vg_integrator* integrator);
 
 #ifdef __cplusplus

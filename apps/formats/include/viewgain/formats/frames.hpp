@@ -34,9 +34,9 @@ struct VIEWGAIN_EXPORT FrameSequence {
   Sensor sensor;           ///< with the folder's own intrinsics, where it has them
   double depth_scale = 0;  ///< [m] per unit
   bool recorded = false;   ///< a pose file a frame, instead of poses.txt
-  std::vector<std::filesystem::path> images;
-  std::vector<Pose> poses;  ///< T_world_camera, one an image
-  std::size_t orthonormalized = 0;
+  std::vector<std::filesystem::path> images;  ///< depth images, in their order
+  std::vector<Pose> poses;                    ///< T_world_camera, one an image
+  std::size_t orthonormalized = 0;            ///< rotations that were a little off
 };
 
 /// Opens either layout: poses.txt + frame-NNNNNN.depth.png (line i is frame i) + sensor.toml, or

@@ -27,8 +27,8 @@ namespace viewgain {
 
 /// A map, and where its readings come from as far as its file says so.
 struct VIEWGAIN_EXPORT MapOfSensor {
-  BeliefGrid grid;
-  std::optional<Sensor> sensor;
+  BeliefGrid grid;                 ///< the map
+  std::optional<Sensor> sensor;    ///< that its readings come from, where the file says so
   std::set<std::string> frames{};  ///< that went into it, each as frame_identity() has it
 };
 
@@ -53,10 +53,10 @@ VIEWGAIN_EXPORT void check_map_name(const std::filesystem::path& path);
 
 /// What a map has and its tree has not.
 struct VIEWGAIN_EXPORT LostInTree {
-  std::size_t beliefs = 0;  ///< voxels
-  std::size_t views = 0;
-  bool hazard_counters = false;
-  bool T_world_grid = false;  ///< see octomap_keeps_frame
+  std::size_t beliefs = 0;       ///< voxels
+  std::size_t views = 0;         ///< how many
+  bool hazard_counters = false;  ///< were there any
+  bool T_world_grid = false;     ///< see octomap_keeps_frame
 };
 
 /// Writes a .ot for a name that ends so, else a .vdb, of which nothing is lost. Atomic. Throws what

@@ -38,6 +38,7 @@ class VIEWGAIN_EXPORT MaskFolder {
 /// Makes the pixels invalid (0) that the mask says; returns how many were not invalid before.
 /// Throws Error(invalid_argument) if the sizes differ.
 VIEWGAIN_EXPORT std::uint64_t apply_mask(const Gray8Image& mask, GrayImage& depth);
+/// Makes the masked pixels invalid; how many of them had a depth.
 VIEWGAIN_EXPORT std::uint64_t apply_mask(const Gray8Image& mask, DepthFrame& frame);
 
 }  // namespace viewgain

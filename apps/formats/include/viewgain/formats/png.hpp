@@ -14,23 +14,23 @@ namespace viewgain {
 
 /// 16-bit grayscale image, row by row.
 struct VIEWGAIN_EXPORT GrayImage {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint16_t> pixels;
+  int width = 0;                      ///< [px]
+  int height = 0;                     ///< [px]
+  std::vector<std::uint16_t> pixels;  ///< row by row
 };
 
 /// 8-bit RGB image, row by row.
 struct VIEWGAIN_EXPORT RgbImage {
-  int width = 0;
-  int height = 0;
+  int width = 0;                     ///< [px]
+  int height = 0;                    ///< [px]
   std::vector<std::uint8_t> pixels;  ///< 3 * width * height
 };
 
 /// 8-bit grayscale image, row by row.
 struct VIEWGAIN_EXPORT Gray8Image {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint8_t> pixels;
+  int width = 0;                     ///< [px]
+  int height = 0;                    ///< [px]
+  std::vector<std::uint8_t> pixels;  ///< row by row
 };
 
 /// Reads a 16-bit grayscale PNG of exactly this size; raw values, no gamma. Throws Error(io) if the
@@ -58,7 +58,9 @@ struct VIEWGAIN_EXPORT Gray8Image {
 /// Atomic: a temporary file is renamed. Throws Error(io), and Error(invalid_argument) if the values
 /// are not as many as the pixels take.
 VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const GrayImage& image);
+/// As above, of 8 bits a channel.
 VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const RgbImage& image);
+/// As above, of 8 bits.
 VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const Gray8Image& image);
 
 }  // namespace viewgain

@@ -10,9 +10,9 @@
 
 namespace viewgain {
 
-/// Where a robot can put the camera; apps/README.md shows the layout, each part of which may be
-/// missing. Throws Error(io) if a file cannot be read and Error(format), naming the file and the
-/// key, for a key that is missing, unknown, of the wrong type or out of bounds.
+/// Where a robot can put the camera; apps/docs/reference/formats.md shows the layout, each part of
+/// which may be missing. Throws Error(io) if a file cannot be read and Error(format), naming the
+/// file and the key, for a key that is missing, unknown, of the wrong type or out of bounds.
 [[nodiscard]] VIEWGAIN_EXPORT ReachRegion read_reach_toml(const std::filesystem::path& path);
 
 /// Writes a region so that reading it gives the same one but for the rounding of angles and

@@ -53,7 +53,7 @@ struct VIEWGAIN_EXPORT RecordingConfig {
 struct VIEWGAIN_EXPORT RecordedFrame {
   std::uint64_t number = 0;     ///< the source's; tum: the place in depth.txt, from 0
   std::filesystem::path image;  ///< 16-bit depth along z
-  Pose T_world_camera;
+  Pose T_world_camera;          ///< orthonormalised
 };
 
 /// A recording, opened but not read.
@@ -84,6 +84,7 @@ struct VIEWGAIN_EXPORT Recording {
 /// index that is not less than the count of frames. May be called from many threads.
 [[nodiscard]] VIEWGAIN_EXPORT GrayImage load_depth(const Recording& recording, std::size_t index);
 
+/// How a recording is imported.
 struct VIEWGAIN_EXPORT ImportConfig {
   /// Whose noise and range limits sensor.toml is to have; nothing: none is written.
   std::optional<Sensor> sensor{};
@@ -93,6 +94,7 @@ struct VIEWGAIN_EXPORT ImportConfig {
   std::function<void(std::size_t, std::size_t)> progress{};
 };
 
+/// What an import came to.
 struct VIEWGAIN_EXPORT ImportReport {
   std::uint64_t readings = 0;       ///< pixels with a depth that were written
   std::uint64_t masked_pixels = 0;  ///< with a depth, taken away by masks

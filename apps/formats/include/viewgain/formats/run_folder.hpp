@@ -27,7 +27,9 @@ class VIEWGAIN_EXPORT RunFolder {
 
   /// Where to write.
   [[nodiscard]] std::filesystem::path file(const char* name) const { return staged_.path() / name; }
+  /// A file of view `index`, by its ending.
   [[nodiscard]] std::filesystem::path view(std::size_t index, const char* ending) const;
+  /// The map after view `index`.
   [[nodiscard]] std::filesystem::path map(std::size_t index) const;
 
   /// Puts the run in the place of an earlier one. Throws Error(io).

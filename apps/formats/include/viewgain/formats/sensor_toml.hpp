@@ -11,8 +11,8 @@
 
 namespace viewgain {
 
-/// The TOML description of a sensor; apps/README.md shows the layout. Reading what was written
-/// gives an equal sensor.
+/// The TOML description of a sensor; apps/docs/reference/formats.md shows the layout. Reading what
+/// was written gives an equal sensor.
 [[nodiscard]] VIEWGAIN_EXPORT std::string sensor_toml(const Sensor& sensor);
 
 /// What `model` is in such a file: shot, structured_light, stereo, quadratic, constant.

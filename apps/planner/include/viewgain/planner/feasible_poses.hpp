@@ -27,10 +27,11 @@ inline constexpr std::string_view kMissed = "missed";
 
 /// A candidate that was not proposed.
 struct VIEWGAIN_EXPORT DroppedCandidate {
-  Candidate candidate;
-  std::string reason;  ///< infeasibility_name() or kMissed
+  Candidate candidate;  ///< who was dropped
+  std::string reason;   ///< infeasibility_name() or kMissed
 };
 
+/// Their poses, in the same order.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> poses_of(std::span<const Candidate> candidates);
 
 /// Puts candidate i, in their order, into the proposal where reasons[i] is empty, else among the
@@ -41,7 +42,7 @@ VIEWGAIN_EXPORT void sort_candidates(std::vector<Candidate> candidates,
 
 /// The poses that are possible, and why the others are not.
 struct VIEWGAIN_EXPORT FeasiblePoses {
-  std::vector<Pose> poses;
+  std::vector<Pose> poses;                     ///< that are possible
   std::vector<std::size_t> numbers;            ///< of each among those that were asked about
   std::map<std::string, std::size_t> dropped;  ///< reason -> count
 };

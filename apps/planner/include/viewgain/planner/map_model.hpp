@@ -24,8 +24,8 @@ namespace viewgain {
 
 /// What changes the map.
 struct VIEWGAIN_EXPORT MapModelConfig {
-  GridConfig grid{};
-  IntegrationConfig integration{};
+  GridConfig grid{};                           ///< how the map is laid out
+  IntegrationConfig integration{};             ///< how frames change it
   std::optional<JumpEdgeConfig> jump_edges{};  ///< takes flying pixels out of the frames
   /// Known ones: they block rays and bodies, and readings of them carve but do not hit.
   Obstacles obstacles{};
@@ -70,8 +70,11 @@ class VIEWGAIN_EXPORT MapModel {
   /// The grid as it would be after these measurements, which do not change it. Costs a copy of it.
   [[nodiscard]] BeliefGrid grid_after(const Measurements& measurements) const;
 
+  /// The map.
   [[nodiscard]] const BeliefGrid& grid() const noexcept { return grid_; }
+  /// The scene of the map as it is.
   [[nodiscard]] const std::shared_ptr<const VoxelScene>& scene() const noexcept { return scene_; }
+  /// The camera that frames come from.
   [[nodiscard]] const Sensor& sensor() const noexcept { return sensor_; }
   /// Entropy removed and unknown voxels; no coverage and no surface.
   [[nodiscard]] ModelProgress progress() const;

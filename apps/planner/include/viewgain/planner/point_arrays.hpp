@@ -19,6 +19,7 @@ struct VIEWGAIN_EXPORT PointArrays {
   std::vector<SymmetricMatrix3> covariances;     ///< [m²]
 };
 
+/// Copies of places, normals and sigmas.
 [[nodiscard]] inline PointArrays arrays_of(std::span<const FusedPoint> points) {
   PointArrays arrays;
   arrays.positions.reserve(points.size());

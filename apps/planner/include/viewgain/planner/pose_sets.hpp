@@ -18,7 +18,7 @@ namespace viewgain {
 
 /// A fixed set of poses with a name: sphere, dome, rings, sequence, file.
 struct VIEWGAIN_EXPORT PoseSet {
-  std::string generator;
+  std::string generator;    ///< its name
   std::vector<Pose> poses;  ///< T_world_camera
 };
 

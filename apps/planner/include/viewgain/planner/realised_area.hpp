@@ -15,8 +15,8 @@
 
 namespace viewgain {
 
-/// What frames of a sensor show of new surface, to be held against ViewGain::area (DESIGN.md
-/// section 6, "Predicted and realised"). Immutable; thread safe.
+/// What frames of a sensor show of new surface, to be held against ViewGain::area. Immutable;
+/// thread safe.
 class VIEWGAIN_EXPORT RealisedArea {
  public:
   /// Undoes the lens distortion once. Readings of the support plane (world z [m]) show nothing:

@@ -26,7 +26,7 @@ namespace viewgain {
 /// A pose as it is reported, and how far it may be off: Gaussian, independent, the same in each of
 /// the three axes, about the camera's centre.
 struct VIEWGAIN_EXPORT PosePrior {
-  Pose T_world_camera;
+  Pose T_world_camera;               ///< as reported
   double sigma_translation = 0.005;  ///< [m]
   double sigma_rotation = 0.0087;    ///< of each component of the rotation vector [rad]
 };
@@ -44,11 +44,13 @@ struct VIEWGAIN_EXPORT RegistrationConfig {
   std::optional<double> support_plane{};  ///< height z [m]: readings of it are no part of the map
 };
 
+/// What came of a registration.
 enum class RegistrationStatus : std::uint8_t {
   registered,
   too_little_overlap,  ///< the map says too little of what the frame shows; the pose stays
   refused,             ///< frame and map contradict each other under every likely pose
 };
+/// Its name, for people and files.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view registration_status_name(RegistrationStatus status);
 
 /// A motion of the camera that changes nothing in how frame and map fit, one sigma of the prior
@@ -60,20 +62,21 @@ struct VIEWGAIN_EXPORT FreeDirection {
 
 /// What a registration did.
 struct VIEWGAIN_EXPORT FrameRegistration {
+  /// Whether the correction was found, and why not.
   RegistrationStatus status = RegistrationStatus::too_little_overlap;
   std::string reason;   ///< of the status, for people; empty if registered
   Pose T_world_camera;  ///< corrected if registered, else as reported
   /// The correction, of a frame that is refused the one that was found: the way of the camera's
   /// centre [m] and the angle [rad].
   double translation = 0;
-  double rotation = 0;
+  double rotation = 0;  ///< of the correction [rad]
   /// RMS distance of readings from the map's surface, along its normal [m]: of the pairs in the
   /// end, at the reported and at the corrected pose. 0 without pairs.
   double residual_before = 0;
-  double residual_after = 0;
-  std::size_t readings = 0;  ///< that were looked at: in the workspace, with a normal
-  std::size_t pairs = 0;     ///< of these, that belong to a point of the map in the end
-  double overlap = 0;        ///< pairs / readings
+  double residual_after = 0;  ///< after the correction
+  std::size_t readings = 0;   ///< that were looked at: in the workspace, with a normal
+  std::size_t pairs = 0;      ///< of these, that belong to a point of the map in the end
+  double overlap = 0;         ///< pairs / readings
   /// Readings in space that the map knows to be free, or behind surface that it knows, as a share
   /// of these and the pairs.
   double contradiction = 0;

@@ -17,6 +17,7 @@ namespace viewgain {
 /// the frame that is being taken.
 class VIEWGAIN_EXPORT SimulatedAcquisition : public DataAcquisition {
  public:
+  /// `stop` ends a view after the frame at hand.
   SimulatedAcquisition(SimulatedSensor camera, std::size_t frames_per_view, std::stop_token stop)
       : camera_(std::move(camera)), frames_per_view_(frames_per_view), stop_(std::move(stop)) {}
 

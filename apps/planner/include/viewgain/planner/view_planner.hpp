@@ -37,7 +37,7 @@ struct VIEWGAIN_EXPORT PlannerConfig {
   std::optional<double> support_plane{};  ///< height z of the table [m], world
   Obstacles obstacles{};                  ///< known ones, world
   std::optional<JumpEdgeConfig> jump_edges = JumpEdgeConfig{};  ///< nothing: frames are taken as is
-  HazardConfig hazard{};
+  HazardConfig hazard{};                                        ///< of unknown space
   /// What ranks views. Its support plane is the one above.
   GainConfig gain{.model = GainModel::combined};
   ReachRegion reach{};              ///< its list of poses, if it has one, is among the candidates
@@ -48,7 +48,7 @@ struct VIEWGAIN_EXPORT PlannerConfig {
   bool check_feasibility = true;
   /// The rules of PlanningConfig; there is no coverage, and nobody asks its stop token.
   std::size_t max_views = PlanningConfig{}.max_views;
-  std::size_t idle_views = PlanningConfig{}.idle_views;
+  std::size_t idle_views = PlanningConfig{}.idle_views;  ///< PlanningConfig's
   std::optional<double> stop_gain{};  ///< set_stop_rules() has the defaults of both
   /// Of the surface so far: of the sum of what the views showed of new surface.
   std::optional<double> stop_area{};
@@ -56,8 +56,8 @@ struct VIEWGAIN_EXPORT PlannerConfig {
 
 /// What a view brought.
 struct VIEWGAIN_EXPORT AddedView {
-  std::size_t view = 0;  ///< from 0
-  MapUpdate update{};
+  std::size_t view = 0;        ///< from 0
+  MapUpdate update{};          ///< of the map
   ModelProgress progress{};    ///< after it; surface_area: the sum of new areas so far [m²]
   double entropy_removed = 0;  ///< by this view [nat, or m² for trace]
 };
@@ -76,13 +76,15 @@ struct VIEWGAIN_EXPORT RankConfig {
   bool exact = false;
 };
 
+/// One of the best.
 struct VIEWGAIN_EXPORT RankedView {
   std::size_t index = 0;  ///< of the candidate in the proposal, or of the pose that was given
-  Pose T_world_camera;
-  ViewGain gain;     ///< all NaN with a measure
-  double worth = 0;  ///< gain or measure, less the cost
+  Pose T_world_camera;    ///< where the camera would be
+  ViewGain gain;          ///< all NaN with a measure
+  double worth = 0;       ///< gain or measure, less the cost
 };
 
+/// What rank() found.
 struct VIEWGAIN_EXPORT Ranking {
   std::vector<RankedView> views;  ///< best first
   bool complete = true;           ///< false: a stop was requested
@@ -164,6 +166,7 @@ class VIEWGAIN_EXPORT ViewPlanner {
 
   /// Stays where it is when the planner is moved, and goes with it.
   [[nodiscard]] const MapModel& map() const noexcept;
+  /// The map.
   [[nodiscard]] const BeliefGrid& grid() const noexcept;
   /// Of the scene as it is now. Valid until the next add().
   [[nodiscard]] const GainEvaluator& evaluator();

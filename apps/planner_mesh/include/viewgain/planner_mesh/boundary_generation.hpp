@@ -18,7 +18,7 @@ namespace viewgain {
 
 /// How views at the surface's open boundaries are made.
 struct VIEWGAIN_EXPORT BoundaryViewsConfig {
-  EstimatorConfig estimator{};
+  EstimatorConfig estimator{};  ///< how views are estimated at a boundary
   double working_distance = 0;  ///< from the surface [m]
   /// A boundary is classed by the last view that has it in sight past the rest of the map, not only
   /// in its image; a view is traced for that. Moves the ends of runs, and so the candidates.
@@ -53,10 +53,12 @@ class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
   BoundaryGeneration(const MapModel& map, const BoundaryViewsConfig& config,
                      const ExecConfig& exec = {});
 
+  /// Views at the open boundaries of the surface as it is.
   Proposal generate(const Pose& T_world_camera) override;
 
   /// Behind the last proposal.
   [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
+  /// Behind the last proposal.
   [[nodiscard]] const EstimatedViews& estimated() const noexcept { return estimated_; }
 
  private:

@@ -34,8 +34,8 @@ class VIEWGAIN_EXPORT BoundaryOrder {
 
  private:
   struct Try {
-    BoundaryClass boundary_class;
-    Eigen::Vector3d place;  ///< origin of the patch, world [m]
+    BoundaryClass boundary_class;  ///< of the boundary
+    Eigen::Vector3d place;         ///< origin of the patch, world [m]
   };
   [[nodiscard]] std::vector<bool> tried_runs(const EstimatedViews& estimated) const;
 

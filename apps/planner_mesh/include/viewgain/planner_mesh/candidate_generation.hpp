@@ -17,11 +17,12 @@
 
 namespace viewgain {
 
+/// Where candidates come from, and which are possible.
 struct VIEWGAIN_EXPORT GenerationConfig {
-  bool at_boundaries = true;  ///< candidates at the surface's open boundaries
-  BoundaryViewsConfig boundary{};
-  std::vector<PoseSet> sets{};
-  FeasibilityConfig feasibility{};
+  bool at_boundaries = true;        ///< candidates at the surface's open boundaries
+  BoundaryViewsConfig boundary{};   ///< views at the surface's open boundaries
+  std::vector<PoseSet> sets{};      ///< fixed poses
+  FeasibilityConfig feasibility{};  ///< what is possible
 };
 
 /// What every loop starts from: boundary candidates by default_boundary(), no sets, feasibility for
@@ -37,8 +38,10 @@ class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
   CandidateGeneration(const SurfaceModel& model, const Sensor& sensor,
                       const GenerationConfig& config, const ExecConfig& exec);
 
+  /// Boundary views and the sets, those that are possible.
   Proposal generate(const Pose& T_world_camera) override;
 
+  /// What it was made with.
   [[nodiscard]] const GenerationConfig& config() const noexcept { return config_; }
 
   /// Behind the last proposal: why its boundary candidates exist. The `number` of a candidate with

@@ -15,8 +15,8 @@ namespace viewgain {
 
 /// A gain of the literature that candidates are ranked by.
 struct VIEWGAIN_EXPORT ClassicRanking {
-  ClassicGain gain = ClassicGain::occlusion_aware;
-  GainSemantics semantics = GainSemantics::paper;
+  ClassicGain gain = ClassicGain::occlusion_aware;  ///< that ranks
+  GainSemantics semantics = GainSemantics::paper;   ///< whose words it follows
 };
 
 /// Candidates by a gain of the literature, on the map as it is at each call.

@@ -18,9 +18,9 @@ namespace viewgain {
 
 /// The object as nobody knows it who has yet to model it.
 struct VIEWGAIN_EXPORT KnownObject {
-  std::shared_ptr<const SurfaceScene> mesh;
-  std::shared_ptr<const Truth> truth;
-  SimulationConfig simulation{};  ///< of its surroundings; noise is left out
+  std::shared_ptr<const SurfaceScene> mesh;  ///< the object
+  std::shared_ptr<const Truth> truth;        ///< how much of it is covered
+  SimulationConfig simulation{};             ///< of its surroundings; noise is left out
 };
 
 /// What a view really brings, without noise.

@@ -31,6 +31,7 @@ enum class Policy : std::uint8_t {
   proximity,  ///< the most unknown voxels near known surface on its rays: see ProximityMeasure
   oracle,     ///< knows the object, an upper reference: see OracleChoice
 };
+/// Names of the policies, in their order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& policy_names();
 /// Throws Error(invalid_argument) that lists the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT Policy parse_policy(std::string_view name);
@@ -43,15 +44,16 @@ struct VIEWGAIN_EXPORT TravelCost {
   double seconds_per_view = 1.0;  ///< [s]
 };
 
+/// How the next view is chosen.
 struct VIEWGAIN_EXPORT PolicyConfig {
-  Policy policy = Policy::gain;
-  GainModel model = GainModel::combined;    ///< of Policy::gain
-  std::optional<ClassicRanking> classic{};  ///< of Policy::gain, instead of `model`
-  Criterion criterion = Criterion::log_diagonal;
-  std::optional<double> support_plane{};  ///< height [m], at which rays end
-  TravelCost travel{};
-  KnownObject object{};  ///< of Policy::oracle
-  std::uint64_t seed = 1;
+  Policy policy = Policy::gain;                   ///< which one
+  GainModel model = GainModel::combined;          ///< of Policy::gain
+  std::optional<ClassicRanking> classic{};        ///< of Policy::gain, instead of `model`
+  Criterion criterion = Criterion::log_diagonal;  ///< of the paper's gain
+  std::optional<double> support_plane{};          ///< height [m], at which rays end
+  TravelCost travel{};                            ///< what moving costs
+  KnownObject object{};                           ///< of Policy::oracle
+  std::uint64_t seed = 1;                         ///< of random choices
 };
 
 /// What a policy ranks candidates by, one entry a candidate.

@@ -17,17 +17,18 @@
 
 namespace viewgain {
 
+/// The object and how it stands.
 struct VIEWGAIN_EXPORT StageConfig {
-  std::filesystem::path mesh;
-  std::optional<double> size{};  ///< longest side to scale it to [m]; not given: its own
-  UpAxis up = UpAxis::z;
+  std::filesystem::path mesh;             ///< its file
+  std::optional<double> size{};           ///< longest side to scale it to [m]; not given: its own
+  UpAxis up = UpAxis::z;                  ///< the file's axis that points up
   std::optional<Box> workspace{};         ///< world [m]; default: see Stage
   std::optional<double> support_plane{};  ///< the object stands on it; world z [m]
 };
 
 /// The object to be modelled and the space around it, world frame.
 struct VIEWGAIN_EXPORT Stage {
-  std::shared_ptr<const SurfaceScene> scene;
+  std::shared_ptr<const SurfaceScene> scene;         ///< the object, placed
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the object's bounding box [m]
   double size = 0;                                   ///< longest side of that box [m]
   /// A cube of edge size · 0.4 / 0.35 around the object, or the one given; cut at the support

@@ -20,8 +20,8 @@ namespace viewgain {
 
 /// What changes the model.
 struct VIEWGAIN_EXPORT SurfaceModelConfig {
-  MapModelConfig map{};
-  FusedPointsConfig points{};
+  MapModelConfig map{};        ///< how the map is kept
+  FusedPointsConfig points{};  ///< how beliefs become points
 };
 
 /// The surface through the points of a map, `spacing` [m] apart (its pooling length); vertex i
@@ -36,8 +36,8 @@ struct VIEWGAIN_EXPORT SurfaceModelConfig {
 
 /// What a model would hold after measurements that do not change it.
 struct VIEWGAIN_EXPORT ModelOutlook {
-  std::vector<FusedPoint> points;
-  double entropy_removed = 0;  ///< of the whole map, by the map's criterion
+  std::vector<FusedPoint> points;  ///< of the surface
+  double entropy_removed = 0;      ///< of the whole map, by the map's criterion
 };
 
 /// The two representations of the scene, the belief grid and the surface seen so far
@@ -60,12 +60,17 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   /// the map beside what update() costs without a surface.
   [[nodiscard]] ModelOutlook after(const Measurements& measurements) const;
 
+  /// The map behind the surface.
   [[nodiscard]] const MapModel& map() const noexcept { return map_; }
+  /// The map.
   [[nodiscard]] const BeliefGrid& grid() const noexcept { return map_.grid(); }
+  /// The scene of the map as it is.
   [[nodiscard]] const std::shared_ptr<const VoxelScene>& scene() const noexcept {
     return map_.scene();
   }
+  /// Surface points of the last update.
   [[nodiscard]] const std::vector<FusedPoint>& points() const noexcept { return points_; }
+  /// The surface through the points of the last update.
   [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
   /// New surface that the last view's first frame showed [m²]; see RealisedArea.
   [[nodiscard]] double realised_area() const noexcept { return realised_area_; }

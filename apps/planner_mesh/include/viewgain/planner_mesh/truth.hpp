@@ -21,24 +21,24 @@
 
 namespace viewgain {
 
-/// DESIGN.md section 10, for one model against a ground truth. Lengths in [m].
+/// How good one model is, against a ground truth. Lengths in [m].
 struct VIEWGAIN_EXPORT QualityFigures {
-  double coverage = 0;          ///< of all samples, 5 mm, surface
-  double coverage_visible = 0;  ///< of the visible ones, 5 mm, surface
-  double coverage_2_5mm = 0;    ///< of all samples, 2.5 mm, surface
-  double covered_area = 0;      ///< of the mesh, where visible samples are covered, 5 mm [m²]
-  ErrorStatistics surface_error{};
-  ErrorStatistics points_error{};
-  Consistency consistency{};  ///< of the points
+  double coverage = 0;              ///< of all samples, 5 mm, surface
+  double coverage_visible = 0;      ///< of the visible ones, 5 mm, surface
+  double coverage_2_5mm = 0;        ///< of all samples, 2.5 mm, surface
+  double covered_area = 0;          ///< of the mesh, where visible samples are covered, 5 mm [m²]
+  ErrorStatistics surface_error{};  ///< of surface.ply
+  ErrorStatistics points_error{};   ///< of points.ply
+  Consistency consistency{};        ///< of the points
 };
 
 /// From where the visible samples are looked for.
 struct VIEWGAIN_EXPORT VisibilityConfig {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double distance = 0;  ///< of the 2,562 poses from the centre [m]
-  Pose start;           ///< the run's first pose, wherever it is
-  ReachRegion reach{};
-  std::optional<double> support_plane{};  ///< nothing is seen from under it; world z [m]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< what the poses look at [m]
+  double distance = 0;                               ///< of the 2,562 poses from the centre [m]
+  Pose start;                                        ///< the run's first pose, wherever it is
+  ReachRegion reach{};                               ///< from where it may be seen
+  std::optional<double> support_plane{};             ///< nothing is seen from under it; world z [m]
   std::shared_ptr<const SurfaceScene> surroundings{};  ///< which hide the object; may be null
 };
 
@@ -59,9 +59,11 @@ inline constexpr double kCovered = 5e-3;
 /// left out if there is none. Where the reachable region has a list of poses, those count instead.
 class VIEWGAIN_EXPORT Truth {
  public:
+  /// Finds the visible samples, without noise.
   Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
         const VisibilityConfig& config, const ExecConfig& exec);
 
+  /// How good a surface and its points are.
   [[nodiscard]] QualityFigures figures(const SurfaceMesh& surface,
                                        std::span<const FusedPoint> points) const;
 
