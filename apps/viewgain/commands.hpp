@@ -24,6 +24,7 @@ struct Stopped {
 };
 
 [[nodiscard]] Command add_simulate(CLI::App& program);
+[[nodiscard]] Command add_calibrate(CLI::App& program);
 [[nodiscard]] Command add_import(CLI::App& program);
 [[nodiscard]] Command add_integrate(CLI::App& program);
 [[nodiscard]] Command add_score(CLI::App& program);

@@ -66,12 +66,12 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   const std::vector<viewgain::app::Command> commands{
       viewgain::app::add_reconstruct(program), viewgain::app::add_simulate(program),
-      viewgain::app::add_import(program),      viewgain::app::add_integrate(program),
-      viewgain::app::add_score(program),       viewgain::app::add_candidates(program),
-      viewgain::app::add_next(program),        viewgain::app::add_info(program),
-      viewgain::app::add_surface(program),     viewgain::app::add_convert(program),
-      viewgain::app::add_render(program),      viewgain::app::add_sensors(program),
-      viewgain::app::add_study(program)};
+      viewgain::app::add_import(program),      viewgain::app::add_calibrate(program),
+      viewgain::app::add_integrate(program),   viewgain::app::add_score(program),
+      viewgain::app::add_candidates(program),  viewgain::app::add_next(program),
+      viewgain::app::add_info(program),        viewgain::app::add_surface(program),
+      viewgain::app::add_convert(program),     viewgain::app::add_render(program),
+      viewgain::app::add_sensors(program),     viewgain::app::add_study(program)};
   // For the build alone.
   std::string help_folder;
   CLI::App* help_files =

@@ -100,6 +100,12 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
   }
 }
 
+// What the frames are to be read with: a table of the error only where they have one.
+Sensor sensor_of_frames(Sensor sensor, const SensingOptions& sensing) {
+  if (sensing.wiggling == 0 || sensing.calibrate == "on") sensor.range_calibration = {};
+  return sensor;
+}
+
 void simulate(const Options& options) {
   const ExecConfig exec{options.common.threads};
   const Sensor sensor = load_sensor(options.sensor);
@@ -127,7 +133,7 @@ void simulate(const Options& options) {
       progress.update(i + 1, poses.size());
     }
   }
-  writer.commit(poses, sensor);
+  writer.commit(poses, sensor_of_frames(sensor, options.sensing));
   const double seconds = watch.seconds();
 
   if (options.common.json) {

@@ -129,6 +129,9 @@ extern constinit const Layout VIEWGAIN_LAYOUT_TABLE[] = {VIEWGAIN_LAYOUT(Approxi
                                                          VIEWGAIN_LAYOUT(ViewSet),
                                                          VIEWGAIN_LAYOUT(VoxelScene),
                                                          VIEWGAIN_LAYOUT(VoxelValue),
+                                                         VIEWGAIN_LAYOUT(WallCalibration),
+                                                         VIEWGAIN_LAYOUT(WallCalibrationResult),
+                                                         VIEWGAIN_LAYOUT(WallFrameFigures),
                                                          VIEWGAIN_LAYOUT(WeightRegion),
 #ifdef VIEWGAIN_WITH_FORMATS
                                                          VIEWGAIN_LAYOUT(FrameSequence),

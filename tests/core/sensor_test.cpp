@@ -52,6 +52,25 @@ TEST(SensorPresets, MakersHousingsDiffer) {
   EXPECT_EQ(cases, 3);
 }
 
+TEST(SensorPresets, ATableOfRangesHasToLeaveRanges) {
+  Sensor sensor = sensor_preset("sr4000");
+  EXPECT_TRUE(sensor.range_calibration.table.empty());
+  sensor.range_calibration.table = {{0.5, 0.01}, {1.0, -0.02}};
+  EXPECT_NO_THROW(sensor.validate());
+  int cases = 0;
+  const auto refused = [&](std::vector<std::array<double, 2>> table, const char* part) {
+    sensor.range_calibration.table = std::move(table);
+    expect_error(ErrorCode::invalid_argument, part, [&] { sensor.validate(); });
+    ++cases;
+  };
+  refused({{1.0, 0.0}, {0.5, 0.0}}, "rise");
+  refused({{0.0, -0.1}}, "no range");
+  refused({{-1.0, -2.0}}, "no range");
+  refused({{0.5, 0.0}, {1.0, 1.0}}, "no range");
+  refused({{0.5, std::nan("")}}, "finite");
+  EXPECT_EQ(cases, 5);
+}
+
 TEST(SensorPresets, Sr4000) {
   const Sensor s = sensor_preset("sr4000");
   EXPECT_EQ(s.camera, (PinholeCamera{176, 144, 220.0, 231.2, 87.5, 71.5, {}}));

@@ -49,10 +49,10 @@ fs::path amplitude_path(const fs::path& depth_image) {
   return depth_image.parent_path() / name;
 }
 
-void check_index(const FrameSequence& frames, std::size_t index) {
-  if (index < frames.images.size()) return;
-  throw Error(ErrorCode::invalid_argument, "there is no frame " + std::to_string(index) + " of " +
-                                               std::to_string(frames.images.size()));
+void check_index(std::size_t index, std::size_t count) {
+  if (index < count) return;
+  throw Error(ErrorCode::invalid_argument,
+              "there is no frame " + std::to_string(index) + " of " + std::to_string(count));
 }
 
 // Nine numbers of a 3x3 matrix fx 0 cx / 0 fy cy / 0 0 1.
@@ -116,7 +116,6 @@ void open_own_layout(const fs::path& dir, FrameSequence& frames) {
 }
 
 void open_recorded_layout(const fs::path& dir, FrameSequence& frames) {
-  frames.recorded = true;
   for (const auto& [number, name] : list_frames(dir)) {
     bool mended = false;
     frames.images.push_back(dir / (name + std::string(kDepthSuffix)));
@@ -126,14 +125,10 @@ void open_recorded_layout(const fs::path& dir, FrameSequence& frames) {
   if (frames.images.empty()) {
     throw Error(ErrorCode::io, dir.string() + ": no poses.txt and no frame-NNNNNN.depth.png");
   }
-  if (is_there(dir / kIntrinsics)) {
-    apply_intrinsics_file(dir / kIntrinsics, frames.sensor.camera);
-  }
 }
 
-}  // namespace
-
-FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
+// All but images and poses.
+FrameSequence open_folder(const fs::path& dir, const std::string& sensor,
                           std::optional<double> depth_scale) {
   std::error_code ignored;
   if (!fs::is_directory(dir, ignored)) {
@@ -141,9 +136,10 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
   }
   const bool has_sensor = is_there(dir / kSensor);
   FrameSequence frames;
-  const bool has_poses = is_there(dir / kPoses);
+  frames.recorded = !is_there(dir / kPoses);
   const std::optional<double> scale = depth_scale ? depth_scale : said_scale(dir);
-  frames.depth_scale = scale.value_or(has_sensor && has_poses ? kDepthUnit : kRecordedDepthUnit);
+  frames.depth_scale =
+      scale.value_or(has_sensor && !frames.recorded ? kDepthUnit : kRecordedDepthUnit);
   if (!(frames.depth_scale > 0) || !std::isfinite(frames.depth_scale)) {
     throw Error(ErrorCode::invalid_argument, "the depth scale " + short_text(frames.depth_scale) +
                                                  " must be positive and finite");
@@ -153,16 +149,39 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
                 dir.string() + ": has no sensor.toml, so a sensor is needed");
   }
   frames.sensor = sensor.empty() ? read_sensor_toml(dir / kSensor) : load_sensor(sensor);
-  if (has_poses) {
-    open_own_layout(dir, frames);
-  } else {
+  if (frames.recorded && is_there(dir / kIntrinsics)) {
+    apply_intrinsics_file(dir / kIntrinsics, frames.sensor.camera);
+  }
+  return frames;
+}
+
+}  // namespace
+
+FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
+                          std::optional<double> depth_scale) {
+  FrameSequence frames = open_folder(dir, sensor, depth_scale);
+  if (frames.recorded) {
     open_recorded_layout(dir, frames);
+  } else {
+    open_own_layout(dir, frames);
+  }
+  return frames;
+}
+
+FrameSequence open_depth_images(const fs::path& dir, const std::string& sensor,
+                                std::optional<double> depth_scale) {
+  FrameSequence frames = open_folder(dir, sensor, depth_scale);
+  for (const auto& [number, name] : list_frames(dir)) {
+    frames.images.push_back(dir / (name + std::string(kDepthSuffix)));
+  }
+  if (frames.images.empty()) {
+    throw Error(ErrorCode::io, dir.string() + ": no frame-NNNNNN.depth.png");
   }
   return frames;
 }
 
 DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRangeMeaning meaning) {
-  check_index(frames, index);
+  check_index(index, frames.images.size());
   const PinholeCamera& camera = frames.sensor.camera;
   const GrayImage image = read_gray_png(frames.images[index], camera.width, camera.height);
   const float out_of_range =
@@ -173,6 +192,7 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRange
     frame.depth.push_back(
         value == kOutOfRangeValue ? out_of_range : static_cast<float>(value * frames.depth_scale));
   }
+  frames.sensor.range_calibration.correct(camera, frame);
   const fs::path amplitude = amplitude_path(frames.images[index]);
   if (!is_there(amplitude)) return frame;
   for (const std::uint16_t value : read_gray_png(amplitude, camera.width, camera.height).pixels) {
@@ -182,7 +202,7 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRange
 }
 
 std::string frame_identity(const FrameSequence& frames, std::size_t index) {
-  check_index(frames, index);
+  check_index(index, frames.poses.size());
   std::uint64_t hash = 0;
   const auto add = [&hash](std::string_view bytes) {
     hash = mix64(hash ^ bytes.size());

@@ -144,6 +144,22 @@ Pose read_mounting(const TableReader& reader, const toml::node& node) {
   return error > kExact ? orthonormalized(pose) : pose;
 }
 
+RangeCalibration read_range_calibration(TableReader reader) {
+  const auto read = [&reader](std::string_view key, std::size_t count) {
+    return reader.numbers(key, reader.require(key), count);
+  };
+  const toml::array* list = reader.require("measured").as_array();
+  if (list == nullptr || list->empty()) reader.fail("measured", "must be a list of numbers");
+  const std::vector<double> measured = read("measured", list->size());
+  const std::vector<double> error = read("error", list->size());
+  reader.refuse_unknown_keys();
+  RangeCalibration calibration;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    calibration.table.push_back({measured[i], error[i]});
+  }
+  return calibration;
+}
+
 // What `file` holds.
 Sensor sensor_of(const toml::table& root, const std::string& file) {
   TableReader reader(root, file, "");
@@ -165,6 +181,9 @@ Sensor sensor_of(const toml::table& root, const std::string& file) {
   }
   sensor.camera = read_camera(reader.table("camera"));
   sensor.noise = read_noise(reader.table("noise"));
+  if (reader.find("range_calibration") != nullptr) {
+    sensor.range_calibration = read_range_calibration(reader.table("range_calibration"));
+  }
   reader.refuse_unknown_keys();
   try {
     sensor.validate();
@@ -172,6 +191,17 @@ Sensor sensor_of(const toml::table& root, const std::string& file) {
     throw Error(ErrorCode::format, file + ": " + error.what());
   }
   return sensor;
+}
+
+// One column of the table, ten numbers a line.
+void write_column(std::ostream& text, const char* key, const RangeCalibration& calibration,
+                  std::size_t column) {
+  constexpr std::size_t kInALine = 10;
+  text << key << " = [";
+  for (std::size_t i = 0; i < calibration.table.size(); ++i) {
+    text << (i % kInALine == 0 ? "\n  " : " ") << toml_float(calibration.table[i][column]) << ",";
+  }
+  text << "\n]\n";
 }
 
 }  // namespace
@@ -221,6 +251,12 @@ std::string sensor_toml(const Sensor& sensor) {
         }
       },
       sensor.noise);
+  if (!sensor.range_calibration.table.empty()) {
+    text << "\n[range_calibration]  # subtracted from readings; linear between, held at the ends; "
+            "[m]\n";
+    write_column(text, "measured", sensor.range_calibration, 0);
+    write_column(text, "error", sensor.range_calibration, 1);
+  }
   return std::move(text).str();
 }
 

@@ -209,8 +209,8 @@ void bind_frames(py::module_& module) {
                           R"(A folder of depth frames, read one by one. Made by ``read_frames``.
 
 ``len(frames)``, ``frames[i]`` and iteration give (depth, T_world_camera, amplitude): depth (height,
-width), float32, along the optical axis [m] (0: nothing known, inf: nothing up to max_range), the pose
-(4, 4), and the amplitude [1/m**2] or None.)");
+width), float32, along the optical axis [m] (0: nothing known, inf: nothing up to max_range), without
+the error of the sensor's range_calibration, the pose (4, 4), and the amplitude [1/m**2] or None.)");
   refuse_pickling(type);
   type.def(
           "__len__", [](const Frames& self) { return self.frames.images.size(); },

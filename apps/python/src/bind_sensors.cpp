@@ -12,11 +12,29 @@
 #include "bindings.hpp"
 #include "classes.hpp"
 #include "fields.hpp"
+#include "map/depth_images.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/core/text.hpp"
 
 namespace viewgain::python {
 namespace {
+
+// (n, 2); none for None.
+RangeCalibration range_calibration(const py::object& value) {
+  RangeCalibration calibration;
+  if (value.is_none()) return calibration;
+  const Doubles rows = doubles(value, "range_calibration", {-1, 2});
+  for (const double* row = rows.data(); row != rows.data() + rows.size(); row += 2) {
+    calibration.table.push_back({row[0], row[1]});
+  }
+  return calibration;
+}
+
+py::object to_object(const RangeCalibration& calibration) {
+  if (calibration.table.empty()) return py::none();
+  return py::array_t<double>(Shape{static_cast<py::ssize_t>(calibration.table.size()), 2},
+                             calibration.table.front().data());
+}
 
 void bind_camera(py::module_& module) {
   auto type = bound_class<PinholeCamera>(module, "PinholeCamera",
@@ -132,17 +150,20 @@ T_flange_camera : array_like, (4, 4), optional
     Mounting on the robot's flange.
 body_size : array_like, (3,), optional
     Width, height, depth of the housing [m].
+range_calibration : array_like, (n, 2), optional
+    Rows of measured range and measured minus true range [m], measured ranges rising: the systematic
+    error, as the program's ``calibrate`` measures it. ``read_frames`` takes it away.
 
 Raises
 ------
 ValueError
     Names the field that is out of its bounds.)");
   pickle_as_call(type, {"camera", "min_range", "max_range", "working_distance", "noise", "name",
-                        "T_flange_camera", "body_size"});
+                        "T_flange_camera", "body_size", "range_calibration"});
   type.def(py::init([](const PinholeCamera& camera, double min_range, double max_range,
                        double working_distance, const NoiseModel& noise, std::string name,
                        const py::object& T_flange_camera,
-                       std::optional<std::array<double, 3>> body_size) {
+                       std::optional<std::array<double, 3>> body_size, const py::object& table) {
              Sensor sensor{std::move(name),
                            camera,
                            min_range,
@@ -150,13 +171,15 @@ ValueError
                            working_distance,
                            noise,
                            optional_pose(T_flange_camera, "T_flange_camera"),
-                           body_size};
+                           body_size,
+                           range_calibration(table)};
              sensor.validate();
              return sensor;
            }),
            py::arg("camera"), py::kw_only(), py::arg("min_range"), py::arg("max_range"),
            py::arg("working_distance"), py::arg("noise"), py::arg("name") = "custom",
-           py::arg("T_flange_camera") = py::none(), py::arg("body_size") = py::none())
+           py::arg("T_flange_camera") = py::none(), py::arg("body_size") = py::none(),
+           py::arg("range_calibration") = py::none())
       .def_readonly("name", &Sensor::name, "str")
       .def_property_readonly(
           "camera", [](const Sensor& sensor) { return sensor.camera; }, "PinholeCamera")
@@ -173,6 +196,34 @@ ValueError
           },
           "ndarray, (4, 4), or None")
       .def_readonly("body_size", &Sensor::body_size, "list of 3 float, [m], or None")
+      .def_property_readonly(
+          "range_calibration",
+          [](const Sensor& sensor) { return to_object(sensor.range_calibration); },
+          "ndarray, (n, 2), [m], or None")
+      .def(
+          "corrected",
+          [](const Sensor& sensor, const py::object& depth) {
+            DepthFrame frame = depth_frame(sensor, depth, py::none());
+            sensor.range_calibration.correct(sensor.camera, frame);
+            return image_array(frame.depth, frame.height, frame.width);
+          },
+          py::arg("depth"),
+          R"(A depth image without the error of range_calibration, as ``read_frames`` gives them.
+
+Parameters
+----------
+depth : array_like, (height, width)
+    Along the optical axis [m], as the camera gives it.
+
+Returns
+-------
+ndarray, (height, width), float32
+    0 where nothing is known.
+
+Raises
+------
+ValueError
+    Another shape or dtype, or millimetres.)")
       .def(
           "sigmas",
           [](const Sensor& sensor, double t, double cos_incidence) {

@@ -135,6 +135,12 @@ void Sensor::validate() const {
       fail("pose_sigma must be finite and not negative, not " + short_text(sigma));
     }
   }
+  range_calibration.validate();
+  for (const auto& [measured, error] : range_calibration.table) {
+    if (measured > 0 && measured > error) continue;
+    fail("range_calibration: a measured range of " + short_text(measured) + " m less an error of " +
+         short_text(error) + " m is no range");
+  }
 }
 
 const std::vector<std::string>& sensor_preset_names() {

@@ -23,6 +23,7 @@
 #include "viewgain/core/stop_rules.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
+#include "viewgain/core/wall_calibration.hpp"
 #include "viewgain/grid/belief.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/cloud_io.hpp"

@@ -27,9 +27,9 @@ using nlohmann::json;
 using Strings = std::vector<std::string>;
 
 // In an order in which the examples of their help find what they name.
-const Strings kSubcommands{"simulate",   "import",      "integrate", "next", "score",
-                           "candidates", "reconstruct", "render",    "info", "convert",
-                           "sensors",    "study",       "surface"};
+const Strings kSubcommands{"simulate", "import",     "calibrate",   "integrate", "next",
+                           "score",    "candidates", "reconstruct", "render",    "info",
+                           "convert",  "sensors",    "study",       "surface"};
 
 Strings words_of(const std::string& text) {
   std::istringstream in(text);
@@ -105,8 +105,8 @@ TEST_F(Help, GroupsSubcommandsByTaskAndItsExamplesWork) {
   std::size_t last = 0;
   for (const char* line :
        {"\nThe whole loop:\n  reconstruct ", "\nMake a map:\n  simulate ", "\n  import ",
-        "\n  integrate ", "\nChoose views:\n  score ", "\n  candidates ", "\n  next ",
-        "\nLook and convert:\n  info ", "\n  surface ", "\n  convert ", "\n  render ",
+        "\n  calibrate ", "\n  integrate ", "\nChoose views:\n  score ", "\n  candidates ",
+        "\n  next ", "\nLook and convert:\n  info ", "\n  surface ", "\n  convert ", "\n  render ",
         "\n  sensors ", "\nExamples:\n  viewgain "}) {
     const std::size_t at = help.find(line);
     ASSERT_NE(at, std::string::npos) << line;
@@ -129,6 +129,13 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
   write_png(dir / "scene/depth/0.png", GrayImage{4, 3, std::vector<std::uint16_t>(12, 1000)});
   write("scene/pose/0.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   write("scene/intrinsic/intrinsic_depth.txt", "4 0 2 0\n0 4 1 0\n0 0 1 0\n0 0 0 1\n");
+  std::filesystem::create_directories(dir / "wall");
+  for (const std::uint16_t metres : {1, 2}) {
+    const std::string name = "wall/frame-00000" + std::to_string(metres) + ".depth.png";
+    const auto millimetres = static_cast<std::uint16_t>(1000 * metres);
+    write_png(dir / name, GrayImage{176, 144, std::vector<std::uint16_t>(176 * 144, millimetres)});
+  }
+  write("distances.txt", "1\n2\n");
   std::size_t cases = 0;
   for (const std::string& subcommand : kSubcommands) {
     const std::vector<Strings> calls = examples({subcommand});

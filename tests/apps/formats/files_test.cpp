@@ -53,7 +53,8 @@ BeliefGrid octree_map() {
 bool equal(const Sensor& a, const Sensor& b) {
   return a.name == b.name && a.camera == b.camera && a.min_range == b.min_range &&
          a.max_range == b.max_range && a.working_distance == b.working_distance &&
-         a.noise == b.noise && a.T_flange_camera == b.T_flange_camera && a.body_size == b.body_size;
+         a.noise == b.noise && a.T_flange_camera == b.T_flange_camera &&
+         a.body_size == b.body_size && a.range_calibration == b.range_calibration;
 }
 
 TEST_F(Files, SensorsReadBackEqual) {
@@ -83,6 +84,9 @@ TEST_F(Files, SensorsReadBackEqual) {
     sensor.T_flange_camera =
         look_at({unit(random), -unit(random), unit(random)}, {unit(random), 1.5, -unit(random)});
     if (i % 2 == 0) sensor.body_size = {unit(random), 0.1, 1e-3 * unit(random)};
+    for (int k = 0; k < i % 30; ++k) {
+      sensor.range_calibration.table.push_back({k + 1 + 0.1 * unit(random), unit(random) - 0.5});
+    }
     write("sensor.toml", sensor_toml(sensor));
     EXPECT_TRUE(equal(read_sensor_toml(dir / "sensor.toml"), sensor)) << sensor_toml(sensor);
     ++cases;
@@ -221,14 +225,27 @@ TEST_F(Files, SensorErrorsNameTheKey) {
       {with("body = [0.09", "body = [-0.09"), "body_size must be positive"},
       {with("body = [0.09, ", "body = ["), "\"body\""},
       {with("[camera]", "[camera"), "line "},
-      {"", "\"name\" is missing"}};
+      {"", "\"name\" is missing"},
+      {good + "[range_calibration]\nerror = [0.01]\n", "\"range_calibration.measured\" is missing"},
+      {good + "[range_calibration]\nmeasured = [1.0, 2.0]\nerror = [0.01]\n",
+       "\"range_calibration.error\" must be a list of 2 numbers"},
+      {good + "[range_calibration]\nmeasured = []\nerror = []\n", "measured\" must be a list"},
+      {good + "[range_calibration]\nmeasured = 1.0\nerror = 0.0\n", "measured\" must be a list"},
+      {good + "[range_calibration]\nmeasured = [1.0, nan]\nerror = [0.0, 0.0]\n", "finite"},
+      {good + "[range_calibration]\nmeasured = [2.0, 1.5]\nerror = [0.0, 0.0]\n", "1.5 m follows"},
+      {good + "[range_calibration]\nmeasured = [2.0]\nerror = [12.5]\n", "12.5 m is no range"},
+      {good + "[range_calibration]\nmeasured = [2.0]\nerrors = [0.0]\n", "error\" is missing"},
+      {good + "[range_calibration]\nmeasured = [2.0]\nerror = [0.0]\nunit = 1\n",
+       "\"range_calibration.unit\" is unknown"},
+      {with("[camera]", "range_calibration = 3\n[camera]"),
+       "\"range_calibration\" must be a table"}};
   int count = 0;
   for (const auto& [text, wanted] : cases) {
     const std::string message = sensor_error(text);
     EXPECT_NE(message.find(wanted), std::string::npos) << message << " <- " << wanted;
     ++count;
   }
-  EXPECT_EQ(count, 18);
+  EXPECT_EQ(count, 28);
   EXPECT_THROW((void)load_sensor("none.toml"), Error);
   EXPECT_THROW((void)load_sensor("sr5000"), Error);
 }

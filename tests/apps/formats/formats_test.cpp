@@ -131,6 +131,44 @@ TEST(Formats, FramesComeBackAsTheyWere) {
                      [&] { (void)open_frames(folder.path() / "nowhere"); });
 }
 
+// With the sensor's table depths are corrected; without poses the images alone can be read.
+TEST(Formats, FramesAreReadWithTheSensorsTable) {
+  const test::TemporaryFolder folder;
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera.width = 3, sensor.camera.height = 2;
+  const auto dir = folder.path() / "frames";
+  const DepthFrame frame{3, 2, {0.F, 0.5F, 1.25F, DepthFrame::kOutOfRange, 3.F, 2.F}, {}};
+  FramesWriter writer(dir);
+  writer.write_frame(0, frame);
+  writer.commit({look_at({0, 0, 1}, {0, 0, 0})}, sensor);
+  const FrameSequence plain = open_frames(dir);
+
+  sensor.range_calibration.table = {{0.4, 0.02}, {3.5, -0.04}};
+  write_sensor_toml(folder.path() / "calibrated.toml", sensor);
+  const std::string calibrated = (folder.path() / "calibrated.toml").string();
+  const FrameSequence corrected = open_frames(dir, calibrated);
+  EXPECT_EQ(corrected.sensor.range_calibration, sensor.range_calibration);
+  DepthFrame expected = load_frame(plain, 0);
+  sensor.range_calibration.correct(sensor.camera, expected);
+  EXPECT_EQ(load_frame(corrected, 0), expected);
+  EXPECT_GT(std::abs(expected.depth[1] - frame.depth[1]), 0.01F);
+  EXPECT_EQ(expected.depth[0], DepthFrame::kInvalid);
+  EXPECT_EQ(expected.depth[3], DepthFrame::kOutOfRange);
+  EXPECT_EQ(frame_identity(corrected, 0), frame_identity(plain, 0));
+
+  std::filesystem::remove(dir / "poses.txt");
+  EXPECT_THROW((void)open_frames(dir, calibrated), Error);
+  const FrameSequence images = open_depth_images(dir, calibrated, kDepthUnit);
+  ASSERT_EQ(images.images, plain.images);
+  EXPECT_TRUE(images.poses.empty());
+  EXPECT_EQ(load_frame(images, 0), expected);
+  test::expect_error(ErrorCode::invalid_argument, "no frame 0 of 0",
+                     [&] { (void)frame_identity(images, 0); });
+  std::filesystem::create_directory(folder.path() / "empty");
+  test::expect_error(ErrorCode::io, "no frame-NNNNNN.depth.png",
+                     [&] { (void)open_depth_images(folder.path() / "empty", "sr4000"); });
+}
+
 TEST(Formats, WhatIsNoDepthIsWrittenAsInvalid) {
   const test::TemporaryFolder folder;
   Sensor sensor = sensor_preset("sr4000");

@@ -18,6 +18,7 @@ def test_sensors(name, tmp_path):
         read = viewgain.Sensor.load(path)
         assert read.camera == sensor.camera and repr(read) == repr(sensor) and read.noise == sensor.noise
         assert read.body_size == sensor.body_size
+        assert read.range_calibration is None
 
 
 def test_sensors_refused(tmp_path):

@@ -78,6 +78,31 @@ def test_plain_values_can_be_pickled_and_copied(protocol):
         assert np.array_equal(again.T_flange_camera, sensor.T_flange_camera)
 
 
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_the_table_of_a_range_error(protocol):
+    camera = viewgain.PinholeCamera(7, 5, fx=4.0, fy=5.0, cx=2.5, cy=2.25)
+    settings = {"min_range": 0.2, "max_range": 5.0, "working_distance": 0.5,
+                "noise": viewgain.ConstantNoise()}
+    plain = viewgain.Sensor(camera, **settings)
+    assert plain.range_calibration is None
+    table = np.array([[1.0, 0.01], [2.0, 0.03], [4.0, -0.05]])
+    sensor = pickle.loads(pickle.dumps(viewgain.Sensor(camera, **settings, range_calibration=table), protocol))
+    assert np.array_equal(sensor.range_calibration, table)
+    depth = np.linspace(0.4, 4, 35, dtype=np.float32).reshape(5, 7)
+    depth[0, 0], depth[0, 1] = 0, np.inf
+    assert np.array_equal(plain.corrected(depth), depth)
+    length = np.linalg.norm(camera.rays(), axis=-1)
+    with np.errstate(invalid="ignore"):
+        expected = depth - np.interp(depth * length, table[:, 0], table[:, 1]) / length
+    expected[0, 0], expected[0, 1] = 0, np.inf
+    assert np.allclose(sensor.corrected(depth), expected, atol=1e-6)
+    for wrong in (table[::-1], table[:, :1], [[1.0, 2.0]], [[1.0, np.nan]]):
+        with pytest.raises(ValueError):
+            viewgain.Sensor(camera, **settings, range_calibration=wrong)
+    with pytest.raises(ValueError, match="7"):
+        sensor.corrected(depth.T)
+
+
 def test_projection_undoes_rays():
     camera = viewgain.PinholeCamera(
         64, 48, fx=60.0, fy=62.0, cx=30.0, cy=24.0, distortion=[0.1, -0.05, 1e-3, -1e-3, 0.01])

@@ -9,6 +9,9 @@
 
 namespace viewgain {
 
+struct DepthFrame;
+struct PinholeCamera;
+
 /// Table of a camera's systematic, distance-dependent error: what the paper's ref. [7] (Fuchs and
 /// Hirzinger, CVPR 2008) measures against known distances and subtracts. A value type.
 struct VIEWGAIN_EXPORT RangeCalibration {
@@ -21,6 +24,11 @@ struct VIEWGAIN_EXPORT RangeCalibration {
   /// measured - error(measured), the error interpolated linearly, held constant beyond the ends
   /// [m].
   [[nodiscard]] double corrected(double measured_range) const;
+
+  /// Corrects every reading of the frame along its pixel's ray. A reading whose corrected range is
+  /// not positive becomes invalid; other pixels, amplitudes and known depths stay as they are.
+  /// Throws Error(invalid_argument) unless the frame has the camera's size.
+  void correct(const PinholeCamera& camera, DepthFrame& frame) const;
 
   bool operator==(const RangeCalibration&) const = default;
 };

@@ -13,6 +13,7 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/noise.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/core/range_calibration.hpp"
 
 namespace viewgain {
 
@@ -36,6 +37,9 @@ struct VIEWGAIN_EXPORT Sensor {
   /// Width, height, depth of the housing [m], if known; see SensorBody in raycast/feasibility.hpp,
   /// which takes the SR4000's otherwise.
   std::optional<std::array<double, 3>> body_size{};
+  /// Its systematic error, which load_frame() takes away; without a table none is known. Camera
+  /// frames from elsewhere are corrected by RangeCalibration::correct().
+  RangeCalibration range_calibration{};
 
   PoseSigma pose_sigma{};  ///< zero: poses are exact
 
@@ -59,7 +63,9 @@ struct VIEWGAIN_EXPORT Sensor {
   /// Throws Error(invalid_argument), naming the field: camera as in PinholeCamera::validate(),
   /// 0 <= min_range < max_range, working_distance > 0 and within them, all noise parameters
   /// positive and finite (modulation frequency and least amplitude may be 0), T_flange_camera
-  /// rigid (1e-3), body_size positive and finite, pose_sigma not negative and finite.
+  /// rigid (1e-3), body_size positive and finite, pose_sigma not negative and finite,
+  /// range_calibration as in RangeCalibration::validate() with ranges that are positive, measured
+  /// and corrected.
   void validate() const;
 };
 

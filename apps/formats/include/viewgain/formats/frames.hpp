@@ -35,8 +35,8 @@ struct VIEWGAIN_EXPORT FrameSequence {
   double depth_scale = 0;  ///< [m] per unit
   bool recorded = false;   ///< a pose file a frame, instead of poses.txt
   std::vector<std::filesystem::path> images;  ///< depth images, in their order
-  std::vector<Pose> poses;                    ///< T_world_camera, one an image
-  std::size_t orthonormalized = 0;            ///< rotations that were a little off
+  std::vector<Pose> poses;          ///< T_world_camera, one an image; none of open_depth_images()
+  std::size_t orthonormalized = 0;  ///< rotations that were a little off
 };
 
 /// Opens either layout: poses.txt + frame-NNNNNN.depth.png (line i is frame i) + sensor.toml, or
@@ -49,7 +49,14 @@ struct VIEWGAIN_EXPORT FrameSequence {
                                                         const std::string& sensor = {},
                                                         std::optional<double> depth_scale = {});
 
-/// Reads the depth image, and the amplitude image (16 bit, 1e-3 m⁻²) if there is one. Throws
+/// The same of the depth images alone, in the order of their numbers; poses are not read and need
+/// not be there.
+[[nodiscard]] VIEWGAIN_EXPORT FrameSequence
+open_depth_images(const std::filesystem::path& dir, const std::string& sensor = {},
+                  std::optional<double> depth_scale = {});
+
+/// Reads the depth image, and the amplitude image (16 bit, 1e-3 m⁻²) if there is one. Depths are
+/// corrected by the sensor's range_calibration. Throws
 /// Error(io) or Error(format), naming the file, and Error(invalid_argument) for an index that is
 /// not less than the count of images. May be called from many threads.
 [[nodiscard]] VIEWGAIN_EXPORT DepthFrame
@@ -59,7 +66,7 @@ load_frame(const FrameSequence& frames, std::size_t index,
 /// A frame by name and content, "HASH NAME": 16 hexadecimal digits, a blank and the depth image's
 /// file name. The hash is of the bytes of its images and of its pose; folder, sensor and scale do
 /// not count. Throws Error(io) if an image cannot be read, and Error(invalid_argument) for an index
-/// that is not less than the count of images. May be called from many threads.
+/// that is not less than the count of poses. May be called from many threads.
 [[nodiscard]] VIEWGAIN_EXPORT std::string frame_identity(const FrameSequence& frames,
                                                          std::size_t index);
 
