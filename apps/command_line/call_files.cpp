@@ -40,7 +40,8 @@ enum class Kind {
   picture,
   page,
   frames_output,
-  run_output
+  run_output,
+  plan_output
 };
 struct FileOption {
   std::string_view name;
@@ -77,6 +78,7 @@ Kind kind_of(const FileOption& option, const std::string& subcommand) {
   if (option.name != "--out") return option.kind;
   if (subcommand == "simulate" || subcommand == "import") return Kind::frames_output;
   if (subcommand == "render") return Kind::picture;
+  if (subcommand == "follow") return Kind::plan_output;
   return subcommand == "reconstruct" || subcommand == "study" ? Kind::run_output : option.kind;
 }
 
@@ -132,6 +134,7 @@ std::vector<Identity> identities(const NamedFile& file) {
   if (file.kind == Kind::frames || file.kind == Kind::frames_output)
     inside = frame_files(file.path);
   if (file.kind == Kind::run || file.kind == Kind::run_output) inside = run_files(file.path);
+  if (file.kind == Kind::plan_output) inside = {"state.vdb", "next.txt", "next.json"};
   for (const fs::path& name : inside) found.emplace_back(file.path / name);
   if (file.kind == Kind::reach && !is_special_file(file.path)) {  // a pipe can be read only once
     if (const auto poses = reach_poses_file(file.path)) found.emplace_back(*poses);

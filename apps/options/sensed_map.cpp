@@ -13,7 +13,6 @@
 namespace viewgain::app {
 namespace {
 
-// Housing and mounting change no reading.
 std::string readings_of(Sensor sensor) {
   sensor.body_size.reset();
   sensor.T_flange_camera.reset();
@@ -22,8 +21,10 @@ std::string readings_of(Sensor sensor) {
 
 }  // namespace
 
+bool is_same_sensor(const Sensor& a, const Sensor& b) { return readings_of(a) == readings_of(b); }
+
 bool warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const Sensor& sensor) {
-  if (!map.sensor || readings_of(*map.sensor) == readings_of(sensor)) return false;
+  if (!map.sensor || is_same_sensor(*map.sensor, sensor)) return false;
   std::fprintf(stderr, "viewgain: warning: the readings in %s come from %s, not from this %s\n",
                utf8_text(path).c_str(), map.sensor->name.c_str(), sensor.name.c_str());
   return true;

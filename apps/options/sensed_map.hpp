@@ -20,6 +20,9 @@ struct SensedMap {
 /// Error(invalid_argument) where there is neither, and as load_map() and load_sensor().
 [[nodiscard]] SensedMap load_sensed_map(const std::string& path, const std::string& sensor_flag);
 
+/// Do readings of both say the same? Housing and mounting change none.
+[[nodiscard]] bool is_same_sensor(const Sensor& a, const Sensor& b);
+
 /// Warns on stderr, and returns true, if a map's readings come from another sensor than `sensor`.
 bool warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const Sensor& sensor);
 

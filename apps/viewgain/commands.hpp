@@ -36,6 +36,7 @@ struct Stopped {
 [[nodiscard]] Command add_surface(CLI::App& program);
 [[nodiscard]] Command add_render(CLI::App& program);
 [[nodiscard]] Command add_sensors(CLI::App& program);
+[[nodiscard]] Command add_follow(CLI::App& program);
 [[nodiscard]] Command add_study(CLI::App& program);
 
 }  // namespace viewgain::app

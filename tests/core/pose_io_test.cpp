@@ -9,6 +9,7 @@
 #include "expect_error.hpp"
 #include "random_values.hpp"
 #include "temporary_folder.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -45,6 +46,26 @@ TEST(Tum, RoundTripIsExactInPositionAndCloseInRotation) {
     ASSERT_LT(orthonormality_error(list.poses[cases]), 2e-15);
   }
   EXPECT_EQ(cases, 1004U);
+}
+
+TEST(Tum, ALineByItselfIsThatOfTheFile) {
+  const TemporaryFolder folder;
+  const std::string text =
+      "7 1 2 3 0.5 0.5 0.5 0.5\n8 0 0 0 0 0 -0.7071 0.7071\n9 nan 0 0 0 0 0 1\n";
+  const PoseList list =
+      read_tum(folder.file("poses.txt", text.substr(0, text.rfind('\n', text.size() - 2) + 1)));
+  ASSERT_EQ(list.poses.size(), 2U);
+  LineReader line("poses.txt", text);
+  std::size_t cases = 0;
+  for (; cases < list.poses.size(); ++cases) {
+    ASSERT_TRUE(line.next());
+    bool mended = cases == 0;
+    EXPECT_EQ(tum_line_pose(line, &mended), list.poses[cases]);
+    EXPECT_EQ(mended, cases == 1);
+  }
+  ASSERT_TRUE(line.next());
+  expect_error(ErrorCode::format, "poses.txt:3", [&] { (void)tum_line_pose(line); });
+  EXPECT_EQ(cases, 2U);
 }
 
 TEST(Tum, ReadsWhatOthersWrite) {

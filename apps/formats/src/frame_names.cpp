@@ -27,4 +27,20 @@ std::optional<std::string> frame_number(const std::string& name, std::string_vie
   return digits;
 }
 
+std::map<std::uint64_t, std::string> list_frames(const std::vector<std::filesystem::path>& names) {
+  std::map<std::uint64_t, std::string> frames;
+  for (const std::filesystem::path& name : names) {
+    if (const auto digits = frame_number(name.string(), kDepthSuffix)) {
+      frames.emplace(std::stoull(*digits), std::string(kFramePrefix) + *digits);
+    }
+  }
+  return frames;
+}
+
+std::filesystem::path amplitude_path(const std::filesystem::path& depth_image) {
+  std::string name = depth_image.filename().string();
+  name.replace(name.size() - kDepthSuffix.size(), kDepthSuffix.size(), kAmplitudeSuffix);
+  return depth_image.parent_path() / name;
+}
+
 }  // namespace viewgain

@@ -4,9 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace viewgain {
 
@@ -30,5 +33,12 @@ inline constexpr std::array kNames{kPoses, kSensor, kIntrinsics, kSimulated, kSc
 /// "000050" of "frame-000050.depth.png"; nothing for other names.
 [[nodiscard]] std::optional<std::string> frame_number(const std::string& name,
                                                       std::string_view suffix);
+
+/// The depth images among the names in a folder by their number, as "frame-NNNNNN".
+[[nodiscard]] std::map<std::uint64_t, std::string> list_frames(
+    const std::vector<std::filesystem::path>& names);
+
+/// The amplitude image that belongs to a depth image, whether there is one or not.
+[[nodiscard]] std::filesystem::path amplitude_path(const std::filesystem::path& depth_image);
 
 }  // namespace viewgain

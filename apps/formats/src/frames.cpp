@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "folders.hpp"
+#include "frame_folder.hpp"
 #include "frame_names.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
@@ -30,24 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint16_t kOutOfRangeValue = 65535;
-
-// Images of the folder by their number, as "frame-NNNNNN".
-std::map<std::uint64_t, std::string> list_frames(const fs::path& dir) {
-  std::map<std::uint64_t, std::string> frames;
-  for (const fs::path& name : names_in(dir)) {
-    if (const auto digits = frame_number(name.string(), kDepthSuffix)) {
-      frames.emplace(std::stoull(*digits), std::string(kFramePrefix) + *digits);
-    }
-  }
-  return frames;
-}
-
-// The amplitude image that belongs to a depth image, whether there is one or not.
-fs::path amplitude_path(const fs::path& depth_image) {
-  std::string name = depth_image.filename().string();
-  name.replace(name.size() - kDepthSuffix.size(), kDepthSuffix.size(), kAmplitudeSuffix);
-  return depth_image.parent_path() / name;
-}
 
 void check_index(std::size_t index, std::size_t count) {
   if (index < count) return;
@@ -96,9 +79,9 @@ std::optional<double> said_scale(const fs::path& dir) {
   return scale;
 }
 
-void open_own_layout(const fs::path& dir, FrameSequence& frames) {
+void list_own_layout(const fs::path& dir, FrameSequence& frames) {
   PoseList list = read_tum(dir / kPoses);
-  const auto on_disk = list_frames(dir);
+  const auto on_disk = list_frames(names_in(dir));
   if (on_disk.size() > list.poses.size()) {
     throw Error(ErrorCode::format, (dir / kPoses).string() + ": has " +
                                        std::to_string(list.poses.size()) + " poses for " +
@@ -115,8 +98,8 @@ void open_own_layout(const fs::path& dir, FrameSequence& frames) {
   frames.orthonormalized = list.orthonormalized;
 }
 
-void open_recorded_layout(const fs::path& dir, FrameSequence& frames) {
-  for (const auto& [number, name] : list_frames(dir)) {
+void list_recorded_layout(const fs::path& dir, FrameSequence& frames) {
+  for (const auto& [number, name] : list_frames(names_in(dir))) {
     bool mended = false;
     frames.images.push_back(dir / (name + std::string(kDepthSuffix)));
     frames.poses.push_back(read_pose_matrix(dir / (name + std::string(kPoseSuffix)), &mended));
@@ -127,9 +110,10 @@ void open_recorded_layout(const fs::path& dir, FrameSequence& frames) {
   }
 }
 
-// All but images and poses.
-FrameSequence open_folder(const fs::path& dir, const std::string& sensor,
-                          std::optional<double> depth_scale) {
+}  // namespace
+
+FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
+                                std::optional<double> depth_scale) {
   std::error_code ignored;
   if (!fs::is_directory(dir, ignored)) {
     throw Error(ErrorCode::io, dir.string() + ": no such folder");
@@ -155,23 +139,21 @@ FrameSequence open_folder(const fs::path& dir, const std::string& sensor,
   return frames;
 }
 
-}  // namespace
-
 FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
                           std::optional<double> depth_scale) {
-  FrameSequence frames = open_folder(dir, sensor, depth_scale);
+  FrameSequence frames = open_frame_folder(dir, sensor, depth_scale);
   if (frames.recorded) {
-    open_recorded_layout(dir, frames);
+    list_recorded_layout(dir, frames);
   } else {
-    open_own_layout(dir, frames);
+    list_own_layout(dir, frames);
   }
   return frames;
 }
 
 FrameSequence open_depth_images(const fs::path& dir, const std::string& sensor,
                                 std::optional<double> depth_scale) {
-  FrameSequence frames = open_folder(dir, sensor, depth_scale);
-  for (const auto& [number, name] : list_frames(dir)) {
+  FrameSequence frames = open_frame_folder(dir, sensor, depth_scale);
+  for (const auto& [number, name] : list_frames(names_in(dir))) {
     frames.images.push_back(dir / (name + std::string(kDepthSuffix)));
   }
   if (frames.images.empty()) {

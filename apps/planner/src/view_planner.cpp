@@ -14,7 +14,6 @@
 #include "viewgain/core/stop_rules.hpp"
 #include "viewgain/core/stopwatch.hpp"
 #include "viewgain/core/text.hpp"
-#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
 namespace {
@@ -321,11 +320,10 @@ std::optional<StopReason> ViewPlanner::should_stop() const noexcept {
   return state.of_view ? state.of_view : state.of_choice;
 }
 
-void ViewPlanner::save(const std::filesystem::path& path) const {
+void ViewPlanner::save(const std::filesystem::path& path, VdbWriteConfig config) const {
   if (path.extension() == ".ot" || path.extension() == ".bt") {
     fail(path.string() + ": the state is an OpenVDB file, and this name is OctoMap's");
   }
-  VdbWriteConfig config;
   config.notes[kNote] = detail::text_of(impl_->state);
   save_vdb(impl_->map.grid(), path, config);
 }

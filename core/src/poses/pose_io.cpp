@@ -26,31 +26,37 @@ constexpr std::uint64_t kMaxFileSize = std::uint64_t{1} << 30U;  // [bytes]
 
 }  // namespace
 
+Pose tum_line_pose(const LineReader& line, bool* orthonormalized) {
+  std::array<double, 8> values{};
+  const std::size_t count = line.words().size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double value = line.finite_number(i);
+    if (i < values.size()) values[i] = value;
+  }
+  if (count != values.size()) {
+    line.fail("expected 8 numbers (timestamp tx ty tz qx qy qz qw), found " +
+              std::to_string(count));
+  }
+  Eigen::Quaterniond q(values[7], values[4], values[5], values[6]);
+  const double norm = q.norm();
+  if (!(std::abs(norm - 1.0) <= kMendable)) {
+    line.fail("the quaternion's norm is " + short_text(norm) + ", not 1");
+  }
+  if (orthonormalized != nullptr) *orthonormalized = std::abs(norm - 1.0) > kUnnoticed;
+  q.normalize();
+  return {q.toRotationMatrix(), Eigen::Vector3d(values[1], values[2], values[3])};
+}
+
 PoseList read_tum(const fs::path& path) {
   const std::string contents = file_bytes(path, kMaxFileSize);
   LineReader line(path.string(), contents);
   PoseList list;
   while (line.next()) {
     if (line.words().empty() || line.words().front().front() == '#') continue;
-    std::array<double, 8> values{};
-    const std::size_t count = line.words().size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const double value = line.finite_number(i);
-      if (i < values.size()) values[i] = value;
-    }
-    if (count != values.size()) {
-      line.fail("expected 8 numbers (timestamp tx ty tz qx qy qz qw), found " +
-                std::to_string(count));
-    }
-    Eigen::Quaterniond q(values[7], values[4], values[5], values[6]);
-    const double norm = q.norm();
-    if (!(std::abs(norm - 1.0) <= kMendable)) {
-      line.fail("the quaternion's norm is " + short_text(norm) + ", not 1");
-    }
-    if (std::abs(norm - 1.0) > kUnnoticed) ++list.orthonormalized;
-    q.normalize();
-    list.poses.emplace_back(q.toRotationMatrix(), Eigen::Vector3d(values[1], values[2], values[3]));
-    list.timestamps.push_back(values[0]);
+    bool mended = false;
+    list.poses.push_back(tum_line_pose(line, &mended));
+    list.timestamps.push_back(line.number(0));
+    list.orthonormalized += mended ? 1 : 0;
   }
   if (list.poses.empty()) {
     throw Error(ErrorCode::format, path.string() + ": holds no pose");

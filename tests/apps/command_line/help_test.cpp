@@ -27,9 +27,9 @@ using nlohmann::json;
 using Strings = std::vector<std::string>;
 
 // In an order in which the examples of their help find what they name.
-const Strings kSubcommands{"simulate", "import",     "calibrate",   "integrate", "next",
-                           "score",    "candidates", "reconstruct", "render",    "info",
-                           "convert",  "sensors",    "study",       "surface"};
+const Strings kSubcommands{"simulate", "import",  "calibrate",  "integrate",   "next",
+                           "follow",   "score",   "candidates", "reconstruct", "render",
+                           "info",     "convert", "sensors",    "study",       "surface"};
 
 Strings words_of(const std::string& text) {
   std::istringstream in(text);
@@ -106,8 +106,8 @@ TEST_F(Help, GroupsSubcommandsByTaskAndItsExamplesWork) {
   for (const char* line :
        {"\nThe whole loop:\n  reconstruct ", "\nMake a map:\n  simulate ", "\n  import ",
         "\n  calibrate ", "\n  integrate ", "\nChoose views:\n  score ", "\n  candidates ",
-        "\n  next ", "\nLook and convert:\n  info ", "\n  surface ", "\n  convert ", "\n  render ",
-        "\n  sensors ", "\nExamples:\n  viewgain "}) {
+        "\n  next ", "\n  follow ", "\nLook and convert:\n  info ", "\n  surface ", "\n  convert ",
+        "\n  render ", "\n  sensors ", "\nExamples:\n  viewgain "}) {
     const std::size_t at = help.find(line);
     ASSERT_NE(at, std::string::npos) << line;
     EXPECT_GT(at + 1, last) << line;
@@ -136,6 +136,7 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
     write_png(dir / name, GrayImage{176, 144, std::vector<std::uint16_t>(176 * 144, millimetres)});
   }
   write("distances.txt", "1\n2\n");
+  write("frames/done", "");
   std::size_t cases = 0;
   for (const std::string& subcommand : kSubcommands) {
     const std::vector<Strings> calls = examples({subcommand});

@@ -97,6 +97,22 @@ TEST(SavedPlanner, IsAMap) {
   EXPECT_EQ(folder.entries(), 1);
 }
 
+TEST(SavedPlanner, KeepsNotesBesideItsOwn) {
+  const BinScene scene;
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "planner.vdb";
+  ViewPlanner planner(scene.sensor, scene.config(), {1});
+  (void)planner.add(scene.see(scene.views[0]), scene.views[0]);
+  planner.save(path);
+  const auto own = load_vdb_map(path).notes;
+  planner.save(path, {.with_covariance = false, .notes = {{"frames", "a\nb\n"}, {"planner", "x"}}});
+  auto notes = load_vdb_map(path).notes;
+  EXPECT_EQ(notes.extract("frames").mapped(), "a\nb\n");
+  EXPECT_EQ(notes, own);
+  const ViewPlanner loaded = ViewPlanner::load(path, scene.sensor, scene.config(), {1});
+  EXPECT_EQ(test::seen_of(loaded), test::seen_of(planner));
+}
+
 TEST(SavedPlanner, RefusesWhatIsNone) {
   const BinScene scene;
   const test::TemporaryFolder folder;

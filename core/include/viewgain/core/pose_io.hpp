@@ -12,6 +12,8 @@
 
 namespace viewgain {
 
+class LineReader;
+
 /// Poses of a file and what the reader had to mend.
 struct VIEWGAIN_EXPORT PoseList {
   std::vector<Pose> poses;         ///< T_world_camera, in file order
@@ -26,6 +28,12 @@ struct VIEWGAIN_EXPORT PoseList {
 /// read and Error(format), naming the file and the line, for anything else that is wrong, also for
 /// a file without a pose; Error(capacity) beyond 1 GiB.
 [[nodiscard]] VIEWGAIN_EXPORT PoseList read_tum(const std::filesystem::path& path);
+
+/// The pose of the line of that format that the reader stands at, for files of which not all lines
+/// are there yet or right. *orthonormalized says whether the quaternion was off by more than 1e-9.
+/// Throws Error(format) as read_tum() does for this line.
+[[nodiscard]] VIEWGAIN_EXPORT Pose tum_line_pose(const LineReader& line,
+                                                 bool* orthonormalized = nullptr);
 
 /// Writes the TUM format with 17 significant digits, so that reading it back gives the same
 /// rotation to 2e-15 and the same translation exactly. Timestamps are 0, 1, 2, ... Atomic: a

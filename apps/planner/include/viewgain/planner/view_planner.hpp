@@ -19,6 +19,7 @@
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/hazard.hpp"
+#include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/planner/feasible_poses.hpp"
 #include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/pose_sets.hpp"
@@ -155,8 +156,10 @@ class VIEWGAIN_EXPORT ViewPlanner {
 
   /// The whole state in one file: a map that every program reads, with the rest in its notes. Left
   /// out are what the constructor got, sets, generations and the last proposal. Atomic: after a
-  /// kill at any moment the file is the one before or this one. Throws Error(io).
-  void save(const std::filesystem::path& path) const;
+  /// kill at any moment the file is the one before or this one. `config` has what is to be in the
+  /// same file, say which frames went into the map (noting_frames() of viewgain::formats): of the
+  /// two there is never one without the other. Its note "planner" is replaced. Throws Error(io).
+  void save(const std::filesystem::path& path, VdbWriteConfig config = {}) const;
   /// Goes on where save() was called: with the same constructor's arguments, sets and generations
   /// every later answer has the same bits, from the next propose(), add() or rank() of given poses
   /// on. Throws as the constructor, Error(invalid_argument) if the map is laid out otherwise than

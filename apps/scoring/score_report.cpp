@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "commands.hpp"
 #include "options/gain_names.hpp"
+#include "options/json_text.hpp"
 #include "options/values.hpp"
 #include "report/score_page.hpp"
 #include "viewgain/formats/sensor_toml.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
+#include "options/common_options.hpp"
 #include "options/pose_source.hpp"
 
 namespace viewgain::app {

@@ -10,8 +10,8 @@
 #include <numeric>
 #include <utility>
 
-#include "commands.hpp"
 #include "options/gain_names.hpp"
+#include "options/json_text.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 

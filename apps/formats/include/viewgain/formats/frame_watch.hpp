@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/formats/frames.hpp"
+
+namespace viewgain {
+
+/// How a folder is watched.
+struct VIEWGAIN_EXPORT FrameWatchConfig {
+  std::string sensor{};                 ///< as of open_frames()
+  std::optional<double> depth_scale{};  ///< likewise [m per unit]
+  OutOfRangeMeaning out_of_range = OutOfRangeMeaning::carve;
+  /// Frames that are not to be given out again, each as frame_identity() has it.
+  std::set<std::string> taken{};
+  /// Somebody may be writing files that are younger: what is wrong with them is not yet wrong.
+  std::chrono::milliseconds settle{2000};
+};
+
+/// A frame whose files are all there and whole.
+struct VIEWGAIN_EXPORT WatchedFrame {
+  std::uint64_t number = 0;
+  std::filesystem::path image;  ///< the depth image
+  std::string identity;         ///< as frame_identity() has it
+  DepthFrame frame;
+  Pose T_world_camera;
+};
+
+/// A frame that cannot be used as its files are.
+struct VIEWGAIN_EXPORT BadFrame {
+  std::uint64_t number = 0;
+  /// truncated (an image without an end), image (damaged, or of another kind), size (another one
+  /// than the sensor's), pose (no rigid transform of finite numbers), changed (its number was taken
+  /// with other contents).
+  std::string reason;
+  std::string what;  ///< names the file
+};
+
+/// What a look at the folder found.
+struct VIEWGAIN_EXPORT FolderLook {
+  std::optional<WatchedFrame> frame{};  ///< the complete one of the lowest number, if there is one
+  std::vector<BadFrame> bad{};          ///< those that turned out to be bad since the look before
+};
+
+/// A folder of frames of either layout (open_frames()) into which somebody else writes, file by
+/// file and in any order. Files may appear by a rename or be written in place, slowly: a frame is
+/// complete when its images end as PNG files do and can be read, and its pose is there, in the
+/// recorded layout with a line's end or unchanged for FrameWatchConfig::settle, in ours as a line
+/// of poses.txt with its end. Where any frame in the folder has an amplitude image, one without is
+/// waited for as long. What holds for all frames (sensor.toml, camera-intrinsics.txt,
+/// depth-scale.txt) must be there before the first frame is complete.
+///
+/// Whether files have changed is told by what the file system says of them; none is read twice for
+/// nothing. Nothing is remembered beyond the object but what FrameWatchConfig::taken says.
+/// Thread safety: one call at a time.
+class VIEWGAIN_EXPORT FrameWatch {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  FrameWatch(std::filesystem::path dir, FrameWatchConfig config);
+  ~FrameWatch();
+  FrameWatch(FrameWatch&&) noexcept;
+  FrameWatch& operator=(FrameWatch&&) noexcept;
+
+  /// Looks at the folder; `now` must not go back. A frame that is given out counts as taken; the
+  /// next one comes with the next look. Throws Error(io) if the folder cannot be read, and with the
+  /// first complete frame as open_frames() for what holds for all. Takes some µs a file.
+  [[nodiscard]] FolderLook look(Time now);
+
+  /// The caller has no use for the frame that the last look gave out: it is bad for this reason, as
+  /// long as its files do not change.
+  void refuse(const WatchedFrame& frame, const std::string& reason);
+
+  /// Sensor, scale and layout, without images and poses; nothing before the first complete frame.
+  [[nodiscard]] const std::optional<FrameSequence>& folder() const noexcept;
+  /// Of the frames that were taken, here and before.
+  [[nodiscard]] std::set<std::string> taken() const;
+  /// Frames in the folder of which something is missing or may still be written.
+  [[nodiscard]] std::size_t waiting() const;
+  /// Bad frames in the folder: reason -> count.
+  [[nodiscard]] std::map<std::string, std::size_t> bad() const;
+  /// Has nothing changed, for long enough, of the frames that wait?
+  [[nodiscard]] bool is_settled(Time now) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace viewgain

@@ -1,0 +1,372 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// A folder of frames that somebody writes into, with a clock of the test's own.
+#include "viewgain/formats/frame_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/expect_error.hpp"
+#include "core/temporary_folder.hpp"
+#include "viewgain/core/generators.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+
+namespace viewgain {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using test::expect_error;
+using test::read_all;
+using Counts = std::map<std::string, std::size_t>;
+
+Sensor small_sensor() {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera = {8, 6, 10, 10, 3.5, 2.5};
+  return sensor;
+}
+
+Pose pose_of(int number) { return look_at({0.5, 0.1 * number, 0.4}, {0, 0, 0}); }
+
+std::string matrix_text(const Pose& pose) {
+  std::string text;
+  for (std::size_t i = 0; i < 12; ++i) {
+    text += std::to_string(pose.m[i]) + (i % 4 == 3 ? "\n" : " ");
+  }
+  return text + "0 0 0 1\n";
+}
+
+// The folder, what is written into it, and the time.
+class WatchedFolder : public testing::Test {
+ protected:
+  WatchedFolder() { put("sensor.toml", sensor_toml(small_sensor())); }
+
+  void put(const std::string& name, std::string_view bytes) const { dir.file(name, bytes); }
+
+  // The bytes of an image of which every pixel has this value.
+  [[nodiscard]] std::string png(std::uint16_t value, int width = 8, int height = 6) const {
+    GrayImage image{width, height, {}};
+    image.pixels.assign(static_cast<std::size_t>(width * height), value);
+    const fs::path path = elsewhere.path() / "image.png";
+    write_png(path, image);
+    return read_all(path);
+  }
+
+  void put_frame(int number) const {
+    put(name(number, ".depth.png"), png(static_cast<std::uint16_t>(500 + number)));
+    put(name(number, ".pose.txt"), matrix_text(pose_of(number)));
+  }
+
+  static std::string name(int number, const std::string& suffix) {
+    std::string digits = std::to_string(number);
+    return "frame-" + std::string(6 - digits.size(), '0') + digits + suffix;
+  }
+
+  [[nodiscard]] FrameWatch watch(std::set<std::string> taken = {}) const {
+    FrameWatchConfig config;
+    config.taken = std::move(taken);
+    return {dir.path(), config};
+  }
+
+  // All that is complete now, in the order in which it comes.
+  std::vector<int> complete(FrameWatch& watch) {
+    std::vector<int> numbers;
+    for (;;) {
+      const FolderLook look = watch.look(now);
+      for (const BadFrame& frame : look.bad) bad.push_back(frame);
+      if (!look.frame) return numbers;
+      numbers.push_back(static_cast<int>(look.frame->number));
+    }
+  }
+
+  // Lets the files lie there for this long.
+  std::vector<int> complete_after(FrameWatch& watch, std::chrono::milliseconds time) {
+    (void)complete(watch);
+    now += time;
+    return complete(watch);
+  }
+
+  test::TemporaryFolder dir, elsewhere;
+  FrameWatch::Time now{1h};
+  std::vector<BadFrame> bad;
+};
+
+using Numbers = std::vector<int>;
+
+TEST_F(WatchedFolder, GivesWhatOpenFramesGives) {
+  for (const int number : {7, 0, 12}) put_frame(number);
+  put("camera-intrinsics.txt", "11 0 3\n0 12 2\n0 0 1\n");
+  put("frame-000007.amplitude.png", png(900));
+  put("frame-000012.amplitude.png", png(901));
+  put("frame-000000.amplitude.png", png(902));
+  const FrameSequence frames = open_frames(dir.path());
+  FrameWatch watched = watch();
+  EXPECT_FALSE(watched.folder());
+  std::size_t cases = 0;
+  for (; cases < 3; ++cases) {
+    const FolderLook look = watched.look(now);
+    ASSERT_TRUE(look.frame);
+    EXPECT_EQ(look.frame->image, frames.images[cases]);
+    EXPECT_EQ(look.frame->identity, frame_identity(frames, cases));
+    EXPECT_EQ(look.frame->frame, load_frame(frames, cases));
+    EXPECT_EQ(look.frame->T_world_camera, frames.poses[cases]);
+  }
+  EXPECT_FALSE(watched.look(now).frame);
+  EXPECT_EQ(cases, 3U);
+  ASSERT_TRUE(watched.folder());
+  EXPECT_EQ(watched.folder()->sensor.camera, frames.sensor.camera);
+  EXPECT_EQ(watched.folder()->depth_scale, frames.depth_scale);
+  EXPECT_TRUE(watched.folder()->recorded);
+  EXPECT_EQ(watched.taken().size(), 3U);
+  EXPECT_TRUE(watched.bad().empty());
+  EXPECT_EQ(watched.waiting(), 0U);
+}
+
+TEST_F(WatchedFolder, GivesSimulatedFrames) {
+  const Sensor sensor = small_sensor();
+  FramesWriter writer(dir.path() / "simulated");
+  const std::vector<Pose> poses{pose_of(0), pose_of(1), pose_of(2)};
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    writer.write_frame(i, {8, 6, std::vector<float>(48, 0.5F)});
+  }
+  writer.commit(poses, sensor);
+  FrameWatch watched(dir.path() / "simulated", {});
+  EXPECT_EQ(complete(watched), (Numbers{0, 1, 2}));
+  EXPECT_FALSE(watched.folder()->recorded);
+  EXPECT_EQ(watched.folder()->depth_scale, kDepthUnit);
+  EXPECT_EQ(sensor_toml(watched.folder()->sensor), sensor_toml(sensor));
+}
+
+// Whatever part of a file is there: it waits. The last byte makes the frame complete.
+TEST_F(WatchedFolder, EveryPartOfAFileWaits) {
+  const std::string image = png(500), pose = matrix_text(pose_of(0));
+  const std::string amplitude = png(900), line = "0 0.5 0 0.4 0 0 0 1\n";
+  struct Part {
+    std::string file, bytes;
+    bool is_own_layout;
+  };
+  std::size_t cases = 0;
+  for (const Part& part :
+       {Part{"frame-000000.depth.png", image, false},
+        Part{"frame-000000.amplitude.png", amplitude, false},
+        Part{"frame-000000.pose.txt", pose, false}, Part{"poses.txt", line, true},
+        Part{"frame-000000.depth.png", image, true}}) {
+    put("frame-000000.depth.png", image);
+    put("frame-000000.amplitude.png", amplitude);
+    fs::remove(dir.path() / "poses.txt");
+    fs::remove(dir.path() / "frame-000000.pose.txt");
+    part.is_own_layout ? put("poses.txt", line) : put("frame-000000.pose.txt", pose);
+    FrameWatch watched = watch();
+    for (std::size_t size = 0; size < part.bytes.size(); ++size, ++cases) {
+      put(part.file, part.bytes.substr(0, size));
+      now += 1999ms;
+      EXPECT_EQ(complete(watched), Numbers{}) << part.file << " " << size;
+      EXPECT_EQ(watched.waiting(), 1U);
+    }
+    put(part.file, part.bytes);
+    EXPECT_EQ(complete(watched), Numbers{0}) << part.file;
+  }
+  EXPECT_EQ(cases, 3 * image.size() - image.size() + amplitude.size() + pose.size() + line.size());
+  EXPECT_TRUE(bad.empty());
+}
+
+TEST_F(WatchedFolder, WhatNeverEndsIsTakenOrBadAfterAWhile) {
+  put_frame(0);
+  std::string pose = matrix_text(pose_of(0));
+  pose.pop_back();  // all numbers, but no line's end
+  put("frame-000000.pose.txt", pose);
+  put_frame(1);
+  put("frame-000001.pose.txt", pose.substr(0, 20));
+  put_frame(2);
+  put("frame-000002.depth.png", png(500).substr(0, 60));
+  put_frame(3);
+  fs::remove(dir.path() / "frame-000003.pose.txt");
+  FrameWatch watched = watch();
+  EXPECT_EQ(complete_after(watched, 1999ms), Numbers{});
+  EXPECT_TRUE(bad.empty());
+  EXPECT_FALSE(watched.is_settled(now));
+  EXPECT_EQ(watched.waiting(), 4U);
+  now += 1ms;
+  EXPECT_EQ(complete(watched), Numbers{0});
+  EXPECT_EQ(watched.bad(), (Counts{{"pose", 1}, {"truncated", 1}}));
+  // The one without a pose waits for as long as it takes.
+  EXPECT_EQ(watched.waiting(), 1U);
+  EXPECT_TRUE(watched.is_settled(now));
+  // In our own layout a line without its end could be the half of a number.
+  const test::TemporaryFolder own;
+  own.file("sensor.toml", sensor_toml(small_sensor()));
+  own.file("frame-000000.depth.png", png(500));
+  own.file("poses.txt", "0 0.5 0 0.4 0 0 0 1");
+  FrameWatch other(own.path(), {});
+  EXPECT_EQ(complete_after(other, 1h), Numbers{});
+  EXPECT_EQ(other.waiting(), 1U);
+}
+
+TEST_F(WatchedFolder, BadOnesAreCountedOnceAndTakenWhenTheyBecomeGood) {
+  const std::string whole = png(500);
+  std::string damaged = whole;
+  damaged[whole.size() / 2] ^= 1;
+  std::string not_rigid = matrix_text(pose_of(0));
+  not_rigid[0] = '7';
+  std::string nan = "nan" + matrix_text(pose_of(0)).substr(8);
+  struct Fault {
+    std::string reason, file, bytes;
+  };
+  const std::vector<Fault> faults{
+      {"truncated", ".depth.png", whole.substr(0, whole.size() - 1)},
+      {"truncated", ".depth.png", ""},
+      {"truncated", ".amplitude.png", whole.substr(0, 30)},
+      {"image", ".depth.png", damaged},
+      {"image", ".depth.png", whole.substr(whole.size() - 12)},
+      {"size", ".depth.png", png(500, 9, 6)},
+      {"size", ".depth.png", png(500, 6, 8)},
+      {"size", ".amplitude.png", png(500, 4, 3)},
+      {"pose", ".pose.txt", not_rigid},
+      {"pose", ".pose.txt", nan},
+      {"pose", ".pose.txt", "no pose\n"},
+  };
+  Counts expected;
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    const int number = static_cast<int>(i);
+    put_frame(number);
+    put(name(number, ".amplitude.png"), png(900));
+    put(name(number, faults[i].file), faults[i].bytes);
+    ++expected[faults[i].reason];
+  }
+  put_frame(99);
+  put(name(99, ".amplitude.png"), png(900));
+  FrameWatch watched = watch();
+  EXPECT_EQ(complete(watched), Numbers{99});
+  EXPECT_EQ(complete_after(watched, 1999ms), Numbers{});
+  EXPECT_TRUE(bad.empty());
+  now += 1ms;
+  EXPECT_EQ(complete(watched), Numbers{});
+  ASSERT_EQ(bad.size(), faults.size());
+  std::size_t cases = 0;
+  for (; cases < faults.size(); ++cases) {
+    EXPECT_EQ(bad[cases].number, cases);
+    EXPECT_EQ(bad[cases].reason, faults[cases].reason) << bad[cases].what;
+    const std::string file = name(static_cast<int>(cases), faults[cases].file);
+    EXPECT_NE(bad[cases].what.find(file), std::string::npos) << bad[cases].what;
+  }
+  EXPECT_EQ(cases, 11U);
+  EXPECT_EQ(watched.bad(), expected);
+  EXPECT_EQ(complete_after(watched, 1h), Numbers{});
+  EXPECT_EQ(bad.size(), faults.size());
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    const int number = static_cast<int>(i);
+    put_frame(number);
+    put(name(number, ".amplitude.png"), png(900));
+    EXPECT_EQ(complete(watched), Numbers{number});
+  }
+  EXPECT_TRUE(watched.bad().empty());
+  EXPECT_EQ(watched.taken().size(), faults.size() + 1);
+}
+
+TEST_F(WatchedFolder, ABadLineIsOneFramesAlone) {
+  for (const int number : {0, 1, 2, 3}) put(name(number, ".depth.png"), png(500));
+  put("poses.txt",
+      "# mine\n0 0.5 0 0.4 0 0 0 1\n\n1 nan 0 0.4 0 0 0 1\n2 0.5 0 0.4 0 0 0 1\n"
+      "3 0.5 0 0.4 0 0 0 2\n");
+  FrameWatch watched = watch();
+  EXPECT_EQ(complete(watched), (Numbers{0, 2}));
+  EXPECT_EQ(complete_after(watched, 2s), Numbers{});
+  EXPECT_EQ(watched.bad(), (Counts{{"pose", 2}}));
+  ASSERT_EQ(bad.size(), 2U);
+  EXPECT_NE(bad[0].what.find("poses.txt:4"), std::string::npos) << bad[0].what;
+  // More lines change nothing for the frames before them.
+  put("frame-000004.depth.png", png(500));
+  put("poses.txt", read_all(dir.path() / "poses.txt") + "4 0.5 0 0.4 0 0 0 1\n");
+  EXPECT_EQ(complete(watched), Numbers{4});
+  EXPECT_EQ(watched.bad(), (Counts{{"pose", 2}}));
+}
+
+TEST_F(WatchedFolder, ATakenFrameStaysTaken) {
+  put_frame(0);
+  put_frame(1);
+  FrameWatch first = watch();
+  EXPECT_EQ(complete(first), (Numbers{0, 1}));
+  const std::set<std::string> taken = first.taken();
+  EXPECT_EQ(taken.size(), 2U);
+  for (FrameWatch* watched : {&first}) {
+    put_frame(0);  // the same bytes anew
+    EXPECT_EQ(complete_after(*watched, 3s), Numbers{});
+    EXPECT_EQ(watched->waiting(), 0U);
+  }
+  // After a restart, too; with other contents it is not the frame that was taken.
+  put("frame-000001.depth.png", png(777));
+  FrameWatch second = watch(taken);
+  EXPECT_EQ(complete_after(second, 1999ms), Numbers{});
+  EXPECT_TRUE(second.bad().empty());
+  for (FrameWatch* watched : {&first, &second}) {
+    EXPECT_EQ(complete_after(*watched, 2s), Numbers{});
+    EXPECT_EQ(watched->bad(), (Counts{{"changed", 1}}));
+    EXPECT_EQ(watched->taken(), taken);
+  }
+  // Files that are gone are nobody's fault.
+  fs::remove(dir.path() / "frame-000000.depth.png");
+  fs::remove(dir.path() / "frame-000001.depth.png");
+  EXPECT_EQ(complete(first), Numbers{});
+  EXPECT_TRUE(first.bad().empty());
+  EXPECT_EQ(first.taken(), taken);
+}
+
+TEST_F(WatchedFolder, AmplitudesAreWaitedForWhereThereAreAny) {
+  put_frame(0);
+  FrameWatch watched = watch();
+  EXPECT_EQ(complete(watched), Numbers{0});
+  put_frame(1);
+  put_frame(2);
+  put("frame-000002.amplitude.png", png(900));
+  EXPECT_EQ(complete(watched), Numbers{2});
+  now += 1s;
+  EXPECT_EQ(complete(watched), Numbers{});
+  put("frame-000001.amplitude.png", png(900));
+  EXPECT_EQ(complete(watched), Numbers{1});
+  put_frame(3);
+  EXPECT_EQ(complete_after(watched, 1999ms), Numbers{});
+  now += 1ms;
+  EXPECT_EQ(complete(watched), Numbers{3});
+}
+
+TEST_F(WatchedFolder, RefusedOnesAreBadUntilTheyChange) {
+  put_frame(0);
+  FrameWatch watched = watch();
+  const FolderLook look = watched.look(now);
+  ASSERT_TRUE(look.frame);
+  watched.refuse(*look.frame, "outside");
+  EXPECT_EQ(complete_after(watched, 3s), Numbers{});
+  EXPECT_EQ(watched.bad(), (Counts{{"outside", 1}}));
+  EXPECT_TRUE(watched.taken().empty());
+  put("frame-000000.pose.txt", matrix_text(pose_of(5)));
+  EXPECT_EQ(complete(watched), Numbers{0});
+  EXPECT_TRUE(watched.bad().empty());
+}
+
+TEST_F(WatchedFolder, TheSensorIsNeededWithTheFirstCompleteFrame) {
+  fs::remove(dir.path() / "sensor.toml");
+  FrameWatch watched = watch();
+  put("frame-000000.depth.png", png(500));
+  put("frame-000001.depth.png", png(500).substr(0, 20));
+  put("frame-000001.pose.txt", matrix_text(pose_of(1)));
+  EXPECT_EQ(complete(watched), Numbers{});
+  put("frame-000000.pose.txt", matrix_text(pose_of(0)));
+  expect_error(ErrorCode::invalid_argument, "sensor.toml", [&] { (void)watched.look(now); });
+  put("sensor.toml", sensor_toml(small_sensor()));
+  EXPECT_EQ(complete(watched), Numbers{0});
+  FrameWatch nowhere(dir.path() / "nowhere", {});
+  expect_error(ErrorCode::io, "nowhere", [&] { (void)nowhere.look(now); });
+}
+
+}  // namespace
+}  // namespace viewgain
