@@ -59,7 +59,8 @@ constexpr std::array kFileOptions{
     FileOption{"INPUT", Kind::run},        FileOption{"--report", Kind::page},
     FileOption{"SPEC", Kind::input},       FileOption{"--truth", Kind::input},
     FileOption{"--points", Kind::output},  FileOption{"SOURCE", Kind::folder},
-    FileOption{"--mask", Kind::folder},    FileOption{"--distances", Kind::input}};
+    FileOption{"--mask", Kind::folder},    FileOption{"--confidence", Kind::folder},
+    FileOption{"--distances", Kind::input}};
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 

@@ -152,6 +152,17 @@ void describe(Options& o, Visitor& visit) {
       "of a folder of frames: folder of grayscale PNGs with the depth images' names: where "
       "they are not 0, an image says nothing",
       as_it_is);
+  visit.option(
+      nullptr, "--confidence", o.confidence,
+      "of a folder of frames: folder of grayscale PNGs with the depth images' names: where "
+      "they are under --least-confidence, an image says nothing",
+      as_it_is);
+  visit.option(nullptr, "--least-confidence", o.least_confidence,
+               "of a folder of frames: least value of --confidence that counts, 1..255",
+               [](CLI::Option& option) {
+                 option.check(CLI::Range(1, 255, "confidence"));
+                 shows_default(option);
+               });
   visit.option(nullptr, "--top", o.top, "of a folder of frames: next views to name at most",
                counted_with_default(1, kMaxCount));
 }
@@ -179,9 +190,10 @@ void check(const ReconstructOptions& options) {
   if (options.sensor.empty()) {
     throw Error(ErrorCode::invalid_argument, "--sensor is needed with a mesh");
   }
-  if (options.depth_scale || !options.mask.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                "--depth-scale and --mask are for a folder of frames, not for a mesh");
+  if (options.depth_scale || !options.mask.empty() || !options.confidence.empty()) {
+    throw Error(
+        ErrorCode::invalid_argument,
+        "--depth-scale, --mask and --confidence are for a folder of frames, not for a mesh");
   }
   check_positive("--voxel", options.voxel);
   if (options.size) check_positive("--size", *options.size);

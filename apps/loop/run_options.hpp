@@ -56,7 +56,8 @@ struct ReconstructOptions {
   std::string out;
   // Of a folder of frames.
   std::optional<double> depth_scale;
-  std::string mask;
+  std::string mask, confidence;
+  int least_confidence = 1;
   std::size_t top = 10;
 };
 

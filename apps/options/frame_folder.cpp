@@ -27,27 +27,38 @@ void add_frame_folder_options(CLI::App& app, FrameFolderOptions& options) {
       "--depth-scale", options.depth_scale,
       "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
       "sensor.toml), else 1e-3");
-  app.add_option("--mask", options.mask,
-                 "folder of grayscale PNGs with the depth images' names: where they are not 0, an "
-                 "image says nothing");
+  app.add_option("--mask", options.mask, kMaskHelp);
+  app.add_option("--confidence", options.confidence, kConfidenceHelp);
+  app.add_option("--least-confidence", options.least_confidence, kLeastConfidenceHelp)
+      ->capture_default_str()
+      ->check(CLI::Range(1, 255, "confidence"));
+}
+
+std::vector<MaskFolder> mask_folders(const FrameFolderOptions& options,
+                                     const std::vector<std::filesystem::path>& images) {
+  std::vector<MaskFolder> folders;
+  if (!options.mask.empty()) folders.emplace_back(options.mask);
+  if (!options.confidence.empty()) {
+    folders.emplace_back(options.confidence, static_cast<std::uint8_t>(options.least_confidence));
+  }
+  for (const MaskFolder& folder : folders) folder.require_mask_of_any(images);
+  return folders;
 }
 
 FrameFolder::FrameFolder(const FrameFolderOptions& options)
     : name_(options.folder),
       frames_(frames_of(options)),
       meaning_(options.out_of_range == "carve" ? OutOfRangeMeaning::carve
-                                               : OutOfRangeMeaning::invalid) {
-  if (options.mask.empty()) return;
-  masks_.emplace(options.mask);
-  masks_->require_mask_of_any(frames_.images);
-}
+                                               : OutOfRangeMeaning::invalid),
+      masks_(mask_folders(options, frames_.images)) {}
 
 FrameFolder::MaskedFrame FrameFolder::load(std::size_t index) const {
   MaskedFrame loaded{load_frame(frames_, index, meaning_)};
-  if (!masks_) return loaded;
   DepthFrame& frame = loaded.frame;
-  const auto mask = masks_->mask_of(frames_.images[index], frame.width, frame.height);
-  if (mask) loaded.masked_pixels = apply_mask(*mask, frame);
+  for (const MaskFolder& masks : masks_) {
+    const auto mask = masks.mask_of(frames_.images[index], frame.width, frame.height);
+    if (mask) loaded.masked_pixels += apply_mask(*mask, frame);
+  }
   return loaded;
 }
 

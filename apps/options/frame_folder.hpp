@@ -5,9 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/depth_frame.hpp"
@@ -23,10 +25,12 @@ struct FrameFolderOptions {
   std::string sensor;                   ///< --sensor; empty: the folder's own
   std::optional<double> depth_scale{};  ///< --depth-scale [m per unit]; nothing: the folder's
   std::string mask;                     ///< --mask; empty: none
+  std::string confidence;               ///< --confidence; empty: none
+  int least_confidence = 1;             ///< --least-confidence
   std::string out_of_range = "carve";   ///< --out-of-range
 };
 
-/// --depth-scale and --mask, the same in every subcommand that reads frames.
+/// --depth-scale, --mask and --confidence, the same in every subcommand that reads frames.
 void add_frame_folder_options(CLI::App& app, FrameFolderOptions& options);
 
 /// Recorded or simulated frames with their poses, and what masks leave of them.
@@ -44,7 +48,7 @@ class FrameFolder {
 
   struct MaskedFrame {
     DepthFrame frame;
-    std::uint64_t masked_pixels = 0;  ///< with a depth that the mask took
+    std::uint64_t masked_pixels = 0;  ///< with a depth that masks took
   };
   /// Throws Error as load_frame() and MaskFolder::mask_of().
   [[nodiscard]] MaskedFrame load(std::size_t index) const;
@@ -53,8 +57,22 @@ class FrameFolder {
   std::string name_;
   FrameSequence frames_;
   OutOfRangeMeaning meaning_;
-  std::optional<MaskFolder> masks_;
+  std::vector<MaskFolder> masks_;
 };
+
+inline constexpr const char* kMaskHelp =
+    "folder of grayscale PNGs with the depth images' names: where they are not 0, an image says "
+    "nothing";
+inline constexpr const char* kConfidenceHelp =
+    "folder of grayscale PNGs with the depth images' names: where they are under "
+    "--least-confidence, an image says nothing";
+inline constexpr const char* kLeastConfidenceHelp =
+    "least value of --confidence that counts, 1..255";
+
+/// The masks and confidences of --mask and --confidence for these images. Throws Error as
+/// MaskFolder, also where none of the images has one.
+[[nodiscard]] std::vector<MaskFolder> mask_folders(
+    const FrameFolderOptions& options, const std::vector<std::filesystem::path>& images);
 
 /// The workspace for what frames or clouds see: the box around `bounds(i)`, i < count, with half a
 /// voxel more on each side, since a reading on its face would lie outside of it; nothing if none

@@ -18,8 +18,8 @@
 namespace viewgain::app {
 namespace {
 
-constexpr std::array kFlags{"--voxel", "--workspace", "--jump-edge-filter", "--depth-scale",
-                            "--mask"};
+constexpr std::array kFlags{"--voxel", "--workspace",  "--jump-edge-filter", "--depth-scale",
+                            "--mask",  "--confidence", "--least-confidence"};
 
 // What a wrong scale would explain.
 std::string scale_text(const FrameFolder& folder) {

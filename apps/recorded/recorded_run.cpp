@@ -51,7 +51,8 @@ constexpr std::array kFlagsOfMeshes{
 
 FrameMapOptions frame_options(const ReconstructOptions& options) {
   FrameMapOptions frames;
-  frames.folder = {options.mesh, options.sensor, options.depth_scale, options.mask};
+  frames.folder = {options.mesh, options.sensor,     options.depth_scale,
+                   options.mask, options.confidence, options.least_confidence};
   frames.voxel = options.voxel;
   frames.workspace = options.workspace;
   frames.jump_edge_filter = options.jump_edge_filter;
@@ -243,6 +244,8 @@ class Recording {
                           {"sensor", sensor_toml(sensor())},
                           {"depth_scale", frames.depth_scale},
                           {"mask", nullptr},
+                          {"confidence", nullptr},
+                          {"least_confidence", nullptr},
                           {"voxel", grid.voxel_size()},
                           {"workspace", app::to_json(grid.workspace())},
                           {"prior_sigma", grid.prior_sigma()},
@@ -255,6 +258,10 @@ class Recording {
                           {"obstacles", options_.obstacles},
                           {"top", options_.top}};
     if (!options_.mask.empty()) settings["mask"] = options_.mask;
+    if (!options_.confidence.empty()) {
+      settings["confidence"] = options_.confidence;
+      settings["least_confidence"] = options_.least_confidence;
+    }
     if (!options_.reach.empty()) settings["reach"] = options_.reach;
     if (proposal_.support_plane) settings["support_plane"] = *proposal_.support_plane;
     return settings;

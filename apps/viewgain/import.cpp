@@ -9,6 +9,7 @@
 #include "command_line/progress.hpp"
 #include "commands.hpp"
 #include "options/choices.hpp"
+#include "options/frame_folder.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/stopwatch.hpp"
@@ -25,7 +26,8 @@ struct Options {
   std::string sensor;
   std::string intrinsics;
   double max_time_gap = RecordingConfig{}.max_time_gap;
-  std::string mask;
+  std::string mask, confidence;
+  int least_confidence = 1;
   std::string out;
 };
 
@@ -100,7 +102,7 @@ void print_summary(const Options& options, const Recording& recording, const Imp
                 recording.orthonormalized, frames);
   }
   if (recording.rows_reversed) std::printf("rows of the images are reversed: fy was negative\n");
-  if (!options.mask.empty()) {
+  if (!options.mask.empty() || !options.confidence.empty()) {
     std::printf("masks: of %zu frames, %s pixels taken away\n", report.masks,
                 with_commas(report.masked_pixels).c_str());
   }
@@ -113,6 +115,8 @@ void import_frames(const Options& options, const CLI::App& app) {
   ImportConfig config;
   if (!options.sensor.empty()) config.sensor = load_sensor(options.sensor);
   config.masks = options.mask;
+  config.confidences = options.confidence;
+  config.least_confidence = static_cast<std::uint8_t>(options.least_confidence);
   const Recording recording =
       open_recording(options.source, format, config_of(options, format, config.sensor));
   Progress progress("frame", options.common.quiet);
@@ -148,6 +152,12 @@ Command add_import(CLI::App& program) {
   app->add_option("--mask", options->mask,
                   "folder of grayscale PNGs with the names of the recording's images: where they "
                   "are not 0, an image says nothing");
+  app->add_option("--confidence", options->confidence,
+                  "folder of grayscale PNGs with the names of the recording's images: where they "
+                  "are under --least-confidence, an image says nothing");
+  app->add_option("--least-confidence", options->least_confidence, kLeastConfidenceHelp)
+      ->capture_default_str()
+      ->check(CLI::Range(1, 255, "confidence"));
   app->add_option(
          "--out", options->out,
          "folder to write; files that import has left in it are replaced, others are refused")

@@ -195,7 +195,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   if (totals.skipped > 0) {
     std::printf("skipped, since the map has them already: %zu\n", totals.skipped);
   }
-  if (!options.frames.mask.empty()) {
+  if (!options.frames.mask.empty() || !options.frames.confidence.empty()) {
     std::printf("pixels taken away by masks: %s\n", with_commas(totals.masked_pixels).c_str());
   }
   if (options.jump_edge_filter != "off") {
@@ -238,8 +238,8 @@ void check_flags(const Options& options, const CLI::App& app) {
   if (options.clouds.empty()) {
     refuse({"--origin", "--poses"}, "is for clouds (--cloud)");
   } else {
-    refuse({"--depth-scale", "--mask", "--out-of-range", "--carve", "--jump-edge-filter",
-            "--jump-edge-two-sided", "--calibrate-hazard"},
+    refuse({"--depth-scale", "--mask", "--confidence", "--least-confidence", "--out-of-range",
+            "--carve", "--jump-edge-filter", "--jump-edge-two-sided", "--calibrate-hazard"},
            "is for depth frames; clouds carve along lines");
     if (!options.poses.empty()) refuse({"--origin"}, "and --poses exclude each other");
   }

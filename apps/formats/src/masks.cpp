@@ -34,7 +34,8 @@ std::uint64_t apply(const Gray8Image& mask, int width, int height, std::vector<V
 
 }  // namespace
 
-MaskFolder::MaskFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+MaskFolder::MaskFolder(std::filesystem::path folder, std::optional<std::uint8_t> least_confidence)
+    : folder_(std::move(folder)), least_confidence_(least_confidence) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder_, ignored)) {
     throw Error(ErrorCode::io, folder_.string() + ": no such folder");
@@ -47,7 +48,7 @@ void MaskFolder::require_mask_of_any(const std::vector<std::filesystem::path>& i
     return;
   }
   throw Error(ErrorCode::invalid_argument,
-              folder_.string() + ": has no mask of the name of a depth image" +
+              folder_.string() + ": has no image of the name of a depth image" +
                   (images.empty() ? "" : ", as " + images.front().filename().string()));
 }
 
@@ -55,7 +56,11 @@ std::optional<Gray8Image> MaskFolder::mask_of(const std::filesystem::path& image
                                               int height) const {
   const std::filesystem::path file = folder_ / image.filename();
   if (!is_there(file)) return std::nullopt;
-  return read_gray8_png(file, width, height);
+  Gray8Image mask = read_gray8_png(file, width, height);
+  if (least_confidence_) {
+    for (std::uint8_t& pixel : mask.pixels) pixel = pixel < *least_confidence_ ? 1 : 0;
+  }
+  return mask;
 }
 
 std::uint64_t apply_mask(const Gray8Image& mask, GrayImage& depth) {

@@ -387,6 +387,18 @@ TEST_F(Recordings, MasksTakePixelsAway) {
   EXPECT_NE(run_well(call("scannet", {"--mask", "masks"})).find("masks: of 1 frames, 2 pixels"),
             std::string::npos);
 
+  // So do confidences under the least: of 0, 1 and 255 the first, or the first two.
+  result = import_json("scannet", {"--confidence", "masks"});
+  EXPECT_EQ(result["masks"], 1);
+  EXPECT_EQ(load_frame(open_frames(dir / "frames", small_sensor()), 1).depth[101], 0.0F);
+  const int zeros = result["masked_pixels"];
+  EXPECT_GT(zeros, kWidth * kHeight / 2);
+  result = import_json("scannet", {"--confidence", "masks", "--least-confidence", "2"});
+  EXPECT_EQ(result["masked_pixels"], zeros + 1);
+  result = import_json("scannet", {"--confidence", "masks", "--mask", "masks"});
+  EXPECT_EQ(result["masks"], 1);
+  EXPECT_EQ(result["masked_pixels"], zeros + 2);
+
   // Masks lie as the recording's images do.
   fs::remove_all(dir / "rec");
   write_icl_recording();

@@ -417,6 +417,43 @@ TEST_F(Workflow, MasksSayWhatIsNoPartOfTheScene) {
   EXPECT_NE(cloud.err.find("--mask is for depth frames"), std::string::npos) << cloud.err;
 }
 
+TEST_F(Workflow, ConfidencesUnderTheLeastSayNothing) {
+  simulate("frames");
+  // 0, 1, 2 in thirds of the image.
+  Gray8Image thirds{48, 36, std::vector<std::uint8_t>(48 * 36)};
+  for (std::size_t k = 0; k < thirds.pixels.size(); ++k) {
+    thirds.pixels[k] = static_cast<std::uint8_t>(k % 48 / 16);
+  }
+  std::filesystem::create_directories(dir / "sure");
+  write_png(dir / "sure/frame-000002.depth.png", thirds);
+  const auto masked = [this](const Strings& more) {
+    Strings arguments{"integrate", "frames", "--voxel", "0.03", "--json", "--out", "map.vdb"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json::parse(run_well(arguments))["masked_pixels"].get<int>();
+  };
+  EXPECT_EQ(masked({"--confidence", "sure"}), 16 * 36);
+  EXPECT_EQ(masked({"--confidence", "sure", "--least-confidence", "2"}), 32 * 36);
+  EXPECT_EQ(masked({"--confidence", "sure", "--least-confidence", "3"}), 48 * 36);
+  // With masks, too: a pixel goes once.
+  std::filesystem::create_directories(dir / "masks");
+  write_png(dir / "masks/frame-000002.depth.png", thirds);
+  EXPECT_EQ(masked({"--confidence", "sure", "--mask", "masks"}), 48 * 36);
+  std::size_t cases = 0;
+  std::filesystem::create_directories(dir / "empty");
+  for (const Strings& bad : {Strings{"--confidence", "empty"}, Strings{"--confidence", "nowhere"},
+                             Strings{"--confidence", "sure", "--least-confidence", "0"},
+                             Strings{"--confidence", "sure", "--least-confidence", "256"}}) {
+    Strings arguments{"integrate", "frames", "--voxel", "0.03", "--out", "new.vdb"};
+    arguments.insert(arguments.end(), bad.begin(), bad.end());
+    const test::ProgramResult refused = run(arguments);
+    EXPECT_EQ(refused.exit_code, 2) << bad.back();
+    EXPECT_NE(refused.err.find(bad.back()), std::string::npos) << refused.err;
+    EXPECT_FALSE(std::filesystem::exists(dir / "new.vdb"));
+    ++cases;
+  }
+  EXPECT_EQ(cases, 4U);
+}
+
 TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   simulate("frames");
   integrate("frames", "map.vdb");

@@ -139,26 +139,28 @@ GrayImage load_depth(const Recording& recording, std::size_t index) {
 
 ImportReport import_recording(const Recording& recording, const fs::path& out,
                               const ImportConfig& config) {
-  std::optional<MaskFolder> masks;
-  if (!config.masks.empty()) {
-    masks.emplace(config.masks);
-    std::vector<fs::path> images;
-    for (const RecordedFrame& frame : recording.frames) images.push_back(frame.image);
-    masks->require_mask_of_any(images);
+  std::vector<MaskFolder> folders;
+  if (!config.masks.empty()) folders.emplace_back(config.masks);
+  if (!config.confidences.empty()) {
+    folders.emplace_back(config.confidences, config.least_confidence);
   }
+  std::vector<fs::path> images;
+  for (const RecordedFrame& frame : recording.frames) images.push_back(frame.image);
+  for (const MaskFolder& folder : folders) folder.require_mask_of_any(images);
   RecordedFramesWriter writer(out);
   ImportReport report;
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
     const RecordedFrame& frame = recording.frames[i];
     GrayImage depth = load_depth(recording, i);
-    if (masks) {
-      std::optional<Gray8Image> mask = masks->mask_of(frame.image, depth.width, depth.height);
-      if (mask) {
-        ++report.masks;
-        if (recording.rows_reversed) reverse_rows(*mask);
-        report.masked_pixels += apply_mask(*mask, depth);
-      }
+    bool is_masked = false;
+    for (const MaskFolder& folder : folders) {
+      std::optional<Gray8Image> mask = folder.mask_of(frame.image, depth.width, depth.height);
+      if (!mask) continue;
+      is_masked = true;
+      if (recording.rows_reversed) reverse_rows(*mask);
+      report.masked_pixels += apply_mask(*mask, depth);
     }
+    report.masks += is_masked ? 1 : 0;
     report.readings += static_cast<std::uint64_t>(
         std::count_if(depth.pixels.begin(), depth.pixels.end(), [](auto z) { return z != 0; }));
     writer.write_frame(frame.number, depth, frame.T_world_camera);

@@ -90,6 +90,9 @@ struct VIEWGAIN_EXPORT ImportConfig {
   std::optional<Sensor> sensor{};
   /// Folder of masks by the names of the recording's images (see MaskFolder), empty: none.
   std::filesystem::path masks{};
+  /// Folder of confidences likewise, and the least that counts.
+  std::filesystem::path confidences{};
+  std::uint8_t least_confidence = 1;
   /// Called with the count of frames done and of all.
   std::function<void(std::size_t, std::size_t)> progress{};
 };
@@ -97,8 +100,8 @@ struct VIEWGAIN_EXPORT ImportConfig {
 /// What an import came to.
 struct VIEWGAIN_EXPORT ImportReport {
   std::uint64_t readings = 0;       ///< pixels with a depth that were written
-  std::uint64_t masked_pixels = 0;  ///< with a depth, taken away by masks
-  std::size_t masks = 0;            ///< frames that have one
+  std::uint64_t masked_pixels = 0;  ///< with a depth, taken away by masks or confidences
+  std::size_t masks = 0;            ///< frames that have one or the other
 };
 
 /// Writes a recording's frames into a folder that open_frames() reads (RecordedFramesWriter), which
