@@ -129,6 +129,12 @@ ndarray, (..., 2), float64
       });
 }
 
+bool is_same(const Sensor& a, const Sensor& b) {
+  return a.name == b.name && a.camera == b.camera && a.min_range == b.min_range &&
+         a.max_range == b.max_range && a.working_distance == b.working_distance &&
+         a.noise == b.noise && a.T_flange_camera == b.T_flange_camera && a.body_size == b.body_size;
+}
+
 }  // namespace
 
 void bind_sensors(py::module_& module) {
@@ -244,6 +250,14 @@ Returns
 -------
 axial, lateral : float
     [m])")
+      .def(
+          "__eq__", [](const Sensor& a, const Sensor& b) { return is_same(a, b); },
+          py::is_operator())
+      .def("__hash__",
+           [](const Sensor& s) {
+             return py::hash(py::make_tuple(s.name, s.camera.width, s.camera.height, s.camera.fx,
+                                            s.min_range, s.max_range));
+           })
       .def("__repr__", [](const Sensor& s) {
         return "<Sensor " + s.name + ", " + std::to_string(s.camera.width) + "x" +
                std::to_string(s.camera.height) + " px, " + short_text(s.min_range) + "-" +

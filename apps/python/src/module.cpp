@@ -50,6 +50,9 @@ PYBIND11_MODULE(_viewgain, module) {
   using namespace viewgain::python;
   module.doc() = "The C++ part of viewgain; import viewgain instead.";
   module.attr("__version__") = VIEWGAIN_PYTHON_VERSION;
+  // Classes and functions are of the package that users import: so say reprs, help and pickles.
+  const pybind11::object name = module.attr("__name__");
+  module.attr("__name__") = "viewgain";
   bind_errors(module);
   bind_fork();
   bind_control(module);
@@ -65,4 +68,5 @@ PYBIND11_MODULE(_viewgain, module) {
   bind_evaluator(module);
   bind_files(module);
   bind_planner(module);
+  module.attr("__name__") = name;
 }

@@ -12,7 +12,7 @@
 
 Frames and units: a pose is ``T_world_camera``, a 4x4 matrix that maps points of the camera's optical
 frame (x right, y down, z forward) to the world; lengths are metres, gains nats. Surfaces and the whole
-reconstruction loop are in ``viewgain.mesh``, which is GPL-3.0-or-later.
+reconstruction loop are in ``viewgain.mesh``, which is GPL-3.0-or-later. ``viewgain.plot`` draws, by matplotlib.
 """
 
 try:
@@ -22,3 +22,5 @@ except ImportError as error:
 
 from ._viewgain import *
 from ._viewgain import __version__
+from .codes import HitKind, Infeasibility, ViewStatus, VoxelState
+from . import plot

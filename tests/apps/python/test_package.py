@@ -109,14 +109,14 @@ def test_members_are_documented_with_what_they_return(name):
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_classes_say_how_they_are_pickled(name, grid, evaluator, sensor):
+def test_classes_say_how_they_are_pickled(name, evaluator, sensor):
     module = importlib.import_module(name)
     classes = [thing for thing in vars(module).values()
                if inspect.isclass(thing) and not issubclass(thing, Exception)]
     for one in classes:
         assert "__reduce_ex__" in vars(one), one
     assert len(classes) == (18 if name == MODULES[0] else 2)
-    things = [grid, evaluator, evaluator.scene, viewgain.BatchControl(), viewgain.ReachRegion(),
+    things = [evaluator, evaluator.scene, viewgain.BatchControl(), viewgain.ReachRegion(),
               viewgain.FeasibilityChecker(evaluator.scene), viewgain.FrameIntegrator(sensor),
               viewgain.CloudIntegrator(sensor)]
     for thing in things:

@@ -69,6 +69,10 @@ std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_s
   return std::make_shared<SharedGrid>(BeliefGrid::from_states(config, states));
 }
 
+std::shared_ptr<SharedGrid> clone_of(const SharedGrid& grid) {
+  return grid.read([](const BeliefGrid& g) { return std::make_shared<SharedGrid>(g.clone()); });
+}
+
 py::array_t<std::uint8_t> states_of(const SharedGrid& grid) {
   const Index3 dims = grid.layout().dims();
   py::array_t<std::uint8_t> states(Shape{dims.x, dims.y, dims.z});
@@ -155,7 +159,6 @@ ValueError
     Names the value that is out of its bounds; neither sensor nor prior_sigma.
 Error
     More than 65,536 voxels along an axis or 2**40 in all.)");
-  refuse_pickling(grid_class);
   bind_grid_files(grid_class);
   bind_voxels(grid_class);
   grid_class
@@ -202,13 +205,9 @@ ValueError
     prior_sigma.
 Error
     More voxels than a grid can hold.)")
-      .def(
-          "clone",
-          [](const SharedGrid& grid) {
-            return grid.read(
-                [](const BeliefGrid& g) { return std::make_shared<SharedGrid>(g.clone()); });
-          },
-          "A deep copy.\n\nReturns\n-------\nBeliefGrid")
+      .def("clone", &clone_of, "A deep copy.\n\nReturns\n-------\nBeliefGrid")
+      .def("__copy__", &clone_of)
+      .def("__deepcopy__", [](const SharedGrid& grid, const py::dict&) { return clone_of(grid); })
       .def_property_readonly(
           "voxel_size", [](const SharedGrid& grid) { return grid.layout().voxel_size(); },
           "float: [m]")

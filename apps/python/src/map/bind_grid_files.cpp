@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "arrays.hpp"
 #include "gil.hpp"
@@ -29,10 +32,92 @@ void refuse_octomap_name(const std::string& file) {
               file + ": save writes OpenVDB; for an OctoMap .ot call save_octomap");
 }
 
+/// A folder of this process alone, which goes with it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "viewgain-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr) {
+      throw Error(ErrorCode::io, pattern + ": no temporary folder can be made");
+    }
+    path_ = pattern;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] std::string map() const { return (path_ / "map.vdb").string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// OpenVDB's own streams know no seal, so bytes are those of a file.
+py::bytes bytes_of(const SharedGrid& grid) {
+  return grid.read([](const BeliefGrid& g) {
+    const TemporaryFolder folder;
+    save_vdb(g, folder.map());
+    return file_bytes(folder.map());
+  });
+}
+
+std::shared_ptr<SharedGrid> from_bytes(const py::bytes& data) {
+  const auto bytes = data.cast<std::string>();
+  const WithoutGil without_gil;
+  const TemporaryFolder folder;
+  if (!(std::ofstream(folder.map(), std::ios::binary) << bytes << std::flush)) {
+    throw Error(ErrorCode::io, folder.map() + ": cannot be written");
+  }
+  try {
+    return std::make_shared<SharedGrid>(load_vdb(folder.map()));
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::format) throw;
+    throw Error(ErrorCode::format, "these bytes are no map that to_bytes() made");
+  }
+}
+
+// By name, so that pickles outlive the extension's own names. What a subclass adds is not ours to
+// keep.
+py::tuple reduce(const py::object& self, int) {
+  const py::type type = py::type::of(self);
+  if (!type.is(py::type::of<SharedGrid>())) {
+    throw py::type_error("cannot pickle '" + type.attr("__name__").cast<std::string>() +
+                         "' object: it is a subclass of BeliefGrid");
+  }
+  const py::object call = py::module_::import("operator").attr("methodcaller");
+  return py::make_tuple(call("from_bytes", self.attr("to_bytes")()), py::make_tuple(type));
+}
+
 }  // namespace
 
 void bind_grid_files(GridClass& grid_class) {
   grid_class
+      .def("to_bytes", &bytes_of, R"(The map as bytes: those of the file that ``save`` writes.
+
+Goes through a file in the folder for temporary files.
+
+Returns
+-------
+bytes)")
+      .def_static("from_bytes", &from_bytes, py::arg("data"), R"(The map that ``to_bytes`` wrote.
+
+Parameters
+----------
+data : bytes
+
+Returns
+-------
+BeliefGrid
+    With the same ``content_hash()``.
+
+Raises
+------
+Error
+    They are no map or damaged.)")
+      .def("__reduce_ex__", &reduce)
       .def_static(
           "load",
           [](const py::object& path) {

@@ -1,0 +1,66 @@
+"""From numpy depth images to the next view, in cells (`# %%`): run it whole, or cell by cell in an editor that knows them."""
+# %% Depth images: here of a ball before a wall, seen by a made-up camera. Yours come from your camera's driver.
+import matplotlib.pyplot as plt
+import numpy as np
+
+import viewgain
+
+camera = viewgain.PinholeCamera(160, 120, fx=140.0, fy=140.0, cx=79.5, cy=59.5)
+sensor = viewgain.Sensor(camera, min_range=0.2, max_range=3.0, working_distance=0.6,
+                         noise=viewgain.StereoNoise(subpixel=0.1, baseline=0.05))
+
+
+def see(T_world_camera, ball=0.1, wall=-0.5):
+    """Depth along the optical axis [m] of a ball at the origin and the wall y = `wall`; inf: nothing."""
+    rays = camera.rays() @ T_world_camera[:3, :3].T  # world, one metre along the axis
+    eye = T_world_camera[:3, 3]
+    a, b = np.sum(rays**2, axis=-1), rays @ eye
+    root = b**2 - a * (eye @ eye - ball**2)
+    to_ball = np.where(root > 0, (-b - np.sqrt(np.abs(root))) / a, np.inf)
+    with np.errstate(divide="ignore"):
+        to_wall = (wall - eye[1]) / rays[..., 1]
+    depth = np.minimum(np.where(to_ball > 0, to_ball, np.inf), np.where(to_wall > 0, to_wall, np.inf))
+    return depth + np.random.default_rng(1).normal(0, 0.001, depth.shape)
+
+
+start = viewgain.look_at([0.0, 0.6, 0.2], [0.0, 0.0, 0.0])
+viewgain.plot.depth(see(start)).figure.savefig("depth.png")
+
+# %% Map: all is unknown until frames go in.
+grid = viewgain.BeliefGrid(voxel_size=0.005, workspace=[[-0.15, -0.15, -0.15], [0.15, 0.15, 0.15]], sensor=sensor)
+integrator = viewgain.FrameIntegrator(sensor)
+print(integrator.integrate(grid, see(start), start))
+print(grid)
+
+# %% Candidates: 500 poses round the ball, less those that the robot cannot reach or in which the camera would collide.
+poses = viewgain.sphere_poses(500, 0.5)
+scene = viewgain.VoxelScene(grid)
+reach = viewgain.ReachRegion(half_spaces=[[0, 1, 0, -0.35]])  # not behind the wall
+possible = viewgain.FeasibilityChecker(scene, reach=reach).feasible(poses)
+poses = poses[possible]
+print(f"{len(poses)} of 500 are possible")
+
+# %% Gains: how much is each expected to add?
+evaluator = viewgain.GainEvaluator(scene, sensor, gain="surface")
+gains = evaluator.evaluate(poses)
+viewgain.plot.gains(poses, gains, label="new surface [m²]").figure.savefig("gains.png")
+
+# %% Why: what the best view sees of the map, and where its gain comes from.
+best = poses[np.argmax(gains)]
+figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.5), layout="constrained")
+viewgain.plot.depth(evaluator.depth(best), axes=left)
+viewgain.plot.contributions(viewgain.GainEvaluator(scene, sensor), best, axes=right)
+figure.savefig("why.png")
+
+# %% Go there, and so on: four views, and how much of the box they leave unknown.
+pose, known = best, []
+for _ in range(4):
+    integrator.integrate(grid, see(pose), pose)
+    known.append(1 - grid.statistics()["unknown"] / np.prod(grid.shape))
+    scene = scene.update(grid)
+    evaluator = evaluator.with_scene(scene)
+    pose = poses[evaluator.race(poses, 1)[0]]
+axes = viewgain.plot.coverage(known, label="of the workspace known")
+axes.set_ylabel("known [%]")
+axes.figure.savefig("known.png")
+print(f"{100 * known[-1]:.0f} % of the workspace known")

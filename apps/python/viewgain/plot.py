@@ -1,0 +1,145 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of poses, gains and maps, by matplotlib, which is imported when one is drawn.
+
+Each function draws into ``axes``, or a new figure's, and returns them.
+"""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from . import GainEvaluator
+
+
+def _axes_of(axes: Any) -> Any:
+    if axes is not None:
+        return axes
+    import matplotlib.pyplot as plt
+
+    return plt.figure(layout="constrained").add_subplot()
+
+
+def _image(axes: Any, image: np.ma.MaskedArray, label: str) -> Any:
+    axes = _axes_of(axes)
+    axes.figure.colorbar(axes.imshow(image, cmap="viridis"), ax=axes, label=label)
+    axes.set_xlabel("u [px]")
+    axes.set_ylabel("v [px]")
+    return axes
+
+
+def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (0.0, 0.0, 0.0),
+          label: str = "expected gain [nat]", axes: Any = None) -> Any:
+    """Values of poses round a centre, by azimuth and elevation; the best is marked. Poses with NaN are left out.
+
+    Parameters
+    ----------
+    T_world_camera : array_like, (n, 4, 4)
+    values : array_like, (n,)
+    center : array_like, (3,)
+        What azimuth and elevation are seen from [m].
+    label : str
+        What the values are.
+    axes : matplotlib.axes.Axes, optional
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    poses, numbers = np.asarray(T_world_camera, float), np.asarray(values, float)
+    if poses.ndim != 3 or poses.shape[1:] != (4, 4) or numbers.shape != poses.shape[:1]:
+        raise ValueError(f"values of the shape {numbers.shape} for poses of the shape {poses.shape}: not one a pose")
+    known = np.isfinite(numbers)
+    if not known.any():
+        raise ValueError("no value is a number")
+    x, y, z = (poses[known, :3, 3] - np.asarray(center, float)).T
+    azimuth, elevation = np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+    axes = _axes_of(axes)
+    drawn = axes.scatter(azimuth, elevation, c=numbers[known], s=12)
+    best = int(np.argmax(numbers[known]))
+    axes.plot(azimuth[best], elevation[best], "o", markersize=12, markerfacecolor="none", markeredgecolor="red", label="best")
+    axes.figure.colorbar(drawn, ax=axes, label=label)
+    axes.set_xlabel("azimuth [deg]")
+    axes.set_ylabel("elevation [deg]")
+    axes.legend(loc="upper right")
+    return axes
+
+
+def depth(image: ArrayLike, *, axes: Any = None) -> Any:
+    """A depth image; pixels that are 0, infinite or no number are left white.
+
+    Parameters
+    ----------
+    image : array_like, (height, width)
+        Along the optical axis [m].
+    axes : matplotlib.axes.Axes, optional
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    pixels = np.asarray(image, float)
+    if pixels.ndim != 2:
+        raise ValueError(f"a depth image has two dimensions, this one the shape {pixels.shape}")
+    return _image(axes, np.ma.masked_where(~np.isfinite(pixels) | (pixels <= 0), pixels), "depth [m]")
+
+
+def contributions(evaluator: GainEvaluator, T_world_camera: ArrayLike, *, axes: Any = None) -> Any:
+    """Where in a view's image its gain comes from: each ray's share of the voxel in which it ends.
+
+    Parameters
+    ----------
+    evaluator : GainEvaluator
+        By the paper's gain; the others' rays do not end in one voxel.
+    T_world_camera : array_like, (4, 4)
+    axes : matplotlib.axes.Axes, optional
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ValueError
+        The evaluator's gain is another.
+    """
+    if evaluator.gain != "paper":
+        raise ValueError(f"contributions by the gain {evaluator.gain!r}: only by 'paper' a ray ends in one voxel")
+    hits = evaluator.trace(T_world_camera)
+    shares = {tuple(row["voxel"]): row["gain"] / row["rays"] for row in evaluator.contributions(T_world_camera)}
+    kinds, voxels = hits["kind"].ravel(), hits["voxel"].reshape(-1, 3)
+    image = np.array([shares.get(tuple(voxel), 0.0) if kind in (1, 2) else np.nan for kind, voxel in zip(kinds, voxels)])
+    image = image.reshape(hits.shape)
+    return _image(axes, np.ma.masked_invalid(image), "gain of the ray [nat]")
+
+
+def coverage(values: ArrayLike, *, label: str | None = None, axes: Any = None) -> Any:
+    """Coverage, or another share, by the number of views. Call it again with the axes for further curves.
+
+    Parameters
+    ----------
+    values : array_like, (n,)
+        In [0, 1], after 1, 2, ... n views.
+    label : str, optional
+        Name of the curve.
+    axes : matplotlib.axes.Axes, optional
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    shares = np.asarray(values, float)
+    if shares.ndim != 1:
+        raise ValueError(f"coverage by views has one dimension, this has the shape {shares.shape}")
+    axes = _axes_of(axes)
+    axes.plot(np.arange(1, len(shares) + 1), 100 * shares, "o-", label=label)
+    axes.set_xlabel("views")
+    axes.set_ylabel("coverage [%]")
+    axes.set_ylim(0, 100)
+    if label is not None:
+        axes.legend()
+    return axes
