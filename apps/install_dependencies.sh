@@ -2,6 +2,7 @@
 # Installs the Debian packages, those that are missing only, that are needed
 #   apps/install_dependencies.sh          to build and run the program, and for the demo's mesh
 #   apps/install_dependencies.sh --tests  for tests, benchmarks, examples, the Python package and packages as well
+#   apps/install_dependencies.sh --docs   for all that and the documentation site (target `docs`)
 # Asks nothing; uses sudo only if not root.
 set -euo pipefail
 
@@ -15,15 +16,20 @@ packages=(
 npm --version >/dev/null 2>&1 || packages+=(nodejs npm)
 case "${1:-}" in
   "") ;;
-  --tests)
+  --tests | --docs)
     packages+=(
       pkg-config python3 pybind11-dev python3-dev python3-numpy python3-pytest python3-matplotlib
       libgtest-dev liboctomap-dev libompl-dev libbenchmark-dev libopenvdb-tools groff-base
       chromium-headless-shell
     )
     ;;
-  *) echo "$0: no option $1; there is --tests" >&2; exit 2 ;;
+  *) echo "$0: no option $1; there are --tests and --docs" >&2; exit 2 ;;
 esac
+if [ "${1:-}" = --docs ]; then
+  packages+=(
+    doxygen doxygen-awesome-css python3-sphinx python3-myst-parser furo libjs-mathjax
+  )
+fi
 
 missing=()
 for package in "${packages[@]}"; do

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes every picture of the READMEs from the program's own output: apps/gallery/ and perf/*.png. Needs a
+# Makes every picture of the READMEs and the site from the program's own output: apps/gallery/, perf/*.png, apps/docs/figures/*.png. Needs a
 # full build and some minutes of a quiet machine; coverage, which makes a study, some hours.
-#   apps/make_pictures.sh [demo] [gains] [idea] [speed] [coverage] [approximate] [scaling]; default: all
+#   apps/make_pictures.sh [demo] [gains] [idea] [speed] [coverage] [approximate] [scaling] [depth_images]; default: all
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export PATH=$PWD/build/release/bin:$PATH PYTHONPATH=$PWD/build/release/python
@@ -10,7 +10,7 @@ gallery=apps/gallery
 work=build/pictures
 mkdir -p "$work"
 wanted=("$@")
-[ "${#wanted[@]}" -gt 0 ] || wanted=(demo gains idea speed coverage approximate scaling)
+[ "${#wanted[@]}" -gt 0 ] || wanted=(demo gains idea speed coverage approximate scaling depth_images)
 
 # What demo.sh makes, kept for the pictures that show it.
 demo() {
@@ -52,6 +52,10 @@ for picture in "${wanted[@]}"; do
     scaling)
       viewgain-bench scaling --json >"$work/scaling.json"
       "$python" perf/plot.py "$work/scaling.json" perf/scaling.png ;;
+    depth_images)
+      examples=$PWD/apps/examples
+      (cd "$work" && MPLBACKEND=agg "$python" "$examples/depth_images.py")
+      for part in gains why; do cp "$work/$part.png" "apps/docs/figures/depth_images_$part.png"; done ;;
     *) echo "apps/make_pictures.sh: no picture $picture" >&2; exit 2 ;;
   esac
 done

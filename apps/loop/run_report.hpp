@@ -13,7 +13,7 @@
 
 namespace viewgain::app {
 
-/// What a run came to, for run.json, --json and people. apps/README.md names the keys.
+/// What a run came to, for run.json, --json and people. apps/docs/reference/json.md names the keys.
 class RunReport {
  public:
   explicit RunReport(const PolicyConfig& policy);

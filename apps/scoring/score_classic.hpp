@@ -40,7 +40,7 @@ struct ClassicScores {
   [[nodiscard]] std::vector<std::size_t> best(std::size_t top) const;
   /// The contents of the file of `score --out`: index, a column for each gain, status.
   [[nodiscard]] std::string csv() const;
-  /// One JSON object; apps/README.md names the keys.
+  /// One JSON object; apps/docs/reference/json.md names the keys.
   void print_json(std::size_t top) const;
   /// For people.
   void print_table(std::size_t top) const;

@@ -54,7 +54,7 @@ struct Scores {
   [[nodiscard]] std::optional<std::size_t> winner() const;
 };
 
-/// The contents of the file of `score --out`; apps/README.md names the columns.
+/// The contents of the file of `score --out`; apps/docs/reference/json.md names the columns.
 [[nodiscard]] std::string csv_of(const Scores& scores, GainModel model);
 
 /// What was asked and what came out, for the two ways of printing.
@@ -68,7 +68,7 @@ struct ScoreReport {
   const Scores& scores;
   double seconds = 0;
 
-  /// One JSON object; apps/README.md names the keys.
+  /// One JSON object; apps/docs/reference/json.md names the keys.
   void print_json() const;
   /// For people.
   void print_table() const;

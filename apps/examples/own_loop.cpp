@@ -1,0 +1,94 @@
+// Algorithm 1 with two parts of one's own: candidates on a ring that comes nearer, and a choice
+// that takes the best gain a metre of way.
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <viewgain/planner/map_model.hpp>
+#include <viewgain/planner/simulated_acquisition.hpp>
+#include <viewgain/viewgain.hpp>
+
+using namespace viewgain;
+
+// Proposes a ring of views round the middle, each time 2 cm nearer.
+class NearingRing : public ViewpointGeneration {
+ public:
+  Proposal generate(const Pose&) override {
+    Proposal proposal;
+    for (const Pose& pose : orbit_poses(24, radius_, 0.4)) {
+      proposal.candidates.push_back({pose, "ring"});
+    }
+    radius_ -= 0.02;
+    return proposal;
+  }
+
+ private:
+  double radius_ = 0.55;  // [m]
+};
+
+// The representation is viewgain's own; the loop asks how far it is.
+class Map : public RepresentationUpdate {
+ public:
+  Map(const Sensor& sensor, const MapModelConfig& config) : model(sensor, config) {}
+  ModelProgress update(const Measurements& measurements) override {
+    model.update(measurements);
+    return model.progress();
+  }
+  MapModel model;
+};
+
+// Takes the candidate with the most nats a metre of way.
+class GainPerMetre : public DecisionMaking {
+ public:
+  explicit GainPerMetre(const Map& map) : map_(map) {}
+  std::optional<Decision> decide(const Pose& from, std::span<const Candidate> candidates) override {
+    const GainEvaluator evaluator(map_.model.scene(), map_.model.sensor());
+    Decision best;
+    double best_rate = 0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const Pose& pose = candidates[i].T_world_camera;
+      const double way = (pose.translation() - from.translation()).norm() + 0.05;  // [m]
+      const double gain = evaluator.evaluate(pose).gain;
+      if (gain / way <= best_rate) continue;
+      best_rate = gain / way;
+      best.candidate = i;
+      best.gain = gain;
+    }
+    if (best_rate == 0) return {};
+    return best;
+  }
+
+ private:
+  const Map& map_;
+};
+
+int main() try {
+  // The object is a box of 16 cm, seen by a simulated SR4000.
+  TriangleMesh box;
+  for (int i = 0; i < 8; ++i) {
+    box.vertices.push_back({i & 1 ? 0.08 : -0.08, i & 2 ? 0.08 : -0.08, i & 4 ? 0.08 : -0.08});
+  }
+  box.triangles.assign(kBoxTriangles.begin(), kBoxTriangles.end());
+  const Sensor sensor = sensor_preset("sr4000");
+  SimulatedAcquisition camera(
+      SimulatedSensor(std::make_shared<const SurfaceScene>(std::move(box)), sensor), 1, {});
+
+  MapModelConfig config;
+  config.grid.voxel_size = 0.01;
+  config.grid.workspace = {{-0.15, -0.15, -0.15}, {0.15, 0.15, 0.15}};
+  config.grid.prior_sigma = default_prior_sigma(config.grid.voxel_size, sensor);
+  Map map(sensor, config);
+  NearingRing ring;
+  GainPerMetre choice(map);
+  PlanningConfig rules;
+  rules.max_views = 5;
+  const PlanningResult result =
+      active_view_planning(look_at({0.5, 0.1, 0.2}, {0, 0, 0}), camera, map, ring, choice, rules);
+  for (const ViewRecord& view : result.views) {
+    std::printf("view %zu: %llu voxels unknown, %.2f m on the way\n", view.index,
+                static_cast<unsigned long long>(view.progress.unknown_voxels), view.travelled);
+  }
+  std::printf("ended by %s\n", std::string(stop_reason_name(result.reason)).c_str());
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "own_loop: %s\n", error.what());
+  return 2;
+}
