@@ -22,6 +22,10 @@ CALLS = {
     "score --approximate": "score map.vdb --sphere 20,0.6 --approximate 0.2",
     "score --gain": "score map.vdb --sphere 20,0.6 --gain unknown_count",
     "reconstruct": "reconstruct meshes/camel.off --size 0.35 --sensor sr4000 --voxel 0.01 --max-views 2 --out run",
+    "reconstruct FRAMES_DIR": "reconstruct frames --voxel 0.01 --pictures off --out model",
+    "next": "next run/map.vdb --top 2",
+    "follow": "follow frames --voxel 0.01 --workspace=-0.2,-0.2,-0.2,0.2,0.2,0.2 --out followed",
+    "calibrate": "calibrate wall --sensor sr4000 --wall 0,0,1,1 --out calibrated.toml",
     "candidates": "candidates run/map.vdb --out candidates.txt --generator boundary --gain combined",
     "surface": "surface run/map.vdb --out surface.ply --truth meshes/camel.off --size 0.35 --recenter on",
     "render": "render run --what sigma --out sigma.png",
@@ -39,6 +43,8 @@ max_views = 2
 views = [1]
 candidates = 4
 """
+WALL = "OFF\n4 2 0\n-3 -3 1\n3 -3 1\n3 3 1\n-3 3 1\n3 0 1 2\n3 0 2 3\n"
+POSES = "0 0 0 0 0 0 0 1\n1 0 0 0.3 0 0 0 1\n"
 # Objects whose keys are data: reasons, stages, gains by name.
 OPEN = {"dropped", "final_dropped", "seconds"}
 
@@ -69,8 +75,13 @@ def main():
     gains = set()
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([source / "apps/extract_mesh.sh", "camel.off", f"{folder}/meshes"], check=True)
-        pathlib.Path(folder, "spec.toml").write_text(SPEC, encoding="utf-8")
+        for file, text in {"spec.toml": SPEC, "wall.off": WALL, "poses.txt": POSES}.items():
+            pathlib.Path(folder, file).write_text(text, encoding="utf-8")
+        subprocess.run([program, *"simulate wall.off --poses poses.txt --sensor sr4000 --out wall".split()], cwd=folder,
+                       capture_output=True, check=True)
         for name, call in CALLS.items():
+            if name == "follow":
+                pathlib.Path(folder, "frames/done").touch()
             result = subprocess.run([program, *call.split(), "--json", "--quiet"], cwd=folder, capture_output=True, text=True)
             assert result.returncode == 0, f"{call}: {result.stderr}"
             output = json.loads(result.stdout)
