@@ -132,7 +132,9 @@ ndarray, (..., 2), float64
 bool is_same(const Sensor& a, const Sensor& b) {
   return a.name == b.name && a.camera == b.camera && a.min_range == b.min_range &&
          a.max_range == b.max_range && a.working_distance == b.working_distance &&
-         a.noise == b.noise && a.T_flange_camera == b.T_flange_camera && a.body_size == b.body_size;
+         a.noise == b.noise && a.T_flange_camera == b.T_flange_camera &&
+         a.body_size == b.body_size && a.range_calibration == b.range_calibration &&
+         a.pose_sigma == b.pose_sigma;
 }
 
 }  // namespace

@@ -46,12 +46,13 @@ def test_sensors_are_equal_by_value(sensor):
                        ("noise", viewgain.ConstantNoise()), ("camera", others[0].camera)):
         others.append(viewgain.Sensor(**{**keywords, key: value}, body_size=sensor.body_size))
     others += [viewgain.Sensor(**keywords, body_size=[0.1, 0.1, 0.2]),
-               viewgain.Sensor(**keywords, body_size=sensor.body_size, T_flange_camera=np.eye(4))]
-    assert len(others) == 12
+               viewgain.Sensor(**keywords, body_size=sensor.body_size, T_flange_camera=np.eye(4)),
+               viewgain.Sensor(**keywords, body_size=sensor.body_size, range_calibration=[[1.0, 0.01], [2.0, 0.02]])]
+    assert len(others) == 13
     for other in others:
         assert sensor != other
     assert sensor != "sr4000"
-    assert len({sensor, again, *others}) == 13
+    assert len({sensor, again, *others}) == 14
 
 
 def test_a_grid_goes_through_bytes_and_pickles(grid, sensor):

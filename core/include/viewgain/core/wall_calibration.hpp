@@ -19,7 +19,7 @@ namespace viewgain {
 
 /// What a frame of a wall gave to a calibration. Its readings are those used and those dropped.
 struct VIEWGAIN_EXPORT WallFrameFigures {
-  std::string name;
+  std::string name;                 ///< of the frame, for people
   double distance = 0;              ///< of the wall along the optical axis [m]
   double tilt = 0;                  ///< between the optical axis and the wall's normal [rad]
   std::uint64_t used = 0;           ///< readings
@@ -35,13 +35,13 @@ struct VIEWGAIN_EXPORT WallFrameFigures {
 /// pixels, averaged over steps of the range a frame, weighted by readings; `before` and `after` are
 /// of the same steps, those within the ranges that the other frames cover.
 struct VIEWGAIN_EXPORT WallCalibrationResult {
-  RangeCalibration calibration;
+  RangeCalibration calibration;      ///< the table
   double nearest = 0, farthest = 0;  ///< the true ranges that were seen [m]
   double widest_gap = 0;             ///< between true ranges that were seen [m]
   double rms_before = 0;             ///< of the systematic error [m]
   std::optional<double> rms_after;   ///< each frame with the table of the others; if they tell [m]
   double rms_noise = 0;              ///< what the readings' noise alone would leave [m]
-  std::vector<WallFrameFigures> frames;
+  std::vector<WallFrameFigures> frames;  ///< in the order given
 };
 
 /// Measures a depth camera's systematic, distance-dependent error from frames of a flat wall (after

@@ -22,9 +22,9 @@ namespace viewgain {
 
 /// How a folder is watched.
 struct VIEWGAIN_EXPORT FrameWatchConfig {
-  std::string sensor{};                 ///< as of open_frames()
-  std::optional<double> depth_scale{};  ///< likewise [m per unit]
-  OutOfRangeMeaning out_of_range = OutOfRangeMeaning::carve;
+  std::string sensor{};                                       ///< as of open_frames()
+  std::optional<double> depth_scale{};                        ///< likewise [m per unit]
+  OutOfRangeMeaning out_of_range = OutOfRangeMeaning::carve;  ///< likewise
   /// Frames that are not to be given out again, each as frame_identity() has it.
   std::set<std::string> taken{};
   /// Somebody may be writing files that are younger: what is wrong with them is not yet wrong.
@@ -33,16 +33,16 @@ struct VIEWGAIN_EXPORT FrameWatchConfig {
 
 /// A frame whose files are all there and whole.
 struct VIEWGAIN_EXPORT WatchedFrame {
-  std::uint64_t number = 0;
+  std::uint64_t number = 0;     ///< in its files' names
   std::filesystem::path image;  ///< the depth image
   std::string identity;         ///< as frame_identity() has it
-  DepthFrame frame;
-  Pose T_world_camera;
+  DepthFrame frame;             ///< as load_frame() has it
+  Pose T_world_camera;          ///< where it was taken
 };
 
 /// A frame that cannot be used as its files are.
 struct VIEWGAIN_EXPORT BadFrame {
-  std::uint64_t number = 0;
+  std::uint64_t number = 0;  ///< in its files' names
   /// truncated (an image without an end), image (damaged, or of another kind), size (another one
   /// than the sensor's), pose (no rigid transform of finite numbers), changed (its number was taken
   /// with other contents).
@@ -69,8 +69,10 @@ struct VIEWGAIN_EXPORT FolderLook {
 /// Thread safety: one call at a time.
 class VIEWGAIN_EXPORT FrameWatch {
  public:
+  /// Of a look.
   using Time = std::chrono::steady_clock::time_point;
 
+  /// Does not look at the folder yet.
   FrameWatch(std::filesystem::path dir, FrameWatchConfig config);
   ~FrameWatch();
   FrameWatch(FrameWatch&&) noexcept;

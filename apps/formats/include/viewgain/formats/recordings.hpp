@@ -90,9 +90,9 @@ struct VIEWGAIN_EXPORT ImportConfig {
   std::optional<Sensor> sensor{};
   /// Folder of masks by the names of the recording's images (see MaskFolder), empty: none.
   std::filesystem::path masks{};
-  /// Folder of confidences likewise, and the least that counts.
+  /// Folder of confidences likewise.
   std::filesystem::path confidences{};
-  std::uint8_t least_confidence = 1;
+  std::uint8_t least_confidence = 1;  ///< that counts
   /// Called with the count of frames done and of all.
   std::function<void(std::size_t, std::size_t)> progress{};
 };
