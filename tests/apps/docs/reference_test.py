@@ -46,7 +46,7 @@ candidates = 4
 WALL = "OFF\n4 2 0\n-3 -3 1\n3 -3 1\n3 3 1\n-3 3 1\n3 0 1 2\n3 0 2 3\n"
 POSES = "0 0 0 0 0 0 0 1\n1 0 0 0.3 0 0 0 1\n"
 # Objects whose keys are data: reasons, stages, gains by name.
-OPEN = {"dropped", "final_dropped", "seconds"}
+OPEN = {"dropped", "final_dropped", "seconds", "settings", "versions"}
 
 
 def keys_of(value, under=""):
