@@ -22,6 +22,7 @@ using detail::WallFit;
 using detail::WallFrame;
 
 constexpr double kSameDistance = 1e-3;  // [m]
+constexpr double kFew = 0.005;          // of the blocks at either end are too few to tell a curve
 
 // Blocks of a frame in one step of the range.
 struct Step {
@@ -93,9 +94,9 @@ RangeCalibration table_of(const WallFit& fit, double nearest, double farthest) {
 void check_enough(const std::vector<WallFrame>& frames) {
   const auto refuse = [](const std::string& what) {
     throw Error(ErrorCode::invalid_argument,
-                "a calibration needs frames at two distances: " + what);
+                "a calibration needs frames of a wall at two distances, " + what);
   };
-  if (frames.size() < 2) refuse("there is " + std::to_string(frames.size()) + " frame of a wall");
+  if (frames.size() < 2) refuse("not " + std::to_string(frames.size()) + " in all");
   const auto distance = [](const WallFrame& frame) { return 1 / frame.plane.z(); };
   const bool is_one = std::all_of(frames.begin(), frames.end(), [&](const WallFrame& frame) {
     return !frame.tilt_is_known &&
@@ -167,6 +168,12 @@ WallCalibrationResult WallCalibration::solve() const {
       (is_used ? figures.used : figures.off_wall) += frame.blocks[b].readings;
       if (is_used) seen.push_back(detail::range_to(plane, frame.blocks[b].ray));
     }
+    if (figures.used <= figures.off_wall) {
+      throw Error(ErrorCode::invalid_argument,
+                  frame.name +
+                      ": most of its readings do not fit to the other frames'; is its wall " +
+                      "where it is said to be?");
+    }
     const Squares own = squares_of(fit, frame, f);
     figures.rms_before = rms_on_wall(fit, frame, f);
     if (own.readings > 0) {
@@ -177,6 +184,9 @@ WallCalibrationResult WallCalibration::solve() const {
     result.frames.push_back(std::move(figures));
   }
   std::sort(seen.begin(), seen.end());
+  const auto few = static_cast<std::size_t>(kFew * static_cast<double>(seen.size()));
+  seen = {seen.begin() + static_cast<std::ptrdiff_t>(few),
+          seen.end() - static_cast<std::ptrdiff_t>(few)};
   result.nearest = seen.front();
   result.farthest = seen.back();
   for (std::size_t i = 1; i < seen.size(); ++i) {

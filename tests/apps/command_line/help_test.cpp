@@ -130,7 +130,7 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
   write("scene/pose/0.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   write("scene/intrinsic/intrinsic_depth.txt", "4 0 2 0\n0 4 1 0\n0 0 1 0\n0 0 0 1\n");
   std::filesystem::create_directories(dir / "wall");
-  for (const std::uint16_t metres : {1, 2}) {
+  for (const int metres : {1, 2}) {
     const std::string name = "wall/frame-00000" + std::to_string(metres) + ".depth.png";
     const auto millimetres = static_cast<std::uint16_t>(1000 * metres);
     write_png(dir / name, GrayImage{176, 144, std::vector<std::uint16_t>(176 * 144, millimetres)});

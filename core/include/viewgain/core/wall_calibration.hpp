@@ -36,7 +36,7 @@ struct VIEWGAIN_EXPORT WallFrameFigures {
 /// of the same steps, those within the ranges that the other frames cover.
 struct VIEWGAIN_EXPORT WallCalibrationResult {
   RangeCalibration calibration;      ///< the table
-  double nearest = 0, farthest = 0;  ///< the true ranges that were seen [m]
+  double nearest = 0, farthest = 0;  ///< true ranges between which 99 % of the blocks lie [m]
   double widest_gap = 0;             ///< between true ranges that were seen [m]
   double rms_before = 0;             ///< of the systematic error [m]
   std::optional<double> rms_after;   ///< each frame with the table of the others; if they tell [m]
@@ -46,10 +46,9 @@ struct VIEWGAIN_EXPORT WallCalibrationResult {
 
 /// Measures a depth camera's systematic, distance-dependent error from frames of a flat wall (after
 /// the paper's ref. [7], Fuchs and Hirzinger, CVPR 2008): a smooth curve over the true range,
-/// fitted robustly to the medians of blocks of pixels, by as much smoothing as foretells frames
-/// best that were left out. Where a wall's distance is known and not its tilt, tilts are fitted
-/// with the curve. A frame tells of all ranges that it shows: walls seen at a slant cover more of
-/// them. Thread safety: none.
+/// fitted robustly to the medians of blocks of pixels, as smooth as it is the likeliest. Where a
+/// wall's distance is known and not its tilt, tilts are fitted with the curve. A frame tells of all
+/// ranges that it shows: walls seen at a slant cover more of them. Thread safety: none.
 class VIEWGAIN_EXPORT WallCalibration {
  public:
   /// The sensor's own table does not count; its noise model says how far readings are trusted.
@@ -71,7 +70,8 @@ class VIEWGAIN_EXPORT WallCalibration {
            std::string name);
 
   /// The table from the frames so far. Throws Error(invalid_argument) for fewer than two frames, or
-  /// all at one known distance, and for an error that is no function of the range. Costs about a
+  /// all at one known distance, a frame that does not fit to the others, and an error that is no
+  /// function of the range. Costs about a
   /// second for 50 frames.
   [[nodiscard]] WallCalibrationResult solve() const;
 
