@@ -21,13 +21,20 @@ Run::Run(RunSetup setup, std::size_t frames_per_view, const ExecConfig& exec)
                                            exec)),
       acquisition_(SimulatedSensor(setup_.stage.scene, setup_.sensor, setup_.simulation, exec),
                    frames_per_view, setup_.planning.stop),
+      reported_(acquisition_, setup_.pose_noise),
       model_(setup_.sensor, setup_.model, truth_, exec),
       generation_(model_, setup_.sensor, setup_.generation, exec),
       decision_(model_, generation_, setup_.sensor, with_object(setup_.policy, setup_, truth_),
-                exec) {}
+                exec) {
+  if (!setup_.registration) return;
+  registered_.emplace(model_, setup_.model.map, setup_.registration->sigma_translation,
+                      setup_.registration->sigma_rotation, exec);
+}
 
 PlanningResult Run::go(const std::function<void(const ViewRecord&)>& observer) {
-  return active_view_planning(setup_.start, acquisition_, model_, generation_, decision_,
+  RepresentationUpdate& representation =
+      registered_ ? static_cast<RepresentationUpdate&>(*registered_) : model_;
+  return active_view_planning(setup_.start, reported_, representation, generation_, decision_,
                               setup_.planning, observer);
 }
 

@@ -4,12 +4,16 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "run_setup.hpp"
 #include "viewgain/core/planning.hpp"
+#include "viewgain/planner/pose_noise.hpp"
 #include "viewgain/planner/simulated_acquisition.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
+#include "viewgain/planner_mesh/registered_model.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
 
@@ -30,6 +34,10 @@ class Run {
   [[nodiscard]] const RunSetup& setup() const noexcept { return setup_; }
   [[nodiscard]] const std::shared_ptr<const Truth>& truth() const noexcept { return truth_; }
   [[nodiscard]] const SimulatedAcquisition& acquisition() const noexcept { return acquisition_; }
+  /// What registration did to each view; empty without it.
+  [[nodiscard]] std::vector<FrameRegistration> registrations() const {
+    return registered_ ? registered_->registrations() : std::vector<FrameRegistration>{};
+  }
   [[nodiscard]] const SurfaceModel& model() const noexcept { return model_; }
   [[nodiscard]] const CandidateGeneration& generation() const noexcept { return generation_; }
   [[nodiscard]] CandidateGeneration& generation() noexcept { return generation_; }
@@ -39,7 +47,9 @@ class Run {
   RunSetup setup_;
   std::shared_ptr<const Truth> truth_;
   SimulatedAcquisition acquisition_;
+  MisreportedAcquisition reported_;
   SurfaceModel model_;
+  std::optional<RegisteredModel> registered_;
   CandidateGeneration generation_;
   PolicyDecision decision_;
 };

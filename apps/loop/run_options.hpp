@@ -47,6 +47,8 @@ struct ReconstructOptions {
   std::string body;
   std::string up = "z";
   SensingOptions sensing;
+  std::string register_frames = "off";
+  std::string pose_sigma;
   std::size_t frames_per_view = 1;
   std::string jump_edge_filter = "5";
   std::string refine = "on";

@@ -2,14 +2,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run_report.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <utility>
 
 #include "options/gain_names.hpp"
 #include "options/json_text.hpp"
 #include "options/values.hpp"
+#include "registration_json.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -92,6 +95,10 @@ void RunReport::add_view(const ViewRecord& record, const QualityFigures& quality
   views_.push_back({record, quality, realised_area, std::move(own)});
 }
 
+void RunReport::set_registrations(std::vector<FrameRegistration> registrations) {
+  registrations_ = std::move(registrations);
+}
+
 std::string RunReport::progress_line() const {
   const Entry& e = views_.back();
   std::string text =
@@ -142,6 +149,9 @@ ordered_json RunReport::entry_json(std::size_t index) const {
       e.record.decision ? ordered_json(e.record.decision->best_area) : ordered_json();
   put_figures(json, e.quality, e.record.progress);
   json["travelled"] = e.record.travelled;
+  if (index < registrations_.size()) {
+    json["registration"] = app::to_json(registrations_[index]);
+  }
   json["seconds"] = to_json(e.seconds);
   return json;
 }
@@ -154,6 +164,17 @@ const Proposal& RunReport::last_proposal() const {
   return views_.back().record.proposal;
 }
 
+ordered_json RunReport::registration_counts() const {
+  ordered_json json;
+  for (const auto status : {RegistrationStatus::registered, RegistrationStatus::too_little_overlap,
+                            RegistrationStatus::refused}) {
+    json[registration_status_name(status)] =
+        std::count_if(registrations_.begin(), registrations_.end(),
+                      [&](const FrameRegistration& r) { return r.status == status; });
+  }
+  return json;
+}
+
 ordered_json RunReport::json(StopReason reason) const {
   const Entry& last = views_.back();
   ordered_json json{{"stop_reason", stop_reason_name(reason)}, {"views", views_.size()}};
@@ -163,6 +184,7 @@ ordered_json RunReport::json(StopReason reason) const {
   const Proposal& proposal = last_proposal();
   json["final_candidates"] = proposal.candidates.size();
   json["final_dropped"] = to_json(proposal.dropped);
+  if (!registrations_.empty()) json["registration"] = registration_counts();
   json["seconds"] = to_json(totals_);
   json["per_view"] = ordered_json::array();
   for (std::size_t i = 0; i < views_.size(); ++i) json["per_view"].push_back(entry_json(i));
@@ -190,6 +212,13 @@ std::string RunReport::text(StopReason reason) const {
       "%zu outliers of %zu points\n",
       q.consistency.mean_clipped, q.consistency.median, q.consistency.above_9,
       q.consistency.outliers, q.consistency.points + q.consistency.outliers);
+  if (!registrations_.empty()) {
+    const ordered_json counts = registration_counts();
+    text +=
+        formatted("registration: %s registered, %s too_little_overlap, %s refused\n",
+                  counts["registered"].dump().c_str(), counts["too_little_overlap"].dump().c_str(),
+                  counts["refused"].dump().c_str());
+  }
   text +=
       formatted("entropy removed %.6g %s, unknown voxels %s, travelled %.2f m\n",
                 last.record.progress.entropy_removed, entropy_unit_.data(),

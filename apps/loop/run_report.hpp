@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "viewgain/core/planning.hpp"
+#include "viewgain/planner/register_frame.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 
@@ -26,6 +27,9 @@ class RunReport {
   /// One line about the last view.
   [[nodiscard]] std::string progress_line() const;
 
+  /// What registration did to each view, in the end; empty without it.
+  void set_registrations(std::vector<FrameRegistration> registrations);
+
   /// The keys of `reconstruct --json`.
   [[nodiscard]] nlohmann::ordered_json json(StopReason reason) const;
 
@@ -42,11 +46,13 @@ class RunReport {
     double realised_area;  ///< [m²]
     StageSeconds seconds;  ///< of this view alone
   };
+  [[nodiscard]] nlohmann::ordered_json registration_counts() const;
   [[nodiscard]] nlohmann::ordered_json entry_json(std::size_t index) const;
 
   std::string_view ranked_by_;  ///< the gain; empty: the policy ranks by another thing
   std::string_view gain_unit_, entropy_unit_;
   std::vector<Entry> views_;
+  std::vector<FrameRegistration> registrations_;
   StageSeconds totals_;
 };
 

@@ -13,6 +13,7 @@
 #include "options/hazard_source.hpp"
 #include "options/json_text.hpp"
 #include "options/obstacle_source.hpp"
+#include "options/pose_sigmas.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/reach_toml.hpp"
@@ -168,25 +169,48 @@ void set_gain(const ReconstructOptions& options, PolicyConfig& policy) {
                     parse_gain_semantics(options.semantics.empty() ? "paper" : options.semantics)};
 }
 
+// What --pose-sigma says, else --pose-noise, where it is no 0.
+std::optional<PosePrior> registration_of(const ReconstructOptions& options,
+                                         const PoseNoise& noise) {
+  if (options.register_frames != "on") return std::nullopt;
+  PosePrior prior;
+  if (!options.pose_sigma.empty()) {
+    const PoseNoise stated = parse_pose_noise("--pose-sigma", options.pose_sigma, 0);
+    check_positive("--pose-sigma", std::min(stated.sigma_translation, stated.sigma_rotation));
+    prior.sigma_translation = stated.sigma_translation;
+    prior.sigma_rotation = stated.sigma_rotation;
+    return prior;
+  }
+  if (noise.sigma_translation > 0) prior.sigma_translation = noise.sigma_translation;
+  if (noise.sigma_rotation > 0) prior.sigma_rotation = noise.sigma_rotation;
+  return prior;
+}
+
 nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, const RunSetup& setup) {
   nlohmann::ordered_json generators = nlohmann::ordered_json::array();
   if (setup.generation.at_boundaries) generators.push_back("boundary");
   for (const PoseSet& set : setup.generation.sets) generators.push_back(set.generator);
-  return {{"sensor", sensor_toml(setup.sensor)},
-          {"size", setup.stage.size},
-          {"workspace", to_json(setup.stage.workspace)},
-          {"prior_sigma", setup.model.map.grid.prior_sigma},
-          {"start", to_json(setup.start)},
-          {"distance", setup.distance},
-          {"generators", generators},
-          {"gain", setup.policy.classic ? classic_gain_name(setup.policy.classic->gain)
-                                        : gain_model_name(setup.policy.model)},
-          {"stop_gain", setup.planning.stop_gain},
-          {"stop_gain_is_relative", setup.planning.stop_gain_is_relative},
-          {"stop_area", setup.planning.stop_area},
-          {"flying_pixels", options.sensing.has_flying_pixels(setup.sensor)},
-          {"calibrated", options.sensing.calibrate == "on"},
-          {"refine", options.refine == "on"}};
+  return {
+      {"sensor", sensor_toml(setup.sensor)},
+      {"size", setup.stage.size},
+      {"workspace", to_json(setup.stage.workspace)},
+      {"prior_sigma", setup.model.map.grid.prior_sigma},
+      {"start", to_json(setup.start)},
+      {"distance", setup.distance},
+      {"generators", generators},
+      {"gain", setup.policy.classic ? classic_gain_name(setup.policy.classic->gain)
+                                    : gain_model_name(setup.policy.model)},
+      {"stop_gain", setup.planning.stop_gain},
+      {"stop_gain_is_relative", setup.planning.stop_gain_is_relative},
+      {"stop_area", setup.planning.stop_area},
+      {"flying_pixels", options.sensing.has_flying_pixels(setup.sensor)},
+      {"calibrated", options.sensing.calibrate == "on"},
+      {"pose_noise", pose_sigmas_json(setup.pose_noise)},
+      {"register", options.register_frames == "on"},
+      {"pose_sigma", setup.registration ? pose_sigmas_json({setup.registration->sigma_translation,
+                                                            setup.registration->sigma_rotation})
+                                        : nlohmann::ordered_json()},
+      {"refine", options.refine == "on"}};
 }
 
 }  // namespace
@@ -214,6 +238,9 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
                       options.sensing.support_plane,
                       nullptr};
   setup.simulation = simulation_config(options.sensing, setup.sensor);
+  setup.pose_noise =
+      parse_pose_noise("--pose-noise", options.sensing.pose_noise, options.sensing.seed);
+  setup.registration = registration_of(options, setup.pose_noise);
   setup.model = model_config(options, setup.sensor, setup.stage);
   check_start(options, setup, exec);
   setup.visibility.surroundings = setup.simulation.surroundings =

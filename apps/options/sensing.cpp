@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "values.hpp"
 #include "viewgain/core/noise.hpp"
@@ -40,6 +41,13 @@ SimulationConfig simulation_config(const SensingOptions& options, const Sensor& 
     config.calibration = measure_calibration(sensor, config, nearest, farthest, kCalibrationRanges);
   }
   return config;
+}
+
+PoseNoise parse_pose_noise(std::string_view flag, const std::string& text, std::uint64_t seed) {
+  if (text.empty()) return {0, 0, seed};
+  const std::vector<double> sigmas = parse_numbers(flag, text, 2, 2);
+  for (const double sigma : sigmas) check_at_least_0(flag, sigma);
+  return {sigmas[0], sigmas[1] * std::numbers::pi / 180, seed};
 }
 
 std::optional<JumpEdgeConfig> parse_jump_edge_filter(const std::string& text, bool two_sided) {

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/planner/pose_noise.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain::app {
@@ -21,6 +23,7 @@ struct SensingOptions {
   double wiggling = 0;                    ///< --wiggling [m]
   std::string calibrate = "off";          ///< --calibrate on|off
   std::optional<double> support_plane{};  ///< --support-plane, world z [m]
+  std::string pose_noise;                 ///< --pose-noise SIGMA_M,SIGMA_DEG; empty: none
 
   /// Sub-rays mix only in sensors with a modulation frequency.
   [[nodiscard]] bool has_flying_pixels(const Sensor& sensor) const;
@@ -29,6 +32,10 @@ struct SensingOptions {
 /// With the sensor's calibration measured if that is asked for. Throws Error.
 [[nodiscard]] SimulationConfig simulation_config(const SensingOptions& options,
                                                  const Sensor& sensor);
+
+/// SIGMA_M,SIGMA_DEG of a flag; empty: both 0. Throws Error(invalid_argument) for other text.
+[[nodiscard]] PoseNoise parse_pose_noise(std::string_view flag, const std::string& text,
+                                         std::uint64_t seed);
 
 /// --jump-edge-filter ANGLE_DEG|off. Throws Error(invalid_argument) for other text; the filter
 /// itself refuses angles out of its bounds.

@@ -29,7 +29,12 @@ void describe_sensing(Options& o, Visitor& visit) {
                "amplitude A of the systematic error A sin(4 phase) [m]", shows_default);
   visit.option("calibrated", "--calibrate", o.calibrate,
                "measure the systematic error on a plane beforehand and subtract it", switched);
-  visit.option(nullptr, "--seed", o.seed, "of the noise", takes_seed);
+  visit.option("pose_noise", "--pose-noise", o.pose_noise,
+               "SIGMA_M,SIGMA_DEG: reported poses are off by this, in each axis [m] and each "
+               "component of the rotation vector [deg]; the first view's is exact and defines the "
+               "world; default: none",
+               as_it_is);
+  visit.option(nullptr, "--seed", o.seed, "of the noise of readings and of poses", takes_seed);
 }
 
 inline void add_sensing_options(CLI::App& app, SensingOptions& options) {

@@ -136,6 +136,11 @@ void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
   });
 
   progress.wipe();
+  const std::vector<FrameRegistration> registrations = loop.registrations();
+  for (std::size_t i = 0; i < registrations.size(); ++i) {
+    views[i] = registrations[i].T_world_camera;
+  }
+  report.set_registrations(registrations);
   const nlohmann::ordered_json json = report.json(result.reason);
   write_file_atomically(folder.file("config.toml"),
                         config_text(app, {"out", "json", "quiet", "threads"}));

@@ -14,6 +14,7 @@
 #include "commands.hpp"
 #include "options/choices.hpp"
 #include "options/pose_flags.hpp"
+#include "options/pose_sigmas.hpp"
 #include "options/sensing.hpp"
 #include "options/sensing_flags.hpp"
 #include "options/values.hpp"
@@ -117,8 +118,14 @@ void simulate(const Options& options) {
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
   check_view(options, *scene, sensor, source.poses);
   const SimulatedSensor camera(scene, sensor, simulation_config(options.sensing, sensor), exec);
-  std::vector<Pose> poses;  // one a frame
-  for (const Pose& pose : source.poses) poses.insert(poses.end(), options.frames_per_view, pose);
+  const PoseNoise pose_noise =
+      parse_pose_noise("--pose-noise", options.sensing.pose_noise, options.sensing.seed);
+  std::vector<Pose> poses, reported;  // one a frame
+  for (std::size_t view = 0; view < source.poses.size(); ++view) {
+    const Pose& pose = source.poses[view];
+    poses.insert(poses.end(), options.frames_per_view, pose);
+    reported.insert(reported.end(), options.frames_per_view, reported_pose(pose, view, pose_noise));
+  }
 
   const Stopwatch watch;
   FramesWriter writer(options.out);
@@ -133,7 +140,7 @@ void simulate(const Options& options) {
       progress.update(i + 1, poses.size());
     }
   }
-  writer.commit(poses, sensor_of_frames(sensor, options.sensing));
+  writer.commit(reported, sensor_of_frames(sensor, options.sensing));
   const double seconds = watch.seconds();
 
   if (options.common.json) {
@@ -155,6 +162,7 @@ void simulate(const Options& options) {
          {"calibrated", sensing.calibrate == "on"},
          {"support_plane", sensing.support_plane ? nlohmann::ordered_json(*sensing.support_plane)
                                                  : nlohmann::ordered_json()},
+         {"pose_noise", pose_sigmas_json(pose_noise)},
          {"amplitude", options.writes_amplitude(sensor)},
          {"seed", sensing.seed},
          {"orthonormalized_poses", source.orthonormalized},
@@ -182,7 +190,7 @@ Command add_simulate(CLI::App& program) {
       "Depth frames of a mesh: frame-NNNNNN.depth.png (16 bit, depth along z in 0.1 mm, 0 invalid, "
       "65535 out of range), frame-NNNNNN.amplitude.png (16 bit, cos/range^2 in 1e-3 m^-2), "
       "poses.txt "
-      "(TUM, line i is frame i), sensor.toml.");
+      "(TUM, line i is frame i, as reported), sensor.toml.");
   app->add_option("MESH", options->mesh, "OFF, OBJ, STL or PLY file")->required();
   add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kSensorHelp)->required();

@@ -52,6 +52,21 @@ ModelProgress SurfaceModel::update(const Measurements& measurements) {
         "the first view has no reading in the workspace: the start pose looks away from it, "
         "is out of range, or something known hides it");
   }
+  return progress_after(update);
+}
+
+ModelProgress SurfaceModel::rebuild(std::span<const Measurements> measurements) {
+  map_ = MapModel(map_.sensor(), config_.map, exec_);
+  MapUpdate sum;
+  for (const Measurements& m : measurements) {
+    MapUpdate last = map_.update(m);
+    for (const auto& [stage, seconds] : sum.seconds) last.seconds[stage] += seconds;
+    sum = std::move(last);
+  }
+  return progress_after(sum);
+}
+
+ModelProgress SurfaceModel::progress_after(const MapUpdate& update) {
   realised_area_ = update.new_area;
   StageSeconds seconds = update.seconds;
   const Stopwatch surface_watch;

@@ -453,5 +453,42 @@ TEST_F(Reconstruct, BadInputLeavesAnEarlierRunAlone) {
   EXPECT_EQ(read("run/run.json"), run_file);
 }
 
+TEST_F(Reconstruct, MisreportedViewsAreRegisteredWhereThatIsAskedFor) {
+  const Strings noisy{"--max-views", "3",   "--pictures",   "off",
+                      "--size",      "0.2", "--pose-noise", "0.005,0.5"};
+  EXPECT_FALSE(reconstruct("cube.off", noisy).contains("registration"));
+  Strings with = noisy;
+  with.insert(with.end(), {"--register", "on"});
+  const json result = reconstruct("cube.off", with);
+  const json& counts = result["registration"];
+  EXPECT_EQ(counts["registered"].get<int>() + counts["too_little_overlap"].get<int>() +
+                counts["refused"].get<int>(),
+            3);
+  const PoseList views = read_tum(dir / "run/views.txt");
+  ASSERT_EQ(views.poses.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const json& view = result["per_view"][i];
+    const json& registration = view["registration"];
+    double way = 0;
+    for (int r = 0; r < 3; ++r) {
+      const double corrected = registration["pose"][r][3].get<double>();
+      EXPECT_NEAR(corrected, views.poses[i].translation()[r], 1e-9);
+      way = std::hypot(way, corrected - view["pose"][r][3].get<double>());
+    }
+    if (registration["status"] == "registered") {
+      EXPECT_NEAR(registration["translation"].get<double>(), way, 1e-9);
+    }
+  }
+  EXPECT_EQ(result["per_view"][0]["registration"]["translation"], 0.0);
+  EXPECT_GT(result["seconds"]["register"].get<double>(), 0);
+  const json settings = json::parse(read("run/run.json"))["settings"];
+  EXPECT_EQ(settings["register"], true);
+  EXPECT_EQ(settings["pose_sigma"], settings["pose_noise"]);
+
+  const test::ProgramResult refused = run(arguments("cube.off", {"--pose-sigma", "0.005,0.5"}));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("--register on"), std::string::npos) << refused.err;
+}
+
 }  // namespace
 }  // namespace viewgain

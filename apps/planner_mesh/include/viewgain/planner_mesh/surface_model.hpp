@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "viewgain/core/exec_config.hpp"
@@ -56,6 +57,11 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   /// Throws Error(invalid_argument) if the first view has no reading in the workspace.
   ModelProgress update(const Measurements& measurements) override;
 
+  /// The model as it would be had these measurements come to an empty map, for poses that became
+  /// better known. Costs as many updates of the map; its quality is another view's. Throws as
+  /// update(); what was there is lost then.
+  ModelProgress rebuild(std::span<const Measurements> measurements);
+
   /// What the model would hold after these measurements, which do not change it. Costs a copy of
   /// the map beside what update() costs without a surface.
   [[nodiscard]] ModelOutlook after(const Measurements& measurements) const;
@@ -78,6 +84,7 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   [[nodiscard]] const std::vector<QualityFigures>& quality() const noexcept { return quality_; }
 
  private:
+  [[nodiscard]] ModelProgress progress_after(const MapUpdate& update);
   void derive_surface();
 
   SurfaceModelConfig config_;

@@ -12,8 +12,9 @@
 #include <numbers>
 #include <string>
 
-#include "registration_pairs.hpp"
-#include "registration_readings.hpp"
+#include "registration/pose_motion.hpp"
+#include "registration/registration_pairs.hpp"
+#include "registration/registration_readings.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/noise.hpp"
 #include "viewgain/core/text.hpp"
@@ -23,8 +24,14 @@
 namespace viewgain {
 namespace {
 
+using detail::difference;
+using detail::Directions;
+using detail::directions_of;
+using detail::held_axes;
+using detail::judge;
 using detail::Matrix6;
 using detail::ModelPoint;
+using detail::moved;
 using detail::PairGates;
 using detail::PairSums;
 using detail::Reading;
@@ -41,75 +48,6 @@ constexpr std::array<double, detail::kLevels> kSlack{1.0, 0.3, 0.0};  // of the 
 constexpr int kMaxIterations = 15;                                    // of a level
 // A step this short ends a level, in sigmas of what the pose is known to.
 constexpr std::array<double, detail::kLevels> kStill{0.5, 0.2, 0.05};
-
-[[noreturn]] void fail(const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, "register_frame: " + what);
-}
-
-void check_positive(const char* name, double value) {
-  if (!(value > 0) || !std::isfinite(value)) {
-    fail(std::string(name) + " " + short_text(value) + " must be positive and finite");
-  }
-}
-
-void check(const RegistrationConfig& config) {
-  if (config.max_readings < 100) fail("max_readings must be at least 100");
-  check_positive("max_normal_angle", config.max_normal_angle);
-  check_positive("max_sigmas", config.max_sigmas);
-  for (const auto& [name, share] : {std::pair("min_overlap", config.min_overlap),
-                                    std::pair("max_contradiction", config.max_contradiction)}) {
-    if (!(share >= 0 && share <= 1)) {
-      fail(std::string(name) + " " + short_text(share) + " must be in 0..1");
-    }
-  }
-  if (config.support_plane && !std::isfinite(*config.support_plane)) {
-    fail("support_plane must be finite");
-  }
-}
-
-std::string rounded(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
-
-// How a pose differs from the reported one: the way of the camera's centre, the rotation vector in
-// the world's axes.
-Vector6 difference(const Pose& T, const Pose& T_reported) {
-  const Eigen::AngleAxisd turn(Eigen::Matrix3d(T.rotation() * T_reported.rotation().transpose()));
-  Vector6 d;
-  d << T.translation() - T_reported.translation(), turn.angle() * turn.axis();
-  return d;
-}
-
-Pose moved(const Pose& T, const Vector6& step) {
-  const Eigen::Vector3d turn = step.tail<3>();
-  const double angle = turn.norm();
-  Eigen::Matrix3d R = T.rotation();
-  if (angle > 0) R = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() * R;
-  return orthonormalized({R, T.translation() + step.head<3>()});
-}
-
-// Eigenvectors of what map and frame agree on, in units of the prior's sigmas.
-struct Directions {
-  Vector6 information;  // of the data over that of the prior, along each
-  Matrix6 axes;
-};
-
-Directions directions_of(const PairSums& sums, const Vector6& sigmas) {
-  const Matrix6 scaled = sigmas.asDiagonal() * sums.agreed * sigmas.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
-  return {solver.eigenvalues(), solver.eigenvectors()};
-}
-
-// The columns along which the frame says more than the prior; 6 columns, the others are 0.
-Matrix6 held_axes(const Directions& directions) {
-  Matrix6 axes = directions.axes;
-  for (int k = 0; k < 6; ++k) {
-    if (!(directions.information[k] >= 1)) axes.col(k).setZero();
-  }
-  return axes;
-}
 
 // The covariance of the pose, see FrameRegistration.
 Matrix6 covariance_of(const PairSums& sums, const std::vector<Vector6>& cubes, const Matrix6& held,
@@ -196,16 +134,13 @@ struct FrameRegistrar::Impl {
 
   FrameRegistration run(const BeliefGrid& grid, std::span<const FusedPoint> points,
                         const DepthFrame& frame, const PosePrior& prior) const;
-  void judge(FrameRegistration& result, const PosePrior& prior) const;
 };
 
 FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
                                             std::span<const FusedPoint> points,
                                             const DepthFrame& frame, const PosePrior& prior) const {
   const Pose T_reported = orthonormalized(prior.T_world_camera);
-  Vector6 sigmas;
-  sigmas << Eigen::Vector3d::Constant(prior.sigma_translation),
-      Eigen::Vector3d::Constant(prior.sigma_rotation);
+  const Vector6 sigmas = detail::sigmas_of(prior);
   FrameRegistration result;
   result.T_world_camera = T_reported;
   put(sigmas.cwiseAbs2().asDiagonal(), result.covariance);
@@ -237,7 +172,7 @@ FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
     for (int i = 0; i < kMaxIterations; ++i) {
       pairs.find(T, level, gates);
       const PairSums sums = pairs.sums(T);
-      const Matrix6 held = held_axes(directions_of(sums, sigmas));
+      const Matrix6 held = held_axes(directions_of(sums.agreed, sigmas));
       const Matrix6 onto = held * held.transpose();
       const Matrix6 information = sigmas.asDiagonal() * sums.information * sigmas.asDiagonal();
       const Vector6 gradient = sigmas.asDiagonal() * sums.gradient;
@@ -252,12 +187,12 @@ FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
 
   pairs.find(T, detail::kLevels - 1, gates);
   const PairSums sums = pairs.sums(T);
-  const Directions directions = directions_of(sums, sigmas);
+  const Directions directions = directions_of(sums.agreed, sigmas);
   const Matrix6 held = held_axes(directions);
   result.pairs = sums.pairs;
   result.overlap = static_cast<double>(sums.pairs) / static_cast<double>(readings.size());
-  result.residual_before = pairs.residual(T_reported);
-  result.residual_after = pairs.residual(T);
+  result.residual_before = pairs.sums(T_reported).residual();
+  result.residual_after = sums.residual();
   result.smallest_information = directions.information[0];
   for (int k = 0; k < 6; ++k) {
     if (!held.col(k).isZero()) continue;
@@ -273,14 +208,10 @@ FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
       ++against;
     }
   }
-  if (against + sums.pairs > 0) {
-    result.contradiction = static_cast<double>(against) / static_cast<double>(against + sums.pairs);
-  }
   const Vector6 correction = difference(T, T_reported);
   result.translation = correction.head<3>().norm();
   result.rotation = correction.tail<3>().norm();
-  result.status = RegistrationStatus::registered;
-  judge(result, prior);
+  judge(result, against, config, sigmas, "the map");
   if (result.status == RegistrationStatus::registered) {
     result.T_world_camera = T;
     put(covariance_of(sums, pairs.sums_by_cube(T), held, sigmas), result.covariance);
@@ -288,33 +219,10 @@ FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
   return result;
 }
 
-void FrameRegistrar::Impl::judge(FrameRegistration& result, const PosePrior& prior) const {
-  const double far = config.max_sigmas;
-  // Few readings may by chance all be wrong.
-  const bool contradicted = result.contradiction > config.max_contradiction &&
-                            result.contradiction * static_cast<double>(result.readings) >
-                                static_cast<double>(config.min_pairs);
-  if (result.translation > far * prior.sigma_translation ||
-      result.rotation > far * prior.sigma_rotation) {
-    result.status = RegistrationStatus::refused;
-    result.reason = "the correction, " + rounded(1e3 * result.translation) + " mm and " +
-                    rounded(result.rotation * 180 / std::numbers::pi) + " deg, is beyond " +
-                    rounded(far) + " sigma of the reported pose";
-  } else if (contradicted) {
-    result.status = RegistrationStatus::refused;
-    result.reason = rounded(100 * result.contradiction) +
-                    " % of the readings lie where the map says free, or behind its surface";
-  } else if (result.overlap < config.min_overlap || result.pairs < config.min_pairs) {
-    result.status = RegistrationStatus::too_little_overlap;
-    result.reason = std::to_string(result.pairs) + " of " + std::to_string(result.readings) +
-                    " readings show surface that the map has";
-  }
-}
-
 FrameRegistrar::FrameRegistrar(const Sensor& sensor, const RegistrationConfig& config,
                                const ExecConfig& exec) {
   sensor.validate();
-  check(config);
+  detail::check(config);
   impl_ = std::make_unique<Impl>(sensor, config, exec);
 }
 FrameRegistrar::~FrameRegistrar() = default;
@@ -326,11 +234,7 @@ FrameRegistration FrameRegistrar::register_frame(const BeliefGrid& grid,
                                                  const DepthFrame& frame,
                                                  const PosePrior& prior) const {
   check_frame_size(frame, impl_->sensor.camera);
-  if (!(orthonormality_error(prior.T_world_camera) <= 1e-3)) {
-    fail("the reported pose is not a rigid transform of finite numbers");
-  }
-  check_positive("sigma_translation", prior.sigma_translation);
-  check_positive("sigma_rotation", prior.sigma_rotation);
+  detail::check(prior);
   return impl_->run(grid, points, frame, prior);
 }
 

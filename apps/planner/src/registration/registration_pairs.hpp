@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "registration_readings.hpp"
+#include "registration/registration_readings.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/grid/fused_points.hpp"
@@ -54,7 +54,12 @@ struct PairSums {
   Matrix6 information = Matrix6::Zero();  ///< Σ w J Jᵀ
   Matrix6 agreed = Matrix6::Zero();       ///< that map's and frame's normals agree on
   Vector6 gradient = Vector6::Zero();     ///< Σ w J e
+  double squares = 0;                     ///< Σ e² [m²]
   std::size_t pairs = 0;
+
+  PairSums& operator+=(const PairSums& other);
+  /// RMS of e [m]; 0 without a pair.
+  [[nodiscard]] double residual() const;
 };
 
 /// Pairs of readings with points of the map, and sums over them. Sums are of blocks of readings
@@ -70,8 +75,6 @@ class RegistrationPairs {
   void find(const Pose& T_world_camera, int level, const PairGates& gates);
 
   [[nodiscard]] PairSums sums(const Pose& T_world_camera) const;
-  /// RMS of e over the pairs [m]; 0 without any.
-  [[nodiscard]] double residual(const Pose& T_world_camera) const;
   /// Of each cube of the model Σ w J e.
   [[nodiscard]] std::vector<Vector6> sums_by_cube(const Pose& T_world_camera) const;
 

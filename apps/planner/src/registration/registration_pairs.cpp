@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "registration_pairs.hpp"
+#include "registration/registration_pairs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -28,6 +28,19 @@ std::array<std::int64_t, 3> cube_of(const Eigen::Vector3d& point, double edge) {
 }
 
 }  // namespace
+
+PairSums& PairSums::operator+=(const PairSums& other) {
+  information += other.information;
+  agreed += other.agreed;
+  gradient += other.gradient;
+  squares += other.squares;
+  pairs += other.pairs;
+  return *this;
+}
+
+double PairSums::residual() const {
+  return pairs > 0 ? std::sqrt(squares / static_cast<double>(pairs)) : 0.0;
+}
 
 RegistrationModel registration_model(std::span<const FusedPoint> points, double edge) {
   RegistrationModel model;
@@ -190,30 +203,14 @@ PairSums RegistrationPairs::sums(const Pose& T_world_camera) const {
       sums.information += weighted * t.derivative.transpose();
       sums.agreed += weighted * t.frame_derivative.transpose();
       sums.gradient += t.error * weighted;
+      sums.squares += t.error * t.error;
       ++sums.pairs;
     }
   });
   PairSums total;
-  for (const PairSums& block : blocks) {
-    total.information += block.information;
-    total.agreed += block.agreed;
-    total.gradient += block.gradient;
-    total.pairs += block.pairs;
-  }
+  for (const PairSums& block : blocks) total += block;
   total.agreed = (0.5 * (total.agreed + total.agreed.transpose())).eval();
   return total;
-}
-
-double RegistrationPairs::residual(const Pose& T_world_camera) const {
-  double sum = 0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < readings_.size(); ++i) {
-    if (targets_[i] < 0) continue;
-    const double error = term(i, T_world_camera).error;
-    sum += error * error;
-    ++count;
-  }
-  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
 }
 
 std::vector<Vector6> RegistrationPairs::sums_by_cube(const Pose& T_world_camera) const {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "registration_readings.hpp"
+#include "registration/registration_readings.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -32,30 +32,34 @@ class Surroundings {
   // Nothing without a normal.
   [[nodiscard]] std::optional<Reading> reading(int u, int v) const {
     if (!is_reading(u, v)) return std::nullopt;
-    const std::optional<Eigen::Vector3d> normal = normal_at(u, v);
-    if (!normal) return std::nullopt;
+    const std::optional<Plane> plane = plane_at(u, v);
+    if (!plane) return std::nullopt;
     const std::size_t i = index(u, v);
     Reading reading;
-    reading.point = static_cast<double>(frame_.depth[i]) * rays_[i];
-    reading.normal = *normal;
+    reading.point = plane->depth * rays_[i];
+    reading.normal = plane->normal;
     const double range = reading.point.norm();
     const double cosine =
         frame_.amplitude.empty()
-            ? -normal->dot(reading.point) / range
+            ? -reading.normal.dot(reading.point) / range
             : std::min(1.0, static_cast<double>(frame_.amplitude[i]) * range * range);
-    reading.sigmas = sensor_.sigmas(range, cosine);
+    reading.sigmas = sensor_.noise_sigmas(range, cosine);
     reading.u = u, reading.v = v;
     return reading;
   }
 
  private:
+  struct Plane {
+    double depth;            // at the pixel, along z [m]
+    Eigen::Vector3d normal;  // toward the camera
+  };
   [[nodiscard]] std::size_t index(int u, int v) const {
     return static_cast<std::size_t>(v) * static_cast<std::size_t>(frame_.width) +
            static_cast<std::size_t>(u);
   }
 
   // A plane n·p = 1 is 1/z = n·(x, y, 1) in the image, linear in n; noise is in z alone.
-  [[nodiscard]] std::optional<Eigen::Vector3d> normal_at(int u, int v) const {
+  [[nodiscard]] std::optional<Plane> plane_at(int u, int v) const {
     const std::size_t center = index(u, v);
     const double z = static_cast<double>(frame_.depth[center]);
     const Eigen::Vector3d& ray = rays_[center];
@@ -66,7 +70,7 @@ class Surroundings {
         std::clamp(static_cast<int>(std::lround(reach * sensor_.camera.fy)), 2, kMaxHalfWindow);
     // A surface turned by up to 70° reaches that deep.
     const double deepest =
-        2.75 * std::max(radius_, 2 * z / sensor_.camera.fx) + 3 * sensor_.sigmas(z).axial;
+        2.75 * std::max(radius_, 2 * z / sensor_.camera.fx) + 3 * sensor_.noise_sigmas(z).axial;
     Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     int count = 0;
@@ -92,7 +96,7 @@ class Surroundings {
     toward.normalize();
     // Of a surface that is seen; what has no such plane is a rim.
     if (!toward.allFinite() || !(toward.dot(ray) > 0)) return std::nullopt;
-    return -toward;
+    return Plane{1 / plane.z(), -toward};
   }
 
   const DepthFrame& frame_;

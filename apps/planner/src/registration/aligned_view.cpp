@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "registration/aligned_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "viewgain/core/noise.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+constexpr double kGateSigmas = 4;
+constexpr double kCauchy = 2.385;  // 95 % efficient for Gaussian errors
+
+}  // namespace
+
+AlignedView::AlignedView(const DepthFrame& frame, const PinholeCamera& camera,
+                         std::vector<Reading> readings)
+    : camera_(camera), readings_(std::move(readings)), depth_(frame.depth) {
+  stride_ = 0;
+  for (const Reading& r : readings_) stride_ = std::gcd(std::gcd(stride_, r.u), r.v);
+  stride_ = std::max(stride_, 1);
+  columns_ = (camera.width + stride_ - 1) / stride_;
+  rows_ = (camera.height + stride_ - 1) / stride_;
+  at_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), -1);
+  variances_.reserve(readings_.size());
+  for (std::size_t i = 0; i < readings_.size(); ++i) {
+    const Reading& r = readings_[i];
+    at_[static_cast<std::size_t>(r.v / stride_) * static_cast<std::size_t>(columns_) +
+        static_cast<std::size_t>(r.u / stride_)] = static_cast<std::int32_t>(i);
+    const double cosine = std::abs(r.normal.dot(r.point)) / r.point.norm();
+    const double sigma = sigma_along_normal(r.sigmas, cosine);
+    variances_.push_back(sigma * sigma);
+  }
+}
+
+std::int32_t AlignedView::reading_at(double u, double v) const {
+  const int column = static_cast<int>(std::floor(u / stride_ + 0.5));
+  const int row = static_cast<int>(std::floor(v / stride_ + 0.5));
+  if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return -1;
+  return at_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+             static_cast<std::size_t>(column)];
+}
+
+bool AlignedView::looks_past(const Eigen::Vector3d& point, double margin, double reach) const {
+  if (!(point.z() > 0)) return false;
+  const Eigen::Vector2d pixel = camera_.project(point);
+  const int round = std::max(1, static_cast<int>(reach * camera_.fx / point.z()));
+  const Eigen::Vector2d size(camera_.width, camera_.height);
+  if (!((pixel.array() >= round).all() && (pixel.array() + round < size.array() - 1).all())) {
+    return false;
+  }
+  const int u = static_cast<int>(pixel.x() + 0.5), v = static_cast<int>(pixel.y() + 0.5);
+  for (int y = v - round; y <= v + round; ++y) {
+    for (int x = u - round; x <= u + round; ++x) {
+      const float z = depth_at(x, y);
+      if (z != DepthFrame::kInvalid && static_cast<double>(z) < point.z() + margin) return false;
+    }
+  }
+  return depth_at(u, v) != DepthFrame::kInvalid;
+}
+
+PairSums pair_sums(const AlignedView& source, const Pose& T_world_source,
+                   const PairGates& source_gates, const AlignedView& target,
+                   const Pose& T_world_target, const PairGates& target_gates, int level,
+                   std::vector<std::uint8_t>* is_paired) {
+  const Pose T_target_source = T_world_target.inverse() * T_world_source;
+  const Eigen::Matrix3d R = T_target_source.rotation();
+  const Eigen::Vector3d t = T_target_source.translation();
+  const double along = source_gates.along_surface * source_gates.along_surface;
+  PairSums sums;  // the target's axes
+  for (std::size_t i = 0; i < source.readings().size(); ++i) {
+    const Reading& s = source.readings()[i];
+    if (s.level > level) continue;
+    const Eigen::Vector3d arm = R * s.point;
+    const Eigen::Vector3d p = arm + t;
+    if (!(p.z() > 0)) continue;
+    double u = 0, v = 0;
+    target.camera().project(p, u, v);
+    const std::int32_t at = target.reading_at(u, v);
+    if (at < 0) continue;
+    const auto j = static_cast<std::size_t>(at);
+    const Reading& m = target.readings()[j];
+    const Eigen::Vector3d source_normal = R * s.normal;
+    if (source_normal.dot(m.normal) < source_gates.min_cosine) continue;
+    const Eigen::Vector3d d = p - m.point;
+    const double e = m.normal.dot(d);
+    const double slack =
+        source_gates.slack_variance(s.point.norm()) + target_gates.slack_variance(m.point.norm());
+    const double variance = source.variance(i) + target.variance(j);
+    const double square = e * e / (variance + slack);
+    if (square > kGateSigmas * kGateSigmas) continue;
+    if (d.squaredNorm() - e * e > along + slack) continue;
+    const double weight = 1 / (1 + square / (kCauchy * kCauchy)) / variance;
+    Vector6 derivative, frame_derivative;
+    derivative << m.normal, arm.cross(m.normal);
+    frame_derivative << source_normal, arm.cross(source_normal);
+    const Vector6 weighted = weight * derivative;
+    sums.information += weighted * derivative.transpose();
+    sums.agreed += weighted * frame_derivative.transpose();
+    sums.gradient += e * weighted;
+    sums.squares += e * e;
+    ++sums.pairs;
+    if (is_paired != nullptr) (*is_paired)[i] = 1;
+  }
+  Matrix6 to_world = Matrix6::Zero();
+  to_world.topLeftCorner<3, 3>() = T_world_target.rotation();
+  to_world.bottomRightCorner<3, 3>() = T_world_target.rotation();
+  sums.information = (to_world * sums.information * to_world.transpose()).eval();
+  sums.agreed =
+      (0.5 * to_world * (sums.agreed + sums.agreed.transpose()) * to_world.transpose()).eval();
+  sums.gradient = (to_world * sums.gradient).eval();
+  return sums;
+}
+
+}  // namespace viewgain::detail

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "registration/pose_motion.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/text.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+[[noreturn]] void fail(const std::string& what) {
+  throw Error(ErrorCode::invalid_argument, "registration: " + what);
+}
+
+void check_positive(const char* name, double value) {
+  if (!(value > 0) || !std::isfinite(value)) {
+    fail(std::string(name) + " " + short_text(value) + " must be positive and finite");
+  }
+}
+
+std::string rounded(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+}  // namespace
+
+Vector6 difference(const Pose& T, const Pose& T_from) {
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(T.rotation() * T_from.rotation().transpose()));
+  Vector6 d;
+  d << T.translation() - T_from.translation(), turn.angle() * turn.axis();
+  return d;
+}
+
+Pose moved(const Pose& T, const Vector6& step) {
+  const Eigen::Vector3d turn = step.tail<3>();
+  const double angle = turn.norm();
+  Eigen::Matrix3d R = T.rotation();
+  if (angle > 0) R = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() * R;
+  return orthonormalized({R, T.translation() + step.head<3>()});
+}
+
+Directions directions_of(const Matrix6& agreed, const Vector6& sigmas) {
+  const Matrix6 scaled = sigmas.asDiagonal() * agreed * sigmas.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+Matrix6 held_axes(const Directions& directions) {
+  Matrix6 axes = directions.axes;
+  for (int k = 0; k < 6; ++k) {
+    if (!(directions.information[k] >= 1)) axes.col(k).setZero();
+  }
+  return axes;
+}
+
+void check(const RegistrationConfig& config) {
+  if (config.max_readings < 100) fail("max_readings must be at least 100");
+  check_positive("max_normal_angle", config.max_normal_angle);
+  check_positive("max_sigmas", config.max_sigmas);
+  for (const auto& [name, share] : {std::pair("min_overlap", config.min_overlap),
+                                    std::pair("max_contradiction", config.max_contradiction)}) {
+    if (!(share >= 0 && share <= 1)) {
+      fail(std::string(name) + " " + short_text(share) + " must be in 0..1");
+    }
+  }
+  if (config.support_plane && !std::isfinite(*config.support_plane)) {
+    fail("support_plane must be finite");
+  }
+}
+
+void check(const PosePrior& prior) {
+  if (!(orthonormality_error(prior.T_world_camera) <= 1e-3)) {
+    fail("the reported pose is not a rigid transform of finite numbers");
+  }
+  check_positive("sigma_translation", prior.sigma_translation);
+  check_positive("sigma_rotation", prior.sigma_rotation);
+}
+
+Vector6 sigmas_of(const PosePrior& prior) {
+  Vector6 sigmas;
+  sigmas << Eigen::Vector3d::Constant(prior.sigma_translation),
+      Eigen::Vector3d::Constant(prior.sigma_rotation);
+  return sigmas;
+}
+
+void judge(FrameRegistration& result, std::size_t against, const RegistrationConfig& config,
+           const Vector6& sigmas, const char* what) {
+  if (against + result.pairs > 0) {
+    result.contradiction =
+        static_cast<double>(against) / static_cast<double>(against + result.pairs);
+  }
+  const double far = config.max_sigmas;
+  // Few readings may by chance all be wrong.
+  const bool contradicted =
+      result.contradiction > config.max_contradiction && against > config.min_pairs &&
+      static_cast<double>(against) > config.min_overlap * static_cast<double>(result.readings);
+  if (result.translation > far * sigmas[0] || result.rotation > far * sigmas[3]) {
+    result.status = RegistrationStatus::refused;
+    result.reason = "the correction, " + rounded(1e3 * result.translation) + " mm and " +
+                    rounded(result.rotation * 180 / std::numbers::pi) + " deg, is beyond " +
+                    rounded(far) + " sigma of the reported pose";
+  } else if (contradicted) {
+    result.status = RegistrationStatus::refused;
+    result.reason = rounded(100 * result.contradiction) + " % of the readings lie where " + what +
+                    " says free, or behind its surface";
+  } else if (result.overlap < config.min_overlap || result.pairs < config.min_pairs) {
+    result.status = RegistrationStatus::too_little_overlap;
+    result.reason = std::to_string(result.pairs) + " of " + std::to_string(result.readings) +
+                    " readings show surface that " + what + " has";
+  } else {
+    result.status = RegistrationStatus::registered;
+    result.reason.clear();
+  }
+}
+
+}  // namespace viewgain::detail

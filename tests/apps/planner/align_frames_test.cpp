@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Frames round known shapes from known poses, all but the first reported a little off.
+#include "viewgain/planner/align_frames.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "apps/planner/registration_scene.hpp"
+#include "core/expect_error.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::kDegree;
+
+constexpr double kShift = 0.01, kTurn = kDegree;
+
+std::vector<Pose> ring(int count) {
+  std::vector<Pose> views;
+  for (int i = 0; i < count; ++i) {
+    views.push_back(test::camera_at(i * 360.0 / count, i % 2 == 0 ? 20 : -20,
+                                    test::RegistrationScene::kDistance));
+  }
+  return views;
+}
+
+Pose reported(const Pose& pose, std::size_t view) {
+  return view == 0 ? pose : test::disturbed(pose, kShift, kTurn, view);
+}
+
+FrameAlignment alignment(const test::RegistrationScene& scene, int threads = 1) {
+  return FrameAlignment(scene.sensor, scene.grid, {}, {threads});
+}
+
+TEST(AlignFrames, ARingClosesOnTheTruth) {
+  for (const bool noise : {false, true}) {
+    const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), noise, {});
+    FrameAlignment frames = alignment(scene);
+    const std::vector<Pose> truth = ring(8);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const FrameRegistration result =
+          frames.add(scene.see(truth[i], i), {reported(truth[i], i), kShift, kTurn});
+      ASSERT_EQ(result.status, RegistrationStatus::registered) << i << " " << result.reason;
+      EXPECT_TRUE(result.reason.empty());
+    }
+    const std::vector<Pose> poses = frames.poses();
+    const std::vector<FrameRegistration> registrations = frames.registrations();
+    ASSERT_EQ(poses.size(), truth.size());
+    ASSERT_EQ(registrations.size(), truth.size());
+    EXPECT_EQ(poses[0], orthonormalized(truth[0]));
+    int cases = 0;
+    for (std::size_t i = 1; i < truth.size(); ++i) {
+      // Of the surface that is seen: a camera may turn about it as its centre moves.
+      const Eigen::Vector3d middle(0, 0, 0.95 * test::RegistrationScene::kDistance - 0.12);
+      EXPECT_LT((poses[i] * middle - truth[i] * middle).norm(), noise ? 2e-3 : 1e-3) << i;
+      EXPECT_LT(test::error_of(poses[i], truth[i]).rotation, (noise ? 0.6 : 0.3) * kDegree) << i;
+      EXPECT_LT(registrations[i].residual_after, registrations[i].residual_before) << i;
+      EXPECT_EQ(registrations[i].T_world_camera, poses[i]);
+      EXPECT_GT(registrations[i].overlap, 0.5);
+      EXPECT_LT(registrations[i].contradiction, 0.05);
+      ++cases;
+    }
+    EXPECT_EQ(cases, 7);
+  }
+}
+
+TEST(AlignFrames, WhatSlidesStaysAsReported) {
+  const test::RegistrationScene scene(test::wall(1.2), false, {});
+  FrameAlignment frames = alignment(scene);
+  const Pose first = test::camera_at(0, 5, test::RegistrationScene::kDistance);
+  (void)frames.add(scene.see(first, 0), {first, kShift, kTurn});
+  int cases = 0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Pose pose = test::disturbed(first, kShift, kTurn, seed);
+    const FrameRegistration result = frames.add(scene.see(first, seed), {pose, kShift, kTurn});
+    ASSERT_EQ(result.status, RegistrationStatus::registered) << result.reason;
+    EXPECT_EQ(result.free_directions.size(), 3U);  // along the wall, about its normal
+    const Eigen::Vector3d way = result.T_world_camera.translation() - pose.translation();
+    EXPECT_LT(std::hypot(way.y(), way.z()), 1e-3);
+    EXPECT_LT(std::abs(result.T_world_camera.translation().x() - first.translation().x()), 1e-3);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
+TEST(AlignFrames, FarOffIsRefusedAndForgotten) {
+  const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
+  FrameAlignment frames = alignment(scene);
+  const std::vector<Pose> truth = ring(8);
+  for (std::size_t i = 0; i < 4; ++i) {
+    (void)frames.add(scene.see(truth[i], i), {reported(truth[i], i), kShift, kTurn});
+  }
+  const std::vector<Pose> before = frames.poses();
+  int cases = 0;
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    for (const Pose& pose : {test::disturbed(truth[1], 0.1, 0, seed),
+                             test::disturbed(truth[1], 0, 30 * kDegree, seed)}) {
+      const FrameRegistration result =
+          frames.add(scene.see(truth[1], 100 + seed), {pose, kShift, kTurn});
+      EXPECT_EQ(result.status, RegistrationStatus::refused) << seed << " " << result.translation;
+      EXPECT_FALSE(result.reason.empty());
+      EXPECT_EQ(result.T_world_camera, orthonormalized(pose));
+      EXPECT_EQ(frames.poses(), before);
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 6);
+}
+
+TEST(AlignFrames, WithoutOverlapAPoseWaitsForWhatShowsMore) {
+  const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), false, {});
+  FrameAlignment frames = alignment(scene);
+  const std::vector<Pose> truth = ring(8);
+  (void)frames.add(scene.see(truth[0], 0), {truth[0], kShift, kTurn});
+  const Pose pose = reported(truth[4], 4);  // behind the object
+  const FrameRegistration alone = frames.add(scene.see(truth[4], 4), {pose, kShift, kTurn});
+  EXPECT_EQ(alone.status, RegistrationStatus::too_little_overlap);
+  EXPECT_NE(alone.reason.find("another frame"), std::string::npos) << alone.reason;
+  EXPECT_EQ(alone.T_world_camera, orthonormalized(pose));
+  for (const std::size_t i : {1U, 2U, 3U}) {
+    (void)frames.add(scene.see(truth[i], i), {reported(truth[i], i), kShift, kTurn});
+  }
+  const FrameRegistration later = frames.registrations()[1];
+  EXPECT_EQ(later.status, RegistrationStatus::registered) << later.reason;
+  const double before = test::error_of(pose, truth[4]).translation;
+  EXPECT_LT(test::error_of(later.T_world_camera, truth[4]).translation, 0.6 * before);
+
+  DepthFrame nothing = scene.see(truth[0]);
+  nothing.depth.assign(nothing.depth.size(), DepthFrame::kInvalid);
+  EXPECT_EQ(frames.add(nothing, {truth[0], kShift, kTurn}).status,
+            RegistrationStatus::too_little_overlap);
+}
+
+TEST(AlignFrames, TheSameBitsForAnyNumberOfThreads) {
+  const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
+  FrameAlignment one = alignment(scene, 1), three = alignment(scene, 3);
+  const std::vector<Pose> truth = ring(8);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const PosePrior prior{reported(truth[i], i), kShift, kTurn};
+    (void)one.add(scene.see(truth[i], i), prior);
+    (void)three.add(scene.see(truth[i], i), prior);
+    EXPECT_EQ(one.poses(), three.poses()) << i;
+  }
+  EXPECT_EQ(one.poses().size(), 4U);
+}
+
+TEST(AlignFrames, BadInputIsRefusedByNameAndChangesNothing) {
+  const test::RegistrationScene scene(test::wall(1.2), false, {});
+  FrameAlignment frames = alignment(scene);
+  const Pose pose = test::camera_at(0, 5, test::RegistrationScene::kDistance);
+  const DepthFrame frame = scene.see(pose);
+  const ErrorCode code = ErrorCode::invalid_argument;
+  test::expect_error(code, "sigma_translation", [&] { (void)frames.add(frame, {pose, 0, kTurn}); });
+  test::expect_error(code, "sigma_rotation", [&] {
+    (void)frames.add(frame, {pose, kShift, std::numeric_limits<double>::infinity()});
+  });
+  Pose squeezed = pose;
+  squeezed.m[0] += 0.1;
+  test::expect_error(code, "rigid", [&] { (void)frames.add(frame, {squeezed, kShift, kTurn}); });
+  DepthFrame small = frame;
+  small.width -= 1;
+  test::expect_error(code, "", [&] { (void)frames.add(small, {pose, kShift, kTurn}); });
+  EXPECT_TRUE(frames.poses().empty());
+  RegistrationConfig config;
+  config.min_overlap = -1;
+  test::expect_error(code, "min_overlap",
+                     [&] { (void)FrameAlignment(scene.sensor, scene.grid, config); });
+}
+
+}  // namespace
+}  // namespace viewgain
