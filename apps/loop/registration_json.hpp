@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "options/json_text.hpp"
 #include "viewgain/planner/register_frame.hpp"
@@ -24,6 +26,26 @@ namespace viewgain::app {
           {"contradiction", registration.contradiction},
           {"smallest_information", registration.smallest_information},
           {"free_directions", registration.free_directions.size()}};
+}
+
+/// How many came to what.
+[[nodiscard]] inline nlohmann::ordered_json registration_counts(
+    const std::vector<FrameRegistration>& registrations) {
+  nlohmann::ordered_json json;
+  for (const auto status : {RegistrationStatus::registered, RegistrationStatus::too_little_overlap,
+                            RegistrationStatus::refused}) {
+    json[registration_status_name(status)] =
+        std::count_if(registrations.begin(), registrations.end(),
+                      [&](const FrameRegistration& r) { return r.status == status; });
+  }
+  return json;
+}
+
+/// registration_counts() for people.
+[[nodiscard]] inline std::string registration_text(const nlohmann::ordered_json& counts) {
+  return "registration: " + counts["registered"].dump() + " registered, " +
+         counts["too_little_overlap"].dump() + " too_little_overlap, " + counts["refused"].dump() +
+         " refused";
 }
 
 }  // namespace viewgain::app

@@ -164,17 +164,6 @@ const Proposal& RunReport::last_proposal() const {
   return views_.back().record.proposal;
 }
 
-ordered_json RunReport::registration_counts() const {
-  ordered_json json;
-  for (const auto status : {RegistrationStatus::registered, RegistrationStatus::too_little_overlap,
-                            RegistrationStatus::refused}) {
-    json[registration_status_name(status)] =
-        std::count_if(registrations_.begin(), registrations_.end(),
-                      [&](const FrameRegistration& r) { return r.status == status; });
-  }
-  return json;
-}
-
 ordered_json RunReport::json(StopReason reason) const {
   const Entry& last = views_.back();
   ordered_json json{{"stop_reason", stop_reason_name(reason)}, {"views", views_.size()}};
@@ -184,7 +173,7 @@ ordered_json RunReport::json(StopReason reason) const {
   const Proposal& proposal = last_proposal();
   json["final_candidates"] = proposal.candidates.size();
   json["final_dropped"] = to_json(proposal.dropped);
-  if (!registrations_.empty()) json["registration"] = registration_counts();
+  if (!registrations_.empty()) json["registration"] = registration_counts(registrations_);
   json["seconds"] = to_json(totals_);
   json["per_view"] = ordered_json::array();
   for (std::size_t i = 0; i < views_.size(); ++i) json["per_view"].push_back(entry_json(i));
@@ -213,11 +202,7 @@ std::string RunReport::text(StopReason reason) const {
       q.consistency.mean_clipped, q.consistency.median, q.consistency.above_9,
       q.consistency.outliers, q.consistency.points + q.consistency.outliers);
   if (!registrations_.empty()) {
-    const ordered_json counts = registration_counts();
-    text +=
-        formatted("registration: %s registered, %s too_little_overlap, %s refused\n",
-                  counts["registered"].dump().c_str(), counts["too_little_overlap"].dump().c_str(),
-                  counts["refused"].dump().c_str());
+    text += registration_text(registration_counts(registrations_)) + "\n";
   }
   text +=
       formatted("entropy removed %.6g %s, unknown voxels %s, travelled %.2f m\n",

@@ -46,7 +46,6 @@ class RunReport {
     double realised_area;  ///< [m²]
     StageSeconds seconds;  ///< of this view alone
   };
-  [[nodiscard]] nlohmann::ordered_json registration_counts() const;
   [[nodiscard]] nlohmann::ordered_json entry_json(std::size_t index) const;
 
   std::string_view ranked_by_;  ///< the gain; empty: the policy ranks by another thing

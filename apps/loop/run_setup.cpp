@@ -169,23 +169,6 @@ void set_gain(const ReconstructOptions& options, PolicyConfig& policy) {
                     parse_gain_semantics(options.semantics.empty() ? "paper" : options.semantics)};
 }
 
-// What --pose-sigma says, else --pose-noise, where it is no 0.
-std::optional<PosePrior> registration_of(const ReconstructOptions& options,
-                                         const PoseNoise& noise) {
-  if (options.register_frames != "on") return std::nullopt;
-  PosePrior prior;
-  if (!options.pose_sigma.empty()) {
-    const PoseNoise stated = parse_pose_noise("--pose-sigma", options.pose_sigma, 0);
-    check_positive("--pose-sigma", std::min(stated.sigma_translation, stated.sigma_rotation));
-    prior.sigma_translation = stated.sigma_translation;
-    prior.sigma_rotation = stated.sigma_rotation;
-    return prior;
-  }
-  if (noise.sigma_translation > 0) prior.sigma_translation = noise.sigma_translation;
-  if (noise.sigma_rotation > 0) prior.sigma_rotation = noise.sigma_rotation;
-  return prior;
-}
-
 nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, const RunSetup& setup) {
   nlohmann::ordered_json generators = nlohmann::ordered_json::array();
   if (setup.generation.at_boundaries) generators.push_back("boundary");
@@ -215,6 +198,22 @@ nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, cons
 
 }  // namespace
 
+std::optional<PosePrior> registration_prior(const ReconstructOptions& options,
+                                            const PoseNoise& noise) {
+  if (options.register_frames != "on") return std::nullopt;
+  PosePrior prior;
+  if (!options.pose_sigma.empty()) {
+    const PoseNoise stated = parse_pose_noise("--pose-sigma", options.pose_sigma, 0);
+    check_positive("--pose-sigma", std::min(stated.sigma_translation, stated.sigma_rotation));
+    prior.sigma_translation = stated.sigma_translation;
+    prior.sigma_rotation = stated.sigma_rotation;
+    return prior;
+  }
+  if (noise.sigma_translation > 0) prior.sigma_translation = noise.sigma_translation;
+  if (noise.sigma_rotation > 0) prior.sigma_rotation = noise.sigma_rotation;
+  return prior;
+}
+
 RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   check(options);
   RunSetup setup;
@@ -240,7 +239,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   setup.simulation = simulation_config(options.sensing, setup.sensor);
   setup.pose_noise =
       parse_pose_noise("--pose-noise", options.sensing.pose_noise, options.sensing.seed);
-  setup.registration = registration_of(options, setup.pose_noise);
+  setup.registration = registration_prior(options, setup.pose_noise);
   setup.model = model_config(options, setup.sensor, setup.stage);
   check_start(options, setup, exec);
   setup.visibility.surroundings = setup.simulation.surroundings =

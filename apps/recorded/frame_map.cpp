@@ -95,10 +95,10 @@ FrameMap::FrameMap(const FrameMapOptions& options, const ProposalOptions& propos
                    const ExecConfig& exec)
     : folder_(options.folder), model_(model_of(folder_, options, proposal, quiet, exec)) {}
 
-MapUpdate FrameMap::add(std::size_t index) {
+MapUpdate FrameMap::add(std::size_t index, const Pose& T_world_camera) {
   FrameFolder::MaskedFrame loaded = folder_.load(index);
   masked_pixels_ += loaded.masked_pixels;
-  Measurements measurements{folder_.T_world_camera(index), {}};
+  Measurements measurements{T_world_camera, {}};
   measurements.frames.push_back(std::move(loaded.frame));
   const MapUpdate update = model_.update(measurements);
   readings_ += update.counts.readings;

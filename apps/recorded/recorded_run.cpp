@@ -12,12 +12,16 @@
 #include <utility>
 #include <vector>
 
+#include "aligned_frames.hpp"
 #include "command_line/config_file.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/progress.hpp"
 #include "frame_map.hpp"
+#include "loop/registration_json.hpp"
+#include "loop/run_setup.hpp"
 #include "options/json_text.hpp"
 #include "options/next_views.hpp"
+#include "options/pose_sigmas.hpp"
 #include "options/values.hpp"
 #include "pictures/view_picture.hpp"
 #include "proposal/view_proposal.hpp"
@@ -44,10 +48,10 @@ constexpr std::size_t kMaxShown = 6;
 
 // Flags that choose views, simulate or know the object.
 constexpr std::array kFlagsOfMeshes{
-    "--size",          "--up",          "--start",        "--policy",         "--semantics",
-    "--criterion",     "--max-views",   "--stop-gain",    "--stop-area",      "--stop-idle",
-    "--stop-coverage", "--travel-cost", "--travel-speed", "--noise",          "--flying-pixels",
-    "--background",    "--wiggling",    "--calibrate",    "--frames-per-view"};
+    "--size",          "--up",          "--start",        "--policy",    "--semantics",
+    "--criterion",     "--max-views",   "--stop-gain",    "--stop-area", "--stop-idle",
+    "--stop-coverage", "--travel-cost", "--travel-speed", "--noise",     "--flying-pixels",
+    "--background",    "--wiggling",    "--pose-noise",   "--calibrate", "--frames-per-view"};
 
 FrameMapOptions frame_options(const ReconstructOptions& options) {
   FrameMapOptions frames;
@@ -126,7 +130,14 @@ class Recording {
         proposal_(proposal_options(options, app)),
         exec_{options.common.threads} {
     check(proposal_);
-    map_.emplace(frame_options(options), proposal_, options.common.quiet, exec_);
+    const FrameMapOptions frames = frame_options(options);
+    map_.emplace(frames, proposal_, options.common.quiet, exec_);
+    if (const auto sigmas = registration_prior(options, {})) {
+      const Stopwatch watch;
+      registrations_ = align_folder(*map_, frames, proposal_, *sigmas, options.common.quiet, exec_);
+      sigmas_ = {sigmas->sigma_translation, sigmas->sigma_rotation};
+      totals_.seconds["register"] = watch.seconds();
+    }
     page_.emplace(std::filesystem::path(options.mesh).filename().string() + ", " + sensor().name,
                   sensor(), options.criterion, nullptr);
   }
@@ -181,18 +192,27 @@ class Recording {
   [[nodiscard]] const Sensor& sensor() const { return map_->model().sensor(); }
 
  private:
+  [[nodiscard]] bool is_aligned() const { return !registrations_.empty(); }
+  [[nodiscard]] bool is_refused(std::size_t index) const {
+    return is_aligned() && registrations_[index].status == RegistrationStatus::refused;
+  }
+
   [[nodiscard]] bool draws() const { return options_.pictures == "on" || options_.report == "on"; }
 
   void add_frame(std::size_t index) {
-    const Stopwatch watch;
-    const MapUpdate update = map_->add(index);
-    totals_.add(update);
-    double known = 0;
-    for (const auto& [stage, value] : update.seconds) known += value;
-    totals_.seconds["read"] += watch.seconds() - known;
     ViewRecord record;
     record.index = index;
-    record.T_world_camera = map_->folder().T_world_camera(index);
+    record.T_world_camera =
+        is_aligned() ? registrations_[index].T_world_camera : map_->folder().T_world_camera(index);
+    MapUpdate update;
+    if (!is_refused(index)) {
+      const Stopwatch watch;
+      update = map_->add(index, record.T_world_camera);
+      totals_.add(update);
+      double known = 0;
+      for (const auto& [stage, value] : update.seconds) known += value;
+      totals_.seconds["read"] += watch.seconds() - known;
+    }
     record.progress = map_->model().progress();
     record.realised_gain = record.progress.entropy_removed;
     if (!records_.empty()) {
@@ -232,6 +252,7 @@ class Recording {
   [[nodiscard]] VdbWriteConfig noted_frames() const {
     std::set<std::string> frames;
     for (const ViewRecord& record : records_) {
+      if (is_refused(record.index)) continue;
       frames.insert(frame_identity(map_->folder().frames(), record.index));
     }
     return noting_sensor(map_->folder().sensor(), noting_frames(frames));
@@ -252,11 +273,14 @@ class Recording {
                           {"support_plane", nullptr},
                           {"jump_edge_filter", options_.jump_edge_filter},
                           {"refine", options_.refine == "on"},
+                          {"register", options_.register_frames == "on"},
+                          {"pose_sigma", nullptr},
                           {"generator", proposal_.generator},
                           {"gain", proposal_.gain},
                           {"reach", nullptr},
                           {"obstacles", options_.obstacles},
                           {"top", options_.top}};
+    if (is_aligned()) settings["pose_sigma"] = pose_sigmas_json(sigmas_);
     if (!options_.mask.empty()) settings["mask"] = options_.mask;
     if (!options_.confidence.empty()) {
       settings["confidence"] = options_.confidence;
@@ -286,6 +310,7 @@ class Recording {
                      {"triangles", model.surface().triangles.size()},
                      {"surface_area", mesh_area(model.surface())},
                      {"travelled", last.travelled}};
+    if (is_aligned()) run["registration"] = registration_counts(registrations_);
     run.update(app::to_json(next_));
     run["seconds"] = seconds_json(totals_.seconds);
     run["per_view"] = ordered_json::array();
@@ -301,6 +326,9 @@ class Recording {
                                  {"unknown_voxels", record.progress.unknown_voxels},
                                  {"travelled", record.travelled},
                                  {"seconds", seconds_json(record.seconds)}});
+      if (!is_aligned()) continue;
+      run["per_view"].back()["pose"] = app::to_json(map_->folder().T_world_camera(i));
+      run["per_view"].back()["registration"] = app::to_json(registrations_[i]);
     }
     return run;
   }
@@ -322,7 +350,9 @@ class Recording {
   std::optional<FrameMap> map_;
   std::optional<RunPage> page_;
   std::vector<ViewRecord> records_;
-  std::vector<double> new_areas_;  // by frame [m²]
+  std::vector<double> new_areas_;                 // by frame [m²]
+  std::vector<FrameRegistration> registrations_;  // by frame; empty: not asked for
+  PoseNoise sigmas_;                              // of the poses, where asked for
   Totals totals_;
   NextViews next_;
 };
@@ -332,6 +362,9 @@ void print(const ReconstructOptions& options, const ordered_json& run, const Nex
               run["views"].get<std::size_t>(),
               with_commas(run["readings"].get<std::uint64_t>()).c_str(),
               with_commas(run["readings_inside"].get<std::uint64_t>()).c_str());
+  if (run.contains("registration")) {
+    std::printf("%s\n", registration_text(run["registration"]).c_str());
+  }
   std::printf("surface %.4g m^2: %s points, %s triangles\n", run["surface_area"].get<double>(),
               with_commas(run["points"].get<std::size_t>()).c_str(),
               with_commas(run["triangles"].get<std::size_t>()).c_str());
@@ -351,6 +384,10 @@ void reconstruct_frames(const ReconstructOptions& options, const CLI::App& app) 
     if (app.count(flag) == 0) continue;
     throw Error(ErrorCode::invalid_argument,
                 std::string(flag) + " is for a mesh, not for a folder of frames");
+  }
+  if (!options.pose_sigma.empty() && options.register_frames != "on") {
+    throw Error(ErrorCode::invalid_argument,
+                "--pose-sigma " + options.pose_sigma + " goes with --register on");
   }
   if (options.report == "on") check_report_page("--report");
   const InterruptGuard interrupt;
