@@ -129,14 +129,13 @@ class Following {
     if (!map_ && watch_->folder()) open_map();
     if (look.frame) take(*look.frame);
     if (map_ && has_news_ && (!look.frame || since_written_.seconds() > kLeastInterval)) write();
-    if (map_ && said_ != counts()) write_json();
+    // Not before the state is there, which says whose these files are.
+    if (map_ && !has_news_ && count() > 0 && said_ != counts()) write_json();
     return look.frame.has_value();
   }
 
   // Nothing more is to be expected of the frames that are there.
-  [[nodiscard]] bool is_settled() const {
-    return watch_->is_settled(std::chrono::steady_clock::now());
-  }
+  [[nodiscard]] bool is_settled() const { return watch_->is_settled(); }
 
   void finish() {
     if (map_ && has_news_) write();

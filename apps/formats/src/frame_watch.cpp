@@ -111,6 +111,7 @@ struct FrameWatch::Impl {
   std::optional<FrameSequence> folder;
   std::map<std::string, std::string> taken;  // by file name, as frame_identity() has them
   std::map<std::uint64_t, Entry> entries;
+  Time looked{};  // when it was looked at last
   FileStamp poses_stamp;
   std::vector<ReadPose> poses;  // of poses.txt
 
@@ -189,6 +190,7 @@ struct FrameWatch::Impl {
     if (!fs::is_directory(dir, ignored)) {
       throw Error(ErrorCode::io, dir.string() + ": no such folder");
     }
+    looked = now;
     const std::vector<fs::path> names = names_in(dir);
     const auto frames = list_frames(names);
     const bool needs_amplitude = std::any_of(names.begin(), names.end(), [](const fs::path& name) {
@@ -235,7 +237,8 @@ struct FrameWatch::Impl {
 };
 
 FrameWatch::FrameWatch(fs::path dir, FrameWatchConfig config)
-    : impl_(std::make_unique<Impl>(Impl{std::move(dir), std::move(config), {}, {}, {}, {}, {}})) {
+    : impl_(
+          std::make_unique<Impl>(Impl{std::move(dir), std::move(config), {}, {}, {}, {}, {}, {}})) {
   for (const std::string& identity : impl_->config.taken) {
     impl_->taken.emplace(identity.substr(identity.find(' ') + 1), identity);
   }
@@ -275,9 +278,10 @@ std::map<std::string, std::size_t> FrameWatch::bad() const {
   return counts;
 }
 
-bool FrameWatch::is_settled(Time now) const {
+bool FrameWatch::is_settled() const {
   return std::all_of(impl_->entries.begin(), impl_->entries.end(), [&](const auto& entry) {
-    return entry.second.state != State::waits || now - entry.second.since >= impl_->config.settle;
+    return entry.second.state != State::waits ||
+           impl_->looked - entry.second.since >= impl_->config.settle;
   });
 }
 

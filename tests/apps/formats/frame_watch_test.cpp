@@ -194,14 +194,14 @@ TEST_F(WatchedFolder, WhatNeverEndsIsTakenOrBadAfterAWhile) {
   FrameWatch watched = watch();
   EXPECT_EQ(complete_after(watched, 1999ms), Numbers{});
   EXPECT_TRUE(bad.empty());
-  EXPECT_FALSE(watched.is_settled(now));
+  EXPECT_FALSE(watched.is_settled());
   EXPECT_EQ(watched.waiting(), 4U);
   now += 1ms;
   EXPECT_EQ(complete(watched), Numbers{0});
   EXPECT_EQ(watched.bad(), (Counts{{"pose", 1}, {"truncated", 1}}));
   // The one without a pose waits for as long as it takes.
   EXPECT_EQ(watched.waiting(), 1U);
-  EXPECT_TRUE(watched.is_settled(now));
+  EXPECT_TRUE(watched.is_settled());
   // In our own layout a line without its end could be the half of a number.
   const test::TemporaryFolder own;
   own.file("sensor.toml", sensor_toml(small_sensor()));

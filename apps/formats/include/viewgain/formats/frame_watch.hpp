@@ -95,8 +95,9 @@ class VIEWGAIN_EXPORT FrameWatch {
   [[nodiscard]] std::size_t waiting() const;
   /// Bad frames in the folder: reason -> count.
   [[nodiscard]] std::map<std::string, std::size_t> bad() const;
-  /// Has nothing changed, for long enough, of the frames that wait?
-  [[nodiscard]] bool is_settled(Time now) const;
+  /// Did the last look find that nothing has changed, for FrameWatchConfig::settle, of the frames
+  /// that wait?
+  [[nodiscard]] bool is_settled() const;
 
  private:
   struct Impl;
