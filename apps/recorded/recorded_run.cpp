@@ -25,6 +25,7 @@
 #include "options/values.hpp"
 #include "pictures/view_picture.hpp"
 #include "proposal/view_proposal.hpp"
+#include "recorded_views.hpp"
 #include "report/page.hpp"
 #include "report/run_page.hpp"
 #include "viewgain/core/atomic_file.hpp"
@@ -34,7 +35,6 @@
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/run_folder.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
-#include "viewgain/planner_mesh/mesh_area.hpp"
 #include "viewgain/planner_mesh/surface_files.hpp"
 #include "viewgain/version.hpp"
 
@@ -92,22 +92,6 @@ std::set<std::size_t> shown_frames(std::size_t count) {
   return shown;
 }
 
-struct Totals {
-  IntegrationReport readings{};
-  std::size_t flying_pixels = 0;
-  StageSeconds seconds{};
-
-  void add(const MapUpdate& update) {
-    readings.readings += update.counts.readings;
-    readings.readings_inside += update.counts.readings_inside;
-    readings.plane_readings += update.counts.plane_readings;
-    readings.out_of_range += update.counts.out_of_range;
-    readings.invalid += update.counts.invalid;
-    flying_pixels += update.flying_pixels;
-    for (const auto& [stage, value] : update.seconds) seconds[stage] += value;
-  }
-};
-
 // The surface and the next views of the map as it is now.
 struct Moment {
   SurfaceModel model;
@@ -132,11 +116,14 @@ class Recording {
     check(proposal_);
     const FrameMapOptions frames = frame_options(options);
     map_.emplace(frames, proposal_, options.common.quiet, exec_);
-    if (const auto sigmas = registration_prior(options, {})) {
+    sigmas_ = registration_prior(options, {});
+    if (sigmas_) {
       const Stopwatch watch;
-      registrations_ = align_folder(*map_, frames, proposal_, *sigmas, options.common.quiet, exec_);
-      sigmas_ = {sigmas->sigma_translation, sigmas->sigma_rotation};
-      totals_.seconds["register"] = watch.seconds();
+      views_.emplace(*map_,
+                     align_folder(*map_, frames, proposal_, *sigmas_, options.common.quiet, exec_));
+      views_->add_seconds("register", watch.seconds());
+    } else {
+      views_.emplace(*map_);
     }
     page_.emplace(std::filesystem::path(options.mesh).filename().string() + ", " + sensor().name,
                   sensor(), options.criterion, nullptr);
@@ -147,14 +134,14 @@ class Recording {
     const std::set<std::size_t> shown = shown_frames(map_->folder().size());
     Progress progress("frame", options_.common.quiet);
     for (std::size_t i = 0; i < map_->folder().size() && !stop.stop_requested(); ++i) {
-      add_frame(i);
+      views_->add(i);
       if (options_.save_maps == "on") {
         save_vdb(map_->model().grid(), folder.map(i), noting_sensor(sensor()));
       }
       const bool last = i + 1 == map_->folder().size();
       if (draws() && shown.count(i) > 0 && !last) {
         Moment moment(*map_, proposal_, exec_);
-        draw(folder, moment, records_.back(), {});
+        draw(folder, moment, views_->last(), {});
       }
       progress.update(i + 1, map_->folder().size());
     }
@@ -165,22 +152,25 @@ class Recording {
   ordered_json finish(RunFolder& folder) {
     Stopwatch watch;
     Moment moment(*map_, proposal_, exec_);
-    totals_.seconds["surface"] += watch.seconds();
-    ViewRecord& last = records_.back();
+    views_->add_seconds("surface", watch.seconds());
+    ViewRecord& last = views_->last();
     watch = {};
     last.proposal = moment.generation.generate(last.T_world_camera);
-    totals_.seconds["candidates"] = watch.seconds();
+    views_->add_seconds("candidates", watch.seconds());
     watch = {};
     next_ = best_views(moment.evaluator, last.proposal, options_.top);
-    totals_.seconds["score"] = watch.seconds();
+    views_->add_seconds("score", watch.seconds());
     if (!next_.views.empty()) last.decision = Decision{next_.views.front().index};
     if (draws()) draw(folder, moment, last, moment.generation.estimated());
 
-    save_vdb(moment.model.grid(), folder.file("map.vdb"), noted_frames());
+    save_vdb(moment.model.grid(), folder.file("map.vdb"),
+             noting_sensor(map_->folder().sensor(), noting_frames(views_->identities())));
     write_surfaces(moment.model, folder.file("surface.ply"), folder.file("points.ply"));
     write_tum(folder.file("views.txt"), moment.model.grid().views());
     write_tum(folder.file("next.txt"), poses_of(next_));
-    const ordered_json run = json(moment.model);
+    ordered_json run{{"settings", settings()},
+                     {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}}};
+    run.update(views_->json(moment.model, next_));
     write_file_atomically(folder.file("run.json"), json_text(run));
     if (options_.report == "on") {
       write_report(folder.file("report.html"), page_->json(run, nullptr));
@@ -192,40 +182,7 @@ class Recording {
   [[nodiscard]] const Sensor& sensor() const { return map_->model().sensor(); }
 
  private:
-  [[nodiscard]] bool is_aligned() const { return !registrations_.empty(); }
-  [[nodiscard]] bool is_refused(std::size_t index) const {
-    return is_aligned() && registrations_[index].status == RegistrationStatus::refused;
-  }
-
   [[nodiscard]] bool draws() const { return options_.pictures == "on" || options_.report == "on"; }
-
-  void add_frame(std::size_t index) {
-    ViewRecord record;
-    record.index = index;
-    record.T_world_camera =
-        is_aligned() ? registrations_[index].T_world_camera : map_->folder().T_world_camera(index);
-    MapUpdate update;
-    if (!is_refused(index)) {
-      const Stopwatch watch;
-      update = map_->add(index, record.T_world_camera);
-      totals_.add(update);
-      double known = 0;
-      for (const auto& [stage, value] : update.seconds) known += value;
-      totals_.seconds["read"] += watch.seconds() - known;
-    }
-    record.progress = map_->model().progress();
-    record.realised_gain = record.progress.entropy_removed;
-    if (!records_.empty()) {
-      const ViewRecord& before = records_.back();
-      record.realised_gain -= before.progress.entropy_removed;
-      record.travelled =
-          before.travelled +
-          (record.T_world_camera.translation() - before.T_world_camera.translation()).norm();
-    }
-    new_areas_.push_back(update.new_area);
-    record.seconds = update.seconds;
-    records_.push_back(std::move(record));
-  }
 
   void draw(RunFolder& folder, const Moment& moment, const ViewRecord& record,
             const EstimatedViews& estimated) {
@@ -246,16 +203,7 @@ class Recording {
       page_->add_view(record, moment.model, moment.generation, estimated, moment.evaluator,
                       picture);
     }
-    totals_.seconds["pictures"] += watch.seconds();
-  }
-
-  [[nodiscard]] VdbWriteConfig noted_frames() const {
-    std::set<std::string> frames;
-    for (const ViewRecord& record : records_) {
-      if (is_refused(record.index)) continue;
-      frames.insert(frame_identity(map_->folder().frames(), record.index));
-    }
-    return noting_sensor(map_->folder().sensor(), noting_frames(frames));
+    views_->add_seconds("pictures", watch.seconds());
   }
 
   [[nodiscard]] ordered_json settings() const {
@@ -280,7 +228,10 @@ class Recording {
                           {"reach", nullptr},
                           {"obstacles", options_.obstacles},
                           {"top", options_.top}};
-    if (is_aligned()) settings["pose_sigma"] = pose_sigmas_json(sigmas_);
+    if (sigmas_) {
+      settings["pose_sigma"] =
+          pose_sigmas_json({sigmas_->sigma_translation, sigmas_->sigma_rotation});
+    }
     if (!options_.mask.empty()) settings["mask"] = options_.mask;
     if (!options_.confidence.empty()) {
       settings["confidence"] = options_.confidence;
@@ -291,69 +242,13 @@ class Recording {
     return settings;
   }
 
-  [[nodiscard]] ordered_json json(const SurfaceModel& model) const {
-    const ViewRecord& last = records_.back();
-    const std::size_t all = map_->folder().size();
-    ordered_json run{{"settings", settings()},
-                     {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}},
-                     {"map_hash", model.grid().content_hash()},
-                     {"stop_reason", records_.size() < all ? "interrupted" : "no_frames"},
-                     {"views", records_.size()},
-                     {"readings", totals_.readings.readings},
-                     {"readings_inside", totals_.readings.readings_inside},
-                     {"masked_pixels", map_->masked_pixels()},
-                     {"flying_pixels", totals_.flying_pixels},
-                     {"orthonormalized_poses", map_->folder().frames().orthonormalized},
-                     {"entropy_removed", last.progress.entropy_removed},
-                     {"unknown_voxels", last.progress.unknown_voxels},
-                     {"points", model.points().size()},
-                     {"triangles", model.surface().triangles.size()},
-                     {"surface_area", mesh_area(model.surface())},
-                     {"travelled", last.travelled}};
-    if (is_aligned()) run["registration"] = registration_counts(registrations_);
-    run.update(app::to_json(next_));
-    run["seconds"] = seconds_json(totals_.seconds);
-    run["per_view"] = ordered_json::array();
-    for (const ViewRecord& record : records_) {
-      const std::size_t i = record.index;
-      run["per_view"].push_back({{"index", i},
-                                 {"frame", map_->folder().frames().images[i].filename().string()},
-                                 {"pose", app::to_json(record.T_world_camera)},
-                                 {"generator", "recorded"},
-                                 {"realised_gain", record.realised_gain},
-                                 {"realised_area", new_areas_[i]},
-                                 {"entropy_removed", record.progress.entropy_removed},
-                                 {"unknown_voxels", record.progress.unknown_voxels},
-                                 {"travelled", record.travelled},
-                                 {"seconds", seconds_json(record.seconds)}});
-      if (!is_aligned()) continue;
-      run["per_view"].back()["pose"] = app::to_json(map_->folder().T_world_camera(i));
-      run["per_view"].back()["registration"] = app::to_json(registrations_[i]);
-    }
-    return run;
-  }
-
-  static ordered_json seconds_json(const StageSeconds& seconds) {
-    ordered_json json = ordered_json::object();
-    double total = 0;
-    for (const auto& [stage, value] : seconds) {
-      json[stage] = value;
-      total += value;
-    }
-    json["total"] = total;
-    return json;
-  }
-
   const ReconstructOptions& options_;
   ProposalOptions proposal_;
   ExecConfig exec_;
   std::optional<FrameMap> map_;
   std::optional<RunPage> page_;
-  std::vector<ViewRecord> records_;
-  std::vector<double> new_areas_;                 // by frame [m²]
-  std::vector<FrameRegistration> registrations_;  // by frame; empty: not asked for
-  PoseNoise sigmas_;                              // of the poses, where asked for
-  Totals totals_;
+  std::optional<PosePrior> sigmas_;  // of the poses, where frames are aligned
+  std::optional<RecordedViews> views_;
   NextViews next_;
 };
 
