@@ -128,7 +128,9 @@ class Following {
     for (const BadFrame& bad : look.bad) say(bad.what + " (" + bad.reason + "); left out");
     if (!map_ && watch_->folder()) open_map();
     if (look.frame) take(*look.frame);
-    if (map_ && has_news_ && (!look.frame || since_written_.seconds() > kLeastInterval)) write();
+    const bool is_due =
+        !look.frame || !since_written_ || since_written_->seconds() > kLeastInterval;
+    if (map_ && has_news_ && is_due) write();
     // Not before the state is there, which says whose these files are.
     if (map_ && !has_news_ && count() > 0 && said_ != counts()) write_json();
     return look.frame.has_value();
@@ -202,14 +204,14 @@ class Following {
                  1e4 * added.update.new_area, added.entropy_removed);
   }
 
-  // First the state, which the rest can be made of again.
+  // First the state: what is next takes longest, and can be made of it again.
   void write() {
-    next_ = map_->next(options_.top);
     map_->save(watch_->taken());
+    next_ = map_->next(options_.top);
     write_tum(out_ / "next.txt", poses_of(next_));
     write_json();
     has_news_ = false;
-    since_written_ = Stopwatch();
+    since_written_.emplace();
     if (options_.common.quiet) return;
     std::fprintf(stderr, "%zu frames: %zu candidates", count(), next_.candidates);
     if (!next_.views.empty()) {
@@ -247,7 +249,7 @@ class Following {
   std::optional<FollowedMap> map_;  // once the sensor is known
   std::size_t added_ = 0;           // frames, by this call
   bool has_news_ = false;           // that are not yet written
-  Stopwatch since_written_;
+  std::optional<Stopwatch> since_written_;
   NextViews next_;
   nlohmann::ordered_json said_;  // counts(), as next.json has them
 };
