@@ -110,8 +110,8 @@ std::vector<Reading> FrameAlignment::Impl::readings_of(const DepthFrame& frame,
       inside.depth[i] = DepthFrame::kInvalid;
     }
   }
-  std::vector<Reading> readings =
-      detail::readings_of(inside, sensor, rays, kNormalRadius * length, config.max_readings, pool);
+  std::vector<Reading> readings = detail::readings_of(inside, sensor, rays, kNormalRadius * length,
+                                                      true, config.max_readings, pool);
   return readings;
 }
 

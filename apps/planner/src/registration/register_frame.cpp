@@ -149,8 +149,8 @@ FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
     return result;
   }
   const double length = pooling_of(grid.snapshot()).length;
-  std::vector<Reading> readings =
-      detail::readings_of(frame, sensor, rays, kNormalRadius * length, config.max_readings, pool);
+  std::vector<Reading> readings = detail::readings_of(frame, sensor, rays, kNormalRadius * length,
+                                                      false, config.max_readings, pool);
   std::erase_if(readings, [&](const Reading& r) { return !is_of_map(r, grid, T_reported); });
   result.readings = readings.size();
   if (readings.empty()) {

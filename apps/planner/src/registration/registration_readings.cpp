@@ -16,8 +16,8 @@ constexpr int kLeastForNormal = 15;  // of 25 readings
 class Surroundings {
  public:
   Surroundings(const DepthFrame& frame, const Sensor& sensor, std::span<const Eigen::Vector3d> rays,
-               double radius)
-      : frame_(frame), sensor_(sensor), rays_(rays), radius_(radius) {}
+               double radius, bool are_smoothed)
+      : frame_(frame), sensor_(sensor), rays_(rays), radius_(radius), are_smoothed_(are_smoothed) {}
 
   [[nodiscard]] bool is_reading(int u, int v) const {
     const std::size_t i = index(u, v);
@@ -32,12 +32,20 @@ class Surroundings {
   // Nothing without a normal.
   [[nodiscard]] std::optional<Reading> reading(int u, int v) const {
     if (!is_reading(u, v)) return std::nullopt;
-    const std::optional<Plane> plane = plane_at(u, v);
-    if (!plane) return std::nullopt;
     const std::size_t i = index(u, v);
+    const double z = static_cast<double>(frame_.depth[i]);
+    const std::optional<Plane> plane = plane_at(u, v, half_window(radius_ / z, sensor_.camera.fx),
+                                                half_window(radius_ / z, sensor_.camera.fy));
+    if (!plane) return std::nullopt;
     Reading reading;
-    reading.point = plane->depth * rays_[i];
+    reading.point = z * rays_[i];
     reading.normal = plane->normal;
+    if (are_smoothed_) {
+      // Of the nearest pixels alone: a wide plane cuts what is curved.
+      const std::optional<Plane> near = plane_at(u, v, 2, 2);
+      if (!near) return std::nullopt;
+      reading.point = near->depth * rays_[i];
+    }
     const double range = reading.point.norm();
     const double cosine =
         frame_.amplitude.empty()
@@ -58,16 +66,17 @@ class Surroundings {
            static_cast<std::size_t>(u);
   }
 
-  // A plane n·p = 1 is 1/z = n·(x, y, 1) in the image, linear in n; noise is in z alone.
-  [[nodiscard]] std::optional<Plane> plane_at(int u, int v) const {
+  // Of what reaches so far in x or y at depth 1.
+  static int half_window(double reach, double focal) {
+    return std::clamp(static_cast<int>(std::lround(reach * focal)), 2, kMaxHalfWindow);
+  }
+
+  // Through 5x5 readings. A plane n·p = 1 is 1/z = n·(x, y, 1) in the image, linear in n; noise is
+  // in z alone.
+  [[nodiscard]] std::optional<Plane> plane_at(int u, int v, int half_u, int half_v) const {
     const std::size_t center = index(u, v);
     const double z = static_cast<double>(frame_.depth[center]);
     const Eigen::Vector3d& ray = rays_[center];
-    const double reach = radius_ / z;  // in x and y
-    const int half_u =
-        std::clamp(static_cast<int>(std::lround(reach * sensor_.camera.fx)), 2, kMaxHalfWindow);
-    const int half_v =
-        std::clamp(static_cast<int>(std::lround(reach * sensor_.camera.fy)), 2, kMaxHalfWindow);
     // A surface turned by up to 70° reaches that deep.
     const double deepest =
         2.75 * std::max(radius_, 2 * z / sensor_.camera.fx) + 3 * sensor_.noise_sigmas(z).axial;
@@ -103,6 +112,7 @@ class Surroundings {
   const Sensor& sensor_;
   std::span<const Eigen::Vector3d> rays_;
   double radius_;
+  bool are_smoothed_;
 };
 
 int level_of(int column, int row) {
@@ -114,8 +124,8 @@ int level_of(int column, int row) {
 
 std::vector<Reading> readings_of(const DepthFrame& frame, const Sensor& sensor,
                                  std::span<const Eigen::Vector3d> rays, double radius,
-                                 std::size_t max_readings, ThreadPool& pool) {
-  const Surroundings surroundings(frame, sensor, rays, radius);
+                                 bool are_smoothed, std::size_t max_readings, ThreadPool& pool) {
+  const Surroundings surroundings(frame, sensor, rays, radius, are_smoothed);
   const auto height = static_cast<std::size_t>(frame.height);
   std::vector<std::size_t> of_row(height);
   pool.for_each_chunk(height, 16, [&](std::size_t begin, std::size_t end) {
