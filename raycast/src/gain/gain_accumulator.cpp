@@ -42,7 +42,11 @@ FrontalSigmas frontal_sigmas(const Sensor& sensor) {
       return {.a0 = n.sigma_axial, .l0 = n.sigma_lateral};
     }
   };
-  return std::visit(Visitor{sensor.camera.fx}, sensor.noise);
+  FrontalSigmas sigmas = std::visit(Visitor{sensor.camera.fx}, sensor.noise);
+  const PoseSigma& pose = sensor.pose_sigma;
+  sigmas.p0 = pose.translation * pose.translation;
+  sigmas.p2 = pose.rotation * pose.rotation;
+  return sigmas;
 }
 
 GainAccumulator::GainAccumulator(const SceneData& scene, const GainSettings& settings,

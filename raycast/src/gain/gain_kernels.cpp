@@ -72,7 +72,8 @@ void expand(const FrontalSigmas& sigmas, double voxel_size, HitBatch& batch) {
   constexpr hn::Rebind<float, DD> half;
   const VD one = hn::Set(dd, 1.0), voxel = hn::Set(dd, voxel_size);
   const VD a0 = hn::Set(dd, sigmas.a0), a1 = hn::Set(dd, sigmas.a1), a2 = hn::Set(dd, sigmas.a2),
-           v = hn::Set(dd, sigmas.v), l0 = hn::Set(dd, sigmas.l0), l1 = hn::Set(dd, sigmas.l1);
+           v = hn::Set(dd, sigmas.v), l0 = hn::Set(dd, sigmas.l0), l1 = hn::Set(dd, sigmas.l1),
+           p0 = hn::Set(dd, sigmas.p0), p2 = hn::Set(dd, sigmas.p2);
   for (std::size_t i = 0; i < batch.count; i += kLanes) {
     const VD x = hn::PromoteTo(dd, hn::LoadU(half, batch.dx + i));
     const VD y = hn::PromoteTo(dd, hn::LoadU(half, batch.dy + i));
@@ -87,7 +88,9 @@ void expand(const FrontalSigmas& sigmas, double voxel_size, HitBatch& batch) {
     // a = 1 / σ_lat², b = 1 / σ_ax², c = (b - a) / |d|², with one division. The direction is unit
     // to single precision only; with σ_ax far from σ_lat that would show, hence |d|².
     const VD norm = hn::Add(xx, hn::Add(yy, zz));
-    const VD var_lateral = hn::Mul(lateral, lateral), var_axial = hn::Mul(axial, axial);
+    const VD var_axial = hn::Add(hn::Mul(axial, axial), p0);
+    const VD var_lateral =
+        hn::Add(hn::Mul(lateral, lateral), hn::Add(p0, hn::Mul(p2, hn::Mul(t, t))));
     const VD both = hn::Mul(var_lateral, var_axial);
     const VD inverse = hn::Div(one, hn::Mul(both, norm));
     const VD a = hn::Mul(hn::Mul(var_axial, norm), inverse);

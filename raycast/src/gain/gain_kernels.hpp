@@ -17,6 +17,7 @@ namespace viewgain::detail {
 struct FrontalSigmas {
   double a0 = 0, a1 = 0, a2 = 0, v = 0;
   double l0 = 0, l1 = 0;
+  double p0 = 0, p2 = 0;  ///< variances that the pose adds: p0, across the ray p0 + p2 t²
 };
 
 inline constexpr std::size_t kBatchSize = 256;

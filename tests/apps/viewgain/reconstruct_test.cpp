@@ -167,10 +167,11 @@ TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
   const std::map<std::string, std::string> renamed{
       {"generator", "generators"}, {"calibrate", "calibrated"}, {"count", "sphere_poses"}};
   // Where results go, how fast; the seed is beside the settings, the body in the sensor; obstacles
-  // are there where there are any.
+  // are there where there are any; the last are of folders of frames.
   const std::set<std::string> elsewhere{
-      "help", "json",     "threads", "out",    "save_maps",   "pictures", "seed",
-      "body", "obstacle", "quiet",   "config", "save_config", "report"};
+      "help",   "json",        "threads",  "out",        "save_maps",        "pictures",
+      "seed",   "body",        "obstacle", "quiet",      "config",           "save_config",
+      "report", "depth_scale", "mask",     "confidence", "least_confidence", "top"};
   std::istringstream help(run_well({"reconstruct", "--help"}));
   std::size_t flags = 0;
   for (std::string line; std::getline(help, line);) {

@@ -554,16 +554,17 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
       {"simulate",
        "MESH --poses --sphere --dome --rings --shell --orbit --center --sensor --size --recenter "
        "--background --up --support-plane --noise --flying-pixels --wiggling --calibrate "
-       "--frames-per-view --amplitude --seed --out --json --threads =1.5 [m]"},
+       "--pose-noise --frames-per-view --amplitude --seed --out --json --threads =1.5 [m]"},
       {"integrate",
        "FRAMES_DIR --cloud --origin --poses --voxel --workspace --sensor --depth-scale "
-       "--mask "
+       "--mask --confidence --least-confidence "
        "--out-of-range --carve --occupancy --jump-edge-filter --jump-edge-two-sided "
        "--calibrate-hazard --support-plane --prior-sigma --with-covariance --out --map --json "
        "--threads =carve "
        "=cones =probabilistic =viewpoint 1e-4 [m]"},
       {"import",
-       "SOURCE --format --sensor --intrinsics --max-time-gap --mask --out --json --threads =0.02 "
+       "SOURCE --format --sensor --intrinsics --max-time-gap --mask --confidence "
+       "--least-confidence --out --json --threads =0.02 "
        "[s] [px]"},
       {"convert",
        "IN OUT --workspace --prior-sigma --sensor --with-covariance --json --threads .ot [m]"},
@@ -589,6 +590,8 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--stop-area --stop-idle --stop-coverage "
        "--travel-cost --travel-speed --reach --body --background --support-plane --noise "
        "--flying-pixels --seed --wiggling --calibrate --frames-per-view --jump-edge-filter "
+       "--pose-noise --register --pose-sigma --depth-scale --mask --confidence --least-confidence "
+       "--top "
        "--refine --obstacle --save-maps --pictures --report --out --json --threads"},
       {"render",
        "INPUT --what --width --azimuth --elevation --ellipsoids --views --columns --poses --sphere "
@@ -619,7 +622,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 228);
+  EXPECT_EQ(words, 241);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;
