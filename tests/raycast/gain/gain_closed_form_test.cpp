@@ -65,11 +65,11 @@ TEST(GainClosedForm, OneVoxelOneRay) {
   }
 }
 
-// The ray ends 8 m away, where a turn of 1 mrad is 8 mm.
+// The ray ends 8 voxels away, where the turn moves it by 8 mm.
 TEST(GainClosedForm, PosesThatAreNotSureMakeReadingsLessSure) {
   const BeliefGrid grid = sparse_map({16, 16, 16}, {{6, 6, 6}}, VoxelState::unknown);
   Sensor sensor = anisotropic();
-  sensor.pose_sigma = {0.01, 0.001};
+  sensor.pose_sigma = {0.01, 0.008 / (8 * test::kExactVoxel)};
   const double axial = std::hypot(kAxial, 0.01), lateral = std::hypot(kLateral, 0.01, 0.008);
   const double expected =
       std::log(squared(kPrior) / fused(lateral)) + 0.5 * std::log(squared(kPrior) / fused(axial));
