@@ -30,7 +30,7 @@ namespace viewgain {
 ///
 /// Nothing may run beside add(). Deterministic: the same bits for any number of threads. Keeps some
 /// 100 bytes a reading. The time grows with the square of the number of frames: 12 of an SR4000
-/// take about a second in all, 20 of 640x480 pixels some 20 seconds.
+/// take about a second in all, 20 of 640x480 pixels some 25 seconds.
 class VIEWGAIN_EXPORT FrameAlignment {
  public:
   /// Readings outside of the workspace of `layout`, whose beliefs do not count, are left out.
