@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run_report.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdarg>

@@ -43,13 +43,20 @@ Matrix6 carried(const Pose& T_world_source, const Pose& T_world_target) {
   return A;
 }
 
-struct View {
-  AlignedView seen;
-  Pose T_reported;
-  Vector6 sigmas;  // of the prior
+// What an alignment changes of a view.
+struct Motion {
   Pose T;
   double slack = 0;  // by which T may still be off, in sigmas
   int iterations = 0;
+};
+
+struct View : Motion {
+  View(AlignedView view, const Pose& T_world_camera, const Vector6& prior)
+      : Motion{T_world_camera}, seen(std::move(view)), T_reported(T_world_camera), sigmas(prior) {}
+
+  AlignedView seen;
+  Pose T_reported;
+  Vector6 sigmas;  // of the prior
 };
 
 // What one iteration looks at.
@@ -110,9 +117,8 @@ std::vector<Reading> FrameAlignment::Impl::readings_of(const DepthFrame& frame,
       inside.depth[i] = DepthFrame::kInvalid;
     }
   }
-  std::vector<Reading> readings = detail::readings_of(inside, sensor, rays, kNormalRadius * length,
-                                                      true, config.max_readings, pool);
-  return readings;
+  return detail::readings_of(inside, sensor, rays, kNormalRadius * length, true,
+                             config.max_readings, pool);
 }
 
 // One step of Gauss and Newton; false if it was short.
@@ -264,17 +270,18 @@ FrameRegistration FrameAlignment::add(const DepthFrame& frame, const PosePrior& 
   detail::check(prior);
   std::vector<View>& views = impl_->views;
   const Pose T = orthonormalized(prior.T_world_camera);
-  std::vector<View> before = views;
-  views.push_back({AlignedView(frame, impl_->sensor.camera, impl_->readings_of(frame, T)), T,
-                   detail::sigmas_of(prior), T});
+  const std::vector<Motion> before(views.begin(), views.end());
+  views.emplace_back(AlignedView(frame, impl_->sensor.camera, impl_->readings_of(frame, T)), T,
+                     detail::sigmas_of(prior));
   if (views.size() > 1) impl_->align_newest();
   FrameRegistration result = impl_->result_of(views.size() - 1);
   if (result.status == RegistrationStatus::registered) return result;
+  for (std::size_t i = 0; i < before.size(); ++i) static_cast<Motion&>(views[i]) = before[i];
   if (result.status == RegistrationStatus::too_little_overlap) {
-    before.push_back(std::move(views.back()));
-    before.back().T = T;
+    views.back().T = T;
+  } else {
+    views.pop_back();
   }
-  views = std::move(before);
   result.T_world_camera = T;
   return result;
 }
