@@ -70,6 +70,7 @@ GainConfig gain_config(const Options& options) {
   config.support_plane = options.support_plane;
   config.criterion = parse_criterion(options.criterion);
   config.pixel_stride = options.stride;
+  config.posterior_entropy = true;  // a column of what is written
   config.prior_sigma = options.prior_sigma;
   config.min_range = options.min_range;
   config.max_range = options.max_range;

@@ -3,6 +3,7 @@
 #include "exposed_quads.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace viewgain::bench {
 namespace {
@@ -52,10 +53,37 @@ class FacePlane {
   std::vector<std::uint8_t> exposed_;
 };
 
+/// The box round all non-free voxels, relative to the workspace's lowest one: there is no face
+/// elsewhere.
+struct NonFreeBox {
+  std::array<int, 3> first, last;
+
+  explicit NonFreeBox(const oracle::DenseMap& map) {
+    first.fill(std::numeric_limits<int>::max());
+    last.fill(-1);
+    std::array<int, 3> i{};
+    for (i[0] = 0; i[0] < map.dims.x; ++i[0]) {
+      for (i[1] = 0; i[1] < map.dims.y; ++i[1]) {
+        for (i[2] = 0; i[2] < map.dims.z; ++i[2]) {
+          const Index3 voxel{map.min_index.x + i[0], map.min_index.y + i[1],
+                             map.min_index.z + i[2]};
+          if (map.states[map.position(voxel)] == static_cast<std::uint8_t>(VoxelState::free)) {
+            continue;
+          }
+          for (std::size_t k = 0; k < 3; ++k) {
+            first[k] = std::min(first[k], i[k]);
+            last[k] = std::max(last[k], i[k]);
+          }
+        }
+      }
+    }
+  }
+};
+
 }  // namespace
 
 std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis, int most) {
-  const std::array<int, 3> dims{map.dims.x, map.dims.y, map.dims.z};
+  const NonFreeBox box(map);
   const auto a = static_cast<std::size_t>(axis);
   const std::size_t b = (a + 1) % 3;
   const std::size_t c = (a + 2) % 3;
@@ -69,21 +97,21 @@ std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis, int most)
   };
   std::vector<Quad> quads;
   const auto add_plane = [&](int plane, bool lower_side) {
-    FacePlane faces(dims[b], dims[c]);
+    FacePlane faces(box.last[b] - box.first[b] + 1, box.last[c] - box.first[c] + 1);
     const int front = lower_side ? plane - 1 : plane;
     const int behind = lower_side ? plane : plane - 1;
-    for (int row = 0; row < dims[b]; ++row) {
-      for (int column = 0; column < dims[c]; ++column) {
-        const bool exposed = is_free(front, row, column) && !is_free(behind, row, column);
-        faces.at(row, column) = exposed ? 1 : 0;
+    for (int row = box.first[b]; row <= box.last[b]; ++row) {
+      for (int column = box.first[c]; column <= box.last[c]; ++column) {
+        const bool exposed = !is_free(behind, row, column) && is_free(front, row, column);
+        faces.at(row - box.first[b], column - box.first[c]) = exposed ? 1 : 0;
       }
     }
     faces.take(most, [&](int row, int column, int rows, int columns) {
       const auto corner = [&](int r, int k) {
         std::array<float, 3> p{};
         p[a] = static_cast<float>(plane);
-        p[b] = static_cast<float>(r);
-        p[c] = static_cast<float>(k);
+        p[b] = static_cast<float>(box.first[b] + r);
+        p[c] = static_cast<float>(box.first[c] + k);
         return p;
       };
       quads.push_back({{corner(row, column), corner(row + rows, column),
@@ -92,7 +120,7 @@ std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis, int most)
     });
   };
   for (const bool lower_side : {true, false}) {
-    for (int plane = 0; plane <= dims[a]; ++plane) add_plane(plane, lower_side);
+    for (int plane = box.first[a]; plane <= box.last[a] + 1; ++plane) add_plane(plane, lower_side);
   }
   return quads;
 }

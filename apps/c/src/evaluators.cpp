@@ -38,7 +38,8 @@ GainConfig settings_of(const vg_evaluator_config& config) {
                       .min_range = given(config.min_range),
                       .max_range = given(config.max_range),
                       .refinement_weight = config.refinement_weight,
-                      .support_plane = given(config.support_plane)};
+                      .support_plane = given(config.support_plane),
+                      .posterior_entropy = config.posterior_entropy != 0};
   for (const vg_weight_region& region : std::span(config.weights, config.weight_count)) {
     settings.weights.push_back(
         {{std::to_array(region.box_min), std::to_array(region.box_max)}, region.weight});

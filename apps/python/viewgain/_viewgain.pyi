@@ -391,6 +391,7 @@ class GainEvaluator:
         weights: Iterable[tuple[ArrayLike, float]] = (),
         refinement_weight: float | None = None,
         support_plane: float | None = None,
+        posterior_entropy: bool = False,
         num_threads: int = 0,
     ) -> None: ...
     def with_scene(self, scene: VoxelScene) -> GainEvaluator: ...

@@ -36,7 +36,8 @@ struct AfterOthersConsumer : detail::GainConsumer {
   void finish(ViewGain& result) {
     GainConsumer::finish(result);
     if (chosen.empty() || result.hits == 0) return;
-    result.exploration = result.refinement = result.posterior_entropy = 0;
+    result.exploration = result.refinement = 0;
+    if (settings.posterior_entropy) result.posterior_entropy = 0;
     accumulator.visit([&](std::uint64_t key, const std::optional<detail::VoxelSum>& known,
                           const detail::VoxelSum& sum, double weight) {
       SymmetricMatrix3 held{};
@@ -48,6 +49,7 @@ struct AfterOthersConsumer : detail::GainConsumer {
           weight * entropy_reduction(held + SymmetricMatrix3::identity(settings.prior_information),
                                      added, settings.criterion);
       (known ? result.refinement : result.exploration) += gain;
+      if (!settings.posterior_entropy) return;
       result.posterior_entropy += log_of_diagonal((held + added).inverse());
     });
     result.gain = result.exploration + result.refinement;

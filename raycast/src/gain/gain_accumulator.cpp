@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <variant>
 
 #include "task_weight.hpp"
@@ -244,14 +245,16 @@ GainAccumulator::ClassGain GainAccumulator::finish_class(std::span<const std::ui
   kernels_->finish(settings_->criterion, settings_->prior_information,
                    {sums_.data(), members.data(), is_known ? known_a_.data() : nullptr,
                     known_b_.data(), members.size()},
-                   ratios, posterior, each);
-  if (each == nullptr) return {0.5 * ratios.log(), posterior.log()};
+                   ratios, settings_->posterior_entropy ? &posterior : nullptr, each);
+  const double left =
+      settings_->posterior_entropy ? posterior.log() : std::numeric_limits<double>::quiet_NaN();
+  if (each == nullptr) return {0.5 * ratios.log(), left};
   double sum = 0;
   for (std::size_t i = 0; i < members.size(); ++i) {
     const double w = settings_->weights.empty() ? 1.0 : weight(touched_[members[i]]);
     sum += w * (logarithmic ? 0.5 * std::log(each[i]) : each[i]);
   }
-  return {sum, posterior.log()};
+  return {sum, left};
 }
 
 // What voxels of one class gain with those that they stand for; copies_ are then a hit's share.
@@ -265,11 +268,11 @@ void GainAccumulator::spread(std::span<const std::uint32_t> members, bool is_kno
     copies_[place] = voxel.copies;
   }
   sampled_each_.resize(members.size() + kOverhang);
-  LogProduct ratios, posterior;
+  LogProduct ratios;
   kernels_->finish(settings_->criterion, settings_->prior_information,
                    {sums_.data(), members.data(), is_known ? known_a_.data() : nullptr,
                     known_b_.data(), members.size()},
-                   ratios, posterior, sampled_each_.data());
+                   ratios, nullptr, sampled_each_.data());
   for (std::size_t i = 0; i < members.size(); ++i) {
     const std::uint32_t place = members[i];
     const double hits = sums_[place].b[2], expected = hits / sums_[place].b[3];

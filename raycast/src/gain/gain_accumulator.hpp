@@ -30,6 +30,7 @@ struct GainSettings {
   double prior_information = 0;  ///< sigma_0⁻² [m⁻²]
   FrontalSigmas sigmas;
   std::vector<WeightRegion> weights;
+  bool posterior_entropy = false;
 };
 
 /// Sums the hits of one view by voxel and turns the sums into a gain (DESIGN.md section 6). One

@@ -207,13 +207,14 @@ HWY_INLINE void multiply(LogProduct& product, std::size_t part, VD factor) {
   hn::Store(hn::Add(hn::Load(di, exponent), power), di, exponent);
 }
 
-template <Criterion criterion>
+template <Criterion criterion, bool kWithPosterior>
 HWY_INLINE void finish_as(double prior_information, const VoxelClass& voxels, LogProduct& ratios,
-                          LogProduct& posterior, double* each) {
+                          LogProduct* posterior, double* each) {
   const VD prior = hn::Set(dd, prior_information), zero = hn::Zero(dd), one = hn::Set(dd, 1.0);
   const Inverse unknown_before = invert(prior, prior, prior, zero, zero, zero);
   // Copies, so that the compiler may keep the strands in registers.
-  LogProduct ratio_strands = ratios, posterior_strands = posterior;
+  LogProduct ratio_strands = ratios, posterior_strands;
+  if constexpr (kWithPosterior) posterior_strands = *posterior;
   for (std::size_t i = 0; i < voxels.count; i += kStrands) {
     for (std::size_t part = 0; part < kParts; ++part) {
       const std::size_t first = i + part * kLanes;
@@ -254,11 +255,13 @@ HWY_INLINE void finish_as(double prior_information, const VoxelClass& voxels, Lo
       }
       const Inverse after =
           invert(hn::Add(prior, xx), hn::Add(prior, yy), hn::Add(prior, zz), xy, xz, yz);
-      const Inverse without_prior = invert(xx, yy, zz, xy, xz, yz);
       const VD gained = reduction<criterion>(before, after);
-      const VD left_over =
-          hn::Div(diagonal_product(without_prior), cube(without_prior.determinant));
-      multiply(posterior_strands, part, hn::IfThenElse(live, left_over, one));
+      if constexpr (kWithPosterior) {
+        const Inverse without_prior = invert(xx, yy, zz, xy, xz, yz);
+        const VD left_over =
+            hn::Div(diagonal_product(without_prior), cube(without_prior.determinant));
+        multiply(posterior_strands, part, hn::IfThenElse(live, left_over, one));
+      }
       if (each != nullptr) {
         hn::StoreU(gained, dd, each + first);
       } else {
@@ -267,19 +270,29 @@ HWY_INLINE void finish_as(double prior_information, const VoxelClass& voxels, Lo
     }
   }
   ratios = ratio_strands;
-  posterior = posterior_strands;
+  if constexpr (kWithPosterior) *posterior = posterior_strands;
+}
+
+template <Criterion criterion>
+void finish_by(double prior_information, const VoxelClass& voxels, LogProduct& ratios,
+               LogProduct* posterior, double* each) {
+  if (posterior != nullptr) {
+    finish_as<criterion, true>(prior_information, voxels, ratios, posterior, each);
+  } else {
+    finish_as<criterion, false>(prior_information, voxels, ratios, posterior, each);
+  }
 }
 
 void finish(Criterion criterion, double prior_information, const VoxelClass& voxels,
-            LogProduct& ratios, LogProduct& posterior, double* each) {
+            LogProduct& ratios, LogProduct* posterior, double* each) {
   switch (criterion) {
     case Criterion::log_diagonal:
-      return finish_as<Criterion::log_diagonal>(prior_information, voxels, ratios, posterior, each);
+      return finish_by<Criterion::log_diagonal>(prior_information, voxels, ratios, posterior, each);
     case Criterion::log_determinant:
-      return finish_as<Criterion::log_determinant>(prior_information, voxels, ratios, posterior,
+      return finish_by<Criterion::log_determinant>(prior_information, voxels, ratios, posterior,
                                                    each);
     case Criterion::trace:
-      return finish_as<Criterion::trace>(prior_information, voxels, ratios, posterior, each);
+      return finish_by<Criterion::trace>(prior_information, voxels, ratios, posterior, each);
   }
 }
 

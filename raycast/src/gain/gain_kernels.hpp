@@ -85,9 +85,9 @@ struct GainKernels {
   /// What the members gain and what stays. Multiplies the ratios whose logarithms, halved, are
   /// H(before) - H(after) into `ratios`, or, if `each` is not null (room for 8 beyond count),
   /// writes each ratio there, for the trace each difference. Multiplies Π_k [(Λ_v + ΣΛ_r)⁻¹]_kk
-  /// into `posterior`.
+  /// into `posterior` unless that is null.
   void (*finish)(Criterion criterion, double prior_information, const VoxelClass& voxels,
-                 LogProduct& ratios, LogProduct& posterior, double* each);
+                 LogProduct& ratios, LogProduct* posterior, double* each);
 };
 
 [[nodiscard]] const GainKernels& gain_kernels(Isa isa);

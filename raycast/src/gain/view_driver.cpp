@@ -12,7 +12,7 @@ ViewDriver::ViewDriver(const VoxelScene& scene, std::shared_ptr<EvaluatorCore> c
       core_(std::move(core)),
       prior_sigma_(core_->prior_sigma_in(scene)),
       settings_{core_->config.criterion, 1.0 / (prior_sigma_ * prior_sigma_), core_->sigmas,
-                core_->config.weights},
+                core_->config.weights, core_->config.posterior_entropy},
       tracer_(scene_, core_->rays, core_->min_range, core_->max_range, core_->way),
       number_(++core_->drivers) {
   (void)surface();  // an evaluator that exists does not wait for it, nor throw
@@ -57,7 +57,8 @@ std::optional<PoseFrame> ViewDriver::open(const Pose& T_world_camera, ViewGain& 
     const GainModel model = core_->config.model;
     result.gain = 0;
     if (model == GainModel::paper) {
-      result.exploration = result.refinement = result.posterior_entropy = 0;
+      result.exploration = result.refinement = 0;
+      if (core_->config.posterior_entropy) result.posterior_entropy = 0;
     } else {
       result.area = 0;
       if (model == GainModel::combined) result.refinement_saturated = 0;

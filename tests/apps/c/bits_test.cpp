@@ -89,8 +89,9 @@ TEST(CApi, GainsAreThoseOfCppToTheLastBit) {
           std::pair(GainModel::paper, Criterion::trace),
           std::pair(GainModel::surface, Criterion::log_diagonal),
           std::pair(GainModel::combined, Criterion::log_diagonal)}) {
-      const GainEvaluator evaluator(VoxelScene::build(map.grid), sensor,
-                                    {.model = model, .criterion = criterion});
+      const GainEvaluator evaluator(
+          VoxelScene::build(map.grid), sensor,
+          {.model = model, .criterion = criterion, .posterior_entropy = true});
       const std::vector<ViewGain> expected = evaluator.evaluate(poses);
       Handles own;
       const vg_sensor camera = sensor_of(sensor, noise);
@@ -98,6 +99,7 @@ TEST(CApi, GainsAreThoseOfCppToTheLastBit) {
       vg_evaluator_config_init(&config, sizeof config);
       config.gain = static_cast<std::int32_t>(model);
       config.criterion = static_cast<std::int32_t>(criterion);
+      config.posterior_entropy = 1;
       ASSERT_EQ(vg_grid_load(path.c_str(), &own.grid), VG_OK) << vg_last_error();
       ASSERT_EQ(vg_scene_build(own.grid, nullptr, &own.scene), VG_OK) << vg_last_error();
       ASSERT_EQ(vg_evaluator_create(own.scene, &camera, &config, &own.evaluator), VG_OK)

@@ -170,7 +170,8 @@ TEST_F(Workflow, CsvReadsBackTheSameDoubles) {
                               "rays", "hits", "unknown_voxels", "occupied_voxels", "status"}));
   const BeliefGrid grid = load_vdb(dir / "map.vdb");
   const GainEvaluator evaluator(VoxelScene::build(grid),
-                                open_frames(dir / "frames", "", std::nullopt).sensor);
+                                open_frames(dir / "frames", "", std::nullopt).sensor,
+                                {.posterior_entropy = true});
   const auto expected = evaluator.evaluate(sphere_poses(30, 0.6));
   std::size_t cases = 0;
   for (; cases < expected.size(); ++cases) {

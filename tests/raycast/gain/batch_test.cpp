@@ -38,6 +38,27 @@ class Batch : public testing::Test {
   std::shared_ptr<const VoxelScene> scene_;
 };
 
+TEST_F(Batch, PosteriorEntropyIsThereIfAskedForAndChangesNothingElse) {
+  for (const Criterion criterion :
+       {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
+    const std::vector<ViewGain> without =
+        GainEvaluator(scene_, sensor_, {.criterion = criterion}).evaluate(poses_);
+    std::vector<ViewGain> with =
+        GainEvaluator(scene_, sensor_, {.criterion = criterion, .posterior_entropy = true})
+            .evaluate(poses_);
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      ASSERT_EQ(with[i].status, without[i].status);
+      EXPECT_TRUE(std::isnan(without[i].posterior_entropy));
+      if (with[i].hits > 0) changed += with[i].posterior_entropy != 0 ? 1 : 0;
+      EXPECT_FALSE(std::isnan(with[i].posterior_entropy));
+      with[i].posterior_entropy = without[i].posterior_entropy;
+      EXPECT_TRUE(test::same_bits(with[i], without[i]));
+    }
+    EXPECT_GE(changed, 50U);
+  }
+}
+
 TEST_F(Batch, ABadPoseSpoilsOnlyItself) {
   const std::vector<ViewGain> expected = evaluator().evaluate(poses_);
   std::vector<Pose> with_bad = poses_;

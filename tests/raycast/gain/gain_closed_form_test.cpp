@@ -36,7 +36,7 @@ Sensor anisotropic(int width = 1, int height = 1) {
 
 ViewGain score(const BeliefGrid& grid, const Sensor& sensor, const Pose& pose,
                Criterion criterion) {
-  const GainConfig config{.criterion = criterion, .prior_sigma = kPrior};
+  const GainConfig config{.criterion = criterion, .prior_sigma = kPrior, .posterior_entropy = true};
   return GainEvaluator(VoxelScene::build(grid), sensor, config, {.num_threads = 1}).evaluate(pose);
 }
 

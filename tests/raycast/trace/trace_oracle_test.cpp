@@ -40,7 +40,7 @@ class TraceOracle : public testing::TestWithParam<MapFamily> {
                      const std::vector<RayHit>& own, std::size_t different) {
     for (const Criterion criterion : kCriteria) {
       SCOPED_TRACE(criterion_name(criterion));
-      const GainConfig config{.criterion = criterion};
+      const GainConfig config{.criterion = criterion, .posterior_entropy = true};
       const GainEvaluator evaluator(scene, sensor, config, {.num_threads = 1});
       const ViewGain actual = evaluator.evaluate(pose);
       const ViewGain by_own = oracle::gain_of_hits(grid, sensor, config, pose, own);

@@ -57,6 +57,7 @@ struct VIEWGAIN_EXPORT GainConfig {
   double refinement_weight = 0.3;       ///< combined: w, of refining against finding new surface
   /// Height z of a support plane in the world [m]: rays that go down end there (surface, combined).
   std::optional<double> support_plane{};
+  bool posterior_entropy = false;  ///< paper: ViewGain::posterior_entropy too; some 4 % slower
 };
 
 /// Whether a view could be scored.
@@ -81,7 +82,8 @@ struct VIEWGAIN_EXPORT ViewGain {
   double area = std::numeric_limits<double>::quiet_NaN();
   /// combined: entropy removed in occupied voxels, with a floor below which none is counted [nat].
   double refinement_saturated = std::numeric_limits<double>::quiet_NaN();
-  /// The paper's eq. (6) over the touched voxels: Σ_v Σ_k ln[(Λ_v + ΣΛ_r)⁻¹]_kk, lengths in metres.
+  /// If GainConfig asks for it: the paper's eq. (6) over the touched voxels, Σ_v Σ_k ln[(Λ_v +
+  /// ΣΛ_r)⁻¹]_kk, lengths in metres.
   double posterior_entropy = std::numeric_limits<double>::quiet_NaN();
   std::uint32_t rays = 0;                    ///< of the view
   std::uint32_t hits = 0;                    ///< rays that end in a voxel

@@ -93,6 +93,7 @@ typedef struct vg_evaluator_config {
   double support_plane; /* height z of a table at which rays end [m]; NaN (the default): none; not
                            for VG_GAIN_PAPER */
   int32_t gain;         /* VG_GAIN_PAPER */
+  int32_t posterior_entropy; /* 1: vg_view_gain.posterior_entropy too; 0 (the default) */
 } vg_evaluator_config;
 /* The defaults. */
 VG_API void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_size);
@@ -132,7 +133,7 @@ typedef struct vg_view_gain {
   double gain;                    /* paper: exploration + refinement; surface: area; combined: both,
                                      area and refinement_saturated; NaN: a bad pose */
   double exploration, refinement; /* paper: share of unknown and of occupied voxels */
-  double posterior_entropy;       /* paper: its eq. (6), lengths in metres */
+  double posterior_entropy;       /* paper, if asked for: its eq. (6), lengths in metres */
   uint32_t rays, hits;            /* of the view; that end in a voxel */
   uint32_t unknown_voxels, occupied_voxels; /* distinct */
   int32_t status;                           /* VG_VIEW_ */
