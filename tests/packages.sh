@@ -109,7 +109,7 @@ export DEBIAN_FRONTEND=noninteractive LC_ALL=C
 apt-get install -y -qq --no-install-recommends /debs/python3-viewgain_*.deb >/dev/null
 python3 - <<'PYTHON'
 import numpy as np, viewgain
-grid = viewgain.BeliefGrid.from_labels(np.zeros((32, 32, 32), np.uint8), voxel_size=0.01, origin=(-0.16, -0.16, -0.16))
+grid = viewgain.BeliefGrid.from_labels(np.zeros((32, 32, 32), np.uint8), voxel_size=0.01, origin=(-0.16, -0.16, -0.16), sensor=viewgain.sensor_preset("sr4000"))
 evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), viewgain.sensor_preset("sr4000"))
 assert (evaluator.evaluate(viewgain.sphere_poses(5, 0.6)) > 0).all()
 try:

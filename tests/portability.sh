@@ -57,9 +57,14 @@ if apt-cache show python3-scikit-build-core >/dev/null 2>&1; then
   PYTHONPATH=/pip python3 - <<'PYTHON'
 import numpy as np, viewgain
 assert viewgain.__file__.startswith("/pip/"), viewgain.__file__
-grid = viewgain.BeliefGrid.from_labels(np.zeros((16, 16, 16), np.uint8), voxel_size=0.02, origin=(-0.16, -0.16, -0.16))
-evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), viewgain.sensor_preset("sr4000"))
+sensor = viewgain.sensor_preset("sr4000")
+grid = viewgain.BeliefGrid.from_labels(np.zeros((16, 16, 16), np.uint8), voxel_size=0.02, origin=(-0.16, -0.16, -0.16), sensor=sensor)
+evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor)
 assert (evaluator.evaluate(viewgain.sphere_poses(5, 0.6)) > 0).all()
+import viewgain.mesh  # CGAL is there
+points = np.stack(np.meshgrid(np.arange(9) * 0.02, np.arange(9) * 0.02, [0.0]), axis=-1).reshape(-1, 3)
+assert len(viewgain.mesh.reconstruct_surface(points, spacing=0.02).triangles) > 100
+assert len(viewgain.mesh.surface_of_grid(grid).triangles) == 0  # a grid of the other extension
 print("pip install: viewgain", viewgain.__version__)
 PYTHON
 fi
