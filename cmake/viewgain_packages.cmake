@@ -71,6 +71,11 @@ if(VIEWGAIN_BUILD_PYTHON AND BUILD_SHARED_LIBS)
       DEPENDS runtime mesh-runtime python DEBIAN ${python_depends})
   endif()
 endif()
+if(VIEWGAIN_BUILD_DOCS AND TARGET docs)
+  viewgain_package(doc viewgain-doc Apache-2.0
+    "Expected information gain of camera poses, documentation" SECTION doc)
+  set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
+endif()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME viewgain)

@@ -12,7 +12,7 @@ jobs=${VIEWGAIN_JOBS:-$(nproc)}
 fail() { echo "packages.sh: $*" >&2; exit 1; }
 need_root
 
-./apps/install_dependencies.sh --tests
+./apps/install_dependencies.sh --docs
 mkdir -p "$work"
 
 # Packages.
@@ -21,7 +21,7 @@ cmake --build --preset packages -j "$jobs"
 rm -rf build/packages/packages
 (cd build/packages && cpack >"$work/cpack.log" 2>&1) || { cat "$work/cpack.log" >&2; exit 1; }
 ls build/packages/packages
-for name in libviewgain0 libviewgain-mesh0 libviewgain-dev viewgain python3-viewgain python3-viewgain-mesh; do
+for name in libviewgain0 libviewgain-mesh0 libviewgain-dev viewgain viewgain-doc python3-viewgain python3-viewgain-mesh; do
   test -f build/packages/packages/"$name"_*.deb || fail "no $name"
 done
 
@@ -41,6 +41,9 @@ done
 for file in man/man1/viewgain.1 man/man1/viewgain-score.1 bash-completion/completions/viewgain zsh/site-functions/_viewgain; do
   dpkg-deb -c build/packages/packages/viewgain_*.deb | grep " ./usr/share/$file\$" || fail "viewgain lacks $file"
 done
+doc=build/packages/packages/viewgain-doc_*.deb
+[ "$(dpkg-deb -f $doc Architecture)" = all ] || fail "viewgain-doc is for one architecture"
+[ -z "$(dpkg-deb -f $doc Depends)" ] || fail "viewgain-doc depends on something"
 suggests=$(dpkg-deb -f build/packages/packages/libviewgain-dev_*.deb Suggests)
 [ "$suggests" = liboctomap-dev ] || fail "libviewgain-dev suggests '$suggests'"
 
@@ -103,13 +106,24 @@ grep -qE '^[1-9][0-9]*\.[0-9]+$' first.txt
 apt-get remove -y -qq libviewgain0 >/dev/null # takes all that depends on it along
 if dpkg -l | grep -E '^ii +(libviewgain|viewgain|python3-viewgain)'; then exit 1; fi
 INSIDE
+cat >"$root/documentation.sh" <<'INSIDE'
+set -euo pipefail
+export DEBIAN_FRONTEND=noninteractive LC_ALL=C
+rm -f /etc/dpkg/dpkg.cfg.d/*nodoc* # minimal images leave out /usr/share/doc
+apt-get install -y -qq --no-install-recommends /debs/viewgain-doc_*.deb >/dev/null
+site=/usr/share/doc/viewgain-doc
+grep -q 'Where should a robot' "$site/html/index.html"
+test "$(find "$site/html" -name '*.html' | wc -l)" -gt 500
+grep -q 'Apache License' "$site/copyright"
+grep -q 'Expat\|MIT' "$site/copyright.furo"
+INSIDE
 cat >"$root/python.sh" <<'INSIDE'
 set -euo pipefail
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C
 apt-get install -y -qq --no-install-recommends /debs/python3-viewgain_*.deb >/dev/null
 python3 - <<'PYTHON'
 import numpy as np, viewgain
-grid = viewgain.BeliefGrid.from_labels(np.zeros((32, 32, 32), np.uint8), voxel_size=0.01, origin=(-0.16, -0.16, -0.16))
+grid = viewgain.BeliefGrid.from_labels(np.zeros((32, 32, 32), np.uint8), voxel_size=0.01, origin=(-0.16, -0.16, -0.16), sensor=viewgain.sensor_preset("sr4000"))
 evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), viewgain.sensor_preset("sr4000"))
 assert (evaluator.evaluate(viewgain.sphere_poses(5, 0.6)) > 0).all()
 try:
@@ -124,6 +138,7 @@ python3 -c 'import viewgain.mesh; print(viewgain.mesh.__file__)' | grep -q '^/us
 INSIDE
 open_system "$root"
 chroot "$root" bash /program.sh
+chroot "$root" bash /documentation.sh
 chroot "$root" bash /python.sh
 chroot "$root" bash /client.sh
 echo "packages.sh: all well"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the project, warnings being errors, and runs all its tests in a clean Debian of another release:
+# Builds the project and its documentation, warnings being errors, and runs all its tests in a clean Debian of another release:
 #   tests/portability.sh debian13
 # The system is made by debootstrap in build/portability/<release> and kept with what was compiled; the
 # next run compiles what has changed. Remove the folder to begin anew. VIEWGAIN_JOBS: how many processes
@@ -29,7 +29,7 @@ cat >"$root/inside.sh" <<'INSIDE'
 set -euo pipefail
 export LC_ALL=C CCACHE_DIR=/ccache CCACHE_MAXSIZE=2G
 cd /source
-./apps/install_dependencies.sh --tests
+./apps/install_dependencies.sh --docs
 dpkg-query -W ccache >/dev/null 2>&1 ||
   DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends ccache >/dev/null
 cmake --preset release -DCMAKE_BUILD_TYPE=Release -DVIEWGAIN_WERROR=ON \
@@ -37,11 +37,13 @@ cmake --preset release -DCMAKE_BUILD_TYPE=Release -DVIEWGAIN_WERROR=ON \
   { cat /configure.log; exit 1; }
 if grep -A 8 'CMake Warning' /configure.log; then exit 1; fi
 cmake --build --preset release -j "$1" -- -k 0 # all that fails, not the first alone
+cmake --build --preset release --target docs
 
 echo "Debian $(cat /etc/debian_version):"
 for package in g++ cmake libembree-dev libopenvdb-dev libcgal-dev libeigen3-dev libtbb-dev libhwy-dev \
   libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev liboctomap-dev libgtest-dev \
-  libbenchmark-dev python3 python3-numpy python3-pytest pybind11-dev libompl-dev; do
+  libbenchmark-dev python3 python3-numpy python3-pytest pybind11-dev libompl-dev \
+  doxygen python3-sphinx furo; do
   dpkg-query -W -f '  ${Package} ${Version}\n' "$package" 2>/dev/null || true
 done
 ctest --preset release -j "$1"
@@ -57,9 +59,14 @@ if apt-cache show python3-scikit-build-core >/dev/null 2>&1; then
   PYTHONPATH=/pip python3 - <<'PYTHON'
 import numpy as np, viewgain
 assert viewgain.__file__.startswith("/pip/"), viewgain.__file__
-grid = viewgain.BeliefGrid.from_labels(np.zeros((16, 16, 16), np.uint8), voxel_size=0.02, origin=(-0.16, -0.16, -0.16))
-evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), viewgain.sensor_preset("sr4000"))
+sensor = viewgain.sensor_preset("sr4000")
+grid = viewgain.BeliefGrid.from_labels(np.zeros((16, 16, 16), np.uint8), voxel_size=0.02, origin=(-0.16, -0.16, -0.16), sensor=sensor)
+evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor)
 assert (evaluator.evaluate(viewgain.sphere_poses(5, 0.6)) > 0).all()
+import viewgain.mesh  # CGAL is there
+points = np.stack(np.meshgrid(np.arange(9) * 0.02, np.arange(9) * 0.02, [0.0]), axis=-1).reshape(-1, 3)
+assert len(viewgain.mesh.reconstruct_surface(points, spacing=0.02).triangles) > 100
+assert len(viewgain.mesh.surface_of_grid(grid).triangles) == 0  # a grid of the other extension
 print("pip install: viewgain", viewgain.__version__)
 PYTHON
 fi

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """check_links.py FOLDER: every link of the HTML pages to a file of the site, and to a place in it, is there.
 
-Prints a line per dead link and ends with 1 if there is any, or if a page asks the network for something.
+Prints a line per dead link and ends with 1 if there is any, or if a page asks the network or a web server for something.
 """
 import html.parser
 import pathlib
+import re
 import sys
 import urllib.parse
 
@@ -24,10 +25,18 @@ class Page(html.parser.HTMLParser):
                 self.links.append(value)
                 if tag in ("img", "script", "link"):
                     self.loads.append(value)
+        if tag == "script" and ("type", "module") in attributes:
+            self.loads.append("//a module, which no browser loads from a file")
 
 
 def faults_of(root):
     pages = {path: Page(path) for path in sorted(root.rglob("*.html"))}
+    for path in sorted(root.rglob("*.css")):
+        for load in re.findall(r"url\([\"']?((?:https?:|/)[^)]*)\)", path.read_text(encoding="utf-8")):
+            yield f"{path.relative_to(root)}: loads {load}"
+    for path in sorted(root.glob("_static/scripts/*.js")):
+        if path.read_text(encoding="utf-8").startswith("import "):
+            yield f"{path.relative_to(root)}: imports a module, which no browser does from a file"
     links = 0
     for path, page in pages.items():
         for load in page.loads:

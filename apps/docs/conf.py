@@ -51,5 +51,26 @@ def readable_signatures(app, what, name, obj, options, signature, return_annotat
     return signature and re.sub(r"^\(self: [\w.]+(, )?", "(", signature), return_annotation
 
 
+def run_from_files(app, exception):
+    """Debian's furo wants a web server: its script is a module, which browsers do not load from files, and its style takes another from
+    the server's root. Without them the pages have no theme to choose and a white edge."""
+    if exception is not None:
+        return
+    static = pathlib.Path(app.outdir) / "_static"
+    script, style = static / "scripts/furo.js", static / "styles/furo.css"
+    imported = re.compile(r'(?m)^import .*"\./(gumshoe-patched\.js)";\n')
+    text = script.read_text(encoding="utf-8")
+    if found := imported.match(text):
+        script.write_text((script.parent / found[1]).read_text(encoding="utf-8") + imported.sub("", text), encoding="utf-8")
+    style.write_text(re.sub(r"@import url\(/(javascript/normalize\.css/normalize\.css)\);",
+                            lambda found: pathlib.Path("/usr/share", found[1]).read_text(encoding="utf-8"),
+                            style.read_text(encoding="utf-8")), encoding="utf-8")
+    for page in pathlib.Path(app.outdir).rglob("*.html"):
+        html = page.read_text(encoding="utf-8")
+        if '<script type="module" ' in html:
+            page.write_text(html.replace('<script type="module" ', "<script "), encoding="utf-8")
+
+
 def setup(app):
     app.connect("autodoc-process-signature", readable_signatures)
+    app.connect("build-finished", run_from_files)

@@ -3,7 +3,7 @@
 """Doxygen's filter for headers: prints FILE with comments in the form that Doxygen sees. Lines stay lines.
 
 C headers have plain comments, which become Doxygen's. A comment behind several variables, as in
-`double fx = 0, fy = 0;  ///< [px]`, is said of each.
+`double fx = 0, fy = 0;  ///< [px]`, is said of each. Pages of the site that a comment names become links.
 """
 import pathlib
 import re
@@ -60,4 +60,6 @@ if path.suffix == ".h":
     # The first comment is about the file.
     first = next(i for i, line in enumerate(text) if line.startswith("/** "))
     text[first] = text[first].replace("/** ", f"/** @file {path.name} ", 1)
+page = re.compile(r"apps/docs/([\w/]+)\.md")
+text = [page.sub(r'<a href="../\1.html">\1</a>', line) if line.lstrip().startswith(("//", "*", "/*")) else line for line in text]
 print("\n".join(said_of_each(text)))

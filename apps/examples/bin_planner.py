@@ -26,12 +26,12 @@ first = len(planner.grid.views())
 for i in range(first, min(len(frames), first + most)):
     depth, T_world_camera, amplitude = frames[i]
     view = planner.add(depth, T_world_camera, amplitude=amplitude)
-    print(f"view {i}: {1e4 * view['new_area']:.1f} cm2 of new surface, {view['entropy_removed']:.0f} nat", end="")
+    print(f"view {i}: {1e4 * view.new_area:.1f} cm2 of new surface, {view.entropy_removed:.0f} nat", end="")
     proposal = planner.propose()
     best = planner.rank(1, cost_per_metre=100)  # [nat/m]
-    for index, pose, gain in zip(best["index"], best["T_world_camera"], best["gain"]):
+    for index, pose, gain in zip(best.index, best.T_world_camera, best.gain):
         x, y, z = pose[:3, 3]
-        print(f"; of {len(proposal['T_world_camera'])} views the best is {index} at ({x:.3f}, {y:.3f}, {z:.3f}) m, "
+        print(f"; of {len(proposal.T_world_camera)} views the best is {index} at ({x:.3f}, {y:.3f}, {z:.3f}) m, "
               f"{gain:.1f} nat", end="")
         planner.tried(pose, reached=False)  # the robot could not go there
     print(f"; enough: {planner.should_stop()}" if planner.should_stop() else "")

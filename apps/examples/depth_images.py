@@ -56,7 +56,7 @@ figure.savefig("why.png")
 pose, known = best, []
 for _ in range(4):
     integrator.integrate(grid, see(pose), pose)
-    known.append(1 - grid.statistics()["unknown"] / np.prod(grid.shape))
+    known.append(1 - grid.statistics().unknown / np.prod(grid.shape))
     scene = scene.update(grid)
     evaluator = evaluator.with_scene(scene)
     pose = poses[evaluator.race(poses, 1)[0]]

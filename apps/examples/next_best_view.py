@@ -28,7 +28,7 @@ candidates = viewgain.sphere_poses(500, 0.5, center=center)
 pose, unknown, gains = candidates[0], [], []
 for view in range(8):
     integrator.integrate(known, truth.depth(pose), pose)  # here a real camera would measure
-    unknown.append(known.statistics()["unknown"])
+    unknown.append(known.statistics().unknown)
     evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(known), sensor, pixel_stride=2)
     (best,), (gain,) = evaluator.best(candidates, return_gains=True)
     gains.append(gain["gain"])

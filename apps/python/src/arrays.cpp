@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
@@ -73,6 +74,15 @@ std::string index_text(std::size_t index, const Shape& shape) {
   return "[" + text + "]";
 }
 
+// Does an array of another library, which has __dlpack__, lie where the CPU cannot read it?
+bool is_elsewhere(const py::handle& value) {
+  if (!py::hasattr(value, "__dlpack_device__")) return false;
+  // Of DLPack's codes: the CPU, and memory that CUDA and ROCm have pinned for it.
+  constexpr std::array<int, 3> kReadable{1, 3, 11};
+  const auto device = value.attr("__dlpack_device__")().cast<std::pair<int, int>>();
+  return std::find(kReadable.begin(), kReadable.end(), device.first) == kReadable.end();
+}
+
 [[noreturn]] void raise_os_error(int code, const std::string& path) {
   errno = code;
   PyErr_SetFromErrnoWithFilename(PyExc_OSError, path.c_str());
@@ -92,6 +102,14 @@ std::string shape_text(const py::array& array) {
 
 py::array any_array(const py::handle& value, const std::string& refusal) {
   try {
+    if (!py::isinstance<py::array>(value) && py::hasattr(value, "__dlpack__")) {
+      if (is_elsewhere(value)) {
+        throw py::value_error(refusal + " in the memory of the CPU; copy it there first");
+      }
+      if (!py::hasattr(value, "__array__")) {
+        return py::module_::import("numpy").attr("from_dlpack")(value);
+      }
+    }
     return py::array(py::reinterpret_borrow<py::object>(value));
   } catch (const py::error_already_set& error) {
     if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;

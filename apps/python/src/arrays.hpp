@@ -31,8 +31,10 @@ using Shape = std::vector<py::ssize_t>;
 /// "(3, 4)"
 [[nodiscard]] std::string shape_text(const py::array& array);
 
-/// What numpy.asarray makes of the value. A TypeError or ValueError on the way becomes ValueError
-/// with the text `refusal`; others pass, MemoryError and KeyboardInterrupt among them.
+/// What numpy.asarray makes of the value, or numpy.from_dlpack of one that has __dlpack__ and no
+/// __array__. A TypeError or ValueError on the way becomes ValueError with the text `refusal`, and
+/// so does an array in another device's memory; others pass, MemoryError and KeyboardInterrupt
+/// among them.
 [[nodiscard]] py::array any_array(const py::handle& value, const std::string& refusal);
 
 /// Whether the value is one of numpy.ma's arrays, whose masks any_array() drops.

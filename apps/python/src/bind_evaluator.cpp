@@ -20,6 +20,7 @@
 #include "classes.hpp"
 #include "evaluator.hpp"
 #include "gil.hpp"
+#include "named.hpp"
 #include "scene.hpp"
 
 namespace viewgain::python {
@@ -121,7 +122,7 @@ py::array_t<std::int64_t> index_array(const std::vector<std::size_t>& indices) {
 py::object chosen(const BestViews& best, bool return_gains) {
   py::object indices = index_array(best.indices);
   if (!return_gains) return indices;
-  return py::make_tuple(indices, to_array_1d<ViewGain>(best.gains));
+  return named("ChosenViews", indices, to_array_1d<ViewGain>(best.gains));
 }
 
 py::object best(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
@@ -154,7 +155,7 @@ py::object best_set(const Evaluator& self, const py::object& T_world_camera, std
   });
   py::object indices = index_array(set.indices);
   if (!return_gains) return indices;
-  return py::make_tuple(indices, to_array_1d<ViewGain>(set.marginal));
+  return named("ChosenViews", indices, to_array_1d<ViewGain>(set.marginal));
 }
 
 py::object approximate(const Evaluator& self, const py::object& T_world_camera, double share,
@@ -310,7 +311,7 @@ Returns
 indices : ndarray, (k,), int64
     Into the poses with their leading axes flattened, best first, ties to the lower index.
 gains : ndarray, (k,), structured
-    As from ``evaluate_detailed``; only if return_gains.)")
+    As from ``evaluate_detailed``; only if return_gains: a named tuple ``ChosenViews`` then.)")
       .def("race", &race, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
            py::arg("seed") = race_defaults.seed, py::arg("return_gains") = false,
            py::arg("control") = py::none(),

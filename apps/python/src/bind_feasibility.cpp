@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -58,6 +59,23 @@ ReachRegion region_of(const py::object& boxes, const py::object& shells,
   return region;
 }
 
+// By value; a predicate is the same as itself alone.
+bool is_same(const ReachRegion& a, const ReachRegion& b) {
+  if (&a == &b) return true;
+  const auto same_shell = [](const Shell& s, const Shell& t) {
+    return s.center == t.center && s.min_radius == t.min_radius && s.max_radius == t.max_radius;
+  };
+  const auto same_half_space = [](const HalfSpace& s, const HalfSpace& t) {
+    return s.normal == t.normal && s.offset == t.offset;
+  };
+  return !a.predicate && !b.predicate && a.boxes == b.boxes && a.poses == b.poses &&
+         a.tolerance.distance == b.tolerance.distance && a.tolerance.angle == b.tolerance.angle &&
+         std::equal(a.shells.begin(), a.shells.end(), b.shells.begin(), b.shells.end(),
+                    same_shell) &&
+         std::equal(a.half_spaces.begin(), a.half_spaces.end(), b.half_spaces.begin(),
+                    b.half_spaces.end(), same_half_space);
+}
+
 // Codes of Infeasibility, one a pose.
 py::array_t<std::uint8_t> codes_of(const FeasibilityChecker& self, const py::object& T_world_camera,
                                    const py::object& taken) {
@@ -95,7 +113,9 @@ poses : array_like, (n, 4, 4), optional
 distance, angle : float
     When two poses are the same one [m], [rad].
 predicate : callable, optional
-    Given T_world_camera (4, 4), returns a truth value. What it raises passes through.)");
+    Given T_world_camera (4, 4), returns a truth value. What it raises passes through.
+
+Regions without a predicate are equal by value, one with a predicate is equal to itself alone.)");
   refuse_pickling(type);
   type.def(py::init(&region_of), py::kw_only(), py::arg("boxes") = py::none(),
            py::arg("shells") = py::none(), py::arg("half_spaces") = py::none(),
@@ -122,6 +142,9 @@ Returns
 -------
 ndarray, (...), bool
     A single pose gives a scalar.)")
+      .def(
+          "__eq__", [](const ReachRegion& a, const ReachRegion& b) { return is_same(a, b); },
+          py::is_operator())
       .def("__repr__", [](const ReachRegion& r) {
         std::ostringstream text;
         text << "<ReachRegion " << r.boxes.size() << " boxes, " << r.shells.size() << " shells, "

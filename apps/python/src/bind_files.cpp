@@ -15,6 +15,7 @@
 #include "classes.hpp"
 #include "gil.hpp"
 #include "map/depth_images.hpp"
+#include "named.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/reach_toml.hpp"
@@ -51,7 +52,7 @@ Frames read_frames(const py::object& folder, const py::object& sensor,
   return result;
 }
 
-py::tuple frame_at(const Frames& self, py::ssize_t index) {
+py::object frame_at(const Frames& self, py::ssize_t index) {
   const auto count = static_cast<py::ssize_t>(self.frames.images.size());
   if (index < 0) index += count;
   if (index < 0 || index >= count) throw py::index_error("there is no such frame");
@@ -65,8 +66,8 @@ py::tuple frame_at(const Frames& self, py::ssize_t index) {
   if (!frame.amplitude.empty()) {
     amplitude = image_array(frame.amplitude, frame.height, frame.width);
   }
-  return py::make_tuple(image_array(frame.depth, frame.height, frame.width),
-                        to_array(self.frames.poses[i]), amplitude);
+  return named("Frame", image_array(frame.depth, frame.height, frame.width),
+               to_array(self.frames.poses[i]), amplitude);
 }
 
 py::array_t<double> pose_array(std::span<const Pose> poses) {
@@ -82,7 +83,7 @@ py::object read_poses(const py::object& path, bool return_timestamps) {
   }();
   py::object poses = pose_array(list.poses);
   if (!return_timestamps) return poses;
-  return py::make_tuple(poses, to_array_1d<double>(list.timestamps));
+  return named("TimedPoses", poses, to_array_1d<double>(list.timestamps));
 }
 
 void write_poses(const py::object& path, const py::object& T_world_camera,
@@ -208,7 +209,7 @@ void bind_frames(py::module_& module) {
       bound_class<Frames>(module, "FrameSequence",
                           R"(A folder of depth frames, read one by one. Made by ``read_frames``.
 
-``len(frames)``, ``frames[i]`` and iteration give (depth, T_world_camera, amplitude): depth (height,
+``len(frames)``, ``frames[i]`` and iteration give a ``Frame`` (depth, T_world_camera, amplitude): depth (height,
 width), float32, along the optical axis [m] (0: nothing known, inf: nothing up to max_range), without
 the error of the sensor's range_calibration, the pose (4, 4), and the amplitude [1/m**2] or None.)");
   refuse_pickling(type);
@@ -232,6 +233,8 @@ index : int
 
 Returns
 -------
+Frame
+    A named tuple of the three.
 depth : ndarray, (height, width), float32
     Along the optical axis [m].
 T_world_camera : ndarray, (4, 4)
@@ -308,7 +311,7 @@ Returns
 -------
 T_world_camera : ndarray, (n, 4, 4)
 timestamps : ndarray, (n,)
-    [s]; only if return_timestamps.
+    [s]; only if return_timestamps: a named tuple ``TimedPoses`` of the two then.
 
 Raises
 ------

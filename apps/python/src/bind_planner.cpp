@@ -18,6 +18,7 @@
 #include "map/depth_images.hpp"
 #include "map/integration.hpp"
 #include "map/shared_grid.hpp"
+#include "named.hpp"
 #include "planner.hpp"
 #include "scene.hpp"
 #include "viewgain/planner/view_planner.hpp"
@@ -73,22 +74,20 @@ std::unique_ptr<Planner> make(Sensor sensor, double voxel_size, const py::object
   return std::make_unique<Planner>(sensor, loaded());
 }
 
-py::dict add(Planner& self, const py::object& depth, const py::object& T_world_camera,
-             const py::object& amplitude) {
+py::object add(Planner& self, const py::object& depth, const py::object& T_world_camera,
+               const py::object& amplitude) {
   const DepthFrame frame = depth_frame(self.sensor(), depth, amplitude);
   const Pose pose = one_pose(T_world_camera, "T_world_camera");
   const AddedView added = self.run([&](ViewPlanner& planner) { return planner.add(frame, pose); });
-  py::dict result = dict_of(added.update.counts);
-  result["view"] = added.view;
-  result["entropy_removed"] = added.entropy_removed;
-  result["new_area"] = added.update.new_area;
-  result["total_entropy_removed"] = added.progress.entropy_removed;
-  result["total_area"] = added.progress.surface_area;
-  result["unknown_voxels"] = added.progress.unknown_voxels;
-  return result;
+  const IntegrationReport& counts = added.update.counts;
+  return named("AddedView", counts.readings, counts.plane_readings, counts.out_of_range,
+               counts.invalid, counts.readings_inside, counts.voxels_hit, counts.voxels_crossed,
+               added.view, added.entropy_removed, added.update.new_area,
+               added.progress.entropy_removed, added.progress.surface_area,
+               added.progress.unknown_voxels);
 }
 
-py::dict propose(Planner& self) {
+py::object propose(Planner& self) {
   const Proposal proposal = self.run([](ViewPlanner& planner) { return planner.propose(); });
   std::vector<Pose> poses;
   py::list generators;
@@ -96,15 +95,12 @@ py::dict propose(Planner& self) {
     poses.push_back(candidate.T_world_camera);
     generators.append(candidate.generator);
   }
-  py::dict result;
-  result["T_world_camera"] = to_array(poses, {static_cast<py::ssize_t>(poses.size())});
-  result["generator"] = generators;
-  result["dropped"] = proposal.dropped;
-  return result;
+  return named("Proposal", to_array(poses, {static_cast<py::ssize_t>(poses.size())}), generators,
+               proposal.dropped);
 }
 
-py::dict rank(Planner& self, std::size_t k, const py::object& poses, const py::object& costs,
-              double cost_per_metre, bool exact, Control* control) {
+py::object rank(Planner& self, std::size_t k, const py::object& poses, const py::object& costs,
+                double cost_per_metre, bool exact, Control* control) {
   RankConfig config;
   config.cost_per_metre = cost_per_metre;
   config.exact = exact;
@@ -136,14 +132,7 @@ py::dict rank(Planner& self, std::size_t k, const py::object& poses, const py::o
     area.mutable_at(i) = view.gain.area;
     worth.mutable_at(i) = view.worth;
   }
-  py::dict result;
-  result["index"] = index;
-  result["T_world_camera"] = to_array(ranked, {count});
-  result["gain"] = gain;
-  result["area"] = area;
-  result["worth"] = worth;
-  result["complete"] = ranking.complete;
-  return result;
+  return named("Ranking", index, to_array(ranked, {count}), gain, area, worth, ranking.complete);
 }
 
 }  // namespace
@@ -248,7 +237,7 @@ amplitude : array_like, (height, width), optional
 
 Returns
 -------
-dict
+AddedView
     The counts of ``FrameIntegrator.integrate``; view (from 0); entropy_removed [nat] and new_area
     [m**2] by this view, total_entropy_removed and total_area so far, unknown_voxels that are left.
     new_area is NaN by gain "paper".
@@ -261,7 +250,7 @@ ValueError
 
 Returns
 -------
-dict
+Proposal
     T_world_camera (n, 4, 4), generator (list of str, one a candidate), dropped (reason -> how many;
     the names of ``INFEASIBILITY_NAMES``, and "missed": it was commanded and not reached).)")
       .def("rank", &rank, py::arg("k") = 1, py::kw_only(), py::arg("poses") = py::none(),
@@ -286,7 +275,7 @@ control : BatchControl, optional
 
 Returns
 -------
-dict
+Ranking
     Arrays, best first: index (into the candidates or poses), T_world_camera, gain [nat; by gain
     "surface" m**2], area [m**2] (NaN by gain "paper"), worth (the gain less the cost; 0 or less: the
     way costs more than the view brings); and complete, False if a stop was requested.

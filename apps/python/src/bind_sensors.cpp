@@ -13,6 +13,7 @@
 #include "classes.hpp"
 #include "fields.hpp"
 #include "map/depth_images.hpp"
+#include "named.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/core/text.hpp"
 
@@ -236,7 +237,7 @@ ValueError
           "sigmas",
           [](const Sensor& sensor, double t, double cos_incidence) {
             const MeasurementSigmas sigmas = sensor.sigmas(t, cos_incidence);
-            return std::pair(sigmas.axial, sigmas.lateral);
+            return named("Sigmas", sigmas.axial, sigmas.lateral);
           },
           py::arg("t"), py::arg("cos_incidence") = 1.0,
           R"(Standard deviations of a reading at range t along the ray.
@@ -250,8 +251,8 @@ cos_incidence : float
 
 Returns
 -------
-axial, lateral : float
-    [m])")
+Sigmas
+    axial and lateral, a named tuple [m].)")
       .def(
           "__eq__", [](const Sensor& a, const Sensor& b) { return is_same(a, b); },
           py::is_operator())

@@ -13,6 +13,7 @@
 #include "classes.hpp"
 #include "gil.hpp"
 #include "map/depth_images.hpp"
+#include "named.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain::python {
@@ -83,8 +84,8 @@ num_threads : int
               const WithoutGil without_gil;
               frame = self.camera.acquire(pose, frame_index);
             }
-            return py::make_tuple(image_array(frame.depth, frame.height, frame.width),
-                                  image_array(frame.amplitude, frame.height, frame.width));
+            return named("SimulatedFrame", image_array(frame.depth, frame.height, frame.width),
+                         image_array(frame.amplitude, frame.height, frame.width));
           },
           py::arg("T_world_camera"), py::arg("frame_index") = 0,
           R"(The frame seen from a pose. Equal seed, index and pose give equal frames.
@@ -97,6 +98,8 @@ frame_index : int
 
 Returns
 -------
+SimulatedFrame
+    A named tuple of the two.
 depth : ndarray, (height, width), float32
     Along the optical axis [m]; 0: invalid, inf: nothing up to max_range.
 amplitude : ndarray, (height, width), float32

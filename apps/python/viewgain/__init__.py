@@ -23,4 +23,6 @@ except ImportError as error:
 from ._viewgain import *
 from ._viewgain import __version__
 from .codes import HitKind, Infeasibility, ViewStatus, VoxelState
+from .results import (AddedView, ChosenViews, Cloud, Frame, GridStatistics, IntegrationReport, Proposal, Ranking, Sigmas,
+                      SimulatedFrame, TimedPoses)
 from . import plot

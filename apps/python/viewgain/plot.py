@@ -143,3 +143,52 @@ def coverage(values: ArrayLike, *, label: str | None = None, axes: Any = None) -
     if label is not None:
         axes.legend()
     return axes
+
+
+def calibration(predicted: ArrayLike, realised: ArrayLike, *, bins: int = 10, label: str | None = None,
+                axes: Any = None) -> Any:
+    """What views brought against what was expected of them: means and standard errors of bins of equally many views.
+
+    On the diagonal expectations are right. Pairs with NaN are left out. Call it again with the axes for further curves.
+
+    Parameters
+    ----------
+    predicted, realised : array_like, (n,)
+        In one unit, such as ``ViewRecord.predicted_area`` and ``realised_area`` [m**2].
+    bins : int
+        At most as many points.
+    label : str, optional
+        Name of the curve.
+    axes : matplotlib.axes.Axes, optional
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ValueError
+        The shapes differ, there is no pair of numbers, or bins is under 1.
+    """
+    expected, came = np.asarray(predicted, float), np.asarray(realised, float)
+    if expected.ndim != 1 or expected.shape != came.shape:
+        raise ValueError(f"realised of the shape {came.shape} for predicted of the shape {expected.shape}: not one each")
+    known = np.isfinite(expected) & np.isfinite(came)
+    if not known.any():
+        raise ValueError("no pair is of numbers")
+    if bins < 1:
+        raise ValueError(f"bins must be 1 or more, not {bins}")
+    order = np.argsort(expected[known], kind="stable")
+    parts = np.array_split(order, min(bins, len(order)))
+    x = [expected[known][part].mean() for part in parts]
+    y = [came[known][part].mean() for part in parts]
+    errors = [came[known][part].std(ddof=1) / np.sqrt(len(part)) if len(part) > 1 else 0.0 for part in parts]
+    is_first = axes is None
+    axes = _axes_of(axes)
+    axes.errorbar(x, y, yerr=errors, fmt="o-", capsize=3, label=label)
+    if is_first:
+        axes.axline((0, 0), slope=1, color="grey", linestyle="--", label="as expected")
+    axes.set_xlabel("expected")
+    axes.set_ylabel("realised")
+    axes.legend()
+    return axes

@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: GPL-3.0-or-later
+import pickle
+import sys
 import threading
+import types
 
 import numpy as np
 import pytest
@@ -37,7 +40,8 @@ def test_the_loop_with_a_camera_in_python(camera, sensor, start, tmp_path):
     assert result.reason in ("max_views", "idle", "no_candidates", "area")
     assert 2 <= len(result.views) <= 4 and seen == result.views
     assert np.allclose(result.views[0]["T_world_camera"], start)
-    assert result.views[0]["generator"] == "start"
+    assert result.views[0]["generator"] == "start" == result.views[0].generator
+    assert pickle.loads(pickle.dumps(result.views[1]))._fields == viewgain.mesh.ViewRecord._fields
     assert {view["generator"] for view in result.views[1:]} == {"boundary"}
     unknown = [view["unknown_voxels"] for view in result.views]
     assert all(b < a for a, b in zip(unknown, unknown[1:]))
@@ -198,3 +202,66 @@ def test_surface_and_boundaries(camera, sensor, start):
             (lambda: viewgain.mesh.reconstruct_surface(np.zeros((3, 3)), spacing=0.0), "spacing")]:
         with pytest.raises(ValueError, match=text):
             call()
+
+
+@pytest.fixture(scope="module")
+def plate():
+    """A surface through a plate of points, z up."""
+    x, y = np.meshgrid(np.arange(12) * VOXEL, np.arange(12) * VOXEL)
+    points = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    return viewgain.mesh.reconstruct_surface(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), spacing=VOXEL)
+
+
+def test_surfaces_are_equal_by_value(plate):
+    again = viewgain.mesh.reconstruct_surface(plate.vertices, plate.normals, spacing=VOXEL, smoothing_neighbors=0)
+    assert plate == plate and not plate != plate and plate != "surface"
+    assert (plate == again) == (np.array_equal(plate.vertices, again.vertices) and np.array_equal(plate.normals, again.normals)
+                                and np.array_equal(plate.triangles, again.triangles) and np.array_equal(plate.source, again.source))
+    few = viewgain.mesh.reconstruct_surface(plate.vertices[:60], plate.normals[:60], spacing=VOXEL)
+    assert plate != few
+
+
+def test_boundary_candidates_have_names(plate, sensor):
+    views = [viewgain.look_at([0.05, 0.05, 0.5], [0.05, 0.05, 0.0])]
+    found = viewgain.mesh.boundary_candidates(plate, views, sensor, spacing=VOXEL)
+    poses, reasons = found
+    assert isinstance(found, viewgain.mesh.BoundaryCandidates) and found.T_world_camera is poses and found["reasons"] is reasons
+    classes = {viewgain.mesh.BoundaryClass(int(code)) for code in np.unique(reasons["boundary_class"])}
+    assert viewgain.mesh.BoundaryClass.LEFT in classes and viewgain.mesh.BoundaryClass.__module__ == "viewgain.mesh"
+
+
+class Trimesh:
+    """Of the stand-in for trimesh: what its constructor is given."""
+
+    def __init__(self, **given):
+        self.__dict__.update(given)
+
+
+def stand_ins():
+    """Modules as trimesh and Open3D, as far as a surface calls them."""
+    vectors = types.SimpleNamespace(Vector3dVector=lambda a: np.array(a, np.float64), Vector3iVector=lambda a: np.array(a, copy=True))
+    return {"trimesh": types.SimpleNamespace(Trimesh=Trimesh),
+            "open3d": types.SimpleNamespace(utility=vectors, geometry=types.SimpleNamespace(TriangleMesh=types.SimpleNamespace))}
+
+
+@pytest.mark.parametrize("real", [False, True])
+def test_a_surface_goes_to_other_packages(plate, monkeypatch, real):
+    modules = {name: pytest.importorskip(name) for name in ("trimesh", "open3d")} if real else stand_ins()
+    for name, module in modules.items():
+        monkeypatch.setitem(sys.modules, name, module)
+    of_trimesh, of_open3d = plate.to_trimesh(), plate.to_open3d()
+    assert isinstance(of_trimesh, modules["trimesh"].Trimesh)
+    for vertices, normals, triangles in (
+            (of_trimesh.vertices, of_trimesh.vertex_normals, of_trimesh.faces),
+            (of_open3d.vertices, of_open3d.vertex_normals, of_open3d.triangles)):
+        assert np.array_equal(vertices, plate.vertices) and np.allclose(normals, plate.normals, atol=1e-12)
+        assert np.array_equal(triangles, plate.triangles) and len(plate.triangles) > 200
+    if not real:
+        assert of_trimesh.process is False and of_open3d.triangles.dtype == np.int32
+
+
+@pytest.mark.parametrize("name", ["trimesh", "open3d"])
+def test_a_package_that_is_not_there_is_named(plate, monkeypatch, name):
+    monkeypatch.setitem(sys.modules, name, None)  # as if it were not installed
+    with pytest.raises(ImportError, match=f"to_{name} needs the package {name}.*Surface.save"):
+        getattr(plate, f"to_{name}")()

@@ -13,6 +13,7 @@ import sys
 
 import numpy as np
 import pytest
+from conftest import box_mesh
 
 import viewgain
 
@@ -115,6 +116,100 @@ def test_codes_have_names(grid, evaluator, poses):
     assert checked == 3
 
 
+def test_results_of_several_things_are_named_tuples(grid, sensor, evaluator, poses, tmp_path):
+    frames = viewgain.FrameIntegrator(sensor).integrate(grid.clone(), np.full((144, 176), 0.5), poses[0])
+    clouds = viewgain.CloudIntegrator(sensor).integrate(grid.clone(), [[0.0, 0.0, 0.5]], poses[0])
+    viewgain.write_poses(tmp_path / "poses.txt", poses[:2], [0.5, 1.5])
+    (tmp_path / "cloud.ply").write_text("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                                        "property float z\nend_header\n1 2 3\n")
+    planner = viewgain.ViewPlanner(sensor, voxel_size=0.02, workspace=[[-0.16] * 3, [0.16] * 3])
+    planner.add_poses(poses)
+    results = [frames, clouds, grid.statistics(), sensor.sigmas(1.0), evaluator.best(poses, 2, return_gains=True),
+               evaluator.best_set(poses, 2, return_gains=True), viewgain.load_cloud(tmp_path / "cloud.ply"),
+               viewgain.read_poses(tmp_path / "poses.txt", return_timestamps=True),
+               viewgain.SimulatedSensor(*box_mesh([-0.1] * 3, [0.1] * 3), sensor).acquire(poses[0]),
+               planner.add(np.full((144, 176), 0.5), poses[0]), planner.propose(), planner.rank(2)]
+    fields = 0
+    for result in results:
+        kind = type(result)
+        assert getattr(viewgain, kind.__name__) is kind and kind.__module__ == "viewgain" and kind.__doc__
+        assert repr(result).startswith(f"{kind.__name__}({kind._fields[0]}=")
+        assert repr(pickle.loads(pickle.dumps(result))) == repr(result)
+        for name, value in zip(kind._fields, result):
+            assert getattr(result, name) is value is result[name] and len(getattr(kind, name).__doc__) > 3
+            assert not getattr(kind, name).__doc__.startswith("Alias")
+            fields += 1
+        with pytest.raises(KeyError):
+            result["count_of_nothing"]
+        assert result[0] is next(iter(result)) and len(result[:1]) == 1
+    assert len(results) == 12 and fields == 2 * 7 + 5 + 2 + 2 + 2 + 2 + 2 + 2 + 13 + 3 + 6
+    assert frames.readings + frames.out_of_range + frames.invalid + frames.plane_readings == 144 * 176
+    assert clouds.readings == 1 and results[7].timestamps.tolist() == [0.5, 1.5]
+
+
+def test_grids_and_regions_are_equal_by_value(grid, poses):
+    other = grid.clone()
+    assert grid == other and not grid != other and grid != "grid"
+    other.set([[0, 0, 0]], [3.0])
+    assert grid != other
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(grid)
+    parts = dict(boxes=[[[0, 0, 0], [1, 1, 1]]], shells=[[0, 0, 0, 0.1, 1]], half_spaces=[[0, 0, 1, 0.1]], poses=poses[:2])
+    region = viewgain.ReachRegion(**parts)
+    assert region == viewgain.ReachRegion(**parts) and viewgain.ReachRegion() == viewgain.ReachRegion()
+    changes = dict(boxes=[[[0, 0, 0], [1, 1, 2]]], shells=[[0, 0, 0, 0.1, 2]], half_spaces=[[0, 1, 1, 0.1]], poses=poses[:1],
+                   distance=0.5, angle=0.5, predicate=lambda pose: True)
+    for name, value in changes.items():
+        changed = viewgain.ReachRegion(**{**parts, name: value})
+        assert changed == changed and changed != region, name
+    assert len(changes) == 7
+
+
+class OtherArray:
+    """What another library's array shows of itself: DLPack alone."""
+
+    def __init__(self, array, device=1):
+        self.array, self.device, self.exports = np.array(array), device, 0
+
+    def __dlpack__(self, **_):
+        self.exports += 1
+        return self.array.__dlpack__()
+
+    def __dlpack_device__(self):
+        return self.device, 0
+
+
+def test_arrays_of_other_libraries_come_in_by_dlpack(grid, labels, sensor, evaluator, poses):
+    depth, points = np.full((144, 176), 0.5, np.float32), np.array([[0.0, 0.0, 0.5], [0.1, 0.0, 0.6]])
+
+    def frame(image, pose):
+        copied = grid.clone()
+        viewgain.FrameIntegrator(sensor).integrate(copied, image, pose)
+        return copied.content_hash()
+
+    def cloud(where, pose):
+        copied = grid.clone()
+        viewgain.CloudIntegrator(sensor).integrate(copied, where, pose)
+        return copied.content_hash()
+
+    calls = [(evaluator.evaluate, [poses]), (evaluator.evaluate, [poses.astype(np.float32)]), (frame, [depth, poses[0]]),
+             (frame, [depth.astype(float), poses[0]]), (cloud, [points, poses[0]]), (grid.index_of, [points]),
+             (sensor.camera.project, [points]), (lambda x: viewgain.look_at(x, [0, 0, 0]), [points]),
+             (lambda x: viewgain.BeliefGrid.from_labels(x, voxel_size=0.01, sensor=sensor).content_hash(), [labels])]
+    for call, arrays in calls:
+        others = [OtherArray(array) for array in arrays]
+        assert np.array_equal(call(*others), call(*arrays))
+        assert all(other.exports > 0 for other in others)
+    assert len(calls) == 9
+    for device in (2, 8, 10):  # CUDA, Metal, ROCm
+        with pytest.raises(ValueError, match="T_world_camera must be .* in the memory of the CPU"):
+            evaluator.evaluate(OtherArray(poses, device))
+    with pytest.raises(ValueError, match=r"depth must be floating point \[m\].*uint16"):
+        frame(OtherArray(depth.astype(np.uint16)), poses[0])
+    with pytest.raises(ValueError, match=r"shape \(..., 4, 4\), not \(2, 3\)"):
+        evaluator.evaluate(OtherArray(points))
+
+
 def test_matplotlib_is_imported_when_something_is_drawn():
     program = "import sys, viewgain; viewgain.plot; assert 'matplotlib' not in sys.modules"
     subprocess.run([sys.executable, "-c", program], check=True)
@@ -142,7 +237,13 @@ def test_pictures_show_what_they_are_given(evaluator, poses):
     axes = viewgain.plot.coverage([0.2, 0.5, 0.7], label="a")
     assert viewgain.plot.coverage([0.1], label="b", axes=axes) is axes and len(axes.lines) == 2
     assert np.allclose(axes.lines[0].get_xydata(), [[1, 20], [2, 50], [3, 70]])
-    assert len(plt.get_fignums()) == 4
+
+    axes = viewgain.plot.calibration([3.0, 1.0, np.nan, 4.0, 2.0], [2.0, 1.0, 1.0, 4.0, 2.0], bins=2, label="a")
+    points, _, bars = axes.containers[0]
+    assert np.allclose(points.get_xydata(), [[1.5, 1.5], [3.5, 3.0]])  # the means of 1, 2 and of 3, 4
+    assert np.allclose([np.ptp(bar[:, 1]) for bar in bars[0].get_segments()], [1.0, 2.0])  # of standard errors, twice
+    assert viewgain.plot.calibration([1.0], [1.0], axes=axes) is axes and len(axes.containers) == 2
+    assert len(plt.get_fignums()) == 5
     plt.close("all")
 
 
@@ -154,11 +255,14 @@ def test_pictures_of_what_cannot_be_drawn_say_why(evaluator, poses, sensor):
              (lambda: viewgain.plot.gains(poses[0], 1.0), "not one a pose"),
              (lambda: viewgain.plot.depth([1.0]), "two dimensions"),
              (lambda: viewgain.plot.coverage([[1.0]]), "one dimension"),
-             (lambda: viewgain.plot.contributions(surface, poses[0]), "'surface'")]
+             (lambda: viewgain.plot.contributions(surface, poses[0]), "'surface'"),
+             (lambda: viewgain.plot.calibration([1.0, 2.0], [1.0]), "not one each"),
+             (lambda: viewgain.plot.calibration([np.nan], [1.0]), "no pair is of numbers"),
+             (lambda: viewgain.plot.calibration([1.0], [1.0], bins=0), "bins must be 1 or more")]
     for call, message in cases:
         with pytest.raises(ValueError, match=message):
             call()
-    assert len(cases) == 6
+    assert len(cases) == 9
 
 
 def test_the_tutorial_on_depth_images_runs(tmp_path, monkeypatch, capsys):

@@ -49,7 +49,7 @@ def make(sensor, **settings):
 def step(planner, camera, pose, frame=0):
     depth, amplitude = camera.acquire(pose, frame)
     told = [planner.add(depth, pose, amplitude=amplitude), planner.propose()["dropped"], planner.rank(3), planner.should_stop()]
-    del told[0]["view"]
+    told[0] = told[0]._replace(view=0)
     return repr(told)
 
 

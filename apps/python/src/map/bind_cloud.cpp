@@ -45,8 +45,8 @@ Cloud cloud_in_world(const Sensor& sensor, const py::object& points_sensor, cons
   return cloud;
 }
 
-py::dict integrate(Integrator& self, SharedGrid& grid, const py::object& points_sensor,
-                   const py::object& T_world_sensor) {
+py::object integrate(Integrator& self, SharedGrid& grid, const py::object& points_sensor,
+                     const py::object& T_world_sensor) {
   const Pose pose = one_pose(T_world_sensor, "T_world_sensor");
   return self.integrate(grid, cloud_in_world(self.sensor, points_sensor, pose), pose);
 }
@@ -64,7 +64,7 @@ py::object bounds(const Sensor& sensor, const py::object& points_sensor,
   return to_array_3<double>({box->min, box->max});
 }
 
-py::tuple load(const py::object& path) {
+py::object load(const py::object& path) {
   const std::string file = file_path(path);
   require_file(file);
   PointCloud cloud;
@@ -74,7 +74,7 @@ py::tuple load(const py::object& path) {
   }
   const py::object viewpoint =
       cloud.viewpoint ? py::object(to_array(*cloud.viewpoint)) : py::none();
-  return py::make_tuple(to_array_3(cloud.points), viewpoint);
+  return named("Cloud", to_array_3(cloud.points), viewpoint);
 }
 
 }  // namespace
@@ -137,6 +137,8 @@ path : path-like
 
 Returns
 -------
+Cloud
+    A named tuple of the two.
 points : ndarray, (n, 3), float64
     As they stand in the file, in the frame that it is in; NaN where an organised cloud has none.
 viewpoint : ndarray, (4, 4), or None

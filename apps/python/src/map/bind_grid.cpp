@@ -14,6 +14,7 @@
 #include "classes.hpp"
 #include "gil.hpp"
 #include "grid_class.hpp"
+#include "named.hpp"
 #include "prior.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -104,16 +105,10 @@ std::vector<PointRow> point_rows(const BeliefGrid& grid, const FusedPointsConfig
   return rows;
 }
 
-py::dict statistics_of(const SharedGrid& grid, const std::string& criterion) {
+py::object statistics_of(const SharedGrid& grid, const std::string& criterion) {
   const Criterion parsed = parse_criterion(criterion);
   const GridStatistics s = grid.read([&](const BeliefGrid& g) { return g.statistics(parsed); });
-  py::dict result;
-  result["unknown"] = s.unknown;
-  result["free"] = s.free;
-  result["occupied"] = s.occupied;
-  result["bytes"] = s.bytes;
-  result["entropy_removed"] = s.entropy_removed;
-  return result;
+  return named("GridStatistics", s.unknown, s.free, s.occupied, s.bytes, s.entropy_removed);
 }
 
 std::string repr_of(const SharedGrid& grid) {
@@ -137,7 +132,8 @@ void bind_grid(py::module_& module) {
       R"(What is known of a workspace, voxel by voxel.
 
 Voxel (i, j, k) is [i, i+1) x [j, j+1) x [k, k+1) times the voxel size in the grid's frame. A new
-grid is unknown throughout. Threads of Python may share one: they wait for each other.
+grid is unknown throughout. Threads of Python may share one: they wait for each other. Grids are equal
+if their ``content_hash()`` is.
 
 Parameters
 ----------
@@ -307,7 +303,7 @@ ndarray, (n,), structured
 
 Returns
 -------
-dict
+GridStatistics
     unknown, free, occupied (voxels), bytes, entropy_removed [nat, or m**2 for trace].)")
       .def(
           "content_hash",
@@ -316,6 +312,13 @@ dict
           },
           "16 hexadecimal digits, the same for equal maps however they came about.\n\n"
           "Returns\n-------\nstr")
+      .def(
+          "__eq__",
+          [](const SharedGrid& a, const SharedGrid& b) {
+            const auto hash = [](const BeliefGrid& g) { return g.content_hash(); };
+            return &a == &b || a.read(hash) == b.read(hash);
+          },
+          py::is_operator())
       .def("__repr__", &repr_of);
 }
 

@@ -40,8 +40,8 @@ IntegrationConfig config_of(const std::string& carve, const std::string& occupan
   return config;
 }
 
-py::dict integrate(Integrator& self, SharedGrid& grid, const py::object& depth,
-                   const py::object& T_world_camera, const py::object& amplitude) {
+py::object integrate(Integrator& self, SharedGrid& grid, const py::object& depth,
+                     const py::object& T_world_camera, const py::object& amplitude) {
   const DepthFrame frame = depth_frame(self.sensor, depth, amplitude);
   return self.integrate(grid, frame, one_pose(T_world_camera, "T_world_camera"));
 }

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <string>
 
+#include "named.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -30,7 +31,7 @@ num_threads : int
 inline constexpr const char* kIntegrateReturns =
     R"(Returns
 -------
-dict
+IntegrationReport
     Counts: readings, plane_readings, out_of_range, invalid, readings_inside (of pixels or points),
     voxels_hit, voxels_crossed.
 
@@ -46,16 +47,9 @@ ValueError
   throw pybind11::value_error("occupancy is \"" + name + "\"; valid are probabilistic literal");
 }
 
-[[nodiscard]] inline pybind11::dict dict_of(const IntegrationReport& report) {
-  pybind11::dict result;
-  result["readings"] = report.readings;
-  result["plane_readings"] = report.plane_readings;
-  result["out_of_range"] = report.out_of_range;
-  result["invalid"] = report.invalid;
-  result["readings_inside"] = report.readings_inside;
-  result["voxels_hit"] = report.voxels_hit;
-  result["voxels_crossed"] = report.voxels_crossed;
-  return result;
+[[nodiscard]] inline pybind11::object to_python(const IntegrationReport& r) {
+  return named("IntegrationReport", r.readings, r.plane_readings, r.out_of_range, r.invalid,
+               r.readings_inside, r.voxels_hit, r.voxels_crossed);
 }
 
 /// Python's integrators; one call at a time.
@@ -71,8 +65,9 @@ struct SharedIntegrator {
 
   /// Call with the GIL.
   template <typename Readings>
-  pybind11::dict integrate(SharedGrid& grid, const Readings& readings, const Pose& T_world_sensor) {
-    return dict_of(grid.write([&](BeliefGrid& g) {
+  pybind11::object integrate(SharedGrid& grid, const Readings& readings,
+                             const Pose& T_world_sensor) {
+    return to_python(grid.write([&](BeliefGrid& g) {
       const std::lock_guard lock(mutex);
       return integrator.integrate(g, readings, T_world_sensor);
     }));

@@ -15,6 +15,7 @@
 #include "map/depth_images.hpp"
 #include "map/shared_grid.hpp"
 #include "mesh/bindings.hpp"
+#include "named.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
@@ -71,25 +72,16 @@ class PythonAcquisition : public DataAcquisition {
 };
 
 // One turn of the loop.
-py::dict dict_of(const ViewRecord& record, double realised_area) {
-  py::dict view;
-  view["index"] = record.index;
-  view["T_world_camera"] = to_array(record.T_world_camera);
-  view["generator"] = record.chosen_as ? record.chosen_as->generator : "start";
+py::object to_python(const ViewRecord& record, double realised_area) {
   const bool of_boundary = record.chosen_as && record.chosen_as->boundary_class;
-  view["boundary_class"] =
-      of_boundary ? boundary_class_name(*record.chosen_as->boundary_class) : std::string_view();
-  view["predicted_gain"] = record.predicted_gain;
-  view["realised_gain"] = record.realised_gain;
-  view["entropy_removed"] = record.progress.entropy_removed;
-  view["unknown_voxels"] = record.progress.unknown_voxels;
-  view["predicted_area"] = record.predicted_area;
-  view["realised_area"] = realised_area;
-  view["surface_area"] = record.progress.surface_area;
-  view["travelled"] = record.travelled;
-  view["candidates"] = record.proposal.candidates.size();
-  view["dropped"] = record.proposal.dropped;
-  return view;
+  return named_in("viewgain.mesh.results", "ViewRecord", record.index,
+                  to_array(record.T_world_camera),
+                  record.chosen_as ? record.chosen_as->generator : "start",
+                  of_boundary ? boundary_class_name(*record.chosen_as->boundary_class) : "",
+                  record.predicted_gain, record.realised_gain, record.progress.entropy_removed,
+                  record.progress.unknown_voxels, record.predicted_area, realised_area,
+                  record.progress.surface_area, record.travelled, record.proposal.candidates.size(),
+                  record.proposal.dropped);
 }
 
 // Whether a policy chooses among boundary candidates by itself; others have a set of their own.
@@ -164,7 +156,7 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
   const auto watch = [&](const ViewRecord& record) {
     with_gil([&] {
       check_signals();
-      const py::dict view = dict_of(record, model.realised_area());
+      const py::object view = to_python(record, model.realised_area());
       result.views.append(view);
       if (!observer.is_none()) call_python(observer, view);
     });
@@ -191,7 +183,7 @@ void bind_reconstruct(py::module_& module) {
   type.def_readonly("reason", &Reconstruction::reason,
                     "str: why it ended: gain, area, no_candidates, unreachable, idle, max_views, "
                     "interrupted")
-      .def_readonly("views", &Reconstruction::views, "list of dict: one per view, see reconstruct")
+      .def_readonly("views", &Reconstruction::views, "list of ViewRecord: one per view")
       .def_readonly("grid", &Reconstruction::grid, "viewgain.BeliefGrid")
       .def_readonly("surface", &Reconstruction::surface, "Surface")
       .def("__repr__", [](const Reconstruction& r) {
@@ -257,7 +249,7 @@ stop_area : float, optional
 idle_views : int
     End after so many views in a row that brought nothing; 0: never.
 observer : callable, optional
-    Given the dict of each view, when the next one has been chosen.
+    Given the ViewRecord of each view, when the next one has been chosen.
 control : viewgain.BatchControl, optional
     Its stop() ends the loop with the reason "interrupted"; its progress function is not called.
 num_threads : int
@@ -266,7 +258,7 @@ num_threads : int
 Returns
 -------
 Reconstruction
-    Its views are dicts: index, T_world_camera, generator ("start", "boundary", "candidates"),
+    Its views are named tuples, ``ViewRecord``: index, T_world_camera, generator ("start", "boundary", "candidates"),
     boundary_class, predicted_gain, realised_gain, entropy_removed [nat, m**2 for trace],
     unknown_voxels, predicted_area, realised_area (new surface), surface_area [m**2], travelled [m], candidates (how many), dropped (reason -> how many).
 

@@ -13,6 +13,7 @@
 #include "gil.hpp"
 #include "map/shared_grid.hpp"
 #include "mesh/bindings.hpp"
+#include "named.hpp"
 #include "viewgain/core/text.hpp"
 #include "viewgain/formats/ply.hpp"
 #include "viewgain/mesh/boundary.hpp"
@@ -64,12 +65,13 @@ SurfaceMesh surface_of_grid(const SharedGrid& grid, std::uint32_t min_hits, int 
   });
 }
 
-py::tuple boundary_candidates(const SurfaceMesh& surface, const py::object& views,
-                              const Sensor& sensor, double spacing,
-                              std::optional<double> working_distance, std::optional<double> overlap,
-                              const std::optional<std::vector<double>>& distances,
-                              const std::optional<std::vector<double>>& tilts,
-                              const std::optional<std::vector<double>>& rolls) {
+py::object boundary_candidates(const SurfaceMesh& surface, const py::object& views,
+                               const Sensor& sensor, double spacing,
+                               std::optional<double> working_distance,
+                               std::optional<double> overlap,
+                               const std::optional<std::vector<double>>& distances,
+                               const std::optional<std::vector<double>>& tilts,
+                               const std::optional<std::vector<double>>& rolls) {
   if (!(spacing > 0 && std::isfinite(spacing))) {
     throw py::value_error("the spacing must be positive and finite, not " + short_text(spacing));
   }
@@ -99,8 +101,43 @@ py::tuple boundary_candidates(const SurfaceMesh& surface, const py::object& view
                        c.roll,
                        c.nominal});
   }
-  return py::make_tuple(to_array(poses, {static_cast<py::ssize_t>(poses.size())}),
-                        to_array_1d<ReasonRow>(reasons));
+  return named_in("viewgain.mesh.results", "BoundaryCandidates",
+                  to_array(poses, {static_cast<py::ssize_t>(poses.size())}),
+                  to_array_1d<ReasonRow>(reasons));
+}
+
+// A Python package that viewgain can do without.
+py::module_ other_package(const char* name, const char* wanted_by) {
+  try {
+    return py::module_::import(name);
+  } catch (py::error_already_set& error) {
+    if (!error.matches(PyExc_ImportError)) throw;
+    py::raise_from(error, PyExc_ImportError,
+                   (std::string(wanted_by) + " needs the package " + name +
+                    ", which cannot be imported; Surface.save writes a .ply without it")
+                       .c_str());
+    throw py::error_already_set();
+  }
+}
+
+py::object to_trimesh(const SurfaceMesh& surface) {
+  const py::module_ trimesh = other_package("trimesh", "to_trimesh");
+  // As it is: trimesh would merge vertices and lose their normals.
+  return trimesh.attr("Trimesh")(py::arg("vertices") = to_array_3(surface.vertices),
+                                 py::arg("faces") = to_array_3(surface.triangles),
+                                 py::arg("vertex_normals") = to_array_3(surface.normals),
+                                 py::arg("process") = false);
+}
+
+py::object to_open3d(const SurfaceMesh& surface) {
+  const py::module_ open3d = other_package("open3d", "to_open3d");
+  const py::object utility = open3d.attr("utility"), vectors = utility.attr("Vector3dVector");
+  const py::object triangles = to_array_3(surface.triangles).attr("astype")("int32");
+  py::object mesh = open3d.attr("geometry").attr("TriangleMesh")();
+  mesh.attr("vertices") = vectors(to_array_3(surface.vertices));
+  mesh.attr("vertex_normals") = vectors(to_array_3(surface.normals));
+  mesh.attr("triangles") = utility.attr("Vector3iVector")(triangles);
+  return mesh;
 }
 
 }  // namespace
@@ -120,7 +157,7 @@ void bind_surface(py::module_& module) {
       R"(An open, oriented triangle surface. Made by ``reconstruct_surface``,
 ``surface_of_grid`` and ``reconstruct``.
 
-Faces turn counter-clockwise seen from free space.)");
+Faces turn counter-clockwise seen from free space. Surfaces are equal by value.)");
   refuse_pickling(type);
   type.def_property_readonly(
           "vertices", [](const SurfaceMesh& s) { return to_array_3(s.vertices); },
@@ -152,6 +189,35 @@ path : path-like
 Raises
 ------
 OSError)")
+      .def("to_trimesh", &to_trimesh, R"(The surface for trimesh, with its normals.
+
+Returns
+-------
+trimesh.Trimesh
+    A copy [m]; no vertex is merged or dropped.
+
+Raises
+------
+ImportError
+    trimesh is not installed.)")
+      .def("to_open3d", &to_open3d, R"(The surface for Open3D, with its normals.
+
+Returns
+-------
+open3d.geometry.TriangleMesh
+    A copy [m].
+
+Raises
+------
+ImportError
+    Open3D is not installed.)")
+      .def(
+          "__eq__",
+          [](const SurfaceMesh& a, const SurfaceMesh& b) {
+            return a.vertices == b.vertices && a.normals == b.normals &&
+                   a.triangles == b.triangles && a.source == b.source;
+          },
+          py::is_operator())
       .def("__repr__", [](const SurfaceMesh& s) {
         return "<Surface " + std::to_string(s.vertices.size()) + " vertices, " +
                std::to_string(s.triangles.size()) + " triangles>";
@@ -214,8 +280,10 @@ tilts, rolls : sequence of float, optional
 
 Returns
 -------
-poses : ndarray, (n, 4, 4), float64
-    T_world_camera. What stands in their way is for ``FeasibilityChecker`` to say.
+BoundaryCandidates
+    A named tuple of the two.
+T_world_camera : ndarray, (n, 4, 4), float64
+    What stands in their way is for ``FeasibilityChecker`` to say.
 reasons : ndarray, (n,), structured
     boundary_class (index into ``BOUNDARY_CLASS_NAMES``), run (of boundary edges), run_length [m],
     patch, target (the extrapolated point looked at, 3 [m]), distance from it [m], tilt, roll [rad],

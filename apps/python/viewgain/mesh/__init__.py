@@ -7,3 +7,4 @@ is Apache-2.0 and loads none of this.
 """
 
 from ._mesh import *
+from .results import BoundaryCandidates, BoundaryClass, ViewRecord

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import BatchControl, BeliefGrid, ReachRegion, Sensor
+from .results import BoundaryCandidates, ViewRecord
 
 _Path = Union[str, bytes, "os.PathLike[str]"]
 
@@ -23,6 +24,8 @@ class Surface:
     @property
     def source(self) -> NDArray[np.uint32]: ...
     def save(self, path: _Path) -> None: ...
+    def to_trimesh(self) -> Any: ...
+    def to_open3d(self) -> Any: ...
 
 def reconstruct_surface(
     points: ArrayLike,
@@ -47,13 +50,13 @@ def boundary_candidates(
     distances: Sequence[float] | None = None,
     tilts: Sequence[float] | None = None,
     rolls: Sequence[float] | None = None,
-) -> tuple[NDArray[np.float64], NDArray[np.void]]: ...
+) -> BoundaryCandidates: ...
 
 class Reconstruction:
     @property
     def reason(self) -> str: ...
     @property
-    def views(self) -> list[dict[str, Any]]: ...
+    def views(self) -> list[ViewRecord]: ...
     @property
     def grid(self) -> BeliefGrid: ...
     @property
@@ -78,7 +81,7 @@ def reconstruct(
     stop_gain: float | None = None,
     stop_area: float | None = None,
     idle_views: int = 3,
-    observer: Callable[[dict[str, Any]], object] | None = None,
+    observer: Callable[[ViewRecord], object] | None = None,
     control: BatchControl | None = None,
     num_threads: int = 0,
 ) -> Reconstruction: ...

@@ -1,0 +1,145 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""What calls give back when it is more than one thing: named tuples."""
+from typing import Annotated, Any, NamedTuple, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+_Floats = NDArray[np.float64]
+_Image = NDArray[np.float32]
+
+
+def named(module: str) -> Any:
+    """Of a class of named tuples: it is the module's, its fields have their annotations' words, and ``result["field"]``
+    gives a field as well, as numpy's structured arrays do."""
+
+    def finish(result: Any) -> Any:
+        result.__module__ = module
+        for name, annotation in result.__annotations__.items():
+            getattr(result, name).__doc__ = annotation.__metadata__[0]
+
+        def item(self: Any, key: Any) -> Any:
+            if not isinstance(key, str):
+                return tuple.__getitem__(self, key)
+            if key not in self._fields:
+                raise KeyError(key)
+            return getattr(self, key)
+
+        result.__getitem__ = item
+        return result
+
+    return finish
+
+
+@named("viewgain")
+class Sigmas(NamedTuple):
+    """Standard deviations of a reading, of ``Sensor.sigmas``."""
+
+    axial: Annotated[float, "Along the ray [m]."]
+    lateral: Annotated[float, "Across the ray [m]."]
+
+
+@named("viewgain")
+class IntegrationReport(NamedTuple):
+    """What ``integrate`` has put into a map, of ``FrameIntegrator`` and ``CloudIntegrator``."""
+
+    readings: Annotated[int, "Pixels or points whose range is within the sensor's limits."]
+    plane_readings: Annotated[int, "Such that see the support plane; not among readings."]
+    out_of_range: Annotated[int, "Pixels or points that carve up to max_range."]
+    invalid: Annotated[int, "Pixels or points that say nothing."]
+    readings_inside: Annotated[int, "Readings that lie in the workspace."]
+    voxels_hit: Annotated[int, "Voxels that readings lie in."]
+    voxels_crossed: Annotated[int, "Voxels that rays pass and no reading lies in."]
+
+
+@named("viewgain")
+class GridStatistics(NamedTuple):
+    """Voxels and progress of a map, of ``BeliefGrid.statistics``."""
+
+    unknown: Annotated[int, "Voxels never observed."]
+    free: Annotated[int, "Voxels known to be free."]
+    occupied: Annotated[int, "Voxels known to be occupied."]
+    bytes: Annotated[int, "Memory of the map."]
+    entropy_removed: Annotated[float, "Sum over the occupied voxels [nat, or m**2 for trace]."]
+
+
+@named("viewgain")
+class ChosenViews(NamedTuple):
+    """The best of many poses, of ``best``, ``race`` and ``best_set`` with ``return_gains=True``."""
+
+    indices: Annotated[NDArray[np.int64], "(k,): into the poses with their leading axes flattened, best first."]
+    gains: Annotated[NDArray[np.void], "(k,), structured: as from ``evaluate_detailed``; of a set, what each adds."]
+
+
+@named("viewgain")
+class Frame(NamedTuple):
+    """A recorded frame, of ``read_frames``."""
+
+    depth: Annotated[_Image, "(height, width): along the optical axis [m]; 0: nothing known, inf: nothing up to max_range."]
+    T_world_camera: Annotated[_Floats, "(4, 4)."]
+    amplitude: Annotated[Optional[_Image], "(height, width) [1/m**2], or None."]
+
+
+@named("viewgain")
+class SimulatedFrame(NamedTuple):
+    """A simulated frame, of ``SimulatedSensor.acquire``."""
+
+    depth: Annotated[_Image, "(height, width): along the optical axis [m]; 0: invalid, inf: nothing up to max_range."]
+    amplitude: Annotated[_Image, "(height, width): cos / range**2 [1/m**2]; 0 where there is no reading."]
+
+
+@named("viewgain")
+class Cloud(NamedTuple):
+    """A point cloud, of ``load_cloud``."""
+
+    points: Annotated[_Floats, "(n, 3): as they stand in the file [m]; NaN where an organised cloud has none."]
+    viewpoint: Annotated[Optional[_Floats], "(4, 4): the sensor's pose in the points' frame, or None."]
+
+
+@named("viewgain")
+class TimedPoses(NamedTuple):
+    """Poses with their times, of ``read_poses`` with ``return_timestamps=True``."""
+
+    T_world_camera: Annotated[_Floats, "(n, 4, 4)."]
+    timestamps: Annotated[_Floats, "(n,) [s]."]
+
+
+@named("viewgain")
+class AddedView(NamedTuple):
+    """What a frame has changed, of ``ViewPlanner.add``."""
+
+    readings: Annotated[int, "Pixels or points whose range is within the sensor's limits."]
+    plane_readings: Annotated[int, "Such that see the support plane; not among readings."]
+    out_of_range: Annotated[int, "Pixels or points that carve up to max_range."]
+    invalid: Annotated[int, "Pixels or points that say nothing."]
+    readings_inside: Annotated[int, "Readings that lie in the workspace."]
+    voxels_hit: Annotated[int, "Voxels that readings lie in."]
+    voxels_crossed: Annotated[int, "Voxels that rays pass and no reading lies in."]
+    view: Annotated[int, "Number of the view, from 0."]
+    entropy_removed: Annotated[float, "By this view [nat, or m**2 for trace]."]
+    new_area: Annotated[float, "New surface that this view has shown [m**2]; NaN by gain \"paper\"."]
+    total_entropy_removed: Annotated[float, "So far [nat, or m**2 for trace]."]
+    total_area: Annotated[float, "Sum of the new areas so far [m**2]."]
+    unknown_voxels: Annotated[int, "That are left."]
+
+
+@named("viewgain")
+class Proposal(NamedTuple):
+    """Candidates that are possible now, of ``ViewPlanner.propose``."""
+
+    T_world_camera: Annotated[_Floats, "(n, 4, 4)."]
+    generator: Annotated[list[str], "Which set or generator each is of."]
+    dropped: Annotated[dict[str, int], "Reason -> how many: ``INFEASIBILITY_NAMES``, and \"missed\": commanded and not reached."]
+
+
+@named("viewgain")
+class Ranking(NamedTuple):
+    """The best candidates in their order, of ``ViewPlanner.rank``."""
+
+    index: Annotated[NDArray[np.int64], "(k,): into the candidates or poses."]
+    T_world_camera: Annotated[_Floats, "(k, 4, 4)."]
+    gain: Annotated[_Floats, "(k,) [nat; by gain \"surface\" m**2]."]
+    area: Annotated[_Floats, "(k,): new surface to be expected [m**2]; NaN by gain \"paper\"."]
+    worth: Annotated[_Floats, "(k,): the gain less the cost; 0 or less: the way costs more than the view brings."]
+    complete: Annotated[bool, "False if a stop was requested."]
