@@ -16,8 +16,11 @@ def named(module: str) -> Any:
 
     def finish(result: Any) -> Any:
         result.__module__ = module
-        for name, annotation in result.__annotations__.items():
+        annotations = dict(result.__annotations__)
+        for name, annotation in annotations.items():
             getattr(result, name).__doc__ = annotation.__metadata__[0]
+            annotations[name] = annotation.__origin__  # signatures are of the types alone
+        result.__annotations__ = result.__new__.__annotations__ = annotations
 
         def item(self: Any, key: Any) -> Any:
             if not isinstance(key, str):

@@ -139,6 +139,7 @@ def test_results_of_several_things_are_named_tuples(grid, sensor, evaluator, pos
             assert getattr(result, name) is value is result[name] and len(getattr(kind, name).__doc__) > 3
             assert not getattr(kind, name).__doc__.startswith("Alias")
             fields += 1
+        assert "Annotated" not in str(inspect.signature(kind))
         with pytest.raises(KeyError):
             result["count_of_nothing"]
         assert result[0] is next(iter(result)) and len(result[:1]) == 1
