@@ -20,6 +20,7 @@ import pathlib
 import subprocess
 import threading
 import time
+import warnings
 from collections import OrderedDict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable
@@ -188,14 +189,20 @@ class _Chunks:
         return begin, end
 
 
+def _submit(client: Any, job: _Job, begin: int, poses: NDArray) -> Any:
+    with warnings.catch_warnings():
+        # Dask would have poses scattered, which are then lost with a worker. Each chunk goes out once, and is small enough.
+        warnings.filterwarnings("ignore", "Large object of size|Sending large graph")
+        return client.submit(_score_chunk, job, begin, poses, pure=False)
+
+
 def _run(client: Any, job: _Job, poses: NDArray, chunks: _Chunks, keep: Callable[[int, NDArray], None]) -> None:
     running = _dask.as_completed()
     try:
         while True:
             workers = max(1, len(client.nthreads()))
             while running.count() < 2 * workers and (rows := chunks.next(workers)):
-                chunk = np.ascontiguousarray(poses[slice(*rows)])
-                running.add(client.submit(_score_chunk, job, rows[0], chunk, pure=False))
+                running.add(_submit(client, job, rows[0], np.ascontiguousarray(poses[slice(*rows)])))
             if running.count() == 0:
                 return
             future = next(running)

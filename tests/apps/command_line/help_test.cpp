@@ -27,10 +27,9 @@ using nlohmann::json;
 using Strings = std::vector<std::string>;
 
 // In an order in which the examples of their help find what they name.
-const Strings kSubcommands{"simulate", "import",  "calibrate",  "integrate",   "next",
-                           "follow",   "score",   "candidates", "reconstruct", "render",
-                           "info",     "convert", "sensors",    "study",       "surface",
-                           "merge"};
+const Strings kSubcommands{"simulate", "import",     "calibrate",   "integrate", "next", "follow",
+                           "score",    "candidates", "reconstruct", "render",    "info", "convert",
+                           "sensors",  "study",      "surface",     "merge"};
 
 Strings words_of(const std::string& text) {
   std::istringstream in(text);
