@@ -110,6 +110,8 @@ def _build(job: _Job) -> viewgain.GainEvaluator:
     os.environ["VIEWGAIN_ISA"] = job.isa  # pinned: another one would differ in the last digits
     try:
         grid = viewgain.BeliefGrid.from_bytes(_maps[job.map_hash])
+        if grid.content_hash() != job.map_hash:
+            raise RuntimeError(f"the map is no longer {job.map_hash}: its file was changed meanwhile")
         scene = viewgain.VoxelScene(grid, num_threads=job.num_threads)
         if scene.isa != job.isa:
             raise RuntimeError(f"this worker's CPU lacks {job.isa}, it has {scene.isa} at best")
@@ -294,7 +296,9 @@ def score(client: Any, map: Any, poses: Any, sensor: Any, *, out: Any, top: int 
             progress(done, len(poses))
 
     if gaps:
-        plugin = _MapPlugin(job.map_hash, grid.to_bytes())
+        # The file's bytes are those that to_bytes() would make again.
+        data = grid.to_bytes() if grid is map else pathlib.Path(os.fsdecode(map)).read_bytes()
+        plugin = _MapPlugin(job.map_hash, data)
         _register(client, plugin)
         try:
             _run(client, job, poses, _Chunks(gaps, chunk_seconds), keep)

@@ -58,10 +58,12 @@ cmp whole.npy made/scores.npy
 echo "make: 11 shards, one made again"
 
 isa=$("$VIEWGAIN" score "$map" --sphere 1,0.6 --sensor sr4000 --json | sed -n 's/.*"isa": "\(.*\)".*/\1/p')
-for i in 0 1 2 2; do
+for i in 0 2 2; do
   VIEWGAIN_ISA=$isa SLURM_ARRAY_TASK_ID=$i SLURM_ARRAY_TASK_COUNT=3 SLURM_CPUS_PER_TASK=1 \
     "$cluster/score_array.slurm" slurm "$map" "${flags[@]}" >/dev/null
 done
+SHARDS=3 VIEWGAIN_ISA=$isa SLURM_ARRAY_TASK_ID=1 SLURM_ARRAY_TASK_COUNT=1 \
+  "$cluster/score_array.slurm" slurm "$map" "${flags[@]}" >/dev/null
 "$VIEWGAIN" merge slurm/parts/*.npy --out slurm/scores.npy >/dev/null
 cmp whole.npy slurm/scores.npy
 echo "slurm: 3 tasks"
