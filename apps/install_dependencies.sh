@@ -20,7 +20,7 @@ case "${1:-}" in
     packages+=(
       pkg-config python3 pybind11-dev python3-dev python3-numpy python3-pytest python3-matplotlib
       libgtest-dev liboctomap-dev libompl-dev libbenchmark-dev libopenvdb-tools groff-base
-      chromium-headless-shell file dpkg-dev
+      chromium-headless-shell file dpkg-dev parallel python3-distributed
     )
     ;;
   *) echo "$0: no option $1; there are --tests and --docs" >&2; exit 2 ;;

@@ -12,8 +12,10 @@ namespace viewgain::app {
 /// or, unless `needed`, none.
 inline void add_pose_options(CLI::App& app, PoseOptions& options, bool needed = true) {
   auto* poses = app.add_option_group("poses", needed ? "exactly one of" : "at most one of");
-  poses->add_option("--poses", options.file,
-                    "TUM file of camera-to-world poses: time tx ty tz qx qy qz qw [s, m]");
+  poses->add_option(
+      "--poses", options.file,
+      "TUM file of camera-to-world poses: time tx ty tz qx qy qz qw [s, m]; or .npy: rows with "
+      "tx, ty, tz, qx, qy, qz, qw, or (n, 4, 4) matrices");
   poses->add_option("--sphere", options.sphere,
                     "N,RADIUS: Fibonacci lattice on a sphere round --center, looking at it [m]");
   poses->add_option("--dome", options.dome,

@@ -88,19 +88,17 @@ std::vector<std::size_t> ClassicScores::best(std::size_t top) const {
   return order;
 }
 
-std::string ClassicScores::csv() const {
+Table ClassicScores::table() const {
   const std::vector<ClassicGain>& asked = evaluator.config().gains;
-  std::string csv("index");
-  for (const ClassicGain gain : asked) csv.append(",").append(classic_gain_name(gain));
-  csv.append(",status\n");
+  Table table{{{"index", ColumnType::row}}};
+  for (const ClassicGain gain : asked) table.columns.push_back({name_of(gain), ColumnType::real});
+  table.columns.push_back({"status", ColumnType::status});
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    csv.append(std::to_string(numbers[i]));
-    for (std::size_t g = 0; g < asked.size(); ++g) {
-      csv.append(",").append(exact_text(gains[i * asked.size() + g]));
-    }
-    csv.append(",").append(view_status_name(statuses[i])).append("\n");
+    table.add(static_cast<std::int64_t>(numbers[i]));
+    for (std::size_t g = 0; g < asked.size(); ++g) table.add(gains[i * asked.size() + g]);
+    table.add(statuses[i]);
   }
-  return csv;
+  return table;
 }
 
 void ClassicScores::print_json(std::size_t top) const {
@@ -118,7 +116,7 @@ void ClassicScores::print_json(std::size_t top) const {
       view[name_of(asked[g])] = gains[i * asked.size() + g];  // a NaN becomes null
     }
     view["status"] = view_status_name(statuses[i]);
-    view["T_world_camera"] = to_json(source.poses[numbers[i]]);
+    view["T_world_camera"] = to_json(source.at(numbers[i]));
     best_views.push_back(std::move(view));
   }
   const auto poses = static_cast<double>(numbers.size());
@@ -167,7 +165,7 @@ void ClassicScores::print_table(std::size_t top) const {
       std::printf(" %*.6g", static_cast<int>(std::max<std::size_t>(12, heads[g].size())),
                   gains[i * asked.size() + g]);
     }
-    const Eigen::Vector3d eye = source.poses[numbers[i]].translation();
+    const Eigen::Vector3d eye = source.at(numbers[i]).translation();
     std::printf("  %8.3f %8.3f %8.3f %s\n", eye.x(), eye.y(), eye.z(),
                 std::string(view_status_name(statuses[i])).c_str());
   }

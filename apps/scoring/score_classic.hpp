@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "columns/table.hpp"
 #include "options/pose_source.hpp"
 #include "score_options.hpp"
 #include "viewgain/raycast/classic_gains.hpp"
@@ -38,8 +39,8 @@ struct ClassicScores {
 
   /// Candidates, best first: ties to the lower number, NaN last; at most `top`.
   [[nodiscard]] std::vector<std::size_t> best(std::size_t top) const;
-  /// The contents of the file of `score --out`: index, a column for each gain, status.
-  [[nodiscard]] std::string csv() const;
+  /// The rows of the file of `score --out`: index, a column for each gain, status.
+  [[nodiscard]] Table table() const;
   /// One JSON object; apps/docs/reference/json.md names the keys.
   void print_json(std::size_t top) const;
   /// For people.

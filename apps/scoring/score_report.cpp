@@ -18,39 +18,53 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string csv_rows(const ScoredViews& views, GainModel model) {
+Table table_of(const ScoredViews& views, GainModel model) {
   const bool has_area = model != GainModel::paper;
-  std::string csv =
-      "index,gain,exploration,refinement,posterior_entropy,rays,hits,unknown_voxels,"
-      "occupied_voxels,status";
-  csv += has_area ? ",area,refinement_saturated\n" : "\n";
+  Table table{{{"index", ColumnType::row},
+               {"gain", ColumnType::real},
+               {"exploration", ColumnType::real},
+               {"refinement", ColumnType::real},
+               {"posterior_entropy", ColumnType::real},
+               {"rays", ColumnType::count},
+               {"hits", ColumnType::count},
+               {"unknown_voxels", ColumnType::count},
+               {"occupied_voxels", ColumnType::count},
+               {"status", ColumnType::status}}};
+  if (has_area) {
+    table.columns.push_back({"area", ColumnType::real});
+    table.columns.push_back({"refinement_saturated", ColumnType::real});
+  }
+  table.bytes.reserve(views.gains.size() * row_bytes(table.columns));
   for (std::size_t i = 0; i < views.gains.size(); ++i) {
     const ViewGain& r = views.gains[i];
-    csv += std::to_string(views.indices[i]);
+    table.add(static_cast<std::int64_t>(views.indices[i]));
     for (const double value : {r.gain, r.exploration, r.refinement, r.posterior_entropy}) {
-      csv += ',' + exact_text(value);
+      table.add(value);
     }
     for (const std::uint32_t value : {r.rays, r.hits, r.unknown_voxels, r.occupied_voxels}) {
-      csv += ',' + std::to_string(value);
+      table.add(value);
     }
-    csv += ',';
-    csv += view_status_name(r.status);
-    if (has_area) csv += ',' + exact_text(r.area) + ',' + exact_text(r.refinement_saturated);
-    csv += '\n';
+    table.add(r.status);
+    if (!has_area) continue;
+    table.add(r.area);
+    table.add(r.refinement_saturated);
   }
-  return csv;
+  return table;
 }
 
-std::string csv_rows(const Estimates& estimates) {
-  std::string csv = "index,gain,standard_error\n";
+Table table_of(const Estimates& estimates) {
+  Table table{{{"index", ColumnType::row},
+               {"gain", ColumnType::real},
+               {"standard_error", ColumnType::real}}};
   for (std::size_t i = 0; i < estimates.gains.size(); ++i) {
-    csv += std::to_string(estimates.indices[i]) + ',' + exact_text(estimates.gains[i].gain) + ',' +
-           exact_text(estimates.gains[i].standard_error) + '\n';
+    table.add(static_cast<std::int64_t>(estimates.indices[i]));
+    table.add(estimates.gains[i].gain);
+    table.add(estimates.gains[i].standard_error);
   }
-  return csv;
+  return table;
 }
 
-ordered_json entries(const ScoredViews& views, const std::vector<Pose>& poses) {
+ordered_json entries(const ScoredViews& views, const PoseSource& poses) {
   ordered_json list = ordered_json::array();
   for (std::size_t rank = 0; rank < views.indices.size(); ++rank) {
     const ViewGain& r = views.gains[rank];
@@ -66,24 +80,24 @@ ordered_json entries(const ScoredViews& views, const std::vector<Pose>& poses) {
                     {"unknown_voxels", r.unknown_voxels},
                     {"occupied_voxels", r.occupied_voxels},
                     {"status", view_status_name(r.status)},
-                    {"T_world_camera", to_json(poses[views.indices[rank]])}});
+                    {"T_world_camera", to_json(poses.at(views.indices[rank]))}});
   }
   return list;
 }
 
-ordered_json entries(const Estimates& estimates, const std::vector<Pose>& poses) {
+ordered_json entries(const Estimates& estimates, const PoseSource& poses) {
   ordered_json list = ordered_json::array();
   for (const std::size_t i : estimates.best) {
     list.push_back({{"index", estimates.indices[i]},
                     {"gain", estimates.gains[i].gain},
                     {"standard_error", estimates.gains[i].standard_error},
-                    {"T_world_camera", to_json(poses[estimates.indices[i]])}});
+                    {"T_world_camera", to_json(poses.at(estimates.indices[i]))}});
   }
   return list;
 }
 
 // What a gain has not, the columns do not show.
-void print_rows(const ScoredViews& views, const std::vector<Pose>& poses, GainModel model) {
+void print_rows(const ScoredViews& views, const PoseSource& poses, GainModel model) {
   const bool by_paper = model == GainModel::paper, refines = model == GainModel::combined;
   std::printf("%4s %8s %12s", "rank", "index", "gain");
   if (by_paper) std::printf(" %12s %12s", "exploration", "refinement");
@@ -95,7 +109,7 @@ void print_rows(const ScoredViews& views, const std::vector<Pose>& poses, GainMo
   for (std::size_t rank = 0; rank < views.indices.size(); ++rank) {
     const std::size_t i = views.indices[rank];
     const ViewGain& r = views.gains[rank];
-    const Eigen::Vector3d eye = poses[i].translation();
+    const Eigen::Vector3d eye = poses.at(i).translation();
     std::array<char, 80> position{};
     std::snprintf(position.data(), position.size(), "%8.3f %8.3f %8.3f", eye.x(), eye.y(), eye.z());
     std::printf("%4zu %8zu %12.6g", rank + 1, i, r.gain);
@@ -138,9 +152,9 @@ std::optional<std::size_t> Scores::winner() const {
   return best.empty() ? std::nullopt : std::optional(best.front());
 }
 
-std::string csv_of(const Scores& scores, GainModel model) {
+Table table_of(const Scores& scores, GainModel model) {
   const auto* estimates = std::get_if<Estimates>(&scores.found);
-  return estimates != nullptr ? csv_rows(*estimates) : csv_rows(scored_in_full(scores), model);
+  return estimates != nullptr ? table_of(*estimates) : table_of(scored_in_full(scores), model);
 }
 
 ordered_json ScoreReport::summary() const {
@@ -169,12 +183,12 @@ ordered_json ScoreReport::summary() const {
 void ScoreReport::print_json() const {
   ordered_json json = summary();
   if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
-    json["best"] = entries(ranking->best, source.poses);
+    json["best"] = entries(ranking->best, source);
   } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
-    json["best"] = entries(joint->views, source.poses);
+    json["best"] = entries(joint->views, source);
     json["set_gain"] = joint->gain;
   } else {
-    json["best"] = entries(std::get<Estimates>(scores.found), source.poses);
+    json["best"] = entries(std::get<Estimates>(scores.found), source);
   }
   app::print_json(json);
 }
@@ -192,9 +206,9 @@ void ScoreReport::print_table() const {
                 counts_text(scores.dropped).c_str());
   }
   if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
-    print_rows(ranking->best, source.poses, model);
+    print_rows(ranking->best, source, model);
   } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
-    print_rows(joint->views, source.poses, model);
+    print_rows(joint->views, source, model);
     std::printf("together: %.6g\n", joint->gain);
   } else {
     print_rows(std::get<Estimates>(scores.found));

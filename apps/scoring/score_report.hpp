@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "columns/table.hpp"
 #include "options/pose_source.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/grid/belief_grid.hpp"
@@ -54,8 +55,8 @@ struct Scores {
   [[nodiscard]] std::optional<std::size_t> winner() const;
 };
 
-/// The contents of the file of `score --out`; apps/docs/reference/json.md names the columns.
-[[nodiscard]] std::string csv_of(const Scores& scores, GainModel model);
+/// The rows of the file of `score --out`; apps/docs/reference/json.md names the columns.
+[[nodiscard]] Table table_of(const Scores& scores, GainModel model);
 
 /// What was asked and what came out, for the two ways of printing.
 struct ScoreReport {

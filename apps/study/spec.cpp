@@ -3,8 +3,6 @@
 #include "spec.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -12,10 +10,10 @@
 
 #include "formats/src/toml_table.hpp"
 #include "options/gain_names.hpp"
+#include "options/text_hash.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/file_bytes.hpp"
-#include "viewgain/core/mix64.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/raycast/classic_gains.hpp"
 #include "viewgain/version.hpp"
@@ -29,20 +27,6 @@ using nlohmann::ordered_json;
 constexpr int kRunFormat = 2;  // of run.json and prediction.csv; grows when one changes
 constexpr std::size_t kMostRuns = 1'000'000;
 constexpr std::int64_t kMostViews = 1000, kMostCandidates = 100'000;
-
-// 128 bits as a name. Not for secrets: nobody gains by two specs of one name.
-std::string hash_of(std::string_view text) {
-  std::array<std::uint64_t, 2> state{0x76696577U, 0x6761696eU};
-  for (std::uint64_t& s : state) {
-    s = mix64(s ^ text.size());
-    for (const char c : text) s = mix64(s ^ static_cast<unsigned char>(c));
-  }
-  std::array<char, 33> digits{};
-  std::snprintf(digits.data(), digits.size(), "%016llx%016llx",
-                static_cast<unsigned long long>(state[0]),
-                static_cast<unsigned long long>(state[1]));
-  return digits.data();
-}
 
 // The elements of a list that must not be empty.
 const toml::array& list_of(TableReader& reader, const char* key) {

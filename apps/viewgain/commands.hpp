@@ -28,6 +28,7 @@ struct Stopped {
 [[nodiscard]] Command add_import(CLI::App& program);
 [[nodiscard]] Command add_integrate(CLI::App& program);
 [[nodiscard]] Command add_score(CLI::App& program);
+[[nodiscard]] Command add_merge(CLI::App& program);
 [[nodiscard]] Command add_reconstruct(CLI::App& program);
 [[nodiscard]] Command add_candidates(CLI::App& program);
 [[nodiscard]] Command add_next(CLI::App& program);

@@ -72,7 +72,7 @@ int run(int argc, char** argv) {
       viewgain::app::add_info(program),        viewgain::app::add_surface(program),
       viewgain::app::add_convert(program),     viewgain::app::add_render(program),
       viewgain::app::add_sensors(program),     viewgain::app::add_study(program),
-      viewgain::app::add_follow(program)};
+      viewgain::app::add_follow(program),      viewgain::app::add_merge(program)};
   // For the build alone.
   std::string help_folder;
   CLI::App* help_files =

@@ -24,8 +24,8 @@
 #include "report/page.hpp"
 #include "scoring/score_classic.hpp"
 #include "scoring/score_options.hpp"
+#include "scoring/score_part.hpp"
 #include "scoring/score_report.hpp"
-#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/stopwatch.hpp"
 #include "viewgain/formats/map_file.hpp"
@@ -95,8 +95,8 @@ FeasiblePoses candidates_of(const Options& options, const PoseSource& source, co
   return feasible_poses(FeasibilityChecker(scene, config, exec), source.poses, grid.views());
 }
 
-void check_left(const FeasiblePoses& candidates) {
-  if (!candidates.poses.empty()) return;
+void check_left(const FeasiblePoses& candidates, const RowSelection& selection) {
+  if (!candidates.poses.empty() || !selection.is_all()) return;  // a part may be empty
   throw Error(ErrorCode::invalid_argument,
               "no pose is left to score; dropped: " + counts_text(candidates.dropped));
 }
@@ -114,7 +114,10 @@ double timed(const Options& options, const Work& work) {
   return watch.seconds();
 }
 
-// Indices of the candidates become those of the poses that were given.
+// Numbers of the candidates become rows of the poses that were given.
+void name_by_input(FeasiblePoses& candidates, const PoseSource& source) {
+  for (std::size_t& number : candidates.numbers) number += source.rows.begin;
+}
 void name_by_input(Scores& scores, const FeasiblePoses& candidates) {
   const auto name = [&](std::vector<std::size_t>& indices) {
     for (std::size_t& i : indices) i = candidates.numbers[i];
@@ -198,15 +201,18 @@ Scores make_scores(const Options& options, const GainEvaluator& evaluator,
 void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gains) {
   const ClassicConfig config = classic_config(options, std::move(gains));
   const ExecConfig exec{options.common.threads};
-  const PoseSource source = make_poses(options.poses, options.seed);
-  const auto [grid, sensor] = load_sensed_map(options.map, options.sensor);
+  const RowSelection selection = selection_of(options);
+  const PoseSource source = make_poses(options.poses, options.seed, selection);
+  const SensedMap map = load_sensed_map(options.map, options.sensor);
+  const auto& [grid, sensor] = map;
   const auto scene = VoxelScene::build(grid, obstacles_of(options.obstacles), exec);
   const bool hides = std::any_of(config.gains.begin(), config.gains.end(), needs_occlusion);
   const auto acquisition = hides ? std::optional(Acquisition{sensor}) : std::nullopt;
   const ClassicGainEvaluator evaluator(ClassicMap::build(scene, grid, acquisition, exec), sensor,
                                        config, exec);
-  const FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
-  check_left(candidates);
+  FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
+  check_left(candidates, selection);
+  name_by_input(candidates, source);
 
   ClassicScores scores{grid, sensor, source, evaluator, candidates.numbers, candidates.dropped};
   scores.gains.resize(candidates.poses.size() * evaluator.config().gains.size());
@@ -214,7 +220,9 @@ void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gai
   scores.seconds = timed(options, [&](const BatchControl& control) {
     evaluator.evaluate(candidates.poses, scores.gains, scores.statuses, control);
   });
-  if (!options.out.empty()) write_file_atomically(options.out, scores.csv());
+  if (!options.out.empty()) {
+    write_scores(options, scores.table(), grid, sensor, source, evaluator.map().scene().isa());
+  }
   if (options.common.json) {
     scores.print_json(options.top);
   } else {
@@ -230,15 +238,17 @@ void score(const Options& options) {
   if (!options.report.empty()) check_report_page("--report");
   const ExecConfig exec{options.common.threads};
   const GainConfig config = gain_config(options);
-  const PoseSource source = make_poses(options.poses, options.seed);
+  const RowSelection selection = selection_of(options);
+  const PoseSource source = make_poses(options.poses, options.seed, selection);
   const SensedMap map = load_sensed_map(options.map, options.sensor);
   const BeliefGrid& grid = map.grid;
   const Sensor& sensor = map.sensor;
   const HazardConfig hazard = hazard_source(options.hazard, options.object_size, grid);
   const auto scene = VoxelScene::build(grid, obstacles_of(options.obstacles), exec, hazard);
   const GainEvaluator evaluator(scene, sensor, config, exec);
-  const FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
-  check_left(candidates);
+  FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
+  check_left(candidates, selection);
+  name_by_input(candidates, source);
 
   Scores scores;
   const double seconds = timed(options, [&](const BatchControl& control) {
@@ -249,12 +259,14 @@ void score(const Options& options) {
   RgbImage picture;
   if (!options.picture.empty() || !options.report.empty()) {
     const std::optional<std::size_t> winner = scores.winner();
-    const Pose& shown = winner ? source.poses[*winner]
+    const Pose& shown = winner ? source.at(*winner)
                                : candidates.poses[evaluator.race(candidates.poses).indices.at(0)];
     picture = score_picture(evaluator, sensor, shown, exec);
   }
   if (!options.picture.empty()) write_png(options.picture, picture);
-  if (!options.out.empty()) write_file_atomically(options.out, csv_of(scores, config.model));
+  if (!options.out.empty()) {
+    write_scores(options, table_of(scores, config.model), grid, sensor, source, scene->isa());
+  }
   const ScoreReport report{config.model, options.criterion, grid,   sensor,
                            source,       evaluator,         scores, seconds};
   if (!options.report.empty()) {
@@ -342,8 +354,15 @@ Command add_score(CLI::App& program) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
   selection->require_option(0, 1);
   add_seed_option(*app, options->seed, "of --shell, --race (the paper's gain) and --approximate");
+  auto* part = app->add_option_group("part", "at most one of; needs --out; see merge");
+  part->add_option(
+      "--shard", options->shard,
+      "i/n: the i-th of n shards of the poses, i from 0, rows that follow one another");
+  part->add_option("--rows", options->rows, "a:b: the poses from row a to before row b, from 0");
+  part->require_option(0, 1);
   app->add_option("--out", options->out,
-                  "CSV file of all poses that were not dropped, in input order; with a selection, "
+                  "CSV file, or .npy with the same columns, of all poses that were not dropped, in "
+                  "input order; with a selection, "
                   "of those scored in full, "
                   "of the estimates, or of the set in order");
   app->add_option(

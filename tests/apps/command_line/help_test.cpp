@@ -27,9 +27,9 @@ using nlohmann::json;
 using Strings = std::vector<std::string>;
 
 // In an order in which the examples of their help find what they name.
-const Strings kSubcommands{"simulate", "import",  "calibrate",  "integrate",   "next",
-                           "follow",   "score",   "candidates", "reconstruct", "render",
-                           "info",     "convert", "sensors",    "study",       "surface"};
+const Strings kSubcommands{"simulate", "import",     "calibrate",   "integrate", "next", "follow",
+                           "score",    "candidates", "reconstruct", "render",    "info", "convert",
+                           "sensors",  "study",      "surface",     "merge"};
 
 Strings words_of(const std::string& text) {
   std::istringstream in(text);
@@ -137,6 +137,9 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
   }
   write("distances.txt", "1\n2\n");
   write("frames/done", "");
+  write("part.csv",
+        "# viewgain 1\n# map 1\n# sensor a 1\n# settings {}\n# isa avx2\n# poses 1 1\n# rows "
+        "0:1\n# scored 1\nindex,gain\n0,1\n");
   std::size_t cases = 0;
   for (const std::string& subcommand : kSubcommands) {
     const std::vector<Strings> calls = examples({subcommand});

@@ -82,9 +82,15 @@ def python():
     import viewgain
     import viewgain.mesh
 
-    count, faults = 0, []
-    for module in (viewgain, viewgain.mesh):
-        for name in dir(module):
+    modules, count, faults = [viewgain, viewgain.mesh], 0, []
+    try:
+        import viewgain.distributed
+
+        modules.append(viewgain.distributed)
+    except ImportError as error:
+        print(error)
+    for module in modules:
+        for name in getattr(module, "__all__", dir(module)):
             thing = getattr(module, name)
             if name.startswith("_") or inspect.ismodule(thing):
                 continue

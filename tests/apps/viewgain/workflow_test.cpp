@@ -575,7 +575,8 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--object-size --hazard --support-plane --obstacle --reach --feasible --body --criterion "
        "--stride --weight --prior-sigma "
        "--min-range --max-range --top --race --approximate --set --seed "
-       "--out --picture --report --json --threads =log_diagonal =10 [m]"},
+       "--shard --rows --out --picture --report --json --threads =log_diagonal =10 [m]"},
+      {"merge", "PART --out --top --json --threads"},
       {"sensors", "NAME --json --threads"},
       {"study", "SPEC --out --jobs --plots --json --threads"},
       {"surface", "MAP --out --points --truth --size --recenter --up --json --threads =off =z [m]"},
@@ -623,7 +624,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 241);
+  EXPECT_EQ(words, 248);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

@@ -1,0 +1,230 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// `score --shard`, `--rows`, poses and gains in columns: parts put together are the whole.
+#include <bit>
+#include <cstdint>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "apps/program_runner.hpp"
+#include "viewgain/core/generators.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/core/text.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+
+namespace viewgain {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+class ScoreParts : public test::ProgramTest {
+ protected:
+  ScoreParts() {
+    write_small_sensor();
+    BeliefGrid grid{{0.02, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.02}};
+    for (int x = -10; x < 10; ++x) {
+      for (int y = -10; y < 10; ++y) {
+        for (int z = 0; z < 10; ++z) grid.set({x, y, z}, -0.1F * static_cast<float>(1 + (x & 7)));
+      }
+    }
+    for (int x = -3; x < 3; ++x) {
+      for (int y = -3; y < 3; ++y) grid.set({x, y, 4}, 0.85F);
+    }
+    save_vdb(grid, dir / "map.vdb");
+    // Above the table only, so that half of the poses are dropped.
+    write("reach.toml", "[[box]]\nmin = [-1, -1, 0]\nmax = [1, 1, 1]\n");
+  }
+
+  [[nodiscard]] static Strings arguments(const Strings& more) {
+    Strings all{"score", "map.vdb", "--sensor", "small.toml", "--sphere", "40,0.45"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  void score(const Strings& more) const { (void)run_well(arguments(more)); }
+  [[nodiscard]] static Strings with(Strings words, const Strings& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  // Without lines of #.
+  [[nodiscard]] std::string rows_of(const std::string& name) const {
+    std::istringstream in(read(name));
+    std::string rows;
+    for (std::string line; std::getline(in, line);) {
+      if (!line.starts_with('#')) rows += line + "\n";
+    }
+    return rows;
+  }
+
+  // A .npy file: its type and shape as numpy writes them, and numbers.
+  void write_npy(const std::string& name, const std::string& type, const std::string& shape,
+                 const std::vector<double>& numbers) const {
+    std::string header =
+        "{'descr': " + type + ", 'fortran_order': False, 'shape': " + shape + ", }\n";
+    std::string bytes("\x93NUMPY\x01\0", 8);
+    bytes += static_cast<char>(header.size());
+    bytes += '\0';
+    bytes += header;
+    for (const double number : numbers) {
+      const auto bits = std::bit_cast<std::uint64_t>(number);
+      for (unsigned i = 0; i < 64; i += 8) bytes += static_cast<char>(bits >> i & 255U);
+    }
+    write(name, bytes);
+  }
+};
+
+TEST_F(ScoreParts, TogetherAreTheWholeForEveryGain) {
+  std::size_t cases = 0;
+  for (const Strings& flags : std::vector<Strings>{{},
+                                                   {"--gain", "surface"},
+                                                   {"--gain", "combined"},
+                                                   {"--gain", "unknown_count,rear_side_voxel"},
+                                                   {"--approximate", "0.3"},
+                                                   {"--reach", "reach.toml"}}) {
+    score(with(flags, {"--out", "plain.csv"}));
+    for (const std::string ending : {".csv", ".npy"}) {
+      score(with(flags, {"--rows", "0:40", "--out", "whole" + ending}));
+      // Of 50 shards some have no pose.
+      const std::vector<int> counts = flags.empty() ? std::vector{1, 3, 50} : std::vector{3};
+      for (const int shards : counts) {
+        Strings merge{"merge", "--out", "merged" + ending};
+        for (int i = shards - 1; i >= 0; --i) {
+          const std::string part = "part" + std::to_string(i) + ending;
+          score(with(flags, {"--shard", std::to_string(i) + "/" + std::to_string(shards),
+                             "--threads", std::to_string(1 + i % 2), "--out", part}));
+          merge.push_back(part);
+        }
+        (void)run_well(merge);
+        EXPECT_EQ(read("merged" + ending), read("whole" + ending)) << shards << ending;
+        ++cases;
+      }
+    }
+    EXPECT_EQ(rows_of("merged.csv"), read("plain.csv"));
+    // From columns to text and back nothing is lost.
+    (void)run_well({"merge", "whole.npy", "--out", "again.csv"});
+    EXPECT_EQ(read("again.csv"), read("whole.csv"));
+    (void)run_well({"merge", "whole.csv", "--out", "again.npy"});
+    EXPECT_EQ(read("again.npy"), read("whole.npy"));
+  }
+  EXPECT_EQ(cases, 16U);
+}
+
+TEST_F(ScoreParts, RowsCoverAllPosesOnce) {
+  Strings merge{"merge", "--out", "merged.csv"};
+  for (const std::string rows : {"13:14", "0:13", "14:40"}) {
+    score({"--rows", rows, "--out", rows + ".csv"});
+    EXPECT_NE(read(rows + ".csv").find("\n# rows " + rows + "\n# scored "), std::string::npos);
+    merge.push_back(rows + ".csv");
+  }
+  score({"--out", "plain.csv"});
+  (void)run_well(merge);
+  EXPECT_EQ(rows_of("merged.csv"), read("plain.csv"));
+}
+
+TEST_F(ScoreParts, PosesInColumnsAreThoseOfText) {
+  const std::vector<Pose> poses = sphere_poses(40, 0.45);
+  write_tum(dir / "poses.txt", poses);
+  std::vector<double> matrices, columns;
+  std::istringstream tum(read("poses.txt"));
+  std::string line;
+  std::getline(tum, line);
+  for (const Pose& pose : poses) {
+    matrices.insert(matrices.end(), pose.m.begin(), pose.m.end());
+    matrices.insert(matrices.end(), {0, 0, 0, 1});
+    for (int i = 0; i < 8; ++i) {
+      double value = 0;
+      tum >> value;
+      columns.push_back(value);
+    }
+  }
+  write_npy("matrices.npy", "'<f8'", "(40, 4, 4)", matrices);
+  write_npy("columns.npy",
+            "[('time', '<f8'), ('tx', '<f8'), ('ty', '<f8'), ('tz', '<f8'), ('qx', '<f8'), "
+            "('qy', '<f8'), ('qz', '<f8'), ('qw', '<f8')]",
+            "(40,)", columns);
+  const Strings head{"score", "map.vdb", "--sensor", "small.toml"};
+  const auto rows = [&](const Strings& more) {
+    (void)run_well(with(with(head, more), {"--rows", "5:31", "--out", "part.csv"}));
+    return rows_of("part.csv");
+  };
+  const std::string sphere = rows({"--sphere", "40,0.45"});
+  EXPECT_EQ(rows({"--poses", "matrices.npy"}), sphere);
+  const std::string text = rows({"--poses", "poses.txt"});
+  EXPECT_EQ(rows({"--poses", "columns.npy"}), text);
+  EXPECT_EQ(text.size() > 26U * 50U, true);
+}
+
+TEST_F(ScoreParts, BadColumnsOfPosesAreNamed) {
+  std::vector<double> identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  write_npy("good.npy", "'<f8'", "(1, 4, 4)", identity);
+  write("none.npy", "index,gain\n");
+  write_npy("short.npy", "'<f8'", "(2, 4, 4)", identity);
+  write_npy("empty.npy", "'<f8'", "(0, 4, 4)", {});
+  write_npy("float.npy", "'<f4'", "(2, 4, 4)", identity);
+  write_npy("big.npy", "'>f8'", "(1, 4, 4)", identity);
+  write_npy("flat.npy", "'<f8'", "(16,)", identity);
+  write_npy("lacks.npy", "[('tx', '<f8'), ('ty', '<f8')]", "(8,)", identity);
+  write_npy("broken.npy", "[('tx', '<f8'", "(8,)", identity);
+  write_npy("huge.npy", "'<f8'", "(281474976710656, 4, 4)", identity);
+  std::vector<double> scaled = identity, row = identity, nan = identity;
+  scaled[0] = 2;
+  row[15] = 2;
+  nan[3] = std::bit_cast<double>(std::uint64_t{0x7ff8000000000000});
+  write_npy("scaled.npy", "'<f8'", "(1, 4, 4)", scaled);
+  write_npy("row.npy", "'<f8'", "(1, 4, 4)", row);
+  write_npy("nan.npy", "'<f8'", "(1, 4, 4)", nan);
+  const Strings head{"score", "map.vdb", "--sensor", "small.toml", "--poses"};
+  std::size_t cases = 0;
+  for (const auto& [name, word] :
+       std::vector<std::pair<std::string, std::string>>{{"none.npy", "no .npy"},
+                                                        {"short.npy", "cut off"},
+                                                        {"empty.npy", "no pose"},
+                                                        {"float.npy", "<f8"},
+                                                        {"big.npy", ">f8"},
+                                                        {"flat.npy", "(n, 4, 4)"},
+                                                        {"lacks.npy", "tz"},
+                                                        {"broken.npy", "header"},
+                                                        {"huge.npy", "count"},
+                                                        {"scaled.npy", "row 0: the matrix is not"},
+                                                        {"row.npy", "last row"},
+                                                        {"nan.npy", "row 0"},
+                                                        {"missing.npy", "missing.npy"}}) {
+    const test::ProgramResult result = run(with(head, {name}));
+    EXPECT_EQ(result.exit_code, 2) << name;
+    EXPECT_NE(result.err.find(word), std::string::npos) << name << ": " << result.err;
+    EXPECT_NE(result.err.find(name), std::string::npos) << name << ": " << result.err;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 13U);
+  EXPECT_EQ(run(with(head, {"good.npy"})).exit_code, 0);
+}
+
+TEST_F(ScoreParts, FlagsThatDoNotGoTogetherAreRefused) {
+  std::size_t cases = 0;
+  for (const auto& [flags, word] : std::vector<std::pair<Strings, std::string>>{
+           {{"--shard", "3/3"}, "below n"},
+           {{"--shard", "0/0"}, "below n"},
+           {{"--shard", "-1/3"}, "i/n"},
+           {{"--shard", "1"}, "i/n"},
+           {{"--shard", "1/3x"}, "i/n"},
+           {{"--rows", "5:5"}, "below b"},
+           {{"--rows", "5:41"}, "there are 40 poses"},
+           {{"--rows", "5"}, "a:b"},
+           {{"--rows", "0:5", "--shard", "0/2"}, "at most 1"},
+           {{"--rows", "0:5", "--race"}, "--race"},
+           {{"--shard", "0/2", "--set", "2"}, "--set"},
+           {{"--shard", "0/2", "--picture", "p.png"}, "--picture"},
+           {{"--shard", "0/2", "--report", "p.html"}, "--report"}}) {
+    const test::ProgramResult result = run(arguments(with(flags, {"--out", "part.csv"})));
+    EXPECT_EQ(result.exit_code, 2) << flags[1];
+    EXPECT_NE(result.err.find(word), std::string::npos) << flags[1] << ": " << result.err;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 13U);
+  EXPECT_NE(run(arguments({"--shard", "0/2"})).err.find("--out"), std::string::npos);
+  EXPECT_EQ(list(), (Strings{"map.vdb", "reach.toml", "small.toml"}));
+}
+
+}  // namespace
+}  // namespace viewgain

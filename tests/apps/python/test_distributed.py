@@ -1,0 +1,227 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""viewgain.distributed: the same bits as one process, also when a worker is killed; what it says without Dask."""
+import importlib
+import os
+import signal
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import viewgain
+
+WITHOUT_DASK = """
+import importlib.abc, sys
+class Without(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] in ("distributed", "dask"):
+            raise ModuleNotFoundError(f"No module named {name!r}")
+sys.meta_path.insert(0, Without())
+import viewgain
+assert len(viewgain.sphere_poses(3, 1.0)) == 3
+try:
+    import viewgain.distributed
+except ImportError as error:
+    print(error)
+"""
+
+
+def test_without_dask_it_says_what_to_install_and_the_rest_works():
+    said = subprocess.run([sys.executable, "-c", WITHOUT_DASK], capture_output=True, text=True, check=True).stdout
+    assert "apt-get install python3-distributed" in said
+
+
+def test_files_of_parts_need_no_dask(tmp_path):
+    parts = importlib.import_module("viewgain._parts")
+    rows = np.zeros(4, parts.dtype_of({}))
+    rows["index"] = np.arange(3, 7)
+    parts.write_part(tmp_path / "part.npy", rows, "# head\n", 3)
+    begin, read = parts.read_part(tmp_path / "part.npy", "# head\n", rows.dtype)
+    assert begin == 3 and np.array_equal(read, rows)
+    assert os.listdir(tmp_path) == ["part.npy"]
+    with pytest.raises(ValueError, match="another job"):
+        parts.read_part(tmp_path / "part.npy", "# other\n", rows.dtype)
+    assert parts.gaps([(3, 7), (9, 10)], 12) == [(0, 3), (7, 9), (10, 12)]
+    assert parts.gaps([(0, 12)], 12) == []
+
+
+def test_best_are_those_of_a_sort():
+    parts = importlib.import_module("viewgain._parts")
+    random = np.random.default_rng(1)
+    rows = np.zeros(500, parts.dtype_of({}))
+    rows["index"], rows["gain"] = np.arange(500), random.integers(0, 40, 500)
+    rows["gain"][::17] = np.nan
+    order = sorted(range(500), key=lambda i: (np.isnan(rows["gain"][i]), -np.nan_to_num(rows["gain"][i]), i))
+    for top in (0, 1, 30, 480, 500, 900):
+        best = parts.Best(top, rows.dtype)
+        for piece in random.permutation(np.arange(10)):
+            best.add(rows[50 * piece:50 * piece + 50])
+        assert best.rows["index"].tolist() == order[:top]
+
+
+def test_poses_in_columns_are_matrices():
+    parts = importlib.import_module("viewgain._parts")
+    random = np.random.default_rng(2)
+    q = random.normal(size=(100, 4))
+    q /= np.linalg.norm(q, axis=1, keepdims=True)
+    rows = np.zeros(100, [(name, "<f8") for name in ("t", "tx", "ty", "tz", "qx", "qy", "qz", "qw")])
+    t = random.normal(size=(100, 3))
+    for i, name in enumerate(("tx", "ty", "tz")):
+        rows[name] = t[:, i]
+    for i, name in enumerate(("qx", "qy", "qz", "qw")):
+        rows[name] = q[:, i]
+    matrices = parts.matrices(rows)
+    x, y, z, w = q.T
+    for column, p in enumerate(np.eye(3)):  # p + 2 w (v x p) + 2 v x (v x p)
+        v = np.stack([x, y, z], axis=1)
+        turned = p + 2 * w[:, None] * np.cross(v, p) + 2 * np.cross(v, np.cross(v, p))
+        assert np.allclose(matrices[:, :3, column], turned, atol=1e-14)
+    assert np.array_equal(matrices[:, :3, 3], t) and np.array_equal(matrices[:, 3], np.tile([0, 0, 0, 1.0], (100, 1)))
+    with pytest.raises(ValueError, match="qw"):
+        parts.poses_of(np.zeros(3, [(name, "<f8") for name in ("tx", "ty", "tz", "qx", "qy", "qz")]))
+
+
+@pytest.fixture(scope="module")
+def client():
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None,
+                                  memory_limit=0) as cluster:
+        with distributed.Client(cluster) as made:
+            yield made
+
+
+def rows_of(found):
+    return np.concatenate([np.load(path) for path in found.parts])
+
+
+def check_rows(rows, evaluator, poses):
+    assert rows["index"].tolist() == list(range(len(poses)))  # all, none twice
+    gains = evaluator.evaluate_detailed(poses)
+    for name in rows.dtype.names[1:]:
+        assert rows[name].tobytes() == gains[name].tobytes(), name
+
+
+def test_scores_are_those_of_one_process(client, grid, sensor, tmp_path):
+    import viewgain.distributed
+
+    poses = np.concatenate([viewgain.sphere_poses(3000, 0.6), np.full((1, 4, 4), np.nan)])
+    np.save(tmp_path / "poses.npy", poses)
+    for number, settings in enumerate(({"pixel_stride": 4}, {"pixel_stride": 8, "gain": "combined"})):
+        seen = []
+        found = viewgain.distributed.score(
+            client, grid, tmp_path / "poses.npy", sensor, out=tmp_path / str(number), top=7, chunk_seconds=0.05, num_threads=1,
+            progress=lambda done, total: seen.append((done, total)), **settings)
+        evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, num_threads=1,
+                                            posterior_entropy=True, **settings)
+        assert found.isa == evaluator.scene.isa and found.poses == 3001 and found.resumed == 0
+        check_rows(rows_of(found), evaluator, poses)
+        assert found.best["index"].tolist() == evaluator.best(poses, 7).tolist()
+        assert seen == sorted(seen) and seen[-1] == (3001, 3001) and len(seen) == len(found.parts) > 2
+        # What is there is not done again; another job is refused.
+        again = viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / str(number), num_threads=1, **settings)
+        assert again.resumed == 3001 and again.parts == found.parts
+        found.parts[1].unlink()
+        again = viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / str(number), num_threads=1, **settings)
+        assert 0 < again.resumed < 3001
+        check_rows(rows_of(again), evaluator, poses)
+        with pytest.raises(ValueError, match="another job"):
+            viewgain.distributed.score(client, grid, poses[1:], sensor, out=tmp_path / str(number), **settings)
+    # Built once a process and setting.
+    counts = client.run(lambda: __import__("viewgain.distributed").distributed._built)
+    assert all(count <= 2 for count in counts.values()), counts
+
+
+def test_a_killed_worker_is_done_without(client, grid, sensor, tmp_path):
+    import viewgain.distributed
+
+    poses = viewgain.sphere_poses(20000, 0.6)
+    victim, when = next(iter(client.run(os.getpid).values())), []
+
+    def progress(done, total):
+        if not when and done > total // 3:
+            os.kill(victim, signal.SIGKILL)
+            when.append(done)
+
+    found = viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "out", chunk_seconds=0.1, num_threads=1,
+                                       progress=progress, pixel_stride=4)
+    assert when and found.poses == 20000
+    check_rows(rows_of(found), viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, pixel_stride=4,
+                                                       posterior_entropy=True), poses)
+    client.wait_for_workers(2)
+    assert victim not in client.run(os.getpid).values()
+
+
+def test_parts_are_those_of_the_program(client, grid, sensor, tmp_path):
+    import viewgain.distributed
+
+    program = os.environ.get("VIEWGAIN_PROGRAM")
+    if not program:
+        pytest.skip("the program is not built")
+    grid.save(tmp_path / "map.vdb")
+    np.save(tmp_path / "poses.npy", viewgain.sphere_poses(2500, 0.6))
+    found = viewgain.distributed.score(client, tmp_path / "map.vdb", tmp_path / "poses.npy", "sr4000", out=tmp_path / "out",
+                                       chunk_seconds=0.05, num_threads=1, pixel_stride=4, min_range=0.25)
+    run = lambda *words: subprocess.run([program, *map(str, words)], cwd=tmp_path, check=True, capture_output=True)
+    run("score", "map.vdb", "--poses", "poses.npy", "--sensor", "sr4000", "--stride", 4, "--min-range", 0.25, "--shard", "0/1",
+        "--out", "whole.npy")
+    run("merge", *found.parts, "--out", "merged.npy")
+    assert (tmp_path / "merged.npy").read_bytes() == (tmp_path / "whole.npy").read_bytes()
+    # Parts of both go together.
+    begin = len(np.load(found.parts[0]))
+    run("score", "map.vdb", "--poses", "poses.npy", "--sensor", "sr4000", "--stride", 4, "--min-range", 0.25, "--rows",
+        f"0:{begin}", "--out", "first.npy")
+    run("merge", "first.npy", *found.parts[1:], "--out", "mixed.npy")
+    assert (tmp_path / "mixed.npy").read_bytes() == (tmp_path / "whole.npy").read_bytes()
+
+
+def test_isa_is_pinned_and_wrong_calls_are_named(client, grid, sensor, poses, tmp_path):
+    import viewgain.distributed
+
+    if viewgain.distributed._best_isa() in ("avx2", "avx512"):
+        found = viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "low", isa="sse4", pixel_stride=4)
+        assert found.isa == "sse4" and b"\n# isa sse4\n" in found.parts[0].read_bytes()
+        with pytest.raises(ValueError, match="ISA"):  # the default is another
+            viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "low", pixel_stride=4)
+    if viewgain.distributed._best_isa() != "avx512":
+        with pytest.raises(RuntimeError, match="avx512"):
+            viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "none", isa="avx512")
+    with pytest.raises(ValueError, match="no ISA 'mmx'"):
+        viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "none", isa="mmx")
+    with pytest.raises(ValueError, match=r"\(4, 4\)"):
+        viewgain.distributed.score(client, grid, np.eye(4), sensor, out=tmp_path / "none")
+
+
+SPEC = """objects = ["cube.off"]
+policies = ["frontier", "random"]
+seeds = [1, 2]
+sensors = ["sr4000"]
+voxels = [0.02]
+sizes = [0.2]
+max_views = 1
+"""
+CUBE = ("OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+        "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n")
+
+
+def test_a_study_is_shared(client, tmp_path):
+    import viewgain.distributed
+
+    program = os.environ.get("VIEWGAIN_PROGRAM")
+    if not program:
+        pytest.skip("the program is not built")
+    (tmp_path / "spec.toml").write_text(SPEC)
+    (tmp_path / "cube.off").write_text(CUBE)
+    seen = []
+    results = viewgain.distributed.study(client, tmp_path / "spec.toml", tmp_path / "study", program=program, num_threads=1,
+                                         progress=seen.append)
+    subprocess.run([program, "study", "spec.toml", "--out", "alone", "--plots", "off"], cwd=tmp_path, check=True,
+                   capture_output=True)
+    assert seen[-1] == 4 and seen == sorted(seen)
+    for name in ("results.csv", "table.md"):
+        shared, alone = ((tmp_path / folder / name).read_text().splitlines() for folder in ("study", "alone"))
+        assert len(shared) == len(alone) > 4
+    assert results
+    with pytest.raises(RuntimeError, match="no.toml"):
+        viewgain.distributed.study(client, tmp_path / "no.toml", tmp_path / "none", program=program)
