@@ -161,7 +161,7 @@ def cost(binaries, folder, count=60_000):
     for stride, some in ((STRIDE, 8000), (1, 1500)):
         for threads in (1, 2):
             poses = viewgain.shell_poses(some, 0.45, 0.8, seed=2)
-            evaluator = viewgain.GainEvaluator(scene, sensor, pixel_stride=stride, num_threads=threads
+            evaluator = viewgain.GainEvaluator(scene, sensor, pixel_stride=stride, num_threads=threads)
             evaluator.evaluate(poses[:64])
             start = time.perf_counter()
             evaluator.evaluate(poses)
