@@ -23,11 +23,10 @@ class QuadScene {
       : device_(detail::shared_device(select_isa())), scene_(rtcNewScene(device_)) {
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
     rtcSetSceneFlags(scene_.get(), robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    const auto quads = exposed_quads(task.map, merged ? std::numeric_limits<int>::max() / 2 : 1);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::vector<Quad> quads = exposed_quads(
-          task.map, static_cast<int>(axis), merged ? std::numeric_limits<int>::max() / 2 : 1);
-      attach(static_cast<unsigned>(axis), quads);
-      for (const Quad& quad : quads) behind_[axis].push_back(voxels_behind(quad, axis));
+      attach(static_cast<unsigned>(axis), quads[axis]);
+      for (const Quad& quad : quads[axis]) behind_[axis].push_back(voxels_behind(quad, axis));
     }
     detail::commit_scene(device_, scene_.get(), "building the quads");
   }

@@ -80,11 +80,8 @@ struct NonFreeBox {
   }
 };
 
-}  // namespace
-
-std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis, int most) {
-  const NonFreeBox box(map);
-  const auto a = static_cast<std::size_t>(axis);
+std::vector<Quad> quads_across(const oracle::DenseMap& map, const NonFreeBox& box, std::size_t a,
+                               int most) {
   const std::size_t b = (a + 1) % 3;
   const std::size_t c = (a + 2) % 3;
   const auto is_free = [&](int along, int row, int column) {
@@ -123,6 +120,14 @@ std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis, int most)
     for (int plane = box.first[a]; plane <= box.last[a] + 1; ++plane) add_plane(plane, lower_side);
   }
   return quads;
+}
+
+}  // namespace
+
+std::array<std::vector<Quad>, 3> exposed_quads(const oracle::DenseMap& map, int most) {
+  const NonFreeBox box(map);
+  return {quads_across(map, box, 0, most), quads_across(map, box, 1, most),
+          quads_across(map, box, 2, most)};
 }
 
 }  // namespace viewgain::bench

@@ -15,10 +15,10 @@ struct Quad {
   bool is_lower_side = false;                   ///< of the voxels: they lie above it along the axis
 };
 
-/// The faces perpendicular to `axis` by which a ray can enter a non-free voxel from a free one or
-/// from the outside, those on the voxels' lower side before those on the upper; the faces of a
+/// The faces perpendicular to each axis by which a ray can enter a non-free voxel from a free one
+/// or from the outside, those on the voxels' lower side before those on the upper; the faces of a
 /// plane and a side are merged greedily, rows first, then equal rows, into rectangles of at most
 /// `most` voxels a side.
-[[nodiscard]] std::vector<Quad> exposed_quads(const oracle::DenseMap& map, int axis, int most);
+[[nodiscard]] std::array<std::vector<Quad>, 3> exposed_quads(const oracle::DenseMap& map, int most);
 
 }  // namespace viewgain::bench
