@@ -60,7 +60,8 @@ constexpr std::array kFileOptions{
     FileOption{"SPEC", Kind::input},        FileOption{"--truth", Kind::input},
     FileOption{"--points", Kind::output},   FileOption{"SOURCE", Kind::folder},
     FileOption{"--mask", Kind::folder},     FileOption{"--confidence", Kind::folder},
-    FileOption{"--distances", Kind::input}, FileOption{"PART", Kind::input}};
+    FileOption{"--distances", Kind::input}, FileOption{"PART", Kind::input},
+    FileOption{"--amplitude", Kind::folder}};
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 

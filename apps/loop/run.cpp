@@ -27,8 +27,7 @@ Run::Run(RunSetup setup, std::size_t frames_per_view, const ExecConfig& exec)
       decision_(model_, generation_, setup_.sensor, with_object(setup_.policy, setup_, truth_),
                 exec) {
   if (!setup_.registration) return;
-  registered_.emplace(model_, setup_.model.map, setup_.registration->sigma_translation,
-                      setup_.registration->sigma_rotation, exec);
+  registered_.emplace(model_, setup_.model.map, *setup_.registration, exec);
 }
 
 PlanningResult Run::go(const std::function<void(const ViewRecord&)>& observer) {

@@ -5,19 +5,15 @@
 #include <vector>
 
 #include "frame_map.hpp"
-#include "proposal/view_proposal.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/planner/register_frame.hpp"
 
 namespace viewgain::app {
 
-/// Aligns all frames of the folder with one another (FrameAlignment), for a map into which none has
+/// Aligns all frames of the folder with one another (MapAlignment), for a map into which none has
 /// gone yet. `sigmas`: by how much each reported pose may be off. One result a frame, in the
-/// folder's order, each as known in the end; those of refused frames as they came. Throws as
-/// FrameFolder::load() and FrameAlignment.
+/// folder's order, each as known in the end. Throws as FrameFolder::load() and MapAlignment.
 [[nodiscard]] std::vector<FrameRegistration> align_folder(const FrameMap& map,
-                                                          const FrameMapOptions& options,
-                                                          const ProposalOptions& proposal,
                                                           const PosePrior& sigmas, bool quiet,
                                                           const ExecConfig& exec);
 

@@ -45,13 +45,12 @@ Box seen_workspace(const FrameFolder& folder, const Sensor& sensor, const MapMod
               folder.name() + ": no frame has a reading" + scale_text(folder));
 }
 
-MapModel model_of(const FrameFolder& folder, const FrameMapOptions& options,
-                  const ProposalOptions& proposal, bool quiet, const ExecConfig& exec) {
+MapModelConfig config_of(const FrameFolder& folder, const FrameMapOptions& options,
+                         const ProposalOptions& proposal, const Sensor& sensor, bool quiet) {
   if (!options.voxel) {
     throw Error(ErrorCode::invalid_argument, "--voxel is needed with a folder of frames");
   }
   check_positive("--voxel", *options.voxel);
-  const Sensor sensor = with_body(folder.sensor(), proposal);
   MapModelConfig config;
   config.integration.support_plane = proposal.support_plane;
   config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter, false);
@@ -62,7 +61,7 @@ MapModel model_of(const FrameFolder& folder, const FrameMapOptions& options,
   config.grid.workspace = options.workspace.empty() ? seen_workspace(folder, sensor, config, quiet)
                                                     : parse_box("--workspace", options.workspace);
   config.hazard = hazard_source(proposal.hazard, proposal.object_size, BeliefGrid(config.grid));
-  return {sensor, config, exec};
+  return config;
 }
 
 }  // namespace
@@ -93,7 +92,9 @@ void refuse_frame_map_options(const CLI::App& app, std::string_view why) {
 
 FrameMap::FrameMap(const FrameMapOptions& options, const ProposalOptions& proposal, bool quiet,
                    const ExecConfig& exec)
-    : folder_(options.folder), model_(model_of(folder_, options, proposal, quiet, exec)) {}
+    : folder_(options.folder),
+      config_(config_of(folder_, options, proposal, with_body(folder_.sensor(), proposal), quiet)),
+      model_(with_body(folder_.sensor(), proposal), config_, exec) {}
 
 MapUpdate FrameMap::add(std::size_t index, const Pose& T_world_camera) {
   FrameFolder::MaskedFrame loaded = folder_.load(index);

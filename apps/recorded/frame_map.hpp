@@ -54,11 +54,13 @@ class FrameMap {
   void require_readings() const;
 
   [[nodiscard]] const FrameFolder& folder() const noexcept { return folder_; }
+  [[nodiscard]] const MapModelConfig& config() const noexcept { return config_; }
   [[nodiscard]] const MapModel& model() const noexcept { return model_; }
   [[nodiscard]] std::uint64_t masked_pixels() const noexcept { return masked_pixels_; }
 
  private:
   FrameFolder folder_;
+  MapModelConfig config_;
   MapModel model_;
   std::uint64_t masked_pixels_ = 0;
   std::uint64_t readings_ = 0, readings_used_ = 0;

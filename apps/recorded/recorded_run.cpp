@@ -119,8 +119,7 @@ class Recording {
     sigmas_ = registration_prior(options, {});
     if (sigmas_) {
       const Stopwatch watch;
-      views_.emplace(*map_,
-                     align_folder(*map_, frames, proposal_, *sigmas_, options.common.quiet, exec_));
+      views_.emplace(*map_, align_folder(*map_, *sigmas_, options.common.quiet, exec_));
       views_->add_seconds("register", watch.seconds());
     } else {
       views_.emplace(*map_);

@@ -28,6 +28,8 @@ struct Options {
   double max_time_gap = RecordingConfig{}.max_time_gap;
   std::string mask, confidence;
   int least_confidence = 1;
+  std::string amplitude;
+  double amplitude_scale = ImportConfig{}.amplitude_scale;
   std::string out;
 };
 
@@ -40,6 +42,10 @@ void check(const Options& options, const CLI::App& app, RecordingFormat format) 
     throw Error(ErrorCode::invalid_argument, what + " --format " + options.format);
   };
   check_at_least_0("--max-time-gap", options.max_time_gap);
+  check_positive("--amplitude-scale", options.amplitude_scale);
+  if (app.count("--amplitude-scale") > 0 && options.amplitude.empty()) {
+    throw Error(ErrorCode::invalid_argument, "--amplitude-scale goes with --amplitude");
+  }
   if (app.count("--max-time-gap") > 0 && format != RecordingFormat::tum) {
     refuse("--max-time-gap is not for");
   }
@@ -84,6 +90,7 @@ void print_summary(const Options& options, const Recording& recording, const Imp
                                 {"readings", report.readings},
                                 {"masks", report.masks},
                                 {"masked_pixels", report.masked_pixels},
+                                {"amplitudes", report.amplitudes},
                                 {"sensor", nullptr},
                                 {"out", options.out},
                                 {"seconds", seconds}};
@@ -106,6 +113,7 @@ void print_summary(const Options& options, const Recording& recording, const Imp
     std::printf("masks: of %zu frames, %s pixels taken away\n", report.masks,
                 with_commas(report.masked_pixels).c_str());
   }
+  if (!options.amplitude.empty()) std::printf("amplitudes: of %zu frames\n", report.amplitudes);
 }
 
 void import_frames(const Options& options, const CLI::App& app) {
@@ -117,6 +125,8 @@ void import_frames(const Options& options, const CLI::App& app) {
   config.masks = options.mask;
   config.confidences = options.confidence;
   config.least_confidence = static_cast<std::uint8_t>(options.least_confidence);
+  config.amplitudes = options.amplitude;
+  config.amplitude_scale = options.amplitude_scale;
   const Recording recording =
       open_recording(options.source, format, config_of(options, format, config.sensor));
   Progress progress("frame", options.common.quiet);
@@ -158,6 +168,14 @@ Command add_import(CLI::App& program) {
   app->add_option("--least-confidence", options->least_confidence, kLeastConfidenceHelp)
       ->capture_default_str()
       ->check(CLI::Range(1, 255, "confidence"));
+  app->add_option("--amplitude", options->amplitude,
+                  "folder of grayscale PNGs, up to 16 bits, with the names of the recording's "
+                  "images: how strong the light is that comes back, which tells a shot noise "
+                  "sensor how far a reading may be off");
+  app->add_option("--amplitude-scale", options->amplitude_scale,
+                  "of the images of --amplitude [1/m^2 per unit]: 1 is what a surface that faces "
+                  "the camera at 1 m gives")
+      ->capture_default_str();
   app->add_option(
          "--out", options->out,
          "folder to write; files that import has left in it are replaced, others are refused")

@@ -87,6 +87,7 @@ Sensor sensor_of(const vg_sensor* given) {
   result.max_range = sensor.max_range;
   result.working_distance = sensor.working_distance;
   result.noise = noise_of(sensor.noise_model, std::to_array(sensor.noise));
+  result.pose_sigma = {sensor.pose_sigma[0], sensor.pose_sigma[1]};
   return result;
 }
 
@@ -107,6 +108,8 @@ void write_sensor(const Sensor& sensor, vg_sensor* out) {
   const Noise noise = std::visit(Writer{}, sensor.noise);
   whole.noise_model = noise.model;
   std::copy(noise.p.begin(), noise.p.end(), whole.noise);
+  whole.pose_sigma[0] = sensor.pose_sigma.translation;
+  whole.pose_sigma[1] = sensor.pose_sigma.rotation;
   write_struct(out, whole);
 }
 

@@ -59,6 +59,11 @@ struct Sizes {
 };
 
 template <>
+struct Sizes<vg_sensor> {
+  static constexpr std::array known{offsetof(vg_sensor, pose_sigma), sizeof(vg_sensor)};
+};
+
+template <>
 struct Sizes<vg_feasibility_config> {
   static constexpr std::array known{offsetof(vg_feasibility_config, num_threads),
                                     sizeof(vg_feasibility_config)};

@@ -162,17 +162,22 @@ body_size : array_like, (3,), optional
 range_calibration : array_like, (n, 2), optional
     Rows of measured range and measured minus true range [m], measured ranges rising: the systematic
     error, as the program's ``calibrate`` measures it. ``read_frames`` takes it away.
+pose_sigma : array_like, (2,), optional
+    How far the poses that frames come with may be off, standard deviations about the camera's
+    centre: of its position in each axis [m], of each component of the rotation vector [rad]. Maps
+    and gains count it into each reading.
 
 Raises
 ------
 ValueError
     Names the field that is out of its bounds.)");
   pickle_as_call(type, {"camera", "min_range", "max_range", "working_distance", "noise", "name",
-                        "T_flange_camera", "body_size", "range_calibration"});
+                        "T_flange_camera", "body_size", "range_calibration", "pose_sigma"});
   type.def(py::init([](const PinholeCamera& camera, double min_range, double max_range,
                        double working_distance, const NoiseModel& noise, std::string name,
                        const py::object& T_flange_camera,
-                       std::optional<std::array<double, 3>> body_size, const py::object& table) {
+                       std::optional<std::array<double, 3>> body_size, const py::object& table,
+                       const std::array<double, 2>& pose_sigma) {
              Sensor sensor{std::move(name),
                            camera,
                            min_range,
@@ -181,14 +186,16 @@ ValueError
                            noise,
                            optional_pose(T_flange_camera, "T_flange_camera"),
                            body_size,
-                           range_calibration(table)};
+                           range_calibration(table),
+                           {pose_sigma[0], pose_sigma[1]}};
              sensor.validate();
              return sensor;
            }),
            py::arg("camera"), py::kw_only(), py::arg("min_range"), py::arg("max_range"),
            py::arg("working_distance"), py::arg("noise"), py::arg("name") = "custom",
            py::arg("T_flange_camera") = py::none(), py::arg("body_size") = py::none(),
-           py::arg("range_calibration") = py::none())
+           py::arg("range_calibration") = py::none(),
+           py::arg("pose_sigma") = std::array<double, 2>{0, 0})
       .def_readonly("name", &Sensor::name, "str")
       .def_property_readonly(
           "camera", [](const Sensor& sensor) { return sensor.camera; }, "PinholeCamera")
@@ -209,6 +216,12 @@ ValueError
           "range_calibration",
           [](const Sensor& sensor) { return to_object(sensor.range_calibration); },
           "ndarray, (n, 2), [m], or None")
+      .def_property_readonly(
+          "pose_sigma",
+          [](const Sensor& sensor) {
+            return py::make_tuple(sensor.pose_sigma.translation, sensor.pose_sigma.rotation);
+          },
+          "(float, float): of the poses of frames [m], [rad]; zeros where they are exact")
       .def(
           "corrected",
           [](const Sensor& sensor, const py::object& depth) {

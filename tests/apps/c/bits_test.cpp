@@ -47,6 +47,8 @@ vg_sensor sensor_of(const Sensor& sensor, const ConstantNoise& noise) {
   own.noise_model = VG_NOISE_CONSTANT;
   own.noise[0] = noise.sigma_axial;
   own.noise[1] = noise.sigma_lateral;
+  own.pose_sigma[0] = sensor.pose_sigma.translation;
+  own.pose_sigma[1] = sensor.pose_sigma.rotation;
   return own;
 }
 
@@ -77,6 +79,7 @@ TEST(CApi, GainsAreThoseOfCppToTheLastBit) {
     const ConstantNoise noise{.sigma_axial = 0.4 * map.grid.voxel_size(),
                               .sigma_lateral = 0.2 * map.grid.voxel_size()};
     sensor.noise = noise;
+    if (family == test::MapFamily::rotated) sensor.pose_sigma = {0.3 * map.grid.voxel_size(), 0.01};
     std::vector<Pose> poses = test::random_poses(map, 40, random);
     poses[3].m[1] = std::numeric_limits<double>::quiet_NaN();
     poses[11].m[0] += 5e-4;  // is mended

@@ -369,6 +369,57 @@ TEST_F(Recordings, RotationsThatAreOffAreMendedAndCounted) {
   EXPECT_EQ(import_json("icl-nuim")["orthonormalized_poses"], 1);
 }
 
+TEST_F(Recordings, AmplitudesComeWithTheFrames) {
+  write_scannet_recording();
+  GrayImage amplitude{kWidth, kHeight, std::vector<std::uint16_t>(kWidth * kHeight, 3)};
+  amplitude.pixels[7] = 40'000;
+  fs::create_directories(dir / "light");
+  write_png(dir / "light/1.png", amplitude);
+  json result = import_json("scannet", {"--amplitude", "light"});
+  EXPECT_EQ(result["amplitudes"], 1);
+  DepthFrame with = load_frame(open_frames(dir / "frames", small_sensor()), 1);
+  ASSERT_EQ(with.amplitude.size(), amplitude.pixels.size());
+  EXPECT_EQ(with.amplitude[6], 0.003F);
+  EXPECT_EQ(with.amplitude[7], 40.0F);
+  EXPECT_TRUE(load_frame(open_frames(dir / "frames", small_sensor()), 0).amplitude.empty());
+
+  // Rounded to the folder's own units, at most what 16 bits hold.
+  result = import_json("scannet", {"--amplitude", "light", "--amplitude-scale", "0.0025"});
+  with = load_frame(open_frames(dir / "frames", small_sensor()), 1);
+  EXPECT_EQ(with.amplitude[6], 0.008F);
+  EXPECT_EQ(with.amplitude[7], 65.535F);
+
+  // As the recording's images lie.
+  fs::remove_all(dir / "rec");
+  write_icl_recording();
+  (void)import_json("icl-nuim", {"--amplitude", "light"});
+  with = load_frame(open_frames(dir / "frames", small_sensor()), 1);
+  EXPECT_EQ(with.amplitude[7], 0.003F);
+  EXPECT_EQ(with.amplitude[(kHeight - 1) * kWidth + 7], 40.0F);
+
+  // An earlier import's amplitudes go when there are none any more.
+  EXPECT_EQ(import_json("icl-nuim")["amplitudes"], 0);
+  EXPECT_FALSE(fs::exists(dir / "frames/frame-000001.amplitude.png"));
+
+  fs::create_directories(dir / "wide");
+  write_png(dir / "wide/1.png",
+            GrayImage{kWidth + 1, kHeight, std::vector<std::uint16_t>((kWidth + 1) * kHeight)});
+  fs::create_directories(dir / "empty");
+  std::size_t cases = 0;
+  for (const auto& [more, word] : std::vector<std::pair<Strings, std::string>>{
+           {{"--amplitude", "wide"}, "wide/1.png"},
+           {{"--amplitude", "empty"}, "empty"},
+           {{"--amplitude", "none"}, "none"},
+           {{"--amplitude", "light", "--amplitude-scale", "0"}, "--amplitude-scale"},
+           {{"--amplitude-scale", "1"}, "goes with --amplitude"}}) {
+    const test::ProgramResult refused = run(call("icl-nuim", more));
+    EXPECT_EQ(refused.exit_code, 2) << word;
+    EXPECT_NE(refused.err.find(word), std::string::npos) << refused.err;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5U);
+}
+
 TEST_F(Recordings, MasksTakePixelsAway) {
   write_scannet_recording();
   Gray8Image mask{kWidth, kHeight, std::vector<std::uint8_t>(kWidth * kHeight)};

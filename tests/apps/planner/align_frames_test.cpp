@@ -39,6 +39,12 @@ FrameAlignment alignment(const test::RegistrationScene& scene, int threads = 1) 
   return FrameAlignment(scene.sensor, scene.grid, {}, {threads});
 }
 
+std::vector<Pose> poses_of(const FrameAlignment& frames) {
+  std::vector<Pose> poses;
+  for (const FrameRegistration& one : frames.registrations()) poses.push_back(one.T_world_camera);
+  return poses;
+}
+
 TEST(AlignFrames, ARingClosesOnTheTruth) {
   for (const bool noise : {false, true}) {
     const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), noise, {});
@@ -50,8 +56,8 @@ TEST(AlignFrames, ARingClosesOnTheTruth) {
       ASSERT_EQ(result.status, RegistrationStatus::registered) << i << " " << result.reason;
       EXPECT_TRUE(result.reason.empty());
     }
-    const std::vector<Pose> poses = frames.poses();
-    const std::vector<FrameRegistration> registrations = frames.registrations();
+    const std::vector<Pose> poses = poses_of(frames);
+    const std::vector<FrameRegistration>& registrations = frames.registrations();
     ASSERT_EQ(poses.size(), truth.size());
     ASSERT_EQ(registrations.size(), truth.size());
     EXPECT_EQ(poses[0], orthonormalized(truth[0]));
@@ -90,42 +96,77 @@ TEST(AlignFrames, WhatSlidesStaysAsReported) {
   EXPECT_EQ(cases, 3);
 }
 
-// Most are found out. Where the others say nothing of what such a frame shows, it stays as reported
-// and moves nothing.
-TEST(AlignFrames, FarOffIsNeverTakenForGood) {
+// What is not in reach of the prior moves nothing and is kept out, unless it lies where it might be
+// new surface.
+TEST(AlignFrames, FarOffIsRefused) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
   FrameAlignment frames = alignment(scene);
   const std::vector<Pose> truth = ring(8);
   for (std::size_t i = 0; i < 4; ++i) {
     (void)frames.add(scene.see(truth[i], i), {reported(truth[i], i), kShift, kTurn});
   }
-  const std::vector<Pose> before = frames.poses();
-  int cases = 0, refused = 0;
-  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+  const std::vector<Pose> before = poses_of(frames);
+  std::size_t cases = 0, refused = 0;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
     for (const Pose& pose : {test::disturbed(truth[1], 0.1, 0, seed),
                              test::disturbed(truth[1], 0, 30 * kDegree, seed)}) {
-      FrameAlignment own = alignment(scene);
-      for (std::size_t i = 0; i < 4; ++i) {
-        (void)own.add(scene.see(truth[i], i), {reported(truth[i], i), kShift, kTurn});
-      }
       const FrameRegistration result =
-          own.add(scene.see(truth[1], 100 + seed), {pose, kShift, kTurn});
+          frames.add(scene.see(truth[1], 100 + seed), {pose, kShift, kTurn});
       EXPECT_NE(result.status, RegistrationStatus::registered) << seed;
+      refused += result.status == RegistrationStatus::refused ? 1 : 0;
       EXPECT_FALSE(result.reason.empty());
       EXPECT_EQ(result.T_world_camera, orthonormalized(pose));
-      std::vector<Pose> after = own.poses();
-      if (result.status == RegistrationStatus::refused) {
-        ++refused;
-      } else {
-        ASSERT_EQ(after.size(), 5U);
-        after.pop_back();
-      }
+      std::vector<Pose> after = poses_of(frames);
+      ASSERT_EQ(after.size(), 5 + cases);
+      after.resize(4);
       EXPECT_EQ(after, before);
       ++cases;
     }
   }
-  EXPECT_EQ(cases, 6);
-  EXPECT_GE(refused, 3);
+  EXPECT_EQ(cases, 8U);
+  EXPECT_GE(refused, 7U);
+}
+
+// Frames that come before those that tell that they are wrong are found out when these come.
+TEST(AlignFrames, WhoIsWrongIsToldByThoseThatAgree) {
+  const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
+  const std::vector<Pose> truth = ring(8);
+  int cases = 0;
+  for (const Pose& wrong :
+       {test::disturbed(truth[4], 0.1, 0, 5), test::disturbed(truth[4], 0, 30 * kDegree, 6)}) {
+    FrameAlignment frames = alignment(scene);
+    // Far from the first, so that the first says nothing of it.
+    (void)frames.add(scene.see(truth[0], 0), {truth[0], kShift, kTurn});
+    (void)frames.add(scene.see(truth[4], 4), {wrong, kShift, kTurn});
+    for (const std::size_t i : {1U, 2U, 3U, 5U, 6U, 7U}) {
+      (void)frames.add(scene.see(truth[i], i), {reported(truth[i], i), kShift, kTurn});
+    }
+    EXPECT_EQ(frames.registrations()[1].status, RegistrationStatus::refused);
+    EXPECT_EQ(frames.registrations()[1].T_world_camera, orthonormalized(wrong));
+    for (std::size_t i = 2; i < 8; ++i) {
+      EXPECT_EQ(frames.registrations()[i].status, RegistrationStatus::registered)
+          << i << " " << frames.registrations()[i].reason;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 12);
+}
+
+// Poses that are better than their sigmas say are not made worse.
+TEST(AlignFrames, ExactPosesStay) {
+  const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
+  FrameAlignment frames = alignment(scene);
+  const std::vector<Pose> truth = ring(8);
+  int cases = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    (void)frames.add(scene.see(truth[i], i), {truth[i], kShift, kTurn});
+  }
+  for (std::size_t i = 0; i < truth.size(); ++i, ++cases) {
+    const Pose& pose = frames.registrations()[i].T_world_camera;
+    EXPECT_LT(test::error_of(pose, truth[i]).translation, 0.3e-3) << i;
+    EXPECT_LT(test::error_of(pose, truth[i]).rotation, 0.03 * kDegree) << i;
+  }
+  EXPECT_EQ(cases, 8);
 }
 
 TEST(AlignFrames, WithoutOverlapAPoseWaitsForWhatShowsMore) {
@@ -160,9 +201,9 @@ TEST(AlignFrames, TheSameBitsForAnyNumberOfThreads) {
     const PosePrior prior{reported(truth[i], i), kShift, kTurn};
     (void)one.add(scene.see(truth[i], i), prior);
     (void)three.add(scene.see(truth[i], i), prior);
-    EXPECT_EQ(one.poses(), three.poses()) << i;
+    EXPECT_EQ(poses_of(one), poses_of(three)) << i;
   }
-  EXPECT_EQ(one.poses().size(), 4U);
+  EXPECT_EQ(one.registrations().size(), 4U);
 }
 
 TEST(AlignFrames, BadInputIsRefusedByNameAndChangesNothing) {
@@ -181,7 +222,7 @@ TEST(AlignFrames, BadInputIsRefusedByNameAndChangesNothing) {
   DepthFrame small = frame;
   small.width -= 1;
   test::expect_error(code, "", [&] { (void)frames.add(small, {pose, kShift, kTurn}); });
-  EXPECT_TRUE(frames.poses().empty());
+  EXPECT_TRUE(frames.registrations().empty());
   RegistrationConfig config;
   config.min_overlap = -1;
   test::expect_error(code, "min_overlap",

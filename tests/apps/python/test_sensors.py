@@ -103,6 +103,28 @@ def test_the_table_of_a_range_error(protocol):
         sensor.corrected(depth.T)
 
 
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_poses_that_may_be_off(protocol, tmp_path):
+    settings = {"min_range": 0.2, "max_range": 5.0, "working_distance": 0.5,
+                "noise": viewgain.ConstantNoise(sigma_axial=0.003, sigma_lateral=0.004)}
+    camera = viewgain.PinholeCamera(7, 5, fx=4.0, fy=5.0, cx=2.5, cy=2.25)
+    exact = viewgain.Sensor(camera, **settings)
+    assert exact.pose_sigma == (0, 0)
+    sensor = viewgain.Sensor(camera, **settings, pose_sigma=[0.004, 0.01])
+    assert sensor != exact
+    # C + s_t^2 I + s_r^2 t^2 (I - d d^T)
+    axial, lateral = sensor.sigmas(0.5)
+    assert axial == pytest.approx(np.hypot(0.003, 0.004))
+    assert lateral == pytest.approx(np.sqrt(0.004**2 + 0.004**2 + 0.005**2))
+    sensor.save(tmp_path / "sensor.toml")
+    for again in (pickle.loads(pickle.dumps(sensor, protocol)), viewgain.Sensor.load(tmp_path / "sensor.toml")):
+        assert again.pose_sigma == sensor.pose_sigma == (0.004, 0.01)
+        assert again.sigmas(0.5) == sensor.sigmas(0.5)
+    for wrong in ([-1e-3, 0], [0, np.inf]):
+        with pytest.raises(ValueError, match="pose_sigma"):
+            viewgain.Sensor(camera, **settings, pose_sigma=wrong)
+
+
 def test_projection_undoes_rays():
     camera = viewgain.PinholeCamera(
         64, 48, fx=60.0, fy=62.0, cx=30.0, cy=24.0, distortion=[0.1, -0.05, 1e-3, -1e-3, 0.01])

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <system_error>
 #include <utility>
 
+#include "folders.hpp"
 #include "nearest_name.hpp"
 #include "recordings/parts.hpp"
 #include "viewgain/core/error.hpp"
@@ -70,6 +72,20 @@ void reverse_rows(Image& image) {
     std::swap_ranges(image.pixels.begin() + v * columns, image.pixels.begin() + (v + 1) * columns,
                      image.pixels.begin() + w * columns);
   }
+}
+
+// The amplitude image that belongs to a depth image, in units of kAmplitudeUnit.
+std::optional<GrayImage> amplitude_of(const RecordedFrame& frame, const Recording& recording,
+                                      const ImportConfig& config) {
+  const fs::path file = config.amplitudes / frame.image.filename();
+  if (config.amplitudes.empty() || !is_there(file)) return std::nullopt;
+  GrayImage image = read_gray_png(file, recording.camera.width, recording.camera.height);
+  for (std::uint16_t& value : image.pixels) {
+    const double units = std::round(value * (config.amplitude_scale / kAmplitudeUnit));
+    value = static_cast<std::uint16_t>(std::min(units, 65535.0));
+  }
+  if (recording.rows_reversed) reverse_rows(image);
+  return image;
 }
 
 // Row v becomes row height - 1 - v. The rays in the camera's frame, and so the poses, stay.
@@ -147,6 +163,12 @@ ImportReport import_recording(const Recording& recording, const fs::path& out,
   std::vector<fs::path> images;
   for (const RecordedFrame& frame : recording.frames) images.push_back(frame.image);
   for (const MaskFolder& folder : folders) folder.require_mask_of_any(images);
+  if (!config.amplitudes.empty()) MaskFolder(config.amplitudes).require_mask_of_any(images);
+  if (!(config.amplitude_scale > 0) || !std::isfinite(config.amplitude_scale)) {
+    throw Error(ErrorCode::invalid_argument, "the scale of amplitudes " +
+                                                 short_text(config.amplitude_scale) +
+                                                 " must be positive and finite");
+  }
   RecordedFramesWriter writer(out);
   ImportReport report;
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
@@ -163,7 +185,9 @@ ImportReport import_recording(const Recording& recording, const fs::path& out,
     report.masks += is_masked ? 1 : 0;
     report.readings += static_cast<std::uint64_t>(
         std::count_if(depth.pixels.begin(), depth.pixels.end(), [](auto z) { return z != 0; }));
-    writer.write_frame(frame.number, depth, frame.T_world_camera);
+    const std::optional<GrayImage> amplitude = amplitude_of(frame, recording, config);
+    report.amplitudes += amplitude ? 1 : 0;
+    writer.write_frame(frame.number, depth, frame.T_world_camera, amplitude);
     if (config.progress) config.progress(i + 1, recording.frames.size());
   }
   writer.commit(recording.camera, recording.depth_scale, config.sensor);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -94,26 +95,54 @@ Vector6 sigmas_of(const PosePrior& prior) {
   return sigmas;
 }
 
-void judge(FrameRegistration& result, std::size_t against, const RegistrationConfig& config,
-           const Vector6& sigmas, const char* what) {
-  if (against + result.pairs > 0) {
-    result.contradiction =
-        static_cast<double>(against) / static_cast<double>(against + result.pairs);
+double likeliest_scale(const Eigen::MatrixXd& information, const Eigen::VectorXd& gradient,
+                       const Eigen::VectorXd& away) {
+  constexpr double kHonesty = 2;
+  constexpr double kLeast = 1e-4, kStep = 0.9;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(information);
+  const Eigen::VectorXd along = axes.eigenvectors().transpose() * away;
+  const Eigen::VectorXd slope = axes.eigenvectors().transpose() * gradient;
+  double best = 0, best_scale = 1;
+  for (double scale = 1; scale > kLeast; scale *= kStep) {
+    double score = 0;
+    for (Eigen::Index k = 0; k < along.size(); ++k) {
+      const double held = axes.eigenvalues()[k];
+      if (!(held >= 1)) continue;
+      const double x = along[k] - slope[k] / held;
+      const double variance = scale + kHonesty / held;
+      score -= std::log(variance) + x * x / variance;
+    }
+    if (scale == 1 || score > best) best = score, best_scale = scale;
   }
+  return best_scale;
+}
+
+// Few readings may by chance all be wrong.
+bool contradicts(const Agreement& agreement, std::size_t readings,
+                 const RegistrationConfig& config) {
+  return agreement.contradiction() > config.max_contradiction &&
+         agreement.against > config.min_pairs &&
+         static_cast<double>(agreement.against) >
+             config.min_overlap * static_cast<double>(readings);
+}
+
+void judge(FrameRegistration& result, const Agreement& readings, const Agreement& surface,
+           const RegistrationConfig& config, const Vector6& sigmas, const char* what) {
+  result.contradiction = std::max(readings.contradiction(), surface.contradiction());
   const double far = config.max_sigmas;
-  // Few readings may by chance all be wrong.
-  const bool contradicted =
-      result.contradiction > config.max_contradiction && against > config.min_pairs &&
-      static_cast<double>(against) > config.min_overlap * static_cast<double>(result.readings);
   if (result.translation > far * sigmas[0] || result.rotation > far * sigmas[3]) {
     result.status = RegistrationStatus::refused;
     result.reason = "the correction, " + rounded(1e3 * result.translation) + " mm and " +
                     rounded(result.rotation * 180 / std::numbers::pi) + " deg, is beyond " +
                     rounded(far) + " sigma of the reported pose";
-  } else if (contradicted) {
+  } else if (contradicts(readings, result.readings, config)) {
     result.status = RegistrationStatus::refused;
-    result.reason = rounded(100 * result.contradiction) + " % of the readings lie where " + what +
-                    " says free, or behind its surface";
+    result.reason = rounded(100 * readings.contradiction()) + " % of the readings lie where " +
+                    what + " says free, or behind its surface";
+  } else if (contradicts(surface, result.readings, config)) {
+    result.status = RegistrationStatus::refused;
+    result.reason = "the frame looks past " + rounded(100 * surface.contradiction()) +
+                    " % of the surface that " + what + " has there";
   } else if (result.overlap < config.min_overlap || result.pairs < config.min_pairs) {
     result.status = RegistrationStatus::too_little_overlap;
     result.reason = std::to_string(result.pairs) + " of " + std::to_string(result.readings) +

@@ -28,6 +28,15 @@ struct Directions {
 /// The columns along which the data say more than the prior; 6 columns, the others are 0.
 [[nodiscard]] Matrix6 held_axes(const Directions& directions);
 
+/// By how much the variance of what was reported differs from the prior's, at most 1 and at least
+/// 1e-4: the share s under which the motions that the data ask for are the likeliest, which
+/// maximises Σ log N(x; 0, s + v) over the axes of the information (empirical Bayes, Efron and
+/// Morris 1973). x is the motion along an axis, did the prior not hold it, v twice the variance
+/// that the information gives it. All in the prior's sigmas: information and gradient of the data
+/// where the poses are now, and how far these are from what was reported.
+[[nodiscard]] double likeliest_scale(const Eigen::MatrixXd& information,
+                                     const Eigen::VectorXd& gradient, const Eigen::VectorXd& away);
+
 /// Throws Error(invalid_argument), naming the value, unless all of it is in its range.
 void check(const RegistrationConfig& config);
 /// The same for the sigmas, and for a pose that is not rigid (1e-3).
@@ -36,9 +45,23 @@ void check(const PosePrior& prior);
 /// Prior's sigmas of the six parts of a difference.
 [[nodiscard]] Vector6 sigmas_of(const PosePrior& prior);
 
-/// Sets status and reason by the figures of the result. `what` is what the readings were held
-/// against, `against` how many of them contradict it, of which the contradiction follows.
-void judge(FrameRegistration& result, std::size_t against, const RegistrationConfig& config,
-           const Vector6& sigmas, const char* what);
+/// Of readings: how many show what the other side has, how many contradict it.
+struct Agreement {
+  std::size_t with = 0;
+  std::size_t against = 0;
+  [[nodiscard]] double contradiction() const {
+    const std::size_t all = with + against;
+    return all == 0 ? 0 : static_cast<double>(against) / static_cast<double>(all);
+  }
+};
+
+/// Do so many go against a frame of `readings` that it is no chance?
+[[nodiscard]] bool contradicts(const Agreement& agreement, std::size_t readings,
+                               const RegistrationConfig& config);
+
+/// Sets contradiction, status and reason by the figures of the result. `readings` are the frame's,
+/// held against `what`; `surface` are those of `what`, held against the frame.
+void judge(FrameRegistration& result, const Agreement& readings, const Agreement& surface,
+           const RegistrationConfig& config, const Vector6& sigmas, const char* what);
 
 }  // namespace viewgain::detail

@@ -211,7 +211,7 @@ FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
   const Vector6 correction = difference(T, T_reported);
   result.translation = correction.head<3>().norm();
   result.rotation = correction.tail<3>().norm();
-  judge(result, against, config, sigmas, "the map");
+  judge(result, {result.pairs, against}, {}, config, sigmas, "the map");
   if (result.status == RegistrationStatus::registered) {
     result.T_world_camera = T;
     put(covariance_of(sums, pairs.sums_by_cube(T), held, sigmas), result.covariance);

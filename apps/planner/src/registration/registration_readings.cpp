@@ -137,9 +137,9 @@ std::vector<Reading> readings_of(const DepthFrame& frame, const Sensor& sensor,
   });
   std::size_t count = 0;
   for (const std::size_t n : of_row) count += n;
-  const int stride = std::max(
-      1, static_cast<int>(
-             std::ceil(std::sqrt(static_cast<double>(count) / static_cast<double>(max_readings)))));
+  const int stride =
+      std::max(1, static_cast<int>(std::lround(
+                      std::sqrt(static_cast<double>(count) / static_cast<double>(max_readings)))));
   const std::size_t lattice_rows =
       (height + static_cast<std::size_t>(stride) - 1) / static_cast<std::size_t>(stride);
   std::vector<std::vector<Reading>> rows(lattice_rows);

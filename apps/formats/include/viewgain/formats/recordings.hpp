@@ -93,6 +93,10 @@ struct VIEWGAIN_EXPORT ImportConfig {
   /// Folder of confidences likewise.
   std::filesystem::path confidences{};
   std::uint8_t least_confidence = 1;  ///< that counts
+  /// Folder of amplitude images by the names of the recording's images, grayscale PNGs of up to 16
+  /// bits, empty: none. They tell how readings scatter, see ShotNoise.
+  std::filesystem::path amplitudes{};
+  double amplitude_scale = 1e-3;  ///< [m⁻²] per unit
   /// Called with the count of frames done and of all.
   std::function<void(std::size_t, std::size_t)> progress{};
 };
@@ -102,11 +106,13 @@ struct VIEWGAIN_EXPORT ImportReport {
   std::uint64_t readings = 0;       ///< pixels with a depth that were written
   std::uint64_t masked_pixels = 0;  ///< with a depth, taken away by masks or confidences
   std::size_t masks = 0;            ///< frames that have one or the other
+  std::size_t amplitudes = 0;       ///< frames that have an amplitude image
 };
 
 /// Writes a recording's frames into a folder that open_frames() reads (RecordedFramesWriter), which
-/// appears whole or not at all. Throws as load_depth(), MaskFolder and RecordedFramesWriter do,
-/// also for masks none of which is of a frame.
+/// appears whole or not at all. Throws as load_depth(), read_gray_png(), MaskFolder and
+/// RecordedFramesWriter do, also for masks or amplitudes none of which is of a frame, and
+/// Error(invalid_argument) for a scale of amplitudes that is not positive and finite.
 VIEWGAIN_EXPORT ImportReport import_recording(const Recording& recording,
                                               const std::filesystem::path& out,
                                               const ImportConfig& config = {});

@@ -18,19 +18,28 @@ namespace viewgain {
 
 /// Frames of one scene whose reported poses are a little off, aligned with one another: each new
 /// frame is aligned with those so far, then all move together, so that what the first ones could
-/// not know is mended by later ones. The first frame's pose holds.
+/// not know is mended by later ones, and those that were in doubt are tried again. The first
+/// frame's pose holds.
 ///
 /// Minimises, over the poses T_i of all frames but the first, Σ_ij Σ_k w ρ(e) / c + Σ_i |T_i ⊖
-/// T_i,reported|² / σ², e = nᵀ(T_i s - T_j m) the distance of reading s of frame i from the reading
-/// m of frame j whose pixel it falls on, along m's normal n. Readings are smoothed, by the planes
-/// through the 5x5 pixels round them: single ones, with five times the noise, push frames apart, 12
-/// views of the camel by 7 mm from where they were. Weights, ρ and gates as of FrameRegistrar; c =
-/// 3, since readings are used in several pairs. A motion of a frame that the others do not hold
-/// stays as reported.
+/// T_i,reported|² / (s σ²), e = nᵀ(T_i s - T_j m) the distance of reading s of frame i from the
+/// reading m of frame j whose pixel it falls on, along m's normal n. Readings are smoothed, by the
+/// planes through the 5x5 pixels round them: single ones, with five times the noise, push frames
+/// apart, 12 views of the camel by 7 mm from where they were. Weights, ρ and gates as of
+/// FrameRegistrar; c = 3, since readings are used in several pairs. A motion of a frame that the
+/// others do not hold stays as reported.
+///
+/// s, at most 1, is one for all frames and the likeliest given by how much they ask to be moved
+/// (empirical Bayes): poses that are better than their sigmas say stay where they are, so that
+/// exact ones are not made worse by the noise of readings.
+///
+/// A frame is refused that lies where others see nothing, or sees nothing where others have their
+/// surface, others being those that fit the first frame, or one another in a chain that begins with
+/// it: as the frame fits best, or where these say too little of it, give or take a sigma. Where the
+/// reported pose leads to a fit that is refused, twelve others within 1.5 sigmas are tried.
 ///
 /// Nothing may run beside add(). Deterministic: the same bits for any number of threads. Keeps some
-/// 100 bytes a reading. The time grows with the square of the number of frames: 12 of an SR4000
-/// take about a second in all, 20 of 640x480 pixels some 25 seconds.
+/// 100 bytes a reading. The time grows with the square of the number of frames.
 class VIEWGAIN_EXPORT FrameAlignment {
  public:
   /// Readings outside of the workspace of `layout`, whose beliefs do not count, are left out.
@@ -42,17 +51,17 @@ class VIEWGAIN_EXPORT FrameAlignment {
   FrameAlignment(FrameAlignment&&) noexcept;
   FrameAlignment& operator=(FrameAlignment&&) noexcept;
 
-  /// Flying pixels should be filtered from the frame. One that is refused is forgotten and moves
-  /// nothing; one with too little overlap stays as reported, until others show what it shows. Of
-  /// FrameRegistration, `contradiction` is of the readings that another frame looks past, and the
+  /// Flying pixels should be filtered from the frame. What became of it, until the next call; one
+  /// that is refused moves nothing, one with too little overlap stays as reported, until others
+  /// show what it shows. Of FrameRegistration, `contradiction` is the larger share of the frame's
+  /// readings that others look past and of the others' readings that it looks past, and the
   /// covariance is the prior's. Throws Error(invalid_argument) as FrameRegistrar; nothing has
   /// changed then.
-  FrameRegistration add(const DepthFrame& frame, const PosePrior& prior);
+  const FrameRegistration& add(const DepthFrame& frame, const PosePrior& prior);
 
-  /// T_world_camera of the frames that were not refused, in their order, as known now.
-  [[nodiscard]] std::vector<Pose> poses() const;
-  /// What became of them; the first, which defines the frame, counts as registered.
-  [[nodiscard]] std::vector<FrameRegistration> registrations() const;
+  /// What has become of all frames, in their order, as known now; the first, which defines the
+  /// frame, counts as registered. Until the next add().
+  [[nodiscard]] const std::vector<FrameRegistration>& registrations() const;
 
  private:
   struct Impl;

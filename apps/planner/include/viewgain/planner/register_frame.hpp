@@ -39,7 +39,7 @@ struct VIEWGAIN_EXPORT RegistrationConfig {
   std::size_t min_pairs = 60;         ///< likewise of FrameRegistration::pairs
   /// Of the prior, in translation or in rotation: a longer correction is refused.
   double max_sigmas = 5;
-  /// A larger share FrameRegistration::contradiction is refused.
+  /// A larger share FrameRegistration::contradiction is refused, unless it is of few readings.
   double max_contradiction = 0.2;
   std::optional<double> support_plane{};  ///< height z [m]: readings of it are no part of the map
 };

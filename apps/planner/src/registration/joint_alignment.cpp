@@ -1,0 +1,213 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "registration/joint_alignment.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <utility>
+
+#include "registration/pose_motion.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+constexpr double kAlongSurface = 2;  // lengths
+// Readings are used in several pairs.
+constexpr double kRedundancy = 3;
+constexpr double kSettled = 0.3;  // slack of frames that were aligned before, in sigmas
+constexpr double kSearch = 1.5;   // where the search begins, in sigmas from the reported pose
+constexpr int kMaxIterations = 15;
+constexpr std::size_t kLeastPairs = 20;  // of two frames
+
+// What a motion of the source does, as one of the target: e falls with the motion A of that.
+Matrix6 carried(const Pose& T_world_source, const Pose& T_world_target) {
+  const Eigen::Vector3d d = T_world_source.translation() - T_world_target.translation();
+  Matrix6 A = Matrix6::Identity();
+  A.bottomLeftCorner<3, 3>() << 0, -d.z(), d.y(), d.z(), 0, -d.x(), -d.y(), d.x(), 0;
+  return A;
+}
+
+}  // namespace
+
+// In sigmas of the priors, along what the others hold of each frame.
+struct JointAlignment::System {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+  Eigen::VectorXd away;  // from what was reported
+};
+
+JointAlignment::JointAlignment(double length, double max_normal_angle, ThreadPool& pool)
+    : length_(length), min_cosine_(std::cos(max_normal_angle)), pool_(pool) {}
+
+PairGates JointAlignment::gates_of(const JointFrame& frame) const {
+  return {frame.slack * frame.sigmas[0], frame.slack * frame.sigmas[3], kAlongSurface * length_,
+          min_cosine_};
+}
+
+Matrix6 JointAlignment::of_single_pairs(const Matrix6& agreed) { return agreed / kRedundancy; }
+
+JointAlignment::System JointAlignment::system(const Pass& pass) const {
+  std::vector<Eigen::Index> column(frames.size(), -1);
+  for (std::size_t k = 0; k < pass.movable.size(); ++k) {
+    column[pass.movable[k]] = static_cast<Eigen::Index>(6 * k);
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  const auto takes_part = [&](std::size_t i) {
+    return column[i] >= 0 || (pass.trusted_only ? frames[i].is_trusted : frames[i].is_in);
+  };
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    for (std::size_t j = 0; j < frames.size(); ++j) {
+      if (i == j || (column[i] < 0 && column[j] < 0)) continue;
+      if (takes_part(i) && takes_part(j)) pairs.emplace_back(i, j);
+    }
+  }
+  std::vector<PairSums> sums(pairs.size());
+  pool_.for_each_chunk(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const JointFrame& source = frames[pairs[k].first];
+      const JointFrame& target = frames[pairs[k].second];
+      sums[k] = pair_sums(source.seen, source.T, gates_of(source), target.seen, target.T,
+                          gates_of(target), pass.level);
+    }
+  });
+  const auto n = static_cast<Eigen::Index>(6 * pass.movable.size());
+  System s{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  std::vector<Matrix6> agreed(frames.size(), Matrix6::Zero());
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const PairSums& sum = sums[k];
+    if (sum.pairs < kLeastPairs) continue;
+    const auto [i, j] = pairs[k];
+    const Matrix6 A = carried(frames[i].T, frames[j].T);
+    const Eigen::Index a = column[i], b = column[j];
+    if (a >= 0) {
+      s.information.block<6, 6>(a, a) += sum.information;
+      s.gradient.segment<6>(a) += sum.gradient;
+    }
+    if (b >= 0) {
+      s.information.block<6, 6>(b, b) += A * sum.information * A.transpose();
+      s.gradient.segment<6>(b) -= A * sum.gradient;
+    }
+    if (a >= 0 && b >= 0) {
+      s.information.block<6, 6>(a, b) -= sum.information * A.transpose();
+      s.information.block<6, 6>(b, a) -= A * sum.information;
+    }
+    agreed[i] += sum.agreed;
+    agreed[j] += A * sum.agreed * A.transpose();
+  }
+  Eigen::MatrixXd onto = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t k = 0; k < pass.movable.size(); ++k) {
+    const JointFrame& frame = frames[pass.movable[k]];
+    const auto a = static_cast<Eigen::Index>(6 * k);
+    const Matrix6 held =
+        held_axes(directions_of(of_single_pairs(agreed[pass.movable[k]]), frame.sigmas));
+    onto.block<6, 6>(a, a) = frame.sigmas.asDiagonal() * held * held.transpose();
+    s.away.segment<6>(a) = difference(frame.T, frame.T_reported).cwiseQuotient(frame.sigmas);
+  }
+  s.information = (onto.transpose() * s.information * onto / kRedundancy).eval();
+  s.gradient = (onto.transpose() * s.gradient / kRedundancy).eval();
+  return s;
+}
+
+// One step of Gauss and Newton; false if it was short.
+bool JointAlignment::move(const Pass& pass) {
+  const System s = system(pass);
+  const Eigen::Index n = s.gradient.size();
+  const Eigen::MatrixXd whole = s.information + Eigen::MatrixXd::Identity(n, n) / scale_;
+  const Eigen::VectorXd step = whole.llt().solve(-(s.gradient + s.away / scale_));
+  for (std::size_t k = 0; k < pass.movable.size(); ++k) {
+    JointFrame& frame = frames[pass.movable[k]];
+    const Vector6 own = step.segment<6>(static_cast<Eigen::Index>(6 * k));
+    frame.T = moved(frame.T, own.cwiseProduct(frame.sigmas));
+    ++frame.iterations;
+  }
+  return std::sqrt(step.dot(whole * step)) >= pass.still;
+}
+
+void JointAlignment::align(const Pass& pass) {
+  for (int i = 0; i < kMaxIterations && move(pass); ++i) {
+  }
+}
+
+double JointAlignment::estimated_scale(const Pass& pass) const {
+  const System s = system(pass);
+  return likeliest_scale(s.information, s.gradient, s.away);
+}
+
+void JointAlignment::begin_one(const Pass& pass) {
+  JointFrame& frame = frames[pass.movable.front()];
+  for (JointFrame& one : frames) one.slack = one.is_trusted ? kSettled : 1;
+  frames.front().slack = 0;
+  frame.slack = 1;
+  frame.iterations = 0;
+  scale_ = 1;
+  align(pass);
+}
+
+void JointAlignment::align_one(std::size_t index, bool against_all) {
+  Pass pass{{index}, 0, 0.5, !against_all};
+  begin_one(pass);
+  frames[index].slack = kSettled;
+  pass.still = 0.2;
+  align(pass);
+  for (JointFrame& frame : frames) frame.slack = 0;
+  pass.level = 1, pass.still = 0.1;
+  align(pass);
+}
+
+// Of few readings, either way.
+std::size_t JointAlignment::pairs_of(std::size_t index) const {
+  const JointFrame& frame = frames[index];
+  std::size_t pairs = 0;
+  for (std::size_t j = 0; j < frames.size(); ++j) {
+    const JointFrame& other = frames[j];
+    if (j == index || !other.is_trusted) continue;
+    for (const auto& [source, target] : {std::pair(&frame, &other), std::pair(&other, &frame)}) {
+      pairs += pair_sums(source->seen, source->T, gates_of(*source), target->seen, target->T,
+                         gates_of(*target), 1)
+                   .pairs;
+    }
+  }
+  return pairs;
+}
+
+void JointAlignment::search_one(std::size_t index) {
+  const Pass pass{{index}, 0, 0.5, true};
+  JointFrame& frame = frames[index];
+  Pose best = frame.T_reported;
+  std::size_t most = 0;
+  for (int axis = 0; axis < 6; ++axis) {
+    for (const double side : {kSearch, -kSearch}) {
+      Vector6 shift = Vector6::Zero();
+      shift[axis] = side * frame.sigmas[axis];
+      frame.T = moved(frame.T_reported, shift);
+      begin_one(pass);
+      for (JointFrame& one : frames) one.slack = 0;
+      align(pass);
+      const std::size_t pairs = pairs_of(index);
+      if (pairs > most) most = pairs, best = frame.T;
+    }
+  }
+  frame.T = best;
+}
+
+void JointAlignment::align_all() {
+  Pass pass{{}, 0, 0.2};
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    if (!frames[i].is_in) continue;
+    pass.movable.push_back(i);
+    frames[i].slack = kSettled;
+    frames[i].iterations = 0;
+  }
+  if (pass.movable.empty()) return;
+  frames.front().slack = 0;
+  scale_ = 1;
+  align(pass);
+  for (JointFrame& frame : frames) frame.slack = 0;
+  pass.level = 1, pass.still = 0.1;
+  align(pass);
+  pass.level = kLevels - 1, pass.still = 0.05;
+  scale_ = estimated_scale(pass);
+  align(pass);
+}
+
+}  // namespace viewgain::detail

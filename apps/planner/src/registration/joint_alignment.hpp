@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "registration/aligned_view.hpp"
+#include "registration/registration_pairs.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/thread_pool.hpp"
+
+namespace viewgain::detail {
+
+/// A frame among others, and where it is.
+struct JointFrame {
+  AlignedView seen;
+  Pose T_reported;
+  Vector6 sigmas;           ///< of the prior
+  Pose T;                   ///< as known now
+  bool is_in = false;       ///< do others go by it?
+  bool is_trusted = false;  ///< and is its pose better known than it was reported?
+  double slack = 0;         ///< by which T may still be off, in sigmas
+  int iterations = 0;       ///< of the last alignment
+};
+
+/// The poses of frames by what they show of one another and by what was reported, see
+/// FrameAlignment. Says nothing of which frames are to be believed.
+class JointAlignment {
+ public:
+  /// `length`: of a voxel or footprint [m]. Keeps the pool by reference.
+  JointAlignment(double length, double max_normal_angle, ThreadPool& pool);
+
+  std::vector<JointFrame> frames;
+
+  /// Moves one frame against those that are trusted, or all that are in, from where it is.
+  void align_one(std::size_t index, bool against_all);
+  /// Puts a frame where, beginning at poses round the reported one, few of its readings fit those
+  /// that are trusted best.
+  void search_one(std::size_t index);
+  /// Moves all that are in but the first.
+  void align_all();
+
+  [[nodiscard]] PairGates gates_of(const JointFrame& frame) const;
+  /// What `agreed` of all pairs of a frame with others is, were each reading in one of them.
+  [[nodiscard]] static Matrix6 of_single_pairs(const Matrix6& agreed);
+
+ private:
+  // What one iteration looks at.
+  struct Pass {
+    std::vector<std::size_t> movable;
+    int level;
+    double still;  // a step this short ends it, in sigmas of what a pose is known to
+    bool trusted_only = false;
+  };
+  struct System;
+  [[nodiscard]] System system(const Pass& pass) const;
+  bool move(const Pass& pass);
+  void align(const Pass& pass);
+  void begin_one(const Pass& pass);
+  [[nodiscard]] double estimated_scale(const Pass& pass) const;
+  [[nodiscard]] std::size_t pairs_of(std::size_t index) const;
+
+  double length_;
+  double min_cosine_;
+  ThreadPool& pool_;
+  double scale_ = 1;  // of the priors' variances
+};
+
+}  // namespace viewgain::detail

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/planner/map_alignment.hpp"
+
+namespace viewgain {
+namespace {
+
+RegistrationConfig config_of(const MapModelConfig& map) {
+  RegistrationConfig config;
+  config.support_plane = map.integration.support_plane;
+  return config;
+}
+
+}  // namespace
+
+MapAlignment::MapAlignment(const Sensor& sensor, const BeliefGrid& layout,
+                           const MapModelConfig& map, const PosePrior& sigmas,
+                           const ExecConfig& exec)
+    : obstacles_(map.obstacles, sensor, exec),
+      sigmas_(sigmas),
+      alignment_(sensor, layout, config_of(map), exec) {
+  if (map.jump_edges) filter_.emplace(sensor.camera, *map.jump_edges);
+}
+
+const FrameRegistration& MapAlignment::add(DepthFrame frame, const Pose& T_reported) {
+  if (filter_) filter_->apply(frame);
+  obstacles_.mark(frame, T_reported);
+  PosePrior prior = sigmas_;
+  prior.T_world_camera = T_reported;
+  return alignment_.add(frame, prior);
+}
+
+}  // namespace viewgain
