@@ -46,7 +46,8 @@ std::optional<SavedFrames> saved_frames(const fs::path& state) {
 
 FollowedMap::FollowedMap(const Sensor& sensor, std::optional<std::array<double, 3>> body,
                          const PlannerConfig& config, fs::path state,
-                         const std::optional<SavedFrames>& saved, const ExecConfig& exec)
+                         const std::optional<SavedFrames>& saved,
+                         const std::optional<PosePrior>& sigmas, const ExecConfig& exec)
     : sensor_(sensor),
       model_(config.gain.model),
       state_(std::move(state)),
@@ -54,6 +55,12 @@ FollowedMap::FollowedMap(const Sensor& sensor, std::optional<std::array<double, 
       planner_(planner_of(sensor, body, config, state_, saved, exec)) {
   const BoundaryViewsConfig boundary = default_boundary(sensor, planner_.grid().voxel_size());
   planner_.add_generation(std::make_shared<BoundaryGeneration>(planner_.map(), boundary, exec));
+  if (!sigmas) return;
+  MapModelConfig map;
+  map.integration.support_plane = config.support_plane;
+  map.jump_edges = config.jump_edges;
+  map.obstacles = config.obstacles;
+  registration_.emplace(sensor, map, *sigmas, exec);
 }
 
 bool FollowedMap::shows_workspace(const WatchedFrame& frame) const {
@@ -74,8 +81,18 @@ bool FollowedMap::shows_workspace(const WatchedFrame& frame) const {
   return false;
 }
 
-AddedView FollowedMap::add(const WatchedFrame& frame) {
-  return planner_.add(frame.frame, frame.T_world_camera);
+FrameRegistration FollowedMap::registered(const WatchedFrame& frame) const {
+  if (registration_) {
+    return registration_->register_frame(planner_.grid(), frame.frame, frame.T_world_camera);
+  }
+  FrameRegistration as_reported;
+  as_reported.status = RegistrationStatus::registered;
+  as_reported.T_world_camera = frame.T_world_camera;
+  return as_reported;
+}
+
+AddedView FollowedMap::add(const WatchedFrame& frame, const Pose& T_world_camera) {
+  return planner_.add(frame.frame, T_world_camera);
 }
 
 NextViews FollowedMap::next(std::size_t top) {

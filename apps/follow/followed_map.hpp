@@ -15,6 +15,8 @@
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/frame_watch.hpp"
+#include "viewgain/planner/map_registration.hpp"
+#include "viewgain/planner/register_frame.hpp"
 #include "viewgain/planner/view_planner.hpp"
 
 namespace viewgain::app {
@@ -36,14 +38,19 @@ class FollowedMap {
   /// An empty one or, with `saved`, the one of the file `state`. `sensor` is the frames'; `body`
   /// takes the place of its own. Throws Error as ViewPlanner's constructor and load(), and
   /// Error(invalid_argument) if the saved frames are another sensor's.
+  /// With `sigmas` of the poses frames are registered.
   FollowedMap(const Sensor& sensor, std::optional<std::array<double, 3>> body,
               const PlannerConfig& config, std::filesystem::path state,
-              const std::optional<SavedFrames>& saved, const ExecConfig& exec);
+              const std::optional<SavedFrames>& saved, const std::optional<PosePrior>& sigmas,
+              const ExecConfig& exec);
 
   /// Does any reading of the frame lie in the workspace?
   [[nodiscard]] bool shows_workspace(const WatchedFrame& frame) const;
 
-  AddedView add(const WatchedFrame& frame);
+  /// What registering the frame against the map comes to; as it was reported without sigmas.
+  [[nodiscard]] FrameRegistration registered(const WatchedFrame& frame) const;
+
+  AddedView add(const WatchedFrame& frame, const Pose& T_world_camera);
 
   /// The best of the views at the surface's open boundaries and of the reach region's poses.
   [[nodiscard]] NextViews next(std::size_t top);
@@ -62,6 +69,7 @@ class FollowedMap {
   std::filesystem::path state_;
   std::vector<Eigen::Vector3d> rays_;  // of the pixels, (x, y, 1)
   ViewPlanner planner_;
+  std::optional<MapRegistration> registration_;
 };
 
 }  // namespace viewgain::app

@@ -132,11 +132,11 @@ void describe(Options& o, Visitor& visit) {
   // Recorded as a part of the sensor.
   visit.option(nullptr, "--body", o.body, kBodyHelp, as_it_is);
   describe_sensing(o.sensing, visit);
-  visit.option("register", "--register", o.register_frames,
+  visit.option("register", "--register", o.registration.is_on,
                "align the frames with one another and make the map from the poses that come of it",
                switched);
   visit.option(
-      "pose_sigma", "--pose-sigma", o.pose_sigma,
+      "pose_sigma", "--pose-sigma", o.registration.pose_sigma,
       "SIGMA_M,SIGMA_DEG by which reported poses may be off, of --register; default: those "
       "of --pose-noise, else 0.005,0.5",
       as_it_is);
@@ -225,10 +225,6 @@ void check(const ReconstructOptions& options) {
   if (options.distance) check_positive("--distance", *options.distance);
   if (options.sensing.support_plane) {
     check_finite("--support-plane", *options.sensing.support_plane);
-  }
-  if (!options.pose_sigma.empty() && options.register_frames != "on") {
-    throw Error(ErrorCode::invalid_argument,
-                "--pose-sigma " + options.pose_sigma + " goes with --register on");
   }
   check_inside_0_1("--overlap", options.overlap);
   check_positive("--region-depth", options.region_depth);

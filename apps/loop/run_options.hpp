@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "options/common_options.hpp"
+#include "options/registration_options.hpp"
 #include "options/sensing.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner_mesh/boundary_generation.hpp"
@@ -47,8 +48,7 @@ struct ReconstructOptions {
   std::string body;
   std::string up = "z";
   SensingOptions sensing;
-  std::string register_frames = "off";
-  std::string pose_sigma;
+  RegistrationOptions registration;
   std::size_t frames_per_view = 1;
   std::string jump_edge_filter = "5";
   std::string refine = "on";

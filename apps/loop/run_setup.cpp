@@ -189,7 +189,7 @@ nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, cons
       {"flying_pixels", options.sensing.has_flying_pixels(setup.sensor)},
       {"calibrated", options.sensing.calibrate == "on"},
       {"pose_noise", pose_sigmas_json(setup.pose_noise)},
-      {"register", options.register_frames == "on"},
+      {"register", setup.registration.has_value()},
       {"pose_sigma", setup.registration ? pose_sigmas_json({setup.registration->sigma_translation,
                                                             setup.registration->sigma_rotation})
                                         : nlohmann::ordered_json()},
@@ -197,22 +197,6 @@ nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, cons
 }
 
 }  // namespace
-
-std::optional<PosePrior> registration_prior(const ReconstructOptions& options,
-                                            const PoseNoise& noise) {
-  if (options.register_frames != "on") return std::nullopt;
-  PosePrior prior;
-  if (!options.pose_sigma.empty()) {
-    const PoseNoise stated = parse_pose_noise("--pose-sigma", options.pose_sigma, 0);
-    check_positive("--pose-sigma", std::min(stated.sigma_translation, stated.sigma_rotation));
-    prior.sigma_translation = stated.sigma_translation;
-    prior.sigma_rotation = stated.sigma_rotation;
-    return prior;
-  }
-  if (noise.sigma_translation > 0) prior.sigma_translation = noise.sigma_translation;
-  if (noise.sigma_rotation > 0) prior.sigma_rotation = noise.sigma_rotation;
-  return prior;
-}
 
 RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   check(options);
@@ -239,7 +223,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   setup.simulation = simulation_config(options.sensing, setup.sensor);
   setup.pose_noise =
       parse_pose_noise("--pose-noise", options.sensing.pose_noise, options.sensing.seed);
-  setup.registration = registration_prior(options, setup.pose_noise);
+  setup.registration = registration_prior(options.registration, setup.pose_noise);
   setup.model = model_config(options, setup.sensor, setup.stage);
   check_start(options, setup, exec);
   setup.visibility.surroundings = setup.simulation.surroundings =

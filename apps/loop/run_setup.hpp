@@ -39,11 +39,6 @@ struct RunSetup {
   nlohmann::ordered_json settings;  ///< of run.json
 };
 
-/// By how much reported poses may be off: what --pose-sigma says, else `noise` (--pose-noise) where
-/// it is not 0; nothing without --register on. Throws Error(invalid_argument), naming the flag.
-[[nodiscard]] std::optional<PosePrior> registration_prior(const ReconstructOptions& options,
-                                                          const PoseNoise& noise);
-
 /// Reads the files that the options name and checks everything. Throws Error.
 [[nodiscard]] RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec);
 

@@ -14,6 +14,7 @@
 #include "viewgain/grid/cloud_io.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate_cloud.hpp"
+#include "viewgain/planner/map_registration.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -36,6 +37,11 @@ class FrameSource : public ReadingSource {
         parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided == "on");
     if (config) filter_.emplace(folder_.sensor().camera, *config);
     if (options.calibrate_hazard == "on") calibration_.emplace(folder_.sensor(), support_plane_);
+    if (const auto sigmas = registration_prior(options.registration)) {
+      MapModelConfig map;  // flying pixels are taken out when the frame is loaded
+      map.integration = config_of(options);
+      registration_.emplace(folder_.sensor(), map, *sigmas, ExecConfig{options.common.threads});
+    }
   }
 
   [[nodiscard]] const Sensor& sensor() const override { return folder_.sensor(); }
@@ -49,20 +55,24 @@ class FrameSource : public ReadingSource {
   }
 
   void load(std::size_t index) override {
-    index_ = index;
     loaded_ = folder_.load(index);
     removed_ = filter_ ? filter_->apply(loaded_.frame) : 0;
+    T_world_camera_ = folder_.T_world_camera(index);
   }
   [[nodiscard]] std::optional<Box> bounds() const override {
-    return reading_bounds(folder_.sensor(), loaded_.frame, folder_.T_world_camera(index_), {},
-                          support_plane_);
+    return reading_bounds(folder_.sensor(), loaded_.frame, T_world_camera_, {}, support_plane_);
+  }
+  std::optional<FrameRegistration> register_in(const BeliefGrid& grid) override {
+    if (!registration_) return std::nullopt;
+    FrameRegistration result = registration_->register_frame(grid, loaded_.frame, T_world_camera_);
+    T_world_camera_ = result.T_world_camera;
+    return result;
   }
   IntegrationReport integrate(BeliefGrid& grid) override {
-    const Pose& T_world_camera = folder_.T_world_camera(index_);
     if (calibration_) {
-      calibration_->count(grid, HazardField(grid.snapshot()), loaded_.frame, T_world_camera);
+      calibration_->count(grid, HazardField(grid.snapshot()), loaded_.frame, T_world_camera_);
     }
-    return integrator_.integrate(grid, loaded_.frame, T_world_camera);
+    return integrator_.integrate(grid, loaded_.frame, T_world_camera_);
   }
   [[nodiscard]] std::uint64_t masked_pixels() const override { return loaded_.masked_pixels; }
   [[nodiscard]] std::uint64_t jump_edge_removed() const override { return removed_; }
@@ -75,9 +85,10 @@ class FrameSource : public ReadingSource {
   std::optional<double> support_plane_;
   std::optional<JumpEdgeFilter> filter_;
   std::optional<HazardCalibration> calibration_;
+  std::optional<MapRegistration> registration_;
   FrameIntegrator integrator_;
-  std::size_t index_ = 0;
   FrameFolder::MaskedFrame loaded_;
+  Pose T_world_camera_;
   std::uint64_t removed_ = 0;
 };
 

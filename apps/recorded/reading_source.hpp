@@ -11,8 +11,10 @@
 
 #include "options/common_options.hpp"
 #include "options/frame_folder.hpp"
+#include "options/registration_options.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/planner/register_frame.hpp"
 
 namespace viewgain::app {
 
@@ -33,6 +35,7 @@ struct IntegrateOptions {
   std::string calibrate_hazard = "off";
   std::optional<double> prior_sigma;
   std::string with_covariance = "off";
+  RegistrationOptions registration;
   std::string out;
   std::string map;
 
@@ -42,7 +45,7 @@ struct IntegrateOptions {
 };
 
 /// What `integrate` puts into a map, one part after the other: depth frames or clouds. The order of
-/// calls is load, then bounds or integrate, of any part any number of times.
+/// calls is load, then bounds, register_in or integrate, of any part any number of times.
 class ReadingSource {
  public:
   virtual ~ReadingSource() = default;
@@ -58,6 +61,9 @@ class ReadingSource {
   virtual void load(std::size_t index) = 0;
   /// Of the part's readings, world frame [m].
   [[nodiscard]] virtual std::optional<Box> bounds() const = 0;
+  /// What registering the loaded part against the map came to, from whose pose it is then
+  /// integrated; nothing without --register on.
+  virtual std::optional<FrameRegistration> register_in(const BeliefGrid& /*grid*/) { return {}; }
   virtual IntegrationReport integrate(BeliefGrid& grid) = 0;
   /// Pixels of the loaded part with a depth that its mask took.
   [[nodiscard]] virtual std::uint64_t masked_pixels() const { return 0; }

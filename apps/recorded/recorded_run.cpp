@@ -116,7 +116,7 @@ class Recording {
     check(proposal_);
     const FrameMapOptions frames = frame_options(options);
     map_.emplace(frames, proposal_, options.common.quiet, exec_);
-    sigmas_ = registration_prior(options, {});
+    sigmas_ = registration_prior(options.registration);
     if (sigmas_) {
       const Stopwatch watch;
       views_.emplace(*map_, align_folder(*map_, *sigmas_, options.common.quiet, exec_));
@@ -220,7 +220,7 @@ class Recording {
                           {"support_plane", nullptr},
                           {"jump_edge_filter", options_.jump_edge_filter},
                           {"refine", options_.refine == "on"},
-                          {"register", options_.register_frames == "on"},
+                          {"register", sigmas_.has_value()},
                           {"pose_sigma", nullptr},
                           {"generator", proposal_.generator},
                           {"gain", proposal_.gain},
@@ -278,10 +278,6 @@ void reconstruct_frames(const ReconstructOptions& options, const CLI::App& app) 
     if (app.count(flag) == 0) continue;
     throw Error(ErrorCode::invalid_argument,
                 std::string(flag) + " is for a mesh, not for a folder of frames");
-  }
-  if (!options.pose_sigma.empty() && options.register_frames != "on") {
-    throw Error(ErrorCode::invalid_argument,
-                "--pose-sigma " + options.pose_sigma + " goes with --register on");
   }
   if (options.report == "on") check_report_page("--report");
   const InterruptGuard interrupt;

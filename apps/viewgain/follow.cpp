@@ -20,6 +20,7 @@
 #include "options/hazard_source.hpp"
 #include "options/next_views.hpp"
 #include "options/obstacle_source.hpp"
+#include "options/registration_options.hpp"
 #include "options/sensing.hpp"
 #include "options/values.hpp"
 #include "viewgain/core/atomic_file.hpp"
@@ -47,7 +48,7 @@ struct Options {
   std::string sensor;
   std::optional<double> depth_scale;
   std::string out_of_range = "carve";
-  std::string jump_edge_filter = "off";
+  std::string jump_edge_filter = "5";
   std::string jump_edge_two_sided = "off";
   std::string gain = "combined";
   std::optional<double> object_size;
@@ -58,6 +59,7 @@ struct Options {
   std::optional<double> support_plane;
   std::size_t top = 10;
   std::size_t max_views = PlannerConfig{}.max_views;
+  RegistrationOptions registration;
   std::string out;
 };
 
@@ -108,6 +110,7 @@ class Following {
   explicit Following(const Options& options)
       : options_(options),
         config_(planner_config(options)),
+        sigmas_(registration_prior(options.registration)),
         frames_(options.frames),
         out_(options.out) {
     if (!options.sensor.empty()) (void)load_sensor(options.sensor);
@@ -185,7 +188,7 @@ class Following {
     const Sensor& sensor = watch_->folder()->sensor;
     config_.grid.prior_sigma = default_prior_sigma(options_.voxel, sensor);
     config_.hazard = hazard_source(options_.hazard, options_.object_size, BeliefGrid(config_.grid));
-    map_.emplace(sensor, body_, config_, out_ / "state.vdb", saved_,
+    map_.emplace(sensor, body_, config_, out_ / "state.vdb", saved_, sigmas_,
                  ExecConfig{options_.common.threads});
     // What was next may be missing or older than the state.
     has_news_ = saved_.has_value();
@@ -196,7 +199,12 @@ class Following {
       watch_->refuse(frame, "outside");
       return say(frame.image.string() + ": no reading lies in the workspace (outside); left out");
     }
-    const AddedView added = map_->add(frame);
+    const FrameRegistration registration = map_->registered(frame);
+    if (registration.status == RegistrationStatus::refused) {
+      watch_->refuse(frame, "contradicts");
+      return say(frame.image.string() + ": " + registration.reason + " (contradicts); left out");
+    }
+    const AddedView added = map_->add(frame, registration.T_world_camera);
     ++added_;
     has_news_ = true;
     if (options_.common.quiet) return;
@@ -241,6 +249,7 @@ class Following {
 
   const Options& options_;
   PlannerConfig config_;
+  std::optional<PosePrior> sigmas_;  // of the poses, if frames are registered
   std::optional<std::array<double, 3>> body_;
   fs::path frames_, out_;
   std::optional<FolderLock> lock_;
@@ -321,6 +330,7 @@ Command add_follow(CLI::App& program) {
   app->add_option("--max-views", o.max_views, "view budget: a reason to stop")
       ->capture_default_str()
       ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
+  add_registration_options(*app, o.registration);
   app->add_option("--out", o.out, "folder for state.vdb, next.txt, next.json")->required();
   add_common_options(*app, o.common);
   add_help(*app, kViewsGroup,

@@ -10,10 +10,12 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_line/progress.hpp"
 #include "commands.hpp"
+#include "loop/registration_json.hpp"
 #include "map_json.hpp"
 #include "options/choices.hpp"
 #include "options/sensed_map.hpp"
@@ -119,7 +121,8 @@ struct Totals {
   IntegrationReport sum;
   std::uint64_t masked_pixels = 0;
   std::uint64_t jump_edge_removed = 0;
-  std::size_t skipped = 0;      // frames that the map has already
+  std::size_t skipped = 0;                       // frames that the map has already
+  std::vector<FrameRegistration> registrations;  // of the others, if they are registered
   std::vector<double> seconds;  // of each frame's integration, reading the image not counted
 };
 
@@ -136,6 +139,14 @@ Totals integrate_all(ReadingSource& source, const Options& options, GrownMap& ma
     source.load(i);
     totals.masked_pixels += source.masked_pixels();
     totals.jump_edge_removed += source.jump_edge_removed();
+    if (std::optional<FrameRegistration> registration = source.register_in(map.grid)) {
+      totals.registrations.push_back(std::move(*registration));
+      if (totals.registrations.back().status == RegistrationStatus::refused) {
+        map.frames.erase(identity);  // a map that has more may take it
+        progress.update(i + 1, source.size());
+        continue;
+      }
+    }
     const Stopwatch watch;
     const IntegrationReport report = source.integrate(map.grid);
     totals.seconds.push_back(watch.seconds());
@@ -169,8 +180,12 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
         {"out_of_range", totals.sum.out_of_range},
         {"invalid", totals.sum.invalid},
         {"orthonormalized_poses", source.orthonormalized()},
+        {"registration", nullptr},
         {"sensor", source.sensor().name},
         {"depth_scale", scale ? nlohmann::ordered_json(*scale) : nullptr}};
+    if (options.registration.is_on == "on") {
+      json["registration"] = registration_counts(totals.registrations);
+    }
     json.update(map_json(grid, statistics));
     json.update(
         {{"lost_T_world_grid", lost.T_world_grid},
@@ -192,6 +207,9 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
       taken, part_name(options), source.sensor().name.c_str(),
       with_commas(totals.sum.readings).c_str(), with_commas(totals.sum.readings_inside).c_str(),
       with_commas(totals.sum.out_of_range).c_str(), with_commas(totals.sum.invalid).c_str());
+  if (options.registration.is_on == "on") {
+    std::printf("%s\n", registration_text(registration_counts(totals.registrations)).c_str());
+  }
   if (totals.skipped > 0) {
     std::printf("skipped, since the map has them already: %zu\n", totals.skipped);
   }
@@ -239,7 +257,8 @@ void check_flags(const Options& options, const CLI::App& app) {
     refuse({"--origin", "--poses"}, "is for clouds (--cloud)");
   } else {
     refuse({"--depth-scale", "--mask", "--confidence", "--least-confidence", "--out-of-range",
-            "--carve", "--jump-edge-filter", "--jump-edge-two-sided", "--calibrate-hazard"},
+            "--carve", "--jump-edge-filter", "--jump-edge-two-sided", "--calibrate-hazard",
+            "--register", "--pose-sigma"},
            "is for depth frames; clouds carve along lines");
     if (!options.poses.empty()) refuse({"--origin"}, "and --poses exclude each other");
   }
@@ -344,6 +363,7 @@ Command add_integrate(CLI::App& program) {
                              "count how often frames met the surface in unknown space, for the "
                              "surface and combined gain of the map")
                  ->capture_default_str());
+  add_registration_options(*app, options->registration);
   on_or_off(*app->add_option("--with-covariance", options->with_covariance,
                              "add covariances and positions to the file, for viewers")
                  ->capture_default_str());

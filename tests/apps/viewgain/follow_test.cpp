@@ -117,8 +117,17 @@ class Follow : public test::ProgramTest {
   }
 
   static Strings follow(const Strings& more = {}) {
-    Strings call{"follow", "live", "--voxel", "0.025", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
-                 "--out",  "plan", "--quiet"};
+    Strings call{"follow",
+                 "live",
+                 "--voxel",
+                 "0.025",
+                 "--workspace",
+                 "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+                 "--jump-edge-filter",
+                 "off",
+                 "--out",
+                 "plan",
+                 "--quiet"};
     call.insert(call.end(), more.begin(), more.end());
     return call;
   }
@@ -336,6 +345,21 @@ TEST_F(Follow, AWrongScaleIsOutside) {
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.err.find("1 outside"), std::string::npos) << result.err;
   EXPECT_FALSE(fs::exists(dir / "plan"));
+}
+
+TEST_F(Follow, WhatContradictsTheMapIsLeftOut) {
+  run_well({"simulate", "cube.off", "--orbit", "10,0.6,27", "--sensor", "sr4000", "--size", "0.2",
+            "--recenter", "on", "--out", "moved"});
+  PoseList poses_of_frames = read_tum(dir / "moved/poses.txt");
+  poses_of_frames.poses[7].m[3] += 0.1;
+  viewgain::write_tum(dir / "moved/poses.txt", poses_of_frames.poses);
+  write("moved/done", "");
+  const json result = json::parse(
+      run_well({"follow", "moved", "--voxel", "0.01", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+                "--register", "on", "--out", "plan", "--json", "--quiet"}));
+  EXPECT_EQ(result["bad"].size(), 1U);
+  EXPECT_EQ(result["bad"]["contradicts"], 1);
+  EXPECT_EQ(result["frames"], 9);
 }
 
 TEST_F(Follow, EachBadFrameIsALine) {

@@ -418,6 +418,67 @@ TEST_F(Workflow, MasksSayWhatIsNoPartOfTheScene) {
   EXPECT_NE(cloud.err.find("--mask is for depth frames"), std::string::npos) << cloud.err;
 }
 
+// A pose that contradicts the map: the map is what it is without that frame.
+TEST_F(Workflow, FramesThatContradictTheMapAreLeftOut) {
+  run_well({"simulate", "cube.off", "--size", "0.2", "--recenter", "on", "--orbit", "12,0.6,27",
+            "--sensor", "sr4000", "--out", "whole"});
+  const auto integrated = [this](const std::string& folder, const Strings& more) {
+    Strings call{"integrate", folder,        "--voxel",
+                 "0.01",      "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+                 "--json",    "--out",       "map.vdb"};
+    call.insert(call.end(), more.begin(), more.end());
+    return json::parse(run_well(call));
+  };
+  const Strings registered{"--register", "on"};
+  const json good = integrated("whole", registered);
+  EXPECT_EQ(good["registration"]["refused"], 0);
+  EXPECT_GE(good["registration"]["registered"], 10);
+  EXPECT_TRUE(integrated("whole", {})["registration"].is_null());
+
+  // View 7 stands 10 cm beside where it says; the last ones look elsewhere.
+  FrameSequence frames = open_frames(dir / "whole");
+  FramesWriter bad(dir / "bad"), without(dir / "without");
+  std::vector<Pose> bad_poses, other_poses;
+  for (std::size_t i = 0; i < 12; ++i) {
+    const DepthFrame frame = load_frame(frames, i);
+    bad.write_frame(i, frame);
+    bad_poses.push_back(frames.poses[i]);
+    if (i == 7) {
+      bad_poses.back().m[3] += 0.1;
+      continue;
+    }
+    without.write_frame(other_poses.size(), frame);
+    other_poses.push_back(frames.poses[i]);
+  }
+  bad.commit(bad_poses, frames.sensor);
+  without.commit(other_poses, frames.sensor);
+  const json left_out = integrated("bad", registered);
+  EXPECT_EQ(left_out["registration"]["refused"], 1);
+  EXPECT_EQ(left_out["frames"], 11);
+  EXPECT_EQ(left_out["hash"], integrated("without", registered)["hash"]);
+  // Fed again it is tried again; the others are skipped.
+  (void)integrated("bad", registered);
+  const json again = json::parse(run_well(
+      {"integrate", "bad", "--map", "map.vdb", "--register", "on", "--json", "--out", "map.vdb"}));
+  EXPECT_EQ(again["skipped"], 11);
+  EXPECT_EQ(again["registration"]["refused"], 1);
+  EXPECT_EQ(again["hash"], left_out["hash"]);
+
+  std::size_t cases = 0;
+  for (const auto& [more, word] : std::vector<std::pair<Strings, std::string>>{
+           {{"--pose-sigma", "0.01,1"}, "goes with --register on"},
+           {{"--register", "on", "--pose-sigma", "0,1"}, "--pose-sigma"},
+           {{"--register", "on", "--pose-sigma", "x"}, "--pose-sigma"}}) {
+    Strings call{"integrate", "whole", "--voxel", "0.01", "--out", "no.vdb"};
+    call.insert(call.end(), more.begin(), more.end());
+    const test::ProgramResult refused = run(call);
+    EXPECT_EQ(refused.exit_code, 2) << word;
+    EXPECT_NE(refused.err.find(word), std::string::npos) << refused.err;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3U);
+}
+
 TEST_F(Workflow, ConfidencesUnderTheLeastSayNothing) {
   simulate("frames");
   // 0, 1, 2 in thirds of the image.
@@ -560,12 +621,13 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "FRAMES_DIR --cloud --origin --poses --voxel --workspace --sensor --depth-scale "
        "--mask --confidence --least-confidence "
        "--out-of-range --carve --occupancy --jump-edge-filter --jump-edge-two-sided "
-       "--calibrate-hazard --support-plane --prior-sigma --with-covariance --out --map --json "
+       "--calibrate-hazard --support-plane --prior-sigma --register --pose-sigma --with-covariance "
+       "--out --map --json "
        "--threads =carve "
        "=cones =probabilistic =viewpoint 1e-4 [m]"},
       {"import",
        "SOURCE --format --sensor --intrinsics --max-time-gap --mask --confidence "
-       "--least-confidence --out --json --threads =0.02 "
+       "--least-confidence --amplitude --amplitude-scale --out --json --threads =0.02 "
        "[s] [px]"},
       {"convert",
        "IN OUT --workspace --prior-sigma --sensor --with-covariance --json --threads .ot [m]"},
@@ -624,7 +686,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 248);
+  EXPECT_EQ(words, 252);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

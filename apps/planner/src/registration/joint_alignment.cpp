@@ -17,7 +17,8 @@ constexpr double kRedundancy = 3;
 constexpr double kSettled = 0.3;  // slack of frames that were aligned before, in sigmas
 constexpr double kSearch = 1.5;   // where the search begins, in sigmas from the reported pose
 constexpr int kMaxIterations = 15;
-constexpr std::size_t kLeastPairs = 20;  // of two frames
+constexpr std::size_t kLeastPairs = 20;      // of two frames
+constexpr std::size_t kLeastReadings = 400;  // of a frame
 
 // What a motion of the source does, as one of the target: e falls with the motion A of that.
 Matrix6 carried(const Pose& T_world_source, const Pose& T_world_target) {
@@ -46,6 +47,16 @@ PairGates JointAlignment::gates_of(const JointFrame& frame) const {
 
 Matrix6 JointAlignment::of_single_pairs(const Matrix6& agreed) { return agreed / kRedundancy; }
 
+// From one level to the next the readings are four times as many.
+int JointAlignment::level_of(const Pass& pass) const {
+  std::size_t readings = 0;
+  for (const std::size_t i : pass.movable) readings += frames[i].seen.readings().size();
+  int level = pass.level;
+  const auto share = [&level] { return std::size_t{1} << (2 * (kLevels - 1 - level)); };
+  while (level < kLevels - 1 && readings < kLeastReadings * pass.movable.size() * share()) ++level;
+  return level;
+}
+
 JointAlignment::System JointAlignment::system(const Pass& pass) const {
   std::vector<Eigen::Index> column(frames.size(), -1);
   for (std::size_t k = 0; k < pass.movable.size(); ++k) {
@@ -61,13 +72,14 @@ JointAlignment::System JointAlignment::system(const Pass& pass) const {
       if (takes_part(i) && takes_part(j)) pairs.emplace_back(i, j);
     }
   }
+  const int level = level_of(pass);
   std::vector<PairSums> sums(pairs.size());
   pool_.for_each_chunk(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const JointFrame& source = frames[pairs[k].first];
       const JointFrame& target = frames[pairs[k].second];
       sums[k] = pair_sums(source.seen, source.T, gates_of(source), target.seen, target.T,
-                          gates_of(target), pass.level);
+                          gates_of(target), level);
     }
   });
   const auto n = static_cast<Eigen::Index>(6 * pass.movable.size());
@@ -195,12 +207,14 @@ void JointAlignment::align_all() {
   for (std::size_t i = 1; i < frames.size(); ++i) {
     if (!frames[i].is_in) continue;
     pass.movable.push_back(i);
-    frames[i].slack = kSettled;
+    frames[i].slack = frames[i].is_trusted ? kSettled : 1;
     frames[i].iterations = 0;
   }
   if (pass.movable.empty()) return;
   frames.front().slack = 0;
   scale_ = 1;
+  align(pass);
+  for (const std::size_t i : pass.movable) frames[i].slack = kSettled;
   align(pass);
   for (JointFrame& frame : frames) frame.slack = 0;
   pass.level = 1, pass.still = 0.1;

@@ -50,7 +50,7 @@ class JointAlignment {
   // What one iteration looks at.
   struct Pass {
     std::vector<std::size_t> movable;
-    int level;
+    int level;     // a finer one where it leaves too few readings
     double still;  // a step this short ends it, in sigmas of what a pose is known to
     bool trusted_only = false;
   };
@@ -61,6 +61,7 @@ class JointAlignment {
   void begin_one(const Pass& pass);
   [[nodiscard]] double estimated_scale(const Pass& pass) const;
   [[nodiscard]] std::size_t pairs_of(std::size_t index) const;
+  [[nodiscard]] int level_of(const Pass& pass) const;
 
   double length_;
   double min_cosine_;

@@ -2,23 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/planner/map_alignment.hpp"
 
+#include "registration/registration_config.hpp"
+
 namespace viewgain {
-namespace {
-
-RegistrationConfig config_of(const MapModelConfig& map) {
-  RegistrationConfig config;
-  config.support_plane = map.integration.support_plane;
-  return config;
-}
-
-}  // namespace
 
 MapAlignment::MapAlignment(const Sensor& sensor, const BeliefGrid& layout,
                            const MapModelConfig& map, const PosePrior& sigmas,
                            const ExecConfig& exec)
     : obstacles_(map.obstacles, sensor, exec),
       sigmas_(sigmas),
-      alignment_(sensor, layout, config_of(map), exec) {
+      alignment_(sensor, layout, detail::registration_config(map), exec) {
   if (map.jump_edges) filter_.emplace(sensor.camera, *map.jump_edges);
 }
 

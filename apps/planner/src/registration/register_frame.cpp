@@ -49,6 +49,44 @@ constexpr int kMaxIterations = 15;                                    // of a le
 // A step this short ends a level, in sigmas of what the pose is known to.
 constexpr std::array<double, detail::kLevels> kStill{0.5, 0.2, 0.05};
 
+// What Gauss and Newton solve, in the prior's sigmas, along the motions that the frame holds.
+class Problem {
+ public:
+  Problem(const Pose& T_reported, const Vector6& sigmas)
+      : T_reported_(T_reported), sigmas_(sigmas) {}
+
+  // A step; false if it was shorter than `still`, in sigmas of what the pose is known to.
+  bool move(Pose& T, const PairSums& sums, double still) const {
+    const Terms terms = terms_of(T, sums);
+    const Matrix6 whole = terms.information + Matrix6::Identity() / scale_;
+    const Vector6 step = whole.llt().solve(-(terms.gradient + terms.away / scale_));
+    T = moved(T, sigmas_.asDiagonal() * step);
+    return std::sqrt(step.dot(whole * step)) >= still;
+  }
+
+  void estimate_scale(const Pose& T, const PairSums& sums) {
+    const Terms terms = terms_of(T, sums);
+    scale_ = detail::likeliest_scale(terms.information / kLeastWidening,
+                                     terms.gradient / kLeastWidening, terms.away);
+  }
+
+ private:
+  struct Terms {
+    Matrix6 information;
+    Vector6 gradient, away;
+  };
+  [[nodiscard]] Terms terms_of(const Pose& T, const PairSums& sums) const {
+    const Matrix6 held = held_axes(directions_of(sums.agreed, sigmas_));
+    const Matrix6 onto = held * held.transpose() * sigmas_.asDiagonal();
+    return {onto * sums.information * onto.transpose(), onto * sums.gradient,
+            difference(T, T_reported_).cwiseQuotient(sigmas_)};
+  }
+
+  Pose T_reported_;
+  Vector6 sigmas_;
+  double scale_ = 1;  // of the prior's variances
+};
+
 // The covariance of the pose, see FrameRegistration.
 Matrix6 covariance_of(const PairSums& sums, const std::vector<Vector6>& cubes, const Matrix6& held,
                       const Vector6& sigmas) {
@@ -165,25 +203,22 @@ FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
   PairGates gates;
   gates.along_surface = kAlongSurface * length;
   gates.min_cosine = std::cos(config.max_normal_angle);
-  for (int level = 0; level < detail::kLevels; ++level) {
+  Problem problem{T_reported, sigmas};
+  const auto align = [&](int level) {
     const auto l = static_cast<std::size_t>(level);
     gates.slack_translation = kSlack[l] * prior.sigma_translation;
     gates.slack_rotation = kSlack[l] * prior.sigma_rotation;
-    for (int i = 0; i < kMaxIterations; ++i) {
+    bool is_moving = true;
+    for (int i = 0; i < kMaxIterations && is_moving; ++i) {
       pairs.find(T, level, gates);
-      const PairSums sums = pairs.sums(T);
-      const Matrix6 held = held_axes(directions_of(sums.agreed, sigmas));
-      const Matrix6 onto = held * held.transpose();
-      const Matrix6 information = sigmas.asDiagonal() * sums.information * sigmas.asDiagonal();
-      const Vector6 gradient = sigmas.asDiagonal() * sums.gradient;
-      const Vector6 away = sigmas.cwiseInverse().asDiagonal() * difference(T, T_reported);
-      const Matrix6 whole = onto * information * onto + Matrix6::Identity();
-      const Vector6 step = whole.llt().solve(-(onto * gradient + away));
-      T = moved(T, sigmas.asDiagonal() * step);
+      is_moving = problem.move(T, pairs.sums(T), kStill[l]);
       ++result.iterations;
-      if (std::sqrt(step.dot(whole * step)) < kStill[l]) break;
     }
-  }
+  };
+  for (int level = 0; level < detail::kLevels; ++level) align(level);
+  pairs.find(T, detail::kLevels - 1, gates);
+  problem.estimate_scale(T, pairs.sums(T));
+  align(detail::kLevels - 1);
 
   pairs.find(T, detail::kLevels - 1, gates);
   const PairSums sums = pairs.sums(T);

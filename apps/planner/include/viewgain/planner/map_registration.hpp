@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/planner/map_model.hpp"
+#include "viewgain/planner/register_frame.hpp"
+#include "viewgain/raycast/obstacle_view.hpp"
+
+namespace viewgain {
+
+/// Frames registered against a map (FrameRegistrar) before they go into it, as it takes them:
+/// without flying pixels, known obstacles and the support plane.
+///
+/// Thread safety: const members may run from many threads at once.
+class VIEWGAIN_EXPORT MapRegistration {
+ public:
+  /// `map` is the config of the maps; `sigmas` are those of each pose. Throws
+  /// Error(invalid_argument) as FrameRegistrar, ObstacleView and JumpEdgeFilter.
+  MapRegistration(const Sensor& sensor, const MapModelConfig& map, const PosePrior& sigmas,
+                  const ExecConfig& exec = {});
+
+  /// See FrameRegistrar::register_frame(). Costs fused_points() of the grid besides.
+  [[nodiscard]] FrameRegistration register_frame(const BeliefGrid& grid, DepthFrame frame,
+                                                 const Pose& T_reported) const;
+
+ private:
+  std::optional<JumpEdgeFilter> filter_;
+  ObstacleView obstacles_;
+  PosePrior sigmas_;
+  ExecConfig exec_;
+  FrameRegistrar registrar_;
+};
+
+}  // namespace viewgain
