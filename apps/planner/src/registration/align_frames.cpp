@@ -210,10 +210,11 @@ void FrameAlignment::Impl::align_one(std::size_t index) {
   frame.T = frame.T_reported;
   joint.align_one(index, false);
   result = verdict_of(index).result;
+  if (result.status == RegistrationStatus::registered) return;
   if (result.status == RegistrationStatus::refused) {
     joint.search_one(index);
     joint.align_one(index, false);
-  } else if (result.status == RegistrationStatus::too_little_overlap) {
+  } else {
     frame.T = frame.T_reported;
     joint.align_one(index, true);
   }

@@ -36,7 +36,7 @@ typedef struct vg_sensor {
   double working_distance;     /* where it is meant to be used [m] */
   int32_t noise_model;         /* VG_NOISE_ */
   double noise[6];             /* the model's parameters; those beyond must be 0 */
-  double pose_sigma[2];        /* of the poses of frames [m], [rad]; 0: exact. Counted into readings */
+  double pose_sigma[2];        /* of the poses of frames [m], [rad]; 0: exact */
 } vg_sensor;
 VG_API void vg_sensor_init(vg_sensor* sensor, size_t struct_size); /* all 0: nothing is valid yet */
 
