@@ -140,7 +140,15 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
   const Lengths lengths{std::min(config.normal_radius * unit, kMaxReach),
                         config.column_radius * unit, config.min_distance * unit,
                         kSupportRadius * unit};
-  const std::vector<std::pair<std::size_t, unsigned>> occupied = bricks.occupied_with_belief();
+  const Pose& T_world_grid = grid.T_world_grid();
+  std::vector<std::pair<std::size_t, unsigned>> occupied = bricks.occupied_with_belief();
+  if (config.where) {
+    std::erase_if(occupied, [&](const auto& at) {
+      const Index3 voxel = offset_voxel(bricks.origin(at.first), at.second);
+      const Eigen::Vector3d center = Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5;
+      return !config.where(T_world_grid * Eigen::Vector3d(center * V));
+    });
+  }
 
   ThreadPool pool(exec.num_threads);
   std::vector<Seed> seeds(occupied.size());
@@ -193,12 +201,12 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
   });
 
   const double floor = config.floor_sigma.value_or(V / std::sqrt(12.0));
-  const Eigen::Matrix3d R = grid.T_world_grid().rotation();
+  const Eigen::Matrix3d R = T_world_grid.rotation();
   std::vector<FusedPoint> points;
   points.reserve(kept.size());
   for (const std::size_t i : kept) {
     const Seed& seed = seeds[i];
-    const Eigen::Vector3d p = grid.T_world_grid() * (seed.position * V);
+    const Eigen::Vector3d p = T_world_grid * (seed.position * V);
     const Eigen::Vector3d n = R * seed.normal;
     const Eigen::Matrix3d covariance =
         R * seed.covariance.matrix() * R.transpose() +

@@ -15,6 +15,7 @@
 
 #include "apps/planner/registration_scene.hpp"
 #include "core/expect_error.hpp"
+#include "viewgain/planner/map_registration.hpp"
 
 namespace viewgain {
 namespace {
@@ -71,6 +72,35 @@ TEST(RegisterFrame, WithoutNoiseThePoseIsRecovered) {
     ++cases;
   }
   EXPECT_EQ(cases, 10);
+}
+
+TEST(RegisterFrame, AMapsPointsThatTheFrameMayShowAreEnough) {
+  const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, test::views_round());
+  const MapRegistration registration(scene.sensor, {}, prior_of({}), {2});
+  int cases = 0;
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const DepthFrame frame = scene.see(true_pose(), 1000 + seed);
+    const Pose reported = test::disturbed(true_pose(), kShift, kTurn, seed);
+    const FrameRegistration whole = registered(scene, frame, reported);
+    const FrameRegistration part = registration.register_frame(scene.grid, frame, reported);
+    ASSERT_EQ(part.status, RegistrationStatus::registered) << part.reason;
+    EXPECT_NEAR(static_cast<double>(part.pairs), static_cast<double>(whole.pairs),
+                0.01 * static_cast<double>(whole.pairs));
+    const test::PoseError error = test::error_of(part.T_world_camera, whole.T_world_camera);
+    EXPECT_LT(error.translation, 2e-4);
+    EXPECT_LT(error.rotation, 0.02 * kDegree);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5);
+
+  DepthFrame nothing = scene.see(true_pose());
+  std::fill(nothing.depth.begin(), nothing.depth.end(), DepthFrame::kInvalid);
+  EXPECT_EQ(registration.register_frame(scene.grid, nothing, true_pose()).status,
+            RegistrationStatus::too_little_overlap);
+  nothing.depth.pop_back();
+  test::expect_error(ErrorCode::invalid_argument, "", [&] {
+    static_cast<void>(registration.register_frame(scene.grid, nothing, true_pose()));
+  });
 }
 
 TEST(RegisterFrame, WithNoiseItIsRecoveredToMillimetresAndKnowsHowWell) {

@@ -125,6 +125,27 @@ TEST(FusedPoints, PooledPointsLieOnThePlaneOncePerPlaceAndPointAtTheCamera) {
   EXPECT_GT(pairs, 100'000U);
 }
 
+TEST(FusedPoints, WhereCutsOutAPartAndFarFromItsBorderChangesNothing) {
+  const BeliefGrid grid = noisy_plane(0.003125, 10);
+  const std::vector<FusedPoint> all = fused_points(grid);
+  FusedPointsConfig half;
+  half.where = [](const Vector3d& p) { return p.x() < 0; };
+  const std::vector<FusedPoint> part = fused_points(grid, half, {2});
+  const double border = 10 * grid.voxel_size();
+  const auto deep = [&](const std::vector<FusedPoint>& points) {
+    std::vector<std::array<double, 3>> positions;
+    for (const FusedPoint& p : points) {
+      EXPECT_TRUE(&points == &all || p.position[0] < border);
+      if (p.position[0] < -border) positions.push_back(p.position);
+    }
+    return positions;
+  };
+  EXPECT_GT(deep(part).size(), 100U);
+  EXPECT_EQ(deep(part), deep(all));
+  half.where = [](const Vector3d&) { return false; };
+  EXPECT_TRUE(fused_points(grid, half).empty());
+}
+
 TEST(FusedPoints, PerVoxelIsTheFusedPositionOfEachOccupiedVoxel) {
   const BeliefGrid grid = noisy_plane(0.003125, 3);
   FusedPointsConfig config;

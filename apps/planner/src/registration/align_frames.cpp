@@ -92,6 +92,7 @@ struct FrameAlignment::Impl {
                                          const std::vector<std::uint8_t>& is_paired,
                                          double sigmas) const;
   [[nodiscard]] Verdict verdict_of(std::size_t index) const;
+  [[nodiscard]] double residual_before(std::size_t index) const;
   void align_one(std::size_t index);
   bool register_frame(std::size_t index);
   void settle();
@@ -160,15 +161,13 @@ Verdict FrameAlignment::Impl::verdict_of(std::size_t index) const {
   result.readings = readings;
   result.iterations = frame.iterations;
   std::vector<std::uint8_t> is_paired(readings, 0), by_trusted(readings, 0);
-  PairSums after, before;
+  PairSums after;
   for (std::size_t j = 0; j < joint.frames.size(); ++j) {
     const JointFrame& other = joint.frames[j];
     if (j == index || !other.is_in) continue;
     const PairGates gates = joint.gates_of(other);
     after += detail::pair_sums(frame.seen, frame.T, gates, other.seen, other.T, gates,
                                detail::kLevels - 1, other.is_trusted ? &by_trusted : &is_paired);
-    before += detail::pair_sums(frame.seen, frame.T_reported, gates, other.seen, other.T, gates,
-                                detail::kLevels - 1);
   }
   const auto count = [](const std::vector<std::uint8_t>& marks) {
     return static_cast<std::size_t>(std::count(marks.begin(), marks.end(), std::uint8_t{1}));
@@ -176,7 +175,6 @@ Verdict FrameAlignment::Impl::verdict_of(std::size_t index) const {
   const double all = static_cast<double>(std::max<std::size_t>(readings, 1));
   const bool is_held = static_cast<double>(count(by_trusted)) / all >= config.min_overlap;
   for (std::size_t i = 0; i < readings; ++i) is_paired[i] |= by_trusted[i];
-  result.residual_before = before.residual();
   result.residual_after = after.residual();
   const detail::Directions directions =
       detail::directions_of(JointAlignment::of_single_pairs(after.agreed), frame.sigmas);
@@ -201,6 +199,20 @@ Verdict FrameAlignment::Impl::verdict_of(std::size_t index) const {
   detail::judge(result, found.readings, found.surface, config, frame.sigmas, "another frame");
   if (index == 0) result.status = RegistrationStatus::registered, result.reason.clear();
   return {result, is_held || index == 0};
+}
+
+// Of the pairs at the reported pose [m].
+double FrameAlignment::Impl::residual_before(std::size_t index) const {
+  const JointFrame& frame = joint.frames[index];
+  PairSums before;
+  for (std::size_t j = 0; j < joint.frames.size(); ++j) {
+    const JointFrame& other = joint.frames[j];
+    if (j == index || !other.is_in) continue;
+    const PairGates gates = joint.gates_of(other);
+    before += detail::pair_sums(frame.seen, frame.T_reported, gates, other.seen, other.T, gates,
+                                detail::kLevels - 1);
+  }
+  return before.residual();
 }
 
 // Against those that are trusted; where these show too little of it, against all.
@@ -265,6 +277,8 @@ void FrameAlignment::Impl::settle() {
   pool.for_each_chunk(n, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (joint.frames[i].is_in) verdicts[i] = verdict_of(i);
+      (joint.frames[i].is_in ? verdicts[i].result : results[i]).residual_before =
+          residual_before(i);
     }
   });
   for (std::size_t i = 0; i < n; ++i) {

@@ -66,6 +66,7 @@ class JointAlignment {
   double length_;
   double min_cosine_;
   ThreadPool& pool_;
+  double widening_;   // of the variances that readings give, as the last align_all() found it
   double scale_ = 1;  // of the priors' variances
 };
 

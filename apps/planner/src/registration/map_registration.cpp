@@ -3,26 +3,41 @@
 #include "viewgain/planner/map_registration.hpp"
 
 #include "registration/registration_config.hpp"
+#include "registration/seen_space.hpp"
 #include "viewgain/grid/fused_points.hpp"
+#include "viewgain/grid/pooling.hpp"
 
 namespace viewgain {
+namespace {
+
+constexpr double kMargin = 10;  // pooling lengths beyond what the frame shows: readings have some
+
+}  // namespace
 
 MapRegistration::MapRegistration(const Sensor& sensor, const MapModelConfig& map,
                                  const PosePrior& sigmas, const ExecConfig& exec)
-    : obstacles_(map.obstacles, sensor, exec),
+    : sensor_(sensor),
+      rays_(sensor.camera.ray_table()),
+      config_(detail::registration_config(map)),
+      obstacles_(map.obstacles, sensor, exec),
       sigmas_(sigmas),
       exec_(exec),
-      registrar_(sensor, detail::registration_config(map), exec) {
+      registrar_(sensor, config_, exec) {
   if (map.jump_edges) filter_.emplace(sensor.camera, *map.jump_edges);
 }
 
 FrameRegistration MapRegistration::register_frame(const BeliefGrid& grid, DepthFrame frame,
                                                   const Pose& T_reported) const {
+  check_frame_size(frame, sensor_.camera);
   if (filter_) filter_->apply(frame);
   obstacles_.mark(frame, T_reported);
   PosePrior prior = sigmas_;
   prior.T_world_camera = T_reported;
-  return registrar_.register_frame(grid, fused_points(grid, {}, exec_), frame, prior);
+  const detail::SeenSpace seen(frame, sensor_, rays_, prior, config_.max_sigmas,
+                               kMargin * pooling_of(grid.snapshot()).length);
+  FusedPointsConfig points;
+  points.where = [&](const Eigen::Vector3d& p_world) { return seen.contains(p_world); };
+  return registrar_.register_frame(grid, fused_points(grid, points, exec_), frame, prior);
 }
 
 }  // namespace viewgain

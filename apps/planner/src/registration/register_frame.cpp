@@ -49,6 +49,27 @@ constexpr int kMaxIterations = 15;                                    // of a le
 // A step this short ends a level, in sigmas of what the pose is known to.
 constexpr std::array<double, detail::kLevels> kStill{0.5, 0.2, 0.05};
 
+// How much more residuals say of the pose than is true, along what is held: neighbours' errors are
+// alike, see FrameRegistration::covariance.
+double alikeness_of(const PairSums& sums, const std::vector<Vector6>& cubes,
+                    const Vector6& sigmas) {
+  const Matrix6 held = held_axes(directions_of(sums.agreed, sigmas));
+  double widening = 0;
+  int count = 0;
+  for (int k = 0; k < 6; ++k) {
+    if (held.col(k).isZero()) continue;
+    const Vector6 axis = sigmas.asDiagonal() * held.col(k);
+    double variance = 0;
+    for (const Vector6& cube : cubes) {
+      const double sum = axis.dot(cube);
+      variance += sum * sum;
+    }
+    widening += variance / axis.dot(sums.information * axis);
+    ++count;
+  }
+  return count > 0 ? widening / count : 0.0;
+}
+
 // What Gauss and Newton solve, in the prior's sigmas, along the motions that the frame holds.
 class Problem {
  public:
@@ -64,13 +85,23 @@ class Problem {
     return std::sqrt(step.dot(whole * step)) >= still;
   }
 
-  void estimate_scale(const Pose& T, const PairSums& sums) {
+  // What is known only where the frame fits: how alike errors are, and how far poses may be off.
+  void estimate(const Pose& T, const PairSums& sums, const std::vector<Vector6>& cubes) {
+    alikeness_ = std::max(1.0, alikeness_of(sums, cubes, sigmas_));
     const Terms terms = terms_of(T, sums);
-    scale_ = detail::likeliest_scale(terms.information / kLeastWidening,
-                                     terms.gradient / kLeastWidening, terms.away);
+    const double more = widening() / alikeness_;
+    scale_ = detail::likeliest_scale(terms.information / more, terms.gradient / more, terms.away);
+  }
+
+  [[nodiscard]] Matrix6 covariance(const PairSums& sums) const {
+    const Matrix6 whole =
+        terms_of(T_reported_, sums).information * (alikeness_ / widening()) + Matrix6::Identity();
+    const Matrix6 scaled = whole.llt().solve(Matrix6::Identity());
+    return sigmas_.asDiagonal() * scaled * sigmas_.asDiagonal();
   }
 
  private:
+  [[nodiscard]] double widening() const { return std::max(kLeastWidening, alikeness_); }
   struct Terms {
     Matrix6 information;
     Vector6 gradient, away;
@@ -78,38 +109,15 @@ class Problem {
   [[nodiscard]] Terms terms_of(const Pose& T, const PairSums& sums) const {
     const Matrix6 held = held_axes(directions_of(sums.agreed, sigmas_));
     const Matrix6 onto = held * held.transpose() * sigmas_.asDiagonal();
-    return {onto * sums.information * onto.transpose(), onto * sums.gradient,
-            difference(T, T_reported_).cwiseQuotient(sigmas_)};
+    return {onto * sums.information * onto.transpose() / alikeness_,
+            onto * sums.gradient / alikeness_, difference(T, T_reported_).cwiseQuotient(sigmas_)};
   }
 
   Pose T_reported_;
   Vector6 sigmas_;
-  double scale_ = 1;  // of the prior's variances
+  double scale_ = 1;      // of the prior's variances
+  double alikeness_ = 1;  // by which residuals count less
 };
-
-// The covariance of the pose, see FrameRegistration.
-Matrix6 covariance_of(const PairSums& sums, const std::vector<Vector6>& cubes, const Matrix6& held,
-                      const Vector6& sigmas) {
-  const Matrix6 information = sigmas.asDiagonal() * sums.information * sigmas.asDiagonal();
-  double widening = 0;
-  int count = 0;
-  for (int k = 0; k < 6; ++k) {
-    const Vector6 axis = held.col(k);
-    if (axis.isZero()) continue;
-    double variance = 0;
-    for (const Vector6& cube : cubes) {
-      const double sum = axis.dot(sigmas.asDiagonal() * cube);
-      variance += sum * sum;
-    }
-    widening += variance / axis.dot(information * axis);
-    ++count;
-  }
-  const double scale = std::max(kLeastWidening, count > 0 ? widening / count : 0.0);
-  const Matrix6 onto = held * held.transpose();
-  const Matrix6 whole = onto * information * onto / scale + Matrix6::Identity();
-  const Matrix6 scaled = whole.llt().solve(Matrix6::Identity());
-  return sigmas.asDiagonal() * scaled * sigmas.asDiagonal();
-}
 
 void put(const Matrix6& covariance, std::array<double, 36>& out) {
   for (int r = 0; r < 6; ++r) {
@@ -217,7 +225,7 @@ FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
   };
   for (int level = 0; level < detail::kLevels; ++level) align(level);
   pairs.find(T, detail::kLevels - 1, gates);
-  problem.estimate_scale(T, pairs.sums(T));
+  problem.estimate(T, pairs.sums(T), pairs.sums_by_cube(T));
   align(detail::kLevels - 1);
 
   pairs.find(T, detail::kLevels - 1, gates);
@@ -249,7 +257,7 @@ FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
   judge(result, {result.pairs, against}, {}, config, sigmas, "the map");
   if (result.status == RegistrationStatus::registered) {
     result.T_world_camera = T;
-    put(covariance_of(sums, pairs.sums_by_cube(T), held, sigmas), result.covariance);
+    put(problem.covariance(sums), result.covariance);
   }
   return result;
 }

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -47,6 +49,9 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
   /// F = floor_sigma² I, the resolution floor that no number of readings takes away [m]; default
   /// 1/√12 of the edge of the cubes that are pooled (a voxel, where the footprint is no longer).
   std::optional<double> floor_sigma{};
+  /// Points begin only at voxels, or cubes, of whose centre [m, world frame] this is true; empty:
+  /// at all. Those within some lengths of its border may differ from those of the whole map.
+  std::function<bool(const Eigen::Vector3d&)> where{};
 };
 
 /// The surface points of a map, with honest covariances. A pooled
@@ -56,8 +61,8 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
 /// readings is within min_distance. Its covariance is that of this mean, in which every reading
 /// counts once; a point of per_voxel has Λ_v⁻¹. Both with F. A belief whose fused position is more
 /// than 24 voxels away from its voxel makes no point. Deterministic for any number of threads.
-/// Costs about 1 µs a voxel that was ever hit. Throws Error(invalid_argument) naming a setting that
-/// is negative, not finite or too large.
+/// Costs about 1 µs a voxel that was ever hit, where config.where says so, and a tenth elsewhere.
+/// Throws Error(invalid_argument) naming a setting that is negative, not finite or too large.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<FusedPoint> fused_points(
     const BeliefGrid& grid, const FusedPointsConfig& config = {}, const ExecConfig& exec = {});
 

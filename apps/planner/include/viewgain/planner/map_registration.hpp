@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/exec_config.hpp"
@@ -28,11 +30,15 @@ class VIEWGAIN_EXPORT MapRegistration {
   MapRegistration(const Sensor& sensor, const MapModelConfig& map, const PosePrior& sigmas,
                   const ExecConfig& exec = {});
 
-  /// See FrameRegistrar::register_frame(). Costs fused_points() of the grid besides.
+  /// See FrameRegistrar::register_frame(). Costs fused_points() besides, of the part of the grid
+  /// that the frame may show.
   [[nodiscard]] FrameRegistration register_frame(const BeliefGrid& grid, DepthFrame frame,
                                                  const Pose& T_reported) const;
 
  private:
+  Sensor sensor_;
+  std::vector<Eigen::Vector3d> rays_;
+  RegistrationConfig config_;
   std::optional<JumpEdgeFilter> filter_;
   ObstacleView obstacles_;
   PosePrior sigmas_;

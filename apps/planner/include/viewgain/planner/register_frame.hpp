@@ -108,10 +108,12 @@ struct VIEWGAIN_EXPORT FrameRegistration {
 /// therefore Σ w (J_t J_sᵀ + J_s J_tᵀ) / 2, J_t with the map's normals and J_s with the frame's
 /// own, whose errors are independent. Where that is less than the prior's the direction is free.
 ///
-/// The covariance is that of independent readings times how alike neighbours' residuals are: the
+/// Neighbours' errors are alike, so that residuals say less than if they were independent: by the
 /// mean over the directions of the variance of the sums of J w e over cubes of 10 pooling lengths,
-/// over what independent readings would give; at least times 3, since errors that the map's points
-/// share do not show in residuals.
+/// over what independent ones would give (a sandwich estimate, Huber 1967). Where that is over 1,
+/// as with a real camera's systematic errors, the weights of the last level are divided by it. The
+/// covariance is that of independent readings times it, and at least times 3, since errors that the
+/// map's points share do not show in residuals.
 ///
 /// Thread safety: const members may run from many threads at once. Deterministic: the same bits for
 /// any number of threads. 10 to 60 ms a frame on two cores.
