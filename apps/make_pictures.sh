@@ -55,7 +55,7 @@ for picture in "${wanted[@]}"; do
     depth_images)
       examples=$PWD/apps/examples
       (cd "$work" && MPLBACKEND=agg "$python" "$examples/depth_images.py")
-      for part in gains why; do cp "$work/$part.png" "apps/docs/figures/depth_images_$part.png"; done ;;
+      for part in gains known why; do cp "$work/$part.png" "apps/docs/figures/depth_images_$part.png"; done ;;
     *) echo "apps/make_pictures.sh: no picture $picture" >&2; exit 2 ;;
   esac
 done

@@ -38,7 +38,12 @@ MappedPoses::MappedPoses(const std::filesystem::path& path) : name_(path.string(
   if (header.fields.front().name.empty() && header.fields.size() == 1) {
     if (header.shape.size() != 3 || header.shape[1] != 4 || header.shape[2] != 4 ||
         header.fields.front().type != "<f8") {
-      refuse("is neither rows with tx, ty, tz, qx, qy, qz, qw nor (n, 4, 4) matrices of <f8");
+      std::string shape;
+      for (const std::uint64_t n : header.shape) shape += std::to_string(n) + ", ";
+      if (header.shape.size() > 1) shape.resize(shape.size() - 2);
+      refuse("is (" + shape + ") of " + header.fields.front().type +
+             ", neither a structured array with tx, ty, tz, qx, qy, qz, qw nor (n, 4, 4) matrices "
+             "of <f8");
     }
     numbers_ = 16;
     bytes *= 16;

@@ -17,6 +17,7 @@ namespace viewgain::app {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 20U;
+constexpr auto kLastStatus = static_cast<std::uint8_t>(ViewStatus::camera_in_occupied);
 constexpr std::array kTypes{ColumnType::row, ColumnType::real, ColumnType::count,
                             ColumnType::status};
 
@@ -91,7 +92,13 @@ void PartReader::open_npy() {
   in_.seekg(0, std::ios::end);
   const auto size = static_cast<std::uint64_t>(in_.tellg());
   const std::uint64_t data_end = header.data_offset + rows * header.row_bytes;
-  if (size <= data_end) {
+  if (size == data_end) {
+    fail(
+        "does not say which rows it has (lines of # behind its rows); score --shard or --rows "
+        "makes "
+        "parts");
+  }
+  if (size < data_end) {
     fail("is cut off: " + std::to_string(size) + " bytes, its rows alone need " +
          std::to_string(data_end));
   }
@@ -167,7 +174,7 @@ void PartReader::parse_row(std::string_view line) {
       const std::string_view word(at, static_cast<std::size_t>(std::find(at, end, ',') - at));
       std::uint8_t code = 0;
       while (word != view_status_name(static_cast<ViewStatus>(code))) {
-        if (code++ == static_cast<std::uint8_t>(ViewStatus::camera_in_occupied)) {
+        if (code++ == kLastStatus) {
           fail("there is no status " + quoted(word));
         }
       }
@@ -178,8 +185,15 @@ void PartReader::parse_row(std::string_view line) {
   if (at != end) fail("has too many columns");
 }
 
-void PartReader::check_number() {
+void PartReader::check_row() {
   const auto number = value_at<std::int64_t>(row_.bytes.data());
+  for (std::size_t offset = 0; const Column& column : columns_) {
+    const auto code = static_cast<std::uint8_t>(row_.bytes[offset]);
+    if (column.type == ColumnType::status && code > kLastStatus) {
+      fail("row " + std::to_string(number) + " has no known status: " + std::to_string(code));
+    }
+    offset += size_of(column.type);
+  }
   const bool is_inside = number >= 0 && static_cast<std::uint64_t>(number) >= head_.rows.begin &&
                          static_cast<std::uint64_t>(number) < head_.rows.end;
   if (!is_inside || (!head_.is_best && number <= last_)) {
@@ -207,7 +221,7 @@ const char* PartReader::next() {
     if (read_ == head_.scored) fail("has more rows than the " + std::to_string(read_) + " it says");
     parse_row(line);
   }
-  check_number();
+  check_row();
   ++read_;
   return row_.bytes.data();
 }

@@ -39,7 +39,7 @@ class PartReader {
   [[nodiscard]] bool fill();  // more bytes into the buffer; false at the end
   [[nodiscard]] bool next_line(std::string_view& line);
   void parse_row(std::string_view line);
-  void check_number();
+  void check_row();
 
   std::string name_;
   std::ifstream in_;

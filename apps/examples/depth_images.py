@@ -8,6 +8,7 @@ import viewgain
 camera = viewgain.PinholeCamera(160, 120, fx=140.0, fy=140.0, cx=79.5, cy=59.5)
 sensor = viewgain.Sensor(camera, min_range=0.2, max_range=3.0, working_distance=0.6,
                          noise=viewgain.StereoNoise(subpixel=0.1, baseline=0.05))
+noise = np.random.default_rng(1)
 
 
 def see(T_world_camera, ball=0.1, wall=-0.5):
@@ -20,24 +21,25 @@ def see(T_world_camera, ball=0.1, wall=-0.5):
     with np.errstate(divide="ignore"):
         to_wall = (wall - eye[1]) / rays[..., 1]
     depth = np.minimum(np.where(to_ball > 0, to_ball, np.inf), np.where(to_wall > 0, to_wall, np.inf))
-    return depth + np.random.default_rng(1).normal(0, 0.001, depth.shape)
+    return depth + noise.normal(0, 0.001, depth.shape)  # other noise in each frame
 
 
 start = viewgain.look_at([0.0, 0.6, 0.2], [0.0, 0.0, 0.0])
-viewgain.plot.depth(see(start)).figure.savefig("depth.png")
+frame = see(start)
+viewgain.plot.depth(frame).figure.savefig("depth.png")
 
 # %% Map: all is unknown until frames go in.
 grid = viewgain.BeliefGrid(voxel_size=0.005, workspace=[[-0.15, -0.15, -0.15], [0.15, 0.15, 0.15]], sensor=sensor)
 integrator = viewgain.FrameIntegrator(sensor)
-print(integrator.integrate(grid, see(start), start))
+print(integrator.integrate(grid, frame, start))
 print(grid)
 
 # %% Candidates: 500 poses round the ball, less those that the robot cannot reach or in which the camera would collide.
-poses = viewgain.sphere_poses(500, 0.5)
+sphere = viewgain.sphere_poses(500, 0.5)
 scene = viewgain.VoxelScene(grid)
-reach = viewgain.ReachRegion(half_spaces=[[0, 1, 0, -0.35]])  # not behind the wall
-possible = viewgain.FeasibilityChecker(scene, reach=reach).feasible(poses)
-poses = poses[possible]
+reach = viewgain.ReachRegion(half_spaces=[[0, 1, 0, -0.35]])  # y >= -0.35 m: no nearer to the wall than 15 cm
+checker = viewgain.FeasibilityChecker(scene, reach=reach)     # a body of 6.5 x 6.5 x 7.6 cm, as no body_size is given
+poses = sphere[checker.feasible(sphere)]
 print(f"{len(poses)} of 500 are possible")
 
 # %% Gains: how much is each expected to add?
@@ -46,21 +48,29 @@ gains = evaluator.evaluate(poses)
 viewgain.plot.gains(poses, gains, label="new surface [m²]").figure.savefig("gains.png")
 
 # %% Why: what the best view sees of the map, and where its gain comes from.
-best = poses[np.argmax(gains)]
+best = poses[np.nanargmax(gains)]  # a bad pose gains NaN, which np.argmax would choose
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.5), layout="constrained")
 viewgain.plot.depth(evaluator.depth(best), axes=left)
-viewgain.plot.contributions(viewgain.GainEvaluator(scene, sensor), best, axes=right)
+viewgain.plot.contributions(viewgain.GainEvaluator(scene, sensor, gain="paper"), best, axes=right)
 figure.savefig("why.png")
 
-# %% Go there, and so on: four views, and how much of the box they leave unknown.
-pose, known = best, []
+# %% Go there, and so on: four more views, and how much of the box is known after each of the five.
+def share_known():
+    return 1 - grid.statistics().unknown / np.prod(grid.shape)
+
+
+pose, taken, known = best, [start], [share_known()]
 for _ in range(4):
     integrator.integrate(grid, see(pose), pose)
-    known.append(1 - grid.statistics().unknown / np.prod(grid.shape))
+    taken.append(pose)
+    known.append(share_known())
     scene = scene.update(grid)
+    checker = viewgain.FeasibilityChecker(scene, reach=reach)  # what is possible changes with the map
+    poses = sphere[checker.feasible(sphere, taken)]
     evaluator = evaluator.with_scene(scene)
     pose = poses[evaluator.race(poses, 1)[0]]
 axes = viewgain.plot.coverage(known, label="of the workspace known")
+axes.set_xticks(range(1, len(known) + 1))
 axes.set_ylabel("known [%]")
 axes.figure.savefig("known.png")
 print(f"{100 * known[-1]:.0f} % of the workspace known")

@@ -7,6 +7,7 @@ import numpy as np
 import viewgain
 
 matplotlib.use("Agg")
+import matplotlib.patches
 import matplotlib.pyplot as plt
 
 # The world to explore, which the planner does not see: a hollow box with a hole in its lid.
@@ -35,11 +36,17 @@ for view in range(8):
     pose = candidates[best]
     print(f"view {view}: {unknown[-1]} voxels unknown, next: pose {best}, {gains[-1]:.0f} nat")
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(9, 4))
-left.imshow(known.states()[:, n // 2].T, origin="lower", cmap="viridis")
-left.set_title("unknown, free, occupied: a section")
-right.plot(unknown, "o-", label="unknown voxels")
-right.plot(gains, "s-", label="expected gain of the next view [nat]")
-right.set_xlabel("view")
-right.legend()
+figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
+section = left.imshow(known.states()[:, n // 2].T, origin="lower", cmap="viridis", vmin=0, vmax=2)
+left.legend(handles=[matplotlib.patches.Patch(facecolor=section.cmap(section.norm(state)), edgecolor="black", label=name)
+                     for state, name in enumerate(["unknown", "free", "occupied"])],
+            loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=3)
+left.set(title="a section through the map", xlabel="x [voxel]", ylabel="z [voxel]")
+right.plot(unknown, "o-", color="tab:blue")
+right.set(title="what the views found out", xlabel="view", ylim=0)
+right.set_ylabel("unknown [voxel]", color="tab:blue")
+of_gains = right.twinx()  # nats have an axis of their own
+of_gains.plot(gains, "s-", color="tab:orange")
+of_gains.set_ylim(0)
+of_gains.set_ylabel("expected gain of the next view [nat]", color="tab:orange")
 figure.savefig(sys.argv[1])

@@ -52,15 +52,10 @@ FollowedMap::FollowedMap(const Sensor& sensor, std::optional<std::array<double, 
       model_(config.gain.model),
       state_(std::move(state)),
       rays_(sensor.camera.ray_table()),
-      planner_(planner_of(sensor, body, config, state_, saved, exec)) {
+      planner_(planner_of(sensor, body, config, state_, saved, exec)),
+      prior_(sigmas) {
   const BoundaryViewsConfig boundary = default_boundary(sensor, planner_.grid().voxel_size());
   planner_.add_generation(std::make_shared<BoundaryGeneration>(planner_.map(), boundary, exec));
-  if (!sigmas) return;
-  MapModelConfig map;
-  map.integration.support_plane = config.support_plane;
-  map.jump_edges = config.jump_edges;
-  map.obstacles = config.obstacles;
-  registration_.emplace(sensor, map, *sigmas, exec);
 }
 
 bool FollowedMap::shows_workspace(const WatchedFrame& frame) const {
@@ -81,14 +76,11 @@ bool FollowedMap::shows_workspace(const WatchedFrame& frame) const {
   return false;
 }
 
-FrameRegistration FollowedMap::registered(const WatchedFrame& frame) const {
-  if (registration_) {
-    return registration_->register_frame(planner_.grid(), frame.frame, frame.T_world_camera);
-  }
-  FrameRegistration as_reported;
-  as_reported.status = RegistrationStatus::registered;
-  as_reported.T_world_camera = frame.T_world_camera;
-  return as_reported;
+std::optional<FrameRegistration> FollowedMap::register_in(const WatchedFrame& frame) const {
+  if (!prior_) return std::nullopt;
+  PosePrior prior = *prior_;
+  prior.T_world_camera = frame.T_world_camera;
+  return planner_.register_frame(frame.frame, prior);
 }
 
 AddedView FollowedMap::add(const WatchedFrame& frame, const Pose& T_world_camera) {

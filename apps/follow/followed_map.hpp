@@ -15,7 +15,6 @@
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/frame_watch.hpp"
-#include "viewgain/planner/map_registration.hpp"
 #include "viewgain/planner/register_frame.hpp"
 #include "viewgain/planner/view_planner.hpp"
 
@@ -47,8 +46,8 @@ class FollowedMap {
   /// Does any reading of the frame lie in the workspace?
   [[nodiscard]] bool shows_workspace(const WatchedFrame& frame) const;
 
-  /// What registering the frame against the map comes to; as it was reported without sigmas.
-  [[nodiscard]] FrameRegistration registered(const WatchedFrame& frame) const;
+  /// What registering the frame against the map comes to; nothing without sigmas.
+  [[nodiscard]] std::optional<FrameRegistration> register_in(const WatchedFrame& frame) const;
 
   AddedView add(const WatchedFrame& frame, const Pose& T_world_camera);
 
@@ -69,7 +68,7 @@ class FollowedMap {
   std::filesystem::path state_;
   std::vector<Eigen::Vector3d> rays_;  // of the pixels, (x, y, 1)
   ViewPlanner planner_;
-  std::optional<MapRegistration> registration_;
+  std::optional<PosePrior> prior_;  // its sigmas
 };
 
 }  // namespace viewgain::app

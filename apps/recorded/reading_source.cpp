@@ -37,10 +37,11 @@ class FrameSource : public ReadingSource {
         parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided == "on");
     if (config) filter_.emplace(folder_.sensor().camera, *config);
     if (options.calibrate_hazard == "on") calibration_.emplace(folder_.sensor(), support_plane_);
-    if (const auto sigmas = registration_prior(options.registration)) {
+    prior_ = registration_prior(options.registration);
+    if (prior_) {
       MapModelConfig map;  // flying pixels are taken out when the frame is loaded
       map.integration = config_of(options);
-      registration_.emplace(folder_.sensor(), map, *sigmas, ExecConfig{options.common.threads});
+      registration_.emplace(folder_.sensor(), map, ExecConfig{options.common.threads});
     }
   }
 
@@ -64,7 +65,8 @@ class FrameSource : public ReadingSource {
   }
   std::optional<FrameRegistration> register_in(const BeliefGrid& grid) override {
     if (!registration_) return std::nullopt;
-    FrameRegistration result = registration_->register_frame(grid, loaded_.frame, T_world_camera_);
+    prior_->T_world_camera = T_world_camera_;
+    FrameRegistration result = registration_->register_frame(grid, loaded_.frame, *prior_);
     T_world_camera_ = result.T_world_camera;
     return result;
   }
@@ -85,6 +87,7 @@ class FrameSource : public ReadingSource {
   std::optional<double> support_plane_;
   std::optional<JumpEdgeFilter> filter_;
   std::optional<HazardCalibration> calibration_;
+  std::optional<PosePrior> prior_;  // its sigmas; of the frame that was registered last
   std::optional<MapRegistration> registration_;
   FrameIntegrator integrator_;
   FrameFolder::MaskedFrame loaded_;

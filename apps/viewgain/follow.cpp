@@ -199,12 +199,13 @@ class Following {
       watch_->refuse(frame, "outside");
       return say(frame.image.string() + ": no reading lies in the workspace (outside); left out");
     }
-    const FrameRegistration registration = map_->registered(frame);
-    if (registration.status == RegistrationStatus::refused) {
+    const std::optional<FrameRegistration> registration = map_->register_in(frame);
+    if (registration && registration->status == RegistrationStatus::refused) {
       watch_->refuse(frame, "contradicts");
-      return say(frame.image.string() + ": " + registration.reason + " (contradicts); left out");
+      return say(frame.image.string() + ": " + registration->reason + " (contradicts); left out");
     }
-    const AddedView added = map_->add(frame, registration.T_world_camera);
+    const AddedView added =
+        map_->add(frame, registration ? registration->T_world_camera : frame.T_world_camera);
     ++added_;
     has_news_ = true;
     if (options_.common.quiet) return;

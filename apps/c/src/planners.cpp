@@ -210,6 +210,9 @@ void vg_planner_config_init(vg_planner_config* config, size_t struct_size) {
 void vg_planner_view_init(vg_planner_view* view, size_t struct_size) {
   initialise(view, struct_size);
 }
+void vg_registration_init(vg_registration* found, size_t struct_size) {
+  initialise(found, struct_size);
+}
 
 vg_status vg_planner_create(const vg_sensor* sensor, const vg_planner_config* config,
                             vg_planner** planner) {
@@ -249,6 +252,33 @@ vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* a
                          .total_entropy_removed = view.progress.entropy_removed,
                          .new_area = view.update.new_area,
                          .total_area = view.progress.surface_area});
+  });
+}
+
+vg_status vg_planner_register(vg_planner* planner, const float* depth, const float* amplitude,
+                              const double T_reported[16], double sigma_translation,
+                              double sigma_rotation, vg_registration* found) {
+  return guarded([&] {
+    const ViewPlanner& own = live(planner);
+    require(depth, "depth");
+    require(T_reported, "T_reported");
+    require(found, "found");
+    require_struct(found, "vg_registration");
+    const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
+    const FrameRegistration own_found =
+        own.register_frame(frame, {rigid_pose_of(T_reported), sigma_translation, sigma_rotation});
+    vg_registration result{};
+    result.status = static_cast<int32_t>(own_found.status);
+    result.free_directions = static_cast<int32_t>(own_found.free_directions.size());
+    write_pose(own_found.T_world_camera, result.T_world_camera);
+    std::copy(own_found.covariance.begin(), own_found.covariance.end(), result.covariance);
+    result.translation = own_found.translation;
+    result.rotation = own_found.rotation;
+    result.residual_before = own_found.residual_before;
+    result.residual_after = own_found.residual_after;
+    result.overlap = own_found.overlap;
+    result.contradiction = own_found.contradiction;
+    write_struct(found, result);
   });
 }
 

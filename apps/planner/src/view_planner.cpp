@@ -14,6 +14,7 @@
 #include "viewgain/core/stop_rules.hpp"
 #include "viewgain/core/stopwatch.hpp"
 #include "viewgain/core/text.hpp"
+#include "viewgain/planner/map_registration.hpp"
 
 namespace viewgain {
 namespace {
@@ -73,6 +74,7 @@ struct ViewPlanner::Impl {
   std::optional<Proposal> proposal;
   std::vector<DroppedCandidate> dropped;
   StageSeconds seconds;
+  std::optional<MapRegistration> registration;  // once it is asked for
 
   Impl(const PlannerConfig& config_in, const ExecConfig& exec_in, MapModel map_in)
       : config(config_in),
@@ -245,6 +247,15 @@ void ViewPlanner::add_generation(std::shared_ptr<ViewpointGeneration> generation
   if (!generation) fail("the generation is null");
   impl_->generations.push_back(std::move(generation));
   impl_->forget_proposal();
+}
+
+FrameRegistration ViewPlanner::register_frame(const DepthFrame& frame,
+                                              const PosePrior& prior) const {
+  Impl& m = *impl_;
+  if (!m.registration) {
+    m.registration.emplace(m.map.sensor(), detail::map_config(m.config, m.map.sensor()), m.exec);
+  }
+  return m.registration->register_frame(m.map.grid(), frame, prior);
 }
 
 AddedView ViewPlanner::add(const DepthFrame& frame, const Pose& T_world_camera) {

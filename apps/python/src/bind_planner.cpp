@@ -87,6 +87,22 @@ py::object add(Planner& self, const py::object& depth, const py::object& T_world
                added.progress.unknown_voxels);
 }
 
+py::object register_frame(Planner& self, const py::object& depth, const py::object& T_world_camera,
+                          double sigma_translation, double sigma_rotation,
+                          const py::object& amplitude) {
+  const DepthFrame frame = depth_frame(self.sensor(), depth, amplitude);
+  const PosePrior prior{one_pose(T_world_camera, "T_world_camera"), sigma_translation,
+                        sigma_rotation};
+  const FrameRegistration found =
+      self.run([&](ViewPlanner& planner) { return planner.register_frame(frame, prior); });
+  py::array_t<double> covariance(Shape{6, 6}, found.covariance.data());
+  return named("FrameRegistration", std::string(registration_status_name(found.status)),
+               found.reason, to_array(found.T_world_camera), covariance, found.translation,
+               found.rotation, found.residual_before, found.residual_after, found.readings,
+               found.pairs, found.overlap, found.contradiction, found.smallest_information,
+               found.free_directions.size());
+}
+
 py::object propose(Planner& self) {
   const Proposal proposal = self.run([](ViewPlanner& planner) { return planner.propose(); });
   std::vector<Pose> poses;
@@ -240,12 +256,45 @@ Returns
 AddedView
     The counts of ``FrameIntegrator.integrate``; view (from 0); entropy_removed [nat] and new_area
     [m**2] by this view, total_entropy_removed and total_area so far, unknown_voxels that are left.
-    new_area is NaN by gain "paper".
+    new_area is area across the rays, as the expected area is: surface that is seen obliquely is
+    larger. It is NaN by gain "paper".
 
 Raises
 ------
 ValueError
     A shape, a dtype, or a pose that is not rigid. Nothing has changed then.)")
+      .def("register_frame", &register_frame, py::arg("depth"), py::arg("T_world_camera"),
+           py::kw_only(), py::arg("sigma_translation") = PosePrior{}.sigma_translation,
+           py::arg("sigma_rotation") = PosePrior{}.sigma_rotation,
+           py::arg("amplitude") = py::none(),
+           R"(Where the camera was, by what the frame shows of the map so far. Changes nothing.
+
+Minimises the distances of the frame's readings from the map's points along the surface's normals,
+by Gauss and Newton, with the reported pose as prior. Put a frame that is "registered" in at the pose
+that was found, one with "too_little_overlap" as reported, and leave out one that is "refused": it
+contradicts the map, or would move by more than five sigmas. Some 100 to 300 ms a frame.
+
+Parameters
+----------
+depth : array_like, (height, width), floating point
+    As for ``add``.
+T_world_camera : array_like, (4, 4)
+    As it is reported.
+sigma_translation : float
+    How far each coordinate of the camera's centre may be off, 1 sigma [m].
+sigma_rotation : float
+    The same of each component of its rotation [rad].
+amplitude : array_like, (height, width), optional
+    [1/m**2]
+
+Returns
+-------
+FrameRegistration
+
+Raises
+------
+ValueError
+    A shape, a dtype, a pose that is not rigid, a sigma that is not positive.)")
       .def("propose", &propose, R"(The candidates that are possible now.
 
 Returns

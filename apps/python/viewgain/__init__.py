@@ -23,6 +23,6 @@ except ImportError as error:
 from ._viewgain import *
 from ._viewgain import __version__
 from .codes import HitKind, Infeasibility, ViewStatus, VoxelState
-from .results import (AddedView, ChosenViews, Cloud, Frame, GridStatistics, IntegrationReport, Proposal, Ranking, Sigmas,
-                      SimulatedFrame, TimedPoses)
+from .results import (AddedView, ChosenViews, Cloud, Frame, FrameRegistration, GridStatistics, IntegrationReport, Proposal,
+                      Ranking, Sigmas, SimulatedFrame, TimedPoses)
 from . import plot

@@ -21,6 +21,8 @@ _COLUMNS = [("index", "<i8"), ("gain", "<f8"), ("exploration", "<f8"), ("refinem
             ("rays", "<u4"), ("hits", "<u4"), ("unknown_voxels", "<u4"), ("occupied_voxels", "<u4"), ("status", "u1")]
 _AREA_COLUMNS = [("area", "<f8"), ("refinement_saturated", "<f8")]
 _POSE_COLUMNS = ("tx", "ty", "tz", "qx", "qy", "qz", "qw")
+_NUMBERS = ("refinement_weight", "support_plane", "prior_sigma", "min_range", "max_range")
+SETTINGS = ("gain", "criterion", "pixel_stride", *_NUMBERS, "weights", "posterior_entropy")  # of GainEvaluator
 
 
 def _mix64(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
@@ -67,11 +69,13 @@ def sensor_text(sensor: viewgain.Sensor) -> str:
 def settings_text(settings: dict[str, Any]) -> str:
     known = {"gain": settings.get("gain", "paper"), "semantics": "paper", "criterion": settings.get("criterion", "log_diagonal"),
              "stride": settings.get("pixel_stride", 1), "feasible": "off"}
-    for name in ("refinement_weight", "support_plane", "prior_sigma", "min_range", "max_range"):
+    for name in _NUMBERS:
         if settings.get(name) is not None:
             known[name] = float(settings[name])
     if settings.get("weights"):
-        known["weight"] = [[np.asarray(box, float).ravel().tolist(), float(weight)] for box, weight in settings["weights"]]
+        # As --weight's words, which the program leaves as they were typed: each number as short as it can be.
+        known["weight"] = [",".join(np.format_float_positional(number, trim="-") for number in (*np.ravel(box), weight))
+                           for box, weight in settings["weights"]]
     return json.dumps(known, separators=(",", ":"))
 
 
@@ -95,16 +99,30 @@ def write_part(path: pathlib.Path, rows: NDArray, head: str, begin: int) -> None
 
 
 def read_part(path: pathlib.Path, head: str, dtype: np.dtype) -> tuple[int, NDArray]:
-    """First row and rows of a part that is there. Raises ValueError if it is not one of this job."""
-    rows = np.load(path, mmap_mode="r")
+    """First row and rows of a part that is there. Raises ValueError if it is not one of this job, or not whole."""
+    def damaged(what: str) -> ValueError:
+        return ValueError(f"{path}: {what}; delete it, and its rows are scored again")
+
+    try:
+        rows = np.lib.format.open_memmap(path, mode="r")
+    except ValueError as error:
+        raise damaged(f"is cut short or no part ({error})") from error
     with open(path, "rb") as file:
         file.seek(rows.offset + rows.nbytes)
         tail = file.read().decode(errors="replace")
+    if len(tail) < len(head) and head.startswith(tail):
+        raise damaged("is cut short or no part")
     if not tail.startswith(head) or rows.dtype != dtype:
         raise ValueError(f"{path}: is of another job (map, sensor, settings, version, ISA or poses); name a new folder")
+    if rows.ndim != 1 or len(rows) == 0:
+        raise damaged("holds no rows")
     begin = int(rows["index"][0])
-    if tail[len(head):] != f"# rows {begin}:{begin + len(rows)}\n# scored {len(rows)}\n":
-        raise ValueError(f"{path}: its rows are not those that it says")
+    end = begin + len(rows)
+    if tail[len(head):] != f"# rows {begin}:{end}\n# scored {len(rows)}\n" or \
+            not np.array_equal(rows["index"], np.arange(begin, end)):
+        raise damaged("its rows are not those that it says")
+    if rows["status"].max() >= len(viewgain.VIEW_STATUS_NAMES):
+        raise damaged(f"there is no status {rows['status'].max()}")
     return begin, rows
 
 

@@ -12,6 +12,7 @@ from .results import (
     ChosenViews,
     Cloud,
     Frame,
+    FrameRegistration,
     GridStatistics,
     IntegrationReport,
     Proposal,
@@ -570,6 +571,15 @@ class ViewPlanner:
     def add(
         self, depth: ArrayLike, T_world_camera: ArrayLike, *, amplitude: ArrayLike | None = None
     ) -> AddedView: ...
+    def register_frame(
+        self,
+        depth: ArrayLike,
+        T_world_camera: ArrayLike,
+        *,
+        sigma_translation: float = 0.005,
+        sigma_rotation: float = 0.0087,
+        amplitude: ArrayLike | None = None,
+    ) -> FrameRegistration: ...
     def propose(self) -> Proposal: ...
     def rank(
         self,

@@ -245,7 +245,7 @@ def score(client: Any, map: Any, poses: Any, sensor: Any, *, out: Any, top: int 
     progress : callable, optional
         Gets the number of poses done and of all, after each chunk.
     **settings
-        Of GainEvaluator: gain, criterion, pixel_stride, prior_sigma, ...
+        Of GainEvaluator: gain, criterion, pixel_stride, prior_sigma, ...; ``posterior_entropy`` is always there.
 
     Returns
     -------
@@ -254,13 +254,19 @@ def score(client: Any, map: Any, poses: Any, sensor: Any, *, out: Any, top: int 
     Raises
     ------
     ValueError
-        A shape is wrong, or the folder holds parts of another job.
+        A shape is wrong, or the folder holds parts of another job, damaged ones or two with the same rows.
+    TypeError
+        There is no such setting.
     RuntimeError
         A worker has another version of viewgain or lacks the ISA.
     distributed.KilledWorker
         A chunk was lost with several workers, one after the other.
     """
     start = time.perf_counter()
+    # Here, and not in workers: one that has the evaluator already would not look at what it does not know.
+    for name in settings:
+        if name not in _parts.SETTINGS:
+            raise TypeError(f"there is no setting {name!r}, but {', '.join(_parts.SETTINGS)}")
     grid = map if isinstance(map, viewgain.BeliefGrid) else viewgain.BeliefGrid.load(map)
     sensor = sensor if isinstance(sensor, viewgain.Sensor) else viewgain.Sensor.load(sensor)
     poses = _parts.poses_of(poses)
@@ -272,16 +278,18 @@ def score(client: Any, map: Any, poses: Any, sensor: Any, *, out: Any, top: int 
     job = _Job(grid.content_hash(), sensor, _parts.hash_of_text(_parts.sensor_text(sensor)), settings, isa, num_threads)
     head, folder, dtype = _parts.head_of(job, poses), pathlib.Path(out), _parts.dtype_of(settings)
     folder.mkdir(parents=True, exist_ok=True)
-    best, there = _parts.Best(top, dtype), {}
+    best, found = _parts.Best(top, dtype), []
     for path in sorted(folder.glob("rows-*.npy")):
         begin, rows = _parts.read_part(path, head, dtype)
-        there[begin] = (begin + len(rows), path)
+        found.append((begin, begin + len(rows), path))
         best.add(rows)
-    gaps = _parts.gaps([(begin, end) for begin, (end, _) in there.items()], len(poses))
-    missing = sum(end - begin for begin, end in gaps)
-    if sum(end - begin for begin, (end, _) in there.items()) != len(poses) - missing:
-        raise ValueError(f"{folder}: some of its parts have the same rows")
-    done = resumed = len(poses) - missing
+    found.sort()
+    for (begin, end, path), (other_begin, other_end, other) in zip(found, found[1:]):
+        if other_begin < end:
+            raise ValueError(f"{other}: rows {other_begin}:{other_end} overlap rows {begin}:{end} of {path}; delete one")
+    there = {begin: (end, path) for begin, end, path in found}
+    gaps = _parts.gaps([(begin, end) for begin, end, _ in found], len(poses))
+    done = resumed = len(poses) - sum(end - begin for begin, end in gaps)
 
     def keep(begin: int, rows: NDArray) -> None:
         nonlocal done
@@ -309,13 +317,16 @@ def score(client: Any, map: Any, poses: Any, sensor: Any, *, out: Any, top: int 
 
 
 def _join_study(command: list[str]) -> None:
-    result = subprocess.run(command, capture_output=True, text=True)
+    try:
+        result = subprocess.run(command, capture_output=True, text=True)
+    except OSError as error:
+        raise RuntimeError(f"{command[0]} cannot be started: {error.strerror}") from error
     if result.returncode != 0:
         raise RuntimeError(f"{' '.join(command)}: {result.stderr.strip()}")
 
 
 def study(client: Any, spec: Any, out: Any, *, program: str = "viewgain", num_threads: int = 0,
-          progress: Callable[[int], object] | None = None) -> dict[str, Any]:
+          progress: Callable[[int], object] | None = None) -> list[dict[str, Any]]:
     """A study (`viewgain study`) whose runs the workers of a Dask cluster share.
 
     Each worker calls `viewgain study SPEC --out OUT`; these claim runs one by one in the folder, so that it and the spec's files
@@ -337,13 +348,13 @@ def study(client: Any, spec: Any, out: Any, *, program: str = "viewgain", num_th
 
     Returns
     -------
-    dict
+    list of dict
         results.json.
 
     Raises
     ------
     RuntimeError
-        The program failed; with what it said.
+        The program failed, with what it said, or cannot be started.
     """
     folder = pathlib.Path(out).absolute()
     command = [program, "study", str(pathlib.Path(spec).absolute()), "--out", str(folder), "--plots", "off", "--quiet",

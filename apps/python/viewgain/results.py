@@ -109,6 +109,26 @@ class TimedPoses(NamedTuple):
 
 
 @named("viewgain")
+class FrameRegistration(NamedTuple):
+    """Where a frame's camera was, of ``ViewPlanner.register_frame``."""
+
+    status: Annotated[str, "\"registered\", \"too_little_overlap\" or \"refused\"."]
+    reason: Annotated[str, "Of the status, for people; empty if registered."]
+    T_world_camera: Annotated[_Floats, "(4, 4), corrected if registered, else as reported."]
+    covariance: Annotated[_Floats, "(6, 6), of its translation [m], then its rotation [rad], world axes."]
+    translation: Annotated[float, "Way of the camera's centre by the correction that was found [m]."]
+    rotation: Annotated[float, "Its angle [rad]."]
+    residual_before: Annotated[float, "RMS distance of the pairs at the reported pose [m]."]
+    residual_after: Annotated[float, "The same at the pose that was found [m]."]
+    readings: Annotated[int, "That were looked at."]
+    pairs: Annotated[int, "Readings that belong to a point of the map."]
+    overlap: Annotated[float, "pairs / readings."]
+    contradiction: Annotated[float, "Share of readings in space that is known to be free, or behind surface."]
+    smallest_information: Annotated[float, "Of the frame along any motion, in units of the prior's."]
+    free_directions: Annotated[int, "Motions that the frame does not hold, which stay as reported."]
+
+
+@named("viewgain")
 class AddedView(NamedTuple):
     """What a frame has changed, of ``ViewPlanner.add``."""
 
@@ -121,7 +141,7 @@ class AddedView(NamedTuple):
     voxels_crossed: Annotated[int, "Voxels that rays pass and no reading lies in."]
     view: Annotated[int, "Number of the view, from 0."]
     entropy_removed: Annotated[float, "By this view [nat, or m**2 for trace]."]
-    new_area: Annotated[float, "New surface that this view has shown [m**2]; NaN by gain \"paper\"."]
+    new_area: Annotated[float, "New surface that this view has shown, its area across the rays [m**2]; NaN by gain \"paper\"."]
     total_entropy_removed: Annotated[float, "So far [nat, or m**2 for trace]."]
     total_area: Annotated[float, "Sum of the new areas so far [m**2]."]
     unknown_voxels: Annotated[int, "That are left."]

@@ -165,7 +165,13 @@ TEST_F(Merge, WhatIsCutOffOrBrokenIsNamed) {
   expect("rows.csv", changed("rows 0:100", "rows 100:0"), "rows 100:0");
   expect("scored.csv", changed("scored 100", "scored 101"), "more were scored");
   expect("key.csv", changed("# isa avx2\n", ""), "line 5 of #: expected \"# isa ");
-  EXPECT_EQ(cases, 120U);
+  const std::size_t end = npy.find(head("0:300", 300).substr(0, 10));  // of the rows
+  ASSERT_NE(end, std::string::npos);
+  expect("saved.npy", npy.substr(0, end), "does not say which rows it has");
+  std::string wrong = npy;
+  wrong[end - 1] = 77;
+  expect("status.npy", wrong, "row 299 has no known status: 77");
+  EXPECT_EQ(cases, 122U);
 }
 
 TEST_F(Merge, TheBestAreNoPart) {

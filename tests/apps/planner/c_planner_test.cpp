@@ -89,6 +89,25 @@ TEST(CPlanner, SaysWhatTheOtherSays) {
     for (std::size_t view = 0; view < 3; ++view, ++cases) {
       const Pose& pose = scene.views[5 * view];
       const DepthFrame frame = scene.see(pose, view);
+      const PosePrior prior{
+          {pose.rotation(), pose.translation() + Eigen::Vector3d(0.003, 0, 0)}, 0.005, 0.01};
+      const FrameRegistration registered = own.register_frame(frame, prior);
+      vg_registration found_pose;
+      vg_registration_init(&found_pose, sizeof found_pose);
+      ASSERT_EQ(
+          vg_planner_register(planner, frame.depth.data(), frame.amplitude.data(),
+                              numbers_of({prior.T_world_camera}).data(), 0.005, 0.01, &found_pose),
+          VG_OK)
+          << vg_last_error();
+      EXPECT_EQ(found_pose.status, static_cast<int>(registered.status));
+      EXPECT_EQ(found_pose.status == VG_TOO_LITTLE_OVERLAP, view == 0);
+      EXPECT_EQ(std::vector<double>(found_pose.T_world_camera, found_pose.T_world_camera + 16),
+                numbers_of({registered.T_world_camera}));
+      EXPECT_TRUE(std::equal(registered.covariance.begin(), registered.covariance.end(),
+                             found_pose.covariance));
+      EXPECT_EQ(found_pose.overlap, registered.overlap);
+      EXPECT_EQ(found_pose.residual_after, registered.residual_after);
+
       const AddedView expected = own.add(frame, pose);
       vg_planner_view added;
       vg_planner_view_init(&added, sizeof added);
@@ -192,6 +211,14 @@ TEST(CPlanner, RefusesWrongUse) {
   refused(vg_planner_tried(planner, bad.data(), 1), "lowest row");
   vg_planner_view unset{};
   refused(vg_planner_add(planner, frame.depth.data(), nullptr, pose.data(), &unset), "struct_size");
+  vg_registration registration;
+  vg_registration_init(&registration, sizeof registration);
+  refused(vg_planner_register(planner, frame.depth.data(), nullptr, pose.data(), 0, 0.01,
+                              &registration),
+          "sigma_translation");
+  refused(
+      vg_planner_register(planner, frame.depth.data(), nullptr, pose.data(), 0.01, 0.01, nullptr),
+      "found is null");
   refused(vg_planner_propose(planner, nullptr, nullptr, 0), "candidates");
   refused(vg_planner_save(planner, nullptr), "path");
   EXPECT_EQ(vg_planner_save(planner, "/no/such/folder/state.vdb"), VG_IO);
@@ -217,7 +244,7 @@ TEST(CPlanner, RefusesWrongUse) {
   refused(vg_planner_should_stop(planner, &reason), "released");
   refused(vg_planner_tried(planner, pose.data(), 1), "released");
   refused(vg_planner_should_stop(nullptr, &reason), "null");
-  EXPECT_EQ(cases, 18);
+  EXPECT_EQ(cases, 20);
 }
 
 int32_t stop_at_once(size_t, size_t, void*) { return 1; }

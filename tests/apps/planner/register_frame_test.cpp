@@ -16,6 +16,7 @@
 #include "apps/planner/registration_scene.hpp"
 #include "core/expect_error.hpp"
 #include "viewgain/planner/map_registration.hpp"
+#include "viewgain/planner/view_planner.hpp"
 
 namespace viewgain {
 namespace {
@@ -76,13 +77,14 @@ TEST(RegisterFrame, WithoutNoiseThePoseIsRecovered) {
 
 TEST(RegisterFrame, AMapsPointsThatTheFrameMayShowAreEnough) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, test::views_round());
-  const MapRegistration registration(scene.sensor, {}, prior_of({}), {2});
+  const MapRegistration registration(scene.sensor, {}, {2});
   int cases = 0;
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const DepthFrame frame = scene.see(true_pose(), 1000 + seed);
     const Pose reported = test::disturbed(true_pose(), kShift, kTurn, seed);
     const FrameRegistration whole = registered(scene, frame, reported);
-    const FrameRegistration part = registration.register_frame(scene.grid, frame, reported);
+    const FrameRegistration part =
+        registration.register_frame(scene.grid, frame, prior_of(reported));
     ASSERT_EQ(part.status, RegistrationStatus::registered) << part.reason;
     EXPECT_NEAR(static_cast<double>(part.pairs), static_cast<double>(whole.pairs),
                 0.01 * static_cast<double>(whole.pairs));
@@ -95,12 +97,33 @@ TEST(RegisterFrame, AMapsPointsThatTheFrameMayShowAreEnough) {
 
   DepthFrame nothing = scene.see(true_pose());
   std::fill(nothing.depth.begin(), nothing.depth.end(), DepthFrame::kInvalid);
-  EXPECT_EQ(registration.register_frame(scene.grid, nothing, true_pose()).status,
+  EXPECT_EQ(registration.register_frame(scene.grid, nothing, prior_of(true_pose())).status,
             RegistrationStatus::too_little_overlap);
   nothing.depth.pop_back();
   test::expect_error(ErrorCode::invalid_argument, "", [&] {
-    static_cast<void>(registration.register_frame(scene.grid, nothing, true_pose()));
+    static_cast<void>(registration.register_frame(scene.grid, nothing, prior_of(true_pose())));
   });
+}
+
+TEST(RegisterFrame, APlannerSaysWhatItsPartsSayAndStaysAsItWas) {
+  const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
+  PlannerConfig config;
+  config.grid.voxel_size = test::RegistrationScene::kVoxel;
+  config.grid.workspace = scene.grid.workspace();
+  ViewPlanner planner(scene.sensor, config, {1});
+  const DepthFrame frame = scene.see(true_pose());
+  const PosePrior prior = prior_of(test::disturbed(true_pose(), kShift, kTurn, 1));
+  EXPECT_EQ(planner.register_frame(frame, prior).status, RegistrationStatus::too_little_overlap);
+  for (const Pose& view : test::views_round()) planner.add(scene.see(view), view);
+  const std::string before = planner.grid().content_hash();
+  const FrameRegistration found = planner.register_frame(frame, prior);
+  ASSERT_EQ(found.status, RegistrationStatus::registered) << found.reason;
+  EXPECT_LT(test::error_of(found.T_world_camera, true_pose()).translation, 0.6 * kShift);
+  EXPECT_EQ(planner.grid().content_hash(), before);
+  MapModelConfig map;
+  map.jump_edges = config.jump_edges;
+  const MapRegistration part(scene.sensor, map, {2});
+  EXPECT_EQ(part.register_frame(planner.grid(), frame, prior).T_world_camera, found.T_world_camera);
 }
 
 TEST(RegisterFrame, WithNoiseItIsRecoveredToMillimetresAndKnowsHowWell) {

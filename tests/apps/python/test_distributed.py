@@ -47,6 +47,30 @@ def test_files_of_parts_need_no_dask(tmp_path):
     assert parts.gaps([(0, 12)], 12) == []
 
 
+def test_damaged_parts_are_named(tmp_path):
+    parts = importlib.import_module("viewgain._parts")
+    path, cases = tmp_path / "rows-3-7.npy", 0
+    rows = np.zeros(4, parts.dtype_of({}))
+    rows["index"] = np.arange(3, 7)
+    parts.write_part(path, rows, "# head\n", 3)
+    whole = path.read_bytes()
+    contents = [whole[:length] for length in (0, 5, 60, 200, whole.index(b"# head"), len(whole) - 30, len(whole) - 1)]
+    contents += [whole + b"#", b"PK\3\4" + whole]
+    for column, row, value in (("index", 1, 9), ("index", 3, 3), ("status", 2, 3), ("status", 3, 77)):
+        changed = rows.copy()
+        changed[column][row] = value
+        parts.write_part(path, changed, "# head\n", 3)
+        contents.append(path.read_bytes())
+    parts.write_part(path, rows[:0], "# head\n", 3)
+    contents.append(path.read_bytes())
+    for content in contents:
+        path.write_bytes(content)
+        with pytest.raises(ValueError, match=r"rows-3-7\.npy: .*; delete it"):
+            parts.read_part(path, "# head\n", rows.dtype)
+        cases += 1
+    assert cases == 14
+
+
 def test_best_are_those_of_a_sort():
     parts = importlib.import_module("viewgain._parts")
     random = np.random.default_rng(1)
@@ -162,16 +186,18 @@ def test_parts_are_those_of_the_program(client, grid, sensor, tmp_path):
     grid.save(tmp_path / "map.vdb")
     np.save(tmp_path / "poses.npy", viewgain.sphere_poses(2500, 0.6))
     found = viewgain.distributed.score(client, tmp_path / "map.vdb", tmp_path / "poses.npy", "sr4000", out=tmp_path / "out",
-                                       chunk_seconds=0.05, num_threads=1, pixel_stride=4, min_range=0.25)
+                                       chunk_seconds=0.05, num_threads=1, pixel_stride=4, min_range=0.25,
+                                       weights=[([[-0.1, -0.1, -0.1], [0.1, 0.1, 0.125]], 3),
+                                                (np.array([[0, 0, 0], [1, 1, 1]]), 0.5)])
     run = lambda *words: subprocess.run([program, *map(str, words)], cwd=tmp_path, check=True, capture_output=True)
-    run("score", "map.vdb", "--poses", "poses.npy", "--sensor", "sr4000", "--stride", 4, "--min-range", 0.25, "--shard", "0/1",
-        "--out", "whole.npy")
+    score = ("score", "map.vdb", "--poses", "poses.npy", "--sensor", "sr4000", "--stride", 4, "--min-range", 0.25,
+             "--weight", "-0.1,-0.1,-0.1,0.1,0.1,0.125,3", "--weight", "0,0,0,1,1,1,0.5")
+    run(*score, "--shard", "0/1", "--out", "whole.npy")
     run("merge", *found.parts, "--out", "merged.npy")
     assert (tmp_path / "merged.npy").read_bytes() == (tmp_path / "whole.npy").read_bytes()
     # Parts of both go together.
     begin = len(np.load(found.parts[0]))
-    run("score", "map.vdb", "--poses", "poses.npy", "--sensor", "sr4000", "--stride", 4, "--min-range", 0.25, "--rows",
-        f"0:{begin}", "--out", "first.npy")
+    run(*score, "--rows", f"0:{begin}", "--out", "first.npy")
     run("merge", "first.npy", *found.parts[1:], "--out", "mixed.npy")
     assert (tmp_path / "mixed.npy").read_bytes() == (tmp_path / "whole.npy").read_bytes()
 
@@ -191,6 +217,52 @@ def test_isa_is_pinned_and_wrong_calls_are_named(client, grid, sensor, poses, tm
         viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "none", isa="mmx")
     with pytest.raises(ValueError, match=r"\(4, 4\)"):
         viewgain.distributed.score(client, grid, np.eye(4), sensor, out=tmp_path / "none")
+
+
+def test_settings_that_are_none_are_refused_by_the_client(client, grid, sensor, poses, tmp_path):
+    import viewgain.distributed
+
+    def score(**settings):
+        return viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "out", pixel_stride=8, **settings)
+
+    cases = 0
+    for _ in range(2):  # the workers have the evaluator the second time
+        for name in ("pixle_stride", "strides", "seed"):
+            with pytest.raises(TypeError, match=f"no setting '{name}'.*pixel_stride"):
+                score(**{name: 2})
+            cases += 1
+        assert score().poses == len(poses)
+        for path in (tmp_path / "out").iterdir():
+            path.unlink()
+    assert cases == 6
+    parts = importlib.import_module("viewgain._parts")
+    given = {"gain": "combined", "criterion": "log_determinant", "refinement_weight": 0.5, "support_plane": -0.1,
+             "prior_sigma": 0.1, "min_range": 0.3, "max_range": 2.0, "weights": [([[0, 0, 0], [1, 1, 1]], 2)],
+             "posterior_entropy": True}
+    assert {*given, "pixel_stride"} == set(parts.SETTINGS)
+    assert score(**given).poses == len(poses)
+
+
+def test_parts_with_the_same_rows_are_named(client, grid, sensor, poses, tmp_path):
+    import viewgain.distributed
+
+    parts = importlib.import_module("viewgain._parts")
+    score = lambda: viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path, pixel_stride=8)
+    rows = rows_of(score())
+    for path in tmp_path.iterdir():
+        head = path.read_bytes()[-2000:].decode(errors="replace")
+        path.unlink()
+    head = head[head.index("# viewgain"):head.index("# rows")]
+    cases = 0
+    for first, second in (((0, 9), (0, 9)), ((0, 9), (0, 20)), ((0, 20), (5, 9)), ((3, 9), (8, 20))):
+        for name, (begin, end) in (("rows-a.npy", first), ("rows-b.npy", second)):
+            parts.write_part(tmp_path / name, rows[begin:end], head, begin)
+        with pytest.raises(ValueError, match=r"rows-b\.npy: rows .* overlap rows .*rows-a\.npy"):
+            score()
+        cases += 1
+    assert cases == 4
+    parts.write_part(tmp_path / "rows-b.npy", rows[9:20], head, 9)
+    assert score().resumed == 17 and np.array_equal(rows_of(score()), rows)
 
 
 SPEC = """objects = ["cube.off"]
@@ -222,6 +294,8 @@ def test_a_study_is_shared(client, tmp_path):
     for name in ("results.csv", "table.md"):
         shared, alone = ((tmp_path / folder / name).read_text().splitlines() for folder in ("study", "alone"))
         assert len(shared) == len(alone) > 4
-    assert results
+    assert [run["object"] for run in results] == 4 * ["cube"]
+    with pytest.raises(RuntimeError, match="viewgainx cannot be started"):
+        viewgain.distributed.study(client, tmp_path / "spec.toml", tmp_path / "none", program="viewgainx")
     with pytest.raises(RuntimeError, match="no.toml"):
         viewgain.distributed.study(client, tmp_path / "no.toml", tmp_path / "none", program=program)

@@ -134,17 +134,20 @@ def test_images_in_millimetres_are_refused(sensor, frame):
     integrator = viewgain.FrameIntegrator(sensor)
     grid = viewgain.BeliefGrid(voxel_size=0.01, workspace=WORKSPACE, sensor=sensor)
     before = grid.content_hash()
+    few_near = millimetres.copy()  # as resizing makes them at the rim of a hole
+    few_near[::16, ::16] = 3.8
     cases = [(millimetres.astype(dtype), f"depth must be floating point.*/ 1000.*{np.dtype(dtype)}")
              for dtype in (np.uint16, np.int32, np.uint8, bool)]
     cases += [(millimetres, "depth must be in metres: its nearest reading is at [345]..*max_range of 5 m"),
               (np.where(millimetres < 600, millimetres, np.inf), "depth must be in metres"),
-              (np.where(millimetres < 600, millimetres, np.nan).tolist(), "depth must be in metres")]
+              (np.where(millimetres < 600, millimetres, np.nan).tolist(), "depth must be in metres"),
+              (few_near, "depth must be in metres: [0-9]* of its [0-9]* readings are beyond 10 times")]
     for image, text in cases:
         with pytest.raises(ValueError, match=text):
             integrator.integrate(grid, image, pose)
         with pytest.raises(ValueError, match=text):
             viewgain.reading_bounds(sensor, image, pose)
-    assert len(cases) == 7
+    assert len(cases) == 8
     with pytest.raises(ValueError, match=r"amplitude must be floating point \[1/m\*\*2\], not dtype uint16"):
         integrator.integrate(grid, depth, pose, amplitude=amplitude.astype(np.uint16))
     assert grid.content_hash() == before
@@ -152,6 +155,9 @@ def test_images_in_millimetres_are_refused(sensor, frame):
     far = np.where(np.arange(depth.size).reshape(depth.shape) % 2 == 0, depth, 65.535)
     assert integrator.integrate(grid, far, pose)["out_of_range"] == depth.size // 2
     assert integrator.integrate(grid, np.full_like(depth, np.inf), pose)["out_of_range"] == depth.size
+    nothing = np.full_like(depth, 65.535)  # where it sees nothing, as some cameras say it
+    nothing[::16, ::16] = depth[::16, ::16]
+    assert integrator.integrate(grid, nothing, pose)["out_of_range"] == np.count_nonzero(nothing == 65.535)
 
 
 def test_clouds_in_millimetres_are_refused(sensor, frame):

@@ -53,6 +53,31 @@ def step(planner, camera, pose, frame=0):
     return repr(told)
 
 
+def test_registers_a_frame_against_its_map(sensor, camera, poses):
+    planner = make(sensor)
+    reported = poses[3].copy()
+    reported[:3, 3] += [0.004, -0.003, 0.003]
+    depth, amplitude = camera.acquire(poses[3], 100)
+    first = planner.register_frame(depth, reported, amplitude=amplitude)
+    assert first.status == "too_little_overlap" and first.reason == "the map has no surface yet"
+    assert np.allclose(first.T_world_camera, reported, atol=1e-12)
+    for frame, pose in enumerate(poses):
+        planner.add(*camera.acquire(pose, frame)[:1], pose)
+    before = planner.grid.content_hash()
+    found = planner.register_frame(depth, reported, amplitude=amplitude)
+    assert found.status == "registered" and found.reason == "" and found.overlap > 0.5
+    off = np.linalg.norm(found.T_world_camera[:3, 3] - poses[3][:3, 3])
+    assert off < 0.7 * np.linalg.norm(reported[:3, 3] - poses[3][:3, 3])
+    assert found.covariance.shape == (6, 6) and np.all(np.linalg.eigvalsh(found.covariance) > 0)
+    assert np.isclose(found.translation, np.linalg.norm(found.T_world_camera[:3, 3] - reported[:3, 3]))
+    assert planner.grid.content_hash() == before
+    far = reported.copy()
+    far[:3, 3] += 0.1 * poses[3][:3, 0]
+    assert planner.register_frame(depth, far).status != "registered"
+    with pytest.raises(ValueError, match="sigma_rotation"):
+        planner.register_frame(depth, reported, sigma_rotation=0)
+
+
 @pytest.mark.parametrize("gain", ["paper", "surface", "combined"])
 def test_says_what_the_parts_say(gain, sensor, camera, poses):
     planner = make(sensor, gain=gain)

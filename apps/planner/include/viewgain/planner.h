@@ -85,8 +85,8 @@ typedef struct vg_planner_view {
   uint64_t voxels_hit, voxels_crossed;           /* by it */
   uint64_t unknown_voxels;                       /* that are left */
   double entropy_removed, total_entropy_removed; /* by it and so far [nat] */
-  double new_area, total_area; /* new surface that it showed, and so far [m^2]; new_area is NaN with
-                                  VG_GAIN_PAPER */
+  double new_area, total_area; /* new surface that it showed, across the rays, and so far [m^2];
+                                  new_area is NaN with VG_GAIN_PAPER */
 } vg_planner_view;
 /* Makes `view` ready for a call. */
 VG_API void vg_planner_view_init(vg_planner_view* view, size_t struct_size);
@@ -94,6 +94,36 @@ VG_API void vg_planner_view_init(vg_planner_view* view, size_t struct_size);
 /* Puts a frame into the map, as vg_integrate(); `added` or null. */
 VG_API vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* amplitude,
                                 const double T_world_camera[16], vg_planner_view* added);
+
+/* What became of a frame that was registered. */
+enum {
+  VG_REGISTERED = 0,
+  VG_TOO_LITTLE_OVERLAP = 1, /* the map says too little of what it shows; add it as reported */
+  VG_REFUSED = 2             /* it contradicts the map, or would move too far; do not add it */
+};
+
+/* Where a frame's camera was. */
+typedef struct vg_registration {
+  size_t struct_size;            /* as _init() sets it */
+  int32_t status;                /* VG_REGISTERED, VG_TOO_LITTLE_OVERLAP or VG_REFUSED */
+  int32_t free_directions;       /* motions that the frame does not hold: as reported */
+  double T_world_camera[16];     /* corrected if registered, else as reported; rows */
+  double covariance[36];         /* of translation [m], then rotation [rad], world axes */
+  double translation, rotation;  /* of the correction that was found [m], [rad] */
+  double residual_before;        /* RMS distance from the map at the reported pose [m] */
+  double residual_after;         /* and at the one that was found [m] */
+  double overlap, contradiction; /* shares of the readings, as FrameRegistration's */
+} vg_registration;
+/* Makes `found` ready for a call. */
+VG_API void vg_registration_init(vg_registration* found, size_t struct_size);
+
+/* Where the camera was, by what the frame shows of the map so far; changes nothing. The sigmas say
+   how far each coordinate [m] and each component of the rotation [rad] of the reported pose may be
+   off. C++'s ViewPlanner::register_frame(). */
+VG_API vg_status vg_planner_register(vg_planner* planner, const float* depth,
+                                     const float* amplitude, const double T_reported[16],
+                                     double sigma_translation, double sigma_rotation,
+                                     vg_registration* found);
 
 /* What is possible now of the candidates: how many, and in dropped[reason] how many are not and
    why; `reasons` is the length of dropped, which may be null. */

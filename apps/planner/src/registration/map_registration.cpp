@@ -15,24 +15,21 @@ constexpr double kMargin = 10;  // pooling lengths beyond what the frame shows: 
 }  // namespace
 
 MapRegistration::MapRegistration(const Sensor& sensor, const MapModelConfig& map,
-                                 const PosePrior& sigmas, const ExecConfig& exec)
+                                 const ExecConfig& exec)
     : sensor_(sensor),
       rays_(sensor.camera.ray_table()),
       config_(detail::registration_config(map)),
       obstacles_(map.obstacles, sensor, exec),
-      sigmas_(sigmas),
       exec_(exec),
       registrar_(sensor, config_, exec) {
   if (map.jump_edges) filter_.emplace(sensor.camera, *map.jump_edges);
 }
 
 FrameRegistration MapRegistration::register_frame(const BeliefGrid& grid, DepthFrame frame,
-                                                  const Pose& T_reported) const {
+                                                  const PosePrior& prior) const {
   check_frame_size(frame, sensor_.camera);
   if (filter_) filter_->apply(frame);
-  obstacles_.mark(frame, T_reported);
-  PosePrior prior = sigmas_;
-  prior.T_world_camera = T_reported;
+  obstacles_.mark(frame, prior.T_world_camera);
   const detail::SeenSpace seen(frame, sensor_, rays_, prior, config_.max_sigmas,
                                kMargin * pooling_of(grid.snapshot()).length);
   FusedPointsConfig points;

@@ -4,8 +4,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,14 +32,14 @@ Cloud cloud_in_world(const Sensor& sensor, const py::object& points_sensor, cons
   Cloud cloud = points(nan_where_masked(points_sensor), "points");
   const WithoutGil without_gil;
   const Pose T_world_sensor = orthonormalized(pose);
-  double nearest = std::numeric_limits<double>::infinity();
+  MetresCheck metres(sensor);
   for (auto& point : cloud) {
     const Eigen::Vector3d p_sensor(point[0], point[1], point[2]);
-    nearest = std::fmin(nearest, p_sensor.norm());
+    metres.add(p_sensor.norm());
     const Eigen::Vector3d p_world = T_world_sensor * p_sensor;
     point = {p_world.x(), p_world.y(), p_world.z()};
   }
-  require_metres(nearest, sensor, "points");
+  metres.require("points");
   return cloud;
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <sstream>
 #include <string>
 
@@ -34,26 +33,43 @@ DepthFrame depth_frame(const Sensor& sensor, const py::object& depth, const py::
   DepthFrame frame{width, height,
                    image(depth, "depth", "[m] (millimetres: depth.astype(numpy.float32) / 1000)",
                          height, width)};
-  float nearest = std::numeric_limits<float>::infinity();
+  MetresCheck metres(sensor);
   for (float& z : frame.depth) {
     if (z > 0) {
-      nearest = std::min(nearest, z);
+      metres.add(static_cast<double>(z));
     } else {
       z = DepthFrame::kInvalid;
     }
   }
-  require_metres(nearest, sensor, "depth");
+  metres.require("depth");
   if (!amplitude.is_none()) {
     frame.amplitude = image(amplitude, "amplitude", "[1/m**2]", height, width);
   }
   return frame;
 }
 
-void require_metres(double nearest, const Sensor& sensor, const char* name) {
-  if (!(std::isfinite(nearest) && nearest > 10 * sensor.max_range)) return;
+void MetresCheck::add(double range) {
+  if (!std::isfinite(range)) return;
+  if (range <= 10 * max_range_) {
+    ++near_;
+    return;
+  }
+  ++far_;
+  nearest_far_ = std::min(nearest_far_, range);
+  farthest_ = std::max(farthest_, range);
+}
+
+void MetresCheck::require(const char* name) const {
+  if (far_ == 0 || far_ < 19 * near_) return;
+  if (near_ > 0 && nearest_far_ == farthest_) return;
   std::ostringstream text;
-  text << name << " must be in metres: its nearest reading is at " << nearest
-       << ", beyond 10 times the sensor's max_range of " << sensor.max_range
+  text << name << " must be in metres: ";
+  if (near_ == 0) {
+    text << "its nearest reading is at " << nearest_far_ << ", beyond";
+  } else {
+    text << far_ << " of its " << near_ + far_ << " readings are beyond";
+  }
+  text << " 10 times the sensor's max_range of " << max_range_
        << " m (where there is nothing up to max_range a depth is inf)";
   throw py::value_error(text.str());
 }

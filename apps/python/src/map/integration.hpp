@@ -38,8 +38,8 @@ IntegrationReport
 Raises
 ------
 ValueError
-    Names the shape or dtype, or what is wrong with the pose; or the nearest of all readings is beyond
-    10 times max_range, as where they are in millimetres. The grid is unchanged then.)";
+    Names the shape or dtype, or what is wrong with the pose; or all readings, or 19 in 20 that
+    are not alike, are beyond 10 times max_range, as where they are in millimetres. The grid is unchanged then.)";
 
 [[nodiscard]] inline Occupancy parse_occupancy(const std::string& name) {
   if (name == "probabilistic") return Occupancy::probabilistic;

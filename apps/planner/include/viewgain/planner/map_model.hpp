@@ -41,7 +41,8 @@ struct VIEWGAIN_EXPORT MapModelConfig {
 struct VIEWGAIN_EXPORT MapUpdate {
   IntegrationReport counts{};     ///< of all its frames together
   std::size_t flying_pixels = 0;  ///< that the jump-edge filter took out
-  /// New surface that its first frame showed [m²], see RealisedArea; NaN without follow_surface.
+  /// New surface that its first frame showed, across the rays [m²], see RealisedArea; NaN without
+  /// follow_surface.
   double new_area = std::numeric_limits<double>::quiet_NaN();
   StageSeconds seconds{};  ///< integrate, snapshot
 };

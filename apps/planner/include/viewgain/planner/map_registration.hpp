@@ -25,15 +25,14 @@ namespace viewgain {
 /// Thread safety: const members may run from many threads at once.
 class VIEWGAIN_EXPORT MapRegistration {
  public:
-  /// `map` is the config of the maps; `sigmas` are those of each pose. Throws
-  /// Error(invalid_argument) as FrameRegistrar, ObstacleView and JumpEdgeFilter.
-  MapRegistration(const Sensor& sensor, const MapModelConfig& map, const PosePrior& sigmas,
-                  const ExecConfig& exec = {});
+  /// `map` is the config of the maps. Throws Error(invalid_argument) as FrameRegistrar,
+  /// ObstacleView and JumpEdgeFilter.
+  MapRegistration(const Sensor& sensor, const MapModelConfig& map, const ExecConfig& exec = {});
 
   /// See FrameRegistrar::register_frame(). Costs fused_points() besides, of the part of the grid
   /// that the frame may show.
   [[nodiscard]] FrameRegistration register_frame(const BeliefGrid& grid, DepthFrame frame,
-                                                 const Pose& T_reported) const;
+                                                 const PosePrior& prior) const;
 
  private:
   Sensor sensor_;
@@ -41,7 +40,6 @@ class VIEWGAIN_EXPORT MapRegistration {
   RegistrationConfig config_;
   std::optional<JumpEdgeFilter> filter_;
   ObstacleView obstacles_;
-  PosePrior sigmas_;
   ExecConfig exec_;
   FrameRegistrar registrar_;
 };

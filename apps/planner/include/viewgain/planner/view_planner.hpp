@@ -23,6 +23,7 @@
 #include "viewgain/planner/feasible_poses.hpp"
 #include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/pose_sets.hpp"
+#include "viewgain/planner/register_frame.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
@@ -94,8 +95,9 @@ struct VIEWGAIN_EXPORT Ranking {
 /// Next best views for a robot's program that calls step by step: frames in, views out. The steps
 /// of Algorithm 1 without its loop.
 ///
-/// add() a frame; ask should_stop(); propose() candidates; rank() them; move, and say how that went
-/// with tried(); add() the next frame.
+/// add() a frame, where reported poses are inexact at the one that register_frame() finds; ask
+/// should_stop(); propose() candidates; rank() them; move, and say how that went with tried();
+/// add() the next frame.
 ///
 /// What is refused (Error(invalid_argument)) has changed nothing. What the user's own parts throw,
 /// a generation, the reach region's predicate or a measure, passes through propose() and rank().
@@ -115,6 +117,13 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// Candidates that are made anew for each proposal, say at the boundaries of the surface
   /// (BoundaryGeneration of viewgain::planner_mesh). Not part of what save() keeps.
   void add_generation(std::shared_ptr<ViewpointGeneration> generation);
+
+  /// Where the camera was, by what the frame shows of the map so far: see FrameRegistrar. Changes
+  /// nothing. A frame that is registered is best put in at the pose that was found, one that is
+  /// refused not at all, one of which the map shows too little as reported. Throws
+  /// Error(invalid_argument) as FrameRegistrar::register_frame().
+  [[nodiscard]] FrameRegistration register_frame(const DepthFrame& frame,
+                                                 const PosePrior& prior) const;
 
   /// Puts a frame into the map and brings the scene up to date; the last proposal is void. Throws
   /// Error(invalid_argument) for a frame of another size than the sensor's images and a pose that
