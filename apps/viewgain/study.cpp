@@ -91,13 +91,12 @@ std::string predictions_csv(const StudySpec& spec, const StudyFolder& folder) {
 // A study's folder has runs/; another one that holds more than the spec is somebody else's.
 void check_folder(const std::filesystem::path& dir, const std::filesystem::path& spec) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(dir / "runs", ignored)) return;
   const std::filesystem::directory_iterator entries(dir, ignored);  // none if it is not there
-  if (std::all_of(begin(entries), end(entries), [&](const auto& entry) {
-        return std::filesystem::equivalent(entry.path(), spec, ignored);
-      })) {
-    return;
-  }
+  const bool is_new = std::all_of(begin(entries), end(entries), [&](const auto& entry) {
+    return std::filesystem::equivalent(entry.path(), spec, ignored);
+  });
+  // Looked for last: another worker of the same study may begin at this moment.
+  if (is_new || std::filesystem::is_directory(dir / "runs", ignored)) return;
   throw Error(ErrorCode::invalid_argument,
               "--out " + dir.string() + ": has files, but no runs/ of a study; name a new folder");
 }

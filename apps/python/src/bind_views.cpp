@@ -155,8 +155,10 @@ Returns
 ndarray, (height', width'), structured
     One a ray, image size divided by the stride, rounded up: kind (index into ``HIT_KIND_NAMES``),
     voxel (int32, 3), range along the ray [m], inf: nothing.)")
-      .def("depth", &depth, py::arg("T_world_camera"), R"(The depth image of a view of the map: of the first voxel on each ray that is not free. One that is unknown ends a
-ray as well.
+      .def("depth", &depth, py::arg("T_world_camera"),
+           R"(The depth image of a view of the map: of the first voxel on each ray that is not free.
+
+One that is unknown ends a ray as well.
 
 Parameters
 ----------
