@@ -99,6 +99,11 @@ TEST(RegisterFrame, AMapsPointsThatTheFrameMayShowAreEnough) {
   std::fill(nothing.depth.begin(), nothing.depth.end(), DepthFrame::kInvalid);
   EXPECT_EQ(registration.register_frame(scene.grid, nothing, prior_of(true_pose())).status,
             RegistrationStatus::too_little_overlap);
+  PosePrior unknown = prior_of(true_pose());
+  unknown.sigma_rotation = std::numeric_limits<double>::quiet_NaN();
+  test::expect_error(ErrorCode::invalid_argument, "sigma_rotation", [&] {
+    static_cast<void>(registration.register_frame(scene.grid, scene.see(true_pose()), unknown));
+  });
   nothing.depth.pop_back();
   test::expect_error(ErrorCode::invalid_argument, "", [&] {
     static_cast<void>(registration.register_frame(scene.grid, nothing, prior_of(true_pose())));

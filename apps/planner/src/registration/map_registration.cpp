@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/planner/map_registration.hpp"
 
+#include "registration/pose_motion.hpp"
 #include "registration/registration_config.hpp"
 #include "registration/seen_space.hpp"
 #include "viewgain/grid/fused_points.hpp"
@@ -28,6 +29,7 @@ MapRegistration::MapRegistration(const Sensor& sensor, const MapModelConfig& map
 FrameRegistration MapRegistration::register_frame(const BeliefGrid& grid, DepthFrame frame,
                                                   const PosePrior& prior) const {
   check_frame_size(frame, sensor_.camera);
+  detail::check(prior);
   if (filter_) filter_->apply(frame);
   obstacles_.mark(frame, prior.T_world_camera);
   const detail::SeenSpace seen(frame, sensor_, rays_, prior, config_.max_sigmas,

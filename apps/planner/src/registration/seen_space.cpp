@@ -50,7 +50,7 @@ SeenSpace::SeenSpace(const DepthFrame& frame, const Sensor& sensor,
                        2 * shift / nearest;
   low.array() -= slack;
   high.array() += slack;
-  tile_ = (high - low).maxCoeff() / kTiles;
+  tile_ = std::max((high - low).maxCoeff() / kTiles, 1e-9);  // one reading, a pose known exactly
   low_x_ = low.x(), low_y_ = low.y();
   columns_ = static_cast<int>((high.x() - low.x()) / tile_) + 1;
   rows_ = static_cast<int>((high.y() - low.y()) / tile_) + 1;
