@@ -92,7 +92,9 @@ struct FrameAlignment::Impl {
                                          const std::vector<std::uint8_t>& is_paired,
                                          double sigmas) const;
   [[nodiscard]] Verdict verdict_of(std::size_t index) const;
-  [[nodiscard]] double residual_before(std::size_t index) const;
+  [[nodiscard]] PairSums sums_with_others(std::size_t index, const Pose& T,
+                                          std::vector<std::uint8_t>* by_trusted = nullptr,
+                                          std::vector<std::uint8_t>* by_others = nullptr) const;
   void align_one(std::size_t index);
   bool register_frame(std::size_t index);
   void settle();
@@ -153,6 +155,22 @@ Agreements FrameAlignment::Impl::agreements_of(std::size_t index,
   return found;
 }
 
+// Of the frame at a pose; marks its readings that are in pairs with frames that are trusted, and
+// with others.
+PairSums FrameAlignment::Impl::sums_with_others(std::size_t index, const Pose& T,
+                                                std::vector<std::uint8_t>* by_trusted,
+                                                std::vector<std::uint8_t>* by_others) const {
+  PairSums sums;
+  for (std::size_t j = 0; j < joint.frames.size(); ++j) {
+    const JointFrame& other = joint.frames[j];
+    if (j == index || !other.is_in) continue;
+    const PairGates gates = joint.gates_of(other);
+    sums += detail::pair_sums(joint.frames[index].seen, T, gates, other.seen, other.T, gates,
+                              detail::kLevels - 1, other.is_trusted ? by_trusted : by_others);
+  }
+  return sums;
+}
+
 Verdict FrameAlignment::Impl::verdict_of(std::size_t index) const {
   const JointFrame& frame = joint.frames[index];
   const std::size_t readings = frame.seen.readings().size();
@@ -161,14 +179,7 @@ Verdict FrameAlignment::Impl::verdict_of(std::size_t index) const {
   result.readings = readings;
   result.iterations = frame.iterations;
   std::vector<std::uint8_t> is_paired(readings, 0), by_trusted(readings, 0);
-  PairSums after;
-  for (std::size_t j = 0; j < joint.frames.size(); ++j) {
-    const JointFrame& other = joint.frames[j];
-    if (j == index || !other.is_in) continue;
-    const PairGates gates = joint.gates_of(other);
-    after += detail::pair_sums(frame.seen, frame.T, gates, other.seen, other.T, gates,
-                               detail::kLevels - 1, other.is_trusted ? &by_trusted : &is_paired);
-  }
+  const PairSums after = sums_with_others(index, frame.T, &by_trusted, &is_paired);
   const auto count = [](const std::vector<std::uint8_t>& marks) {
     return static_cast<std::size_t>(std::count(marks.begin(), marks.end(), std::uint8_t{1}));
   };
@@ -199,20 +210,6 @@ Verdict FrameAlignment::Impl::verdict_of(std::size_t index) const {
   detail::judge(result, found.readings, found.surface, config, frame.sigmas, "another frame");
   if (index == 0) result.status = RegistrationStatus::registered, result.reason.clear();
   return {result, is_held || index == 0};
-}
-
-// Of the pairs at the reported pose [m].
-double FrameAlignment::Impl::residual_before(std::size_t index) const {
-  const JointFrame& frame = joint.frames[index];
-  PairSums before;
-  for (std::size_t j = 0; j < joint.frames.size(); ++j) {
-    const JointFrame& other = joint.frames[j];
-    if (j == index || !other.is_in) continue;
-    const PairGates gates = joint.gates_of(other);
-    before += detail::pair_sums(frame.seen, frame.T_reported, gates, other.seen, other.T, gates,
-                                detail::kLevels - 1);
-  }
-  return before.residual();
 }
 
 // Against those that are trusted; where these show too little of it, against all.
@@ -278,7 +275,7 @@ void FrameAlignment::Impl::settle() {
     for (std::size_t i = begin; i < end; ++i) {
       if (joint.frames[i].is_in) verdicts[i] = verdict_of(i);
       (joint.frames[i].is_in ? verdicts[i].result : results[i]).residual_before =
-          residual_before(i);
+          sums_with_others(i, joint.frames[i].T_reported).residual();
     }
   });
   for (std::size_t i = 0; i < n; ++i) {
