@@ -96,10 +96,11 @@ FrameMap::FrameMap(const FrameMapOptions& options, const ProposalOptions& propos
       config_(config_of(folder_, options, proposal, with_body(folder_.sensor(), proposal), quiet)),
       model_(with_body(folder_.sensor(), proposal), config_, exec) {}
 
-MapUpdate FrameMap::add(std::size_t index, const Pose& T_world_camera) {
+MapUpdate FrameMap::add(std::size_t index, const Pose& T_world_camera,
+                        const PoseSigma& pose_sigma) {
   FrameFolder::MaskedFrame loaded = folder_.load(index);
   masked_pixels_ += loaded.masked_pixels;
-  Measurements measurements{T_world_camera, {}};
+  Measurements measurements{T_world_camera, {}, pose_sigma};
   measurements.frames.push_back(std::move(loaded.frame));
   const MapUpdate update = model_.update(measurements);
   readings_ += update.counts.readings;

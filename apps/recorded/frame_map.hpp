@@ -44,10 +44,10 @@ class FrameMap {
   FrameMap(const FrameMapOptions& options, const ProposalOptions& proposal, bool quiet,
            const ExecConfig& exec);
 
-  /// At the pose that the folder says, or at another. Throws as FrameFolder::load() and
-  /// MapModel::update().
+  /// At the pose that the folder says, or at another that may be off by `pose_sigma`. Throws as
+  /// FrameFolder::load() and MapModel::update().
   MapUpdate add(std::size_t index) { return add(index, folder_.T_world_camera(index)); }
-  MapUpdate add(std::size_t index, const Pose& T_world_camera);
+  MapUpdate add(std::size_t index, const Pose& T_world_camera, const PoseSigma& pose_sigma = {});
 
   /// Throws Error(invalid_argument), naming the folder and the scale, if frames were added and none
   /// had a reading in the workspace: that comes of a wrong scale, sensor or workspace.

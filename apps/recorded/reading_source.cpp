@@ -59,6 +59,7 @@ class FrameSource : public ReadingSource {
     loaded_ = folder_.load(index);
     removed_ = filter_ ? filter_->apply(loaded_.frame) : 0;
     T_world_camera_ = folder_.T_world_camera(index);
+    pose_sigma_ = {};
   }
   [[nodiscard]] std::optional<Box> bounds() const override {
     return reading_bounds(folder_.sensor(), loaded_.frame, T_world_camera_, {}, support_plane_);
@@ -68,13 +69,14 @@ class FrameSource : public ReadingSource {
     prior_->T_world_camera = T_world_camera_;
     FrameRegistration result = registration_->register_frame(grid, loaded_.frame, *prior_);
     T_world_camera_ = result.T_world_camera;
+    pose_sigma_ = result.pose_sigma();
     return result;
   }
   IntegrationReport integrate(BeliefGrid& grid) override {
     if (calibration_) {
       calibration_->count(grid, HazardField(grid.snapshot()), loaded_.frame, T_world_camera_);
     }
-    return integrator_.integrate(grid, loaded_.frame, T_world_camera_);
+    return integrator_.integrate(grid, loaded_.frame, T_world_camera_, pose_sigma_);
   }
   [[nodiscard]] std::uint64_t masked_pixels() const override { return loaded_.masked_pixels; }
   [[nodiscard]] std::uint64_t jump_edge_removed() const override { return removed_; }
@@ -92,6 +94,7 @@ class FrameSource : public ReadingSource {
   FrameIntegrator integrator_;
   FrameFolder::MaskedFrame loaded_;
   Pose T_world_camera_;
+  PoseSigma pose_sigma_;  // by which it may be off
   std::uint64_t removed_ = 0;
 };
 

@@ -45,7 +45,8 @@ void RecordedViews::add(std::size_t index) {
   MapUpdate update;
   if (!is_refused(index)) {
     const Stopwatch watch;
-    update = map_.add(index, record.T_world_camera);
+    update = map_.add(index, record.T_world_camera,
+                      is_aligned() ? registrations_[index].pose_sigma() : PoseSigma{});
     readings_.readings += update.counts.readings;
     readings_.readings_inside += update.counts.readings_inside;
     flying_pixels_ += update.flying_pixels;

@@ -3,10 +3,12 @@
 #include "viewgain/planner/map_model.hpp"
 
 #include <Eigen/Core>
+#include <cmath>
 #include <utility>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/stopwatch.hpp"
+#include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -44,6 +46,12 @@ void MapModel::check(const Measurements& measurements) const {
   if (!(orthonormality_error(measurements.T_world_camera) <= 1e-3)) {
     throw Error(ErrorCode::invalid_argument,
                 "the pose of the frames is not a rigid transform of finite numbers");
+  }
+  for (const double sigma :
+       {measurements.pose_sigma.translation, measurements.pose_sigma.rotation}) {
+    if (std::isfinite(sigma) && sigma >= 0) continue;
+    throw Error(ErrorCode::invalid_argument,
+                "the sigma " + short_text(sigma) + " of a pose is negative or not finite");
   }
   for (const DepthFrame& frame : measurements.frames) check_frame_size(frame, sensor_.camera);
 }
@@ -87,7 +95,8 @@ MapUpdate MapModel::update(const Measurements& measurements) {
     }
   }
   for (const DepthFrame& frame : frames) {
-    add(update.counts, integrator_.integrate(grid_, frame, T_world_camera));
+    add(update.counts,
+        integrator_.integrate(grid_, frame, T_world_camera, measurements.pose_sigma));
   }
   update.seconds["integrate"] = watch.seconds();
   const Stopwatch scene_watch;
@@ -101,7 +110,7 @@ BeliefGrid MapModel::grid_after(const Measurements& measurements) const {
   BeliefGrid grid = grid_.clone();
   FrameIntegrator integrator(sensor_, config_.integration, exec_);
   for (const DepthFrame& frame : filtered(measurements, nullptr)) {
-    integrator.integrate(grid, frame, measurements.T_world_camera);
+    integrator.integrate(grid, frame, measurements.T_world_camera, measurements.pose_sigma);
   }
   return grid;
 }

@@ -59,6 +59,14 @@ Decision decision_of(const Ranking& ranking, std::span<const ViewGain> looked_at
   return decision;
 }
 
+// As StopRules::after_view() would have it of the last view; there is no coverage here.
+std::optional<StopReason> limit_reached(const PlanningConfig& limits, const StopMemory& memory) {
+  if (memory.views == 0) return std::nullopt;
+  if (memory.views >= limits.max_views) return StopReason::max_views;
+  if (limits.idle_views > 0 && memory.idle_views >= limits.idle_views) return StopReason::idle;
+  return std::nullopt;
+}
+
 }  // namespace
 
 struct ViewPlanner::Impl {
@@ -258,17 +266,19 @@ FrameRegistration ViewPlanner::register_frame(const DepthFrame& frame,
   return m.registration->register_frame(m.map.grid(), frame, prior);
 }
 
-AddedView ViewPlanner::add(const DepthFrame& frame, const Pose& T_world_camera) {
-  return add(std::span(&frame, 1), T_world_camera);
+AddedView ViewPlanner::add(const DepthFrame& frame, const Pose& T_world_camera,
+                           const PoseSigma& pose_sigma) {
+  return add(std::span(&frame, 1), T_world_camera, pose_sigma);
 }
 
-AddedView ViewPlanner::add(std::span<const DepthFrame> frames, const Pose& T_world_camera) {
+AddedView ViewPlanner::add(std::span<const DepthFrame> frames, const Pose& T_world_camera,
+                           const PoseSigma& pose_sigma) {
   Impl& m = *impl_;
   if (frames.empty()) fail("a view without a frame");
   AddedView added;
   added.view = m.state.after_choice.views;
   const double before = m.state.after_choice.entropy_removed;
-  added.update = m.map.update({T_world_camera, {frames.begin(), frames.end()}});
+  added.update = m.map.update({T_world_camera, {frames.begin(), frames.end()}, pose_sigma});
   added.progress = m.map.progress();
   // Without follow_surface nobody asks for the area.
   if (!std::isnan(added.update.new_area)) m.state.seen_area += added.update.new_area;
@@ -359,6 +369,8 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
   auto impl =
       std::make_unique<Impl>(config, exec, MapModel(std::move(saved.grid), sensor, map, exec));
   impl->state = std::move(state);
+  // The limits are those of today's configuration; what the last choice said stays.
+  impl->state.of_view = limit_reached(impl->planning, impl->state.after_choice);
   (void)impl->current_evaluator();
   return ViewPlanner(std::move(impl));
 }

@@ -24,6 +24,7 @@ ModelProgress RegisteredModel::update(const Measurements& measurements) {
     if (registration.status == RegistrationStatus::refused) continue;
     kept.push_back(views_[i]);
     kept.back().T_world_camera = registration.T_world_camera;
+    kept.back().pose_sigma = registration.pose_sigma();
   }
   const double seconds = watch.seconds();
   ModelProgress progress = views_.size() == 1 ? model_.update(kept.front()) : model_.rebuild(kept);

@@ -41,6 +41,25 @@ Stretch clipped(const Box& box, const Eigen::Vector3d& origin, const Eigen::Vect
   return stretch;
 }
 
+// Does the map's update give the reading to surface that is known? As associate() of the update:
+// noise carried it off, and it is no meeting.
+bool is_of_known_surface(const BeliefGrid& grid, const Eigen::Vector3d& p_grid,
+                         const Eigen::Vector3d& direction, double range, double sigma) {
+  const double size = grid.voxel_size();
+  if (sigma < 0.5 * size) return false;
+  const auto is_occupied = [&](double t) {
+    const Eigen::Array3d v = ((p_grid + t * direction) / size).array().floor();
+    const Index3 voxel{static_cast<std::int32_t>(v.x()), static_cast<std::int32_t>(v.y()),
+                       static_cast<std::int32_t>(v.z())};
+    return grid.state(voxel) == VoxelState::occupied;
+  };
+  const double reach = std::min(3 * sigma, 8 * size);
+  for (double t = 0.5 * size; t < reach; t += 0.5 * size) {
+    if (is_occupied(t) || (t < range && is_occupied(-t))) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 HazardCalibration::HazardCalibration(const Sensor& sensor, std::optional<double> support_plane)
@@ -113,7 +132,9 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
       const Eigen::Vector3d p = eye + range * direction;
       if (!workspace.contains(p.x(), p.y(), p.z())) continue;
       const Index3 voxel = voxel_at(p);
-      if (grid.state(voxel) == VoxelState::unknown) sums.met[class_at(hazard.distance(voxel))] += 1;
+      if (grid.state(voxel) != VoxelState::unknown) continue;
+      if (is_of_known_surface(grid, p, direction, range, sensor_.sigmas(range).axial)) continue;
+      sums.met[class_at(hazard.distance(voxel))] += 1;
     }
   }
 

@@ -98,6 +98,18 @@ void set_in_block(GridStorage& s, std::span<const KeyedValue> values) {
 
 }  // namespace
 
+LeafMask detail::occupied_in(const BeliefGrid& grid, Index3 origin) {
+  LeafMask mask{};
+  const CodeLeaf* leaf = GridAccess::storage(grid).tree.probeConstLeaf(to_coord(origin));
+  for (unsigned i = 0; leaf != nullptr && i < kBlockVoxels; ++i) {  // a tile holds none
+    if (is_occupied(leaf->getValue(i))) set_bit(mask, i);
+  }
+  return mask;
+}
+const BeliefMap& detail::beliefs_of(const BeliefGrid& grid) {
+  return GridAccess::storage(grid).beliefs;
+}
+
 std::uint64_t detail::GridStorage::next_number() {
   static std::atomic<std::uint64_t> last{0};
   return ++last;

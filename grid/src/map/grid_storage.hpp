@@ -15,6 +15,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "belief_blocks.hpp"
 #include "block_lattice.hpp"
 #include "log_odds_code.hpp"
 #include "viewgain/grid/belief_grid.hpp"
@@ -66,8 +67,7 @@ struct GridStorage {
   /// meaning.
   CodeTree tree{kUnknownCode};
 
-  /// By BlockLattice::key. Blocks are never changed in place: snapshots and clones share them.
-  std::unordered_map<std::uint64_t, std::shared_ptr<const BeliefBlock>> beliefs;
+  BeliefMap beliefs;
 
   /// When what a snapshot tells has changed: a time, and that of each region's last change (by key
   /// >> 6).

@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "frame_hits.hpp"
+#include "hit.hpp"
 #include "readings.hpp"
 #include "viewgain/grid/belief.hpp"
 

@@ -52,7 +52,23 @@ void FrameHits::find(const PlacedFrame& frame, const BlockLattice& lattice, doub
       by_pixel_[i] = {lattice.key(*voxel), static_cast<std::uint32_t>(i), block_offset(*voxel)};
     }
   });
+  sort();
+}
 
+void FrameHits::associate(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
+                          const BeliefGrid& map, ThreadPool& pool) {
+  const double noisy = kNoisySigma * voxel_size;
+  if (std::none_of(hits_.begin(), hits_.end(), [&](const Hit& hit) {
+        return frame.readings.sigmas(hit.pixel).axial >= noisy;
+      })) {
+    return;
+  }
+  support_.gather(map, lattice, blocks_, hits_, pool);
+  detail::associate(frame, lattice, voxel_size, support_, pool, by_pixel_);
+  sort();
+}
+
+void FrameHits::sort() {
   hits_.clear();
   for (const Hit& hit : by_pixel_) {
     if (hit.offset < kBlockVoxels) hits_.push_back(hit);

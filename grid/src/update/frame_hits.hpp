@@ -3,36 +3,26 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "association.hpp"
+#include "hit.hpp"
 #include "map/block_lattice.hpp"
 #include "readings.hpp"
 #include "viewgain/core/thread_pool.hpp"
-#include "viewgain/grid/belief.hpp"
 
 namespace viewgain::detail {
-
-/// A reading and the voxel that encloses it.
-struct Hit {
-  std::uint64_t block = 0;  ///< BlockLattice::key
-  std::uint32_t pixel = 0;
-  std::uint32_t offset = 0;  ///< in the block
-};
-
-/// The hits of one block: [begin, end) of the sorted hits, and where its beliefs are kept.
-struct HitBlock {
-  std::uint64_t key = 0;
-  std::uint32_t begin = 0, end = 0;
-  std::shared_ptr<const BeliefBlock>* beliefs = nullptr;
-};
 
 /// Readings of a frame that lie in the workspace, by block and within a block in pixel order.
 class FrameHits {
  public:
+  /// Each reading counts for the voxel that it lies in: the paper's eq. (4).
   void find(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
             ThreadPool& pool);
+  /// After find(): noisy readings count for the best supported voxel on their ray (associate()).
+  void associate(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
+                 const BeliefGrid& map, ThreadPool& pool);
 
   [[nodiscard]] std::size_t size() const { return hits_.size(); }
   [[nodiscard]] std::span<const Hit> of(const HitBlock& block) const {
@@ -43,9 +33,12 @@ class FrameHits {
   [[nodiscard]] std::span<const HitBlock> in_region(std::uint64_t region) const;
 
  private:
+  void sort();
+
   std::vector<Hit> by_pixel_;  ///< one a pixel; offset kBlockVoxels where there is no hit
   std::vector<Hit> hits_, scratch_;
   std::vector<HitBlock> blocks_;
+  VoxelSupport support_;
 };
 
 }  // namespace viewgain::detail

@@ -25,7 +25,8 @@ CameraPlane::CameraPlane(double height, const Pose& T_world_camera)
     : normal(T_world_camera.rotation().row(2).transpose()),
       offset(height - T_world_camera.translation().z()) {}
 
-FramePixels::FramePixels(const Sensor& sensor) : Readings(sensor) {
+FramePixels::FramePixels(const Sensor& sensor)
+    : Readings(sensor), own_pose_sigma_(sensor.pose_sigma) {
   rays_ = sensor_.camera.ray_table();
   norms_.reserve(rays_.size());
   for (const Eigen::Vector3d& ray : rays_) norms_.push_back(ray.norm());
@@ -33,6 +34,11 @@ FramePixels::FramePixels(const Sensor& sensor) : Readings(sensor) {
   depths_.assign((static_cast<std::size_t>(sensor_.camera.width) + 2) *
                      (static_cast<std::size_t>(sensor_.camera.height) + 2),
                  kNoDepth);
+}
+
+void FramePixels::set_pose_sigma(const PoseSigma& sigma) {
+  sensor_.pose_sigma = {std::hypot(own_pose_sigma_.translation, sigma.translation),
+                        std::hypot(own_pose_sigma_.rotation, sigma.rotation)};
 }
 
 void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool,

@@ -30,6 +30,9 @@ class FramePixels : public Readings {
   /// Undoes the lens distortion of every pixel once.
   explicit FramePixels(const Sensor& sensor);
 
+  /// By which the pose of the next frames may be off, beside the sensor's own.
+  void set_pose_sigma(const PoseSigma& sigma);
+
   /// Sorts the frame's pixels into the kinds and computes what follows from the readings alone.
   /// cosθ = amplitude · range² where the frame has amplitudes, else cos_incidence(). With `tapered`
   /// false crossings keep their weight up to the reading. Readings of the frame's known
@@ -46,6 +49,7 @@ class FramePixels : public Readings {
   [[nodiscard]] double cos_incidence(int u, int v) const;
 
  private:
+  PoseSigma own_pose_sigma_;
   std::vector<double> depths_;  ///< of readings, else NaN; with a border of one pixel
 };
 

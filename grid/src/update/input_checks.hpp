@@ -7,6 +7,7 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/sensor.hpp"
 #include "viewgain/core/text.hpp"
 
 namespace viewgain::detail {
@@ -16,6 +17,15 @@ inline void check_plane(std::optional<double> height) {
   if (height && !std::isfinite(*height)) {
     throw Error(ErrorCode::invalid_argument,
                 "support plane " + short_text(*height) + " m is not finite");
+  }
+}
+
+/// Throws Error(invalid_argument) unless both sigmas are finite and not negative.
+inline void check_pose_sigma(const PoseSigma& pose_sigma) {
+  for (const double sigma : {pose_sigma.translation, pose_sigma.rotation}) {
+    if (std::isfinite(sigma) && sigma >= 0) continue;
+    throw Error(ErrorCode::invalid_argument,
+                "the sigma " + short_text(sigma) + " of a pose is negative or not finite");
   }
 }
 

@@ -40,13 +40,16 @@ FrameIntegrator::FrameIntegrator(FrameIntegrator&&) noexcept = default;
 FrameIntegrator& FrameIntegrator::operator=(FrameIntegrator&&) noexcept = default;
 
 IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame& frame,
-                                             const Pose& T_world_camera_in) {
+                                             const Pose& T_world_camera_in,
+                                             const PoseSigma& pose_sigma) {
   Impl& m = *impl_;
   check_frame_size(frame, m.pixels.sensor().camera);
+  check_pose_sigma(pose_sigma);
   const Pose T_world_camera = rigid_view(T_world_camera_in);
   const Pose T_camera_grid = T_world_camera.inverse() * grid.T_world_grid();
   const Pose T_grid_camera = grid.T_world_grid().inverse() * T_world_camera;
   const ConeCamera camera(m.pixels.sensor().camera, T_camera_grid);
+  m.pixels.set_pose_sigma(pose_sigma);
   m.pixels.load(frame, m.config.occupancy != Occupancy::literal, m.update.pool(),
                 plane_seen_from(T_world_camera, m.config.support_plane));
   return m.update.run(grid, {m.pixels, T_grid_camera, T_world_camera},

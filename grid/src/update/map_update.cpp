@@ -11,8 +11,12 @@ namespace viewgain::detail {
 
 struct MapUpdate::Impl {
   Impl(Occupancy occupancy, const ExecConfig& exec, const BlockKernels& kernels)
-      : pool(exec.num_threads), cones(kernels), apply(kernels, occupancy == Occupancy::literal) {}
+      : literal(occupancy == Occupancy::literal),
+        pool(exec.num_threads),
+        cones(kernels),
+        apply(kernels, literal) {}
 
+  bool literal;
   ThreadPool pool;
   ConeEvidence cones;
   LineEvidence lines;
@@ -34,6 +38,7 @@ IntegrationReport MapUpdate::run(BeliefGrid& grid, const PlacedFrame& frame,
   const BlockLattice lattice(grid.min_index(), grid.dims());
   const double voxel_size = grid.voxel_size();
   m.hits.find(frame, lattice, voxel_size, m.pool);
+  if (!m.literal) m.hits.associate(frame, lattice, voxel_size, grid, m.pool);
   ApplyCounts counts;
   if (camera != nullptr) {
     m.cones.gather(frame.readings, *camera, voxel_size);

@@ -41,7 +41,7 @@ void check(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
     refuse("the join distance must be positive and finite", config.join_distance);
   }
   if (points.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw Error(ErrorCode::invalid_argument, "more than 2^32 points");
+    throw Error(ErrorCode::capacity, "2^32 points or more");
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (const double x : points[i].position) {

@@ -64,7 +64,7 @@ const std::vector<std::string>& gain_model_names() {
 }
 
 std::string_view gain_model_name(GainModel model) {
-  return gain_model_names()[static_cast<std::size_t>(model)];
+  return gain_model_names().at(static_cast<std::size_t>(model));
 }
 
 GainModel parse_gain_model(std::string_view name) {

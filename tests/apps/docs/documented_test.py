@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every public name has words: those of the C++ and C headers by Doxygen's XML, those of Python by their docstrings.
 
-    documented_test.py headers DOXYGEN DOXYFILE   counts the names of the headers; exit code 77 without Doxygen
+    documented_test.py headers DOXYGEN DOXYFILE   counts the names of the headers, and what their words say (said_of_headers);
+                                                  exit code 77 without Doxygen
     documented_test.py python                     counts those of the package
 
 Nothing needs to be said of what the language itself says: destructors, copies and moves, defaulted and deleted operators. The
@@ -17,22 +18,14 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 
+import said_of_headers
+from said_of_headers import needs_none, words_of
+
 COMPOUNDS = {"class", "struct", "union", "namespace", "file"}
 
 
 def has_words(element):
-    texts = (element.find(tag) for tag in ("briefdescription", "detaileddescription"))
-    return any("".join(text.itertext()).strip() for text in texts if text is not None)
-
-
-def needs_none(member, of):
-    """Is it a function of which the language says what it does?"""
-    name, arguments = member.findtext("name"), (member.findtext("argsstring") or "").replace(" ", "")
-    if name.startswith("~") or arguments.endswith("=delete"):
-        return True
-    if name.startswith("operator") and arguments.endswith("=default"):
-        return True
-    return name in (of, "operator=") and arguments.startswith((f"({of}&&", f"(const{of}&"))
+    return bool(words_of(element))
 
 
 def undocumented_of(folder):
@@ -75,7 +68,7 @@ def headers(doxygen, doxyfile):
     subprocess.run([doxygen, doxyfile], check=True)
     count, faults = undocumented_of(pathlib.Path(folder) / "xml")
     assert count > 1500, f"only {count} names: does Doxygen read the headers?"
-    return count, faults
+    return count, faults, said_of_headers.unsaid_of(pathlib.Path(folder) / "xml")
 
 
 def python():
@@ -110,14 +103,14 @@ def python():
                 if not words.strip():
                     faults.append(f"{full} has no words")
     assert count > 150, count
-    return count, faults
+    return count, faults, []
 
 
 def main():
-    count, faults = python() if sys.argv[1] == "python" else headers(*sys.argv[2:])
-    print(f"{count} public names, {len(faults)} without words")
-    print("\n".join(faults))
-    sys.exit(1 if faults else 0)
+    count, wordless, unsaid = python() if sys.argv[1] == "python" else headers(*sys.argv[2:])
+    print(f"{count} public names, {len(wordless)} without words")
+    print("\n".join(wordless + unsaid))
+    sys.exit(1 if wordless or unsaid else 0)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -61,7 +62,9 @@ TEST(AlignFrames, ARingClosesOnTheTruth) {
     ASSERT_EQ(poses.size(), truth.size());
     ASSERT_EQ(registrations.size(), truth.size());
     EXPECT_EQ(poses[0], orthonormalized(truth[0]));
+    EXPECT_EQ(registrations[0].pose_sigma(), PoseSigma{});
     int cases = 0;
+    double squares = 0;  // of errors in units of the covariance
     for (std::size_t i = 1; i < truth.size(); ++i) {
       // Of the surface that is seen: a camera may turn about it as its centre moves.
       const Eigen::Vector3d middle(0, 0, 0.95 * test::RegistrationScene::kDistance - 0.12);
@@ -71,9 +74,19 @@ TEST(AlignFrames, ARingClosesOnTheTruth) {
       EXPECT_EQ(registrations[i].T_world_camera, poses[i]);
       EXPECT_GT(registrations[i].overlap, 0.5);
       EXPECT_LT(registrations[i].contradiction, 0.05);
+      const PoseSigma sigma = registrations[i].pose_sigma();
+      EXPECT_GT(sigma.translation, 0) << i;
+      EXPECT_LT(sigma.translation, kShift) << i;
+      EXPECT_LT(sigma.rotation, kTurn) << i;
+      const auto error = test::difference(poses[i], truth[i]);
+      squares += error.dot(test::covariance_of(registrations[i]).inverse() * error) / 6;
       ++cases;
     }
     EXPECT_EQ(cases, 7);
+    if (noise) {
+      EXPECT_LT(squares / cases, 3);
+      EXPECT_GT(squares / cases, 0.1);
+    }
   }
 }
 

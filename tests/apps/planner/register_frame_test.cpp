@@ -40,17 +40,6 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-Eigen::Matrix<double, 6, 6> covariance_of(const FrameRegistration& result) {
-  return Eigen::Map<const Eigen::Matrix<double, 6, 6>>(result.covariance.data());
-}
-
-Eigen::Matrix<double, 6, 1> difference(const Pose& pose, const Pose& from) {
-  const Eigen::AngleAxisd turn(Eigen::Matrix3d(pose.rotation() * from.rotation().transpose()));
-  Eigen::Matrix<double, 6, 1> d;
-  d << pose.translation() - from.translation(), turn.angle() * turn.axis();
-  return d;
-}
-
 TEST(RegisterFrame, WithoutNoiseThePoseIsRecovered) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), false, test::views_round());
   const DepthFrame frame = scene.see(true_pose());
@@ -142,8 +131,8 @@ TEST(RegisterFrame, WithNoiseItIsRecoveredToMillimetresAndKnowsHowWell) {
     const test::PoseError error = test::error_of(result.T_world_camera, true_pose());
     translations.push_back(error.translation);
     rotations.push_back(error.rotation);
-    const auto d = difference(result.T_world_camera, true_pose());
-    squares += d.dot(covariance_of(result).inverse() * d) / 6;
+    const auto d = test::difference(result.T_world_camera, true_pose());
+    squares += d.dot(test::covariance_of(result).inverse() * d) / 6;
   }
   ASSERT_EQ(translations.size(), 10U);
   EXPECT_LT(median(translations), 4e-3);
@@ -205,7 +194,7 @@ TEST(RegisterFrame, WhatSlidesStaysWithThePrior) {
           EXPECT_NEAR(found.col(static_cast<Eigen::Index>(k)).norm(), 1, 1e-6);
         }
         const Eigen::Matrix<double, 6, 1> correction =
-            difference(result.T_world_camera, reported).cwiseQuotient(sigmas);
+            test::difference(result.T_world_camera, reported).cwiseQuotient(sigmas);
         for (const auto& [along, about] : shape.motions) {
           Eigen::Matrix<double, 6, 1> motion;
           motion << along + about.cross(true_pose().translation()), about;
@@ -217,7 +206,7 @@ TEST(RegisterFrame, WhatSlidesStaysWithThePrior) {
         // The prior's covariance stays along them.
         for (Eigen::Index k = 0; k < found.cols(); ++k) {
           const Eigen::Matrix<double, 6, 1> v = found.col(k).cwiseQuotient(sigmas);
-          EXPECT_NEAR(v.dot(covariance_of(result) * v), 1, 1e-6);
+          EXPECT_NEAR(v.dot(test::covariance_of(result) * v), 1, 1e-6);
         }
         EXPECT_LT(result.residual_after, (noise ? 6e-3 : 0.5e-3));
       }
@@ -273,9 +262,13 @@ TEST(RegisterFrame, TooLittleOverlapLeavesThePose) {
   const auto expect_as_reported = [&](const FrameRegistration& result, const std::string& part) {
     EXPECT_EQ(result.status, RegistrationStatus::too_little_overlap);
     EXPECT_NE(result.reason.find(part), std::string::npos) << result.reason;
+    EXPECT_EQ(result.covariance[1], 0);
+  };
+  const auto expect_the_prior = [&](const FrameRegistration& result) {
     EXPECT_EQ(result.covariance[0], kShift * kShift);
     EXPECT_EQ(result.covariance[35], kTurn * kTurn);
-    EXPECT_EQ(result.covariance[1], 0);
+    EXPECT_NEAR(result.pose_sigma().translation, kShift, 1e-12);
+    EXPECT_NEAR(result.pose_sigma().rotation, kTurn, 1e-12);
   };
   GridConfig layout;
   layout.voxel_size = 0.005, layout.prior_sigma = 0.01;
@@ -283,6 +276,7 @@ TEST(RegisterFrame, TooLittleOverlapLeavesThePose) {
   const FrameRegistration in_empty =
       registrar.register_frame(BeliefGrid(layout), {}, scene.see(true_pose()), prior_of(reported));
   expect_as_reported(in_empty, "no surface yet");
+  EXPECT_EQ(in_empty.pose_sigma(), PoseSigma{});  // the frame says where the map is
   EXPECT_EQ(in_empty.T_world_camera, orthonormalized(reported));
 
   DepthFrame nothing = scene.see(true_pose());
@@ -300,6 +294,7 @@ TEST(RegisterFrame, TooLittleOverlapLeavesThePose) {
   const FrameRegistration from_behind =
       registrar.register_frame(scene.grid, scene.points, scene.see(behind), prior_of(behind));
   expect_as_reported(from_behind, "readings show surface that the map has");
+  expect_the_prior(from_behind);
   EXPECT_EQ(from_behind.T_world_camera, behind);
   EXPECT_GT(from_behind.readings, 1000U);
 }

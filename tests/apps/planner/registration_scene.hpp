@@ -162,4 +162,16 @@ inline std::vector<Pose> views_round() {
           camera_at(5, 30, RegistrationScene::kDistance)};
 }
 
+/// The covariance of a result.
+inline Eigen::Matrix<double, 6, 6> covariance_of(const FrameRegistration& result) {
+  return Eigen::Map<const Eigen::Matrix<double, 6, 6>>(result.covariance.data());
+}
+
+inline Eigen::Matrix<double, 6, 1> difference(const Pose& pose, const Pose& from) {
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(pose.rotation() * from.rotation().transpose()));
+  Eigen::Matrix<double, 6, 1> d;
+  d << pose.translation() - from.translation(), turn.angle() * turn.axis();
+  return d;
+}
+
 }  // namespace viewgain::test

@@ -86,6 +86,28 @@ TEST(SavedPlanner, GoesOnBitForBit) {
   EXPECT_EQ(cases, 10);
 }
 
+TEST(SavedPlanner, LimitsAreThoseOfTheConfigurationItIsLoadedWith) {
+  const BinScene scene;
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "planner.vdb";
+  PlannerConfig config = scene.config(GainModel::paper);
+  config.max_views = 2;
+  ViewPlanner planner(scene.sensor, config, {1});
+  planner.save(path);
+  EXPECT_EQ(ViewPlanner::load(path, scene.sensor, config).should_stop(), std::nullopt);
+  planner.add_poses({"dome", scene.views});
+  for (std::size_t view = 0; view < 2; ++view) (void)step(planner, scene, view);
+  EXPECT_EQ(planner.should_stop(), StopReason::max_views);
+  planner.save(path);
+  for (const auto& [max_views, reason] :
+       {std::pair<std::size_t, std::optional<StopReason>>{1, StopReason::max_views},
+        {2, StopReason::max_views},
+        {3, std::nullopt}}) {
+    config.max_views = max_views;
+    EXPECT_EQ(ViewPlanner::load(path, scene.sensor, config).should_stop(), reason) << max_views;
+  }
+}
+
 TEST(SavedPlanner, IsAMap) {
   const BinScene scene;
   const test::TemporaryFolder folder;

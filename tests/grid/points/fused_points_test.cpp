@@ -88,7 +88,7 @@ TEST(FusedPoints, PooledStaysHonestAsReadingsAccumulateLiteralDoesNot) {
       const double pooled = plane_consistency(fused_points(grid));
       EXPECT_LT(pooled, 2.0) << voxel << " " << frames;
       if (frames == 30) {
-        EXPECT_GT(plane_consistency(fused_points(grid, literal)), 3.0) << voxel;
+        EXPECT_GT(plane_consistency(fused_points(grid, literal)), 2.0) << voxel;
       }
       ++cases;
     }
@@ -346,7 +346,7 @@ TEST(FusedPoints, TurnsWithTheGrid) {
       EXPECT_NEAR(other.covariance.xx, covariance.xx, 1e-3 * covariance.xx);
       EXPECT_NEAR(other.covariance.yz, covariance.yz, 1e-3 * covariance.xx);
       const Vector3d n = T_world_grid.rotation() * vector(point.toward_free);
-      EXPECT_NEAR(n.dot(vector(other.toward_free)), 1.0, 1e-6);
+      EXPECT_NEAR(n.dot(vector(other.toward_free)), 1.0, 1e-5);
       ++same;
       break;
     }

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "grid/analytic_frames.hpp"
+#include "viewgain/core/error.hpp"
 #include "viewgain/grid/integrate.hpp"
 
 namespace viewgain {
@@ -76,6 +77,27 @@ TEST(Beliefs, ReadingsAreNoSurerThanThePose) {
   EXPECT_NEAR(belief->information[0], axial, 1e-6 * axial);
   EXPECT_NEAR(belief->information[1], lateral, 1e-6 * lateral);
   EXPECT_NEAR(belief->information[2], lateral, 1e-6 * lateral);
+}
+
+TEST(Beliefs, OneFramesPoseMayBeWorseThanTheOthers) {
+  const Eigen::Vector3d target(0.005, 0.005, 0.005);
+  const Pose pose = look_at(target - Eigen::Vector3d(0.5, 0, 0), target);
+  Sensor sensor = one_pixel(ConstantNoise{0.003, 0.001});
+  sensor.pose_sigma = {0.001, 0.002};
+  FrameIntegrator integrator(sensor);
+  BeliefGrid grid(kCube);
+  EXPECT_THROW(integrator.integrate(grid, one_reading(0.5), pose, {-1e-3, 0}), Error);
+  EXPECT_THROW(integrator.integrate(grid, one_reading(0.5), pose, {0, std::nan("")}), Error);
+  EXPECT_TRUE(grid.views().empty());
+  integrator.integrate(grid, one_reading(0.5), pose, {0.004, 0.01});
+  integrator.integrate(grid, one_reading(0.5), pose);
+
+  Sensor both = sensor;
+  both.pose_sigma = {std::hypot(0.001, 0.004), std::hypot(0.002, 0.01)};
+  BeliefGrid expected(kCube);
+  FrameIntegrator(both).integrate(expected, one_reading(0.5), pose);
+  FrameIntegrator(sensor).integrate(expected, one_reading(0.5), pose);
+  EXPECT_EQ(grid.content_hash(), expected.content_hash());
 }
 
 TEST(Beliefs, ExactReadingsOfOnePointFuseToIt) {

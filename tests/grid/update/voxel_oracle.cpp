@@ -79,6 +79,43 @@ Eigen::Vector3d VoxelOracle::center(Index3 v) const {
   return {(v.x + 0.5) * voxel_size_, (v.y + 0.5) * voxel_size_, (v.z + 0.5) * voxel_size_};
 }
 
+Index3 VoxelOracle::voxel_of(std::size_t position) const {
+  const auto n = static_cast<int>(position);
+  return {min_.x + n / dims_.z / dims_.y, min_.y + n / dims_.z % dims_.y, min_.z + n % dims_.z};
+}
+
+std::optional<std::size_t> VoxelOracle::voxel_at(const Eigen::Vector3d& p) const {
+  const Index3 voxel{static_cast<int>(std::floor(p.x() / voxel_size_)),
+                     static_cast<int>(std::floor(p.y() / voxel_size_)),
+                     static_cast<int>(std::floor(p.z() / voxel_size_))};
+  if (voxel.x < min_.x || voxel.x >= min_.x + dims_.x || voxel.y < min_.y ||
+      voxel.y >= min_.y + dims_.y || voxel.z < min_.z || voxel.z >= min_.z + dims_.z) {
+    return std::nullopt;
+  }
+  return position(voxel);
+}
+
+// Lists the values along the ray, and takes the largest of those more than twice the own one's.
+std::size_t VoxelOracle::best_supported(const Eigen::Vector3d& point, const Eigen::Vector3d& ray,
+                                        double sigma,
+                                        const std::map<std::size_t, double>& support) const {
+  const double reach = std::min(3.0 * sigma, 8.0 * voxel_size_);
+  const std::size_t own = *voxel_at(point);
+  std::vector<std::array<double, 3>> found;  // value, -|t|, -t
+  std::vector<std::size_t> voxels;
+  for (int step = -16; step <= 16; ++step) {
+    const double t = 0.5 * step * voxel_size_;
+    if (step == 0 || !(std::abs(t) < reach)) continue;
+    const std::optional<std::size_t> voxel = voxel_at(point + t * ray);
+    if (!voxel || !support.contains(*voxel)) continue;
+    found.push_back({support.at(*voxel) * (1 - t * t / (reach * reach)), -std::abs(t), -t});
+    voxels.push_back(*voxel);
+  }
+  const auto best = std::max_element(found.begin(), found.end());
+  if (best == found.end() || !((*best)[0] > 2 * support.at(own))) return own;
+  return voxels[static_cast<std::size_t>(best - found.begin())];
+}
+
 void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
                             const Pose& T_world_camera, const IntegrationConfig& config) {
   const PinholeCamera& camera = sensor.camera;
@@ -138,27 +175,38 @@ void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
     }
   }
 
-  std::vector<bool> is_hit(steps_.size(), false);
+  std::vector<std::optional<std::size_t>> own(pixels.size());  // voxel that a reading lies in
+  std::vector<Eigen::Vector3d> points(pixels.size());
+  std::map<std::size_t, double> support;
+  for (const auto& [voxel, fused] : fused_) {
+    if (steps_[voxel] != kUnknown && steps_[voxel] > 0) support[voxel] = fused.hits;
+  }
   for (std::size_t n = 0; n < pixels.size(); ++n) {
     if (!pixels[n].reading) continue;
     const int u = static_cast<int>(n) % camera.width, v = static_cast<int>(n) / camera.width;
-    const Eigen::Vector3d p = T_grid_camera * (camera.ray(u, v) * double{frame.at(u, v)});
-    const Index3 voxel{static_cast<int>(std::floor(p.x() / voxel_size_)),
-                       static_cast<int>(std::floor(p.y() / voxel_size_)),
-                       static_cast<int>(std::floor(p.z() / voxel_size_))};
-    if (voxel.x < min_.x || voxel.x >= min_.x + dims_.x || voxel.y < min_.y ||
-        voxel.y >= min_.y + dims_.y || voxel.z < min_.z || voxel.z >= min_.z + dims_.z) {
-      continue;
-    }
-    is_hit[position(voxel)] = true;
+    points[n] = T_grid_camera * (camera.ray(u, v) * double{frame.at(u, v)});
+    own[n] = voxel_at(points[n]);
+    if (own[n]) ++support[*own[n]];
+  }
+
+  std::vector<bool> is_hit(steps_.size(), false);
+  moved_ = 0;
+  for (std::size_t n = 0; n < pixels.size(); ++n) {
+    if (!own[n]) continue;
     const MeasurementSigmas s = sensor.sigmas(pixels[n].range);
+    std::size_t voxel = *own[n];
+    if (config.occupancy != Occupancy::literal && s.axial >= 0.5 * voxel_size_) {
+      voxel = best_supported(points[n], rays[n], s.axial, support);
+    }
+    if (voxel != *own[n]) ++moved_;
+    is_hit[voxel] = true;
     const Eigen::Matrix3d along = rays[n] * rays[n].transpose();
     const Eigen::Matrix3d covariance =
         s.lateral * s.lateral * (Eigen::Matrix3d::Identity() - along) + s.axial * s.axial * along;
     const Eigen::Matrix3d information = covariance.inverse();
-    Fused& fused = fused_[position(voxel)];
+    Fused& fused = fused_[voxel];
     fused.information += information;
-    fused.vector += information * (p - center(voxel));
+    fused.vector += information * (points[n] - center(voxel_of(voxel)));
     ++fused.hits;
   }
 

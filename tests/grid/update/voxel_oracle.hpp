@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "viewgain/grid/belief_grid.hpp"
@@ -28,6 +29,8 @@ class VoxelOracle {
   [[nodiscard]] std::uint64_t voxels() const { return steps_.size(); }
   [[nodiscard]] std::uint64_t crossed() const { return crossed_; }  ///< and not hit, last frame
   [[nodiscard]] std::uint64_t hit() const { return hit_; }          ///< last frame
+  /// Readings of the last frame that count for another voxel than the one they lie in.
+  [[nodiscard]] std::uint64_t moved() const { return moved_; }
 
  private:
   struct Fused {
@@ -37,13 +40,18 @@ class VoxelOracle {
   };
   [[nodiscard]] std::size_t position(Index3 voxel) const;
   [[nodiscard]] Eigen::Vector3d center(Index3 voxel) const;
+  [[nodiscard]] Index3 voxel_of(std::size_t position) const;
+  [[nodiscard]] std::optional<std::size_t> voxel_at(const Eigen::Vector3d& p_grid) const;
+  [[nodiscard]] std::size_t best_supported(const Eigen::Vector3d& point, const Eigen::Vector3d& ray,
+                                           double sigma,
+                                           const std::map<std::size_t, double>& support) const;
 
   Index3 min_, dims_;
   double voxel_size_;
   Pose T_world_grid_;
   std::vector<int> steps_;  ///< log-odds in steps of 0.05, kUnknown
   std::map<std::size_t, Fused> fused_;
-  std::uint64_t crossed_ = 0, hit_ = 0;
+  std::uint64_t crossed_ = 0, hit_ = 0, moved_ = 0;
 };
 
 }  // namespace viewgain::test

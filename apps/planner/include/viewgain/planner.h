@@ -56,7 +56,7 @@ typedef struct vg_planner_config {
   /* The body and where it can be, as in vg_feasibility_config. */
   int32_t check_feasibility;  /* 1; 0: all candidates are possible but those taken or tried */
   int32_t has_flange;         /* 0: the camera's centre is the middle of the body's front face */
-  double body_size[3];        /* width, height, depth [m] */
+  double body_size[3];        /* width, height, depth, in this order [m] */
   double T_flange_camera[16]; /* camera to flange, rows */
   double clearance;           /* round the body [m] */
   int32_t (*reachable)(const double T_world_camera[16],
@@ -104,14 +104,14 @@ enum {
 
 /* Where a frame's camera was. */
 typedef struct vg_registration {
-  size_t struct_size;            /* as _init() sets it */
-  int32_t status;                /* VG_REGISTERED, VG_TOO_LITTLE_OVERLAP or VG_REFUSED */
-  int32_t free_directions;       /* motions that the frame does not hold: as reported */
-  double T_world_camera[16];     /* corrected if registered, else as reported; rows */
-  double covariance[36];         /* of translation [m], then rotation [rad], world axes */
-  double translation, rotation;  /* of the correction that was found [m], [rad] */
-  double residual_before;        /* RMS distance from the map at the reported pose [m] */
-  double residual_after;         /* and at the one that was found [m] */
+  size_t struct_size;           /* as _init() sets it */
+  int32_t status;               /* VG_REGISTERED, VG_TOO_LITTLE_OVERLAP or VG_REFUSED */
+  int32_t free_directions;      /* motions that the frame does not hold: as reported */
+  double T_world_camera[16];    /* corrected if registered, else as reported; rows */
+  double covariance[36];        /* 6 x 6, row by row: translation [m], rotation [rad], world axes */
+  double translation, rotation; /* of the correction that was found [m], [rad] */
+  double residual_before;       /* RMS distance from the map at the reported pose [m] */
+  double residual_after;        /* and at the one that was found [m] */
   double overlap, contradiction; /* shares of the readings, as FrameRegistration's */
 } vg_registration;
 /* Makes `found` ready for a call. */
@@ -125,8 +125,8 @@ VG_API vg_status vg_planner_register(vg_planner* planner, const float* depth,
                                      double sigma_translation, double sigma_rotation,
                                      vg_registration* found);
 
-/* What is possible now of the candidates: how many, and in dropped[reason] how many are not and
-   why; `reasons` is the length of dropped, which may be null. */
+/* What is possible now of the candidates: *candidates, how many, and in dropped[reason] how many
+   are not and why; dropped, or null, has one a reason, `reasons` of them. */
 VG_API vg_status vg_planner_propose(vg_planner* planner, size_t* candidates, size_t* dropped,
                                     size_t reasons);
 
@@ -159,7 +159,7 @@ VG_API vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses,
 VG_API vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16],
                                   int32_t reached);
 
-/* VG_GO_ON or why to end. */
+/* *reason: VG_GO_ON or why to end. */
 VG_API vg_status vg_planner_should_stop(const vg_planner* planner, int32_t* reason);
 
 /* The whole state but for the last proposal in one file, a map that vg_grid_load() reads too, whole

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <tuple>
 #include <utility>
 
 #include "registration/joint_alignment.hpp"
@@ -24,6 +25,12 @@ using detail::PairGates;
 using detail::PairSums;
 using detail::Reading;
 using detail::Vector6;
+
+// Back to what was reported of it.
+void reset(JointFrame& frame) {
+  frame.T = frame.T_reported;
+  frame.covariance = frame.sigmas.cwiseAbs2().asDiagonal();
+}
 
 // Lengths in voxels, or footprints where those are longer.
 constexpr double kNormalRadius = 4;
@@ -196,7 +203,6 @@ Verdict FrameAlignment::Impl::verdict_of(std::size_t index) const {
   result.translation = correction.head<3>().norm();
   result.rotation = correction.tail<3>().norm();
   for (int k = 0; k < 6; ++k) {
-    result.covariance[static_cast<std::size_t>(7 * k)] = frame.sigmas[k] * frame.sigmas[k];
     if (directions.information[k] >= 1) continue;
     const Vector6 motion = frame.sigmas.cwiseProduct(directions.axes.col(k));
     result.free_directions.push_back({motion.head<3>(), motion.tail<3>()});
@@ -209,6 +215,11 @@ Verdict FrameAlignment::Impl::verdict_of(std::size_t index) const {
   }
   detail::judge(result, found.readings, found.surface, config, frame.sigmas, "another frame");
   if (index == 0) result.status = RegistrationStatus::registered, result.reason.clear();
+  if (index > 0) {
+    const detail::Matrix6 of_prior = frame.sigmas.cwiseAbs2().asDiagonal();
+    const bool is_found = result.status == RegistrationStatus::registered;
+    result.covariance = detail::by_rows(is_found ? frame.covariance : of_prior);
+  }
   return {result, is_held || index == 0};
 }
 
@@ -216,7 +227,7 @@ Verdict FrameAlignment::Impl::verdict_of(std::size_t index) const {
 void FrameAlignment::Impl::align_one(std::size_t index) {
   JointFrame& frame = joint.frames[index];
   FrameRegistration& result = results[index];
-  frame.T = frame.T_reported;
+  reset(frame);
   joint.align_one(index, false);
   result = verdict_of(index).result;
   if (result.status == RegistrationStatus::registered) return;
@@ -224,7 +235,7 @@ void FrameAlignment::Impl::align_one(std::size_t index) {
     joint.search_one(index);
     joint.align_one(index, false);
   } else {
-    frame.T = frame.T_reported;
+    reset(frame);
     joint.align_one(index, true);
   }
   result = verdict_of(index).result;
@@ -236,17 +247,19 @@ bool FrameAlignment::Impl::register_frame(std::size_t index) {
   FrameRegistration& result = results[index];
   align_one(index);
   if (result.status == RegistrationStatus::registered) {
-    std::vector<Pose> before;
-    for (const JointFrame& one : joint.frames) before.push_back(one.T);
+    std::vector<std::pair<Pose, detail::Matrix6>> before;
+    for (const JointFrame& one : joint.frames) before.emplace_back(one.T, one.covariance);
     frame.is_in = true;
     joint.align_all();
     const Verdict verdict = verdict_of(index);
     result = verdict.result;
     frame.is_trusted = verdict.is_trusted();
     if (result.status == RegistrationStatus::registered) return true;
-    for (std::size_t i = 0; i < before.size(); ++i) joint.frames[i].T = before[i];
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      std::tie(joint.frames[i].T, joint.frames[i].covariance) = before[i];
+    }
   }
-  frame.T = frame.T_reported;
+  reset(frame);
   if (result.status == RegistrationStatus::too_little_overlap) result = verdict_of(index).result;
   frame.is_in = result.status == RegistrationStatus::too_little_overlap;
   result.T_world_camera = frame.T;
@@ -285,7 +298,8 @@ void FrameAlignment::Impl::settle() {
     results[i] = std::move(verdicts[i].result);
     if (results[i].status != RegistrationStatus::refused) continue;
     frame.is_in = false;
-    frame.T = results[i].T_world_camera = frame.T_reported;
+    reset(frame);
+    results[i].T_world_camera = frame.T;
   }
 }
 
@@ -306,6 +320,7 @@ const FrameRegistration& FrameAlignment::add(const DepthFrame& frame, const Pose
   std::vector<JointFrame>& frames = impl_->joint.frames;
   frames.push_back({AlignedView(frame, impl_->sensor.camera, impl_->readings_of(frame, T)), T,
                     detail::sigmas_of(prior), T});
+  reset(frames.back());
   impl_->results.emplace_back();
   if (frames.size() == 1) {
     frames[0].is_in = frames[0].is_trusted = true;

@@ -3,8 +3,10 @@
 #include "registration/joint_alignment.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "registration/pose_motion.hpp"
@@ -38,9 +40,8 @@ Matrix6 carried(const Pose& T_world_source, const Pose& T_world_target) {
 struct JointAlignment::System {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;
-  Eigen::VectorXd away;  // from what was reported
-  // Squared gradients of single neighbours over what their information would give, mean.
-  double disagreement = 0;
+  Eigen::VectorXd away;     // from what was reported
+  double disagreement = 0;  // of single neighbours about each frame
 };
 
 JointAlignment::JointAlignment(double length, double max_normal_angle, ThreadPool& pool)
@@ -119,27 +120,21 @@ JointAlignment::System JointAlignment::system(const Pass& pass) const {
     agreed[j] += A * sum.agreed * A.transpose();
   }
   Eigen::MatrixXd onto = Eigen::MatrixXd::Zero(n, n);
-  std::size_t axes = 0;
+  Overdispersion disagreement;
   for (std::size_t k = 0; k < pass.movable.size(); ++k) {
     const JointFrame& frame = frames[pass.movable[k]];
     const auto a = static_cast<Eigen::Index>(6 * k);
     const Matrix6 held =
         held_axes(directions_of(of_single_pairs(agreed[pass.movable[k]]), frame.sigmas));
     onto.block<6, 6>(a, a) = frame.sigmas.asDiagonal() * held * held.transpose();
-    for (int c = 0; c < 6; ++c) {
-      if (held.col(c).isZero()) continue;
-      const Vector6 axis = frame.sigmas.asDiagonal() * held.col(c);
-      double squares = 0;
-      for (std::size_t j = 0; j < frames.size(); ++j) {
-        const double slope = axis.dot(of_neighbour[pass.movable[k] * frames.size() + j]);
-        squares += slope * slope;
-      }
-      s.disagreement += squares / axis.dot(s.information.block<6, 6>(a, a) * axis);
-      ++axes;
-    }
+    const std::span gradients(&of_neighbour[pass.movable[k] * frames.size()], frames.size());
+    const Overdispersion of_frame =
+        overdispersion_of(gradients, s.information.block<6, 6>(a, a), held, frame.sigmas);
+    disagreement.sum += of_frame.sum;
+    disagreement.motions += of_frame.motions;
     s.away.segment<6>(a) = difference(frame.T, frame.T_reported).cwiseQuotient(frame.sigmas);
   }
-  s.disagreement /= static_cast<double>(std::max<std::size_t>(axes, 1));
+  s.disagreement = disagreement.mean();
   s.information = (onto.transpose() * s.information * onto / widening_).eval();
   s.gradient = (onto.transpose() * s.gradient / widening_).eval();
   return s;
@@ -149,15 +144,15 @@ JointAlignment::System JointAlignment::system(const Pass& pass) const {
 bool JointAlignment::move(const Pass& pass) {
   const System s = system(pass);
   const Eigen::Index n = s.gradient.size();
-  const Eigen::MatrixXd whole = s.information + Eigen::MatrixXd::Identity(n, n) / scale_;
-  const Eigen::VectorXd step = whole.llt().solve(-(s.gradient + s.away / scale_));
+  whole_ = s.information + Eigen::MatrixXd::Identity(n, n) / scale_;
+  const Eigen::VectorXd step = whole_.llt().solve(-(s.gradient + s.away / scale_));
   for (std::size_t k = 0; k < pass.movable.size(); ++k) {
     JointFrame& frame = frames[pass.movable[k]];
     const Vector6 own = step.segment<6>(static_cast<Eigen::Index>(6 * k));
     frame.T = moved(frame.T, own.cwiseProduct(frame.sigmas));
     ++frame.iterations;
   }
-  return std::sqrt(step.dot(whole * step)) >= pass.still;
+  return std::sqrt(step.dot(whole_ * step)) >= pass.still;
 }
 
 void JointAlignment::align(const Pass& pass) {
@@ -249,6 +244,13 @@ void JointAlignment::align_all() {
   pass.level = kLevels - 1, pass.still = 0.05;
   scale_ = estimated_scale(pass);
   align(pass);
+  const Eigen::MatrixXd covariance = whole_.inverse();
+  for (std::size_t k = 0; k < pass.movable.size(); ++k) {
+    const auto a = static_cast<Eigen::Index>(6 * k);
+    JointFrame& frame = frames[pass.movable[k]];
+    frame.covariance =
+        frame.sigmas.asDiagonal() * covariance.block<6, 6>(a, a) * frame.sigmas.asDiagonal();
+  }
 }
 
 }  // namespace viewgain::detail

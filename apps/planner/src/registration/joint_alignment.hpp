@@ -23,6 +23,8 @@ struct JointFrame {
   bool is_trusted = false;  ///< and is its pose better known than it was reported?
   double slack = 0;         ///< by which T may still be off, in sigmas
   int iterations = 0;       ///< of the last alignment
+  /// Of the pose relative to the first frame's: the prior's, or as the last alignment of all found it.
+  Matrix6 covariance = Matrix6::Zero();
 };
 
 /// The poses of frames by what they show of one another and by what was reported, see
@@ -66,8 +68,9 @@ class JointAlignment {
   double length_;
   double min_cosine_;
   ThreadPool& pool_;
-  double widening_;   // of the variances that readings give, as the last align_all() found it
-  double scale_ = 1;  // of the priors' variances
+  double widening_;        // of the variances that readings give, as the last align_all() found it
+  double scale_ = 1;       // of the priors' variances
+  Eigen::MatrixXd whole_;  // of the last move: information of frames and priors, in sigmas
 };
 
 }  // namespace viewgain::detail

@@ -95,6 +95,31 @@ Vector6 sigmas_of(const PosePrior& prior) {
   return sigmas;
 }
 
+std::array<double, 36> by_rows(const Matrix6& covariance) {
+  std::array<double, 36> rows{};
+  for (int r = 0; r < 6; ++r) {
+    for (int c = 0; c < 6; ++c) rows[static_cast<std::size_t>(6 * r + c)] = covariance(r, c);
+  }
+  return rows;
+}
+
+Overdispersion overdispersion_of(std::span<const Vector6> gradients, const Matrix6& information,
+                                 const Matrix6& held, const Vector6& sigmas) {
+  Overdispersion found;
+  for (int k = 0; k < 6; ++k) {
+    if (held.col(k).isZero()) continue;
+    const Vector6 axis = sigmas.asDiagonal() * held.col(k);
+    double variance = 0;
+    for (const Vector6& gradient : gradients) {
+      const double slope = axis.dot(gradient);
+      variance += slope * slope;
+    }
+    found.sum += variance / axis.dot(information * axis);
+    ++found.motions;
+  }
+  return found;
+}
+
 double likeliest_scale(const Eigen::MatrixXd& information, const Eigen::VectorXd& gradient,
                        const Eigen::VectorXd& away) {
   constexpr double kHonesty = 2;

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
+#include <span>
 
 #include "registration/registration_pairs.hpp"
 #include "viewgain/core/pose.hpp"
@@ -28,6 +30,18 @@ struct Directions {
 /// The columns along which the data say more than the prior; 6 columns, the others are 0.
 [[nodiscard]] Matrix6 held_axes(const Directions& directions);
 
+/// By how much the gradients of parts, which have expectation 0 where a pose fits, differ from what
+/// independent residuals would give.
+struct Overdispersion {
+  double sum = 0;  ///< over held motions, of the variance of their slopes over the information
+  int motions = 0;
+  [[nodiscard]] double mean() const { return motions > 0 ? sum / motions : 0.0; }
+};
+/// Of one pose, whose parts' gradients and whole information these are; `held` are held_axes().
+[[nodiscard]] Overdispersion overdispersion_of(std::span<const Vector6> gradients,
+                                               const Matrix6& information, const Matrix6& held,
+                                               const Vector6& sigmas);
+
 /// By how much the variance of what was reported differs from the prior's, at most 1 and at least
 /// 1e-4: the share s under which the motions that the data ask for are the likeliest, which
 /// maximises Σ log N(x; 0, s + v) over the axes of the information (empirical Bayes, Efron and
@@ -44,6 +58,9 @@ void check(const PosePrior& prior);
 
 /// Prior's sigmas of the six parts of a difference.
 [[nodiscard]] Vector6 sigmas_of(const PosePrior& prior);
+
+/// The covariance as FrameRegistration holds it.
+[[nodiscard]] std::array<double, 36> by_rows(const Matrix6& covariance);
 
 /// Of readings: how many show what the other side has, how many contradict it.
 struct Agreement {

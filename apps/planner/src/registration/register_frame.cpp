@@ -54,20 +54,7 @@ constexpr std::array<double, detail::kLevels> kStill{0.5, 0.2, 0.05};
 double alikeness_of(const PairSums& sums, const std::vector<Vector6>& cubes,
                     const Vector6& sigmas) {
   const Matrix6 held = held_axes(directions_of(sums.agreed, sigmas));
-  double widening = 0;
-  int count = 0;
-  for (int k = 0; k < 6; ++k) {
-    if (held.col(k).isZero()) continue;
-    const Vector6 axis = sigmas.asDiagonal() * held.col(k);
-    double variance = 0;
-    for (const Vector6& cube : cubes) {
-      const double sum = axis.dot(cube);
-      variance += sum * sum;
-    }
-    widening += variance / axis.dot(sums.information * axis);
-    ++count;
-  }
-  return count > 0 ? widening / count : 0.0;
+  return detail::overdispersion_of(cubes, sums.information, held, sigmas).mean();
 }
 
 // What Gauss and Newton solve, in the prior's sigmas, along the motions that the frame holds.
@@ -119,12 +106,6 @@ class Problem {
   double alikeness_ = 1;  // by which residuals count less
 };
 
-void put(const Matrix6& covariance, std::array<double, 36>& out) {
-  for (int r = 0; r < 6; ++r) {
-    for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(6 * r + c)] = covariance(r, c);
-  }
-}
-
 double median_range(const std::vector<Reading>& readings) {
   std::vector<double> ranges;
   ranges.reserve(readings.size());
@@ -146,6 +127,15 @@ std::string_view registration_status_name(RegistrationStatus status) {
       return "refused";
   }
   return "unknown";
+}
+
+PoseSigma FrameRegistration::pose_sigma() const {
+  const auto of_axes = [&](std::size_t first) {
+    double variance = 0;
+    for (std::size_t k = first; k < first + 3; ++k) variance += covariance[7 * k];
+    return std::sqrt(std::max(variance, 0.0) / 3);
+  };
+  return {of_axes(0), of_axes(3)};
 }
 
 struct FrameRegistrar::Impl {
@@ -189,9 +179,10 @@ FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
   const Vector6 sigmas = detail::sigmas_of(prior);
   FrameRegistration result;
   result.T_world_camera = T_reported;
-  put(sigmas.cwiseAbs2().asDiagonal(), result.covariance);
+  result.covariance = detail::by_rows(sigmas.cwiseAbs2().asDiagonal());
   if (points.empty()) {
     result.reason = "the map has no surface yet";
+    if (grid.views().empty()) result.covariance = {};
     return result;
   }
   const double length = pooling_of(grid.snapshot()).length;
@@ -257,7 +248,7 @@ FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
   judge(result, {result.pairs, against}, {}, config, sigmas, "the map");
   if (result.status == RegistrationStatus::registered) {
     result.T_world_camera = T;
-    put(problem.covariance(sums), result.covariance);
+    result.covariance = detail::by_rows(problem.covariance(sums));
   }
   return result;
 }

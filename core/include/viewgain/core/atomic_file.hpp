@@ -21,7 +21,7 @@ namespace viewgain {
 /// even if it is a regular file. A pipe is opened once, by the first write().
 ///
 /// Every failure throws Error(io) that names the target. Thread safety: distinct objects may be
-/// used from distinct threads.
+/// used from distinct threads. Cost: bytes are written once; commit() waits for the disk.
 class VIEWGAIN_EXPORT AtomicFile {
  public:
   /// Creates the empty temporary file, so that a target that cannot be written is known at once.
@@ -56,7 +56,7 @@ class VIEWGAIN_EXPORT AtomicFile {
 /// fail or write into nothing afterwards.
 VIEWGAIN_EXPORT void remove_temporary_files() noexcept;
 
-/// The common case: the whole contents at once.
+/// The common case: the whole contents at once. Throws and costs as AtomicFile.
 VIEWGAIN_EXPORT void write_file_atomically(const std::filesystem::path& target,
                                            std::string_view contents);
 

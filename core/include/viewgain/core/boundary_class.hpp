@@ -17,7 +17,7 @@ enum class BoundaryClass : std::uint8_t { left, right, top, bottom };
 inline constexpr std::array<std::string_view, 4> kBoundaryClassNames{"left", "right", "top",
                                                                      "bottom"};
 
-/// "left", "right", "top" or "bottom".
+/// "left", "right", "top" or "bottom". Throws std::out_of_range for a number that is none of them.
 [[nodiscard]] constexpr std::string_view boundary_class_name(BoundaryClass boundary_class) {
   return kBoundaryClassNames.at(static_cast<std::size_t>(boundary_class));
 }

@@ -12,13 +12,14 @@
 namespace viewgain {
 
 /// Pinhole camera with OpenCV's distortion model, optical frame: x right, y down, z forward. Pixel
-/// (0,0) has its centre at (0,0), as in OpenCV. A value type.
+/// (0,0) has its centre at (0,0), as in OpenCV. A value type. Unless they say otherwise members
+/// check nothing: the camera must be one that validate() takes.
 struct VIEWGAIN_EXPORT PinholeCamera {
   int width = 0;                       ///< [px]
   int height = 0;                      ///< [px]
   double fx = 0, fy = 0;               ///< focal lengths [px]
   double cx = 0, cy = 0;               ///< principal point [px]
-  std::array<double, 5> distortion{};  ///< k1 k2 p1 p2 k3
+  std::array<double, 5> distortion{};  ///< coefficients k1 k2 p1 p2 k3
 
   /// Does any of the coefficients differ from 0?
   [[nodiscard]] bool has_distortion() const { return distortion != std::array<double, 5>{}; }
@@ -50,13 +51,14 @@ struct VIEWGAIN_EXPORT PinholeCamera {
   /// between, and the sensor's range limits, are not looked at.
   [[nodiscard]] bool sees(const Eigen::Vector3d& p_camera) const;
 
-  /// ray() of every pixel centre, row by row: directions (x, y, 1), width * height of them.
+  /// ray() of every pixel centre, row by row: directions (x, y, 1) [1] in the camera frame, width *
+  /// height of them. Costs a ray() each.
   [[nodiscard]] std::vector<Eigen::Vector3d> ray_table() const;
 
   /// The solid angle of every pixel [sr], row by row: cos³α / (fx fy) for a ray at α from the
   /// optical axis, and with a lens cos³α |∂(x, y) / ∂(u, v)|; 0 where a pixel has no ray. The
   /// derivatives are central differences between pixels, at the image's edge and beside pixels
-  /// without a ray one-sided. `rays` is ray_table(), which takes longer than this. Throws
+  /// without a ray one-sided. `rays` [1] is ray_table(), which takes longer than this. Throws
   /// Error(invalid_argument) for another number of rays.
   [[nodiscard]] std::vector<double> solid_angles(std::span<const Eigen::Vector3d> rays) const;
 

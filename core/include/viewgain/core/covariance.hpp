@@ -11,11 +11,12 @@
 namespace viewgain {
 
 /// Symmetric 3x3 matrix, six numbers in the order of the map files: diagonal, then xy, xz, yz. Used
-/// for information matrices Λ = Σ⁻¹ [m⁻²] and covariances Σ [m²]. A value type.
+/// for information matrices Λ = Σ⁻¹ [m⁻²] and covariances Σ [m²], in whatever frame its use names.
+/// A value type. Members check nothing and never throw.
 struct VIEWGAIN_EXPORT SymmetricMatrix3 {
-  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;  ///< its entries
+  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;  ///< its entries [m⁻² or m²]
 
-  /// `scale` times the unit matrix.
+  /// `scale`, in the matrix's unit, times the unit matrix.
   [[nodiscard]] static SymmetricMatrix3 identity(double scale = 1.0) {
     return {scale, scale, scale, 0, 0, 0};
   }
@@ -36,18 +37,18 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   friend SymmetricMatrix3 operator+(SymmetricMatrix3 a, const SymmetricMatrix3& b) {
     return a += b;
   }
-  /// Matrix times vector.
+  /// The matrix times the vector `v`, whatever unit it has.
   [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& v) const {
     return {xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),
             xz * v.x() + yz * v.y() + zz * v.z()};
   }
-  /// Every entry times `s`.
+  /// Every entry times the factor `s`.
   [[nodiscard]] SymmetricMatrix3 operator*(double s) const {
     return {xx * s, yy * s, zz * s, xy * s, xz * s, yz * s};
   }
-  /// Sum of the diagonal.
+  /// Sum of the diagonal, in the matrix's unit.
   [[nodiscard]] double trace() const { return xx + yy + zz; }
-  /// Expanded along the first row.
+  /// Expanded along the first row; in the cube of the matrix's unit [m⁻⁶ or m⁶].
   [[nodiscard]] double determinant() const {
     return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
   }
@@ -57,7 +58,7 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
     double ignored;
     return inverse(ignored);
   }
-  /// The same, and the determinant of this matrix.
+  /// The same, and the determinant of this matrix [m⁻⁶ or m⁶].
   [[nodiscard]] SymmetricMatrix3 inverse(double& determinant) const {
     // determinant / (xx yy zz) is in (0, 1] and bounds the cancellation in cofactors.
     constexpr double kWellScaled = 1e-4;
@@ -102,7 +103,8 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
 };
 
 /// Information of one reading along the unit direction d, in d's frame:
-/// Λ_r = a I + (b - a) d dᵀ, a = σ_lat⁻², b = σ_ax⁻² (apps/docs/guide/equations.md).
+/// Λ_r = a I + (b - a) d dᵀ, a = σ_lat⁻², b = σ_ax⁻² (apps/docs/guide/equations.md). Checks
+/// nothing: sigmas of 0 give infinities.
 [[nodiscard]] inline SymmetricMatrix3 measurement_information(const Eigen::Vector3d& d,
                                                               const MeasurementSigmas& sigmas) {
   const double a = 1.0 / (sigmas.lateral * sigmas.lateral);
@@ -111,7 +113,7 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
           c * d.x() * d.y(),     c * d.x() * d.z(),     c * d.y() * d.z()};
 }
 
-/// Covariance of the same reading: Σ_r = σ_lat² (I - d dᵀ) + σ_ax² d dᵀ.
+/// The same reading's covariance: Σ_r = σ_lat² (I - d dᵀ) + σ_ax² d dᵀ.
 [[nodiscard]] inline SymmetricMatrix3 measurement_covariance(const Eigen::Vector3d& d,
                                                              const MeasurementSigmas& sigmas) {
   const double a = sigmas.lateral * sigmas.lateral;

@@ -21,18 +21,20 @@ enum class Criterion : std::uint8_t {
 
 /// Names of the criteria, in their order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& criterion_names();
-/// The criterion's name, as parse_criterion() reads it.
+/// The criterion's name, as parse_criterion() reads it. Throws std::out_of_range for a number that
+/// is none of them.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view criterion_name(Criterion criterion);
 
 /// Throws Error(invalid_argument) that lists the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT Criterion parse_criterion(std::string_view name);
 
-/// H(Λ) by the criterion [nat, or m² for trace]; Λ [m⁻²] must be positive definite.
+/// H(Λ) by the criterion [nat, or m² for trace]; Λ [m⁻²] must be positive definite, which is not
+/// checked.
 [[nodiscard]] VIEWGAIN_EXPORT double entropy(const SymmetricMatrix3& information,
                                              Criterion criterion);
 
-/// H(before) - H(before + added) >= 0 for a positive semidefinite `added`. One logarithm of a
-/// ratio, so small gains keep their digits.
+/// H(before) - H(before + added) >= 0 [nat, or m² for trace] for a positive semidefinite `added`,
+/// which is not checked. One logarithm of a ratio, so small gains keep their digits.
 [[nodiscard]] VIEWGAIN_EXPORT double entropy_reduction(const SymmetricMatrix3& before,
                                                        const SymmetricMatrix3& added,
                                                        Criterion criterion);

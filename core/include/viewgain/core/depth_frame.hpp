@@ -14,9 +14,9 @@ namespace viewgain {
 /// Depth image along the optical axis (z, not range) [m], row by row. Three kinds of pixel:
 /// a reading (0 < z < infinity), kInvalid, kOutOfRange. A value type.
 struct VIEWGAIN_EXPORT DepthFrame {
-  static constexpr float kInvalid = 0.0F;  ///< says nothing
+  static constexpr float kInvalid = 0.0F;  ///< a depth [m] that says nothing
   static constexpr float kOutOfRange =
-      std::numeric_limits<float>::infinity();  ///< nothing up to max_range
+      std::numeric_limits<float>::infinity();  ///< a depth [m]: nothing up to max_range
 
   int width = 0;             ///< [px]
   int height = 0;            ///< [px]
@@ -24,17 +24,17 @@ struct VIEWGAIN_EXPORT DepthFrame {
   /// Empty, or width * height values: the returned signal cosθ / t² [m⁻²], θ the angle of incidence
   /// and t the range, for a diffuse surface as bright as the sensor's noise model assumes.
   std::vector<float> amplitude{};
-  /// Empty, or width * height values: from which depth on a pixel's reading is of something that is
-  /// known and no part of the map, say the wall of a bin; infinity: none is. ObstacleView sets it.
-  /// Such readings carve but do not hit.
+  /// Empty, or width * height values: from which depth [m] on a pixel's reading is of something
+  /// that is known and no part of the map, say the wall of a bin; infinity: none is. ObstacleView
+  /// sets it. Such readings carve but do not hit.
   std::vector<float> known_depth{};
 
-  /// Is this pixel's reading of what is known to be there?
+  /// Is this pixel's reading of what is known to be there? The index, row by row, is not checked.
   [[nodiscard]] bool shows_known(std::size_t pixel) const {
     return !known_depth.empty() && depth[pixel] >= known_depth[pixel];
   }
 
-  /// The depth of pixel (u, v): column, row, both from 0 and unchecked.
+  /// The depth [m] of pixel (u, v): column, row, both from 0 and unchecked.
   [[nodiscard]] float at(int u, int v) const {
     return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
                  static_cast<std::size_t>(u)];
@@ -43,7 +43,7 @@ struct VIEWGAIN_EXPORT DepthFrame {
 };
 
 /// Throws Error(invalid_argument), with both sizes, unless the frame, and its amplitudes and known
-/// depths if it has any, has the camera's size.
+/// depths if it has any, has the camera's size. Takes constant time.
 VIEWGAIN_EXPORT void check_frame_size(const DepthFrame& frame, const PinholeCamera& camera);
 
 }  // namespace viewgain

@@ -22,7 +22,7 @@ enum class ErrorCode {
 /// from the scoring of a pose. Thread safety: a value type.
 class VIEWGAIN_EXPORT Error : public std::runtime_error {
  public:
-  /// `message` names the offending value.
+  /// `message` names the offending value. Both are unchecked.
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
   /// What kind of error it is.
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }

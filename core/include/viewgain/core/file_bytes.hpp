@@ -18,11 +18,11 @@ inline constexpr std::uint64_t kMostPipeBytes = std::uint64_t{1} << 30U;
 
 /// All bytes of a regular file or a pipe. Throws Error(io) that names the file if it cannot be
 /// opened, is something else (a folder, a device), or a read fails; Error(capacity) if it has more
-/// than `most` bytes or does not fit into memory. Thread safe.
+/// than `most` bytes or does not fit into memory. Thread safe. Cost: the bytes are read once.
 [[nodiscard]] VIEWGAIN_EXPORT std::string file_bytes(const std::filesystem::path& path,
                                                      std::uint64_t most = kMostFileBytes);
 
-/// At most the first `count` bytes. Throws Error(io) as file_bytes. Thread safe.
+/// At most the first `count` bytes. Throws Error(io) and costs as file_bytes(). Thread safe.
 [[nodiscard]] VIEWGAIN_EXPORT std::string file_head(const std::filesystem::path& path,
                                                     std::size_t count);
 

@@ -10,12 +10,14 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 
-namespace viewgain {
+/// @file
+/// Candidate poses that need no surface, T_world_camera, in the order of their index i. All but
+/// rings look at `center` [m], world frame, image up = world up (+z), +x at the poles.
+/// Deterministic. Each of the functions throws Error(invalid_argument) for count 0, a `radius` [m]
+/// that is not positive and finite, a centre or an angle [rad] that is not finite, and
+/// Error(capacity) for more than 100 million poses. Cost: O(count).
 
-/// Candidate poses that need no surface. All but rings look at `center` [m], world frame, image up
-/// = world up (+z), +x at the poles. Deterministic; each throws Error(invalid_argument) for count
-/// 0, a radius that is not positive and finite, a centre or an angle that is not finite, and
-/// Error(capacity) for more than 100 million poses.
+namespace viewgain {
 
 /// Fibonacci lattice on a sphere of `radius` [m]: z_i = 1 - (2i+1)/N,
 /// azimuth_i = i pi (3 - sqrt 5).
@@ -27,13 +29,14 @@ namespace viewgain {
     std::size_t count, double radius, const Eigen::Vector3d& center = Eigen::Vector3d::Zero());
 
 /// Views on a circle of latitude: eye = center + radius (cos e cos a, cos e sin a, sin e),
-/// elevation e and azimuth a = start + i step [rad]; step defaults to 2 pi / count.
+/// elevation e [rad] and azimuth a = start + i step [rad]; step defaults to 2 pi / count.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> orbit_poses(
     std::size_t count, double radius, double elevation, double start = 0.0,
     std::optional<double> step = {}, const Eigen::Vector3d& center = Eigen::Vector3d::Zero());
 
 /// Views on a circle round the vertical axis: eye = center + (radius cos a, radius sin a, height),
-/// azimuth a = start + 2 pi i / count, looking down by `tilt` [rad] towards the axis. radius > 0.
+/// azimuth a = start + 2 pi i / count [rad], looking down by `tilt` [rad] towards the axis; height
+/// and radius [m], radius > 0.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> ring_poses(
     std::size_t count, double radius, double height, double tilt, double start = 0.0,
     const Eigen::Vector3d& center = Eigen::Vector3d::Zero());

@@ -19,10 +19,12 @@ enum class Isa : std::uint8_t {
   avx512,
 };
 
-/// "avx512", "avx2", "sse4" or "baseline".
+/// "avx512", "avx2", "sse4" or "baseline", this also for a number that is none of them: never
+/// throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view isa_name(Isa isa);
 
-/// What this CPU and operating system can run, best first. Empty on an x86-64 without SSE4.2.
+/// What this CPU and operating system can run, best first. Empty on an x86-64 without SSE4.2. Takes
+/// constant time.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Isa> supported_isas();
 
 /// The best supported set, lowered by the environment variable VIEWGAIN_ISA (avx512, avx2 or
@@ -30,7 +32,7 @@ enum class Isa : std::uint8_t {
 /// the names for any other value, Error(backend) if the CPU has none. Reads the environment at each
 /// call; keeps no state.
 [[nodiscard]] VIEWGAIN_EXPORT Isa select_isa();
-/// The same choice for a CPU that supports these sets, best first.
+/// The same choice for a CPU that supports these sets, best first. Takes constant time.
 [[nodiscard]] VIEWGAIN_EXPORT Isa select_isa(std::span<const Isa> supported);
 
 }  // namespace viewgain

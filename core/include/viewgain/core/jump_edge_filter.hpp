@@ -31,7 +31,8 @@ class VIEWGAIN_EXPORT JumpEdgeFilter {
   explicit JumpEdgeFilter(const PinholeCamera& camera, const JumpEdgeConfig& config = {});
 
   /// Turns flying pixels into DepthFrame::kInvalid (their amplitude 0); returns how many. Throws
-  /// Error(invalid_argument) if the frame's size is not the camera's.
+  /// Error(invalid_argument) if the frame's size is not the camera's. Cost: a pass over the pixels
+  /// and the 8 neighbours of each.
   std::size_t apply(DepthFrame& frame) const;
 
  private:

@@ -4,6 +4,10 @@
 
 #include <cstdint>
 
+/// @file
+/// Random numbers that are the same on every machine. The functions take any number and never
+/// throw.
+
 namespace viewgain {
 
 /// Steps of this between the arguments of mix64 give SplitMix64's sequence.

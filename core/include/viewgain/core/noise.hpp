@@ -50,7 +50,7 @@ struct VIEWGAIN_EXPORT StereoNoise {
   double focal = 0;        ///< [px]; 0: that of the camera, fx
   double baseline = 0.05;  ///< [m]
 
-  /// The focal length that counts [px].
+  /// The focal length that counts [px], for a camera with fx [px]; checks nothing.
   [[nodiscard]] double focal_with(double fx) const { return focal > 0 ? focal : fx; }
   bool operator==(const StereoNoise&) const = default;
 };
@@ -83,7 +83,9 @@ using NoiseModel =
 
 /// Sigmas of a reading at range t >= 0 [m] along the ray, for a camera with focal length fx [px]
 /// and a surface whose normal makes an angle with the cosine cos_incidence (1: frontal) with the
-/// ray. One overload a model and one for the variant. Thread safe; costs a few flops.
+/// ray. One overload a model and one for the variant. Thread safe; costs a few flops. Checks
+/// nothing: a range below kMinNoiseRange counts as that, a cosine outside [kMinCosIncidence, 1] as
+/// the nearest one inside.
 [[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const ShotNoise&, double t, double fx,
                                                        double cos_incidence);
 /// As above.
@@ -102,9 +104,10 @@ using NoiseModel =
 [[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const NoiseModel&, double t, double fx,
                                                        double cos_incidence = 1.0);
 
-/// The standard deviation of a reading along the surface's normal [m]: on a surface seen at a slant
-/// the lateral one counts, too, since a reading beside its place is of another depth. √((σ_ax
-/// cosθ)² + (σ_lat sinθ)²).
+/// The standard deviation of a reading along the surface's normal [m], whose angle θ with the
+/// ray has the cosine cos_incidence; checks nothing. On a surface seen at a slant the lateral
+/// one counts, too, since a reading beside its place is of another depth. √((σ_ax cosθ)² + (σ_lat
+/// sinθ)²).
 [[nodiscard]] VIEWGAIN_EXPORT double sigma_along_normal(const MeasurementSigmas& sigmas,
                                                         double cos_incidence);
 
@@ -112,9 +115,9 @@ using NoiseModel =
 /// taken for readings of it.
 inline constexpr double kKnownSigmas = 3;
 
-/// Is a reading one of a known plane: `height` [m] above it, with `rise` metres along the plane's
+/// Is a reading one of a known plane: `height` [m] above it, with `rise` [m] along the plane's
 /// normal a metre along its ray? It is where it lies under the plane, or where its ray comes down
-/// and it lies less than kKnownSigmas above it.
+/// and it lies less than kKnownSigmas above it. Checks nothing; false for a height of NaN.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_of_plane(double height, double rise,
                                                const MeasurementSigmas& sigmas);
 

@@ -18,15 +18,21 @@
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+
+/// @file
+/// The paper's Algorithm 1, stated once over four interfaces in its words. Replace any of them.
+///
+/// active_view_planning() calls the parts one at a time, on its own thread. What the parts throw
+/// passes through it. A call costs what the part that was put in takes.
 
 namespace viewgain {
-
-// The paper's Algorithm 1, stated once over four interfaces in its words. Replace any of them.
 
 /// S_i: what the sensor delivered from x_i.
 struct VIEWGAIN_EXPORT Measurements {
   Pose T_world_camera;             ///< where they were taken from
-  std::vector<DepthFrame> frames;  ///< one or several
+  std::vector<DepthFrame> frames;  ///< one or several, in the order in which they were taken
+  PoseSigma pose_sigma{};          ///< by which the pose may be off; adds to the sensor's own
 };
 
 /// DATAACQUISITION: moves the sensor to x_i and measures.
@@ -67,7 +73,7 @@ struct VIEWGAIN_EXPORT Candidate {
 
 /// c_m: the feasible candidates, and how many were dropped and why.
 struct VIEWGAIN_EXPORT Proposal {
-  std::vector<Candidate> candidates;           ///< feasible ones
+  std::vector<Candidate> candidates;           ///< feasible ones, in the order of the generators
   std::map<std::string, std::size_t> dropped;  ///< reason -> count
 };
 
@@ -87,8 +93,8 @@ struct VIEWGAIN_EXPORT Decision {
   std::size_t candidate = 0;  ///< index of the chosen one
   double gain =
       std::numeric_limits<double>::quiet_NaN();  ///< its expected gain [nat, m² for trace]
-  /// Its expected gain per touched voxel, held against PlanningConfig::stop_gain; NaN: this policy
-  /// has none and never stops for it.
+  /// Its expected gain per touched voxel [nat, m² for trace], held against
+  /// PlanningConfig::stop_gain; NaN: this policy has none and never stops for it.
   double gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
   /// The new surface that it is expected to show [m²]; NaN: not known.
   double area = std::numeric_limits<double>::quiet_NaN();
@@ -101,20 +107,21 @@ struct VIEWGAIN_EXPORT Decision {
 class VIEWGAIN_EXPORT DecisionMaking {
  public:
   virtual ~DecisionMaking() = default;
-  /// One of the candidates, or nothing. `T_world_camera`: where the camera is now.
+  /// One of the candidates, by its place in their order, or nothing. `T_world_camera`: where the
+  /// camera is now.
   virtual std::optional<Decision> decide(const Pose& T_world_camera,
                                          std::span<const Candidate> candidates) = 0;
 };
 
-/// Default of PlanningConfig::stop_gain: about what is left when the information of a touched voxel
-/// cannot be doubled any more (3/2 ln 2 = 1.04 nat). With 0.15 nat no run on the camel ended: each
-/// view meets voxels of the noise shell, and unknown ones behind it, for the first time.
+/// Default of PlanningConfig::stop_gain [nat]: about what is left when the information of a touched
+/// voxel cannot be doubled any more (3/2 ln 2 = 1.04 nat). With 0.15 nat no run on the camel ended:
+/// each view meets voxels of the noise shell, and unknown ones behind it, for the first time.
 inline constexpr double kStopGain = 1.2;  // [nat]
 /// The same for the criterion trace, as a share of the first decision's.
 inline constexpr double kStopGainShare = 0.01;
 
-/// Default of PlanningConfig::stop_area, of the surface so far; perf/README.md says where the camel
-/// stops by it.
+/// Default of PlanningConfig::stop_area, a share of the surface so far; perf/README.md says where
+/// the camel stops by it.
 inline constexpr double kStopArea = 1.6e-3;
 
 /// When to stop.
@@ -133,7 +140,7 @@ struct VIEWGAIN_EXPORT PlanningConfig {
   /// Nothing: the view adds less than this share to entropy_removed and takes less than this share
   /// off the unknown voxels (or nothing at all). The first view is never idle.
   double idle_fraction = 1e-3;
-  std::optional<double> stop_coverage{};  ///< stop at this coverage
+  std::optional<double> stop_coverage{};  ///< stop at this coverage, in [0, 1]
   /// Asked after each step but the acquisition: what was measured goes into the model. Ends with
   /// `interrupted`.
   std::stop_token stop{};
@@ -150,7 +157,7 @@ enum class StopReason : std::uint8_t {
   coverage,
   interrupted,
 };
-/// Its name, as JSON has it.
+/// Its name, as JSON has it; "interrupted" for a number that is none of them: never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view stop_reason_name(StopReason reason);
 
 /// One turn of the loop: the view taken, and the choice of the one after it.
@@ -158,9 +165,10 @@ struct VIEWGAIN_EXPORT ViewRecord {
   std::size_t index = 0;                 ///< from 0
   Pose T_world_camera;                   ///< where the measurements say it was taken
   std::optional<Candidate> chosen_as{};  ///< what this view was as a candidate; none for x_0
-  double predicted_gain = std::numeric_limits<double>::quiet_NaN();  ///< when it was chosen
-  double realised_gain = 0;  ///< what it added to entropy_removed
-  double predicted_area = std::numeric_limits<double>::quiet_NaN();  ///< Decision::area, likewise
+  /// When it was chosen [nat, m² for trace].
+  double predicted_gain = std::numeric_limits<double>::quiet_NaN();
+  double realised_gain = 0;  ///< what it added to entropy_removed [nat, m² for trace]
+  double predicted_area = std::numeric_limits<double>::quiet_NaN();  ///< Decision::area [m²]
   ModelProgress progress;                                            ///< after it
   double travelled = 0;  ///< distance between camera centres so far [m]
   Proposal proposal{};   ///< for the next view; empty if the run ended before it was asked for
@@ -178,10 +186,10 @@ struct VIEWGAIN_EXPORT PlanningResult {
   std::vector<ViewRecord> views;              ///< in their order
 };
 
-/// The paper's Algorithm 1 from x_0. Calls the parts in turn on the calling thread and `observer`,
-/// if given, once a view, when its record is complete. Exceptions of the parts pass through. Throws
-/// Error(invalid_argument) if max_views is 0, a limit is not finite, or a decision names a
-/// candidate that is not there.
+/// The paper's Algorithm 1 from x_0, a T_world_camera. Calls the parts in turn on the calling
+/// thread and `observer`, if given, once a view, when its record is complete. Exceptions of the
+/// parts pass through. Throws Error(invalid_argument) if max_views is 0, a limit is not finite, or
+/// a decision names a candidate that is not there.
 ///
 /// Order of the rules after each view: interrupted; coverage; max_views; idle; then, with the
 /// candidates, no_candidates or unreachable (none left, or the decision maker took none, and some

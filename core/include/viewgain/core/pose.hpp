@@ -12,9 +12,10 @@ namespace viewgain {
 /// Rigid transform, for a camera T_world_camera: maps points of the camera's optical frame (x
 /// right, y down, z forward) to the world. Twelve doubles, the rows of [R | t] with t in [m]. Size
 /// and alignment do not depend on compiler flags, so it may cross a library boundary, which
-/// Eigen::Isometry3d may not (its alignment follows -march). A value type.
+/// Eigen::Isometry3d may not (its alignment follows -march). A value type. Members check nothing
+/// and never throw.
 struct VIEWGAIN_EXPORT Pose {
-  std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< [R | t] by rows
+  std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< [R | t] by rows, t in [m]
 
   /// The identity.
   Pose() = default;
@@ -47,10 +48,10 @@ struct VIEWGAIN_EXPORT Pose {
     return (Eigen::Matrix3d() << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]).finished();
   }
 
-  /// [m]
+  /// t, the camera's centre in the world [m].
   [[nodiscard]] Eigen::Vector3d translation() const { return {m[3], m[7], m[11]}; }
 
-  /// R p + t: a point of the camera's frame in the world [m].
+  /// R p + t: a point `p` [m] of the camera's frame in the world [m].
   [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& p) const {
     return rotation() * p + translation();
   }
@@ -70,18 +71,19 @@ struct VIEWGAIN_EXPORT Pose {
 };
 static_assert(sizeof(Pose) == 96 && alignof(Pose) == 8);
 
-/// How far the rotation is from orthonormal and right-handed: the largest absolute entry of
-/// RᵀR - I, infinity if any of the twelve numbers is not finite or det R <= 0.
+/// How far the rotation is from orthonormal and right-handed: the largest absolute entry of RᵀR - I
+/// [1], infinity if any of the twelve numbers is not finite or det R <= 0. In any frame.
 [[nodiscard]] VIEWGAIN_EXPORT double orthonormality_error(const Pose& pose);
 
 /// The nearest rotation (polar decomposition by SVD) with the same translation. Deterministic. A
-/// pose with a number that is not finite comes back as it is.
+/// pose with a number that is not finite comes back as it is: never throws. In the same frame.
 [[nodiscard]] VIEWGAIN_EXPORT Pose orthonormalized(const Pose& pose);
 
 /// T_world_camera of a camera at `eye` [m] whose optical axis passes through `target` [m] and whose
-/// image-up direction (minus y) is as near to `up` as it can be. Where the view direction is
-/// parallel to `up`, +x of the world (then +y) takes its place. Throws Error(invalid_argument) if
-/// eye equals target, if up is zero, or if a number is not finite. Orthonormal to 1e-15.
+/// image-up direction (minus y) is as near to `up`, of whatever unit, as it can be. Where the view
+/// direction is parallel to `up`, +x of the world (then +y) takes its place. Throws
+/// Error(invalid_argument) if eye equals target, if up is zero, or if a number is not finite.
+/// Orthonormal to 1e-15.
 [[nodiscard]] VIEWGAIN_EXPORT Pose look_at(const Eigen::Vector3d& eye,
                                            const Eigen::Vector3d& target,
                                            const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());

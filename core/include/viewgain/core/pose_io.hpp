@@ -10,6 +10,10 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 
+/// @file
+/// Poses in text files, T_world_camera. Cost: a file is read or written once, O(poses) in time and
+/// memory.
+
 namespace viewgain {
 
 class LineReader;
@@ -35,12 +39,12 @@ struct VIEWGAIN_EXPORT PoseList {
 [[nodiscard]] VIEWGAIN_EXPORT Pose tum_line_pose(const LineReader& line,
                                                  bool* orthonormalized = nullptr);
 
-/// Writes the TUM format with 17 significant digits, so that reading it back gives the same
-/// rotation to 2e-15 and the same translation exactly. Timestamps are 0, 1, 2, ... Atomic: a
-/// temporary file is renamed. Throws Error(io), and Error(invalid_argument) naming the index of a
-/// pose whose rotation is off by more than 1e-2 or not finite.
+/// Writes the TUM format, a pose a line in their order, with 17 significant digits, so that reading
+/// it back gives the same rotation to 2e-15 and the same translation exactly. Timestamps are 0, 1,
+/// 2, ... Atomic: a temporary file is renamed. Throws Error(io), and Error(invalid_argument) naming
+/// the index of a pose whose rotation is off by more than 1e-2 or not finite.
 VIEWGAIN_EXPORT void write_tum(const std::filesystem::path& path, std::span<const Pose> poses);
-/// The same with a timestamp for each pose [s], such as read_tum gives, kept exactly. Throws
+/// The same with timestamps [s], one a pose, such as read_tum gives, kept exactly. Throws
 /// Error(invalid_argument), too, for another count of them or one that is not finite.
 VIEWGAIN_EXPORT void write_tum(const std::filesystem::path& path, std::span<const Pose> poses,
                                std::span<const double> timestamps);

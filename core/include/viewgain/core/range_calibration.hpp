@@ -13,7 +13,8 @@ struct DepthFrame;
 struct PinholeCamera;
 
 /// Table of a camera's systematic, distance-dependent error: what the paper's ref. [7] (Fuchs and
-/// Hirzinger, CVPR 2008) measures against known distances and subtracts. A value type.
+/// Hirzinger, CVPR 2008) measures against known distances and subtracts. A value type; unless they
+/// say otherwise members check nothing: the table must be one that validate() takes.
 struct VIEWGAIN_EXPORT RangeCalibration {
   /// (measured range, measured minus true range) [m], measured ranges rising. Empty: no correction.
   std::vector<std::array<double, 2>> table{};
@@ -21,8 +22,8 @@ struct VIEWGAIN_EXPORT RangeCalibration {
   /// Throws Error(invalid_argument) unless all are finite and measured ranges rise strictly.
   void validate() const;
 
-  /// measured - error(measured), the error interpolated linearly, held constant beyond the ends
-  /// [m].
+  /// `measured_range` [m] less its error [m], which is interpolated linearly, held constant beyond
+  /// the ends.
   [[nodiscard]] double corrected(double measured_range) const;
 
   /// Corrects every reading of the frame along its pixel's ray. A reading whose corrected range is

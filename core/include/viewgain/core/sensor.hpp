@@ -25,7 +25,8 @@ struct VIEWGAIN_EXPORT PoseSigma {
   bool operator==(const PoseSigma&) const = default;
 };
 
-/// A depth camera: intrinsics, range limits along the ray, noise. A value type.
+/// A depth camera: intrinsics, range limits along the ray, noise. A value type; unless they say
+/// otherwise members check nothing.
 struct VIEWGAIN_EXPORT Sensor {
   std::string name;                     ///< preset's or file's name, for reports
   PinholeCamera camera;                 ///< intrinsics, lens
@@ -34,8 +35,8 @@ struct VIEWGAIN_EXPORT Sensor {
   double working_distance = 0;          ///< where it is meant to be used [m]
   NoiseModel noise;                     ///< how readings scatter
   std::optional<Pose> T_flange_camera;  ///< mounting on the robot's flange, if known
-  /// Width, height, depth of the housing [m], if known; see SensorBody in raycast/feasibility.hpp,
-  /// which takes the SR4000's otherwise.
+  /// Width, height, depth of the housing along x, y, z of the flange's frame [m], if known; see
+  /// SensorBody in raycast/feasibility.hpp, which takes the SR4000's otherwise.
   std::optional<std::array<double, 3>> body_size{};
   /// Its systematic error, which load_frame() takes away; without a table none is known. Camera
   /// frames from elsewhere are corrected by RangeCalibration::correct().
@@ -43,8 +44,8 @@ struct VIEWGAIN_EXPORT Sensor {
 
   PoseSigma pose_sigma{};  ///< zero: poses are exact
 
-  /// Standard deviations of a reading at range t [m] in the camera's frame; see sigmas() in
-  /// noise.hpp.
+  /// Standard deviations of a reading at range t [m], whose cosine of incidence is cos_incidence,
+  /// in the camera's frame; see sigmas() in noise.hpp.
   [[nodiscard]] MeasurementSigmas noise_sigmas(double t, double cos_incidence = 1.0) const {
     return viewgain::sigmas(noise, t, camera.fx, cos_incidence);
   }
@@ -78,9 +79,9 @@ struct VIEWGAIN_EXPORT Sensor {
 /// Throws Error(invalid_argument) that lists the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT Sensor sensor_preset(std::string_view name);
 
-/// sigma_0 [m] of an unknown voxel when the map does not say: max(voxel / 2, 2 sigma_ax at the
-/// working distance, frontal). Throws Error(invalid_argument) unless voxel_size is positive,
-/// finite.
+/// sigma_0 [m] of an unknown voxel of the edge voxel_size [m] when the map does not say: max(voxel
+/// / 2, 2 sigma_ax at the working distance, frontal). Throws Error(invalid_argument) unless
+/// voxel_size is positive, finite.
 [[nodiscard]] VIEWGAIN_EXPORT double default_prior_sigma(double voxel_size, const Sensor& sensor);
 
 }  // namespace viewgain

@@ -23,13 +23,14 @@ struct VIEWGAIN_EXPORT StopMemory {
   /// Of the first decision that had one above 0 [nat, m² for trace]; NaN: none yet, or the limit is
   /// no share.
   double first_gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
-  /// Decision::best_area as a share of the surface in the last three decisions; that of decision i
-  /// is at i % 3.
+  /// Decision::best_area as a share of the surface in the last three decisions, in the order i % 3
+  /// of decision i.
   std::array<double, 3> area_shares{};
 };
 
-/// The stopping rules of PlanningConfig, step by step: what
-/// active_view_planning() asks, for loops that are not its own. Thread safety: one call at a time.
+/// The stopping rules of PlanningConfig, step by step: what active_view_planning() asks, for loops
+/// that are not its own. Thread safety: one call at a time. Members other than the constructor
+/// check nothing; calls cost constant time.
 class VIEWGAIN_EXPORT StopRules {
  public:
   /// `memory`: of a run that goes on. Throws Error(invalid_argument) if max_views is 0 or a limit
@@ -57,7 +58,8 @@ class VIEWGAIN_EXPORT StopRules {
   StopMemory memory_;
 };
 
-/// no_candidates, or unreachable if candidates were dropped for that.
+/// no_candidates, or unreachable if candidates were dropped for that. Checks nothing; takes
+/// constant time.
 [[nodiscard]] VIEWGAIN_EXPORT StopReason nowhere_to_go(const Proposal& proposal);
 
 }  // namespace viewgain

@@ -6,7 +6,7 @@
 
 namespace viewgain {
 
-/// Seconds since it was made.
+/// Seconds since it was made. A value type.
 class Stopwatch {
  public:
   /// Since it was made [s].

@@ -11,9 +11,11 @@
 
 #include "viewgain/core/export.hpp"
 
-namespace viewgain {
+/// @file
+/// Text of files and messages. Numbers do not depend on the process's locale. The functions for
+/// text take any value and never throw.
 
-// Text of files and messages. Numbers do not depend on the process's locale.
+namespace viewgain {
 
 /// The shortest text that reads back as the same number; "nan", "inf" and "-inf" for the others.
 [[nodiscard]] VIEWGAIN_EXPORT std::string short_text(double value);
@@ -27,7 +29,8 @@ namespace viewgain {
 [[nodiscard]] VIEWGAIN_EXPORT std::string quoted(std::string_view word);
 
 /// The lines of a text, or of a binary file's header, from the front, cut into words at blanks. A
-/// byte order mark before the first is skipped. Failures name file and line.
+/// byte order mark before the first is skipped. Failures name file and line. Thread safety: one
+/// call at a time. Cost: all of the text is gone through once.
 class VIEWGAIN_EXPORT LineReader {
  public:
   /// `name` is the file's, for messages; `bytes` must outlive the reader.
@@ -35,7 +38,7 @@ class VIEWGAIN_EXPORT LineReader {
 
   /// Moves to the next line; false at the end.
   bool next();
-  /// Words of the line that was read last.
+  /// Words of the line that was read last, in their order; until the next call of next().
   [[nodiscard]] const std::vector<std::string_view>& words() const { return words_; }
   /// Behind the current line.
   [[nodiscard]] std::string_view rest() const { return rest_; }

@@ -22,7 +22,7 @@ namespace viewgain {
 /// destructor leaves the parent's threads alone.
 class VIEWGAIN_EXPORT ThreadPool {
  public:
-  /// num_threads counts the caller; see thread_count().
+  /// num_threads counts the caller; throws as thread_count().
   explicit ThreadPool(int num_threads = 0);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;

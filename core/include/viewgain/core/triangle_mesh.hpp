@@ -10,9 +10,10 @@
 
 namespace viewgain {
 
-/// A triangle soup as plain arrays. Who takes one checks the indices.
+/// A triangle soup as plain arrays, in any order and in the frame of its user. Who takes one checks
+/// the indices.
 struct VIEWGAIN_EXPORT TriangleMesh {
-  std::vector<std::array<double, 3>> vertices;          ///< [m], or a file's own unit
+  std::vector<std::array<double, 3>> vertices;  ///< [m], or in a file's own unit; in any order
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three vertex indices each
 };
 

@@ -48,7 +48,8 @@ struct VIEWGAIN_EXPORT WallCalibrationResult {
 /// the paper's ref. [7], Fuchs and Hirzinger, CVPR 2008): a smooth curve over the true range,
 /// fitted robustly to the medians of blocks of pixels, as smooth as it is the likeliest. Where a
 /// wall's distance is known and not its tilt, tilts are fitted with the curve. A frame tells of all
-/// ranges that it shows: walls seen at a slant cover more of them. Thread safety: none.
+/// ranges that it shows: walls seen at a slant cover more of them. Thread safety: one call at a
+/// time. Cost of adding a frame: some passes over its pixels; of solve() see there.
 class VIEWGAIN_EXPORT WallCalibration {
  public:
   /// The sensor's own table does not count; its noise model says how far readings are trusted.
@@ -71,8 +72,7 @@ class VIEWGAIN_EXPORT WallCalibration {
 
   /// The table from the frames so far. Throws Error(invalid_argument) for fewer than two frames, or
   /// all at one known distance, a frame that does not fit to the others, and an error that is no
-  /// function of the range. Costs about a
-  /// second for 50 frames.
+  /// function of the range. Costs about a second for 50 frames.
   [[nodiscard]] WallCalibrationResult solve() const;
 
  private:

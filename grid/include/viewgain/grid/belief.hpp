@@ -13,6 +13,10 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/grid/voxel.hpp"
 
+/// @file
+/// What readings have said, voxel by voxel. Functions and members check nothing: an offset must be
+/// below 512.
+
 namespace viewgain {
 
 /// What readings have said about one voxel, in single precision as in the map files, grid frame.

@@ -70,7 +70,8 @@ struct VIEWGAIN_EXPORT OccupiedVoxel {
 /// which it keeps when it turns free.
 ///
 /// Thread safety: const members may run from many threads at once; nothing may run beside a
-/// non-const member. Snapshots are independent of the grid once taken.
+/// non-const member. Snapshots are independent of the grid once taken. Members that refuse a value
+/// say so; the others take any. Members that look at one voxel cost constant time.
 class VIEWGAIN_EXPORT BeliefGrid {
  public:
   /// Throws Error(invalid_argument) naming the value unless voxel_size is at least 2e-5 m (smaller
@@ -85,11 +86,11 @@ class VIEWGAIN_EXPORT BeliefGrid {
 
   /// From a dense array of states, [x][y][z] with z fastest, one per voxel of the workspace: 0
   /// unknown, 1 free (log-odds -0.4), 2 occupied (log-odds 0.85, no belief yet). Throws
-  /// Error(invalid_argument) for another size or another state.
+  /// Error(invalid_argument) for another size or another state. Cost: a pass over the array.
   [[nodiscard]] static BeliefGrid from_states(const GridConfig& config,
                                               std::span<const std::uint8_t> states);
 
-  /// A deep copy.
+  /// A deep copy, in which beliefs are shared until one of both changes. Costs a copy of the tree.
   [[nodiscard]] BeliefGrid clone() const;
 
   [[nodiscard]] double voxel_size() const noexcept;  ///< [m]
@@ -108,14 +109,15 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Centre of a voxel in the world [m]; it need not lie in the workspace.
   [[nodiscard]] Eigen::Vector3d center(Index3 voxel) const;
 
-  /// Outside the workspace a voxel is unknown, has no log-odds and no belief.
+  /// Unknown outside the workspace, where a voxel has no log-odds and no belief either.
   [[nodiscard]] VoxelState state(Index3 voxel) const;
   /// Nothing for an unknown voxel.
   [[nodiscard]] std::optional<float> log_odds(Index3 voxel) const;
   /// Nothing for a voxel that was never hit.
   [[nodiscard]] std::optional<Belief> belief(Index3 voxel) const;
 
-  /// Fills the dense array of states, [x][y][z] with z fastest; size must be voxel_count().
+  /// Fills the dense array of states, [x][y][z] with z fastest; size must be voxel_count(), else
+  /// throws Error(invalid_argument). Cost: a pass over the array.
   void copy_states(std::span<std::uint8_t> states) const;
 
   /// Sets one voxel of the workspace, for importers and tests; without a belief it has none
@@ -125,7 +127,7 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// far (2^28 voxels) from the voxel. The grid is unchanged then.
   void set(Index3 voxel, float log_odds, const std::optional<Belief>& belief = {});
   /// Sets many voxels: as one by one in their order, but faster, and all or none if one of them is
-  /// refused.
+  /// refused. Costs a sort of them by blocks, and a copy of each block that they change.
   void set(std::span<const VoxelValue> voxels);
 
   /// Makes the voxels of the workspace unknown again whose centres lie in a region of the grid's
@@ -168,7 +170,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// snapshot is as good as none.
   [[nodiscard]] GridSnapshot snapshot(const GridSnapshot& before) const;
 
-  /// All beliefs, those of free voxels too, by block in a fixed order; shared, not copied.
+  /// All beliefs, those of free voxels too, by block in a fixed order; shared, not copied. Costs a
+  /// look at each block.
   [[nodiscard]] std::vector<BeliefBlockAt> belief_blocks() const;
 
  private:

@@ -14,7 +14,8 @@ namespace viewgain {
 
 /// The points of a file.
 struct VIEWGAIN_EXPORT PointCloud {
-  /// In file order, as they stand there; an organised cloud's pixels without a reading are NaN.
+  /// In file order, as they stand there, in the file's frame and in whatever unit it has; an
+  /// organised cloud's pixels without a reading are NaN.
   std::vector<std::array<double, 3>> points;
   std::optional<Pose> viewpoint;  ///< a PCD's VIEWPOINT: the sensor's pose in the points' frame
 };
@@ -25,7 +26,8 @@ struct VIEWGAIN_EXPORT PointCloud {
 /// and, in text, the line, if a field is missing, a count contradicts the file's length, a word is
 /// no number, the viewpoint's quaternion is off by more than 1e-2, or the name ends otherwise.
 /// Points need not be finite. Throws Error(capacity) for a file over 16 GiB, and for compressed
-/// points that take more than 256 MiB in memory and 64 times their length in the file.
+/// points that take more than 256 MiB in memory and 64 times their length in the file. Cost:
+/// O(points); the file is read once.
 [[nodiscard]] VIEWGAIN_EXPORT PointCloud load_cloud(const std::filesystem::path& path);
 
 }  // namespace viewgain

@@ -42,10 +42,11 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
   /// readings against those to be expected of one frontal view from where they were taken, so that
   /// what was seen from afar stays beside what was seen from near.
   double min_relative_evidence = 0.25;
-  double normal_radius = 5.0;   ///< of the ball whose beliefs give the surface normal; at most 8
-  double column_radius = 1.0;   ///< of the column whose beliefs are pooled
+  double normal_radius = 5.0;   ///< of the ball whose beliefs give the surface normal, at most 8
+                                ///< [pooling lengths]
+  double column_radius = 1.0;   ///< of the column whose beliefs are pooled [pooling lengths]
   double column_sigmas = 1.75;  ///< its half height, in sigmas of one reading across the surface
-  double min_distance = 0.75;   ///< between two pooled points
+  double min_distance = 0.75;   ///< between two pooled points [pooling lengths]
   /// F = floor_sigma² I, the resolution floor that no number of readings takes away [m]; default
   /// 1/√12 of the edge of the cubes that are pooled (a voxel, where the footprint is no longer).
   std::optional<double> floor_sigma{};
@@ -54,15 +55,16 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
   std::function<bool(const Eigen::Vector3d&)> where{};
 };
 
-/// The surface points of a map, with honest covariances. A pooled
-/// point starts at each occupied voxel, or cube of voxels (pooling_of), moves along the local
-/// normal to the mean of the readings in its column, those of voxels that have turned free included
-/// (leaving them out would bias the mean away from the camera), and survives if no point with more
-/// readings is within min_distance. Its covariance is that of this mean, in which every reading
-/// counts once; a point of per_voxel has Λ_v⁻¹. Both with F. A belief whose fused position is more
-/// than 24 voxels away from its voxel makes no point. Deterministic for any number of threads.
-/// Costs about 1 µs a voxel that was ever hit, where config.where says so, and a tenth elsewhere.
-/// Throws Error(invalid_argument) naming a setting that is negative, not finite or too large.
+/// The surface points of a map, with honest covariances. A pooled point starts at each occupied
+/// voxel, or cube of voxels (pooling_of), moves along the local normal to the mean of the readings
+/// in its column, those of voxels that have turned free included (leaving them out would bias the
+/// mean away from the camera), and survives if no point with more readings is within min_distance.
+/// Its covariance is that of this mean, in which every reading counts once; a point of per_voxel
+/// has Λ_v⁻¹. Both with F. Points are in the order of the voxels, or cubes, that they start at. A
+/// belief whose fused position is more than 24 voxels away from its voxel makes no point.
+/// Deterministic for any number of threads. Costs about 1 µs a voxel that was ever hit, where
+/// config.where says so, and a tenth elsewhere. Throws Error(invalid_argument) naming a setting
+/// that is negative, not finite or too large.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<FusedPoint> fused_points(
     const BeliefGrid& grid, const FusedPointsConfig& config = {}, const ExecConfig& exec = {});
 

@@ -34,7 +34,8 @@ struct VIEWGAIN_EXPORT SnapshotRegion {
   std::uint32_t first_tile = 0;  ///< of this region, in the list of tiles
 };
 
-/// Everything a scene reads of a grid: an immutable value, safe to share between threads.
+/// Everything a scene reads of a grid: an immutable value, safe to share between threads. Members
+/// check nothing: a region's place must be one in the list.
 struct VIEWGAIN_EXPORT GridSnapshot {
   double voxel_size = 0;             ///< [m]
   double prior_sigma = 0;            ///< [m]
@@ -42,10 +43,10 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   Index3 min_index;                  ///< lowest voxel of the workspace
   Index3 dims;                       ///< voxels along x, y, z
   HazardCounters hazard;             ///< what frames have said of unknown space
-  std::vector<SnapshotLeaf> leaves;  ///< with a voxel that is not free, region by region
+  std::vector<SnapshotLeaf> leaves;  ///< with a voxel that is not free, in the order of the regions
   std::vector<VoxelBox> tiles;       ///< of unknown voxels, clipped to the workspace; those larger
-                                     ///< than a region first
-  std::vector<SnapshotRegion> regions;  ///< cubes of 32³ voxels that hold any
+                                     ///< than a region first, then in the order of the regions
+  std::vector<SnapshotRegion> regions;  ///< cubes of 32³ voxels that hold any, numbers rising
   /// Which grid it is of and when, for BeliefGrid::snapshot(before); 0: none.
   std::uint64_t grid_number = 0;
   std::uint64_t time = 0;  ///< of the grid's last change
@@ -57,7 +58,8 @@ struct VIEWGAIN_EXPORT GridSnapshot {
     return shared_until != 0 && region.changed <= shared_until;
   }
 
-  /// As BeliefGrid's.
+  /// The voxel that holds a point p_world [m]; nothing outside the workspace, or if it is not
+  /// finite.
   [[nodiscard]] std::optional<Index3> index_of(const Eigen::Vector3d& p_world) const;
   /// Centre of a voxel in the world [m].
   [[nodiscard]] Eigen::Vector3d center(Index3 voxel) const;

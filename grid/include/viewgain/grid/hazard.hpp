@@ -21,7 +21,8 @@ namespace viewgain {
 
 /// The hazard of unknown space: the rate at which a ray through it meets the surface, by the
 /// distance d from what is known of the surface (apps/docs/guide/surface_gain.md):
-/// h(d) = far_rate + near_rate exp(-d / decay_length), and far_rate beyond 5 decay lengths.
+/// h(d) = far_rate + near_rate exp(-d / decay_length), and far_rate beyond 5 decay lengths. Members
+/// check nothing; HazardConfig::validate() does.
 struct VIEWGAIN_EXPORT HazardModel {
   double near_rate = 25.6;       ///< h_0 [1/m]
   double decay_length = 0.0245;  ///< lambda [m]
@@ -34,7 +35,7 @@ struct VIEWGAIN_EXPORT HazardModel {
   [[nodiscard]] static HazardModel for_size(double size) {
     return {9.0 / size, 0.07 * size, 0.224 / size};
   }
-  /// The same rate everywhere; `size` as above says how fine the cells are.
+  /// The same `rate` [1/m] everywhere; `size` [m] as above says how fine the cells are.
   [[nodiscard]] static HazardModel constant(double rate, double size) {
     return {0.0, 0.07 * size, rate};
   }
@@ -75,7 +76,9 @@ struct VIEWGAIN_EXPORT HazardConfig {
 };
 
 /// The same rate [1/m] everywhere in the workspace of a map; `object_size` [m] says how fine the
-/// cells are, its longest side unless given.
+/// cells are, its longest side unless given. Throws Error(invalid_argument) for an object size that
+/// is not positive and finite; the rate is checked by HazardConfig::validate(). Takes constant
+/// time.
 [[nodiscard]] VIEWGAIN_EXPORT HazardConfig constant_hazard(double rate, const BeliefGrid& grid,
                                                            std::optional<double> object_size = {});
 
@@ -84,10 +87,10 @@ struct VIEWGAIN_EXPORT HazardConfig {
 /// Rates are constant in hazard cells: cubes of 1, 2, 4 or 8 voxels an edge on the lattice of the
 /// leaves, about a quarter of the decay length wide. Distances are between centres of such cells,
 /// to the nearest one with an occupied voxel of at least 3 hits, cut at 5 decay lengths or 127
-/// cells; voxels that are finer than the
-/// sensor's footprint count in the cubes of pooling_of(). The model's start values are multiplied
-/// class by class by HazardCounters::factor(), pooled where rates would rise with the distance. The
-/// rates of a volume are by voxel.
+/// cells; voxels that are finer than the sensor's footprint count in the cubes of pooling_of(). The
+/// model's start values are multiplied class by class by HazardCounters::factor(), pooled where
+/// rates would rise with the distance. The rates of a volume are by voxel. Members take any voxel
+/// and never throw; calls cost constant time.
 class VIEWGAIN_EXPORT HazardField {
  public:
   /// Exact distances in 3 passes over the box of cells with evidence, widened by the cut, with 2

@@ -21,8 +21,8 @@ namespace viewgain {
 /// Thread safety: one call at a time on one grid.
 class VIEWGAIN_EXPORT HazardCalibration {
  public:
-  /// `support_plane`: height z of a table [m], world. Throws Error(invalid_argument) if the sensor
-  /// is not valid.
+  /// `support_plane` [m]: height z of a table, world; it is not checked. Throws
+  /// Error(invalid_argument) if the sensor is not valid.
   explicit HazardCalibration(const Sensor& sensor, std::optional<double> support_plane = {});
 
   /// Adds a frame to the grid's counters, before it is integrated; `hazard` is the field of the map

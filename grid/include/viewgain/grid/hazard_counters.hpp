@@ -12,7 +12,7 @@ namespace viewgain {
 
 /// How often real rays met the surface in unknown space, against how often the hazard model said
 /// that they would, by class of distance from known surface. Part of a map. Integers, so that every
-/// machine has the same.
+/// machine has the same. Members check nothing: a class must be below kClasses.
 struct VIEWGAIN_EXPORT HazardCounters {
   /// Classes of distance from known surface.
   static constexpr std::size_t kClasses = 8;
@@ -23,7 +23,8 @@ struct VIEWGAIN_EXPORT HazardCounters {
   /// What earlier frames are left with when one is added, as late hazards are lower than early
   /// ones.
   static constexpr std::int64_t kKeptOf10 = 7;
-  static constexpr double kPrior = 2.0 * kFrame / kClasses;  ///< of each class
+  /// Weight of the prior in each class [1 / kFrame].
+  static constexpr double kPrior = 2.0 * kFrame / kClasses;
 
   /// What was counted at one class of distance.
   struct Class {

@@ -58,7 +58,9 @@ class VIEWGAIN_EXPORT CloudIntegrator {
 };
 
 /// The box, in the frame of T_world_grid, that holds every reading of the cloud [m], those of the
-/// support plane left out; nothing if it has none. For choosing a workspace.
+/// support plane left out; nothing if it has none. `points` [m] are in the world, in any order;
+/// support_plane [m] as in IntegrationConfig. For choosing a workspace. Throws
+/// Error(invalid_argument) as CloudIntegrator. Costs O(points).
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Box> reading_bounds(
     const Sensor& sensor, std::span<const std::array<double, 3>> points, const Pose& T_world_sensor,
     const Pose& T_world_grid = {}, std::optional<double> support_plane = {});

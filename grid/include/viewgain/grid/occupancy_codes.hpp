@@ -16,7 +16,8 @@ namespace viewgain {
 /// The log-odds of every voxel of a map, free ones too, found by place: an immutable extract for
 /// gains that weigh free space, which a GridSnapshot does not hold. Nodes of 128³ voxels have 16³
 /// entries, one for each brick of 8³ voxels; what is the same throughout is kept once. Independent
-/// of the grid once made; const members may run from many threads.
+/// of the grid once made; const members may run from many threads. Members take any voxel and any
+/// code, and never throw.
 struct VIEWGAIN_EXPORT OccupancyCodes {
   static constexpr std::uint8_t kUnknown = 0;  ///< of a voxel never observed
   static constexpr int kCount = 112;           ///< codes are below this
@@ -32,7 +33,7 @@ struct VIEWGAIN_EXPORT OccupancyCodes {
   std::array<std::int32_t, 3> nodes{};  ///< along x, y, z
   std::vector<std::uint32_t> node_entries;  ///< x-major: uniform, or first of 4096 in `entries`
   std::vector<std::uint32_t> entries;       ///< x-major in a node: uniform, or first of 512 codes
-  std::vector<std::uint8_t> codes;          ///< x << 6 | y << 3 | z in a brick
+  std::vector<std::uint8_t> codes;  ///< of the bricks, in the order x << 6 | y << 3 | z in each
 
   /// Of the grid as it is. One pass over it; 512 bytes for each brick that is not uniform. Throws
   /// Error(capacity) beyond 2^31 codes or 2^24 nodes.

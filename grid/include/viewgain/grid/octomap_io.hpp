@@ -15,8 +15,8 @@ namespace viewgain {
 
 /// What an octree does not say about a map.
 struct VIEWGAIN_EXPORT OctomapConfig {
-  /// Part of the tree to take, in its frame [m], grown to whole voxels; default: the box of its
-  /// known voxels. What the tree does not cover is unknown.
+  /// Part of the tree to take, in the tree's frame [m], grown to whole voxels; default: the box of
+  /// its known voxels. What the tree does not cover is unknown.
   std::optional<Box> workspace{};
   std::optional<double> prior_sigma{};  ///< [m]; default: voxel / 2, no sensor being known
   /// Log-odds from which a voxel of a `.ot` is occupied; 0 is OctoMap's default, probability 0.5.
@@ -45,7 +45,8 @@ struct VIEWGAIN_EXPORT OctomapConfig {
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid grid_from_octomap_bytes(
     std::string_view bytes, const OctomapConfig& config = {}, const std::string& name = "octree");
 
-/// The resolution of an OctoMap file [m], from its header alone. Throws as load_octomap.
+/// The resolution of an OctoMap file [m], from its header alone. Throws as load_octomap. Cost: the
+/// first bytes are read.
 [[nodiscard]] VIEWGAIN_EXPORT double octomap_resolution(const std::filesystem::path& path);
 /// The same of a file's contents, or of the first part of them; `name` stands for the file in
 /// messages.
@@ -56,14 +57,16 @@ struct VIEWGAIN_EXPORT OctomapConfig {
 /// frame where octomap_keeps_frame(grid), else in the grid's. A tree has no place for beliefs,
 /// prior, T_world_grid and views. A free voxel's log-odds of 0 is written as -0.001, since OctoMap
 /// calls 0 occupied; read back it is 0 again. Atomic: a temporary file is renamed. Throws
-/// Error(io), and Error(capacity) if a known voxel's index is not in [-32768, 32768).
+/// Error(io), and Error(capacity) if a known voxel's index is not in [-32768, 32768). Cost: O(nodes
+/// of the tree).
 VIEWGAIN_EXPORT void save_octomap(const BeliefGrid& grid, const std::filesystem::path& path);
-/// The contents of that file.
+/// The same as the contents of that file.
 [[nodiscard]] VIEWGAIN_EXPORT std::string octomap_bytes(const BeliefGrid& grid);
 
 /// Whether a tree's voxels would lie in the world where the grid's do: T_world_grid is the
 /// identity, or (to 1e-6 voxel) moves the workspace by whole voxels and not out of a tree's space.
-/// Otherwise the frame is lost, and the tree is to be moved by T_world_grid.
+/// Otherwise the frame is lost, and the tree is to be moved by T_world_grid. Never throws; takes
+/// constant time.
 [[nodiscard]] VIEWGAIN_EXPORT bool octomap_keeps_frame(const BeliefGrid& grid);
 
 }  // namespace viewgain

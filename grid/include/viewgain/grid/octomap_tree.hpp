@@ -18,7 +18,8 @@ namespace viewgain {
 
 /// A belief grid of the tree, by the rules of load_octomap; a voxel is occupied where the tree says
 /// so (its own occupancy threshold, instead of config.occupied_from). Passes through the tree's
-/// file form in memory: 5 bytes a node. Thread safety: reads the tree only.
+/// file form in memory: 5 bytes a node. Thread safety: reads the tree only. Throws as load_octomap.
+/// Cost: O(nodes).
 [[nodiscard]] inline BeliefGrid grid_from_octree(const octomap::OcTree& tree,
                                                  OctomapConfig config = {}) {
   config.occupied_from = tree.getOccupancyThresLog();
@@ -30,7 +31,7 @@ namespace viewgain {
 }
 
 /// The tree that save_octomap would write, with OctoMap's default settings but for the resolution.
-/// Throws as save_octomap.
+/// Throws as save_octomap. Cost: O(nodes).
 [[nodiscard]] inline std::unique_ptr<octomap::OcTree> octree_from_grid(const BeliefGrid& grid) {
   std::istringstream file(octomap_bytes(grid));
   file.imbue(std::locale::classic());

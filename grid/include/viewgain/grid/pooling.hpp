@@ -18,7 +18,7 @@ struct VIEWGAIN_EXPORT Pooling {
 /// across its ray, read off Λ_v / hits as if a voxel's readings came along one direction. The cubes
 /// are as large as they can be under 1.42 footprints, so that a map with voxels of at least that
 /// size pools nothing (shift 0, length the voxel size or the footprint). Costs about 20 ns an
-/// occupied voxel. Thread safe.
+/// occupied voxel. Never throws. Thread safe.
 [[nodiscard]] VIEWGAIN_EXPORT Pooling pooling_of(const GridSnapshot& snapshot);
 
 }  // namespace viewgain

@@ -28,7 +28,8 @@ struct VIEWGAIN_EXPORT VdbMap {
 
 /// Writes the map as a plain OpenVDB file (active = known; grid/README.md has the layout), of types
 /// that OpenVDB's Python module reads. Atomic: a temporary file beside it is renamed. Throws
-/// Error(io). If memory runs out (std::bad_alloc), the file that was there stays.
+/// Error(io). If memory runs out (std::bad_alloc), the file that was there stays. Cost: grows with
+/// the leaves and beliefs of the map.
 VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
                               const VdbWriteConfig& config = {});
 
@@ -36,7 +37,7 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
 /// the loaded map has the saved one's content_hash(). Throws Error(io) if it cannot be opened and
 /// Error(format), naming the file and what is missing or out of bounds, if it is truncated or no
 /// viewgain map; Error(capacity) if tiles hold more than 2^27 occupied voxels, or the file is over
-/// 16 GiB.
+/// 16 GiB. Cost: grows with the leaves and beliefs of the map; the file is read once.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_vdb(const std::filesystem::path& path);
 /// The same with its notes: both of one state of the file, whoever rewrites it meanwhile.
 [[nodiscard]] VIEWGAIN_EXPORT VdbMap load_vdb_map(const std::filesystem::path& path);
@@ -53,6 +54,7 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
 
 /// Writes rates of voxels of the map's lattice as such a file; load_hazard_vdb() reads the same.
 /// Atomic, as save_vdb(). Throws Error(invalid_argument) as HazardConfig::validate(), Error(io).
+/// Cost: a pass over the rates.
 VIEWGAIN_EXPORT void save_hazard_vdb(const HazardVolume& volume, const BeliefGrid& grid,
                                      const std::filesystem::path& path);
 

@@ -21,7 +21,8 @@ struct VIEWGAIN_EXPORT Index3 {
   bool operator==(const Index3&) const = default;
 };
 
-/// A box of voxels: [min, max). It is empty if a side is not positive.
+/// A box of voxels: [min, max). It is empty if a side is not positive. Members take any voxel and
+/// never throw.
 struct VIEWGAIN_EXPORT VoxelBox {
   Index3 min;  ///< lowest voxel
   Index3 max;  ///< one past the highest
@@ -36,8 +37,8 @@ struct VIEWGAIN_EXPORT VoxelBox {
     return v.x >= min.x && v.x < max.x && v.y >= min.y && v.y < max.y && v.z >= min.z &&
            v.z < max.z;
   }
-  /// The voxel of the box that holds a point, given in voxels (grid frame, divided by the voxel
-  /// size); nothing if the point lies outside or is not finite.
+  /// The voxel of the box that holds a point `p` [voxels] (grid frame, divided by the voxel size);
+  /// nothing if the point lies outside or is not finite.
   [[nodiscard]] std::optional<Index3> voxel_at(const Eigen::Vector3d& p) const {
     const double x = std::floor(p.x()), y = std::floor(p.y()), z = std::floor(p.z());
     if (!(x >= min.x && x < max.x && y >= min.y && y < max.y && z >= min.z && z < max.z)) {
@@ -63,7 +64,7 @@ struct VIEWGAIN_EXPORT VoxelBox {
   bool operator==(const VoxelBox&) const = default;
 };
 
-/// Centre of a voxel in the grid's frame [m].
+/// Centre of a voxel in the grid's frame [m], voxel_size [m] being its edge. Checks nothing.
 [[nodiscard]] inline Eigen::Vector3d voxel_center(Index3 voxel, double voxel_size) {
   return (Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5) * voxel_size;
 }

@@ -38,7 +38,8 @@ struct VIEWGAIN_EXPORT BoundaryRun {
 
 /// How a boundary is cut into runs.
 struct VIEWGAIN_EXPORT BoundaryConfig {
-  double max_view_angle = 80.0 * std::numbers::pi / 180;  ///< between face normal and line of sight
+  /// Between face normal and line of sight [rad].
+  double max_view_angle = 80.0 * std::numbers::pi / 180;
   double min_run_length = 0;   ///< shorter runs join the longer neighbour in their loop [m]; some
                                ///< spacings, or each tooth of a jagged border is a run
   double min_loop_length = 0;  ///< shorter loops are left out: small holes [m]
@@ -48,20 +49,21 @@ struct VIEWGAIN_EXPORT BoundaryConfig {
 /// vertex they are separated by following the faces round it. Loops begin at their edge of lowest
 /// triangle and are in that order. Throws Error(invalid_argument) for an index out of range, a
 /// number that is not finite, not one normal a vertex, or an edge with one vertex at both ends,
-/// more than two faces, or two that turn differently. O(n log n).
+/// more than two faces, or two that turn differently; Error(capacity) beyond 2^32 / 3 triangles.
+/// O(n log n).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<BoundaryLoop> boundary_loops(const SurfaceMesh& surface);
 
-/// Cuts loops into runs. The class of an edge is that of its outward
-/// conormal t × n (t along the face's halfedge, n the face's normal) in the image axes of the last
-/// view (T_world_camera) that has the edge's midpoint in its image and range limits at under
-/// max_view_angle: the largest of its components to -x left, +x right, -y top, +y bottom. `sees`,
-/// if given, is asked as well (view, point, is it unoccluded). Edges that no view sees take the
-/// class in the last view that stands before their face at under 90°, or the last view. Runs
-/// shorter than min_run_length join the longer neighbour, the shortest first; so that a jagged
-/// border is classed by its course, conormals are averaged before that along min_run_length of the
-/// loop (at most a quarter of it). Each loop that is not left out has each of its edges in one run.
-/// Runs are in the order of the loops and along them. Throws Error(invalid_argument) if there are
-/// no views, or a view, the sensor, a loop or the config is not valid.
+/// Cuts loops into runs. The class of an edge is that of its outward conormal t × n (t along the
+/// face's halfedge, n the face's normal) in the image axes of the last view (T_world_camera) that
+/// has the edge's midpoint in its image and range limits at under max_view_angle: the largest of
+/// its components to -x left, +x right, -y top, +y bottom. `sees`, if given, is asked as well
+/// (view, point, is it unoccluded). Edges that no view sees take the class in the last view that
+/// stands before their face at under 90°, or the last view. Runs shorter than min_run_length join
+/// the longer neighbour, the shortest first; so that a jagged border is classed by its course,
+/// conormals are averaged before that along min_run_length of the loop (at most a quarter of it).
+/// Each loop that is not left out has each of its edges in one run. Runs are in the order of the
+/// loops and along them. Throws Error(invalid_argument) if there are no views, or a view, the
+/// sensor, a loop or the config is not valid. Costs O(edges · views).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<BoundaryRun> boundary_runs(
     const SurfaceMesh& surface, std::span<const BoundaryLoop> loops, std::span<const Pose> views,
     const Sensor& sensor, const BoundaryConfig& config = {},

@@ -14,7 +14,8 @@ namespace viewgain {
 /// split into triangle fans. A byte order mark is skipped; colours, normals and lines are not
 /// looked at. Throws Error(io) if the file cannot be read and Error(format), naming the file, if it
 /// cannot be parsed, has no faces, a coordinate that is not finite, an index out of range, or a
-/// header that promises more than the file holds. Thread safe.
+/// header that promises more than the file holds, Error(capacity) as file_bytes(). Thread safe.
+/// Costs O(file).
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path);
 
 /// Which axis of the mesh file points up.
@@ -29,11 +30,11 @@ struct VIEWGAIN_EXPORT MeshPlacement {
 };
 
 /// Applies turn, then scale about the origin, then centring. Throws Error(invalid_argument) if
-/// longest_side is negative or not finite, or the mesh has no extent to scale.
+/// longest_side is negative or not finite, or the mesh has no extent to scale. Costs O(vertices).
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh placed(TriangleMesh mesh,
                                                   const MeshPlacement& placement);
 
-/// Reads a mesh and places it; the errors of both name the file.
+/// Reads a mesh and places it; throws and costs as both, and the errors name the file.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path,
                                                      const MeshPlacement& placement);
 

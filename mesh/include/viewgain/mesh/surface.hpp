@@ -12,19 +12,22 @@
 
 namespace viewgain {
 
-/// The input of surface reconstruction: a point, and on which side of the surface free space lies.
+/// The input of surface reconstruction: a point, and on which side of the surface free space lies,
+/// in any frame.
 struct VIEWGAIN_EXPORT OrientedPoint {
-  std::array<double, 3> position{};     ///< [m]
-  std::array<double, 3> toward_free{};  ///< a hint, not a precise normal; zero where not known
+  std::array<double, 3> position{};  ///< [m]
+  /// A direction [1], no precise normal: a hint; zero where not known.
+  std::array<double, 3> toward_free{};
 };
 
 /// An open, oriented triangle surface as plain arrays. Faces turn counter-clockwise seen from
-/// outside (free space); every edge has one face or two.
+/// outside (free space); every edge has one face or two. In the frame of the points that it is made
+/// of.
 struct VIEWGAIN_EXPORT SurfaceMesh {
-  std::vector<std::array<double, 3>> vertices;          ///< [m]
+  std::vector<std::array<double, 3>> vertices;          ///< [m], in any order
   std::vector<std::array<double, 3>> normals;           ///< unit, outward, one a vertex
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< vertex indices
-  std::vector<std::uint32_t> source;                    ///< index of the input point of each vertex
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three indices of vertices each
+  std::vector<std::uint32_t> source;                    ///< one a vertex: index of its input point
 };
 
 /// How points become a surface.
@@ -36,7 +39,7 @@ struct VIEWGAIN_EXPORT SurfaceConfig {
   std::size_t min_component = 40;     ///< components of fewer points are outliers and dropped
 };
 
-/// Rebuilds the surface through the points: duplicates and small components
+/// Rebuilds the surface through the points, given in any order: duplicates and small components
 /// dropped, jet smoothing, advancing front (CGAL), components of the mesh with fewer than
 /// min_component vertices dropped, faces turned outward by majority of the hints in each component.
 /// Neighbours whose hints are opposed are not smoothed together. A vertex is at most 1.25 spacings
@@ -44,7 +47,8 @@ struct VIEWGAIN_EXPORT SurfaceConfig {
 /// beyond max_edge: open boundaries stay. Empty input, or nothing but outliers, gives an empty
 /// mesh. The same input gives the same bits, with any number of threads. Throws
 /// Error(invalid_argument) for a position that is not finite, or a length in the configuration that
-/// is not positive.
+/// is not positive, and for 2^32 points or more. Cost: O(n log n) of the points, by a search tree
+/// and a Delaunay triangulation.
 [[nodiscard]] VIEWGAIN_EXPORT SurfaceMesh reconstruct_surface(std::span<const OrientedPoint> points,
                                                               const SurfaceConfig& config,
                                                               const ExecConfig& exec = {});

@@ -13,10 +13,11 @@ namespace viewgain {
 /// What an evaluator's rays meet, as images, row by row; every s-th pixel of every s-th row for a
 /// pixel stride s.
 struct VIEWGAIN_EXPORT DepthImage {
-  int width = 0;             ///< [px]
-  int height = 0;            ///< [px]
-  std::vector<float> depth;  ///< along the optical axis [m]; +infinity: the ray meets nothing
-  std::vector<RayHit::Kind> labels;  ///< what it meets
+  int width = 0;   ///< [px]
+  int height = 0;  ///< [px]
+  /// width * height, along the optical axis [m]; +infinity: the ray meets nothing.
+  std::vector<float> depth;
+  std::vector<RayHit::Kind> labels;  ///< width * height: what the ray meets
 };
 
 /// The depth and label images of a pose: where the rays that evaluate() uses end, for looking at

@@ -39,7 +39,7 @@ enum class Infeasibility : std::uint8_t {
   collision,    ///< the body would overlap voxels that are not free, or the camera be in one
   too_near,     ///< much of the image would show what is nearer than the sensor can measure
 };
-/// Its name, as JSON has it.
+/// Its name, as JSON has it; never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view infeasibility_name(Infeasibility reason);
 
 /// What must have room, and where the robot gets.
@@ -86,12 +86,14 @@ class VIEWGAIN_EXPORT FeasibilityChecker {
   /// Error(invalid_argument) for a null scene.
   [[nodiscard]] FeasibilityChecker with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
-  /// `taken`: T_world_camera of the views so far. Touching faces do not overlap.
+  /// `taken`: T_world_camera of the views so far, in any order. Touching faces do not overlap. What
+  /// the reach region's predicate throws passes through; a bad pose is one of the answers.
   [[nodiscard]] Infeasibility check(const Pose& T_world_camera,
                                     std::span<const Pose> taken = {}) const;
 
-  /// The answers for a batch, result i for pose i, on all threads of the checker, which call the
-  /// reach region's predicate at once. What that throws ends the batch and is thrown again here.
+  /// The answers for a batch of T_world_camera, result i for pose i, on all threads of the checker,
+  /// which call the reach region's predicate at once. What that throws ends the batch and is thrown
+  /// again here.
   [[nodiscard]] std::vector<Infeasibility> check(std::span<const Pose> T_world_camera,
                                                  std::span<const Pose> taken = {}) const;
 

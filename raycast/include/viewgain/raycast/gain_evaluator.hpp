@@ -38,7 +38,7 @@ enum class GainModel : std::uint8_t {
 };
 /// Names of the models, in their order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& gain_model_names();
-/// The model's name, as parse_gain_model() reads it.
+/// The model's name, as parse_gain_model() reads it. It must be one of them: unchecked.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view gain_model_name(GainModel model);
 /// Throws Error(invalid_argument) that lists the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT GainModel parse_gain_model(std::string_view name);
@@ -53,7 +53,7 @@ struct VIEWGAIN_EXPORT GainConfig {
   std::optional<double> prior_sigma{};  ///< sigma_0 [m]; the map's unless given
   std::optional<double> min_range{};    ///< along the ray [m]; the sensor's unless given
   std::optional<double> max_range{};    ///< along the ray [m]; the sensor's unless given
-  std::vector<WeightRegion> weights{};  ///< task weights; later ones count
+  std::vector<WeightRegion> weights{};  ///< task weights; in their order later ones count
   double refinement_weight = 0.3;       ///< combined: w, of refining against finding new surface
   /// Height z of a support plane in the world [m]: rays that go down end there (surface, combined).
   std::optional<double> support_plane{};
@@ -66,7 +66,7 @@ enum class ViewStatus : std::uint8_t {
   bad_pose,  ///< a number that is not finite, or a rotation off by more than 1e-3: gain NaN
   camera_in_occupied,  ///< the camera's centre lies in an occupied voxel: gain 0
 };
-/// Its name, as JSON has it.
+/// Its name, as JSON has it; never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view view_status_name(ViewStatus status);
 
 /// What a view is expected to bring. Gains in nats, in m² for the criterion trace and for the
@@ -109,6 +109,12 @@ struct VIEWGAIN_EXPORT RayHit {
 /// Thread safety: all const members may run from many threads at once on one evaluator. Allocation:
 /// none per pose in the steady state: each thread's buffers grow to the largest view that it has
 /// scored and are kept. Determinism: the same bits for any number of threads, run after run.
+///
+/// Cost of evaluate(): grows with the rays. On two threads at 128³ voxels it makes 151, 74 and 45
+/// million rays a second with AVX-512, AVX2 and SSE4; by the surface and the combined gain 0.28 and
+/// 0.22 times as many (perf/README.md). That of approximate() grows with the rays that it traces.
+/// The constructor costs a PinholeCamera::ray() a pixel and, by the surface and the combined gain,
+/// the hazard of a scene that has none yet.
 class VIEWGAIN_EXPORT GainEvaluator {
  public:
   /// Undoes the lens distortion once. The environment variable VIEWGAIN_TRACE, `sweep` or `bvh`,
@@ -134,7 +140,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
   [[nodiscard]] GainEvaluator with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
   /// The expected gain of one pose: the paper's on all threads of the evaluator, the others on the
-  /// calling one.
+  /// calling one. A bad pose is told by ViewGain::status and not thrown.
   [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera) const;
 
   /// The expected gains of a batch, result i for pose i, on all threads of the evaluator. A bad
@@ -147,18 +153,19 @@ class VIEWGAIN_EXPORT GainEvaluator {
   [[nodiscard]] std::vector<ViewGain> evaluate(std::span<const Pose> T_world_camera) const;
 
   /// The user's own gain of a batch, result i for pose i, on all threads of the evaluator, which
-  /// call `measure` at once. Bad poses: NaN; a camera in an occupied voxel: 0; `measure` is asked
-  /// about neither. Returns how many poses were measured, as the call above; the results not
-  /// reached are NaN. What `measure` throws ends the batch and is thrown again here, and the
-  /// results are then unspecified. Costs 1.4 times as much as evaluate() without it, and what
-  /// `measure` takes. Throws Error(invalid_argument) if the sizes differ.
+  /// call `measure` at once. `results` are in the measure's unit. Bad poses: NaN; a camera in an
+  /// occupied voxel: 0; `measure` is asked about neither. Returns how many poses were measured, as
+  /// the call above; the results not reached are NaN. What `measure` throws ends the batch and is
+  /// thrown again here, and the results are then unspecified. Costs 1.4 times as much as evaluate()
+  /// without it, and what `measure` takes. Throws Error(invalid_argument) if the sizes differ.
   std::size_t evaluate(std::span<const Pose> T_world_camera, const ViewMeasure& measure,
                        std::span<double> results, const BatchControl& control = {}) const;
 
-  /// The same for a measure that sees what rays pass on their way through unknown voxels, whatever
-  /// the evaluator's model. Lists take 80 bytes for each voxel that a ray of the view passes and
-  /// each thread, at full resolution up to 200 MB; a pixel stride makes them smaller. Costs some
-  /// times evaluate()'s surface gain. Throws Error(capacity) and Error(backend), too.
+  /// The same for a measure, `results` in its unit, that sees what rays pass on their way through
+  /// unknown voxels, whatever the evaluator's model. Lists take 80 bytes for each voxel that a ray
+  /// of the view passes and each thread, at full resolution up to 200 MB; a pixel stride makes them
+  /// smaller. Costs some times evaluate()'s surface gain. Throws Error(capacity) and
+  /// Error(backend), too.
   std::size_t evaluate(std::span<const Pose> T_world_camera, const RunMeasure& measure,
                        std::span<double> results, const BatchControl& control = {}) const;
 
@@ -166,12 +173,12 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// first, ties by the voxel's x, y, z. The gains add up to evaluate()'s gain to rounding (1e-9 of
   /// it; surface, combined: 1e-5), the rays to its hits; for surface and combined there is an entry
   /// for each unknown voxel that rays reach, however unlikely they end there. Empty for a bad pose
-  /// and for a camera in an occupied voxel. On the calling thread; takes three times as long as
-  /// evaluate().
+  /// and for a camera in an occupied voxel: nothing is thrown for them. On the calling thread;
+  /// takes three times as long as evaluate().
   [[nodiscard]] std::vector<VoxelContribution> contributions(const Pose& T_world_camera) const;
 
   /// Where the rays of a pose end, in pixel order (row by row, strided); the hits that evaluate()
-  /// uses. Empty for a bad pose.
+  /// uses. Empty for a bad pose: nothing is thrown for it. Costs a trace of the pose.
   [[nodiscard]] std::vector<RayHit> trace(const Pose& T_world_camera) const;
 
   /// The k best poses: best_indices() of evaluate()'s results and those results, ties to the lower
@@ -185,30 +192,33 @@ class VIEWGAIN_EXPORT GainEvaluator {
                                const BestConfig& config = {}) const;
 
   /// The k best poses, very probably, in two stages: all poses are scored by about 400 of their
-  /// rays, every so manieth pixel and row, as approximate() does, and the best max(24, 4 k, 5 %)
-  /// of them in full (by the other gains 1.6 %), so gains reported are exact. A view is lost if its
-  /// 400 rays make it look worse than that many others: by the paper's gain the best of 2,000 poses
-  /// on 3 to 6 of 200 maps of objects, 0.4 % of its gain at most (perf/README.md). Images of under
-  /// 900 rays are all scored in full. By a measure of the user's own: the same two stages, in
-  /// which the measure is asked about few rays. Where there are costs, such measures are brought to
-  /// the scale of all rays by the median ratio of eight poses that are measured by both. Works with
-  /// obstacles, weights and distortion. Deterministic for a seed and any number of threads.
-  /// control.progress counts poses that are out, after each stage. Stopped in the first, it returns
-  /// nothing, stopped in the second the best of those that were scored; either is not `complete`.
-  /// Throws Error(invalid_argument) for costs as best() and for two measures.
+  /// rays, every so manieth pixel and row, as approximate() does, and the best max(24, 4 k, 5 %) of
+  /// them in full (by the other gains 1.6 %), so gains reported are exact; best first, ties to the
+  /// lower index. A view is lost if its 400 rays make it look worse than that many others: by the
+  /// paper's gain the best of 2,000 poses on 3 to 6 of 200 maps of objects, 0.4 % of its gain at
+  /// most (perf/README.md). Images of under 900 rays are all scored in full. By a measure of the
+  /// user's own: the same two stages, in which the measure is asked about few rays. Where there are
+  /// costs, such measures are brought to the scale of all rays by the median ratio of eight poses
+  /// that are measured by both. Works with obstacles, weights and distortion. Deterministic for a
+  /// seed and any number of threads. control.progress counts poses that are out, after each stage.
+  /// Stopped in the first, it returns nothing, stopped in the second the best of those that were
+  /// scored; either is not `complete`. Of 2,000 poses it costs 0.22 times what scoring all takes,
+  /// by the paper's gain (perf/README.md). Throws Error(invalid_argument) for costs as best() and
+  /// for two measures.
   [[nodiscard]] RacedViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                 const RaceConfig& config = {},
                                 const BatchControl& control = {}) const;
 
-  /// Up to k different poses that are good together on the map as it stands, greedily, by the
-  /// paper's gain (Error(invalid_argument) with another): each is the
-  /// one that adds most once the expected information ΣΛ_r of those before it is part of the
-  /// voxels' (an unknown voxel goes on blocking rays as unknown). Ties go to the lower index, bad
-  /// poses are never chosen, k is clamped. For log_determinant, which is submodular, poses whose
-  /// earlier gain cannot win are not scored anew, which gives the same choice; for log_diagonal and
-  /// trace a pose may gain more after another, so that all are scored in every round.
-  /// control.progress counts those chosen. A stop returns those chosen so far. Costs up to k
-  /// batches, about twice the time of evaluate() each, and memory for the voxels touched.
+  /// Up to k different poses of T_world_camera, in the order of their choice, that are good
+  /// together on the map as it stands, greedily, by the paper's gain (Error(invalid_argument) with
+  /// another): each is the one that adds most once the expected information ΣΛ_r of those before it
+  /// is part of the voxels' (an unknown voxel goes on blocking rays as unknown). Ties go to the
+  /// lower index, bad poses are never chosen, k is clamped. For log_determinant, which is
+  /// submodular, poses whose earlier gain cannot win are not scored anew, which gives the same
+  /// choice; for log_diagonal and trace a pose may gain more after another, so that all are scored
+  /// in every round. control.progress counts those chosen. A stop returns those chosen so far.
+  /// Costs up to k batches, about twice the time of evaluate() each, and memory for the voxels
+  /// touched.
   [[nodiscard]] ViewSet best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                  const BatchControl& control = {}) const;
 
@@ -250,8 +260,8 @@ class VIEWGAIN_EXPORT GainEvaluator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Indices of the k best results: larger gain first, ties to the lower index, NaN last. k is
-/// clamped.
+/// Indices of the k best results, which are one a pose: larger gain first, ties to the lower index,
+/// NaN last. k is clamped; never throws. Costs O(n log n).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::size_t> best_indices(
     std::span<const ViewGain> results, std::size_t k);
 

@@ -16,7 +16,7 @@
 namespace viewgain {
 
 /// All obstacles as one mesh, boxes first, twelve triangles each. Throws Error(invalid_argument) as
-/// VoxelScene::build().
+/// VoxelScene::build(). Costs a copy of the meshes.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh mesh_of(const Obstacles& obstacles);
 
 /// Where a camera's pixels meet known obstacles: what keeps a bin's walls out of the map, though

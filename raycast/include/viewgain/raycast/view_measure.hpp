@@ -26,14 +26,16 @@ struct VIEWGAIN_EXPORT ViewHit {
 /// A gain of the user's own: a number for what a view would see. GainEvaluator::evaluate() traces
 /// the views and hands over their hits. apps/examples/own_gain.cpp is one in thirty lines.
 ///
-/// Thread safety: measure() is called from many threads at once.
+/// Thread safety: measure() is called from many threads at once. Costs what measure() takes, once a
+/// pose or, in two stages, twice.
 class VIEWGAIN_EXPORT ViewMeasure {
  public:
   virtual ~ViewMeasure();
 
   /// `hits`: the rays that end in an unknown or occupied voxel, by tiles of 4x4 pixels, in the same
   /// order for any number of threads; valid during the call. Rays that meet nothing or an obstacle
-  /// are not among them. What it throws ends the batch and reaches the caller.
+  /// are not among them. What it returns, in whatever unit, is the view's gain. What it throws ends
+  /// the batch and reaches the caller.
   [[nodiscard]] virtual double measure(const Pose& T_world_camera,
                                        std::span<const ViewHit> hits) const = 0;
 };
@@ -54,14 +56,16 @@ struct VIEWGAIN_EXPORT ViewRun {
 /// through unknown voxels as for the surface gain, to the first occupied one, an obstacle, the
 /// support plane, the range limit or the workspace's edge.
 ///
-/// Thread safety: measure() is called from many threads at once.
+/// Thread safety: measure() is called from many threads at once. Costs what measure() takes, once a
+/// pose or, in two stages, twice.
 class VIEWGAIN_EXPORT RunMeasure {
  public:
   virtual ~RunMeasure();
 
   /// `runs`: of the rays by tiles of 4x4 pixels, each ray's in one piece and in order of range; its
   /// unknown voxels and the occupied one that ends it, if any. In the same order for any number of
-  /// threads; valid during the call. What it throws ends the batch and reaches the caller.
+  /// threads; valid during the call. What it returns, in whatever unit, is the view's gain. What it
+  /// throws ends the batch and reaches the caller.
   [[nodiscard]] virtual double measure(const Pose& T_world_camera,
                                        std::span<const ViewRun> runs) const = 0;
 };

@@ -28,7 +28,8 @@ struct VIEWGAIN_EXPORT BestConfig {
 struct VIEWGAIN_EXPORT BestViews {
   std::vector<std::size_t> indices;  ///< into the poses, best first
   std::vector<ViewGain> gains;       ///< of those, as evaluate() has them; empty with a measure
-  std::vector<double> worth;         ///< of those: the gain, or the measure, less the cost
+  /// Of each of them: the gain, or the measure, less the cost, in the gain's unit.
+  std::vector<double> worth;
   bool complete = true;  ///< false: a stop was requested, and this is the best of those scored
 };
 
@@ -49,9 +50,9 @@ struct VIEWGAIN_EXPORT RaceConfig {
 
 /// Views that are good together, in the order of their choice; see GainEvaluator::best_set().
 struct VIEWGAIN_EXPORT ViewSet {
-  std::vector<std::size_t> indices;  ///< into the poses
-  std::vector<ViewGain> marginal;    ///< what each adds to those before it
-  double gain = 0;                   ///< of all together
+  std::vector<std::size_t> indices;  ///< into the poses, in the order of their choice
+  std::vector<ViewGain> marginal;    ///< of those: what each adds to the ones before it
+  double gain = 0;                   ///< of all together [nat, m² for trace]
   std::size_t evaluations = 0;       ///< of single poses
   bool complete = true;              ///< false: a stop was requested before the last choice
 };
@@ -65,7 +66,7 @@ struct VIEWGAIN_EXPORT ApproximateConfig {
 /// An estimate of a gain, in the unit of the gain.
 struct VIEWGAIN_EXPORT ApproximateGain {
   double gain = std::numeric_limits<double>::quiet_NaN();            ///< the estimate
-  double standard_error = std::numeric_limits<double>::quiet_NaN();  ///< of it
+  double standard_error = std::numeric_limits<double>::quiet_NaN();  ///< of it, in the same unit
 };
 
 }  // namespace viewgain

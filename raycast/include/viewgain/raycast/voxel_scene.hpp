@@ -25,8 +25,8 @@ struct SceneData;
 /// Known things that are not part of the map: they block rays at any range and gain nothing. World
 /// frame.
 struct VIEWGAIN_EXPORT Obstacles {
-  std::vector<Box> boxes;            ///< solid
-  std::vector<TriangleMesh> meshes;  ///< closed ones are solid, open ones sheets
+  std::vector<Box> boxes;            ///< solid, in any order
+  std::vector<TriangleMesh> meshes;  ///< closed ones are solid, open ones sheets; in any order
 };
 
 /// An immutable scene to trace: the voxels of a grid that are not free, by cells, to be swept from
@@ -53,7 +53,8 @@ class VIEWGAIN_EXPORT VoxelScene {
                                                                const HazardConfig& hazard = {});
   /// The scene of what `grid` is now, with obstacles and hazard config of `before`, which stays as
   /// it is: as build(), but regions that have not changed since a scene of the same grid are copied
-  /// from it. Throws Error(invalid_argument) for a null scene, and as build().
+  /// from it. Throws Error(invalid_argument) for a null scene, and as build(). Costs 0.2 times
+  /// build() where a frame has changed an eighth of a map of 512³ voxels (perf/README.md).
   [[nodiscard]] static std::shared_ptr<const VoxelScene> update(
       const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
       const ExecConfig& exec = {});
@@ -87,7 +88,8 @@ class VIEWGAIN_EXPORT VoxelScene {
   std::unique_ptr<const detail::SceneData> data_;
 };
 
-/// Names of the instruction sets that this machine and this build have, best first.
+/// Names of the instruction sets that this machine and this build have, best first. Takes constant
+/// time.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::string> available_isas();
 
 }  // namespace viewgain

@@ -7,6 +7,9 @@
 
 #include "viewgain/core/export.hpp"
 
+/// @file
+/// What names of files say. The functions never throw. Cost: at most a look at the file system.
+
 namespace viewgain {
 
 /// The name's ending, as .vdb, with capital letters made small.

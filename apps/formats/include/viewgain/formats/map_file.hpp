@@ -14,9 +14,13 @@
 #include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
+/// @file
+/// Files of maps. Cost of reading and writing: grows with the leaves and beliefs of the map;
+/// functions that look at a name take constant time.
+
 namespace viewgain {
 
-/// Whether the name ends in .ot or .bt, in small or capital letters.
+/// Whether the name ends in .ot or .bt, in small or capital letters. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_octomap(const std::filesystem::path& path);
 
 /// Reads a .vdb map, or an OctoMap tree by `config`, whose prior is, unless given, the default for
@@ -38,12 +42,12 @@ struct VIEWGAIN_EXPORT MapOfSensor {
                                                              const Sensor* sensor = nullptr,
                                                              OctomapConfig config = {});
 
-/// So that save_map() notes in a .vdb which sensor the map's readings come from.
+/// So that save_map() notes in a .vdb which sensor the map's readings come from. It is unchecked.
 [[nodiscard]] VIEWGAIN_EXPORT VdbWriteConfig noting_sensor(const Sensor& sensor,
                                                            VdbWriteConfig config = {});
 
 /// So that save_map() notes in a .vdb which frames went into the map, each as frame_identity() has
-/// it, and these can be told from new ones.
+/// it, and these can be told from new ones. They are unchecked.
 [[nodiscard]] VIEWGAIN_EXPORT VdbWriteConfig noting_frames(const std::set<std::string>& frames,
                                                            VdbWriteConfig config = {});
 

@@ -10,6 +10,9 @@
 
 #include "viewgain/core/export.hpp"
 
+/// @file
+/// Images as PNG files. Cost: reading and writing take O(pixels), png_size() constant time.
+
 namespace viewgain {
 
 /// 16-bit grayscale image, row by row.

@@ -8,6 +8,9 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/reach.hpp"
 
+/// @file
+/// Files of where a robot can put the camera. Cost: they are read or written once, O(parts).
+
 namespace viewgain {
 
 /// Where a robot can put the camera; apps/docs/reference/formats.md shows the layout, each part of

@@ -18,6 +18,10 @@
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/png.hpp"
 
+/// @file
+/// Recordings of others. Cost of opening: O(frames), images are not decoded; of loading and
+/// importing: O(pixels) a frame, one frame in memory.
+
 namespace viewgain {
 
 /// How others lay out recordings of depth images with poses.
@@ -35,7 +39,7 @@ enum class VIEWGAIN_EXPORT RecordingFormat : std::uint8_t {
   icl_nuim,
 };
 
-/// tum, bop, scannet, icl-nuim.
+/// tum, bop, scannet, icl-nuim: in the order of the enumeration.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& recording_format_names();
 /// Throws Error(invalid_argument) that names the valid ones.
 [[nodiscard]] VIEWGAIN_EXPORT RecordingFormat recording_format(std::string_view name);
@@ -58,7 +62,7 @@ struct VIEWGAIN_EXPORT RecordedFrame {
 
 /// A recording, opened but not read.
 struct VIEWGAIN_EXPORT Recording {
-  std::vector<RecordedFrame> frames;  ///< by number
+  std::vector<RecordedFrame> frames;  ///< numbers rising
   PinholeCamera camera;               ///< of the images that load_depth() returns
   double depth_scale = 0;             ///< [m] per unit
   /// The images' rows are to be reversed, since the camera's frame has y up. Then the pixels of

@@ -11,14 +11,16 @@
 
 namespace viewgain {
 
-/// The files of `dir` whose names `reconstruct` writes, relative to it; none if there is no such
-/// folder.
+/// The files of `dir` whose names `reconstruct` writes, relative to it, in any order; none if there
+/// is no such folder. Costs O(files).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::filesystem::path> run_files(
     const std::filesystem::path& dir);
 
 /// The folder that `reconstruct` leaves: run.json, config.toml, views.txt, next.txt, map.vdb,
 /// surface.ply, points.ply, report.html, views/NN.png, views/NN.amplitude.png, maps/NN.vdb. Nothing
-/// is in it, and an earlier run is as it was, until commit().
+/// is in it, and an earlier run is as it was, until commit(). Thread safety: one call at a time.
+/// Members that throw say so: names are not checked. Cost of the constructor: O(files); calls that
+/// name a file take constant time.
 class VIEWGAIN_EXPORT RunFolder {
  public:
   /// Throws Error(io), and Error(invalid_argument) if the folder holds files of these names without
@@ -27,9 +29,9 @@ class VIEWGAIN_EXPORT RunFolder {
 
   /// Where to write.
   [[nodiscard]] std::filesystem::path file(const char* name) const { return staged_.path() / name; }
-  /// A file of view `index`, by its ending.
+  /// A file of view `index`, by its ending; makes the folder views/.
   [[nodiscard]] std::filesystem::path view(std::size_t index, const char* ending) const;
-  /// The map after view `index`.
+  /// The map after view `index`; makes the folder maps/.
   [[nodiscard]] std::filesystem::path map(std::size_t index) const;
 
   /// Puts the run in the place of an earlier one. Throws Error(io).

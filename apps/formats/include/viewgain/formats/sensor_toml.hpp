@@ -9,13 +9,18 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
 
+/// @file
+/// Files of sensors. Cost: they are read or written once; a table of the range error takes
+/// O(entries).
+
 namespace viewgain {
 
 /// The TOML description of a sensor; apps/docs/reference/formats.md shows the layout. Reading what
-/// was written gives an equal sensor.
+/// was written gives an equal sensor. Checks nothing.
 [[nodiscard]] VIEWGAIN_EXPORT std::string sensor_toml(const Sensor& sensor);
 
-/// What `model` is in such a file: shot, structured_light, stereo, quadratic, constant.
+/// What `model` is in such a file: shot, structured_light, stereo, quadratic, constant. Never
+/// throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view noise_model_name(const NoiseModel& noise);
 
 /// Throws Error(io) if the file cannot be read and Error(format), naming the file and the key, for
@@ -30,10 +35,11 @@ namespace viewgain {
 /// valid.
 VIEWGAIN_EXPORT void write_sensor_toml(const std::filesystem::path& path, const Sensor& sensor);
 
-/// Whether load_sensor takes this for a file's name and not for a preset's.
+/// Whether load_sensor takes this for a file's name and not for a preset's. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_sensor_file(const std::string& preset_or_file);
 
-/// A preset by its name, or a file that ends in .toml. Throws Error.
+/// A preset by its name, or a file that ends in .toml. Throws Error(invalid_argument) for a name
+/// that is none, and as read_sensor_toml().
 [[nodiscard]] VIEWGAIN_EXPORT Sensor load_sensor(const std::string& preset_or_file);
 
 }  // namespace viewgain

@@ -13,7 +13,8 @@ namespace viewgain {
 /// go into a hidden folder, beside the target where that is not there yet, else inside it, and
 /// commit() moves them. What else is in the target stays. The hidden folder is called
 /// .NAME.tmp-PROCESS-COUNTER; one that a killed process has left is removed by the next writer of
-/// the same target. Thread safety: distinct objects may be used from distinct threads.
+/// the same target. Thread safety: distinct objects may be used from distinct threads. Cost of
+/// commit(): one rename, or one a file where the target is there.
 class VIEWGAIN_EXPORT StagedFolder {
  public:
   /// Creates the hidden folder, and the target's parents where they are missing. Throws Error(io).
@@ -29,8 +30,8 @@ class VIEWGAIN_EXPORT StagedFolder {
   /// Moves the folder as a whole where there is no target yet. Else moves every file over the one
   /// of its name, so that each name has its old or its new contents at any time, run.json,
   /// poses.txt, simulated.txt and imported.txt last: new ones stand beside new files. Then removes
-  /// those of `earlier` (relative to the target) that were not written anew, and the folders that
-  /// this leaves empty. Throws Error(io).
+  /// those of `earlier` (relative to the target, in any order) that were not written anew, and the
+  /// folders that this leaves empty. Throws Error(io).
   void commit(const std::vector<std::filesystem::path>& earlier);
 
  private:

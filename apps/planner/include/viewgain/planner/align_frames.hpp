@@ -41,8 +41,9 @@ namespace viewgain {
 /// it: as the frame fits best, or where these say too little of it, give or take a sigma. Where the
 /// reported pose leads to a fit that is refused, twelve others within 1.5 sigmas are tried.
 ///
-/// Nothing may run beside add(). Deterministic: the same bits for any number of threads. Keeps some
-/// 100 bytes a reading. The time grows with the square of the number of frames.
+/// Thread safety: nothing may run beside add(). Deterministic: the same bits for any number of
+/// threads. Cost: keeps some 100 bytes a reading; the time grows with the square of the number of
+/// frames.
 class VIEWGAIN_EXPORT FrameAlignment {
  public:
   /// Readings outside of the workspace of `layout`, whose beliefs do not count, are left out.
@@ -57,9 +58,9 @@ class VIEWGAIN_EXPORT FrameAlignment {
   /// Flying pixels should be filtered from the frame. What became of it, until the next call; one
   /// that is refused moves nothing, one with too little overlap stays as reported, until others
   /// show what it shows. Of FrameRegistration, `contradiction` is the larger share of the frame's
-  /// readings that others look past and of the others' readings that it looks past, and the
-  /// covariance is the prior's. Throws Error(invalid_argument) as FrameRegistrar; nothing has
-  /// changed then.
+  /// readings that others look past and of the others' readings that it looks past. The
+  /// covariance is relative to the first frame, whose own is zero. Throws Error(invalid_argument)
+  /// as FrameRegistrar; nothing has changed then.
   const FrameRegistration& add(const DepthFrame& frame, const PosePrior& prior);
 
   /// What has become of all frames, in their order, as known now; the first, which defines the

@@ -16,6 +16,10 @@
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 
+/// @file
+/// Poses of candidates, T_world_camera as those that are taken, and which are possible. Functions
+/// keep the order of the poses, check nothing and cost O(poses), unless they say otherwise.
+
 namespace viewgain {
 
 /// What is asked of a sensor's poses: its body on its flange must have room, and what it sees must
@@ -42,17 +46,18 @@ VIEWGAIN_EXPORT void sort_candidates(std::vector<Candidate> candidates,
 
 /// The poses that are possible, and why the others are not.
 struct VIEWGAIN_EXPORT FeasiblePoses {
-  std::vector<Pose> poses;                     ///< that are possible
+  std::vector<Pose> poses;                     ///< that are possible, in their order
   std::vector<std::size_t> numbers;            ///< of each among those that were asked about
   std::map<std::string, std::size_t> dropped;  ///< reason -> count
 };
 
-/// Cost as FeasibilityChecker::check; `taken` as there.
+/// Costs as FeasibilityChecker::check(), whose `taken` are in any order.
 [[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses feasible_poses(const FeasibilityChecker& checker,
                                                            std::span<const Pose> poses,
                                                            std::span<const Pose> taken);
 
-/// The poses in reach, whatever the body meets there.
+/// The poses in reach, in their order, whatever the body meets there. What the region's predicate
+/// throws passes through.
 [[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses reachable_poses(const ReachRegion& reach,
                                                             std::span<const Pose> poses);
 

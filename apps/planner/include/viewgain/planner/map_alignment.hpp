@@ -20,7 +20,8 @@ namespace viewgain {
 /// Frames aligned with one another (FrameAlignment) as a map takes them: without flying pixels,
 /// known obstacles and the support plane, in its workspace.
 ///
-/// Nothing may run beside add().
+/// Thread safety: nothing may run beside add(). Cost: that of FrameAlignment, and some passes over
+/// the pixels of each frame.
 class VIEWGAIN_EXPORT MapAlignment {
  public:
   /// `layout` lays out the map that `map` is the config of; `sigmas` are those of each pose. Throws

@@ -12,14 +12,15 @@
 
 namespace viewgain {
 
-/// Fused points as the arrays that quality and files ask for, entry i of point i.
+/// Fused points as the arrays that quality and files ask for.
 struct VIEWGAIN_EXPORT PointArrays {
-  std::vector<std::array<double, 3>> positions;  ///< world [m]
-  std::vector<std::array<double, 3>> normals;    ///< unit, toward free space
-  std::vector<SymmetricMatrix3> covariances;     ///< [m²]
+  std::vector<std::array<double, 3>> positions;  ///< entry i of point i, world [m]
+  std::vector<std::array<double, 3>> normals;    ///< likewise, unit vectors toward free space
+  std::vector<SymmetricMatrix3> covariances;     ///< entry i of point i [m²]
 };
 
-/// Copies of places, normals and sigmas.
+/// Copies of the points' places, normals and covariances, in their order. Checks nothing. Costs
+/// O(points).
 [[nodiscard]] inline PointArrays arrays_of(std::span<const FusedPoint> points) {
   PointArrays arrays;
   arrays.positions.reserve(points.size());

@@ -24,10 +24,12 @@ struct VIEWGAIN_EXPORT PoseNoise {
 [[nodiscard]] VIEWGAIN_EXPORT Pose reported_pose(const Pose& T_world_camera, std::size_t view,
                                                  const PoseNoise& noise);
 
-/// DATAACQUISITION that goes where it is sent and reports a pose that is a little off.
+/// DATAACQUISITION that goes where it is sent and reports a pose that is a little off. Thread
+/// safety: one call at a time. A call throws what its camera's does and as reported_pose(), and
+/// costs what its camera's does.
 class VIEWGAIN_EXPORT MisreportedAcquisition : public DataAcquisition {
  public:
-  /// Keeps the reference.
+  /// Keeps the reference. The noise is checked by acquire().
   MisreportedAcquisition(DataAcquisition& camera, const PoseNoise& noise)
       : camera_(camera), noise_(noise) {}
 

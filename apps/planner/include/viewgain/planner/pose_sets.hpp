@@ -19,20 +19,21 @@ namespace viewgain {
 /// A fixed set of poses with a name: sphere, dome, rings, sequence, file.
 struct VIEWGAIN_EXPORT PoseSet {
   std::string generator;    ///< its name
-  std::vector<Pose> poses;  ///< T_world_camera
+  std::vector<Pose> poses;  ///< T_world_camera, in the generator's order
 };
 
-/// The generators of candidates by name: boundary, sphere, dome, rings, shell, sequence.
+/// The generators of candidates by name, in this order: boundary, sphere, dome, rings, shell,
+/// sequence.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& generator_names();
 
 /// What the pose sets are made for.
 struct VIEWGAIN_EXPORT PoseSetRequest {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< what they look at [m]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< what they look at, world [m]
   double distance = 0;                               ///< from it [m]
   /// 500 unless given; rings: 48, 80, 288 or 864, 48.
   std::optional<std::size_t> count{};
   std::uint64_t seed = 1;       ///< shell
-  std::optional<Pose> start{};  ///< of sequence and of sets spread out: the view before them
+  std::optional<Pose> start{};  ///< T_world_camera of the view before (sequence, spread_out)
   /// Puts the set's poses into an order in which any number of the first ones are spread evenly:
   /// each as far as can be from the start's direction and those before it, ties to the lower index.
   bool spread_out = false;
@@ -46,7 +47,7 @@ struct VIEWGAIN_EXPORT PoseSetRequest {
                                                     const PoseSetRequest& request);
 
 /// Distance from which a sphere of this radius [m] fills the smaller side of the image; at least
-/// the sensor's working distance.
+/// the sensor's working distance [m]. Checks nothing.
 [[nodiscard]] VIEWGAIN_EXPORT double filling_distance(const Sensor& sensor, double radius);
 
 }  // namespace viewgain

@@ -13,7 +13,8 @@ namespace viewgain {
 
 /// How much unknown space near known surface a view's rays pass: the sum over rays of all unknown
 /// voxels before the ray's end of max(0, 1 - d / D), d the distance of the voxel's hazard cell from
-/// the surface seen so far, D the hazard's cut (5 decay lengths). 0 while no surface is known.
+/// the surface seen so far, D the hazard's cut (5 decay lengths). 0 while no surface is known. Cost
+/// of measure(): O(runs); of the constructor constant time.
 class VIEWGAIN_EXPORT ProximityMeasure : public RunMeasure {
  public:
   /// The field, that of the evaluator's scene, must outlive it.
@@ -28,7 +29,7 @@ class VIEWGAIN_EXPORT ProximityMeasure : public RunMeasure {
 };
 
 /// The pixel stride at which a view of the sensor has about 400 rays, which rank views nearly as
-/// well as all.
+/// well as all. Checks nothing.
 [[nodiscard]] VIEWGAIN_EXPORT int coarse_stride(const PinholeCamera& camera);
 
 }  // namespace viewgain

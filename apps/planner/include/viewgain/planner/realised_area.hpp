@@ -16,11 +16,12 @@
 namespace viewgain {
 
 /// What frames of a sensor show of new surface, to be held against ViewGain::area. Immutable;
-/// thread safe.
+/// thread safe. Cost of the constructor: a ray() a pixel; of of(): a pass over the pixels.
 class VIEWGAIN_EXPORT RealisedArea {
  public:
-  /// Undoes the lens distortion once. Readings of the support plane (world z [m]) show nothing:
-  /// those that is_of_plane() says, as at integration.
+  /// Undoes the lens distortion once. The sensor must be one that Sensor::validate() takes.
+  /// Readings of the support plane (world z [m]) show nothing: those that is_of_plane() says, as at
+  /// integration.
   explicit RealisedArea(const Sensor& sensor, std::optional<double> support_plane = {});
 
   /// Σ ω t² [m²], area across the rays, over the frame's readings within the sensor's range that

@@ -35,9 +35,10 @@ struct VIEWGAIN_EXPORT PosePrior {
 struct VIEWGAIN_EXPORT RegistrationConfig {
   std::size_t max_readings = 20'000;  ///< about so many of a frame's readings are looked at
   double max_normal_angle = 0.9;      ///< between the surface of the reading and of the map [rad]
-  double min_overlap = 0.1;           ///< less of FrameRegistration::overlap is too little
+  double min_overlap = 0.1;           ///< a smaller share FrameRegistration::overlap is too little
   std::size_t min_pairs = 60;         ///< likewise of FrameRegistration::pairs
-  /// Of the prior, in translation or in rotation: a longer correction is refused.
+  /// In standard deviations of the prior, in translation or in rotation: a longer correction is
+  /// refused.
   double max_sigmas = 5;
   /// A larger share FrameRegistration::contradiction is refused, unless it is of few readings.
   double max_contradiction = 0.2;
@@ -50,7 +51,7 @@ enum class RegistrationStatus : std::uint8_t {
   too_little_overlap,  ///< the map says too little of what the frame shows; the pose stays
   refused,             ///< frame and map contradict each other under every likely pose
 };
-/// Its name, for people and files.
+/// Its name, for people and files; "unknown" for a number that is none of them: never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view registration_status_name(RegistrationStatus status);
 
 /// A motion of the camera that changes nothing in how frame and map fit, one sigma of the prior
@@ -73,22 +74,26 @@ struct VIEWGAIN_EXPORT FrameRegistration {
   /// RMS distance of readings from the map's surface, along its normal [m]: of the pairs in the
   /// end, at the reported and at the corrected pose. 0 without pairs.
   double residual_before = 0;
-  double residual_after = 0;  ///< after the correction
+  double residual_after = 0;  ///< after the correction [m]
   std::size_t readings = 0;   ///< that were looked at: in the workspace, with a normal
   std::size_t pairs = 0;      ///< of these, that belong to a point of the map in the end
-  double overlap = 0;         ///< pairs / readings
+  double overlap = 0;         ///< share pairs / readings
   /// Readings in space that the map knows to be free, or behind surface that it knows, as a share
   /// of these and the pairs.
   double contradiction = 0;
   int iterations = 0;  ///< of all levels together
   /// Of the pose given prior and frame, row by row: translation of the camera's centre [m], then
   /// rotation about it [rad], world axes. Relative to the map: how far that is off as a whole is
-  /// not in it. The prior's unless registered.
+  /// not in it. The prior's unless registered; zero of a map's first frame, which says where it is.
   std::array<double, 36> covariance{};
+  /// What the covariance leaves, for the readings of the frame: the roots of its mean variances of
+  /// translation [m] and rotation [rad].
+  [[nodiscard]] PoseSigma pose_sigma() const;
   /// The least information of the frame along any motion, in units of the prior's: under 1 the
   /// prior knows that motion better.
   double smallest_information = 0;
-  std::vector<FreeDirection> free_directions{};  ///< along these the pose stays as reported
+  /// In any order: along these the pose stays as reported.
+  std::vector<FreeDirection> free_directions{};
 };
 
 /// Finds by how much the reported pose of a frame is off, from the surface that the map has so far.
@@ -116,7 +121,7 @@ struct VIEWGAIN_EXPORT FrameRegistration {
 /// map's points share do not show in residuals.
 ///
 /// Thread safety: const members may run from many threads at once. Deterministic: the same bits for
-/// any number of threads. 10 to 60 ms a frame on two cores.
+/// any number of threads. Cost: 10 to 60 ms a frame on two cores.
 class VIEWGAIN_EXPORT FrameRegistrar {
  public:
   /// Undoes the lens distortion once. Throws Error(invalid_argument), naming the value, if the
@@ -127,9 +132,9 @@ class VIEWGAIN_EXPORT FrameRegistrar {
   FrameRegistrar(FrameRegistrar&&) noexcept;
   FrameRegistrar& operator=(FrameRegistrar&&) noexcept;
 
-  /// `points` are the fused_points() of `grid`. Flying pixels should be filtered from the frame.
-  /// Throws Error(invalid_argument) as check_frame_size(), if the pose is not rigid (1e-3) or a
-  /// sigma is not positive and finite.
+  /// `points` are the fused_points() of `grid`, in their order. Flying pixels should be filtered
+  /// from the frame. Throws Error(invalid_argument) as check_frame_size(), if the pose is not rigid
+  /// (1e-3) or a sigma is not positive and finite.
   [[nodiscard]] FrameRegistration register_frame(const BeliefGrid& grid,
                                                  std::span<const FusedPoint> points,
                                                  const DepthFrame& frame,

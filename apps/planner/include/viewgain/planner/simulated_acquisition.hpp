@@ -14,10 +14,12 @@ namespace viewgain {
 
 /// DATAACQUISITION of Algorithm 1 by a simulated camera: `frames_per_view` frames from each pose,
 /// numbered on, so that view and frame fix the noise. When a stop is requested a view ends after
-/// the frame that is being taken.
+/// the frame that is being taken. Thread safety: one call at a time. Cost:
+/// SimulatedSensor::acquire() a frame. Calls throw as that.
 class VIEWGAIN_EXPORT SimulatedAcquisition : public DataAcquisition {
  public:
-  /// `stop` ends a view after the frame at hand.
+  /// `stop` ends a view after the frame at hand. `frames_per_view` must be at least 1, which is not
+  /// checked.
   SimulatedAcquisition(SimulatedSensor camera, std::size_t frames_per_view, std::stop_token stop)
       : camera_(std::move(camera)), frames_per_view_(frames_per_view), stop_(std::move(stop)) {}
 

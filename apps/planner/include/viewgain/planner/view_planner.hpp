@@ -51,8 +51,8 @@ struct VIEWGAIN_EXPORT PlannerConfig {
   /// The rules of PlanningConfig; there is no coverage, and nobody asks its stop token.
   std::size_t max_views = PlanningConfig{}.max_views;
   std::size_t idle_views = PlanningConfig{}.idle_views;  ///< PlanningConfig's
-  std::optional<double> stop_gain{};  ///< set_stop_rules() has the defaults of both
-  /// Of the surface so far: of the sum of what the views showed of new surface.
+  std::optional<double> stop_gain{};  ///< [nat, m² for trace]; set_stop_rules() has both defaults
+  /// A share of the surface so far: of the sum of what the views showed of new surface.
   std::optional<double> stop_area{};
 };
 
@@ -83,7 +83,7 @@ struct VIEWGAIN_EXPORT RankedView {
   std::size_t index = 0;  ///< of the candidate in the proposal, or of the pose that was given
   Pose T_world_camera;    ///< where the camera would be
   ViewGain gain;          ///< all NaN with a measure
-  double worth = 0;       ///< gain or measure, less the cost
+  double worth = 0;       ///< gain or measure, less the cost, in the gain's unit
 };
 
 /// What rank() found.
@@ -102,7 +102,10 @@ struct VIEWGAIN_EXPORT Ranking {
 /// What is refused (Error(invalid_argument)) has changed nothing. What the user's own parts throw,
 /// a generation, the reach region's predicate or a measure, passes through propose() and rank().
 /// Thread safety: one call at a time. Deterministic, for any number of threads. One that was moved
-/// from can only be assigned to or destroyed.
+/// from can only be assigned to or destroyed. Cost of a step: that of its parts, add()
+/// MapModel::update(), propose() FeasibilityChecker::check() of the candidates and what generations
+/// take, rank() GainEvaluator::race() or best(), register_frame() fused_points() and
+/// FrameRegistrar, save() and load() save_vdb() and load_vdb().
 class VIEWGAIN_EXPORT ViewPlanner {
  public:
   /// Throws Error(invalid_argument), naming the value, for settings out of their range.
@@ -129,16 +132,19 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// Error(invalid_argument) for a frame of another size than the sensor's images and a pose that
   /// is not rigid (1e-3). Error(capacity) and Error(backend) are those of VoxelScene::build(): the
   /// frame is in the map then, the scene is the one before. DepthFrame::known_depth is set anew by
-  /// the planner's obstacles.
-  AddedView add(const DepthFrame& frame, const Pose& T_world_camera);
+  /// the planner's obstacles. `pose_sigma` [m], [rad] is what the pose may be off beside the
+  /// sensor's own pose_sigma, after register_frame() what FrameRegistration::pose_sigma() says.
+  AddedView add(const DepthFrame& frame, const Pose& T_world_camera,
+                const PoseSigma& pose_sigma = {});
   /// The same of several frames from one pose; there must be one.
-  AddedView add(std::span<const DepthFrame> frames, const Pose& T_world_camera);
+  AddedView add(std::span<const DepthFrame> frames, const Pose& T_world_camera,
+                const PoseSigma& pose_sigma = {});
 
   /// The candidates of the reach region's poses, the sets and the generations, in this order, that
   /// are possible now, and how many are not and why. Valid until the next add() or propose(). An
   /// earlier ranking since the last view is void.
   const Proposal& propose();
-  /// Behind the last proposal, and valid as long.
+  /// Behind the last proposal, in the order of the candidates, and valid as long.
   [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept;
   /// Of the last proposal; 0 without one since the last view.
   [[nodiscard]] std::size_t candidate_count() const noexcept;
@@ -147,8 +153,8 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// Error(invalid_argument) without a proposal since the last view, and as GainEvaluator::best().
   [[nodiscard]] Ranking rank(std::size_t k = 1, const RankConfig& config = {},
                              const BatchControl& control = {});
-  /// The same of any poses; nobody looks whether they are possible. Bad ones are last, with NaN.
-  /// Says nothing to should_stop().
+  /// The same of any poses, `T_world_camera` in any order; nobody looks whether they are possible.
+  /// Bad ones are last, with NaN. Says nothing to should_stop().
   [[nodiscard]] Ranking rank(std::span<const Pose> T_world_camera, std::size_t k = 1,
                              const RankConfig& config = {}, const BatchControl& control = {});
 

@@ -30,30 +30,34 @@ struct VIEWGAIN_EXPORT BoundaryViewsConfig {
 /// surface's points [m]; Error(invalid_argument) unless it is positive.
 [[nodiscard]] VIEWGAIN_EXPORT EstimatorConfig default_estimator(double spacing);
 
-/// default_estimator() for the surface that a map of these voxels will have, at the sensor's
-/// working distance.
+/// default_estimator() for the surface that a map of these voxels (voxel_size [m]) will have, at
+/// the sensor's working distance. Throws as that.
 [[nodiscard]] VIEWGAIN_EXPORT BoundaryViewsConfig default_boundary(const Sensor& sensor,
                                                                    double voxel_size);
 
-/// The views at the open boundaries of a map's surface, possible or not; `views`: those so far.
+/// The views at the open boundaries of a map's surface, possible or not; `views`: T_world_camera of
+/// those so far, in their order. Throws and costs as estimate_views(), with classes_by_sight as
+/// ViewSight, too.
 [[nodiscard]] VIEWGAIN_EXPORT EstimatedViews
 boundary_views(const SurfaceMesh& surface, const std::shared_ptr<const VoxelScene>& scene,
                std::span<const Pose> views, const Sensor& sensor, const BoundaryViewsConfig& config,
                const ExecConfig& exec);
 
-/// The same as candidates of the generator "boundary", numbered by their place there.
+/// These as candidates of the generator "boundary", in their order, numbered by it. Never throws.
+/// Costs O(candidates).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Candidate> candidates_of(const EstimatedViews& estimated);
 
 /// VIEWPOINTSGENERATION at the boundaries of the surface in a map, made anew for each proposal:
 /// what ViewPlanner::add_generation() takes. Nothing is dropped; the planner looks what is
-/// possible. A map without views proposes nothing.
+/// possible. A map without views proposes nothing. Thread safety: one call at a time. Cost: the
+/// surface is made anew, fused_points() and reconstruct_surface(), and estimate_views().
 class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
  public:
   /// The map, say ViewPlanner::map(), must outlive it.
   BoundaryGeneration(const MapModel& map, const BoundaryViewsConfig& config,
                      const ExecConfig& exec = {});
 
-  /// Views at the open boundaries of the surface as it is.
+  /// Views at the open boundaries of the surface as it is. Throws as boundary_views().
   Proposal generate(const Pose& T_world_camera) override;
 
   /// Behind the last proposal.

@@ -21,24 +21,27 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT GenerationConfig {
   bool at_boundaries = true;        ///< candidates at the surface's open boundaries
   BoundaryViewsConfig boundary{};   ///< views at the surface's open boundaries
-  std::vector<PoseSet> sets{};      ///< fixed poses
+  std::vector<PoseSet> sets{};      ///< fixed poses, in the order of proposal
   FeasibilityConfig feasibility{};  ///< what is possible
 };
 
 /// What every loop starts from: boundary candidates by default_boundary(), no sets, feasibility for
-/// the sensor and its body, no limits of reach.
+/// the sensor and its body, no limits of reach. voxel_size [m] is the map's. Throws as
+/// default_boundary().
 [[nodiscard]] VIEWGAIN_EXPORT GenerationConfig default_generation(const Sensor& sensor,
                                                                   double voxel_size);
 
 /// VIEWPOINTSGENERATION of Algorithm 1: views at the open boundaries of the model's surface, and
-/// fixed sets; the infeasible ones are dropped and counted by reason.
+/// fixed sets; the infeasible ones are dropped and counted by reason. Thread safety: one call at a
+/// time. Cost: boundary_views(), and FeasibilityChecker::check() of all candidates.
 class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
  public:
   /// The model must outlive it.
   CandidateGeneration(const SurfaceModel& model, const Sensor& sensor,
                       const GenerationConfig& config, const ExecConfig& exec);
 
-  /// Boundary views and the sets, those that are possible.
+  /// Boundary views and the sets, those that are possible. Throws as boundary_views() and the first
+  /// time as FeasibilityChecker.
   Proposal generate(const Pose& T_world_camera) override;
 
   /// What it was made with.
@@ -47,7 +50,7 @@ class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
   /// Behind the last proposal: why its boundary candidates exist. The `number` of a candidate with
   /// a class is its index in estimated().candidates, that of one of a set its index in the set.
   [[nodiscard]] const EstimatedViews& estimated() const noexcept { return estimated_; }
-  /// Of the last proposal: the dropped candidates, each with its reason.
+  /// Of the last proposal: the dropped candidates, in their order, each with its reason.
   [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept { return dropped_; }
 
  private:

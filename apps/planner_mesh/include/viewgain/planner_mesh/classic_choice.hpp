@@ -21,19 +21,20 @@ struct VIEWGAIN_EXPORT ClassicRanking {
 
 /// Candidates by a gain of the literature, on the map as it is at each call.
 ///
-/// Thread safety: one call at a time. Deterministic, for any number of threads.
+/// Thread safety: one call at a time. Deterministic, for any number of threads. Cost:
+/// ClassicMap::build(), about 400 rays a pose, and all rays of 32 poses or of all.
 class VIEWGAIN_EXPORT ClassicChoice {
  public:
   /// Candidates that are scored with all rays.
   static constexpr std::size_t kInFull = 32;
 
-  /// The model must outlive it. `support_plane`: height z [m], at which rays end.
+  /// The model must outlive it. `support_plane` [m]: the height z at which rays end.
   ClassicChoice(const SurfaceModel& model, const Sensor& sensor, const ClassicRanking& ranking,
                 std::optional<double> support_plane, const ExecConfig& exec);
 
-  /// The gain of each pose. Unless `all` are asked for, those that about 400 rays each do not rank
-  /// among the first 32, ties to the lower index, have NaN. Throws as ClassicMap::build() and
-  /// ClassicGainEvaluator.
+  /// The gain of each pose, in the gain's unit, in their order. Unless `all` are asked for, those
+  /// that about 400 rays each do not rank among the first 32, ties to the lower index, have NaN.
+  /// Throws as ClassicMap::build() and ClassicGainEvaluator.
   [[nodiscard]] std::vector<double> gains(std::span<const Pose> T_world_camera, bool all);
 
  private:

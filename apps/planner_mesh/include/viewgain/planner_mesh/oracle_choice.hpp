@@ -26,13 +26,14 @@ struct VIEWGAIN_EXPORT KnownObject {
 /// What a view really brings, without noise.
 struct VIEWGAIN_EXPORT TrueOutcome {
   std::size_t covered = 0;     ///< samples of the mesh that the map's points cover afterwards
-  double entropy_removed = 0;  ///< of the whole map afterwards, by its criterion
+  double entropy_removed = 0;  ///< of the whole map afterwards [nat, m² for trace]
 };
 
 /// The choice of one who knows the object: an upper reference for planners, and no planner. Looks
 /// one view ahead, so that a sequence of views may still be better.
 ///
-/// Thread safety: one call at a time. Deterministic, for any number of threads.
+/// Thread safety: one call at a time. Deterministic, for any number of threads. Members that throw
+/// say so.
 class VIEWGAIN_EXPORT OracleChoice {
  public:
   /// Candidates that are simulated.
@@ -42,18 +43,21 @@ class VIEWGAIN_EXPORT OracleChoice {
   OracleChoice(const SurfaceModel& model, const Sensor& sensor, const KnownObject& object,
                const ExecConfig& exec);
 
-  /// Of the candidates the 8 that see most samples of the mesh that the surface does not cover yet
-  /// (within 5 mm), unoccluded and at under 72°, are simulated without noise, one frame each into a
-  /// copy of the map; the index of the one after which the map's points cover most samples. Ties go
-  /// to the lower index, in the ranking too. There must be a candidate. Takes some seconds for a
-  /// thousand candidates.
+  /// Of the candidates, whose order matters for ties only, the 8 that see most samples of the mesh
+  /// that the surface does not cover yet (within 5 mm), unoccluded and at under 72°, are simulated
+  /// without noise, one frame each into a copy of the map; the index of the one after which the
+  /// map's points cover most samples. Ties go to the lower index, in the ranking too. There must be
+  /// a candidate, which is not checked; throws as outcome_of(). Takes some seconds for a thousand
+  /// candidates.
   [[nodiscard]] std::size_t next(std::span<const Candidate> candidates) const;
 
-  /// How many of the samples that the surface does not cover yet each candidate sees.
+  /// How many of the samples that the surface does not cover yet each candidate sees, in their
+  /// order. Costs up to two rays a sample and candidate.
   [[nodiscard]] std::vector<std::size_t> uncovered_in_view(
       std::span<const Candidate> candidates) const;
   /// How many samples the map's points cover (within 5 mm), and what the map would know, after a
-  /// frame from there. Costs a simulated frame and a copy of the map.
+  /// frame from there. Throws as SimulatedSensor::acquire(). Costs a simulated frame and a copy of
+  /// the map.
   [[nodiscard]] TrueOutcome outcome_of(const Pose& T_world_camera) const;
   /// How many samples the map's points cover as it stands.
   [[nodiscard]] std::size_t covered() const;

@@ -58,33 +58,38 @@ struct VIEWGAIN_EXPORT PolicyConfig {
 
 /// What a policy ranks candidates by, one entry a candidate.
 struct VIEWGAIN_EXPORT CandidateScores {
-  /// In the unit of the policy's gain; a count for frontier, [m] for proximity.
+  /// One a candidate, in the unit of the policy's gain; a count for frontier, [m] for proximity.
   std::vector<double> score;
-  /// The new surface to be expected [m²]; NaN where the policy's gain does not say.
+  /// One a candidate: the new surface to be expected [m²]; NaN where the policy's gain does not
+  /// say.
   std::vector<double> area;
 };
 
 /// set_stop_rules() of the policy: that of its gain, and where it does not choose by a gain, or by
-/// a classic one, neither gain nor area ends a run. Throws Error(invalid_argument), too, for an
-/// area or a gain above 0 with such a policy.
+/// a classic one, neither gain nor area ends a run. `stop_gain` [nat, m² for trace], `stop_area` a
+/// share of the surface. Throws Error(invalid_argument), too, for an area or a gain above 0 with
+/// such a policy.
 VIEWGAIN_EXPORT void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                                     std::optional<double> stop_gain,
                                     std::optional<double> stop_area);
 
-/// DECISIONMAKER of Algorithm 1 for all policies.
+/// DECISIONMAKER of Algorithm 1 for all policies. Thread safety: one call at a time. Cost: by a
+/// gain or by counts that of scoring the candidates with GainEvaluator, a classic gain
+/// ClassicChoice, the oracle OracleChoice; by an order or at random O(candidates).
 class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking {
  public:
   /// Throws Error(invalid_argument) for an oracle without an object.
   PolicyDecision(const SurfaceModel& model, const CandidateGeneration& generation,
                  const Sensor& sensor, const PolicyConfig& config, const ExecConfig& exec);
 
-  /// Nothing if there are no candidates, and for kriegel if none of them is left to try.
+  /// The index of one of the candidates in their order. Nothing if there are no candidates, and for
+  /// kriegel if none of them is left to try.
   std::optional<Decision> decide(const Pose& T_world_camera,
                                  std::span<const Candidate> candidates) override;
 
-  /// What the policy ranks these candidates by on the model as it stands, all of them by all rays
-  /// (proximity: by few) and the way there left out. Nothing for the policies that rank by no
-  /// figure of a view: kriegel, sequence, random, fibonacci, oracle.
+  /// What the policy ranks these candidates by, in their order, on the model as it stands, all of
+  /// them by all rays (proximity: by few) and the way there left out. Nothing for the policies that
+  /// rank by no figure of a view: kriegel, sequence, random, fibonacci, oracle.
   [[nodiscard]] std::optional<CandidateScores> scores(std::span<const Candidate> candidates);
 
  private:

@@ -19,7 +19,8 @@ namespace viewgain {
 /// that come of it. A view that is refused stays out of the model, for as long as it is. The first
 /// view's pose holds.
 ///
-/// Keeps all frames. A view costs what the alignment takes and an update for every view so far.
+/// Keeps all frames. Thread safety: one call at a time. Cost of a view: what the alignment takes,
+/// and an update for every view so far.
 class VIEWGAIN_EXPORT RegisteredModel : public RepresentationUpdate {
  public:
   /// `model` must be empty, made by `map`, and is kept by reference. `sigmas` are those of each
@@ -27,10 +28,11 @@ class VIEWGAIN_EXPORT RegisteredModel : public RepresentationUpdate {
   RegisteredModel(SurfaceModel& model, const MapModelConfig& map, const PosePrior& sigmas,
                   const ExecConfig& exec = {});
 
-  /// Stages as SurfaceModel::update() and register.
+  /// Stages as SurfaceModel::update() and register. Throws as MapAlignment::add() and
+  /// SurfaceModel::rebuild().
   ModelProgress update(const Measurements& measurements) override;
 
-  /// What became of each view, as known now.
+  /// One a view, what became of it, as known now.
   [[nodiscard]] const std::vector<FrameRegistration>& registrations() const {
     return alignment_.registrations();
   }

@@ -41,10 +41,10 @@ struct VIEWGAIN_EXPORT Stage {
 /// workspace under the plane.
 [[nodiscard]] VIEWGAIN_EXPORT Stage set_stage(const StageConfig& config, const ExecConfig& exec);
 
-/// A pose that looks at the object's centre from 27° above, at an azimuth that depends on the seed;
-/// where that is out of reach or not above the support plane, the possible pose that is nearest to
-/// it among 2,562 on the sphere and the region's list. Throws Error(invalid_argument) if there is
-/// none.
+/// A pose (T_world_camera) that looks at the object's centre from `distance` [m] and 27° above, at
+/// an azimuth that depends on the seed; where that is out of reach or not above the support_plane
+/// (world z [m]), the possible pose that is nearest to it among 2,562 on the sphere and the
+/// region's list. Throws Error(invalid_argument) if there is none.
 [[nodiscard]] VIEWGAIN_EXPORT Pose default_start(const Stage& stage, double distance,
                                                  std::uint64_t seed, const ReachRegion& reach,
                                                  const std::optional<double>& support_plane);

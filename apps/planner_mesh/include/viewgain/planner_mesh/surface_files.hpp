@@ -13,8 +13,9 @@
 namespace viewgain {
 
 /// Writes a surface and the points that it goes through as PLY, each vertex with its normal and its
-/// standard deviation along it (`sigma` [m]). Atomic, each file for itself; an empty name: not
-/// written. Throws Error(io).
+/// standard deviation along it (`sigma` [m]). `points` are those that the surface was made of, in
+/// their order. Atomic, each file for itself; an empty name: not written. Throws Error(io). Costs
+/// O(vertices + triangles + points).
 VIEWGAIN_EXPORT void write_surfaces(const SurfaceMesh& surface,
                                     const std::vector<FusedPoint>& points,
                                     const std::filesystem::path& surface_file,

@@ -26,30 +26,35 @@ struct VIEWGAIN_EXPORT SurfaceModelConfig {
 };
 
 /// The surface through the points of a map, `spacing` [m] apart (its pooling length); vertex i
-/// comes from point source[i].
+/// comes from point source[i]. Throws and costs as reconstruct_surface().
 [[nodiscard]] VIEWGAIN_EXPORT SurfaceMesh surface_of(const std::vector<FusedPoint>& points,
                                                      double spacing, const ExecConfig& exec);
 
-/// The standard deviation of each vertex along the surface's normal [m], of the point that it comes
-/// from.
+/// One a vertex, the standard deviation along the surface's normal [m], of the point that it comes
+/// from; `source` must index the points, which is not checked. Costs O(vertices).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<double> surface_sigmas(
     const SurfaceMesh& surface, const std::vector<FusedPoint>& points);
 
 /// What a model would hold after measurements that do not change it.
 struct VIEWGAIN_EXPORT ModelOutlook {
-  std::vector<FusedPoint> points;  ///< of the surface
-  double entropy_removed = 0;      ///< of the whole map, by the map's criterion
+  std::vector<FusedPoint> points;  ///< of the surface, in the order of fused_points()
+  double entropy_removed = 0;      ///< of the whole map, by its criterion [nat, m² for trace]
 };
 
 /// The two representations of the scene, the belief grid and the surface seen so far
 /// (UPDATEREPRESENTATIONS of Algorithm 1), and what is derived from them after each view.
+///
+/// Thread safety: const members may run from many threads at once; nothing may run beside the
+/// others. Cost of update(): MapModel::update(), fused_points() and reconstruct_surface(); 8 and
+/// 574 ms after eight views of the camel (perf/README.md).
 class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
  public:
-  /// `truth` may be null: then there is no quality.
+  /// `truth` may be null: then there is no quality. Throws as MapModel.
   SurfaceModel(const Sensor& sensor, const SurfaceModelConfig& config,
                std::shared_ptr<const Truth> truth, const ExecConfig& exec);
 
-  /// From an existing map: its surface and scene, ready for candidates.
+  /// From an existing map: its surface and scene, ready for candidates. Throws as MapModel and
+  /// fused_points().
   SurfaceModel(BeliefGrid grid, const Sensor& sensor, const SurfaceModelConfig& config,
                const ExecConfig& exec);
 
@@ -57,13 +62,13 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   /// Throws Error(invalid_argument) if the first view has no reading in the workspace.
   ModelProgress update(const Measurements& measurements) override;
 
-  /// The model as it would be had these measurements come to an empty map, for poses that became
-  /// better known. Costs as many updates of the map; its quality is another view's. Throws as
-  /// update(); what was there is lost then.
+  /// The model as it would be had these measurements come to an empty map in this order, for poses
+  /// that became better known. Costs as many updates of the map; its quality is another view's.
+  /// Throws as update(); what was there is lost then.
   ModelProgress rebuild(std::span<const Measurements> measurements);
 
-  /// What the model would hold after these measurements, which do not change it. Costs a copy of
-  /// the map beside what update() costs without a surface.
+  /// What the model would hold after these measurements, which do not change it. Throws as
+  /// MapModel::update(). Costs a copy of the map beside what update() costs without a surface.
   [[nodiscard]] ModelOutlook after(const Measurements& measurements) const;
 
   /// The map behind the surface.
@@ -74,13 +79,13 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   [[nodiscard]] const std::shared_ptr<const VoxelScene>& scene() const noexcept {
     return map_.scene();
   }
-  /// Surface points of the last update.
+  /// Surface points of the last update, in the order of fused_points().
   [[nodiscard]] const std::vector<FusedPoint>& points() const noexcept { return points_; }
   /// The surface through the points of the last update.
   [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
   /// New surface that the last view's first frame showed [m²]; see RealisedArea.
   [[nodiscard]] double realised_area() const noexcept { return realised_area_; }
-  /// After each view, where there is a truth.
+  /// One a view, where there is a truth, in their order.
   [[nodiscard]] const std::vector<QualityFigures>& quality() const noexcept { return quality_; }
 
  private:

@@ -23,9 +23,9 @@ namespace viewgain {
 
 /// How good one model is, against a ground truth. Lengths in [m].
 struct VIEWGAIN_EXPORT QualityFigures {
-  double coverage = 0;              ///< of all samples, 5 mm, surface
-  double coverage_visible = 0;      ///< of the visible ones, 5 mm, surface
-  double coverage_2_5mm = 0;        ///< of all samples, 2.5 mm, surface
+  double coverage = 0;              ///< share of all samples, 5 mm, surface
+  double coverage_visible = 0;      ///< share of the visible ones, 5 mm, surface
+  double coverage_2_5mm = 0;        ///< share of all samples, 2.5 mm, surface
   double covered_area = 0;          ///< of the mesh, where visible samples are covered, 5 mm [m²]
   ErrorStatistics surface_error{};  ///< of surface.ply
   ErrorStatistics points_error{};   ///< of points.ply
@@ -34,17 +34,17 @@ struct VIEWGAIN_EXPORT QualityFigures {
 
 /// From where the visible samples are looked for.
 struct VIEWGAIN_EXPORT VisibilityConfig {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< what the poses look at [m]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< what the poses look at, world [m]
   double distance = 0;                               ///< of the 2,562 poses from the centre [m]
-  Pose start;                                        ///< the run's first pose, wherever it is
-  ReachRegion reach{};                               ///< from where it may be seen
-  std::optional<double> support_plane{};             ///< nothing is seen from under it; world z [m]
+  Pose start;                             ///< T_world_camera, the run's first pose, wherever it is
+  ReachRegion reach{};                    ///< from where it may be seen
+  std::optional<double> support_plane{};  ///< nothing is seen from under it; world z [m]
   std::shared_ptr<const SurfaceScene> surroundings{};  ///< which hide the object; may be null
 };
 
 /// Is a sample of the mesh seen from a pose: in the image and the range limits, unoccluded by mesh
 /// and surroundings (may be null), and at no more than an angle of incidence whose cosine is
-/// `least_cosine`?
+/// `least_cosine`? Checks nothing. Costs at most two rays.
 [[nodiscard]] VIEWGAIN_EXPORT bool sees(const SurfaceScene& scene, const SurfaceScene* surroundings,
                                         const Sensor& sensor, const Pose& T_world_camera,
                                         const SurfaceSample& sample, double least_cosine);
@@ -57,13 +57,17 @@ inline constexpr double kCovered = 5e-3;
 /// out of reach moves along its line of sight to the reachable distance that is nearest to the
 /// wanted one, in steps of 2.5 mm, at most 50 m and outside of the sphere round the mesh; it is
 /// left out if there is none. Where the reachable region has a list of poses, those count instead.
+/// Thread safety: const members may run from many threads at once. Cost of the constructor: at most
+/// 10,000 samples times 2,563 poses, two rays each.
 class VIEWGAIN_EXPORT Truth {
  public:
-  /// Finds the visible samples, without noise.
+  /// Finds the visible samples, without noise. The scene must not be null; throws as GroundTruth,
+  /// and what the region's predicate throws.
   Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
         const VisibilityConfig& config, const ExecConfig& exec);
 
-  /// How good a surface and its points are.
+  /// How good a surface and its points, in any order, are. Throws and costs as the members of
+  /// GroundTruth.
   [[nodiscard]] QualityFigures figures(const SurfaceMesh& surface,
                                        std::span<const FusedPoint> points) const;
 

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hit.hpp"
+#include "map/belief_blocks.hpp"
+#include "map/block_lattice.hpp"
+#include "map/log_odds_code.hpp"
+#include "readings.hpp"
+#include "viewgain/core/thread_pool.hpp"
+
+namespace viewgain::detail {
+
+/// Readings that are at least this noisy look for support [voxels of sigma_ax].
+inline constexpr double kNoisySigma = 0.5;
+
+/// How many readings each voxel has: those of a frame and, where the map has it occupied, those of
+/// the map. Surface that has gone is free, and attracts nothing.
+class VoxelSupport {
+ public:
+  /// Of the map, which must stay as it is, and of the frame's hits in these blocks, sorted by key,
+  /// each hit in the voxel that it lies in.
+  void gather(const BeliefGrid& map, const BlockLattice& lattice, std::span<const HitBlock> blocks,
+              std::span<const Hit> hits, ThreadPool& pool);
+
+  /// Looks up voxel after voxel, quickly in the same block; one for each thread and way.
+  class Reader {
+   public:
+    explicit Reader(const VoxelSupport& support) : support_(support) {}
+    [[nodiscard]] std::uint32_t at(Index3 voxel);
+
+   private:
+    const VoxelSupport& support_;
+    std::uint64_t block_ = ~std::uint64_t{0};
+    const std::uint32_t* counts_ = nullptr;  ///< of the block, where the frame hits it
+    const BeliefBlock* beliefs_ = nullptr;   ///< else its beliefs, if it has any,
+    LeafMask occupied_{};                    ///< of its occupied voxels
+  };
+
+ private:
+  using Counts = std::array<std::uint32_t, kBlockVoxels>;
+  const BeliefGrid* map_ = nullptr;
+  const BlockLattice* lattice_ = nullptr;
+  std::vector<std::uint64_t> blocks_;  ///< that the frame hits, in rising order
+  std::vector<Counts> counts_;         ///< of each of them
+};
+
+/// Gives each noisy reading, which noise may have carried out of its voxel, to the voxel with the
+/// largest n · (1 - (t / reach)²): n its support, t the distance along the ray, sought at half
+/// voxels' steps, reach 3 sigma_ax, at most 8 voxels. It stays in its own voxel unless another has
+/// more than twice its value; of equal ones the nearer counts, then the one nearer to the camera.
+/// Else the readings of one wall would fill all voxels within their noise. `by_pixel` holds each
+/// reading's own voxel.
+void associate(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
+               const VoxelSupport& support, ThreadPool& pool, std::vector<Hit>& by_pixel);
+
+}  // namespace viewgain::detail
