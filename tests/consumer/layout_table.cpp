@@ -103,6 +103,7 @@ extern constinit const Layout VIEWGAIN_LAYOUT_TABLE[] = {VIEWGAIN_LAYOUT(Approxi
                                                          VIEWGAIN_LAYOUT(Proposal),
                                                          VIEWGAIN_LAYOUT(RaceConfig),
                                                          VIEWGAIN_LAYOUT(RangeCalibration),
+                                                         VIEWGAIN_LAYOUT(RangeCorrector),
                                                          VIEWGAIN_LAYOUT(RayHit),
                                                          VIEWGAIN_LAYOUT(ReachRegion),
                                                          VIEWGAIN_LAYOUT(RegionStatistics),

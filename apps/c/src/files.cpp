@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "convert.hpp"
+#include "handles.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats.h"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -24,6 +25,15 @@ vg_status vg_sensor_save(const vg_sensor* sensor, const char* path) {
   return guarded([&] {
     require(path, "path");
     write_sensor_toml(path, sensor_of(sensor));
+  });
+}
+
+vg_status vg_range_calibration_load(const char* preset_or_file,
+                                    vg_range_calibration** calibration) {
+  return make_handle(calibration, "calibration", [&] {
+    require(preset_or_file, "preset_or_file");
+    const Sensor sensor = load_sensor(preset_or_file);
+    return RangeCorrector(sensor.camera, sensor.range_calibration);
   });
 }
 

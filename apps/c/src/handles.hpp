@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "viewgain/core/camera.hpp"
+#include "viewgain/core/range_corrector.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate.hpp"
@@ -15,6 +16,10 @@
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 #include "viewgain/viewgain.h"
+
+struct vg_range_calibration {
+  viewgain::RangeCorrector corrector;
+};
 
 struct vg_grid {
   viewgain::BeliefGrid grid;

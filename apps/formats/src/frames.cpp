@@ -79,6 +79,18 @@ std::optional<double> said_scale(const fs::path& dir) {
   return scale;
 }
 
+// By the sensor as it is, which need not be the one that the folder was opened with.
+void correct_ranges(const FrameSequence& frames, DepthFrame& frame) {
+  const Sensor& sensor = frames.sensor;
+  const RangeCorrector* made = frames.corrector.get();
+  if (made != nullptr && made->camera() == sensor.camera &&
+      made->calibration() == sensor.range_calibration) {
+    made->correct(frame);
+  } else {
+    sensor.range_calibration.correct(sensor.camera, frame);
+  }
+}
+
 void list_own_layout(const fs::path& dir, FrameSequence& frames) {
   PoseList list = read_tum(dir / kPoses);
   const auto on_disk = list_frames(names_in(dir));
@@ -136,6 +148,10 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
   if (frames.recorded && is_there(dir / kIntrinsics)) {
     apply_intrinsics_file(dir / kIntrinsics, frames.sensor.camera);
   }
+  if (!frames.sensor.range_calibration.table.empty()) {
+    frames.corrector = std::make_shared<const RangeCorrector>(frames.sensor.camera,
+                                                              frames.sensor.range_calibration);
+  }
   return frames;
 }
 
@@ -174,7 +190,7 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRange
     frame.depth.push_back(
         value == kOutOfRangeValue ? out_of_range : static_cast<float>(value * frames.depth_scale));
   }
-  frames.sensor.range_calibration.correct(camera, frame);
+  correct_ranges(frames, frame);
   const fs::path amplitude = amplitude_path(frames.images[index]);
   if (!is_there(amplitude)) return frame;
   for (const std::uint16_t value : read_gray_png(amplitude, camera.width, camera.height).pixels) {

@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <string>
 
-#include "viewgain/core/camera.hpp"
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/range_corrector.hpp"
 #include "viewgain/core/text.hpp"
 
 namespace viewgain {
@@ -45,18 +45,7 @@ double RangeCalibration::corrected(double measured_range) const {
 
 void RangeCalibration::correct(const PinholeCamera& camera, DepthFrame& frame) const {
   check_frame_size(frame, camera);
-  if (table.empty()) return;
-  std::size_t pixel = 0;
-  for (int v = 0; v < frame.height; ++v) {
-    for (int u = 0; u < frame.width; ++u, ++pixel) {
-      float& depth = frame.depth[pixel];
-      if (!(depth > 0) || !std::isfinite(depth)) continue;
-      const double range_per_depth = camera.ray(u, v).norm();
-      if (!std::isfinite(range_per_depth)) continue;  // no ray: no range
-      const double range = corrected(depth * range_per_depth);
-      depth = range > 0 ? static_cast<float>(range / range_per_depth) : DepthFrame::kInvalid;
-    }
-  }
+  if (!table.empty()) RangeCorrector(camera, *this).correct(frame);
 }
 
 }  // namespace viewgain

@@ -50,8 +50,9 @@ extern tally checked;
 enum { MAP_EDGE = 16, MAP_VOXELS = MAP_EDGE * MAP_EDGE * MAP_EDGE };
 vg_grid* test_map(void);
 
-/* The two halves of the program. */
+/* The parts of the program: right use and wrong, and both of calibrations. */
 void use_everything(const char* folder);
 void misuse_everything(const char* folder);
+void range_calibrations(void);
 
 #endif

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "core/temporary_folder.hpp"
+#include "viewgain/core/depth_frame.hpp"
 #include "viewgain/formats.h"
+#include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain {
 namespace {
@@ -43,6 +45,57 @@ TEST(CFormats, SensorsComeBackAsTheyWere) {
   sensor.min_range = -1;
   EXPECT_EQ(vg_sensor_save(&sensor, path.c_str()), VG_INVALID_ARGUMENT);
   EXPECT_EQ(vg_sensor_save(&read, nullptr), VG_INVALID_ARGUMENT);
+}
+
+TEST(CFormats, FramesAreCorrectedByTheFilesTable) {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "mine.toml").string();
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera.distortion[0] = -0.1;
+  sensor.range_calibration.table = {{0.4, 0.02}, {2.0, 0.03}, {3.5, -0.04}};
+  write_sensor_toml(path, sensor);
+  const PinholeCamera& camera = sensor.camera;
+  DepthFrame frame{camera.width, camera.height, {}};
+  for (int i = 0; i < camera.width * camera.height; ++i) {
+    frame.depth.push_back(1e-4F * static_cast<float>(i));
+  }
+  frame.depth[100] = DepthFrame::kOutOfRange;
+  const DepthFrame before = frame;
+  std::vector<float> depth = before.depth;
+  sensor.range_calibration.correct(camera, frame);
+
+  vg_range_calibration* calibration = nullptr;
+  ASSERT_EQ(vg_range_calibration_load(path.c_str(), &calibration), VG_OK) << vg_last_error();
+  ASSERT_EQ(vg_range_calibration_correct(calibration, depth.data()), VG_OK) << vg_last_error();
+  EXPECT_EQ(depth, frame.depth);
+  EXPECT_NE(depth, before.depth);
+  vg_range_calibration_release(calibration);
+
+  // What C saves has no table; without one frames stay as they are.
+  vg_sensor own;
+  vg_sensor_init(&own, sizeof own);
+  ASSERT_EQ(vg_sensor_load(path.c_str(), &own), VG_OK) << vg_last_error();
+  ASSERT_EQ(vg_sensor_save(&own, path.c_str()), VG_OK) << vg_last_error();
+  EXPECT_TRUE(read_sensor_toml(path).range_calibration.table.empty());
+  for (const std::string& name : {path, std::string("sr4000")}) {
+    ASSERT_EQ(vg_range_calibration_load(name.c_str(), &calibration), VG_OK) << vg_last_error();
+    depth = before.depth;
+    EXPECT_EQ(vg_range_calibration_correct(calibration, depth.data()), VG_OK) << vg_last_error();
+    EXPECT_EQ(depth, before.depth) << name;
+    vg_range_calibration_release(calibration);
+  }
+
+  const auto refused = [&](const char* name, vg_status status, const char* part) {
+    calibration = reinterpret_cast<vg_range_calibration*>(&own);
+    EXPECT_EQ(vg_range_calibration_load(name, &calibration), status) << part;
+    EXPECT_EQ(calibration, nullptr) << part;
+    EXPECT_NE(std::string(vg_last_error()).find(part), std::string::npos) << vg_last_error();
+  };
+  refused("sr5000", VG_INVALID_ARGUMENT, "sr5000");
+  refused("none.toml", VG_IO, "none.toml");
+  refused(nullptr, VG_INVALID_ARGUMENT, "preset_or_file is null");
+  refused(folder.file("bad.toml", "width = 3\n").c_str(), VG_FORMAT, "bad.toml");
+  EXPECT_EQ(vg_range_calibration_load(path.c_str(), nullptr), VG_INVALID_ARGUMENT);
 }
 
 TEST(CFormats, PosesComeBackAsTheyWere) {

@@ -169,6 +169,54 @@ TEST(Formats, FramesAreReadWithTheSensorsTable) {
                      [&] { (void)open_depth_images(folder.path() / "empty", "sr4000"); });
 }
 
+// Who changes the sensor of an open folder gets depths by the changed one.
+TEST(Formats, FramesAreReadByTheSensorAsItIs) {
+  const test::TemporaryFolder folder;
+  const auto dir = folder.path() / "frames";
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera.width = 3, sensor.camera.height = 2;
+  sensor.camera.fx = sensor.camera.fy = 2;  // rays that differ
+  sensor.camera.cx = sensor.camera.cy = 0.5;
+  sensor.range_calibration.table = {{0.4, 0.02}, {3.5, -0.04}};
+  FramesWriter writer(dir);
+  writer.write_frame(0, {3, 2, {0.F, 0.5F, 1.25F, DepthFrame::kOutOfRange, 3.F, 2.F}, {}});
+  writer.commit({look_at({0, 0, 1}, {0, 0, 0})}, sensor);
+  FrameSequence frames = open_frames(dir);
+  ASSERT_NE(frames.corrector, nullptr);
+  EXPECT_EQ(frames.corrector->camera(), frames.sensor.camera);
+  EXPECT_EQ(frames.corrector->calibration(), sensor.range_calibration);
+
+  FrameSequence plain = frames;
+  plain.sensor.range_calibration = {};
+  const DepthFrame read = load_frame(plain, 0);
+  std::vector<DepthFrame> seen{read};
+  const auto expect_by_the_sensor = [&](const char* what) {
+    DepthFrame expected = read;
+    frames.sensor.range_calibration.correct(frames.sensor.camera, expected);
+    EXPECT_EQ(load_frame(frames, 0), expected) << what;
+    for (const DepthFrame& other : seen) EXPECT_NE(expected, other) << what;
+    seen.push_back(expected);
+  };
+  expect_by_the_sensor("as opened");
+  frames.sensor.range_calibration.table[1][1] = 0.3;
+  expect_by_the_sensor("another table");
+  frames.sensor.camera.fx = 1;
+  expect_by_the_sensor("another camera, too");
+  frames.sensor.range_calibration = sensor.range_calibration;
+  expect_by_the_sensor("another camera");
+  frames.sensor.camera.distortion[0] = 0.1;
+  expect_by_the_sensor("a lens");
+  frames.sensor = sensor;
+  EXPECT_EQ(load_frame(frames, 0), seen[1]);
+  frames.corrector = nullptr;
+  EXPECT_EQ(load_frame(frames, 0), seen[1]);
+
+  plain.sensor.range_calibration.table = {{1, 0}, {1, 0}};
+  test::expect_error(ErrorCode::invalid_argument, "rise", [&] { (void)load_frame(plain, 0); });
+  write_sensor_toml(dir / "sensor.toml", sensor_preset("sr4000"));
+  EXPECT_EQ(open_frames(dir).corrector, nullptr);
+}
+
 TEST(Formats, WhatIsNoDepthIsWrittenAsInvalid) {
   const test::TemporaryFolder folder;
   Sensor sensor = sensor_preset("sr4000");

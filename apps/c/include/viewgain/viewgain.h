@@ -7,10 +7,15 @@
    whose gains are the same to the last bit.
 
    Units are metres, radians and nats. A pose is 16 doubles, a 4x4 matrix row by row, T_world_camera
-   (camera to world); the camera's axes are x right, y down, z forward. Its lowest row must be
-   0 0 0 1 and its rotation orthonormal, both to 1e-3; else, and if a number is not finite, it is a
-   bad pose. Dense arrays of voxels are [x][y][z] with z fastest; states are 0 unknown, 1 free,
-   2 occupied.
+   (camera to world), and so are T_world_grid, T_flange_camera and T_reported; the camera's axes are
+   x right, y down, z forward. Its lowest row must be 0 0 0 1 and its rotation orthonormal, both to
+   1e-3; else, and if a number is not finite, it is a bad pose. Points and directions (center, eye,
+   target, up, origin) and corners of boxes (min, max, box_min, box_max) are 3 doubles, x, y, z.
+   Images (depth, amplitude, labels) are row by row. Dense arrays of voxels (states, labels) are
+   [x][y][z] with z fastest; states are 0 unknown, 1 free, 2 occupied.
+
+   Cost: functions cost what those of C++ do that they stand for, and a copy of their arrays; those
+   that set up a struct take constant time.
 
    Every function that can fail returns a status. Where it is not VG_OK, vg_last_error() says why
    and names the value; what the function would have filled is then unspecified, but for handles,
@@ -29,8 +34,9 @@
    handle keeps what it needs of it. Releasing null does nothing. A handle must not be used, or
    released again, after its release.
 
-   Thread safety: scenes, evaluators and checkers may be used from many threads at once. Nothing may
-   run beside a function that changes a grid, on that grid. One call at a time on an integrator.
+   Thread safety: scenes, evaluators, checkers and range calibrations may be used from many threads
+   at once. Nothing may run beside a function that changes a grid, on that grid. One call at a time
+   on an integrator.
 
    Fork: evaluators work in the child, which makes threads of its own. A child that does not exec
    must end by _exit(), after fflush(NULL) if it wrote anything: exit(), and so a return from main,

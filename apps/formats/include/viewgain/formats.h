@@ -13,20 +13,30 @@ extern "C" {
 #endif
 
 /* Fills a sensor that vg_sensor_init has seen: from a .toml file, or a preset by its name. The
-   file's name, T_flange_camera and body, which vg_sensor has not, are left out. VG_FORMAT names the
-   file and the key. */
+   file's name, T_flange_camera, body and range_calibration, which vg_sensor has not, are left out:
+   frames of a calibrated camera need vg_range_calibration_load() as well. VG_FORMAT names the file
+   and the key. */
 VG_API vg_status vg_sensor_load(const char* preset_or_file, vg_sensor* sensor);
 
-/* Writes a .toml file, whole or not at all. vg_sensor_load takes names that end in .toml. */
+/* Writes a .toml file, whole or not at all. vg_sensor_load takes names that end in .toml. What
+   vg_sensor has not is not written, a range_calibration neither: saved in the place of a calibrated
+   file the table is lost. */
 VG_API vg_status vg_sensor_save(const vg_sensor* sensor, const char* path);
+
+/* Makes a calibration of ranges from what vg_sensor_load() takes: by the file's table
+   range_calibration, for the file's camera, whose size frames must have. Without a table, as
+   presets are, it changes no frame. Fails as vg_sensor_load() does; costs what
+   vg_range_calibration_create() does. */
+VG_API vg_status vg_range_calibration_load(const char* preset_or_file,
+                                           vg_range_calibration** calibration);
 
 /* Reads poses in the TUM format: at most `capacity` of them, 16 numbers each, and says in *found
    how many the file has. T_world_camera and timestamps [s] may be null: not wanted. */
 VG_API vg_status vg_poses_load(const char* path, double* T_world_camera, double* timestamps,
                                size_t capacity, size_t* found);
 
-/* Writes poses in the TUM format, whole or not at all; at least one. timestamps [s] null: 0, 1,
-   2, ... */
+/* Writes poses in the TUM format, whole or not at all; at least one. timestamps [s], one a pose, or
+   null: 0, 1, 2, ... */
 VG_API vg_status vg_poses_save(const char* path, const double* T_world_camera,
                                const double* timestamps, size_t count);
 

@@ -32,7 +32,7 @@ typedef struct vg_scene_config {
   /* Rate at which a ray in unknown voxels meets the surface [1/m], the same everywhere, NaN (the
      default): by the distance from what is seen. */
   double hazard_rate;
-  /* Instead of hazard_rate, one of the two: a rate for each voxel [1/m], ordered as
+  /* Instead of hazard_rate, one of the two: a rate for each voxel [1/m], in the order of
      vg_grid_states(); a .vdb file of rates, its grid of floats "hazard" or the only one. */
   const float* hazard_rates;
   size_t hazard_count;     /* of hazard_rates: dims[0] * dims[1] * dims[2] */
@@ -120,7 +120,7 @@ typedef struct vg_evaluator_info {
 } vg_evaluator_info;
 /* Makes `info` ready for the call below. */
 VG_API void vg_evaluator_info_init(vg_evaluator_info* info, size_t struct_size);
-/* Tells what the evaluator is. */
+/* Tells what the evaluator is. Takes constant time. */
 VG_API vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluator_info* info);
 
 /* Of vg_view_gain: scored; no rigid transform, gain NaN; the camera's centre is in an occupied
@@ -164,7 +164,8 @@ VG_API vg_status vg_best(const vg_evaluator* evaluator, const double* poses, siz
 
 /* The k best poses, very probably, faster: poses are compared by about 400 of their rays, and the
    best of these scored in full. `seed` says which rays, for VG_GAIN_PAPER; for the others they are
-   in the middle of the image's cells. The same for a seed and any number of threads. */
+   in the middle of the image's cells. `indices`, `gains` and *found as for vg_best(), best
+   first. The same for a seed and any number of threads. */
 VG_API vg_status vg_race(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                          uint64_t seed, size_t* indices, double* gains, size_t* found,
                          const vg_watch* watch);
@@ -226,7 +227,8 @@ enum {
 /* What must have room, and where the robot gets. */
 typedef struct vg_feasibility_config {
   size_t struct_size;         /* as _init() sets it */
-  double body_size[3];        /* width, height, depth of the housing [m]; 0.065 0.065 0.076 */
+  double body_size[3];        /* width, height, depth of the housing, in this order [m]; 0.065
+                                 0.065 0.076 */
   int32_t has_flange;         /* nonzero: T_flange_camera counts; else the camera is in the */
   double T_flange_camera[16]; /* middle of the body's front face */
   double clearance;           /* the body is grown by this on each side [m]; 0 */

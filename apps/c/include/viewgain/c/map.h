@@ -26,17 +26,18 @@ enum {
   VG_NOISE_CONSTANT = 4          /* sigma_axial, sigma_lateral */
 };
 
-/* A depth camera. Pixel (0,0) has its centre at (0,0), as in OpenCV. */
+/* A depth camera. Pixel (0,0) has its centre at (0,0), as in OpenCV. It has no table of ranges:
+   frames of a camera that has one are corrected first, see vg_range_calibration. */
 typedef struct vg_sensor {
   size_t struct_size;          /* as _init() sets it */
   int32_t width, height;       /* [px] */
   double fx, fy, cx, cy;       /* [px] */
-  double distortion[5];        /* k1 k2 p1 p2 k3 */
+  double distortion[5];        /* k1 k2 p1 p2 k3, in this order */
   double min_range, max_range; /* along the ray [m] */
   double working_distance;     /* where it is meant to be used [m] */
   int32_t noise_model;         /* VG_NOISE_ */
-  double noise[6];             /* the model's parameters; those beyond must be 0 */
-  double pose_sigma[2];        /* of the poses of frames [m], [rad]; 0: exact */
+  double noise[6];             /* the model's parameters, in the order of VG_NOISE_; the rest 0 */
+  double pose_sigma[2];        /* of the poses of frames, in this order: [m], [rad]; 0: exact */
 } vg_sensor;
 VG_API void vg_sensor_init(vg_sensor* sensor, size_t struct_size); /* all 0: nothing is valid yet */
 
@@ -44,9 +45,32 @@ VG_API void vg_sensor_init(vg_sensor* sensor, size_t struct_size); /* all 0: not
    or "laser_line". */
 VG_API vg_status vg_sensor_preset(const char* name, vg_sensor* sensor);
 
-/* The prior sigma [m] that suits a voxel size and a sensor: max(voxel / 2, 2 sigma_ax at the
-   working distance). */
+/* *sigma: the prior sigma [m] that suits a voxel size and a sensor: max(voxel / 2, 2 sigma_ax at
+   the working distance). */
 VG_API vg_status vg_default_prior_sigma(double voxel_size, const vg_sensor* sensor, double* sigma);
+
+/* A camera's systematic error by the range, and the rays of its pixels. Never changes: may be used
+   from many threads at once. */
+typedef struct vg_range_calibration vg_range_calibration;
+
+/* For the sensor's camera, from a table of `rows` x 2 numbers, row by row: a measured range, and
+   measured minus true range [m]; measured ranges rise. The error is interpolated linearly between
+   rows and held beyond the ends. VG_INVALID_ARGUMENT, naming the value: no row, a number that is
+   not finite, measured ranges that do not rise, a range that is not positive, measured or
+   corrected, or a sensor that is not valid. Costs 8 bytes and 10 ns a pixel, with lens distortion
+   0.4 us. vg_range_calibration_load() of viewgain/formats.h makes one from a sensor's file. */
+VG_API vg_status vg_range_calibration_create(const vg_sensor* sensor, const double* table,
+                                             size_t rows, vg_range_calibration** calibration);
+
+/* Corrects a frame in place, along the rays of its pixels, with the same bits as C++: `depth` along
+   the optical axis [m], row by row, width * height values of the sensor, 0 invalid, +infinity out
+   of range. A reading whose corrected range is not positive becomes 0; what is no reading stays as
+   it is. Once a frame: a second call would correct it again. Costs 10 ns a pixel, with lens
+   distortion or without. */
+VG_API vg_status vg_range_calibration_correct(const vg_range_calibration* calibration,
+                                              float* depth);
+/* Null does nothing. */
+VG_API void vg_range_calibration_release(vg_range_calibration* calibration);
 
 /* ---- Belief grids ---- */
 
@@ -67,8 +91,8 @@ VG_API void vg_grid_config_init(vg_grid_config* config, size_t struct_size);
 /* An empty map: every voxel of the workspace is unknown. */
 VG_API vg_status vg_grid_create(const vg_grid_config* config, vg_grid** grid);
 
-/* A map from a dense array of states. The corner of voxel (0,0,0) is at `origin`, world: the grid's
-   frame is moved there, its axes are the world's. */
+/* A map from a dense array of states of dims voxels along x, y, z. The corner of voxel (0,0,0) is
+   at `origin`, world: the grid's frame is moved there, its axes are the world's. */
 VG_API vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3],
                                      const double origin[3], double voxel_size, double prior_sigma,
                                      vg_grid** grid);
@@ -91,7 +115,7 @@ VG_API void vg_grid_release(vg_grid* grid);
 /* What a map is, and how far. */
 typedef struct vg_grid_info {
   size_t struct_size;               /* as _init() sets it */
-  int32_t min_index[3];             /* lowest voxel of the workspace on the grid's lattice */
+  int32_t min_index[3];             /* x, y, z of the lowest voxel on the grid's lattice */
   int32_t dims[3];                  /* voxels along x, y, z */
   double voxel_size;                /* [m] */
   double prior_sigma;               /* [m] */
@@ -100,13 +124,13 @@ typedef struct vg_grid_info {
   uint64_t views;                   /* frames integrated */
   uint64_t bytes;                   /* memory */
   double entropy_removed;           /* how far the map is, by log_diagonal [nat] */
-  double hazard_factors[8];         /* what frames have said of the hazard of unknown space, by
-                                       distance from known surface, before rates are made to fall
-                                       with it: vg_calibrate_hazard() */
+  double hazard_factors[8];         /* what frames have said of the hazard of unknown space, one a
+                                       class of distance from known surface, nearest first, before
+                                       rates are made to fall with it: vg_calibrate_hazard() */
 } vg_grid_info;
 /* Makes `info` ready for the call below. */
 VG_API void vg_grid_info_init(vg_grid_info* info, size_t struct_size);
-/* Tells what the map is. */
+/* Tells what the map is. Costs a pass over its blocks. */
 VG_API vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info);
 
 /* The dense array of states; count must be dims[0] * dims[1] * dims[2]. */
@@ -121,7 +145,8 @@ enum { VG_NO_VOXEL = INT32_MIN };
 VG_API vg_status vg_grid_index_of(const vg_grid* grid, const double* points, size_t count,
                                   int32_t* voxels);
 
-/* Centres of voxels in the world [m]; the voxels need not lie in the workspace. */
+/* Centres of voxels in the world, 3 numbers each [m]; the voxels (3 indices each) need not lie in
+   the workspace. */
 VG_API vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size_t count,
                                 double* centers);
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,9 +14,15 @@
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/core/range_corrector.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/staged_folder.hpp"
+
+/// @file
+/// Folders of depth frames. Cost: functions that open a folder read a pose a frame and no image,
+/// and make a RangeCorrector where the sensor has a table (640x480: 3 ms, with lens distortion 0.1
+/// s); those of a frame read or write its images, O(pixels).
 
 namespace viewgain {
 
@@ -37,6 +44,9 @@ struct VIEWGAIN_EXPORT FrameSequence {
   std::vector<std::filesystem::path> images;  ///< depth images, in their order
   std::vector<Pose> poses;          ///< T_world_camera, one an image; none of open_depth_images()
   std::size_t orthonormalized = 0;  ///< rotations that were a little off
+  /// Of the sensor as the folder was opened with it, null if that has no table: spares load_frame()
+  /// the rays of the sensor's camera. Where the sensor has been changed it does not count.
+  std::shared_ptr<const RangeCorrector> corrector{};
 };
 
 /// Opens either layout: poses.txt + frame-NNNNNN.depth.png (line i is frame i) + sensor.toml, or
@@ -56,9 +66,11 @@ open_depth_images(const std::filesystem::path& dir, const std::string& sensor = 
                   std::optional<double> depth_scale = {});
 
 /// Reads the depth image, and the amplitude image (16 bit, 1e-3 m⁻²) if there is one. Depths are
-/// corrected by the sensor's range_calibration. Throws
-/// Error(io) or Error(format), naming the file, and Error(invalid_argument) for an index that is
-/// not less than the count of images. May be called from many threads.
+/// corrected by the range_calibration of the sensor as it is at the call; where that, or its
+/// camera, is not what the folder was opened with, each call finds the rays anew
+/// (RangeCalibration::correct()). Throws Error(io) or Error(format), naming the file, and
+/// Error(invalid_argument) for an index that is not less than the count of images. May be called
+/// from many threads.
 [[nodiscard]] VIEWGAIN_EXPORT DepthFrame
 load_frame(const FrameSequence& frames, std::size_t index,
            OutOfRangeMeaning meaning = OutOfRangeMeaning::carve);
@@ -71,12 +83,13 @@ load_frame(const FrameSequence& frames, std::size_t index,
                                                          std::size_t index);
 
 /// The files of `dir` that make up frames of either layout, and what `simulate` and `import` leave
-/// with them, relative to it; none if there is no such folder.
+/// with them, relative to it, in any order; none if there is no such folder.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::filesystem::path> frame_files(
     const std::filesystem::path& dir);
 
 /// Writes frames in our own layout into a folder that appears, or changes, only when all is
 /// written. simulated.txt in it says how many frames are simulated; only those are ever replaced.
+/// Thread safety: one call at a time.
 class VIEWGAIN_EXPORT FramesWriter {
  public:
   /// Throws Error(io), and Error(invalid_argument) if the folder holds frames, poses or a sensor
@@ -104,7 +117,7 @@ class VIEWGAIN_EXPORT FramesWriter {
 
 /// Writes frames in the recorded layout, depth images as they are, into a folder that appears, or
 /// changes, only when all is written. imported.txt in it lists the files; only those are ever
-/// replaced.
+/// replaced. Thread safety: one call at a time.
 class VIEWGAIN_EXPORT RecordedFramesWriter {
  public:
   /// Throws Error(io), and Error(invalid_argument) if the folder holds frames, poses or a sensor
@@ -118,10 +131,10 @@ class VIEWGAIN_EXPORT RecordedFramesWriter {
   void write_frame(std::uint64_t number, const GrayImage& depth, const Pose& T_world_camera,
                    const std::optional<GrayImage>& amplitude = {});
 
-  /// Writes camera-intrinsics.txt, depth-scale.txt and, where a sensor is given, sensor.toml with
-  /// this camera in it, and puts all in the place of an earlier import. Throws Error(io), and
-  /// Error(invalid_argument) without a frame, for a camera of another size or a scale that is not
-  /// positive and finite.
+  /// Writes camera-intrinsics.txt, depth-scale.txt ([m] per unit: depth_scale) and, where a sensor
+  /// is given, sensor.toml with this camera in it, and puts all in the place of an earlier import.
+  /// Throws Error(io), and Error(invalid_argument) without a frame, for a camera of another size or
+  /// a scale that is not positive and finite.
   void commit(const PinholeCamera& camera, double depth_scale,
               const std::optional<Sensor>& sensor = {});
 

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "viewgain/core/camera.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/range_calibration.hpp"
+
+namespace viewgain {
+
+struct DepthFrame;
+
+/// RangeCalibration::correct() for many frames of one camera, whose rays it finds once: the same
+/// bits. Never changes, so that it may be used from many threads at once.
+class VIEWGAIN_EXPORT RangeCorrector {
+ public:
+  /// Throws Error(invalid_argument) as PinholeCamera::validate() and RangeCalibration::validate()
+  /// do. Costs 8 bytes and 10 ns a pixel, with lens distortion 0.4 µs; without a table constant
+  /// time.
+  RangeCorrector(const PinholeCamera& camera, RangeCalibration calibration);
+
+  /// As it was given.
+  [[nodiscard]] const PinholeCamera& camera() const noexcept { return camera_; }
+  /// As it was given.
+  [[nodiscard]] const RangeCalibration& calibration() const noexcept { return calibration_; }
+
+  /// Corrects every reading of the frame along its pixel's ray. A reading whose corrected range is
+  /// not positive becomes invalid; other pixels, amplitudes and known depths stay as they are.
+  /// Throws Error(invalid_argument) unless the frame has the camera's size. Costs 10 ns a pixel,
+  /// with lens distortion or without (3 ms for 640x480, where RangeCalibration::correct() takes 6
+  /// ms and 110 ms).
+  void correct(DepthFrame& frame) const;
+  /// The same of depths alone [m], row by row: width * height of them, as DepthFrame::depth.
+  void correct(std::span<float> depth) const;
+
+ private:
+  PinholeCamera camera_;
+  RangeCalibration calibration_;
+  std::vector<double> range_per_depth_;  // one a pixel, not finite without a ray; or none
+};
+
+}  // namespace viewgain
