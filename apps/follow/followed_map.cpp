@@ -83,8 +83,10 @@ std::optional<FrameRegistration> FollowedMap::register_in(const WatchedFrame& fr
   return planner_.register_frame(frame.frame, prior);
 }
 
-AddedView FollowedMap::add(const WatchedFrame& frame, const Pose& T_world_camera) {
-  return planner_.add(frame.frame, T_world_camera);
+AddedView FollowedMap::add(const WatchedFrame& frame,
+                           const std::optional<FrameRegistration>& registration) {
+  if (!registration) return planner_.add(frame.frame, frame.T_world_camera);
+  return planner_.add(frame.frame, registration->T_world_camera, registration->pose_sigma());
 }
 
 NextViews FollowedMap::next(std::size_t top) {

@@ -49,7 +49,8 @@ class FollowedMap {
   /// What registering the frame against the map comes to; nothing without sigmas.
   [[nodiscard]] std::optional<FrameRegistration> register_in(const WatchedFrame& frame) const;
 
-  AddedView add(const WatchedFrame& frame, const Pose& T_world_camera);
+  /// At its own pose, or at the one that registering it came to.
+  AddedView add(const WatchedFrame& frame, const std::optional<FrameRegistration>& registration);
 
   /// The best of the views at the surface's open boundaries and of the reach region's poses.
   [[nodiscard]] NextViews next(std::size_t top);

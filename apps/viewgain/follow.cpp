@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -17,6 +18,7 @@
 #include "follow/folder_lock.hpp"
 #include "follow/followed_map.hpp"
 #include "options/choices.hpp"
+#include "options/frame_folder.hpp"
 #include "options/hazard_source.hpp"
 #include "options/next_views.hpp"
 #include "options/obstacle_source.hpp"
@@ -28,6 +30,7 @@
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/stopwatch.hpp"
 #include "viewgain/formats/frame_watch.hpp"
+#include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 
@@ -42,12 +45,9 @@ constexpr double kLeastInterval = 0.5;
 
 struct Options {
   CommonOptions common;
-  std::string frames;
+  FrameFolderOptions frames;
   double voxel = 0;
   std::string workspace;
-  std::string sensor;
-  std::optional<double> depth_scale;
-  std::string out_of_range = "carve";
   std::string jump_edge_filter = "5";
   std::string jump_edge_two_sided = "off";
   std::string gain = "combined";
@@ -84,14 +84,33 @@ PlannerConfig planner_config(const Options& options) {
   return config;
 }
 
-FrameWatch watch_of(const Options& options, const std::optional<SavedFrames>& saved) {
+// Not yet with a mask in it: they come with the frames.
+MaskFolder mask_folder(const char* flag, const fs::path& folder, const fs::path& frames,
+                       std::optional<std::uint8_t> least_confidence = {}) {
+  std::error_code ignored;
+  if (fs::equivalent(folder, frames, ignored)) {
+    throw Error(ErrorCode::invalid_argument,
+                std::string(flag) + " " + folder.string() +
+                    ": has the depth images, whose names masks have; name a folder in it");
+  }
+  return MaskFolder(folder, least_confidence);
+}
+
+FrameWatch watch_of(const FrameFolderOptions& options, const std::optional<SavedFrames>& saved) {
   if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
   FrameWatchConfig config;
   config.sensor = options.sensor;
   config.depth_scale = options.depth_scale;
   if (options.out_of_range == "invalid") config.out_of_range = OutOfRangeMeaning::invalid;
+  if (!options.mask.empty()) {
+    config.masks.push_back(mask_folder("--mask", options.mask, options.folder));
+  }
+  if (!options.confidence.empty()) {
+    config.masks.push_back(mask_folder("--confidence", options.confidence, options.folder,
+                                       static_cast<std::uint8_t>(options.least_confidence)));
+  }
   if (saved) config.taken = saved->frames;
-  return {options.frames, std::move(config)};
+  return {options.folder, std::move(config)};
 }
 
 // Files of these names that are somebody else's stay.
@@ -111,9 +130,9 @@ class Following {
       : options_(options),
         config_(planner_config(options)),
         sigmas_(registration_prior(options.registration)),
-        frames_(options.frames),
+        frames_(options.frames.folder),
         out_(options.out) {
-    if (!options.sensor.empty()) (void)load_sensor(options.sensor);
+    if (!options.frames.sensor.empty()) (void)load_sensor(options.frames.sensor);
     if (!options.body.empty()) body_ = parse_size("--body", options.body);
     std::error_code ignored;
     if (!fs::is_directory(frames_, ignored)) {
@@ -122,28 +141,30 @@ class Following {
     lock_.emplace(out_);
     saved_ = saved_frames(out_ / "state.vdb");
     if (!saved_) check_folder(out_);
-    watch_.emplace(watch_of(options_, saved_));
+    watch_.emplace(watch_of(options_.frames, saved_));
   }
 
   // One frame at most; returns whether another look is due at once.
   bool step() {
     const FolderLook look = watch_->look(std::chrono::steady_clock::now());
-    for (const BadFrame& bad : look.bad) say(bad.what + " (" + bad.reason + "); left out");
+    say(look.bad);
     if (!map_ && watch_->folder()) open_map();
     if (look.frame) take(*look.frame);
     const bool is_due =
         !look.frame || !since_written_ || since_written_->seconds() > kLeastInterval;
     if (map_ && has_news_ && is_due) write();
-    // Not before the state is there, which says whose these files are.
-    if (map_ && !has_news_ && count() > 0 && said_ != counts()) write_json();
+    write_new_counts();
     return look.frame.has_value();
   }
 
   // Nothing more is to be expected of the frames that are there.
   [[nodiscard]] bool is_settled() const { return watch_->is_settled(); }
 
-  void finish() {
+  // What is not there by now will not come, if all is done.
+  void finish(bool is_done) {
+    if (is_done) say(watch_->give_up());
     if (map_ && has_news_) write();
+    write_new_counts();
   }
 
   void print_summary(bool is_done, double seconds) const {
@@ -155,6 +176,7 @@ class Following {
     if (options_.common.json) {
       nlohmann::ordered_json json = counts();
       json["added"] = added_;
+      json["masked_pixels"] = masked_pixels_;
       json["orthonormalized_poses"] = watch_->folder() ? watch_->folder()->orthonormalized : 0;
       json["ended_by"] = is_done ? "done" : "signal";
       json["hash"] = nullptr;
@@ -168,6 +190,9 @@ class Following {
     for (const auto& [reason, number] : watch_->bad()) {
       std::printf("left out: %zu %s\n", number, reason.c_str());
     }
+    if (has_masks()) {
+      std::printf("pixels taken away by masks: %s\n", with_commas(masked_pixels_).c_str());
+    }
     if (map_ && map_->should_stop()) {
       std::printf("enough: %s\n", stop_reason_name(*map_->should_stop()).data());
     }
@@ -180,6 +205,14 @@ class Following {
  private:
   void say(const std::string& text) const {
     if (!options_.common.quiet) std::fprintf(stderr, "viewgain: %s\n", text.c_str());
+  }
+
+  void say(const std::vector<BadFrame>& frames) const {
+    for (const BadFrame& bad : frames) say(bad.what + " (" + bad.reason + "); left out");
+  }
+
+  [[nodiscard]] bool has_masks() const {
+    return !options_.frames.mask.empty() || !options_.frames.confidence.empty();
   }
 
   [[nodiscard]] std::size_t count() const { return watch_->taken().size(); }
@@ -197,16 +230,18 @@ class Following {
   void take(const WatchedFrame& frame) {
     if (!map_->shows_workspace(frame)) {
       watch_->refuse(frame, "outside");
-      return say(frame.image.string() + ": no reading lies in the workspace (outside); left out");
+      return say(frame.image.string() + ": no reading" +
+                 (frame.masked_pixels > 0 ? " that masks leave" : "") +
+                 " lies in the workspace (outside); left out");
     }
     const std::optional<FrameRegistration> registration = map_->register_in(frame);
     if (registration && registration->status == RegistrationStatus::refused) {
       watch_->refuse(frame, "contradicts");
       return say(frame.image.string() + ": " + registration->reason + " (contradicts); left out");
     }
-    const AddedView added =
-        map_->add(frame, registration ? registration->T_world_camera : frame.T_world_camera);
+    const AddedView added = map_->add(frame, registration);
     ++added_;
+    masked_pixels_ += frame.masked_pixels;
     has_news_ = true;
     if (options_.common.quiet) return;
     std::fprintf(stderr, "%s: %.4g cm^2 of new surface, %.4g nat\n", frame.image.filename().c_str(),
@@ -241,6 +276,11 @@ class Following {
     return json;
   }
 
+  // Not before the state is there, which says whose these files are.
+  void write_new_counts() {
+    if (map_ && !has_news_ && count() > 0 && said_ != counts()) write_json();
+  }
+
   void write_json() {
     said_ = counts();
     nlohmann::ordered_json json = said_;
@@ -256,9 +296,10 @@ class Following {
   std::optional<FolderLock> lock_;
   std::optional<SavedFrames> saved_;
   std::optional<FrameWatch> watch_;
-  std::optional<FollowedMap> map_;  // once the sensor is known
-  std::size_t added_ = 0;           // frames, by this call
-  bool has_news_ = false;           // that are not yet written
+  std::optional<FollowedMap> map_;   // once the sensor is known
+  std::size_t added_ = 0;            // frames, by this call
+  std::uint64_t masked_pixels_ = 0;  // of these
+  bool has_news_ = false;            // that are not yet written
   std::optional<Stopwatch> since_written_;
   NextViews next_;
   nlohmann::ordered_json said_;  // counts(), as next.json has them
@@ -272,12 +313,12 @@ void follow(const Options& options) {
   while (!is_done && !interrupt.token().stop_requested()) {
     // Asked before the look: what came before the file is seen.
     std::error_code ignored;
-    const bool is_last = fs::exists(fs::path(options.frames) / "done", ignored);
+    const bool is_last = fs::exists(fs::path(options.frames.folder) / "done", ignored);
     if (following.step()) continue;
     is_done = is_last && following.is_settled();
     if (!is_done) std::this_thread::sleep_for(kPause);
   }
-  following.finish();
+  following.finish(is_done);
   following.print_summary(is_done, watch.seconds());
 }
 
@@ -289,21 +330,19 @@ Command add_follow(CLI::App& program) {
       "follow",
       "Watches a folder into which a robot's program writes depth frames, puts each into a map as "
       "soon as it is complete, and says where to look next: OUT/next.txt (poses, best first) and "
-      "OUT/next.json. Ends by a signal or when a file FRAMES_DIR/done is there; called again with "
+      "OUT/next.json. With --mask or --confidence a frame waits for its mask as for its pose. Ends "
+      "by a signal or when a file FRAMES_DIR/done is there; called again with "
       "the same OUT it goes on, also after a kill.");
   Options& o = *options;
-  app->add_option("FRAMES_DIR", o.frames, "folder of frames, as for integrate")->required();
+  app->add_option("FRAMES_DIR", o.frames.folder, "folder of frames, as for integrate")->required();
   app->add_option("--voxel", o.voxel, "voxel size [m]")->required();
   app->add_option("--workspace", o.workspace, "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels")
       ->required();
-  app->add_option("--sensor", o.sensor,
+  app->add_option("--sensor", o.frames.sensor,
                   std::string(kSensorHelp) + "; default: FRAMES_DIR/sensor.toml");
-  app->add_option(
-      "--depth-scale", o.depth_scale,
-      "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
-      "sensor.toml), else 1e-3");
+  add_frame_folder_options(*app, o.frames);
   one_of(*app->add_option(
-                 "--out-of-range", o.out_of_range,
+                 "--out-of-range", o.frames.out_of_range,
                  "what 65535 says: carve (nothing up to the maximal range) or invalid (no reading)")
               ->capture_default_str(),
          {"carve", "invalid"}, "meaning");

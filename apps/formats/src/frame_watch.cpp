@@ -53,6 +53,7 @@ struct ReadPose {
 struct Signature {
   FileStamp depth, amplitude, pose_file;
   std::optional<ReadPose> line{};
+  std::vector<FileStamp> masks{};  // one a folder
 
   bool operator==(const Signature&) const = default;
 };
@@ -63,6 +64,8 @@ struct Entry {
   Signature signature{};
   FrameWatch::Time since{};  // when it was first seen
   bool is_examined = false;  // since then
+  bool is_judged = false;    // likewise, when nobody was writing any more
+  fs::path missing_mask{};   // when it was judged: all that it waits for
   State state = State::waits;
   std::string reason{};  // of a bad one
 };
@@ -72,6 +75,7 @@ struct Verdict {
   std::optional<WatchedFrame> frame{};
   std::string reason{};
   std::string what{};
+  fs::path missing_mask{};  // where nothing else is missing
 };
 
 Verdict fault(const char* reason, std::string what) { return {{}, reason, std::move(what)}; }
@@ -98,6 +102,18 @@ std::vector<ReadPose> poses_of_lines(const fs::path& path) {
   return poses;
 }
 
+std::string size_text(int width, int height) {
+  return std::to_string(width) + " x " + std::to_string(height);
+}
+
+// A reason, or none, of an image of any kind.
+Verdict size_fault(const fs::path& image, const PinholeCamera& camera) {
+  const auto [width, height] = png_size(image);
+  if (width == camera.width && height == camera.height) return {};
+  return fault("size", image.string() + ": has " + size_text(width, height) +
+                           " pixels, the sensor " + size_text(camera.width, camera.height));
+}
+
 bool has_end(const fs::path& png) {
   constexpr std::string_view kEnd("\0\0\0\0IEND\xae\x42\x60\x82", 12);
   return file_bytes(png).ends_with(kEnd);
@@ -119,6 +135,9 @@ struct FrameWatch::Impl {
                                     bool is_recorded) const {
     const fs::path image = dir / (name + std::string(kDepthSuffix));
     Signature now{stamp_of(image), stamp_of(amplitude_path(image)), {}};
+    for (const MaskFolder& masks : config.masks) {
+      now.masks.push_back(stamp_of(masks.file_of(image)));
+    }
     if (is_recorded) {
       now.pose_file = stamp_of(dir / (name + std::string(kPoseSuffix)));
     } else if (number < poses.size()) {
@@ -145,14 +164,9 @@ struct FrameWatch::Impl {
   // Of images that have their end.
   [[nodiscard]] Verdict load(std::uint64_t number, const std::vector<fs::path>& images,
                              const ReadPose& pose) const {
-    const PinholeCamera& camera = folder->sensor.camera;
     for (const fs::path& image : images) {
-      const auto [width, height] = png_size(image);
-      if (width == camera.width && height == camera.height) continue;
-      return fault("size", image.string() + ": has " + std::to_string(width) + " x " +
-                               std::to_string(height) + " pixels, the sensor " +
-                               std::to_string(camera.width) + " x " +
-                               std::to_string(camera.height));
+      Verdict wrong = size_fault(image, folder->sensor.camera);
+      if (!wrong.reason.empty()) return wrong;
     }
     FrameSequence one = *folder;
     one.images = {images.front()};
@@ -161,25 +175,55 @@ struct FrameWatch::Impl {
                          load_frame(one, 0, config.out_of_range), pose.T_world_camera}};
   }
 
+  // Without what its masks take, which are there and have their end.
+  [[nodiscard]] Verdict masked(WatchedFrame frame) const {
+    for (const MaskFolder& masks : config.masks) {
+      Verdict wrong = size_fault(masks.file_of(frame.image), folder->sensor.camera);
+      if (!wrong.reason.empty()) return wrong;
+      const auto mask = masks.mask_of(frame.image, frame.frame.width, frame.frame.height);
+      if (!mask) return {};  // gone meanwhile
+      frame.masked_pixels += apply_mask(*mask, frame.frame);
+    }
+    return {std::move(frame)};
+  }
+
   [[nodiscard]] Verdict examine(std::uint64_t number, const std::string& name, const Signature& is,
                                 bool needs_amplitude, bool is_stable) {
-    if (needs_amplitude && !is.amplitude.is_there() && !is_stable) return {};
+    const fs::path depth = dir / (name + std::string(kDepthSuffix));
+    // One that was taken is known without its masks.
+    const bool is_known = taken.contains(depth.filename().string());
+    std::vector<fs::path> files;  // of which each needs its end
+    fs::path missing_mask;
+    for (std::size_t i = 0; i < is.masks.size() && !is_known; ++i) {
+      const fs::path mask = config.masks[i].file_of(depth);
+      if (is.masks[i].is_there()) {
+        files.push_back(mask);
+      } else {
+        missing_mask = mask;
+      }
+    }
+    const bool has_amplitude = !needs_amplitude || is.amplitude.is_there();
+    if (!is_stable && !(missing_mask.empty() && has_amplitude)) return {};
     const std::optional<ReadPose> read = pose(is, name, is_stable);
     if (!read) return {};
     if (!read->fault.empty()) return fault("pose", read->fault);
-    std::vector<fs::path> images{dir / (name + std::string(kDepthSuffix))};
+    std::vector<fs::path> images{depth};
     if (is.amplitude.is_there()) images.push_back(amplitude_path(images.front()));
     try {
-      for (const fs::path& image : images) {
+      files.insert(files.begin(), images.begin(), images.end());
+      for (const fs::path& image : files) {
         if (!has_end(image)) return fault("truncated", image.string() + ": the image has no end");
       }
     } catch (const Error& error) {
       return fault("image", error.what());
     }
+    if (!missing_mask.empty()) return {{}, {}, {}, missing_mask};
     // What is wrong with it is no frame's fault.
     if (!folder) folder = open_frame_folder(dir, config.sensor, config.depth_scale);
     try {
-      return load(number, images, *read);
+      Verdict loaded = load(number, images, *read);
+      if (is_known || !loaded.frame) return loaded;
+      return masked(std::move(*loaded.frame));
     } catch (const Error& error) {
       return fault("image", error.what());
     }
@@ -210,11 +254,14 @@ struct FrameWatch::Impl {
       if (!is.depth.is_there()) continue;  // since the folder was listed
       if (is != entry.signature) entry = {is, now};
       const bool is_stable = now - entry.since >= config.settle;
-      if (entry.state != State::waits || (entry.is_examined && !is_stable)) continue;
+      if (entry.state != State::waits || (is_stable ? entry.is_judged : entry.is_examined))
+        continue;
       Verdict verdict = examine(number, name, is, needs_amplitude, is_stable);
       entry.is_examined = true;
+      entry.is_judged = is_stable;
       // What was written meanwhile is for the next look.
       if (signature(number, name, is_recorded) != is) continue;
+      entry.missing_mask = verdict.missing_mask;
       if (verdict.frame) {
         const auto [known, is_new] =
             taken.emplace(verdict.frame->image.filename().string(), verdict.frame->identity);
@@ -248,6 +295,17 @@ FrameWatch::FrameWatch(FrameWatch&&) noexcept = default;
 FrameWatch& FrameWatch::operator=(FrameWatch&&) noexcept = default;
 
 FolderLook FrameWatch::look(Time now) { return impl_->look(now); }
+
+std::vector<BadFrame> FrameWatch::give_up() {
+  std::vector<BadFrame> given_up;
+  for (auto& [number, entry] : impl_->entries) {
+    if (entry.state != State::waits || entry.missing_mask.empty()) continue;
+    entry.state = State::bad;
+    entry.reason = "no_mask";
+    given_up.push_back({number, entry.reason, entry.missing_mask.string() + ": no such mask"});
+  }
+  return given_up;
+}
 
 void FrameWatch::refuse(const WatchedFrame& frame, const std::string& reason) {
   Entry& entry = impl_->entries.at(frame.number);

@@ -44,7 +44,7 @@ MaskFolder::MaskFolder(std::filesystem::path folder, std::optional<std::uint8_t>
 
 void MaskFolder::require_mask_of_any(const std::vector<std::filesystem::path>& images) const {
   if (std::any_of(images.begin(), images.end(),
-                  [this](const auto& image) { return is_there(folder_ / image.filename()); })) {
+                  [this](const auto& image) { return is_there(file_of(image)); })) {
     return;
   }
   throw Error(ErrorCode::invalid_argument,
@@ -52,9 +52,13 @@ void MaskFolder::require_mask_of_any(const std::vector<std::filesystem::path>& i
                   (images.empty() ? "" : ", as " + images.front().filename().string()));
 }
 
+std::filesystem::path MaskFolder::file_of(const std::filesystem::path& image) const {
+  return folder_ / image.filename();
+}
+
 std::optional<Gray8Image> MaskFolder::mask_of(const std::filesystem::path& image, int width,
                                               int height) const {
-  const std::filesystem::path file = folder_ / image.filename();
+  const std::filesystem::path file = file_of(image);
   if (!is_there(file)) return std::nullopt;
   Gray8Image mask = read_gray8_png(file, width, height);
   if (least_confidence_) {

@@ -625,6 +625,11 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
        "--out --map --json "
        "--threads =carve "
        "=cones =probabilistic =viewpoint 1e-4 [m]"},
+      {"follow",
+       "FRAMES_DIR --voxel --workspace --sensor --depth-scale --mask --confidence "
+       "--least-confidence --out-of-range --jump-edge-filter --jump-edge-two-sided "
+       "--gain --object-size --hazard --reach --obstacle --body --support-plane --top "
+       "--max-views --register --pose-sigma --out --json --threads =carve =combined =10 [m]"},
       {"import",
        "SOURCE --format --sensor --intrinsics --max-time-gap --mask --confidence "
        "--least-confidence --amplitude --amplitude-scale --out --json --threads =0.02 "
@@ -686,7 +691,7 @@ TEST_F(Workflow, HelpNamesEveryFlag) {
     }
     EXPECT_EQ(found, known) << command;
   }
-  EXPECT_EQ(words, 252);
+  EXPECT_EQ(words, 281);
   const std::string help = run_well({"simulate", "--help"});
   for (const std::string& name : sensor_preset_names()) {
     EXPECT_NE(help.find(name), std::string::npos) << name;

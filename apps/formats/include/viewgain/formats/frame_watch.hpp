@@ -17,6 +17,7 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/masks.hpp"
 
 namespace viewgain {
 
@@ -25,6 +26,9 @@ struct VIEWGAIN_EXPORT FrameWatchConfig {
   std::string sensor{};                                       ///< as of open_frames()
   std::optional<double> depth_scale{};                        ///< likewise [m per unit]
   OutOfRangeMeaning out_of_range = OutOfRangeMeaning::carve;  ///< likewise
+  /// Each frame needs its mask in every one of them, in any order; somebody may be writing into
+  /// these, too.
+  std::vector<MaskFolder> masks{};
   /// Frames that are not to be given out again, each as frame_identity() has it.
   std::set<std::string> taken{};
   /// Somebody may be writing files that are younger: what is wrong with them is not yet wrong.
@@ -33,19 +37,20 @@ struct VIEWGAIN_EXPORT FrameWatchConfig {
 
 /// A frame whose files are all there and whole.
 struct VIEWGAIN_EXPORT WatchedFrame {
-  std::uint64_t number = 0;     ///< in its files' names
-  std::filesystem::path image;  ///< the depth image
-  std::string identity;         ///< as frame_identity() has it
-  DepthFrame frame;             ///< as load_frame() has it
-  Pose T_world_camera;          ///< where it was taken
+  std::uint64_t number = 0;         ///< in its files' names
+  std::filesystem::path image;      ///< the depth image
+  std::string identity;             ///< as frame_identity() has it
+  DepthFrame frame;                 ///< as load_frame() has it, without what masks take
+  Pose T_world_camera;              ///< where it was taken
+  std::uint64_t masked_pixels = 0;  ///< with a depth, that masks took
 };
 
 /// A frame that cannot be used as its files are.
 struct VIEWGAIN_EXPORT BadFrame {
   std::uint64_t number = 0;  ///< in its files' names
-  /// truncated (an image without an end), image (damaged, or of another kind), size (another one
-  /// than the sensor's), pose (no rigid transform of finite numbers), changed (its number was taken
-  /// with other contents).
+  /// truncated (an image or a mask without an end), image (damaged, or of another kind), size
+  /// (another one than the sensor's), pose (no rigid transform of finite numbers), changed (its
+  /// number was taken with other contents), no_mask (of give_up()).
   std::string reason;
   std::string what;  ///< names the file
 };
@@ -53,7 +58,7 @@ struct VIEWGAIN_EXPORT BadFrame {
 /// What a look at the folder found.
 struct VIEWGAIN_EXPORT FolderLook {
   std::optional<WatchedFrame> frame{};  ///< the complete one of the lowest number, if there is one
-  std::vector<BadFrame> bad{};          ///< those that turned out to be bad since the look before
+  std::vector<BadFrame> bad{};          ///< bad since the look before; numbers rising
 };
 
 /// A folder of frames of either layout (open_frames()) into which somebody else writes, file by
@@ -61,18 +66,21 @@ struct VIEWGAIN_EXPORT FolderLook {
 /// complete when its images end as PNG files do and can be read, and its pose is there, in the
 /// recorded layout with a line's end or unchanged for FrameWatchConfig::settle, in ours as a line
 /// of poses.txt with its end. Where any frame in the folder has an amplitude image, one without is
-/// waited for as long. What holds for all frames (sensor.toml, camera-intrinsics.txt,
-/// depth-scale.txt) must be there before the first frame is complete.
+/// waited for as long. With FrameWatchConfig::masks a mask must be there, end and be readable as
+/// well; one that is missing is waited for as a pose is. Masks are no part of what a frame is known
+/// by (frame_identity()): one that was taken stays taken, whatever becomes of its mask. What holds
+/// for all frames (sensor.toml, camera-intrinsics.txt, depth-scale.txt) must be there before the
+/// first frame is complete.
 ///
 /// Whether files have changed is told by what the file system says of them; none is read twice for
-/// nothing. Nothing is remembered beyond the object but what FrameWatchConfig::taken says.
-/// Thread safety: one call at a time.
+/// nothing. Nothing is remembered beyond the object but what FrameWatchConfig::taken says. Thread
+/// safety: one call at a time. Members that throw say so.
 class VIEWGAIN_EXPORT FrameWatch {
  public:
   /// Of a look.
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Does not look at the folder yet.
+  /// Does not look at the folder yet: takes constant time.
   FrameWatch(std::filesystem::path dir, FrameWatchConfig config);
   ~FrameWatch();
   FrameWatch(FrameWatch&&) noexcept;
@@ -82,6 +90,11 @@ class VIEWGAIN_EXPORT FrameWatch {
   /// next one comes with the next look. Throws Error(io) if the folder cannot be read, and with the
   /// first complete frame as open_frames() for what holds for all. Takes some µs a file.
   [[nodiscard]] FolderLook look(Time now);
+
+  /// Nobody writes any more: frames that nothing but a mask was missing of, for
+  /// FrameWatchConfig::settle, are bad (no_mask), as long as their files do not change. These,
+  /// numbers rising. O(frames); files are not looked at.
+  [[nodiscard]] std::vector<BadFrame> give_up();
 
   /// The caller has no use for the frame that the last look gave out: it is bad for this reason, as
   /// long as its files do not change.

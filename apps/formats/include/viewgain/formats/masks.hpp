@@ -17,7 +17,8 @@ namespace viewgain {
 /// that carries the camera. The mask of a depth image has the image's name and size; it is a
 /// grayscale PNG of 1 to 8 bits. 0: the pixel counts; any other value: it says nothing. Or a folder
 /// of confidences, images likewise, as many cameras give them: pixels under the least say nothing.
-/// Thread safety: const members may run from many threads.
+/// Thread safety: const members may run from many threads. Cost of mask_of(): a file is read,
+/// O(pixels); of the others a look at the file system for each image.
 class VIEWGAIN_EXPORT MaskFolder {
  public:
   /// With `least_confidence` the images are confidences. Throws Error(io), naming it, if there is
@@ -25,9 +26,13 @@ class VIEWGAIN_EXPORT MaskFolder {
   explicit MaskFolder(std::filesystem::path folder,
                       std::optional<std::uint8_t> least_confidence = {});
 
-  /// Throws Error(invalid_argument), naming the folder, if none of the images has a mask in it: it
-  /// is another recording's.
+  /// Throws Error(invalid_argument), naming the folder, if none of the images, in any order, has a
+  /// mask in it: it is another recording's.
   void require_mask_of_any(const std::vector<std::filesystem::path>& images) const;
+
+  /// Where the mask of the depth image of this name is, or would be. Takes constant time; not
+  /// checked is whether there is one.
+  [[nodiscard]] std::filesystem::path file_of(const std::filesystem::path& image) const;
 
   /// The mask of the depth image of this name, made of the confidences where these are in the
   /// folder; nothing where the folder has none. Throws Error(io)
@@ -41,9 +46,9 @@ class VIEWGAIN_EXPORT MaskFolder {
 };
 
 /// Makes the pixels invalid (0) that the mask says; returns how many were not invalid before.
-/// Throws Error(invalid_argument) if the sizes differ.
+/// Throws Error(invalid_argument) if the sizes differ. Costs O(pixels).
 VIEWGAIN_EXPORT std::uint64_t apply_mask(const Gray8Image& mask, GrayImage& depth);
-/// Makes the masked pixels invalid; how many of them had a depth.
+/// The same of a frame: how many of the masked pixels had a depth.
 VIEWGAIN_EXPORT std::uint64_t apply_mask(const Gray8Image& mask, DepthFrame& frame);
 
 }  // namespace viewgain
