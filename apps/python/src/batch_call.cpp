@@ -123,6 +123,11 @@ progress : callable, optional
     ``numpy.False_``, 0) the call stops; an exception that it raises stops the call and is raised
     from there.
 
+Raises
+------
+TypeError
+    progress cannot be called.
+
 Notes
 -----
 A control that was stopped stays so: make one for each call. Ctrl-C is honoured with or without one.)");

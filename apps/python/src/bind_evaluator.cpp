@@ -19,7 +19,9 @@
 #include "bindings.hpp"
 #include "classes.hpp"
 #include "evaluator.hpp"
+#include "evaluator_docs.hpp"
 #include "gil.hpp"
+#include "given.hpp"
 #include "named.hpp"
 #include "scene.hpp"
 
@@ -39,13 +41,16 @@ std::unique_ptr<Evaluator> held(const Scene& scene, const Sensor& sensor,
                     pixel_stride, std::move(evaluator)});
 }
 
-std::unique_ptr<Evaluator> make(const Scene& scene, const Sensor& sensor, const std::string& gain,
-                                const std::string& criterion, int pixel_stride,
-                                std::optional<double> prior_sigma, std::optional<double> min_range,
-                                std::optional<double> max_range, const py::iterable& weights,
+std::unique_ptr<Evaluator> make(const Given<Scene>& given, const Given<Sensor>& of,
+                                const std::string& gain, const std::string& criterion,
+                                int pixel_stride, std::optional<double> prior_sigma,
+                                std::optional<double> min_range, std::optional<double> max_range,
+                                const py::iterable& weights,
                                 std::optional<double> refinement_weight,
                                 std::optional<double> support_plane, bool posterior_entropy,
                                 int num_threads) {
+  const Scene& scene = *given;
+  const Sensor& sensor = *of;
   GainConfig config;
   config.model = parse_gain_model(gain);
   if (config.model == GainModel::paper && support_plane) {
@@ -74,7 +79,8 @@ std::unique_ptr<Evaluator> make(const Scene& scene, const Sensor& sensor, const 
               GainEvaluator(scene.scene, sensor, config, ExecConfig{num_threads}));
 }
 
-std::unique_ptr<Evaluator> with_scene(const Evaluator& self, const Scene& scene) {
+std::unique_ptr<Evaluator> with_scene(const Evaluator& self, const Given<Scene>& given) {
+  const Scene& scene = *given;
   const auto following = [&] {
     const WithoutGil without_gil;
     return self.evaluator.with_scene(scene.scene);
@@ -94,7 +100,7 @@ void score(const Evaluator& self, std::span<const Pose> poses, std::span<ViewGai
 }
 
 py::object evaluate(const Evaluator& self, const py::object& T_world_camera, bool strict,
-                    Control* control) {
+                    const GivenOrNone<Control>& control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", strict);
   py::array_t<double> gains(batch.shape);
   std::vector<ViewGain> results(batch.poses.size());
@@ -105,7 +111,7 @@ py::object evaluate(const Evaluator& self, const py::object& T_world_camera, boo
 }
 
 py::object evaluate_detailed(const Evaluator& self, const py::object& T_world_camera, bool strict,
-                             Control* control) {
+                             const GivenOrNone<Control>& control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", strict);
   py::array_t<ViewGain> views(batch.shape);
   score(self, batch.poses, {views.mutable_data(), batch.poses.size()}, control);
@@ -126,7 +132,7 @@ py::object chosen(const BestViews& best, bool return_gains) {
 }
 
 py::object best(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
-                bool return_gains, Control* control) {
+                bool return_gains, const GivenOrNone<Control>& control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
   BestViews result;
   run_batch(control, [&](const BatchControl& watched) {
@@ -136,7 +142,7 @@ py::object best(const Evaluator& self, const py::object& T_world_camera, std::si
 }
 
 py::object race(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
-                std::uint64_t seed, bool return_gains, Control* control) {
+                std::uint64_t seed, bool return_gains, const GivenOrNone<Control>& control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
   const RaceConfig config{seed};
   BestViews result;
@@ -147,7 +153,7 @@ py::object race(const Evaluator& self, const py::object& T_world_camera, std::si
 }
 
 py::object best_set(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
-                    bool return_gains, Control* control) {
+                    bool return_gains, const GivenOrNone<Control>& control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
   ViewSet set;
   run_batch(control, [&](const BatchControl& watched) {
@@ -159,7 +165,7 @@ py::object best_set(const Evaluator& self, const py::object& T_world_camera, std
 }
 
 py::object approximate(const Evaluator& self, const py::object& T_world_camera, double share,
-                       std::uint64_t seed, Control* control) {
+                       std::uint64_t seed, const GivenOrNone<Control>& control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
   const ApproximateConfig config{share, seed};
   py::array_t<ApproximateGain> estimates(batch.shape);
@@ -195,49 +201,7 @@ void bind_evaluator(py::module_& module) {
 
   const RaceConfig race_defaults;
   const ApproximateConfig approximate_defaults;
-  auto evaluator =
-      bound_class<Evaluator>(module, "GainEvaluator",
-                             R"(Scores camera poses against a scene by expected information gain.
-
-All methods may run in many threads at once and leave the GIL while they work. Results are the same
-bits for any number of threads, and the same as from C++. Ctrl-C ends a batch. Poses are
-``T_world_camera`` arrays (..., 4, 4) that map the optical frame (x right, y down, z forward) to the
-world [m]: C-contiguous float64 is read in place, other real dtypes are converted once.
-
-Parameters
-----------
-scene : VoxelScene
-sensor : Sensor
-gain : {"paper", "surface", "combined"}
-    What a view's gain counts: the entropy that it removes [nat], the new surface that it is expected to
-    show [m**2], or that and refining known surface [nat].
-criterion : {"log_diagonal", "log_determinant", "trace"}
-    How the paper's gain measures uncertainty; gains are in nats, for trace in m**2. The combined gain
-    always goes by log_diagonal and refuses trace.
-pixel_stride : int
-    Every s-th pixel of every s-th row.
-prior_sigma : float, optional
-    Standard deviation of an unknown voxel [m]; the map's unless given.
-min_range, max_range : float, optional
-    Along the ray [m]; the sensor's unless given.
-weights : iterable of (box, weight), optional
-    Task weights >= 0 of parts of the workspace: boxes (2, 3) in the grid's frame [m]. The last that
-    holds a voxel's centre counts, 1 outside all.
-refinement_weight : float, optional
-    Of refining against finding new surface, with "combined" alone. Default: 0.3.
-support_plane : float, optional
-    Height z of a table at which rays end [m], with "surface" and "combined" alone.
-posterior_entropy : bool
-    Let ``evaluate_detailed`` have it, too: with "paper" alone, some 4 % slower.
-num_threads : int
-    0: all hardware threads.
-
-Raises
-------
-ValueError
-    Names the value that is out of its bounds.
-TypeError
-    A weight is no number.)");
+  auto evaluator = bound_class<Evaluator>(module, "GainEvaluator", kEvaluatorDoc);
   refuse_pickling(evaluator);
   evaluator
       .def(py::init(&make), py::arg("scene"), py::arg("sensor"), py::kw_only(),
@@ -247,124 +211,31 @@ TypeError
            py::arg("weights") = py::tuple(), py::arg("refinement_weight") = py::none(),
            py::arg("support_plane") = py::none(), py::arg("posterior_entropy") = false,
            py::arg("num_threads") = 0)
-      .def("with_scene", &with_scene, py::arg("scene"),
-           R"(The evaluator of another scene, for following a map as it grows.
-
-It has the sensor, the settings and the threads of this one, which stays as it is; nothing is computed
-anew, so that it takes microseconds; by the surface and the combined gain the hazard of a scene that has
-none yet (some milliseconds). Its results are those of an evaluator made for that scene, whose
-map's ``prior_sigma`` counts unless one was given.
-
-Parameters
-----------
-scene : VoxelScene
-    Such as ``VoxelScene.update`` returns.
-
-Returns
--------
-GainEvaluator)")
+      .def("with_scene", &with_scene, py::arg("scene"), kWithSceneDoc)
       .def("evaluate", &evaluate, py::arg("T_world_camera"), py::kw_only(),
-           py::arg("strict") = false, py::arg("control") = py::none(),
-           R"(The expected gains of poses.
-
-Parameters
-----------
-T_world_camera : array_like, (..., 4, 4)
-strict : bool
-    Raise ValueError for a bad pose (not finite, rotation or last row off by more than 1e-3) instead
-    of giving it the gain NaN.
-control : BatchControl, optional
-
-Returns
--------
-ndarray, (...), float64
-    [nat], for trace and the surface gain [m**2]; NaN for bad poses and for those not reached before a stop. A single
-    pose gives a scalar.)")
+           py::arg("strict") = false, py::arg("control") = py::none(), kEvaluateDoc)
       .def("evaluate_detailed", &evaluate_detailed, py::arg("T_world_camera"), py::kw_only(),
-           py::arg("strict") = false, py::arg("control") = py::none(),
-           R"(The expected gains of poses and what they are made of.
-
-Parameters are those of ``evaluate``.
-
-Returns
--------
-ndarray, (...), structured
-    By the paper's gain: gain = exploration (unknown voxels) + refinement (occupied ones),
-    posterior_entropy if asked for, unknown_voxels and occupied_voxels (distinct). By the others: area (new surface
-    to be expected [m**2]; gain, by the surface gain), refinement_saturated (combined [nat]). By all:
-    rays, hits, status (index into ``VIEW_STATUS_NAMES``). What a gain has not is NaN, a count 0. A
-    single pose gives a scalar.)")
+           py::arg("strict") = false, py::arg("control") = py::none(), kEvaluateDetailedDoc)
       .def("best", &best, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
-           py::arg("return_gains") = false, py::arg("control") = py::none(),
-           R"(The k best poses, exactly: all are scored.
-
-Parameters
-----------
-T_world_camera : array_like, (..., 4, 4)
-k : int
-return_gains : bool
-control : BatchControl, optional
-    After a stop the result is what is best of those scored so far.
-
-Returns
--------
-indices : ndarray, (k,), int64
-    Into the poses with their leading axes flattened, best first, ties to the lower index.
-gains : ndarray, (k,), structured
-    As from ``evaluate_detailed``; only if return_gains: a named tuple ``ChosenViews`` then.)")
+           py::arg("return_gains") = false, py::arg("control") = py::none(), kBestDoc)
       .def("race", &race, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
            py::arg("seed") = race_defaults.seed, py::arg("return_gains") = false,
-           py::arg("control") = py::none(),
-           R"(The k best poses, very probably; see ``best``.
-
-All poses are scored by about 400 of their rays, and the best max(24, 4 k, 5 %) of them in
-full (1.6 % by the surface and the combined gain).
-
-Parameters
-----------
-seed : int
-    Which rays, by the paper's gain; by the others they are in the middle.
-
-Returns
--------
-indices : ndarray, (k,), int64
-gains : ndarray, (k,), structured
-    Only if return_gains. Both as from ``best``.)")
+           py::arg("control") = py::none(), kRaceDoc)
       .def("best_set", &best_set, py::arg("T_world_camera"), py::arg("k"), py::kw_only(),
-           py::arg("return_gains") = false, py::arg("control") = py::none(),
-           R"(Up to k poses that are good together, chosen one after the other.
-
-Returns
--------
-indices : ndarray, (<= k,), int64
-    In the order of their choice.
-gains : ndarray, (<= k,), structured
-    What each adds to those before it; only if return_gains.)")
+           py::arg("return_gains") = false, py::arg("control") = py::none(), kBestSetDoc)
       .def("approximate", &approximate, py::arg("T_world_camera"), py::kw_only(),
            py::arg("share") = approximate_defaults.share,
            py::arg("seed") = approximate_defaults.seed, py::arg("control") = py::none(),
-           R"(Estimates of the gains from a part of each view's rays.
-
-Parameters
-----------
-T_world_camera : array_like, (..., 4, 4)
-share : float
-    Of a view's rays that are traced at most, in (0, 1]; at 1 the gain itself, standard error 0.
-seed : int
-    Which rays.
-
-Returns
--------
-ndarray, (...), structured
-    gain, standard_error. A single pose gives a scalar.)")
+           kApproximateDoc)
       .def_property_readonly(
           "rays_per_pose", [](const Evaluator& self) { return self.evaluator.rays_per_pose(); },
-          "int")
+          "int: one for each pixel of every pixel_stride-th row")
       .def_property_readonly(
-          "num_threads", [](const Evaluator& self) { return self.evaluator.num_threads(); }, "int")
+          "num_threads", [](const Evaluator& self) { return self.evaluator.num_threads(); },
+          "int: that a batch runs on")
       .def_property_readonly(
           "prior_sigma", [](const Evaluator& self) { return self.evaluator.prior_sigma(); },
-          "float: [m]")
+          "float: standard deviation of an unknown voxel [m]")
       .def_property_readonly(
           "gain",
           [](const Evaluator& self) {
@@ -373,7 +244,7 @@ ndarray, (...), structured
           "str")
       .def_readonly("criterion", &Evaluator::criterion, "str")
       .def_readonly("pixel_stride", &Evaluator::pixel_stride, "int")
-      .def_readonly("scene", &Evaluator::scene, "VoxelScene")
+      .def_readonly("scene", &Evaluator::scene, "VoxelScene: that it was made with")
       .def_property_readonly(
           "sensor", [](const Evaluator& self) { return self.sensor; }, "Sensor")
       .def("__repr__", [](const Evaluator& self) {

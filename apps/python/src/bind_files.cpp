@@ -122,6 +122,8 @@ void bind_toml(py::module_& module) {
           },
           py::arg("preset_or_file"), R"(A sensor from a .toml file, or a preset by its name.
 
+Runs without the GIL. Cost: one read of a file of some lines, 0.1 ms.
+
 Parameters
 ----------
 preset_or_file : str or path-like
@@ -149,6 +151,8 @@ ValueError
           },
           py::arg("path"), R"(Writes a .toml file, whole or not at all.
 
+Runs without the GIL. Cost: a file of some lines, 1 ms.
+
 Parameters
 ----------
 path : path-like
@@ -156,7 +160,8 @@ path : path-like
 
 Raises
 ------
-OSError)");
+OSError
+    It cannot be written.)");
   class_of<ReachRegion>(module, "ReachRegion")
       .def_static(
           "load",
@@ -167,6 +172,8 @@ OSError)");
             return read_reach_toml(file);
           },
           py::arg("path"), R"(A region from a .toml file: boxes, shells, half-spaces, poses.
+
+Runs without the GIL. Cost: linear in the poses, 1 µs each, and 0.1 ms.
 
 Parameters
 ----------
@@ -193,6 +200,8 @@ Error
           py::arg("path"),
           R"(Writes a .toml file; poses go into NAME.poses.txt beside it, replacing one of that name.
 
+Runs without the GIL. Cost: linear in the poses, 2 µs each, and 1 ms.
+
 Parameters
 ----------
 path : path-like
@@ -201,7 +210,8 @@ Raises
 ------
 ValueError
     The region has a predicate, or poses and a name that does not end in .toml.
-OSError)");
+OSError
+    It cannot be written.)");
 }
 
 void bind_frames(py::module_& module) {
@@ -211,7 +221,12 @@ void bind_frames(py::module_& module) {
 
 ``len(frames)``, ``frames[i]`` and iteration give a ``Frame`` (depth, T_world_camera, amplitude): depth (height,
 width), float32, along the optical axis [m] (0: nothing known, inf: nothing up to max_range), without
-the error of the sensor's range_calibration, the pose (4, 4), and the amplitude [1/m**2] or None.)");
+the error of the sensor's range_calibration, the pose (4, 4), and the amplitude [1/m**2] or None.
+
+Notes
+-----
+A frame is read when it is asked for, without the GIL; many threads may read at once. Cost: linear in a
+frame's pixels; ``poses`` is a copy.)");
   refuse_pickling(type);
   type.def(
           "__len__", [](const Frames& self) { return self.frames.images.size(); },
@@ -237,7 +252,7 @@ Frame
     A named tuple of the three.
 depth : ndarray, (height, width), float32
     Along the optical axis [m].
-T_world_camera : ndarray, (4, 4)
+T_world_camera : ndarray, (4, 4), float64
 amplitude : ndarray, (height, width), float32, or None
     [1/m**2]
 
@@ -255,7 +270,7 @@ OSError, Error
           "float: [m] per unit of the images")
       .def_property_readonly(
           "poses", [](const Frames& self) { return pose_array(self.frames.poses); },
-          "ndarray, (n, 4, 4): T_world_camera")
+          "ndarray, (n, 4, 4), float64: T_world_camera")
       .def("__repr__", [](const Frames& self) {
         std::ostringstream text;
         text << "<FrameSequence of " << self.frames.images.size() << " frames, "
@@ -266,6 +281,8 @@ OSError, Error
   module.def("read_frames", &read_frames, py::arg("folder"), py::kw_only(),
              py::arg("sensor") = py::none(), py::arg("depth_scale") = py::none(),
              py::arg("out_of_range") = "carve", R"(Opens a folder of depth frames.
+
+Reads all poses and no image, without the GIL. Cost: linear in the number of frames.
 
 Parameters
 ----------
@@ -302,6 +319,8 @@ void bind_files(py::module_& module) {
              py::arg("return_timestamps") = false,
              R"(Poses of a file in the TUM format: time tx ty tz qx qy qz qw.
 
+Runs without the GIL. Cost: linear in the poses, 1 µs each.
+
 Parameters
 ----------
 path : path-like
@@ -309,8 +328,8 @@ return_timestamps : bool
 
 Returns
 -------
-T_world_camera : ndarray, (n, 4, 4)
-timestamps : ndarray, (n,)
+T_world_camera : ndarray, (n, 4, 4), float64
+timestamps : ndarray, (n,), float64
     [s]; only if return_timestamps: a named tuple ``TimedPoses`` of the two then.
 
 Raises
@@ -323,6 +342,8 @@ Error
              py::arg("timestamps") = py::none(),
              R"(Writes poses in the TUM format, whole or not at all.
 
+Runs without the GIL. Cost: linear in the poses, 2 µs each.
+
 Parameters
 ----------
 path : path-like
@@ -334,7 +355,8 @@ Raises
 ------
 ValueError
     There is no pose, a pose or timestamp is not finite, or their counts differ.
-OSError)");
+OSError
+    It cannot be written.)");
 }
 
 }  // namespace viewgain::python

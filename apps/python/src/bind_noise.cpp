@@ -20,16 +20,25 @@ namespace {
 template <typename Model>
 struct Parameter {
   const char* name;
-  double Model::* member;
+  double Model::*member;
   const char* doc;
 };
+
+// Of the docstrings.
+constexpr const char* kRaises = R"(
+
+Raises
+------
+TypeError
+    A parameter is no number. One that is out of its bounds is refused by ``Sensor``, which names it.)";
 
 // A noise model: its parameters are keywords of the constructor, with the library's defaults, and
 // attributes that cannot be set.
 template <typename Model, std::size_t count>
 void bind_model(py::module_& module, const char* name, const char* doc,
                 const std::array<Parameter<Model>, count>& parameters) {
-  auto type = bound_class<Model>(module, name, doc);
+  const std::string whole = std::string(doc) + kRaises;
+  auto type = bound_class<Model>(module, name, whole.c_str());
   std::vector<const char*> names;
   for (const auto& parameter : parameters) {
     names.push_back(parameter.name);
@@ -92,7 +101,18 @@ min_amplitude : float
 
 ``axial = offset + quadratic * (z - vertex)**2``, plus ``grazing / sqrt(z) * theta**2 / (pi/2 -
 theta)**2`` beyond 60 degrees; ``lateral = (lateral_px + lateral_grazing_px * theta / (pi/2 - theta))
-* z / fx``; z is taken as the range along the ray [m].)",
+* z / fx``; z is taken as the range along the ray [m].
+
+Parameters
+----------
+offset, vertex : float
+    [m]
+quadratic : float
+    [1/m]
+grazing : float
+    [m**1.5]
+lateral_px, lateral_grazing_px : float
+    [px])",
              std::to_array<Parameter<Light>>(
                  {{"offset", &Light::offset, "float: [m]"},
                   {"quadratic", &Light::quadratic, "float: [1/m]"},
@@ -102,23 +122,43 @@ theta)**2`` beyond 60 degrees; ``lateral = (lateral_px + lateral_grazing_px * th
                   {"lateral_grazing_px", &Light::lateral_grazing_px, "float: [px]"}}));
 
   bind_model(module, "StereoNoise",
-             "Stereo: ``axial = t**2 * subpixel / (focal * baseline)``, ``lateral = t / "
-             "fx``.\n\nsubpixel and focal in [px], baseline in [m]; a focal of 0\n"
-             "stands for the camera's fx.",
+             R"(Stereo: ``axial = t**2 * subpixel / (focal * baseline)``, ``lateral = t / fx``.
+
+Parameters
+----------
+subpixel : float
+    Matching error [px].
+focal : float
+    Focal length [px]; 0 stands for the camera's fx.
+baseline : float
+    [m])",
              std::to_array<Parameter<StereoNoise>>(
                  {{"subpixel", &StereoNoise::subpixel, "float: matching error [px]"},
                   {"focal", &StereoNoise::focal, "float: [px]"},
                   {"baseline", &StereoNoise::baseline, "float: [m]"}}));
 
   bind_model(module, "QuadraticNoise",
-             "``axial = offset + quadratic * t**2``, ``lateral = t / fx``.\n\noffset in [m], "
-             "quadratic in [1/m].",
+             R"(``axial = offset + quadratic * t**2``, ``lateral = t / fx``.
+
+Parameters
+----------
+offset : float
+    [m]
+quadratic : float
+    [1/m])",
              std::to_array<Parameter<QuadraticNoise>>(
                  {{"offset", &QuadraticNoise::offset, "float: [m]"},
                   {"quadratic", &QuadraticNoise::quadratic, "float: [1/m]"}}));
 
   bind_model(module, "ConstantNoise",
-             "The same everywhere [m]; equal sigmas make an isotropic sensor.",
+             R"(The same everywhere; equal sigmas make an isotropic sensor.
+
+Parameters
+----------
+sigma_axial : float
+    Along the ray [m].
+sigma_lateral : float
+    Across the ray [m].)",
              std::to_array<Parameter<ConstantNoise>>(
                  {{"sigma_axial", &ConstantNoise::sigma_axial, "float: along the ray [m]"},
                   {"sigma_lateral", &ConstantNoise::sigma_lateral, "float: across the ray [m]"}}));

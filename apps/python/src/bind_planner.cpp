@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -15,27 +16,31 @@
 #include "bindings.hpp"
 #include "classes.hpp"
 #include "gil.hpp"
+#include "given.hpp"
 #include "map/depth_images.hpp"
 #include "map/integration.hpp"
 #include "map/shared_grid.hpp"
 #include "named.hpp"
 #include "planner.hpp"
+#include "planner_docs.hpp"
 #include "scene.hpp"
 #include "viewgain/planner/view_planner.hpp"
 
 namespace viewgain::python {
 namespace {
 
-std::unique_ptr<Planner> make(Sensor sensor, double voxel_size, const py::object& workspace,
-                              const py::object& T_world_grid, std::optional<double> prior_sigma,
+std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
+                              const py::object& workspace, const py::object& T_world_grid,
+                              std::optional<double> prior_sigma,
                               std::optional<double> support_plane, const py::object& boxes,
                               const py::iterable& meshes, const std::string& gain,
                               const std::string& criterion, std::optional<double> object_size,
-                              const ReachRegion* reach, const py::object& body_size,
+                              const GivenOrNone<ReachRegion>& reach, const py::object& body_size,
                               double clearance, bool jump_edges, bool check_feasibility,
                               std::size_t max_views, std::size_t idle_views,
                               std::optional<double> stop_gain, std::optional<double> stop_area,
                               const py::object& state, int num_threads) {
+  Sensor sensor = *of;
   PlannerConfig config;
   config.grid.voxel_size = voxel_size;
   config.grid.workspace = box(workspace, "workspace");
@@ -50,7 +55,7 @@ std::unique_ptr<Planner> make(Sensor sensor, double voxel_size, const py::object
   config.hazard.object_size = object_size;
   config.gain.model = parse_gain_model(gain);
   config.gain.criterion = parse_criterion(criterion);
-  if (reach != nullptr) config.reach = *reach;
+  if (reach.value != nullptr) config.reach = *reach.value;
   if (!body_size.is_none()) {
     const Eigen::Vector3d size = vector3(body_size, "body_size");
     sensor.body_size = {size.x(), size.y(), size.z()};
@@ -75,10 +80,12 @@ std::unique_ptr<Planner> make(Sensor sensor, double voxel_size, const py::object
 }
 
 py::object add(Planner& self, const py::object& depth, const py::object& T_world_camera,
-               const py::object& amplitude) {
+               const std::array<double, 2>& pose_sigma, const py::object& amplitude) {
   const DepthFrame frame = depth_frame(self.sensor(), depth, amplitude);
   const Pose pose = one_pose(T_world_camera, "T_world_camera");
-  const AddedView added = self.run([&](ViewPlanner& planner) { return planner.add(frame, pose); });
+  const AddedView added = self.run([&](ViewPlanner& planner) {
+    return planner.add(frame, pose, {pose_sigma[0], pose_sigma[1]});
+  });
   const IntegrationReport& counts = added.update.counts;
   return named("AddedView", counts.readings, counts.plane_readings, counts.out_of_range,
                counts.invalid, counts.readings_inside, counts.voxels_hit, counts.voxels_crossed,
@@ -100,7 +107,8 @@ py::object register_frame(Planner& self, const py::object& depth, const py::obje
                found.reason, to_array(found.T_world_camera), covariance, found.translation,
                found.rotation, found.residual_before, found.residual_after, found.readings,
                found.pairs, found.overlap, found.contradiction, found.smallest_information,
-               found.free_directions.size());
+               found.free_directions.size(),
+               py::make_tuple(found.pose_sigma().translation, found.pose_sigma().rotation));
 }
 
 py::object propose(Planner& self) {
@@ -116,7 +124,7 @@ py::object propose(Planner& self) {
 }
 
 py::object rank(Planner& self, std::size_t k, const py::object& poses, const py::object& costs,
-                double cost_per_metre, bool exact, Control* control) {
+                double cost_per_metre, bool exact, const GivenOrNone<Control>& control) {
   RankConfig config;
   config.cost_per_metre = cost_per_metre;
   config.exact = exact;
@@ -174,18 +182,7 @@ void bind_planner(py::module_& module) {
           [](const py::object& path, const py::args& args, const py::kwargs& settings) {
             return py::type::of<Planner>()(*args, **settings, py::arg("state") = path);
           },
-          py::arg("path"), R"(A planner that goes on where ``save`` was called, bit for bit.
-
-Parameters
-----------
-path : path-like
-sensor, **settings
-    Those of the constructor, as before, which is not looked at but for the map's layout; candidates
-    are added and proposed anew, too.
-
-Returns
--------
-ViewPlanner)")
+          py::arg("path"), kLoadDoc)
       .def(
           "save",
           [](Planner& self, const py::object& path) {
@@ -193,31 +190,14 @@ ViewPlanner)")
             require_writable(file);
             self.run([&](ViewPlanner& planner) { planner.save(file); });
           },
-          py::arg("path"), R"(Writes the whole state, a map with notes, whole or not at all.
-
-Left out are the settings, poses, generators and the last proposal. ``BeliefGrid.load`` and the program read the map.
-
-Parameters
-----------
-path : path-like
-
-Raises
-------
-OSError)")
+          py::arg("path"), kSaveDoc)
       .def(
           "add_poses",
           [](Planner& self, const py::object& T_world_camera, const std::string& name) {
             PoseSet set{name, pose_list(T_world_camera, "T_world_camera")};
             self.use([&](ViewPlanner& planner) { planner.add_poses(std::move(set)); });
           },
-          py::arg("T_world_camera"), py::arg("name") = "poses",
-          R"(Candidates that are proposed from now on.
-
-Parameters
-----------
-T_world_camera : array_like, (n, 4, 4)
-name : str
-    The generator that ``propose`` names.)")
+          py::arg("T_world_camera"), py::arg("name") = "poses", kAddPosesDoc)
       .def(
           "add_generator",
           [](Planner& self, const py::object& generator, const std::string& name) {
@@ -229,124 +209,25 @@ name : str
                   std::make_shared<PythonGeneration>(generator, name, planner.map()));
             });
           },
-          py::arg("generator"), py::arg("name") = "generator",
-          R"(Candidates that are made anew for each proposal.
-
-Parameters
-----------
-generator : callable
-    Given the map, a BeliefGrid of its own with the views so far, returns poses (n, 4, 4). What it
-    raises passes through. It must not call the planner, nor refer to it: the two would never be
-    released.
-name : str)")
+          py::arg("generator"), py::arg("name") = "generator", kAddGeneratorDoc)
       .def("add", &add, py::arg("depth"), py::arg("T_world_camera"), py::kw_only(),
-           py::arg("amplitude") = py::none(),
-           R"(Puts a frame into the map; the last proposal is void.
-
-Parameters
-----------
-depth : array_like, (height, width), floating point
-    Along the optical axis [m]; 0, NaN or masked: nothing known, inf: nothing up to max_range.
-T_world_camera : array_like, (4, 4)
-amplitude : array_like, (height, width), optional
-    [1/m**2]
-
-Returns
--------
-AddedView
-    The counts of ``FrameIntegrator.integrate``; view (from 0); entropy_removed [nat] and new_area
-    [m**2] by this view, total_entropy_removed and total_area so far, unknown_voxels that are left.
-    new_area is area across the rays, as the expected area is: surface that is seen obliquely is
-    larger. It is NaN by gain "paper".
-
-Raises
-------
-ValueError
-    A shape, a dtype, or a pose that is not rigid. Nothing has changed then.)")
+           py::arg("pose_sigma") = std::array<double, 2>{0, 0}, py::arg("amplitude") = py::none(),
+           kAddDoc)
       .def("register_frame", &register_frame, py::arg("depth"), py::arg("T_world_camera"),
            py::kw_only(), py::arg("sigma_translation") = PosePrior{}.sigma_translation,
            py::arg("sigma_rotation") = PosePrior{}.sigma_rotation,
-           py::arg("amplitude") = py::none(),
-           R"(Where the camera was, by what the frame shows of the map so far. Changes nothing.
-
-Minimises the distances of the frame's readings from the map's points along the surface's normals,
-by Gauss and Newton, with the reported pose as prior. Put a frame that is "registered" in at the pose
-that was found, one with "too_little_overlap" as reported, and leave out one that is "refused": it
-contradicts the map, or would move by more than five sigmas. Some 100 to 300 ms a frame.
-
-Parameters
-----------
-depth : array_like, (height, width), floating point
-    As for ``add``.
-T_world_camera : array_like, (4, 4)
-    As it is reported.
-sigma_translation : float
-    How far each coordinate of the camera's centre may be off, 1 sigma [m].
-sigma_rotation : float
-    The same of each component of its rotation [rad].
-amplitude : array_like, (height, width), optional
-    [1/m**2]
-
-Returns
--------
-FrameRegistration
-
-Raises
-------
-ValueError
-    A shape, a dtype, a pose that is not rigid, a sigma that is not positive.)")
-      .def("propose", &propose, R"(The candidates that are possible now.
-
-Returns
--------
-Proposal
-    T_world_camera (n, 4, 4), generator (list of str, one a candidate), dropped (reason -> how many;
-    the names of ``INFEASIBILITY_NAMES``, and "missed": it was commanded and not reached).)")
+           py::arg("amplitude") = py::none(), kRegisterFrameDoc)
+      .def("propose", &propose, kProposeDoc)
       .def("rank", &rank, py::arg("k") = 1, py::kw_only(), py::arg("poses") = py::none(),
            py::arg("costs") = py::none(), py::arg("cost_per_metre") = 0.0, py::arg("exact") = false,
-           py::arg("control") = py::none(),
-           R"(The k best candidates of the last proposal, or of any poses.
-
-Parameters
-----------
-k : int
-poses : array_like, (n, 4, 4), optional
-    Instead of the proposal; nobody looks whether they are possible. Bad ones are last, with NaN.
-    Says nothing to ``should_stop``.
-costs : array_like, (n,), optional
-    Subtracted from the gains, in their unit.
-cost_per_metre : float
-    Of the way from the last view, likewise. The combined gain of new surface goes with 1 / voxel**2,
-    and so should this.
-exact : bool
-    Score all in full. Else, but by gain "paper", in two stages: see ``GainEvaluator.race``.
-control : BatchControl, optional
-
-Returns
--------
-Ranking
-    Arrays, best first: index (into the candidates or poses), T_world_camera, gain [nat; by gain
-    "surface" m**2], area [m**2] (NaN by gain "paper"), worth (the gain less the cost; 0 or less: the
-    way costs more than the view brings); and complete, False if a stop was requested.
-
-Raises
-------
-ValueError
-    There is no proposal since the last view, or costs are not one a pose.)")
+           py::arg("control") = py::none(), kRankDoc)
       .def(
           "tried",
           [](Planner& self, const py::object& T_world_camera, bool reached) {
             const Pose pose = one_pose(T_world_camera, "T_world_camera");
             self.use([&](ViewPlanner& planner) { planner.tried(pose, reached); });
           },
-          py::arg("T_world_camera"), py::arg("reached"),
-          R"(A pose was commanded: it is not proposed again, and goes out of the proposal as it stands.
-
-Parameters
-----------
-T_world_camera : array_like, (4, 4)
-reached : bool
-    Whether the camera got there.)")
+          py::arg("T_world_camera"), py::arg("reached"), kTriedDoc)
       .def(
           "should_stop",
           [](Planner& self) -> py::object {
@@ -356,13 +237,7 @@ reached : bool
                             : py::object(py::none());
             });
           },
-          R"(Why to end, if there is a reason.
-
-Returns
--------
-str or None
-    After ``add`` max_views or idle; after ``propose`` no_candidates or unreachable; after ``rank`` of
-    the proposal gain or area.)")
+          kShouldStopDoc)
       .def_property_readonly(
           "grid",
           [](Planner& self) {

@@ -11,7 +11,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "classes.hpp"
-#include "fields.hpp"
+#include "given.hpp"
 #include "map/depth_images.hpp"
 #include "named.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -37,99 +37,6 @@ py::object to_object(const RangeCalibration& calibration) {
                              calibration.table.front().data());
 }
 
-void bind_camera(py::module_& module) {
-  auto type = bound_class<PinholeCamera>(module, "PinholeCamera",
-                                         R"(Pinhole camera with OpenCV's distortion model.
-
-The optical frame has x right, y down, z forward; pixel (0, 0) has its centre at (0, 0).
-
-Parameters
-----------
-width, height : int
-    [px], 1 to 16384; at most 2**24 pixels.
-fx, fy : float
-    Focal lengths [px].
-cx, cy : float
-    Principal point [px].
-distortion : sequence of 5 floats, optional
-    k1 k2 p1 p2 k3.
-
-Raises
-------
-ValueError
-    Names the field that is out of its bounds.)");
-  pickle_as_call(type, {"width", "height", "fx", "fy", "cx", "cy", "distortion"});
-  type.def(py::init([](int width, int height, double fx, double fy, double cx, double cy,
-                       const std::array<double, 5>& distortion) {
-             const PinholeCamera camera{width, height, fx, fy, cx, cy, distortion};
-             camera.validate();
-             return camera;
-           }),
-           py::arg("width"), py::arg("height"), py::kw_only(), py::arg("fx"), py::arg("fy"),
-           py::arg("cx"), py::arg("cy"), py::arg("distortion") = std::array<double, 5>{})
-      .def_readonly("width", &PinholeCamera::width, "int: [px]")
-      .def_readonly("height", &PinholeCamera::height, "int: [px]")
-      .def_readonly("fx", &PinholeCamera::fx, "float: focal length [px]")
-      .def_readonly("fy", &PinholeCamera::fy, "float: focal length [px]")
-      .def_readonly("cx", &PinholeCamera::cx, "float: principal point [px]")
-      .def_readonly("cy", &PinholeCamera::cy, "float: principal point [px]")
-      .def_readonly("distortion", &PinholeCamera::distortion, "list of float: k1 k2 p1 p2 k3")
-      .def(
-          "rays",
-          [](const PinholeCamera& camera) {
-            const std::vector<Eigen::Vector3d> table = camera.ray_table();
-            py::array_t<double> rays(Shape{camera.height, camera.width, 3});
-            double* out = rays.mutable_data();
-            for (const Eigen::Vector3d& ray : table) out = std::copy_n(ray.data(), 3, out);
-            return rays;
-          },
-          R"(Directions (x, y, 1) of all pixel centres, camera frame, distortion undone.
-
-Returns
--------
-ndarray, (height, width, 3), float64
-    NaN where the distortion model has no solution.)")
-      .def(
-          "project",
-          [](const PinholeCamera& camera, const py::object& points_camera) {
-            const Doubles points = items(points_camera, "points", {3});
-            Shape shape = leading_shape(points, 1);
-            shape.push_back(2);
-            py::array_t<double> pixels(shape);
-            const double* p = points.data();
-            double* out = pixels.mutable_data();
-            for (py::ssize_t i = 0; i < points.size() / 3; ++i, p += 3) {
-              const Eigen::Vector2d uv = camera.project({p[0], p[1], p[2]});
-              *out++ = uv.x();
-              *out++ = uv.y();
-            }
-            return pixels;
-          },
-          py::arg("points"), R"(Pixel coordinates of points in the camera frame.
-
-Parameters
-----------
-points : array_like, (..., 3)
-    Camera frame [m].
-
-Returns
--------
-ndarray, (..., 2), float64
-    (u, v) [px]; NaN behind the camera.)")
-      .def(
-          "__eq__", [](const PinholeCamera& a, const PinholeCamera& b) { return a == b; },
-          py::is_operator())
-      .def("__repr__", [](const PinholeCamera& c) {
-        const std::string rest =
-            Fields().add("fx", c.fx).add("fy", c.fy).add("cx", c.cx).add("cy", c.cy).in("");
-        std::string text = "PinholeCamera(" + std::to_string(c.width) + ", " +
-                           std::to_string(c.height) + ", " + rest.substr(1);
-        if (!c.has_distortion()) return text;
-        text.pop_back();
-        return text + ", distortion=" + py::repr(py::cast(c.distortion)).cast<std::string>() + ")";
-      });
-}
-
 bool is_same(const Sensor& a, const Sensor& b) {
   return a.name == b.name && a.camera == b.camera && a.min_range == b.min_range &&
          a.max_range == b.max_range && a.working_distance == b.working_distance &&
@@ -141,7 +48,6 @@ bool is_same(const Sensor& a, const Sensor& b) {
 }  // namespace
 
 void bind_sensors(py::module_& module) {
-  bind_camera(module);
   auto type = bound_class<Sensor>(module, "Sensor",
                                   R"(A depth camera: intrinsics, range limits, noise. Immutable.
 
@@ -156,9 +62,9 @@ noise : ShotNoise or StructuredLightNoise or StereoNoise or QuadraticNoise or Co
 name : str, optional
     For reports.
 T_flange_camera : array_like, (4, 4), optional
-    Mounting on the robot's flange.
+    Mounting on the robot's flange: from the camera's frame to the flange's.
 body_size : array_like, (3,), optional
-    Width, height, depth of the housing [m].
+    Width, height, depth of the housing, flange frame [m].
 range_calibration : array_like, (n, 2), optional
     Rows of measured range and measured minus true range [m], measured ranges rising: the systematic
     error, as the program's ``calibrate`` measures it. ``read_frames`` takes it away.
@@ -170,16 +76,23 @@ pose_sigma : array_like, (2,), optional
 Raises
 ------
 ValueError
-    Names the field that is out of its bounds.)");
+    Names the field that is out of its bounds.
+TypeError
+    camera is none, noise is no noise model, a number is none.
+
+Notes
+-----
+Equal by value; can be pickled. Holds the GIL. Cost: some µs; linear in the rows of
+range_calibration.)");
   pickle_as_call(type, {"camera", "min_range", "max_range", "working_distance", "noise", "name",
                         "T_flange_camera", "body_size", "range_calibration", "pose_sigma"});
-  type.def(py::init([](const PinholeCamera& camera, double min_range, double max_range,
+  type.def(py::init([](const Given<PinholeCamera>& camera, double min_range, double max_range,
                        double working_distance, const NoiseModel& noise, std::string name,
                        const py::object& T_flange_camera,
                        std::optional<std::array<double, 3>> body_size, const py::object& table,
                        const std::array<double, 2>& pose_sigma) {
              Sensor sensor{std::move(name),
-                           camera,
+                           *camera,
                            min_range,
                            max_range,
                            working_distance,
@@ -210,12 +123,14 @@ ValueError
             if (!sensor.T_flange_camera) return py::none();
             return to_array(*sensor.T_flange_camera);
           },
-          "ndarray, (4, 4), or None")
-      .def_readonly("body_size", &Sensor::body_size, "list of 3 float, [m], or None")
+          "ndarray, (4, 4), float64, or None: from the camera's frame to the flange's")
+      .def_readonly(
+          "body_size", &Sensor::body_size,
+          "list of float, (3,), or None: width, height, depth of the housing, flange frame [m]")
       .def_property_readonly(
           "range_calibration",
           [](const Sensor& sensor) { return to_object(sensor.range_calibration); },
-          "ndarray, (n, 2), [m], or None")
+          "ndarray, (n, 2), float64, or None: measured range and its error [m]")
       .def_property_readonly(
           "pose_sigma",
           [](const Sensor& sensor) {
@@ -232,6 +147,8 @@ ValueError
           py::arg("depth"),
           R"(A depth image without the error of range_calibration, as ``read_frames`` gives them.
 
+Cost: linear in the pixels, 30 ns each, with distortion 0.5 µs.
+
 Parameters
 ----------
 depth : array_like, (height, width)
@@ -240,7 +157,7 @@ depth : array_like, (height, width)
 Returns
 -------
 ndarray, (height, width), float32
-    0 where nothing is known.
+    Along the optical axis [m]; 0 where nothing is known.
 
 Raises
 ------
@@ -265,7 +182,12 @@ cos_incidence : float
 Returns
 -------
 Sigmas
-    axial and lateral, a named tuple [m].)")
+    axial and lateral, a named tuple [m].
+
+Raises
+------
+TypeError
+    Something is no number. Whether t is one of the sensor's ranges nobody looks.)")
       .def(
           "__eq__", [](const Sensor& a, const Sensor& b) { return is_same(a, b); },
           py::is_operator())
@@ -291,24 +213,43 @@ name : str
 
 Returns
 -------
-Sensor)");
-  module.def(
-      "sensor_preset_names", [] { return sensor_preset_names(); },
-      "The names that ``sensor_preset`` takes.\n\nReturns\n-------\nlist of str");
-  module.def("default_prior_sigma", &default_prior_sigma, py::arg("voxel_size"), py::arg("sensor"),
-             R"(Standard deviation of an unknown voxel's position, when the map does not say [m].
-
-``max(voxel_size / 2, 2 * axial sigma at the working distance)``: unknown is never surer than one
-reading.
-
-Returns
--------
-float
+Sensor
 
 Raises
 ------
 ValueError
-    voxel_size is not positive and finite.)");
+    There is no such preset; names those that there are.)");
+  module.def(
+      "sensor_preset_names", [] { return sensor_preset_names(); },
+      "The names that ``sensor_preset`` takes.\n\nReturns\n-------\nlist of str");
+  module.def(
+      "default_prior_sigma",
+      [](double voxel_size, const Given<Sensor>& sensor) {
+        return default_prior_sigma(voxel_size, *sensor);
+      },
+      py::arg("voxel_size"), py::arg("sensor"),
+      R"(Standard deviation of an unknown voxel's position, when the map does not say [m].
+
+``max(voxel_size / 2, 2 * axial sigma at the working distance)``: unknown is never surer than one
+reading.
+
+Parameters
+----------
+voxel_size : float
+    [m]
+sensor : Sensor
+
+Returns
+-------
+float
+    [m]
+
+Raises
+------
+ValueError
+    voxel_size is not positive and finite.
+TypeError
+    It is no sensor.)");
 }
 
 }  // namespace viewgain::python

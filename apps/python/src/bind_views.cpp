@@ -13,6 +13,7 @@
 #include "batch_call.hpp"
 #include "evaluator.hpp"
 #include "gil.hpp"
+#include "given.hpp"
 #include "map/depth_images.hpp"
 #include "python_call.hpp"
 #include "viewgain/raycast/depth_image.hpp"
@@ -124,7 +125,7 @@ class PythonMeasure : public ViewMeasure {
 };
 
 py::object evaluate_own(const Evaluator& self, const py::object& T_world_camera,
-                        const py::object& measure, Control* control) {
+                        const py::object& measure, const GivenOrNone<Control>& control) {
   if (PyCallable_Check(measure.ptr()) == 0) throw py::type_error("measure must be callable");
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
   const PythonMeasure own(measure);
@@ -144,7 +145,8 @@ void bind_views(py::module_& module, py::class_<Evaluator>& evaluator) {
   PYBIND11_NUMPY_DTYPE(OwnHitRow, voxel, state, readings, information, ray, range, direction);
   module.attr("HIT_KIND_NAMES") = py::make_tuple("none", "unknown", "occupied", "obstacle");
   evaluator
-      .def("trace", &trace_array, py::arg("T_world_camera"), R"(Where the rays of a view end.
+      .def("trace", &trace_array, py::arg("T_world_camera"),
+           R"(Where the rays of a view end. Cost: linear in the rays, 0.7 ms for 176x144 pixels.
 
 Parameters
 ----------
@@ -154,11 +156,12 @@ Returns
 -------
 ndarray, (height', width'), structured
     One a ray, image size divided by the stride, rounded up: kind (index into ``HIT_KIND_NAMES``),
-    voxel (int32, 3), range along the ray [m], inf: nothing.)")
+    voxel (int32, 3; on the lattice), range along the ray [m], inf: nothing.)")
       .def("depth", &depth, py::arg("T_world_camera"),
            R"(The depth image of a view of the map: of the first voxel on each ray that is not free.
 
-One that is unknown ends a ray as well.
+One that is unknown ends a ray as well. Cost: that of ``trace``, with distortion its undoing for every
+pixel.
 
 Parameters
 ----------
@@ -171,6 +174,8 @@ ndarray, (height', width'), float32
       .def("contributions", &contributions, py::arg("T_world_camera"),
            R"(Why a view is good: what each voxel adds to its gain.
 
+On the calling thread alone. Cost: 3 times that of ``evaluate`` for this pose.
+
 Parameters
 ----------
 T_world_camera : array_like, (4, 4)
@@ -180,13 +185,13 @@ Returns
 ndarray, (n,), structured
     voxel (int32, 3; on the lattice, minus the grid's ``min_index`` for arrays), state, rays that end
     in it, expected_rays (by the surface and the combined gain: the sum of their chances to end there),
-    gain. Largest gain first; the gains add up to that of the view.)")
+    gain, in the unit of ``evaluate``. Largest gain first; the gains add up to that of the view.)")
       .def("evaluate_own", &evaluate_own, py::arg("T_world_camera"), py::arg("measure"),
            py::kw_only(), py::arg("control") = py::none(),
            R"(A gain of your own: a number for what a view would see.
 
 Slow: the function is called for one view after the other, under the GIL; the C++ interface
-ViewMeasure is the fast way.
+ViewMeasure is the fast way. Cost: 1.4 times that of ``evaluate``, and the function's for each pose.
 
 Parameters
 ----------
@@ -201,13 +206,15 @@ control : BatchControl, optional
 Returns
 -------
 ndarray, (...), float64
-    NaN for bad poses, 0 for cameras in an occupied voxel; neither is asked about. A single pose gives
+    What measure returns, in its unit; NaN for bad poses, 0 for cameras in an occupied voxel; neither is asked about. A single pose gives
     a scalar.
 
 Raises
 ------
 TypeError
-    measure returned no number.)");
+    measure cannot be called, or returned no number.
+ValueError
+    As ``evaluate``.)");
 }
 
 }  // namespace viewgain::python

@@ -48,6 +48,24 @@ void pickle_as_call(Class& type, std::vector<const char*> attributes) {
   });
 }
 
+/// Pickles, and copies, as the bytes that to_bytes() gives and from_bytes() takes. By name, so that
+/// pickles outlive the extension's own names. What a subclass adds is not ours to keep.
+template <typename Class>
+void pickle_as_bytes(Class& type) {
+  type.def("__reduce_ex__", [](const pybind11::object& self, int) {
+    const pybind11::type of_self = pybind11::type::of(self);
+    const pybind11::type own = pybind11::type::of<typename Class::type>();
+    if (!of_self.is(own)) {
+      throw pybind11::type_error(
+          "cannot pickle '" + of_self.attr("__name__").template cast<std::string>() +
+          "' object: it is a subclass of " + own.attr("__name__").template cast<std::string>());
+    }
+    const pybind11::object call = pybind11::module_::import("operator").attr("methodcaller");
+    return pybind11::make_tuple(call("from_bytes", self.attr("to_bytes")()),
+                                pybind11::make_tuple(of_self));
+  });
+}
+
 /// Refuses by TypeError, as Python does for what cannot be pickled.
 template <typename Class>
 void refuse_pickling(Class& type) {

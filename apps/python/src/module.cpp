@@ -57,12 +57,14 @@ PYBIND11_MODULE(_viewgain, module) {
   bind_fork();
   bind_control(module);
   bind_noise(module);
+  bind_camera(module);
   bind_sensors(module);
   bind_generators(module);
   bind_grid(module);
   bind_scene(module);
   bind_integrator(module);
   bind_cloud(module);
+  bind_reach(module);
   bind_feasibility(module);
   bind_simulation(module);
   bind_evaluator(module);

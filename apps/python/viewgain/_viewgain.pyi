@@ -59,6 +59,12 @@ class PinholeCamera:
         cy: float,
         distortion: Sequence[float] = ...,
     ) -> None: ...
+    @staticmethod
+    def from_matrix(
+        K: ArrayLike, width: int, height: int, *, distortion: Sequence[float] = ...
+    ) -> PinholeCamera: ...
+    @property
+    def matrix(self) -> _Floats: ...
     @property
     def width(self) -> int: ...
     @property
@@ -227,7 +233,7 @@ class BeliefGrid:
     ) -> None: ...
     @staticmethod
     def from_labels(
-        labels: NDArray[np.uint8],
+        labels: ArrayLike,
         *,
         voxel_size: float,
         origin: ArrayLike = ...,
@@ -355,6 +361,9 @@ class ReachRegion:
     @staticmethod
     def load(path: _Path) -> ReachRegion: ...
     def save(self, path: _Path) -> None: ...
+    def to_bytes(self) -> bytes: ...
+    @staticmethod
+    def from_bytes(data: bytes) -> ReachRegion: ...
     def contains(self, T_world_camera: ArrayLike) -> _BoolOrBools: ...
 
 class FeasibilityChecker:
@@ -569,7 +578,12 @@ class ViewPlanner:
         self, generator: Callable[[BeliefGrid], ArrayLike], name: str = "generator"
     ) -> None: ...
     def add(
-        self, depth: ArrayLike, T_world_camera: ArrayLike, *, amplitude: ArrayLike | None = None
+        self,
+        depth: ArrayLike,
+        T_world_camera: ArrayLike,
+        *,
+        pose_sigma: ArrayLike = ...,
+        amplitude: ArrayLike | None = None,
     ) -> AddedView: ...
     def register_frame(
         self,

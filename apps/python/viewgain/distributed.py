@@ -155,7 +155,8 @@ class Scores:
     """What score() came to."""
 
     best: NDArray
-    """The best rows, best first, as in the parts: index, gain, ..., status."""
+    """(top,), structured: the best rows, best first, as in the parts: index, gain, ..., status, of
+    ``GainEvaluator.evaluate_detailed`` [nat, m**2]."""
     parts: list[pathlib.Path]
     """The files, by rows; ``viewgain merge`` puts them together."""
     isa: str

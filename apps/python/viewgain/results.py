@@ -71,41 +71,41 @@ class GridStatistics(NamedTuple):
 class ChosenViews(NamedTuple):
     """The best of many poses, of ``best``, ``race`` and ``best_set`` with ``return_gains=True``."""
 
-    indices: Annotated[NDArray[np.int64], "(k,): into the poses with their leading axes flattened, best first."]
-    gains: Annotated[NDArray[np.void], "(k,), structured: as from ``evaluate_detailed``; of a set, what each adds."]
+    indices: Annotated[NDArray[np.int64], "(k,), int64: indices into the poses with their leading axes flattened, best first."]
+    gains: Annotated[NDArray[np.void], "(k,), structured: as from ``evaluate_detailed``, in its unit; of a set, what each adds."]
 
 
 @named("viewgain")
 class Frame(NamedTuple):
     """A recorded frame, of ``read_frames``."""
 
-    depth: Annotated[_Image, "(height, width): along the optical axis [m]; 0: nothing known, inf: nothing up to max_range."]
-    T_world_camera: Annotated[_Floats, "(4, 4)."]
-    amplitude: Annotated[Optional[_Image], "(height, width) [1/m**2], or None."]
+    depth: Annotated[_Image, "(height, width), float32: along the optical axis [m]; 0: nothing known, inf: nothing up to max_range."]
+    T_world_camera: Annotated[_Floats, "(4, 4), float64."]
+    amplitude: Annotated[Optional[_Image], "(height, width), float32 [1/m**2], or None."]
 
 
 @named("viewgain")
 class SimulatedFrame(NamedTuple):
     """A simulated frame, of ``SimulatedSensor.acquire``."""
 
-    depth: Annotated[_Image, "(height, width): along the optical axis [m]; 0: invalid, inf: nothing up to max_range."]
-    amplitude: Annotated[_Image, "(height, width): cos / range**2 [1/m**2]; 0 where there is no reading."]
+    depth: Annotated[_Image, "(height, width), float32: along the optical axis [m]; 0: invalid, inf: nothing up to max_range."]
+    amplitude: Annotated[_Image, "(height, width), float32: cos / range**2 [1/m**2]; 0 where there is no reading."]
 
 
 @named("viewgain")
 class Cloud(NamedTuple):
     """A point cloud, of ``load_cloud``."""
 
-    points: Annotated[_Floats, "(n, 3): as they stand in the file [m]; NaN where an organised cloud has none."]
-    viewpoint: Annotated[Optional[_Floats], "(4, 4): the sensor's pose in the points' frame, or None."]
+    points: Annotated[_Floats, "(n, 3), float64: as they stand in the file, in the file's frame [m]; NaN where an organised cloud has none."]
+    viewpoint: Annotated[Optional[_Floats], "(4, 4), float64: the sensor's pose in the points' frame, or None."]
 
 
 @named("viewgain")
 class TimedPoses(NamedTuple):
     """Poses with their times, of ``read_poses`` with ``return_timestamps=True``."""
 
-    T_world_camera: Annotated[_Floats, "(n, 4, 4)."]
-    timestamps: Annotated[_Floats, "(n,) [s]."]
+    T_world_camera: Annotated[_Floats, "(n, 4, 4), float64."]
+    timestamps: Annotated[_Floats, "(n,), float64 [s]."]
 
 
 @named("viewgain")
@@ -114,18 +114,19 @@ class FrameRegistration(NamedTuple):
 
     status: Annotated[str, "\"registered\", \"too_little_overlap\" or \"refused\"."]
     reason: Annotated[str, "Of the status, for people; empty if registered."]
-    T_world_camera: Annotated[_Floats, "(4, 4), corrected if registered, else as reported."]
-    covariance: Annotated[_Floats, "(6, 6), of its translation [m], then its rotation [rad], world axes."]
+    T_world_camera: Annotated[_Floats, "(4, 4), float64, corrected if registered, else as reported."]
+    covariance: Annotated[_Floats, "(6, 6), float64, of its translation [m], then its rotation [rad], world axes."]
     translation: Annotated[float, "Way of the camera's centre by the correction that was found [m]."]
     rotation: Annotated[float, "Its angle [rad]."]
     residual_before: Annotated[float, "RMS distance of the pairs at the reported pose [m]."]
     residual_after: Annotated[float, "The same at the pose that was found [m]."]
     readings: Annotated[int, "That were looked at."]
     pairs: Annotated[int, "Readings that belong to a point of the map."]
-    overlap: Annotated[float, "pairs / readings."]
+    overlap: Annotated[float, "Share: pairs / readings."]
     contradiction: Annotated[float, "Share of readings in space that is known to be free, or behind surface."]
-    smallest_information: Annotated[float, "Of the frame along any motion, in units of the prior's."]
+    smallest_information: Annotated[float, "Of the frame along any motion, as a factor of the prior's."]
     free_directions: Annotated[int, "Motions that the frame does not hold, which stay as reported."]
+    pose_sigma: Annotated[tuple, "(2,): what the covariance leaves in each axis [m], [rad], for ``ViewPlanner.add``."]
 
 
 @named("viewgain")
@@ -149,20 +150,26 @@ class AddedView(NamedTuple):
 
 @named("viewgain")
 class Proposal(NamedTuple):
-    """Candidates that are possible now, of ``ViewPlanner.propose``."""
+    """Candidates that are possible now, of ``ViewPlanner.propose``.
 
-    T_world_camera: Annotated[_Floats, "(n, 4, 4)."]
+    A tuple of these three: ``len(proposal)`` is 3, and ``len(proposal.T_world_camera)`` says how many candidates there are.
+    """
+
+    T_world_camera: Annotated[_Floats, "(n, 4, 4), float64."]
     generator: Annotated[list[str], "Which set or generator each is of."]
     dropped: Annotated[dict[str, int], "Reason -> how many: ``INFEASIBILITY_NAMES``, and \"missed\": commanded and not reached."]
 
 
 @named("viewgain")
 class Ranking(NamedTuple):
-    """The best candidates in their order, of ``ViewPlanner.rank``."""
+    """The best candidates in their order, of ``ViewPlanner.rank``.
 
-    index: Annotated[NDArray[np.int64], "(k,): into the candidates or poses."]
-    T_world_camera: Annotated[_Floats, "(k, 4, 4)."]
-    gain: Annotated[_Floats, "(k,) [nat; by gain \"surface\" m**2]."]
-    area: Annotated[_Floats, "(k,): new surface to be expected [m**2]; NaN by gain \"paper\"."]
-    worth: Annotated[_Floats, "(k,): the gain less the cost; 0 or less: the way costs more than the view brings."]
+    A tuple of these six: ``len(ranking)`` is 6, and ``len(ranking.index)`` says how many views there are.
+    """
+
+    index: Annotated[NDArray[np.int64], "(k,), int64: indices into the candidates or poses."]
+    T_world_camera: Annotated[_Floats, "(k, 4, 4), float64."]
+    gain: Annotated[_Floats, "(k,), float64 [nat; by gain \"surface\" m**2]."]
+    area: Annotated[_Floats, "(k,), float64: new surface to be expected [m**2]; NaN by gain \"paper\"."]
+    worth: Annotated[_Floats, "(k,), float64: the gain less the cost, in its unit; 0 or less: the way costs more than the view brings."]
     complete: Annotated[bool, "False if a stop was requested."]

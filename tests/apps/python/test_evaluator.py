@@ -123,7 +123,7 @@ def test_what_an_array_raises_passes_through(evaluator):
     for error in (TypeError, ValueError):
         with pytest.raises(ValueError, match="T_world_camera must be an array of numbers"):
             evaluator.evaluate(Source(error))
-        with pytest.raises(ValueError, match="labels must be uint8"):
+        with pytest.raises(ValueError, match="labels must be whole numbers"):
             viewgain.BeliefGrid.from_labels(Source(error), voxel_size=0.1)
 
 

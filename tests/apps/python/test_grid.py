@@ -123,7 +123,7 @@ def test_limits_are_looked_at_before_labels_are_copied():
 
 def test_wrong_labels_and_layouts_are_named(labels):
     make = functools.partial(viewgain.BeliefGrid.from_labels, prior_sigma=0.1)
-    for wrong, text in [(labels[0], r"\(32, 32\)"), (labels.astype(np.int32), "int32"),
+    for wrong, text in [(labels[0], r"\(32, 32\)"), (labels.astype(np.float32), "float32"),
                         (labels.astype(bool), "bool"), ("labels", "uint8")]:
         with pytest.raises(ValueError, match=text):
             make(wrong, voxel_size=0.01)

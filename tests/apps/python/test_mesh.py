@@ -1,5 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: GPL-3.0-or-later
+import copy
 import pickle
 import sys
 import threading
@@ -245,19 +246,43 @@ def stand_ins():
 
 
 @pytest.mark.parametrize("real", [False, True])
-def test_a_surface_goes_to_other_packages(plate, monkeypatch, real):
-    modules = {name: pytest.importorskip(name) for name in ("trimesh", "open3d")} if real else stand_ins()
-    for name, module in modules.items():
-        monkeypatch.setitem(sys.modules, name, module)
-    of_trimesh, of_open3d = plate.to_trimesh(), plate.to_open3d()
-    assert isinstance(of_trimesh, modules["trimesh"].Trimesh)
-    for vertices, normals, triangles in (
-            (of_trimesh.vertices, of_trimesh.vertex_normals, of_trimesh.faces),
-            (of_open3d.vertices, of_open3d.vertex_normals, of_open3d.triangles)):
-        assert np.array_equal(vertices, plate.vertices) and np.allclose(normals, plate.normals, atol=1e-12)
-        assert np.array_equal(triangles, plate.triangles) and len(plate.triangles) > 200
+@pytest.mark.parametrize("name", ["trimesh", "open3d"])
+def test_a_surface_goes_to_other_packages(plate, monkeypatch, name, real):
+    monkeypatch.setitem(sys.modules, name, pytest.importorskip(name) if real else stand_ins()[name])
+    mesh = getattr(plate, f"to_{name}")()
+    normals, triangles = mesh.vertex_normals, mesh.faces if name == "trimesh" else mesh.triangles
+    assert np.array_equal(mesh.vertices, plate.vertices) and np.allclose(normals, plate.normals, atol=1e-12)
+    assert np.array_equal(triangles, plate.triangles) and len(plate.triangles) > 200
     if not real:
-        assert of_trimesh.process is False and of_open3d.triangles.dtype == np.int32
+        assert mesh.process is False if name == "trimesh" else triangles.dtype == np.int32
+
+
+def test_a_surface_goes_through_bytes_and_pickles(plate):
+    empty = viewgain.mesh.reconstruct_surface(np.zeros((0, 3)), spacing=VOXEL)
+    for one in (plate, empty):
+        again = viewgain.mesh.Surface.from_bytes(one.to_bytes())
+        assert again == one and again.to_bytes() == one.to_bytes()
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+            assert pickle.loads(pickle.dumps(one, protocol)) == one
+        assert copy.copy(one) == one == copy.deepcopy(one)
+    data = plate.to_bytes()
+    damaged = [data[:at] + bytes([data[at] ^ 4]) + data[at + 1:] for at in range(0, len(data), 61)]
+    damaged += [data[:length] for length in range(0, len(data), 97)] + [data + b"x", viewgain.ReachRegion().to_bytes()]
+    for bad in damaged:
+        with pytest.raises(viewgain.Error, match="no surface that to_bytes"):
+            viewgain.mesh.Surface.from_bytes(bad)
+    assert len(damaged) > 200
+
+
+def test_an_object_in_anothers_place_is_named(plate, sensor, camera, start):
+    calls = [(lambda: viewgain.mesh.surface_of_grid(plate), "grid must be a BeliefGrid, not Surface"),
+             (lambda: viewgain.mesh.boundary_candidates(plate.vertices, [start], sensor, spacing=VOXEL), "surface must be a Surface, not ndarray"),
+             (lambda: viewgain.mesh.boundary_candidates(plate, [start], "sr4000", spacing=VOXEL), "sensor must be a Sensor, not str"),
+             (lambda: reconstruct(camera, "sr4000", start), "sensor must be a Sensor, not str")]
+    for call, text in calls:
+        with pytest.raises(TypeError, match=text):
+            call()
+    assert len(calls) == 4
 
 
 @pytest.mark.parametrize("name", ["trimesh", "open3d"])

@@ -116,7 +116,7 @@ def test_classes_say_how_they_are_pickled(name, evaluator, sensor):
     for one in classes:
         assert "__reduce_ex__" in vars(one), one
     assert len(classes) == (18 if name == MODULES[0] else 2)
-    things = [evaluator, evaluator.scene, viewgain.BatchControl(), viewgain.ReachRegion(),
+    things = [evaluator, evaluator.scene, viewgain.BatchControl(),
               viewgain.FeasibilityChecker(evaluator.scene), viewgain.FrameIntegrator(sensor),
               viewgain.CloudIntegrator(sensor)]
     for thing in things:

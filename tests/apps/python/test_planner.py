@@ -74,6 +74,11 @@ def test_registers_a_frame_against_its_map(sensor, camera, poses):
     far = reported.copy()
     far[:3, 3] += 0.1 * poses[3][:3, 0]
     assert planner.register_frame(depth, far).status != "registered"
+    variances = np.diag(found.covariance)
+    assert np.allclose(found.pose_sigma, np.sqrt([variances[:3].mean(), variances[3:].mean()]))
+    assert first.pose_sigma == (0, 0)  # of an empty map's first frame
+    with pytest.raises(ValueError, match="sigma"):
+        planner.add(depth, reported, amplitude=amplitude, pose_sigma=(-1, 0))
     with pytest.raises(ValueError, match="sigma_rotation"):
         planner.register_frame(depth, reported, sigma_rotation=0)
 

@@ -14,6 +14,7 @@
 #include "classes.hpp"
 #include "depth_images.hpp"
 #include "gil.hpp"
+#include "given.hpp"
 #include "integration.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -43,15 +44,16 @@ Cloud cloud_in_world(const Sensor& sensor, const py::object& points_sensor, cons
   return cloud;
 }
 
-py::object integrate(Integrator& self, SharedGrid& grid, const py::object& points_sensor,
-                     const py::object& T_world_sensor) {
+py::object integrate(Integrator& self, const Given<SharedGrid>& grid,
+                     const py::object& points_sensor, const py::object& T_world_sensor) {
   const Pose pose = one_pose(T_world_sensor, "T_world_sensor");
-  return self.integrate(grid, cloud_in_world(self.sensor, points_sensor, pose), pose);
+  return self.integrate(*grid, cloud_in_world(self.sensor, points_sensor, pose), pose);
 }
 
-py::object bounds(const Sensor& sensor, const py::object& points_sensor,
+py::object bounds(const Given<Sensor>& of, const py::object& points_sensor,
                   const py::object& T_world_sensor, std::optional<double> support_plane) {
   const Pose pose = one_pose(T_world_sensor, "T_world_sensor");
+  const Sensor& sensor = *of;
   const Cloud cloud = cloud_in_world(sensor, points_sensor, pose);
   std::optional<Box> box;
   {
@@ -88,8 +90,12 @@ Parameters
 ----------
 sensor : Sensor
     Only its noise, fx (where the noise across the ray is a pixel's footprint) and range limits matter.
-)") + kIntegratorSettings;
+)") + kIntegratorSettings +
+                          kIntegratorRaises;
   const std::string integrate_doc = std::string(R"(Updates the grid by one cloud.
+
+Cost: grows with the points and with the voxels that their lines cross: 25 ms for 25,000 points and voxels
+of 5 mm on two threads.
 
 Parameters
 ----------
@@ -103,10 +109,10 @@ T_world_sensor : array_like, (4, 4)
 )") + kIntegrateReturns;
   auto type = bound_class<Integrator>(module, "CloudIntegrator", doc.c_str());
   refuse_pickling(type);
-  type.def(py::init([](const Sensor& sensor, const std::string& occupancy,
+  type.def(py::init([](const Given<Sensor>& sensor, const std::string& occupancy,
                        std::optional<double> support_plane, int num_threads) {
              const CloudIntegrationConfig config{parse_occupancy(occupancy), support_plane};
-             return std::make_unique<Integrator>(sensor, config, num_threads);
+             return std::make_unique<Integrator>(*sensor, config, num_threads);
            }),
            py::arg("sensor"), py::kw_only(), py::arg("occupancy") = "probabilistic",
            py::arg("support_plane") = py::none(), py::arg("num_threads") = 0)
@@ -119,15 +125,32 @@ T_world_sensor : array_like, (4, 4)
              py::arg("T_world_sensor"), py::kw_only(), py::arg("support_plane") = py::none(),
              R"(The box that holds every reading of a cloud, for choosing a workspace.
 
-Parameters are those of ``CloudIntegrator`` and its ``integrate``.
+Runs without the GIL. Cost: linear in the points, 1.5 ms for 25,000.
+
+Parameters
+----------
+sensor : Sensor
+points, T_world_sensor
+    As ``CloudIntegrator.integrate``.
+support_plane : float, optional
+    Height z [m] of the table, whose readings do not count.
 
 Returns
 -------
-ndarray, (2, 3), or None
-    Lowest and highest corner, world frame [m]; None if the cloud has no reading.)");
+ndarray, (2, 3), float64, or None
+    Lowest and highest corner, world frame [m]; None if the cloud has no reading.
+
+Raises
+------
+ValueError
+    As ``CloudIntegrator.integrate``.
+TypeError
+    It is no sensor.)");
   module.def(
       "load_cloud", &load, py::arg("path"),
       R"(Reads the points of a .pcd (ascii, binary, binary_compressed) or .ply (ascii, binary).
+
+Runs without the GIL. Cost: linear in the file.
 
 Parameters
 ----------
@@ -138,8 +161,8 @@ Returns
 Cloud
     A named tuple of the two.
 points : ndarray, (n, 3), float64
-    As they stand in the file, in the frame that it is in; NaN where an organised cloud has none.
-viewpoint : ndarray, (4, 4), or None
+    As they stand in the file, in the file's frame, [m] by custom; NaN where an organised cloud has none.
+viewpoint : ndarray, (4, 4), float64, or None
     A PCD's VIEWPOINT: the sensor's pose in that frame. Points of the world become the sensor's by its
     inverse.
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -13,6 +15,7 @@
 #include "bindings.hpp"
 #include "classes.hpp"
 #include "gil.hpp"
+#include "given.hpp"
 #include "grid_class.hpp"
 #include "named.hpp"
 #include "prior.hpp"
@@ -40,21 +43,47 @@ struct PointRow {
 
 namespace {
 
-using Labels = py::array_t<std::uint8_t, py::array::c_style>;
+using Labels = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>;
+
+// Names the labels that are no states.
+void require_states(const py::array& labels) {
+  const auto is_state = [](const py::object& label) {
+    const auto number = py::int_(label);
+    return !(number < py::int_(0)) && !(number > py::int_(2));
+  };
+  if (is_state(labels.attr("min")()) && is_state(labels.attr("max")())) return;
+  const auto numpy = py::module_::import("numpy");
+  const py::object values = numpy.attr("setdiff1d")(labels, py::make_tuple(0, 1, 2));
+  const std::size_t count = py::len(values), named = std::min<std::size_t>(count, 5);
+  std::string text = "labels holds ";
+  for (std::size_t i = 0; i < named; ++i) {
+    text.append(i > 0 ? ", " : "").append(py::str(values[py::int_(i)]).cast<std::string>());
+  }
+  if (named < count) text.append(" and ").append(std::to_string(count - named)).append(" more");
+  throw py::value_error(text + ": 0 is unknown, 1 free, 2 occupied");
+}
 
 std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_size,
                                         const py::object& origin, const py::object& T_world_grid,
-                                        std::optional<double> prior_sigma, const Sensor* sensor) {
-  const std::string wanted = "labels must be uint8 with the shape (nx, ny, nz)";
+                                        std::optional<double> prior_sigma,
+                                        const GivenOrNone<Sensor>& sensor) {
+  const std::string wanted =
+      "labels must be whole numbers, uint8 at best, of the shape (nx, ny, nz)";
   const py::array any =
       any_array(is_masked_array(labels) ? labels.attr("filled")(0) : labels, wanted);
-  if (any.dtype().kind() != 'u' || any.itemsize() != 1 || any.ndim() != 3) {
+  if (any.dtype().kind() == 'b') {
+    throw py::value_error(
+        "labels is of bools, which say two of the three states: numpy.where(labels, 2, 1) makes "
+        "True "
+        "occupied and False free");
+  }
+  if ((any.dtype().kind() != 'u' && any.dtype().kind() != 'i') || any.ndim() != 3) {
     throw py::value_error(wanted + ", not " + py::str(any.dtype()).cast<std::string>() + " " +
                           shape_text(any));
   }
   GridConfig config;
   config.voxel_size = voxel_size;
-  config.prior_sigma = prior_of(prior_sigma, sensor, voxel_size);
+  config.prior_sigma = prior_of(prior_sigma, sensor.value, voxel_size);
   // The lattice goes through the corner of the array, wherever that is.
   config.T_world_grid = T_world_grid.is_none()
                             ? Pose(Eigen::Matrix3d::Identity(), vector3(origin, "origin"))
@@ -64,6 +93,7 @@ std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_s
         static_cast<double>(any.shape(static_cast<py::ssize_t>(axis))) * voxel_size;
   }
   static_cast<void>(BeliefGrid(config));  // throws before what no grid can hold is copied
+  require_states(any);
   const Labels array(any);
   const std::span states(array.data(), static_cast<std::size_t>(array.size()));
   const WithoutGil without_gil;
@@ -132,8 +162,8 @@ void bind_grid(py::module_& module) {
       R"(What is known of a workspace, voxel by voxel.
 
 Voxel (i, j, k) is [i, i+1) x [j, j+1) x [k, k+1) times the voxel size in the grid's frame. A new
-grid is unknown throughout. Threads of Python may share one: they wait for each other. Grids are equal
-if their ``content_hash()`` is.
+grid is unknown throughout, and takes little memory. Grids are equal if their ``content_hash()`` is, and
+can be pickled.
 
 Parameters
 ----------
@@ -153,18 +183,27 @@ Raises
 ------
 ValueError
     Names the value that is out of its bounds; neither sensor nor prior_sigma.
+TypeError
+    sensor is none.
 Error
-    More than 65,536 voxels along an axis or 2**40 in all.)");
+    More than 65,536 voxels along an axis or 2**40 in all.
+
+Notes
+-----
+Methods leave the GIL while they work. Threads of Python may share a grid: many read it at once, one
+changes it, and they wait for each other. Cost: methods that give or change voxels are linear in what
+they give or change, some ms for 128**3 voxels with 40,000 occupied ones; properties are constant but for
+a copy of a few numbers.)");
   bind_grid_files(grid_class);
   bind_voxels(grid_class);
   grid_class
       .def(py::init([](double voxel_size, const py::object& workspace,
-                       std::optional<double> prior_sigma, const Sensor* sensor,
+                       std::optional<double> prior_sigma, const GivenOrNone<Sensor>& sensor,
                        const py::object& T_world_grid) {
              GridConfig config;
              config.voxel_size = voxel_size;
              config.workspace = box(workspace, "workspace");
-             config.prior_sigma = prior_of(prior_sigma, sensor, voxel_size);
+             config.prior_sigma = prior_of(prior_sigma, sensor.value, voxel_size);
              config.T_world_grid = optional_pose(T_world_grid, "T_world_grid").value_or(Pose{});
              return std::make_shared<SharedGrid>(BeliefGrid(config));
            }),
@@ -179,15 +218,18 @@ Error
 
 Parameters
 ----------
-labels : ndarray, (nx, ny, nz), uint8
-    0 unknown, 1 free, 2 occupied. Masked entries of a masked array are unknown.
+labels : array_like, (nx, ny, nz), whole numbers
+    0 unknown, 1 free, 2 occupied. uint8 is read in place if it is C-contiguous, other integers and nested
+    lists are converted once. Masked entries of a masked array are unknown.
 voxel_size : float
     [m]
 origin : array_like, (3,)
     Lowest corner of voxel (0, 0, 0), world frame [m]; the grid's frame has its origin there.
 T_world_grid : array_like, (4, 4), optional
     Places that corner and the axes; takes the place of origin.
-prior_sigma, sensor
+prior_sigma : float, optional
+    Standard deviation of an unknown voxel's position [m].
+sensor : Sensor, optional
     As for a new grid: one of the two is needed.
 
 Returns
@@ -197,11 +239,14 @@ BeliefGrid
 Raises
 ------
 ValueError
-    Another dtype or shape, a state over 2, an origin that is not finite, or neither sensor nor
-    prior_sigma.
+    Another dtype or shape (of bools, too: they do not say which is unknown), labels other than 0, 1
+    and 2, which are named, an origin that is not finite, or neither sensor nor prior_sigma.
+TypeError
+    sensor is none.
 Error
     More voxels than a grid can hold.)")
-      .def("clone", &clone_of, "A deep copy.\n\nReturns\n-------\nBeliefGrid")
+      .def("clone", &clone_of,
+           "A deep copy; beliefs are shared until one is written.\n\nReturns\n-------\nBeliefGrid")
       .def("__copy__", &clone_of)
       .def("__deepcopy__", [](const SharedGrid& grid, const py::dict&) { return clone_of(grid); })
       .def_property_readonly(
@@ -230,11 +275,11 @@ Error
             const Box box = grid.layout().workspace();
             return to_array_3<double>({box.min, box.max});
           },
-          "ndarray, (2, 3): lowest and highest corner, grid frame [m]")
+          "ndarray, (2, 3), float64: lowest and highest corner, grid frame [m]")
       .def_property_readonly(
           "T_world_grid",
           [](const SharedGrid& grid) { return to_array(grid.layout().T_world_grid()); },
-          "ndarray, (4, 4)")
+          "ndarray, (4, 4), float64: places the grid's frame in the world")
       .def("states", &states_of, R"(All voxels' states.
 
 Returns
@@ -247,11 +292,12 @@ ndarray, (nx, ny, nz), uint8
             const auto views = grid.read([](const BeliefGrid& g) { return g.views(); });
             return to_array(views, {static_cast<py::ssize_t>(views.size())});
           },
-          R"(T_world_camera of every frame integrated so far, in order.
+          R"(Where every frame integrated so far was taken, in order.
 
 Returns
 -------
-ndarray, (n, 4, 4), float64)")
+ndarray, (n, 4, 4), float64
+    T_world_camera.)")
       .def_property_readonly(
           "hazard_factors",
           [](const SharedGrid& grid) {
@@ -263,7 +309,7 @@ ndarray, (n, 4, 4), float64)")
             }
             return py::array_t<double>(static_cast<py::ssize_t>(factors.size()), factors.data());
           },
-          R"(ndarray, (8,), float64: what frames have said of the hazard of unknown space.
+          R"(ndarray, (8,), float64: factors, what frames have said of the hazard of unknown space.
 
 By class of distance from known surface, the nearest first: what the start values are multiplied by
 (before rates are made to fall with the distance); ones before ``FrameIntegrator.calibrate_hazard`` was called.)")
@@ -278,7 +324,7 @@ By class of distance from known surface, the nearest first: what the start value
 Returns
 -------
 ndarray, (n,), structured
-    voxel (int32, 3; on the lattice, minus ``min_index`` for arrays), hits, information (float32, 6:
+    voxel (int32, 3; on the lattice, minus ``min_index`` for arrays), hits (a count), information (float32, 6:
     xx yy zz xy xz yz [1/m**2]), information_vector (float32, 3 [1/m], about the voxel's centre).)")
       .def(
           "points",
@@ -293,18 +339,43 @@ ndarray, (n,), structured
           py::kw_only(), py::arg("min_hits") = 2, py::arg("num_threads") = 0,
           R"(The points of the surface as the map knows it.
 
+Cost: linear in the voxels that were ever hit, some µs each, 0.25 s for 40,000 occupied ones on two
+threads.
+
+Parameters
+----------
+min_hits : int
+    Points of fewer readings are left out.
+num_threads : int
+    0: all hardware threads. Never changes the result.
+
 Returns
 -------
 ndarray, (n,), structured
     position (float64, 3, world frame [m]), covariance (float64, 6: xx yy zz xy xz yz [m**2]),
-    toward_free (float64, 3: unit normal towards free space), hits.)")
+    toward_free (float64, 3: unit normal towards free space, world frame), hits.
+
+Raises
+------
+ValueError
+    num_threads is out of its bounds.)")
       .def("statistics", &statistics_of, py::arg("criterion") = "log_diagonal",
            R"(Voxel counts and progress.
+
+Parameters
+----------
+criterion : {"log_diagonal", "log_determinant", "trace"}
+    By which entropy is measured.
 
 Returns
 -------
 GridStatistics
-    unknown, free, occupied (voxels), bytes, entropy_removed [nat, or m**2 for trace].)")
+    unknown, free, occupied (voxels), bytes, entropy_removed [nat, or m**2 for trace].
+
+Raises
+------
+ValueError
+    There is no such criterion.)")
       .def(
           "content_hash",
           [](const SharedGrid& grid) {

@@ -10,6 +10,7 @@
 #include "bindings.hpp"
 #include "classes.hpp"
 #include "depth_images.hpp"
+#include "given.hpp"
 #include "integration.hpp"
 #include "scene.hpp"
 #include "shared_grid.hpp"
@@ -40,17 +41,19 @@ IntegrationConfig config_of(const std::string& carve, const std::string& occupan
   return config;
 }
 
-py::object integrate(Integrator& self, SharedGrid& grid, const py::object& depth,
+py::object integrate(Integrator& self, const Given<SharedGrid>& grid, const py::object& depth,
                      const py::object& T_world_camera, const py::object& amplitude) {
   const DepthFrame frame = depth_frame(self.sensor, depth, amplitude);
-  return self.integrate(grid, frame, one_pose(T_world_camera, "T_world_camera"));
+  return self.integrate(*grid, frame, one_pose(T_world_camera, "T_world_camera"));
 }
 
-void calibrate_hazard(const Integrator& self, SharedGrid& grid, const Scene& scene,
-                      const py::object& depth, const py::object& T_world_camera) {
+void calibrate_hazard(const Integrator& self, const Given<SharedGrid>& grid,
+                      const Given<Scene>& scene, const py::object& depth,
+                      const py::object& T_world_camera) {
   const DepthFrame frame = depth_frame(self.sensor, depth, py::none());
   const Pose pose = one_pose(T_world_camera, "T_world_camera");
-  grid.write([&](BeliefGrid& g) { self.calibration.count(g, scene.scene->hazard(), frame, pose); });
+  grid->write(
+      [&](BeliefGrid& g) { self.calibration.count(g, scene->scene->hazard(), frame, pose); });
 }
 
 }  // namespace
@@ -63,8 +66,12 @@ Parameters
 sensor : Sensor
 carve : {"cones", "lines"}
     What counts as crossed by a pixel: voxels whose centre lies in its pyramid, or on its ray.
-)") + kIntegratorSettings;
+)") + kIntegratorSettings +
+                          kIntegratorRaises;
   const std::string integrate_doc = std::string(R"(Updates the grid by one frame.
+
+Cost: linear in the pixels and grows with the voxels that they carve: 4 ms for 176x144 pixels and voxels
+of 5 mm on two threads.
 
 Parameters
 ----------
@@ -81,10 +88,11 @@ amplitude : array_like, (height, width), floating point, optional
 )") + kIntegrateReturns;
   auto type = bound_class<Integrator>(module, "FrameIntegrator", doc.c_str());
   refuse_pickling(type);
-  type.def(py::init([](const Sensor& sensor, const std::string& carve, const std::string& occupancy,
-                       std::optional<double> support_plane, int num_threads) {
-             return std::make_unique<Integrator>(sensor, config_of(carve, occupancy, support_plane),
-                                                 num_threads);
+  type.def(py::init([](const Given<Sensor>& sensor, const std::string& carve,
+                       const std::string& occupancy, std::optional<double> support_plane,
+                       int num_threads) {
+             return std::make_unique<Integrator>(
+                 *sensor, config_of(carve, occupancy, support_plane), num_threads);
            }),
            py::arg("sensor"), py::kw_only(), py::arg("carve") = "cones",
            py::arg("occupancy") = "probabilistic", py::arg("support_plane") = py::none(),
@@ -96,7 +104,7 @@ amplitude : array_like, (height, width), floating point, optional
            R"(Counts how often a frame meets the surface in unknown space, before it is integrated.
 
 The surface and the combined gain of the grid's later scenes go by what was counted. Nothing happens
-while no surface is known, and where the scene's hazard was given. About 5 ms.
+while no surface is known, and where the scene's hazard was given. Cost: about 5 ms for 176x144 pixels.
 
 Parameters
 ----------
@@ -110,7 +118,9 @@ depth, T_world_camera
 Raises
 ------
 ValueError
-    As ``integrate``.)")
+    As ``integrate``.
+TypeError
+    It is no grid, or no scene.)")
       .def("__repr__", [](const Integrator& self) {
         return "<FrameIntegrator of " + self.sensor.name + ", " +
                std::to_string(self.sensor.camera.width) + "x" +
@@ -119,8 +129,9 @@ ValueError
 
   module.def(
       "reading_bounds",
-      [](const Sensor& sensor, const py::object& depth, const py::object& T_world_camera,
+      [](const Given<Sensor>& of, const py::object& depth, const py::object& T_world_camera,
          std::optional<double> support_plane) -> py::object {
+        const Sensor& sensor = *of;
         const std::optional<Box> bounds =
             reading_bounds(sensor, depth_frame(sensor, depth, py::none()),
                            one_pose(T_world_camera, "T_world_camera"), {}, support_plane);
@@ -131,12 +142,27 @@ ValueError
       py::arg("support_plane") = py::none(),
       R"(The box that holds every reading of a depth frame, for choosing a workspace.
 
-Parameters are those of ``FrameIntegrator`` and its ``integrate``.
+Holds the GIL. Cost: linear in the pixels, 2 ms for 176x144.
+
+Parameters
+----------
+sensor : Sensor
+depth, T_world_camera
+    As ``FrameIntegrator.integrate``.
+support_plane : float, optional
+    Height z [m] of the table, whose readings do not count.
 
 Returns
 -------
-ndarray, (2, 3), or None
-    Lowest and highest corner, world frame [m]; None if the frame has no reading.)");
+ndarray, (2, 3), float64, or None
+    Lowest and highest corner, world frame [m]; None if the frame has no reading.
+
+Raises
+------
+ValueError
+    As ``FrameIntegrator.integrate``.
+TypeError
+    It is no sensor.)");
 }
 
 }  // namespace viewgain::python

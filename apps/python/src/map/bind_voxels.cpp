@@ -117,7 +117,7 @@ void bind_voxels(GridClass& grid_class) {
   PYBIND11_NUMPY_DTYPE(OccupiedRow, voxel, log_odds, hits);
   grid_class
       .def("index_of", &index_of, py::arg("points"),
-           R"(The voxels that hold points.
+           R"(The voxels that hold points. Cost: linear in the points, some 20 ns each.
 
 Parameters
 ----------
@@ -128,9 +128,14 @@ Returns
 -------
 ndarray, (..., 3), int32
     On the lattice, minus ``min_index`` for arrays. -2**31 in all three places, which is no index of any
-    array, for a point that is outside the workspace or not finite.)")
+    array, for a point that is outside the workspace or not finite.
+
+Raises
+------
+ValueError
+    Another shape, or no real numbers.)")
       .def("center", &center, py::arg("voxels"),
-           R"(Where the centres of voxels are.
+           R"(Where the centres of voxels are. Cost: linear in the voxels, some 25 ns each.
 
 Parameters
 ----------
@@ -146,15 +151,16 @@ Raises
 ------
 ValueError
     A number that is no index, such as those that ``index_of`` gives where there is no voxel.)")
-      .def("set", &set, py::arg("voxels"), py::arg("log_odds"),
-           R"(Sets voxels of the workspace, in their order, all or none.
+      .def(
+          "set", &set, py::arg("voxels"), py::arg("log_odds"),
+          R"(Sets voxels of the workspace, in their order, all or none. Cost: linear in the voxels, some 0.25 µs each.
 
 Parameters
 ----------
 voxels : array_like, (..., 3), whole numbers
     On the lattice.
 log_odds : float or array_like, (...)
-    Occupied above 0, else free; rounded to the nearest step of 0.05 and clamped to -2..3.5. A voxel has
+    Log-odds, without a unit: occupied above 0, else free; rounded to the nearest step of 0.05 and clamped to -2..3.5. A voxel has
     no belief afterwards.
 
 Raises
@@ -171,6 +177,8 @@ ValueError
           },
           py::arg("region"),
           R"(Makes voxels unknown again, for what has moved and for maps that follow a robot; views stay.
+
+Cost: grows with the map's blocks of voxels, 0.4 ms for 128**3 voxels.
 
 Parameters
 ----------
@@ -193,8 +201,8 @@ ValueError
 Returns
 -------
 ndarray, (n,), structured
-    voxel (int32, 3; on the lattice, minus ``min_index`` for arrays), log_odds (float32), hits (readings
-    that ended in it).)");
+    voxel (int32, 3; on the lattice, minus ``min_index`` for arrays), log_odds (float32, log-odds without a
+    unit), hits (readings that ended in it).)");
 }
 
 }  // namespace viewgain::python

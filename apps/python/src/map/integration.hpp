@@ -27,6 +27,21 @@ support_plane : float, optional
 num_threads : int
     0: all hardware threads. Never changes the map.)";
 
+/// Of the docstrings: what a constructor raises, and what holds for the methods.
+inline constexpr const char* kIntegratorRaises = R"(
+
+Raises
+------
+ValueError
+    There is no such setting, or one is out of its bounds.
+TypeError
+    It is no sensor.
+
+Notes
+-----
+One call at a time: others wait. The GIL is left while a frame or cloud goes in. Maps are the same
+bits for any number of threads.)";
+
 /// Of the docstrings: what integrate() returns and raises.
 inline constexpr const char* kIntegrateReturns =
     R"(Returns
@@ -39,7 +54,9 @@ Raises
 ------
 ValueError
     Names the shape or dtype, or what is wrong with the pose; or all readings, or 19 in 20 that
-    are not alike, are beyond 10 times max_range, as where they are in millimetres. The grid is unchanged then.)";
+    are not alike, are beyond 10 times max_range, as where they are in millimetres. The grid is unchanged then.
+TypeError
+    It is no grid.)";
 
 [[nodiscard]] inline Occupancy parse_occupancy(const std::string& name) {
   if (name == "probabilistic") return Occupancy::probabilistic;

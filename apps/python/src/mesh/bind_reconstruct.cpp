@@ -12,6 +12,7 @@
 #include "batch_call.hpp"
 #include "classes.hpp"
 #include "gil.hpp"
+#include "given.hpp"
 #include "map/depth_images.hpp"
 #include "map/shared_grid.hpp"
 #include "mesh/bindings.hpp"
@@ -103,19 +104,21 @@ GenerationConfig generation_config(const Sensor& sensor, double voxel_size, bool
   return config;
 }
 
-Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, const py::object& start,
-                           double voxel_size, const py::object& workspace,
+Reconstruction reconstruct(const py::object& acquire, const Given<Sensor>& of,
+                           const py::object& start, double voxel_size, const py::object& workspace,
                            const std::string& criterion, const std::string& policy,
                            const std::string& gain, std::optional<bool> boundary,
                            const py::object& candidates, const ReachRegion* reach,
                            std::optional<double> support_plane, bool jump_edges,
                            std::size_t max_views, std::optional<double> stop_gain,
                            std::optional<double> stop_area, std::size_t idle_views,
-                           const py::object& observer, Control* control, int num_threads) {
+                           const py::object& observer, const GivenOrNone<Control>& control,
+                           int num_threads) {
   if (PyCallable_Check(acquire.ptr()) == 0) throw py::type_error("acquire must be callable");
   if (!observer.is_none() && PyCallable_Check(observer.ptr()) == 0) {
     throw py::type_error("observer must be callable");
   }
+  const Sensor& sensor = *of;
   const ExecConfig exec{num_threads};
   const Pose x_0 = one_pose(start, "start");
   SurfaceModelConfig model_config;
@@ -146,7 +149,7 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
   planning.max_views = max_views;
   set_stop_rules(planning, policy_config, stop_gain, stop_area);
   planning.idle_views = idle_views;
-  if (control != nullptr) planning.stop = control->stop.get_token();
+  if (control.value != nullptr) planning.stop = control.value->stop.get_token();
 
   PythonAcquisition acquisition(acquire, sensor);
   SurfaceModel model(sensor, model_config, nullptr, exec);
@@ -178,14 +181,18 @@ Reconstruction reconstruct(const py::object& acquire, const Sensor& sensor, cons
 void bind_reconstruct(py::module_& module) {
   auto type = bound_class<Reconstruction>(
       module, "Reconstruction",
-      "What ``reconstruct`` came to: its views, why it ended, the surface and the map.");
+      R"(What ``reconstruct`` came to: its views, why it ended, the surface and the map.
+
+Notes
+-----
+Cost: properties take constant time; surface and map are not copied.)");
   refuse_pickling(type);
   type.def_readonly("reason", &Reconstruction::reason,
                     "str: why it ended: gain, area, no_candidates, unreachable, idle, max_views, "
                     "interrupted")
       .def_readonly("views", &Reconstruction::views, "list of ViewRecord: one per view")
-      .def_readonly("grid", &Reconstruction::grid, "viewgain.BeliefGrid")
-      .def_readonly("surface", &Reconstruction::surface, "Surface")
+      .def_readonly("grid", &Reconstruction::grid, "viewgain.BeliefGrid: the map")
+      .def_readonly("surface", &Reconstruction::surface, "Surface: of the whole map")
       .def("__repr__", [](const Reconstruction& r) {
         return "<Reconstruction " + std::to_string(r.views.size()) + " views, ended by " +
                r.reason + ", " + std::to_string(r.surface.triangles.size()) + " triangles>";
@@ -204,7 +211,9 @@ void bind_reconstruct(py::module_& module) {
              py::arg("num_threads") = 0,
              R"(The whole loop: measure, update map and surface, propose views, rank them, go on.
 
-The paper's Algorithm 1 with your camera, or your simulator, in it.
+The paper's Algorithm 1 with your camera, or your simulator, in it. The GIL is left but while your
+functions are called, on the calling thread. Cost: grows with the views; each takes what
+acquire takes, the update of the map, a surface (see ``surface_of_grid``) and the candidates' scores.
 
 Parameters
 ----------
@@ -231,7 +240,7 @@ boundary : bool, optional
     Propose views at the surface's open boundaries, before the candidates. Default: not for the
     policies "sequence" and "random".
 candidates : array_like, (n, 4, 4), optional
-    Further poses, proposed after every view; needed without boundary.
+    T_world_camera of further poses, proposed after every view; needed without boundary.
 reach : viewgain.ReachRegion, optional
     Where the camera can be put.
 support_plane : float, optional

@@ -2,38 +2,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <pybind11/stl.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "arrays.hpp"
 #include "classes.hpp"
 #include "gil.hpp"
+#include "given.hpp"
 #include "map/shared_grid.hpp"
 #include "mesh/bindings.hpp"
-#include "named.hpp"
-#include "viewgain/core/text.hpp"
+#include "sealed_bytes.hpp"
 #include "viewgain/formats/ply.hpp"
-#include "viewgain/mesh/boundary.hpp"
 #include "viewgain/mesh/surface.hpp"
-#include "viewgain/mesh/viewpoint_estimator.hpp"
-#include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 
 namespace viewgain::python {
-
-/// Why a boundary candidate exists.
-struct ReasonRow {
-  std::uint8_t boundary_class;
-  std::uint32_t run;
-  double run_length;
-  std::uint32_t patch;
-  std::array<double, 3> target;
-  double distance, tilt, roll;
-  bool nominal;
-};
 
 namespace {
 
@@ -56,54 +43,43 @@ SurfaceMesh surface_of_points(const py::object& positions, const py::object& tow
   return reconstruct_surface(oriented, config, ExecConfig{num_threads});
 }
 
-SurfaceMesh surface_of_grid(const SharedGrid& grid, std::uint32_t min_hits, int num_threads) {
+SurfaceMesh surface_of_grid(const Given<SharedGrid>& grid, std::uint32_t min_hits,
+                            int num_threads) {
   FusedPointsConfig config;
   config.min_hits = min_hits;
-  return grid.read([&](const BeliefGrid& g) {
+  return grid->read([&](const BeliefGrid& g) {
     const ExecConfig exec{num_threads};
     return surface_of(fused_points(g, config, exec), pooling_of(g.snapshot()).length, exec);
   });
 }
 
-py::object boundary_candidates(const SurfaceMesh& surface, const py::object& views,
-                               const Sensor& sensor, double spacing,
-                               std::optional<double> working_distance,
-                               std::optional<double> overlap,
-                               const std::optional<std::vector<double>>& distances,
-                               const std::optional<std::vector<double>>& tilts,
-                               const std::optional<std::vector<double>>& rolls) {
-  if (!(spacing > 0 && std::isfinite(spacing))) {
-    throw py::value_error("the spacing must be positive and finite, not " + short_text(spacing));
+// What a pickle is of.
+constexpr const char* kKind = "viewgain surface 1\n";
+
+py::bytes bytes_of(const SurfaceMesh& surface) {
+  SealedWriter writer(kKind);
+  writer.add(surface.vertices);
+  writer.add(surface.normals);
+  writer.add(surface.triangles);
+  writer.add(surface.source);
+  return writer.seal();
+}
+
+SurfaceMesh from_bytes(const py::bytes& data) {
+  const auto bytes = data.cast<std::string>();
+  SealedReader reader(kKind, bytes, "surface");
+  SurfaceMesh surface;
+  surface.vertices = reader.next<std::array<double, 3>>();
+  surface.normals = reader.next<std::array<double, 3>>();
+  surface.triangles = reader.next<std::array<std::uint32_t, 3>>();
+  surface.source = reader.next<std::uint32_t>();
+  reader.require_end();
+  const std::size_t count = surface.vertices.size();
+  if (surface.normals.size() != count || surface.source.size() != count) reader.refuse();
+  for (const auto& triangle : surface.triangles) {
+    if (*std::max_element(triangle.begin(), triangle.end()) >= count) reader.refuse();
   }
-  const std::vector<Pose> taken = pose_list(views, "views");
-  EstimatorConfig config = default_estimator(spacing);
-  if (overlap) config.overlap = *overlap;
-  if (distances) config.distances = *distances;
-  if (tilts) config.tilts = *tilts;
-  if (rolls) config.rolls = *rolls;
-  EstimatedViews estimated;
-  {
-    const WithoutGil without_gil;
-    estimated = estimate_views(surface, taken, sensor,
-                               working_distance.value_or(sensor.working_distance), config);
-  }
-  std::vector<Pose> poses;
-  std::vector<ReasonRow> reasons;
-  for (const BoundaryCandidate& c : estimated.candidates) {
-    poses.push_back(c.T_world_camera);
-    reasons.push_back({static_cast<std::uint8_t>(c.boundary_class),
-                       c.run,
-                       estimated.runs[c.run].length,
-                       c.patch,
-                       {c.target.x(), c.target.y(), c.target.z()},
-                       c.distance,
-                       c.tilt,
-                       c.roll,
-                       c.nominal});
-  }
-  return named_in("viewgain.mesh.results", "BoundaryCandidates",
-                  to_array(poses, {static_cast<py::ssize_t>(poses.size())}),
-                  to_array_1d<ReasonRow>(reasons));
+  return surface;
 }
 
 // A Python package that viewgain can do without.
@@ -143,28 +119,26 @@ py::object to_open3d(const SurfaceMesh& surface) {
 }  // namespace
 
 void bind_surface(py::module_& module) {
-  PYBIND11_NUMPY_DTYPE(ReasonRow, boundary_class, run, run_length, patch, target, distance, tilt,
-                       roll, nominal);
-  py::list classes;
-  for (const BoundaryClass c :
-       {BoundaryClass::left, BoundaryClass::right, BoundaryClass::top, BoundaryClass::bottom}) {
-    classes.append(std::string(boundary_class_name(c)));
-  }
-  module.attr("BOUNDARY_CLASS_NAMES") = py::tuple(classes);
-
   auto type = bound_class<SurfaceMesh>(
       module, "Surface",
       R"(An open, oriented triangle surface. Made by ``reconstruct_surface``,
 ``surface_of_grid`` and ``reconstruct``.
 
-Faces turn counter-clockwise seen from free space. Surfaces are equal by value.)");
-  refuse_pickling(type);
+Faces turn counter-clockwise seen from free space. Lengths are [m], in the frame of the points that
+it was made of: the world's, of a map. Surfaces are equal by value and can be pickled.
+
+Notes
+-----
+Cost: linear in vertices and triangles: each property is a copy, 30 µs for 20,000 vertices. ``save``
+leaves the GIL, the rest holds it.)");
+  pickle_as_bytes(type);
   type.def_property_readonly(
           "vertices", [](const SurfaceMesh& s) { return to_array_3(s.vertices); },
-          "ndarray, (n, 3), float64: [m]")
+          "ndarray, (n, 3), float64: in the surface's frame, of a map the world's [m]")
       .def_property_readonly(
           "normals", [](const SurfaceMesh& s) { return to_array_3(s.normals); },
-          "ndarray, (n, 3), float64: unit, towards free space")
+          "ndarray, (n, 3), float64: unit vectors in the surface's frame, of a map the world's; "
+          "towards free space")
       .def_property_readonly(
           "triangles", [](const SurfaceMesh& s) { return to_array_3(s.triangles); },
           "ndarray, (m, 3), uint32: indices of vertices")
@@ -185,10 +159,34 @@ Faces turn counter-clockwise seen from free space. Surfaces are equal by value.)
 Parameters
 ----------
 path : path-like
+    .ply by custom.
 
 Raises
 ------
-OSError)")
+OSError
+    It cannot be written.)")
+      .def("to_bytes", &bytes_of, R"(The surface as bytes, for ``from_bytes`` and pickles.
+
+Returns
+-------
+bytes
+    In this machine's byte order.)")
+      .def_static("from_bytes", &from_bytes, py::arg("data"),
+                  R"(The surface that ``to_bytes`` wrote.
+
+Parameters
+----------
+data : bytes
+
+Returns
+-------
+Surface
+    Equal to the one that was written.
+
+Raises
+------
+Error
+    They are no surface, or damaged.)")
       .def("to_trimesh", &to_trimesh, R"(The surface for trimesh, with its normals.
 
 Returns
@@ -232,12 +230,15 @@ ImportError
              py::arg("min_component") = defaults.min_component, py::arg("num_threads") = 0,
              R"(The open surface through points; no hole is filled beyond max_edge.
 
+Runs without the GIL. Cost: grows with the points, some 20 µs each on two threads.
+
 Parameters
 ----------
 points : array_like, (n, 3)
-    [m]
+    In any frame, of a map the world's [m].
 toward_free : array_like, (n, 3), optional
-    On which side of the surface free space lies: a hint each, zero where not known.
+    On which side of the surface free space lies: a direction each in the points' frame, a hint
+    whose length, without a unit, does not matter; zero where not known.
 spacing : float
     Typical distance of neighbouring points [m].
 smoothing_neighbors : int
@@ -246,48 +247,43 @@ max_edge, join_distance : float
     Longest edge; how near points of one component are [spacings].
 min_component : int
     Components of fewer points are dropped.
+num_threads : int
+    0: all hardware threads. Never changes the result.
 
 Returns
 -------
-Surface)");
-  module.def(
-      "surface_of_grid", &surface_of_grid, py::arg("grid"), py::kw_only(), py::arg("min_hits") = 2,
-      py::arg("num_threads") = 0,
-      "The surface through ``grid.points(min_hits=min_hits)``.\n\nReturns\n-------\nSurface");
-  module.def("boundary_candidates", &boundary_candidates, py::arg("surface"), py::arg("views"),
-             py::arg("sensor"), py::kw_only(), py::arg("spacing"),
-             py::arg("working_distance") = py::none(), py::arg("overlap") = py::none(),
-             py::arg("distances") = py::none(), py::arg("tilts") = py::none(),
-             py::arg("rolls") = py::none(),
-             R"(Views that look past the open boundaries of a surface, and why.
+Surface
+    Empty for no points, or nothing but outliers.
+
+Raises
+------
+ValueError
+    Another shape, a point that is not finite, a length that is not positive, or not one hint a
+    point.)");
+  module.def("surface_of_grid", &surface_of_grid, py::arg("grid"), py::kw_only(),
+             py::arg("min_hits") = 2, py::arg("num_threads") = 0,
+             R"(The surface through ``grid.points(min_hits=min_hits)``.
+
+Runs without the GIL; other threads may read the grid meanwhile, not write it. Cost: grows
+with the voxels that were ever hit: 0.7 s for 40,000 occupied ones on two threads.
 
 Parameters
 ----------
-surface : Surface
-views : array_like, (n, 4, 4)
-    T_world_camera of the views that saw it, in order.
-sensor : Sensor
-spacing : float
-    The map's voxel size [m].
-working_distance : float, optional
-    From the surface [m]; the sensor's unless given.
-overlap : float, optional
-    Share of the next view that shows known surface, in (0, 1).
-distances : sequence of float, optional
-    Multiples of the working distance.
-tilts, rolls : sequence of float, optional
-    [rad]; all combinations are tried.
+grid : viewgain.BeliefGrid
+min_hits : int
+    Points of fewer readings are left out.
+num_threads : int
+    0: all hardware threads. Never changes the result.
 
 Returns
 -------
-BoundaryCandidates
-    A named tuple of the two.
-T_world_camera : ndarray, (n, 4, 4), float64
-    What stands in their way is for ``FeasibilityChecker`` to say.
-reasons : ndarray, (n,), structured
-    boundary_class (index into ``BOUNDARY_CLASS_NAMES``), run (of boundary edges), run_length [m],
-    patch, target (the extrapolated point looked at, 3 [m]), distance from it [m], tilt, roll [rad],
-    nominal (neither tilted nor rolled, at the first distance).)");
+Surface
+    World frame.
+
+Raises
+------
+TypeError
+    It is no grid.)");
 }
 
 }  // namespace viewgain::python

@@ -9,6 +9,7 @@ PYBIND11_MODULE(_mesh, module) {
   const pybind11::object name = module.attr("__name__");
   module.attr("__name__") = "viewgain.mesh";
   viewgain::python::bind_surface(module);
+  viewgain::python::bind_boundary(module);
   viewgain::python::bind_reconstruct(module);
   module.attr("__name__") = name;
 }

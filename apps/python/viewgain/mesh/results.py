@@ -19,8 +19,8 @@ BoundaryClass.__doc__ = 'Which way a boundary of the surface lies in the view: `
 class BoundaryCandidates(NamedTuple):
     """Views that look past a surface's open boundaries, of ``boundary_candidates``."""
 
-    T_world_camera: Annotated[NDArray[np.float64], "(n, 4, 4)."]
-    reasons: Annotated[NDArray[np.void], "(n,), structured: boundary_class, run, run_length, patch, target, distance, tilt, roll, nominal."]
+    T_world_camera: Annotated[NDArray[np.float64], "(n, 4, 4), float64."]
+    reasons: Annotated[NDArray[np.void], "(n,), structured: boundary_class, run, run_length, patch, target, distance [m], tilt, roll [rad], nominal; see ``boundary_candidates``."]
 
 
 @named("viewgain.mesh")
@@ -28,7 +28,7 @@ class ViewRecord(NamedTuple):
     """One turn of the loop, of ``Reconstruction.views`` and for ``reconstruct``'s observer."""
 
     index: Annotated[int, "Number of the view, from 0."]
-    T_world_camera: Annotated[NDArray[np.float64], "(4, 4): where the camera really was."]
+    T_world_camera: Annotated[NDArray[np.float64], "(4, 4), float64: where the camera really was."]
     generator: Annotated[str, "\"start\", \"boundary\" or \"candidates\"."]
     boundary_class: Annotated[str, "One of ``BOUNDARY_CLASS_NAMES``; empty if it is of no boundary."]
     predicted_gain: Annotated[float, "When it was chosen [nat; by gain \"surface\" m**2]; NaN of the start."]

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "classes.hpp"
+#include "fields.hpp"
+#include "viewgain/core/camera.hpp"
+#include "viewgain/core/text.hpp"
+
+namespace viewgain::python {
+namespace {
+
+// The entries of a matrix [px] that must be 0 or 1: rounding of a calibration's file is no fault.
+constexpr double kExact = 1e-9;
+
+PinholeCamera camera_of_matrix(const py::object& matrix, int width, int height,
+                               const std::array<double, 5>& distortion) {
+  const Doubles k = doubles(matrix, "K", {3, 3});
+  const double* m = k.data();
+  const auto is_off = [](double value, double wanted) {
+    return !(std::abs(value - wanted) <= kExact);
+  };
+  if (is_off(m[6], 0) || is_off(m[7], 0) || is_off(m[8], 1)) {
+    throw py::value_error("K has a last row that is not 0 0 1");
+  }
+  if (is_off(m[1], 0) || is_off(m[3], 0)) {
+    throw py::value_error("K has skew: K[0, 1] is " + short_text(m[1]) + " and K[1, 0] " +
+                          short_text(m[3]) + "; rectify the images first");
+  }
+  const PinholeCamera camera{width, height, m[0], m[4], m[2], m[5], distortion};
+  camera.validate();
+  return camera;
+}
+
+py::array_t<double> matrix_of(const PinholeCamera& camera) {
+  const std::array<double, 9> m{camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
+  return py::array_t<double>(Shape{3, 3}, m.data());
+}
+
+}  // namespace
+
+void bind_camera(py::module_& module) {
+  auto type = bound_class<PinholeCamera>(module, "PinholeCamera",
+                                         R"(Pinhole camera with OpenCV's distortion model.
+
+The camera's optical frame has x right, y down, z forward; pixel (0, 0) has its centre at (0, 0).
+Immutable; equal by value.
+
+Parameters
+----------
+width, height : int
+    [px], 1 to 16384; at most 2**24 pixels.
+fx, fy : float
+    Focal lengths [px].
+cx, cy : float
+    Principal point [px].
+distortion : sequence of float, (5,), optional
+    The coefficients k1 k2 p1 p2 k3, without a unit.
+
+Raises
+------
+ValueError
+    Names the field: a size out of its bounds, a focal length that is not positive, a number that is
+    not finite.
+TypeError
+    A size is no int, distortion is not of 5 numbers.
+
+Notes
+-----
+Methods hold the GIL.)");
+  pickle_as_call(type, {"width", "height", "fx", "fy", "cx", "cy", "distortion"});
+  type.def(py::init([](int width, int height, double fx, double fy, double cx, double cy,
+                       const std::array<double, 5>& distortion) {
+             const PinholeCamera camera{width, height, fx, fy, cx, cy, distortion};
+             camera.validate();
+             return camera;
+           }),
+           py::arg("width"), py::arg("height"), py::kw_only(), py::arg("fx"), py::arg("fy"),
+           py::arg("cx"), py::arg("cy"), py::arg("distortion") = std::array<double, 5>{})
+      .def_static("from_matrix", &camera_of_matrix, py::arg("K"), py::arg("width"),
+                  py::arg("height"), py::kw_only(), py::arg("distortion") = std::array<double, 5>{},
+                  R"(A camera from its intrinsic matrix, as OpenCV and ROS have it.
+
+Parameters
+----------
+K : array_like, (3, 3)
+    Rows fx 0 cx, 0 fy cy, 0 0 1 [px], of the camera's image.
+width, height : int
+    [px]
+distortion : sequence of float, (5,), optional
+    The coefficients k1 k2 p1 p2 k3, without a unit.
+
+Returns
+-------
+PinholeCamera
+
+Raises
+------
+ValueError
+    K has another shape, skew, or a last row that is not 0 0 1, by more than 1e-9; or as the
+    constructor.)")
+      .def_property_readonly("matrix", &matrix_of,
+                             "ndarray, (3, 3), float64: rows fx 0 cx, 0 fy cy, 0 0 1 [px], of the "
+                             "camera's image")
+      .def_readonly("width", &PinholeCamera::width, "int: [px]")
+      .def_readonly("height", &PinholeCamera::height, "int: [px]")
+      .def_readonly("fx", &PinholeCamera::fx, "float: focal length [px]")
+      .def_readonly("fy", &PinholeCamera::fy, "float: focal length [px]")
+      .def_readonly("cx", &PinholeCamera::cx, "float: principal point [px]")
+      .def_readonly("cy", &PinholeCamera::cy, "float: principal point [px]")
+      .def_readonly("distortion", &PinholeCamera::distortion,
+                    "list of float, (5,): the coefficients k1 k2 p1 p2 k3")
+      .def(
+          "rays",
+          [](const PinholeCamera& camera) {
+            const std::vector<Eigen::Vector3d> table = camera.ray_table();
+            py::array_t<double> rays(Shape{camera.height, camera.width, 3});
+            double* out = rays.mutable_data();
+            for (const Eigen::Vector3d& ray : table) out = std::copy_n(ray.data(), 3, out);
+            return rays;
+          },
+          R"(Directions (x, y, 1) of all pixel centres, camera frame, distortion undone.
+
+Cost: linear in the pixels, some 15 ns each, with distortion 0.3 µs.
+
+Returns
+-------
+ndarray, (height, width, 3), float64
+    In the camera's frame, without a unit: times a depth [m] they are points. NaN where the
+    distortion model has no solution.)")
+      .def(
+          "project",
+          [](const PinholeCamera& camera, const py::object& points_camera) {
+            const Doubles points = items(points_camera, "points", {3});
+            Shape shape = leading_shape(points, 1);
+            shape.push_back(2);
+            py::array_t<double> pixels(shape);
+            const double* p = points.data();
+            double* out = pixels.mutable_data();
+            for (py::ssize_t i = 0; i < points.size() / 3; ++i, p += 3) {
+              const Eigen::Vector2d uv = camera.project({p[0], p[1], p[2]});
+              *out++ = uv.x();
+              *out++ = uv.y();
+            }
+            return pixels;
+          },
+          py::arg("points"), R"(Pixel coordinates of points in the camera frame.
+
+Cost: linear in the points, some 10 ns each.
+
+Parameters
+----------
+points : array_like, (..., 3)
+    Camera frame [m].
+
+Returns
+-------
+ndarray, (..., 2), float64
+    (u, v) [px]; NaN behind the camera.
+
+Raises
+------
+ValueError
+    Another shape, or no real numbers.)")
+      .def(
+          "__eq__", [](const PinholeCamera& a, const PinholeCamera& b) { return a == b; },
+          py::is_operator())
+      .def("__repr__", [](const PinholeCamera& c) {
+        const std::string rest =
+            Fields().add("fx", c.fx).add("fy", c.fy).add("cx", c.cx).add("cy", c.cy).in("");
+        std::string text = "PinholeCamera(" + std::to_string(c.width) + ", " +
+                           std::to_string(c.height) + ", " + rest.substr(1);
+        if (!c.has_distortion()) return text;
+        text.pop_back();
+        return text + ", distortion=" + py::repr(py::cast(c.distortion)).cast<std::string>() + ")";
+      });
+}
+
+}  // namespace viewgain::python

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace viewgain::python {
+
+// What the class GainEvaluator and its methods say of themselves.
+
+inline constexpr const char* kEvaluatorDoc =
+    R"(Scores camera poses against a scene by expected information gain.
+
+Results are the same bits for any number of threads, and the same as from C++. Poses are
+``T_world_camera`` arrays (..., 4, 4) that map the optical frame (x right, y down, z forward) to the
+world [m]: C-contiguous float64 is read in place, other real dtypes are converted once.
+
+Parameters
+----------
+scene : VoxelScene
+sensor : Sensor
+gain : {"paper", "surface", "combined"}
+    What a view's gain counts: the entropy that it removes [nat], the new surface that it is expected to
+    show [m**2], or that and refining known surface [nat].
+criterion : {"log_diagonal", "log_determinant", "trace"}
+    How the paper's gain measures uncertainty; gains are in nats, for trace in m**2. The combined gain
+    always goes by log_diagonal and refuses trace.
+pixel_stride : int
+    Every s-th pixel of every s-th row.
+prior_sigma : float, optional
+    Standard deviation of an unknown voxel [m]; the map's unless given.
+min_range, max_range : float, optional
+    Along the ray [m]; the sensor's unless given.
+weights : iterable of (box, weight), optional
+    Task weights >= 0 of parts of the workspace: boxes (2, 3) in the grid's frame [m]. The last that
+    holds a voxel's centre counts, 1 outside all.
+refinement_weight : float, optional
+    Weight of refining against finding new surface, with "combined" alone. Default: 0.3.
+support_plane : float, optional
+    Height z of a table at which rays end [m], with "surface" and "combined" alone.
+posterior_entropy : bool
+    Let ``evaluate_detailed`` have it, too: with "paper" alone, some 4 % slower.
+num_threads : int
+    0: all hardware threads.
+
+Raises
+------
+ValueError
+    Names the value that is out of its bounds.
+TypeError
+    It is no scene (a grid is none: ``VoxelScene(grid)`` makes one) or no sensor; a weight is no number.
+
+Notes
+-----
+Methods may run in many threads at once and leave the GIL while they work; Ctrl-C ends a batch. They raise
+ValueError for poses of another shape, without real numbers or with masked entries; those of a single view
+(``trace``, ``depth``, ``contributions``) for a bad pose, too.
+
+Cost: linear in poses and rays per pose; some 120 million rays a second on two threads for a map of 128**3
+voxels by the paper's gain, which is 4,800 images of 176x144 pixels; a quarter of that by the surface gain,
+a fifth by the combined one. Making an evaluator undoes the lens distortion once: 1 ms for 176x144
+pixels. Properties take constant time.)";
+
+inline constexpr const char* kWithSceneDoc =
+    R"(The evaluator of another scene, for following a map as it grows.
+
+It has the sensor, the settings and the threads of this one, which stays as it is; nothing is computed
+anew. Cost: some microseconds; by the surface and the combined gain the hazard of a scene that has none
+yet, some milliseconds. Its results are those of an evaluator made for that scene, whose
+map's ``prior_sigma`` counts unless one was given.
+
+Parameters
+----------
+scene : VoxelScene
+    Such as ``VoxelScene.update`` returns.
+
+Returns
+-------
+GainEvaluator
+
+Raises
+------
+TypeError
+    It is no scene.)";
+
+inline constexpr const char* kEvaluateDoc =
+    R"(The expected gains of poses.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+strict : bool
+    Raise ValueError for a bad pose (not finite, rotation or last row off by more than 1e-3) instead
+    of giving it the gain NaN.
+control : BatchControl, optional
+
+Returns
+-------
+ndarray, (...), float64
+    [nat], for trace and the surface gain [m**2]; NaN for bad poses and for those not reached before a stop. A single
+    pose gives a scalar.
+
+Raises
+------
+ValueError
+    Another shape, no real numbers, masked entries; with strict a bad pose, by its index.)";
+
+inline constexpr const char* kEvaluateDetailedDoc =
+    R"(The expected gains of poses and what they are made of.
+
+Parameters are those of ``evaluate``.
+
+Returns
+-------
+ndarray, (...), structured
+    By the paper's gain: gain = exploration (unknown voxels) + refinement (occupied ones),
+    posterior_entropy if asked for, unknown_voxels and occupied_voxels (distinct). By the others: area (new surface
+    to be expected [m**2]; gain, by the surface gain), refinement_saturated (combined [nat]). By all:
+    rays, hits, status (index into ``VIEW_STATUS_NAMES``). What a gain has not is NaN, a count 0. A
+    single pose gives a scalar.)";
+
+inline constexpr const char* kBestDoc =
+    R"(The k best poses, exactly: all are scored.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+k : int
+return_gains : bool
+control : BatchControl, optional
+    After a stop the result is what is best of those scored so far.
+
+Returns
+-------
+indices : ndarray, (k,), int64
+    Into the poses with their leading axes flattened, best first, ties to the lower index.
+gains : ndarray, (k,), structured
+    As from ``evaluate_detailed``; only if return_gains: a named tuple ``ChosenViews`` then.)";
+
+inline constexpr const char* kRaceDoc =
+    R"(The k best poses, very probably; see ``best``.
+
+All poses are scored by about 400 of their rays, and the best max(24, 4 k, 5 %) of them in
+full (1.6 % by the surface and the combined gain). Cost: some 6 times less than ``best`` for 500 poses
+and more, the less the larger the images.
+
+Parameters
+----------
+T_world_camera, k, return_gains, control
+    As ``best``.
+seed : int
+    Which rays, by the paper's gain; by the others they are in the middle.
+
+Returns
+-------
+indices : ndarray, (k,), int64
+gains : ndarray, (k,), structured
+    Only if return_gains. Both as from ``best``.)";
+
+inline constexpr const char* kBestSetDoc =
+    R"(Up to k poses that are good together, chosen one after the other, by the paper's gain.
+
+Cost: up to k times twice that of ``evaluate``, and memory for the voxels that are touched.
+
+Parameters
+----------
+T_world_camera, k, return_gains
+    As ``best``.
+control : BatchControl, optional
+    After a stop the result is what was chosen so far.
+
+Returns
+-------
+indices : ndarray, (<= k,), int64
+    In the order of their choice.
+gains : ndarray, (<= k,), structured
+    What each adds to those before it; only if return_gains.
+
+Raises
+------
+ValueError
+    The gain is not "paper"; or as ``best``.)";
+
+inline constexpr const char* kApproximateDoc =
+    R"(Estimates of the gains from a part of each view's rays.
+
+Cost: goes down with the share, 3 times faster than ``evaluate`` at the default's.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+share : float
+    Of a view's rays that are traced at most, in (0, 1]; at 1 the gain itself, standard error 0.
+seed : int
+    Which rays.
+control : BatchControl, optional
+    What was not reached before a stop is NaN.
+
+Returns
+-------
+ndarray, (...), structured
+    gain, standard_error, in the unit of ``evaluate``. A single pose gives a scalar.
+
+Raises
+------
+ValueError
+    The share is not in (0, 1]; or as ``evaluate``.)";
+
+}  // namespace viewgain::python

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+#include "viewgain/core/reach.hpp"
+#include "viewgain/core/sensor.hpp"
+
+namespace viewgain {
+struct SurfaceMesh;
+}
+
+namespace viewgain::python {
+
+class SharedGrid;
+struct Control;
+struct Scene;
+
+// Arguments of the package's own classes. What is of another class raises a TypeError that says
+// what is needed and where it comes from, instead of pybind11's list of signatures. Not for
+// functions with several signatures.
+
+/// An object of the class.
+template <typename Class>
+struct Given {
+  Class* value;
+  [[nodiscard]] Class& operator*() const { return *value; }
+  [[nodiscard]] Class* operator->() const { return value; }
+};
+/// An object of the class, or None: null.
+template <typename Class>
+struct GivenOrNone {
+  Class* value;
+  operator Class*() const { return value; }
+};
+
+/// What the argument is called wherever one is taken, and where one comes from.
+template <typename Class>
+inline constexpr const char* kArgument = "the argument";
+template <typename Class>
+inline constexpr const char* kSource = "";
+template <>
+inline constexpr const char* kArgument<SharedGrid> = "grid";
+template <>
+inline constexpr const char* kSource<SharedGrid> =
+    "; BeliefGrid.from_labels makes one of an array of states, BeliefGrid.load reads a file";
+template <>
+inline constexpr const char* kArgument<Scene> = "scene";
+template <>
+inline constexpr const char* kSource<Scene> = "; VoxelScene(grid) makes one of a BeliefGrid";
+template <>
+inline constexpr const char* kArgument<Sensor> = "sensor";
+template <>
+inline constexpr const char* kSource<Sensor> =
+    "; sensor_preset(name) and Sensor.load(path) give one";
+template <>
+inline constexpr const char* kArgument<PinholeCamera> = "camera";
+template <>
+inline constexpr const char* kSource<PinholeCamera> =
+    "; PinholeCamera.from_matrix makes one of an intrinsic matrix";
+template <>
+inline constexpr const char* kArgument<Control> = "control";
+template <>
+inline constexpr const char* kSource<Control> = "; BatchControl(progress) makes one of a function";
+template <>
+inline constexpr const char* kArgument<ReachRegion> = "reach";
+template <>
+inline constexpr const char* kArgument<SurfaceMesh> = "surface";
+
+template <typename Class>
+[[noreturn]] void refuse_class(const pybind11::handle& value) {
+  const auto name_of = [](const pybind11::handle& type) {
+    return type.attr("__name__").template cast<std::string>();
+  };
+  throw pybind11::type_error(std::string(kArgument<Class>) + " must be a " +
+                             name_of(pybind11::type::of<Class>()) + ", not " +
+                             name_of(pybind11::type::handle_of(value)) + kSource<Class>);
+}
+
+}  // namespace viewgain::python
+
+namespace pybind11::detail {
+
+template <typename Class>
+struct type_caster<viewgain::python::Given<Class>> {
+  static constexpr auto name = make_caster<Class>::name;
+  template <typename>
+  using cast_op_type = viewgain::python::Given<Class>;
+
+  bool load(handle from, bool convert) {
+    make_caster<Class> caster;
+    if (from.is_none() || !caster.load(from, convert)) viewgain::python::refuse_class<Class>(from);
+    value_ = &cast_op<Class&>(caster);
+    return true;
+  }
+  operator viewgain::python::Given<Class>() const { return {value_}; }
+
+ private:
+  Class* value_ = nullptr;  // the object's, which Python keeps during the call
+};
+
+template <typename Class>
+struct type_caster<viewgain::python::GivenOrNone<Class>> {
+  static constexpr auto name = const_name("Optional[") + make_caster<Class>::name + const_name("]");
+  template <typename>
+  using cast_op_type = viewgain::python::GivenOrNone<Class>;
+
+  bool load(handle from, bool convert) {
+    if (from.is_none()) return true;
+    type_caster<viewgain::python::Given<Class>> caster;
+    caster.load(from, convert);
+    value_ = static_cast<viewgain::python::Given<Class>>(caster).value;
+    return true;
+  }
+  operator viewgain::python::GivenOrNone<Class>() const { return {value_}; }
+
+ private:
+  Class* value_ = nullptr;
+};
+
+}  // namespace pybind11::detail

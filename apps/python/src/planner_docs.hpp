@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace viewgain::python {
+
+// What the class ViewPlanner and its methods say of themselves.
+
+inline constexpr const char* kPlannerDoc =
+    R"(Next best views step by step, for a robot's program: frames in, views out.
+
+``add`` a frame; ask ``should_stop``; ``propose`` candidates; ``rank`` them; move, and say how that
+went with ``tried``; ``add`` the next frame.
+
+Parameters
+----------
+sensor : Sensor
+voxel_size : float
+    [m]
+workspace : array_like, (2, 3)
+    Lowest and highest corner of what is mapped, the grid's frame [m]. Begin it at the table: what is
+    under it stays unknown.
+T_world_grid : array_like, (4, 4), optional
+    Places the grid's frame in the world; identity unless given.
+prior_sigma : float, optional
+    Of an unknown voxel [m]; ``default_prior_sigma`` unless given.
+support_plane : float, optional
+    Height z of the table [m]. Its readings carve but do not hit.
+boxes : array_like, (n, 2, 3), optional
+    Known obstacles: lowest and highest corners, world frame [m]. They block rays and the body, and
+    their readings carve but do not hit.
+meshes : iterable of (vertices, triangles), optional
+    The same as triangles: (n, 3), world frame [m], and (m, 3) indices.
+gain : {"combined", "surface", "paper"}
+    What ranks views: expected new surface and refinement, new surface alone, entropy removed.
+criterion : {"log_diagonal", "log_determinant", "trace"}
+    Of gain "paper" and of entropies; "trace" does not go with gain "combined".
+object_size : float, optional
+    Longest side of the object [m]; that of what is seen unless given.
+reach : ReachRegion, optional
+    Where the camera can be put. Its list of poses, if it has one, is among the candidates.
+body_size : array_like, (3,), optional
+    Width, height, depth of the housing, flange frame [m]; the sensor's unless given, the SR4000's where it has none.
+clearance : float
+    Round the body [m].
+jump_edges : bool
+    Remove flying pixels.
+check_feasibility : bool
+    False: every candidate is possible but those that were taken or tried.
+max_views, idle_views : int
+    End after so many views; after so many in a row that changed entropy and unknown voxels by less
+    than 0.1 % (0: never).
+stop_gain : float, optional
+    By gain "paper": end when the best candidate promises less than this per touched voxel [nat, m**2 for
+    trace]. Default: 1.2; for trace 0.01 of the first ranking's.
+stop_area : float, optional
+    By gain "surface" and "combined": end when no candidate promises this share of the surface so
+    far as new surface, on the mean of three rankings; 0: never. Default: 0.0016.
+state : path-like, optional
+    A file of ``save`` to go on from; what ``load`` gives.
+num_threads : int
+    0: all hardware threads. Never changes a result.
+
+Raises
+------
+ValueError
+    Names the argument. Or the state's map is laid out otherwise.
+TypeError
+    It is no sensor or no region; the message says where one comes from.
+OSError, Error
+    The state cannot be read, or is none.
+
+Notes
+-----
+One call at a time: while one is at work another raises RuntimeError. Calls leave the GIL while they
+work, but while your generators and the predicate of ``reach`` are asked. Cost: a new planner takes
+some ms, one with a state that of ``BeliefGrid.load``; the methods that take long say so, others
+some microseconds; ``grid`` is a copy, 0.3 ms for 128**3 voxels.)";
+
+inline constexpr const char* kLoadDoc =
+    R"(A planner that goes on where ``save`` was called, bit for bit.
+
+Parameters
+----------
+path : path-like
+sensor, **settings
+    Those of the constructor, as before, which is not looked at but for the map's layout; candidates
+    are added and proposed anew, too. ``max_views`` and ``idle_views`` count at once: a planner that
+    had ended may go on with more.
+
+Returns
+-------
+ViewPlanner
+
+Raises
+------
+ValueError, TypeError
+    As the constructor.
+OSError, Error
+    The state cannot be read, or is none.)";
+
+inline constexpr const char* kSaveDoc =
+    R"(Writes the whole state, a map with notes, whole or not at all. Cost: that of ``BeliefGrid.save``, and linear
+in the poses that were tried.
+
+Left out are the settings, poses, generators and the last proposal. ``BeliefGrid.load`` and the program read the map.
+
+Parameters
+----------
+path : path-like
+
+Raises
+------
+OSError
+    It cannot be written.
+ValueError
+    The name is that of an OctoMap file.)";
+
+inline constexpr const char* kAddPosesDoc =
+    R"(Candidates that are proposed from now on.
+
+Parameters
+----------
+T_world_camera : array_like, (n, 4, 4)
+name : str
+    The generator that ``propose`` names.
+
+Raises
+------
+ValueError
+    Another shape, or a bad pose, by its index. Cost: linear in the poses.)";
+
+inline constexpr const char* kAddGeneratorDoc =
+    R"(Candidates that are made anew for each proposal.
+
+Parameters
+----------
+generator : callable
+    Given the map, a BeliefGrid of its own with the views so far, returns poses (n, 4, 4). What it
+    raises passes through. It must not call the planner, nor refer to it: the two would never be
+    released.
+name : str
+    What ``propose`` names.
+
+Raises
+------
+TypeError
+    generator cannot be called.)";
+
+inline constexpr const char* kAddDoc =
+    R"(Puts a frame into the map; the last proposal is void.
+
+Cost: linear in the pixels and grows with the voxels that they carve: 12 ms for 176x144 pixels and voxels of
+5 mm on two threads.
+
+Parameters
+----------
+depth : array_like, (height, width), floating point
+    Along the optical axis [m]; 0, NaN or masked: nothing known, inf: nothing up to max_range.
+T_world_camera : array_like, (4, 4)
+pose_sigma : array_like, (2,), optional
+    What this pose may be off beside the sensor's own pose_sigma [m], [rad]: after
+    ``register_frame`` its pose_sigma.
+amplitude : array_like, (height, width), optional
+    [1/m**2]
+
+Returns
+-------
+AddedView
+    The counts of ``FrameIntegrator.integrate``; view (from 0); entropy_removed [nat] and new_area
+    [m**2] by this view, total_entropy_removed and total_area so far, unknown_voxels that are left.
+    new_area is area across the rays, as the expected area is: surface that is seen obliquely is
+    larger. It is NaN by gain "paper".
+
+Raises
+------
+ValueError
+    A shape, a dtype, millimetres, a pose that is not rigid, or a sigma that is negative or not
+    finite. Nothing has changed then.
+Error
+    The scene cannot be made: the frame is in the map then.)";
+
+inline constexpr const char* kRegisterFrameDoc =
+    R"(Where the camera was, by what the frame shows of the map so far. Changes nothing.
+
+Minimises the distances of the frame's readings from the map's points along the surface's normals,
+by Gauss and Newton, with the reported pose as prior. Put a frame that is "registered" in at the pose
+that was found, one with "too_little_overlap" as reported, and leave out one that is "refused": it
+contradicts the map, or would move by more than five sigmas. Cost: some 100 to 300 ms a frame.
+
+Parameters
+----------
+depth : array_like, (height, width), floating point
+    As for ``add``.
+T_world_camera : array_like, (4, 4)
+    As it is reported.
+sigma_translation : float
+    How far each coordinate of the camera's centre may be off, 1 sigma [m].
+sigma_rotation : float
+    The same of each component of its rotation [rad].
+amplitude : array_like, (height, width), optional
+    [1/m**2]
+
+Returns
+-------
+FrameRegistration
+
+Raises
+------
+ValueError
+    A shape, a dtype, a pose that is not rigid, a sigma that is not positive.)";
+
+inline constexpr const char* kProposeDoc =
+    R"(The candidates that are possible now.
+
+What a generator or the predicate of ``reach`` raises passes through. Cost: linear in the candidates, 4 µs
+each, and what generators take.
+
+Returns
+-------
+Proposal
+    T_world_camera (n, 4, 4), generator (list of str, one a candidate), dropped (reason -> how many;
+    the names of ``INFEASIBILITY_NAMES``, and "missed": it was commanded and not reached). A tuple of
+    three: ``len(proposal.T_world_camera)`` is how many candidates there are.)";
+
+inline constexpr const char* kRankDoc =
+    R"(The k best candidates of the last proposal, or of any poses.
+
+Cost: linear in the candidates: 2 ms each in two stages, 20 ms with exact, by gain "combined", for 176x144
+pixels and a map of 128**3 voxels that is mostly unknown.
+
+Parameters
+----------
+k : int
+poses : array_like, (n, 4, 4), optional
+    T_world_camera, instead of the proposal; nobody looks whether they are possible. Bad ones are last, with NaN.
+    Says nothing to ``should_stop``.
+costs : array_like, (n,), optional
+    Subtracted from the gains, in their unit.
+cost_per_metre : float
+    Of the way from the last view, in the gain's unit per metre. The combined gain of new surface goes with 1 / voxel**2,
+    and so should this.
+exact : bool
+    Score all in full. Else, but by gain "paper", in two stages: see ``GainEvaluator.race``.
+control : BatchControl, optional
+
+Returns
+-------
+Ranking
+    Arrays, best first: index (into the candidates or poses), T_world_camera, gain [nat; by gain
+    "surface" m**2], area [m**2] (NaN by gain "paper"), worth (the gain less the cost; 0 or less: the
+    way costs more than the view brings); and complete, False if a stop was requested.
+
+Raises
+------
+ValueError
+    There is no proposal since the last view, or costs are not one a pose.)";
+
+inline constexpr const char* kTriedDoc =
+    R"(A pose was commanded: it is not proposed again, and goes out of the proposal as it stands.
+
+Parameters
+----------
+T_world_camera : array_like, (4, 4)
+reached : bool
+    Whether the camera got there.
+
+Raises
+------
+ValueError
+    Another shape, or a pose that is not rigid.)";
+
+inline constexpr const char* kShouldStopDoc =
+    R"(Why to end, if there is a reason.
+
+Returns
+-------
+str or None
+    After ``add`` max_views or idle; after ``propose`` no_candidates or unreachable; after ``rank`` of
+    the proposal gain or area.)";
+
+}  // namespace viewgain::python
