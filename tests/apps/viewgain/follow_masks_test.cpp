@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "apps/viewgain/pose_file_text.hpp"
 #include "core/temporary_folder.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
@@ -34,17 +35,11 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using nlohmann::json;
+using test::matrix_text;
 using Strings = std::vector<std::string>;
 
 constexpr std::size_t kFrames = 6;
 constexpr int kWidth = 48, kHeight = 36;  // [px]
-
-std::string matrix_text(const Pose& pose) {
-  std::ostringstream text;
-  text.precision(17);
-  for (std::size_t i = 0; i < 12; ++i) text << pose.m[i] << (i % 4 == 3 ? "\n" : " ");
-  return text.str() + "0 0 0 1\n";
-}
 
 // Views of a cube: in "clean" as they are; those that come into "live" show an arm, too.
 class FollowMasks : public test::ProgramTest {

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "apps/viewgain/pose_file_text.hpp"
 #include "core/temporary_folder.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
@@ -37,17 +38,11 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using nlohmann::json;
+using test::matrix_text;
 using Strings = std::vector<std::string>;
 
 constexpr std::size_t kGood = 30;
 constexpr double kVoxel = 0.025;  // [m]
-
-std::string matrix_text(const Pose& pose) {
-  std::ostringstream text;
-  text.precision(17);
-  for (std::size_t i = 0; i < 12; ++i) text << pose.m[i] << (i % 4 == 3 ? "\n" : " ");
-  return text.str() + "0 0 0 1\n";
-}
 
 // Files that are replaced while they are read are whole at any time.
 class Reader {

@@ -23,7 +23,8 @@ struct JointFrame {
   bool is_trusted = false;  ///< and is its pose better known than it was reported?
   double slack = 0;         ///< by which T may still be off, in sigmas
   int iterations = 0;       ///< of the last alignment
-  /// Of the pose relative to the first frame's: the prior's, or as the last alignment of all found it.
+  /// Of the pose relative to the first frame's: the prior's, or as the last alignment of all found
+  /// it.
   Matrix6 covariance = Matrix6::Zero();
 };
 
