@@ -87,7 +87,10 @@ PairSums pair_sums(const AlignedView& source, const Pose& T_world_source,
     const Eigen::Vector3d source_normal = R * s.normal;
     if (source_normal.dot(m.normal) < source_gates.min_cosine) continue;
     const Eigen::Vector3d d = p - m.point;
-    const double e = m.normal.dot(d);
+    // Along the mean of both: of one alone the noise pulls more, and on what is curved a point
+    // beside the other lies off its plane.
+    const Eigen::Vector3d normal = (source_normal + m.normal).normalized();
+    const double e = normal.dot(d);
     const double slack =
         source_gates.slack_variance(s.point.norm()) + target_gates.slack_variance(m.point.norm());
     const double variance = source.variance(i) + target.variance(j);
@@ -95,12 +98,17 @@ PairSums pair_sums(const AlignedView& source, const Pose& T_world_source,
     if (square > kGateSigmas * kGateSigmas) continue;
     if (d.squaredNorm() - e * e > along + slack) continue;
     const double weight = 1 / (1 + square / (kCauchy * kCauchy)) / variance;
-    Vector6 derivative, frame_derivative;
-    derivative << m.normal, arm.cross(m.normal);
-    frame_derivative << source_normal, arm.cross(source_normal);
+    const auto derivative_along = [&arm](const Eigen::Vector3d& n) {
+      Vector6 derivative;
+      derivative << n, arm.cross(n);
+      return derivative;
+    };
+    const Vector6 derivative = derivative_along(normal);
     const Vector6 weighted = weight * derivative;
     sums.information += weighted * derivative.transpose();
-    sums.agreed += weighted * frame_derivative.transpose();
+    // Of these two the noise is independent.
+    sums.agreed +=
+        weight * derivative_along(m.normal) * derivative_along(source_normal).transpose();
     sums.gradient += e * weighted;
     sums.squares += e * e;
     ++sums.pairs;

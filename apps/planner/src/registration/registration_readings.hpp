@@ -15,7 +15,7 @@ namespace viewgain::detail {
 
 /// A reading with the surface round it, camera frame.
 struct Reading {
-  Eigen::Vector3d point;   ///< on its ray [m]
+  Eigen::Vector3d point;   ///< [m]
   Eigen::Vector3d normal;  ///< unit, toward the camera
   MeasurementSigmas sigmas;
   int u = 0, v = 0;  ///< its pixel
@@ -27,8 +27,10 @@ inline constexpr int kLevels = 3;
 /// The readings of a frame on a lattice of pixels with about `max_readings` of them, row by row.
 /// The normal is that of the plane through 5x5 readings within `radius` [m]; a reading without one,
 /// at the rim of what is seen, is left out, and so is what is known (DepthFrame::known_depth).
-/// Smoothed, its point is that of the plane through the 5x5 pixels round it, with a fifth of the
-/// noise. `rays` is the camera's table.
+/// Not smoothed, its point is as it was read. Smoothed, it is that of the plane through the 5x5
+/// pixels round it, with a fifth of the noise; where some of these have no reading it is moved
+/// inward along the normal, since rims seem wider than they are, and its sigmas are larger. `rays`
+/// is the camera's table.
 [[nodiscard]] std::vector<Reading> readings_of(const DepthFrame& frame, const Sensor& sensor,
                                                std::span<const Eigen::Vector3d> rays, double radius,
                                                bool are_smoothed, std::size_t max_readings,

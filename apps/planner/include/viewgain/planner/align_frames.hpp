@@ -23,9 +23,11 @@ namespace viewgain {
 ///
 /// Minimises, over the poses T_i of all frames but the first, Σ_ij Σ_k w ρ(e) / c + Σ_i |T_i ⊖
 /// T_i,reported|² / (s σ²), e = nᵀ(T_i s - T_j m) the distance of reading s of frame i from the
-/// reading m of frame j whose pixel it falls on, along m's normal n. Readings are smoothed, by the
+/// reading m of frame j whose pixel it falls on, along the mean n of both normals (a symmetric
+/// distance, after Rusinkiewicz, ACM Trans. Graphics 38(4), 2019). Readings are smoothed, by the
 /// planes through the 5x5 pixels round them: single ones, with five times the noise, push frames
-/// apart, 12 views of the camel by 7 mm from where they were. Weights, ρ and gates as of
+/// apart, 12 views of the camel by 7 mm from where they were. Beside a rim, which lateral noise
+/// makes wider, they are moved inward. Weights, ρ and gates as of
 /// FrameRegistrar. c, at least 3 since readings are used in several pairs, is 8 times how much
 /// neighbours disagree about a frame: the squared gradient of single neighbours, over what their
 /// readings' noise would give, mean over the motions. On simulated objects that is 0.1 to 0.4; 9 in
