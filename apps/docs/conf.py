@@ -53,7 +53,8 @@ def readable_signatures(app, what, name, obj, options, signature, return_annotat
 
 def run_from_files(app, exception):
     """Debian's furo wants a web server: its script is a module, which browsers do not load from files, and its style takes another from
-    the server's root. Without them the pages have no theme to choose and a white edge."""
+    the server's root. Without them the pages have no theme to choose and a white edge. Its style also lost the dark colours of who has
+    chosen no theme on a dark desktop: the page would be light, its code dark."""
     if exception is not None:
         return
     static = pathlib.Path(app.outdir) / "_static"
@@ -62,9 +63,12 @@ def run_from_files(app, exception):
     text = script.read_text(encoding="utf-8")
     if found := imported.match(text):
         script.write_text((script.parent / found[1]).read_text(encoding="utf-8") + imported.sub("", text), encoding="utf-8")
-    style.write_text(re.sub(r"@import url\(/(javascript/normalize\.css/normalize\.css)\);",
-                            lambda found: pathlib.Path("/usr/share", found[1]).read_text(encoding="utf-8"),
-                            style.read_text(encoding="utf-8")), encoding="utf-8")
+    rules = re.sub(r"@import url\(/(javascript/normalize\.css/normalize\.css)\);",
+                   lambda found: pathlib.Path("/usr/share", found[1]).read_text(encoding="utf-8"), style.read_text(encoding="utf-8"))
+    dark = re.search(r'body\[data-theme="?dark"?\]\s*(\{[^}]*--color-background-primary[^}]*\})', rules)
+    if dark and not re.search(r'prefers-color-scheme:\s*dark\)\s*\{\s*body:not\(\[data-theme', rules):
+        rules += f"\n@media not print and (prefers-color-scheme: dark) {{\n  body[data-theme=auto] {dark[1]}\n}}\n"
+    style.write_text(rules, encoding="utf-8")
     for page in pathlib.Path(app.outdir).rglob("*.html"):
         html = page.read_text(encoding="utf-8")
         if '<script type="module" ' in html:
