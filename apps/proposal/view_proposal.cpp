@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "options/choices.hpp"
 #include "options/common_options.hpp"
@@ -31,6 +32,26 @@ double distance_of(const ProposalOptions& options, const Sensor& sensor, const B
   double longest = 0;
   for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.max[a] - box.min[a]);
   return filling_distance(sensor, 0.5 * longest * 0.35 / 0.4);  // the object in its workspace
+}
+
+// As in a room: all views so far were taken from inside of the workspace.
+bool is_seen_from_inside(const BeliefGrid& grid) {
+  return std::all_of(grid.views().begin(), grid.views().end(), [&grid](const Pose& view) {
+    return grid.index_of(view.translation()).has_value();
+  });
+}
+
+std::vector<HalfSpace> inside_of_workspace(const BeliefGrid& grid) {
+  const Box box = grid.workspace();
+  std::vector<HalfSpace> sides;
+  for (int a = 0; a < 3; ++a) {
+    const auto k = static_cast<std::size_t>(a);
+    const Eigen::Vector3d axis = grid.T_world_grid().rotation().col(a);
+    const double origin = axis.dot(grid.T_world_grid().translation());
+    sides.push_back({axis, origin + box.min[k]});
+    sides.push_back({-axis, -(origin + box.max[k])});
+  }
+  return sides;
 }
 
 }  // namespace
@@ -105,7 +126,12 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
   if (options.distance) config.boundary.working_distance = *options.distance;
   if (options.overlap) config.boundary.estimator.overlap = *options.overlap;
   if (options.region_depth) config.boundary.estimator.region_depth = *options.region_depth;
-  if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
+  if (!options.reach.empty()) {
+    config.feasibility.reach = read_reach_toml(options.reach);
+  } else if (config.at_boundaries && is_seen_from_inside(grid)) {
+    // Outside of the workspace nothing is mapped, so nothing would be in the camera's way.
+    config.feasibility.reach.half_spaces = inside_of_workspace(grid);
+  }
   config.feasibility.support_plane = options.support_plane;
   if (config.at_boundaries && grid.views().empty()) {
     throw Error(ErrorCode::invalid_argument,

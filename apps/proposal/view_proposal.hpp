@@ -51,8 +51,9 @@ void check(const ProposalOptions& options);
 [[nodiscard]] SurfaceModel model_of(BeliefGrid grid, const Sensor& sensor,
                                     const ProposalOptions& options, const ExecConfig& exec);
 
-/// `map`: what errors call it. Throws Error(invalid_argument) where boundaries are asked for of a
-/// map without views, and as read_reach_toml().
+/// Without --reach the views at boundaries stay inside of the workspace where all views so far
+/// were, as in a room. `map`: what errors call it. Throws Error(invalid_argument) where boundaries
+/// are asked for of a map without views, and as read_reach_toml().
 [[nodiscard]] GenerationConfig generation_config(const ProposalOptions& options,
                                                  const Sensor& sensor, const BeliefGrid& grid,
                                                  const std::string& map);

@@ -3,6 +3,7 @@
 
 // `viewgain reconstruct` and `next` on a folder of frames, as a user would run them.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -116,6 +117,42 @@ TEST_F(RecordedFrames, NextNamesTheBestOfTheCandidates) {
     }
   }
   EXPECT_EQ(cases, 30U);
+}
+
+// Where the workspace holds the cameras, and where it does not.
+TEST_F(RecordedFrames, NextStaysInTheRoomThatFramesWereTakenIn) {
+  run_well({"simulate", "cube.off", "--orbit", "16,0.6,10,0,46", "--sensor", "tof.toml", "--size",
+            "0.2", "--recenter", "on", "--noise", "on", "--out", "round"});
+  const auto views_within = [this](const std::string& half, const Strings& more) {
+    const std::string corner = half + "," + half + "," + half;
+    const std::string workspace = "-" + half + ",-" + half + ",-" + half + "," + corner;
+    const Strings arguments{"next",           "round",   "--distance", "0.56",  "--body",
+                            "0.01,0.01,0.01", "--voxel", "0.02",       "--top", "1000",
+                            "--workspace",    workspace, "--json"};
+    return json::parse(run_well(joined(arguments, more)));
+  };
+  const auto farthest = [](const json& next) {
+    double most = 0;
+    for (const json& view : next["next"]) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        most = std::max(most, std::abs(view["T_world_camera"][a][3].get<double>()));
+      }
+    }
+    return most;
+  };
+  const json room = views_within("0.62", {});
+  EXPECT_GT(room["next"].size(), 0U);
+  EXPECT_GT(room["dropped"]["unreachable"], 0);
+  EXPECT_LE(farthest(room), 0.62);
+  // Who says where the camera may be is believed.
+  write("all.toml", "[[half_space]]\nnormal = [0, 0, 1]\noffset = -9\n");
+  const json anywhere = views_within("0.62", {"--reach", "all.toml"});
+  EXPECT_FALSE(anywhere["dropped"].contains("unreachable"));
+  EXPECT_GT(anywhere["candidates"], room["candidates"]);
+  EXPECT_GT(farthest(anywhere), 0.62);
+  const json from_outside = views_within("0.4", {});
+  EXPECT_FALSE(from_outside["dropped"].contains("unreachable"));
+  EXPECT_GT(farthest(from_outside), 0.4);
 }
 
 TEST_F(RecordedFrames, NextSaysInWordsWhatItFound) {
