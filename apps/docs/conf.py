@@ -67,7 +67,7 @@ def run_from_files(app, exception):
                    lambda found: pathlib.Path("/usr/share", found[1]).read_text(encoding="utf-8"), style.read_text(encoding="utf-8"))
     dark = re.search(r'body\[data-theme="?dark"?\]\s*(\{[^}]*--color-background-primary[^}]*\})', rules)
     if dark and not re.search(r'prefers-color-scheme:\s*dark\)\s*\{\s*body:not\(\[data-theme', rules):
-        rules += f"\n@media not print and (prefers-color-scheme: dark) {{\n  body[data-theme=auto] {dark[1]}\n}}\n"
+        rules += f"\n@media screen and (prefers-color-scheme: dark) {{\n  body[data-theme=auto] {dark[1]}\n}}\n"
     style.write_text(rules, encoding="utf-8")
     for page in pathlib.Path(app.outdir).rglob("*.html"):
         html = page.read_text(encoding="utf-8")

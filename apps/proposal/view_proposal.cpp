@@ -67,7 +67,10 @@ void add_proposal_options(CLI::App& app, ProposalOptions& o) {
                  "working distance; the workspace fills the view");
   app.add_option("--center", o.center,
                  "x,y,z that poses look at, world [m]; default: the workspace's centre");
-  app.add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
+  app.add_option(
+      "--reach", o.reach,
+      "TOML file: boxes, shells, half-spaces, poses in reach; default: all, or, for views at "
+      "boundaries, the workspace if all views so far are inside of it");
   app.add_option("--body", o.body, kBodyHelp);
   app.add_option("--support-plane", o.support_plane, "height z of a table [m]");
   app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);

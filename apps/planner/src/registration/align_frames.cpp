@@ -150,7 +150,7 @@ Agreements FrameAlignment::Impl::agreements_of(std::size_t index,
     std::vector<std::uint8_t> is_shown(surface.size(), 0);
     const PairGates gates = joint.gates_of(other);
     found.surface.with += detail::pair_sums(other.seen, other.T, gates, frame.seen, frame.T, gates,
-                                            detail::kLevels - 1, &is_shown)
+                                            joint.rim_width, detail::kLevels - 1, &is_shown)
                               .pairs;
     for (std::size_t i = 0; i < surface.size(); ++i) {
       if (is_shown[i] != 0) continue;
@@ -173,7 +173,8 @@ PairSums FrameAlignment::Impl::sums_with_others(std::size_t index, const Pose& T
     if (j == index || !other.is_in) continue;
     const PairGates gates = joint.gates_of(other);
     sums += detail::pair_sums(joint.frames[index].seen, T, gates, other.seen, other.T, gates,
-                              detail::kLevels - 1, other.is_trusted ? by_trusted : by_others);
+                              joint.rim_width, detail::kLevels - 1,
+                              other.is_trusted ? by_trusted : by_others);
   }
   return sums;
 }
@@ -249,6 +250,7 @@ bool FrameAlignment::Impl::register_frame(std::size_t index) {
   if (result.status == RegistrationStatus::registered) {
     std::vector<std::pair<Pose, detail::Matrix6>> before;
     for (const JointFrame& one : joint.frames) before.emplace_back(one.T, one.covariance);
+    const double rim_width = joint.rim_width;
     frame.is_in = true;
     joint.align_all();
     const Verdict verdict = verdict_of(index);
@@ -258,6 +260,7 @@ bool FrameAlignment::Impl::register_frame(std::size_t index) {
     for (std::size_t i = 0; i < before.size(); ++i) {
       std::tie(joint.frames[i].T, joint.frames[i].covariance) = before[i];
     }
+    joint.rim_width = rim_width;
   }
   reset(frame);
   if (result.status == RegistrationStatus::too_little_overlap) result = verdict_of(index).result;

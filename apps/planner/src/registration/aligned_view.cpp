@@ -33,7 +33,7 @@ AlignedView::AlignedView(const DepthFrame& frame, const PinholeCamera& camera,
         static_cast<std::size_t>(r.u / stride_)] = static_cast<std::int32_t>(i);
     const double cosine = std::abs(r.normal.dot(r.point)) / r.point.norm();
     const double sigma = sigma_along_normal(r.sigmas, cosine);
-    variances_.push_back(sigma * sigma);
+    variances_.push_back(r.extrapolation * sigma * sigma);
   }
 }
 
@@ -63,19 +63,19 @@ bool AlignedView::looks_past(const Eigen::Vector3d& point, double margin, double
   return depth_at(u, v) != DepthFrame::kInvalid;
 }
 
-PairSums pair_sums(const AlignedView& source, const Pose& T_world_source,
+ViewSums pair_sums(const AlignedView& source, const Pose& T_world_source,
                    const PairGates& source_gates, const AlignedView& target,
-                   const Pose& T_world_target, const PairGates& target_gates, int level,
-                   std::vector<std::uint8_t>* is_paired) {
+                   const Pose& T_world_target, const PairGates& target_gates, double rim_width,
+                   int level, std::vector<std::uint8_t>* is_paired) {
   const Pose T_target_source = T_world_target.inverse() * T_world_source;
   const Eigen::Matrix3d R = T_target_source.rotation();
   const Eigen::Vector3d t = T_target_source.translation();
   const double along = source_gates.along_surface * source_gates.along_surface;
-  PairSums sums;  // the target's axes
+  ViewSums sums;  // the target's axes
   for (std::size_t i = 0; i < source.readings().size(); ++i) {
     const Reading& s = source.readings()[i];
     if (s.level > level) continue;
-    const Eigen::Vector3d arm = R * s.point;
+    const Eigen::Vector3d arm = R * (s.point - rim_width * s.rim * s.normal);
     const Eigen::Vector3d p = arm + t;
     if (!(p.z() > 0)) continue;
     double u = 0, v = 0;
@@ -86,9 +86,10 @@ PairSums pair_sums(const AlignedView& source, const Pose& T_world_source,
     const Reading& m = target.readings()[j];
     const Eigen::Vector3d source_normal = R * s.normal;
     if (source_normal.dot(m.normal) < source_gates.min_cosine) continue;
-    const Eigen::Vector3d d = p - m.point;
+    const Eigen::Vector3d d = p - (m.point - rim_width * m.rim * m.normal);
     // Along the mean of both: of one alone the noise pulls more, and on what is curved a point
-    // beside the other lies off its plane.
+    // beside the other lies off its plane. That it turns with the frames is left out of J, as is
+    // usual: d is short.
     const Eigen::Vector3d normal = (source_normal + m.normal).normalized();
     const double e = normal.dot(d);
     const double slack =
@@ -110,6 +111,10 @@ PairSums pair_sums(const AlignedView& source, const Pose& T_world_source,
     sums.agreed +=
         weight * derivative_along(m.normal) * derivative_along(source_normal).transpose();
     sums.gradient += e * weighted;
+    const double by_width = m.rim * normal.dot(m.normal) - s.rim * normal.dot(source_normal);
+    sums.rim_motion += by_width * weighted;
+    sums.rim_information += weight * by_width * by_width;
+    sums.rim_gradient += weight * by_width * e;
     sums.squares += e * e;
     ++sums.pairs;
     if (is_paired != nullptr) (*is_paired)[i] = 1;
@@ -121,6 +126,7 @@ PairSums pair_sums(const AlignedView& source, const Pose& T_world_source,
   sums.agreed =
       (0.5 * to_world * (sums.agreed + sums.agreed.transpose()) * to_world.transpose()).eval();
   sums.gradient = (to_world * sums.gradient).eval();
+  sums.rim_motion = (to_world * sums.rim_motion).eval();
   return sums;
 }
 

@@ -46,12 +46,21 @@ class AlignedView {
   std::vector<std::int32_t> at_;
 };
 
+/// Of two frames. r is the derivative of e by the width of rims.
+struct ViewSums : PairSums {
+  Vector6 rim_motion = Vector6::Zero();  ///< Σ w J r
+  double rim_information = 0;            ///< Σ w r²
+  double rim_gradient = 0;               ///< Σ w r e
+};
+
 /// What the readings of `source` say that fall on one of `target`: sums by the motion of the
 /// source's camera, world axes. The gates say how far either may be off; those along the surface
-/// and of normals are the source's. Marks in `is_paired`, if given, the readings that do.
-[[nodiscard]] PairSums pair_sums(const AlignedView& source, const Pose& T_world_source,
+/// and of normals are the source's. Readings are taken back along their normals by `rim_width`
+/// times their `rim`. Marks in `is_paired`, if given, the readings that do.
+[[nodiscard]] ViewSums pair_sums(const AlignedView& source, const Pose& T_world_source,
                                  const PairGates& source_gates, const AlignedView& target,
                                  const Pose& T_world_target, const PairGates& target_gates,
-                                 int level, std::vector<std::uint8_t>* is_paired = nullptr);
+                                 double rim_width, int level,
+                                 std::vector<std::uint8_t>* is_paired = nullptr);
 
 }  // namespace viewgain::detail

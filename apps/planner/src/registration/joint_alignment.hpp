@@ -36,6 +36,10 @@ class JointAlignment {
   JointAlignment(double length, double max_normal_angle, ThreadPool& pool);
 
   std::vector<JointFrame> frames;
+  /// By how much rims seem wider than they are: what a pixel shows comes from beside its ray, too,
+  /// so that pixels outside of a rim may show the surface. In lateral sigmas for each reading that
+  /// the window round a pixel lacks; align_all() estimates it.
+  double rim_width = kUsualRimWidth;
 
   /// Moves one frame against those that are trusted, or all that are in, from where it is.
   void align_one(std::size_t index, bool against_all);
@@ -50,19 +54,22 @@ class JointAlignment {
   [[nodiscard]] static Matrix6 of_single_pairs(const Matrix6& agreed);
 
  private:
+  static constexpr double kUsualRimWidth = 0.03;
+
   // What one iteration looks at.
   struct Pass {
     std::vector<std::size_t> movable;
     int level;     // a finer one where it leaves too few readings
     double still;  // a step this short ends it, in sigmas of what a pose is known to
     bool trusted_only = false;
+    bool with_rims = false;  // is the rims' width to be found as well?
   };
   struct System;
   [[nodiscard]] System system(const Pass& pass) const;
   bool move(const Pass& pass);
   void align(const Pass& pass);
   void begin_one(const Pass& pass);
-  [[nodiscard]] double estimated_scale(const Pass& pass) const;
+  [[nodiscard]] double estimated_scale(Pass pass) const;
   [[nodiscard]] std::size_t pairs_of(std::size_t index) const;
   [[nodiscard]] int level_of(const Pass& pass) const;
 

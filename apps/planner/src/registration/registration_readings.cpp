@@ -13,16 +13,11 @@ namespace {
 constexpr int kMaxHalfWindow = 20;  // [px]
 constexpr int kWindow = 25;         // readings
 constexpr int kLeastForNormal = 15;
-// Those of a frame that hang on their neighbours' can do with less: rims hold poses sideways.
+// Smoothed readings may have fewer: those at rims hold poses sideways.
 constexpr int kLeastSmoothed = 12;
-// What a pixel shows comes from beside its ray, too, by the lateral noise. Pixels outside of a rim
-// show the surface as well, so it seems too wide. In simulated views of an SR4000 a point's offset
-// along its normal grows by 0.07 of the lateral sigma with each reading that its window lacks, and
-// poses are best with 0.055 of it taken back.
-constexpr double kRimOffset = 0.055;
 // A window that lacks readings on one side extrapolates: measured variances grow by the third power
 // of how few there are.
-constexpr double kRimVariance = 3;
+constexpr double kRimPower = 3;
 
 class Surroundings {
  public:
@@ -51,13 +46,13 @@ class Surroundings {
     Reading reading;
     reading.point = z * rays_[i];
     reading.normal = plane->normal;
-    int count = kWindow;
+    int count = kWindow, beyond = 0;
     if (are_smoothed_) {
       // Of the nearest pixels alone: a wide plane cuts what is curved.
       const std::optional<Plane> near = plane_at(u, v, 2, 2);
       if (!near) return std::nullopt;
       reading.point = near->depth * rays_[i];
-      count = near->count;
+      count = near->count, beyond = near->beyond;
     }
     const double range = reading.point.norm();
     const double cosine =
@@ -65,9 +60,8 @@ class Surroundings {
             ? -reading.normal.dot(reading.point) / range
             : std::min(1.0, static_cast<double>(frame_.amplitude[i]) * range * range);
     reading.sigmas = sensor_.noise_sigmas(range, cosine);
-    reading.point -= kRimOffset * (kWindow - count) * reading.sigmas.lateral * reading.normal;
-    const double wider = std::pow(static_cast<double>(kWindow) / count, kRimVariance / 2);
-    reading.sigmas.axial *= wider, reading.sigmas.lateral *= wider;
+    reading.rim = beyond * reading.sigmas.lateral;
+    reading.extrapolation = std::pow(static_cast<double>(kWindow) / count, kRimPower);
     reading.u = u, reading.v = v;
     return reading;
   }
@@ -77,6 +71,7 @@ class Surroundings {
     double depth;            // at the pixel, along z [m]
     Eigen::Vector3d normal;  // toward the camera
     int count;               // of readings
+    int beyond;              // pixels beside a rim: of farther surface, or without a reading
   };
   [[nodiscard]] std::size_t index(int u, int v) const {
     return static_cast<std::size_t>(v) * static_cast<std::size_t>(frame_.width) +
@@ -99,16 +94,20 @@ class Surroundings {
         2.75 * std::max(radius_, 2 * z / sensor_.camera.fx) + 3 * sensor_.noise_sigmas(z).axial;
     Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    int count = 0;
+    int count = 0, beyond = 0;
     for (int a = -2; a <= 2; ++a) {
       const int y = v + a * half_v / 2;
       if (y < 0 || y >= frame_.height) continue;
       for (int b = -2; b <= 2; ++b) {
         const int x = u + b * half_u / 2;
-        if (x < 0 || x >= frame_.width || !is_reading(x, y)) continue;
+        if (x < 0 || x >= frame_.width) continue;
         const std::size_t i = index(x, y);
         const double depth = static_cast<double>(frame_.depth[i]);
-        if (std::abs(depth - z) > deepest) continue;
+        if (!is_reading(x, y) || depth > z + deepest) {
+          ++beyond;
+          continue;
+        }
+        if (depth < z - deepest) continue;
         const Eigen::Vector3d row(rays_[i].x() - ray.x(), rays_[i].y() - ray.y(), 1);
         normal_matrix += row * row.transpose();
         right += row / depth;
@@ -122,7 +121,7 @@ class Surroundings {
     toward.normalize();
     // Of a surface that is seen; what has no such plane is a rim.
     if (!toward.allFinite() || !(toward.dot(ray) > 0)) return std::nullopt;
-    return Plane{1 / plane.z(), -toward, count};
+    return Plane{1 / plane.z(), -toward, count, beyond};
   }
 
   const DepthFrame& frame_;

@@ -21,18 +21,19 @@ namespace viewgain {
 /// not know is mended by later ones, and those that were in doubt are tried again. The first
 /// frame's pose holds.
 ///
-/// Minimises, over the poses T_i of all frames but the first, Σ_ij Σ_k w ρ(e) / c + Σ_i |T_i ⊖
-/// T_i,reported|² / (s σ²), e = nᵀ(T_i s - T_j m) the distance of reading s of frame i from the
-/// reading m of frame j whose pixel it falls on, along the mean n of both normals (a symmetric
-/// distance, after Rusinkiewicz, ACM Trans. Graphics 38(4), 2019). Readings are smoothed, by the
-/// planes through the 5x5 pixels round them: single ones, with five times the noise, push frames
-/// apart, 12 views of the camel by 7 mm from where they were. Beside a rim, which lateral noise
-/// makes wider, they are moved inward. Weights, ρ and gates as of
-/// FrameRegistrar. c, at least 3 since readings are used in several pairs, is 8 times how much
-/// neighbours disagree about a frame: the squared gradient of single neighbours, over what their
-/// readings' noise would give, mean over the motions. On simulated objects that is 0.1 to 0.4; 9 in
-/// a room before a real camera, whose systematic errors would else pull frames along. A motion of a
-/// frame that the others do not hold stays as reported.
+/// Minimises, over the poses T_i of all frames but the first and a width b of rims, Σ_ij Σ_k w ρ(e)
+/// / c + Σ_i |T_i ⊖ T_i,reported|² / (s σ²) + (b - 0.03)² / 0.03², e = nᵀ(T_i s - T_j m) the
+/// distance of reading s of frame i from the reading m of frame j whose pixel it falls on, along
+/// the mean n of both normals (a symmetric distance, after Rusinkiewicz, ACM Trans. Graphics 38(4),
+/// 2019). Readings are smoothed, by the planes through the 5x5 pixels round them: single ones, with
+/// five times the noise, push frames apart, 12 views of the camel by 7 mm from where they were.
+/// What a pixel shows comes from beside its ray, too, so rims seem wider than they are: s and m are
+/// taken back along their normals by b lateral sigmas for each of the 25 pixels that lies past a
+/// rim. Weights, ρ and gates as of FrameRegistrar. c, at least 3 since readings are used in several
+/// pairs, is 8 times how much neighbours disagree about a frame: the squared gradient of single
+/// neighbours, over what their readings' noise would give, mean over the motions. On simulated
+/// objects that is 0.1 to 0.4; 9 in a room before a real camera, whose systematic errors would else
+/// pull frames along. A motion of a frame that the others do not hold stays as reported.
 ///
 /// s, at most 1, is one for all frames and the likeliest given by how much they ask to be moved
 /// (empirical Bayes): poses that are better than their sigmas say stay where they are, so that
