@@ -37,8 +37,8 @@ class JointAlignment {
 
   std::vector<JointFrame> frames;
   /// By how much rims seem wider than they are: what a pixel shows comes from beside its ray, too,
-  /// so that pixels outside of a rim may show the surface. In lateral sigmas for each reading that
-  /// the window round a pixel lacks; align_all() estimates it.
+  /// so that pixels outside of a rim may show the surface. In lateral sigmas for each
+  /// of the 25 pixels round a reading that lies past a rim; align_all() finds it.
   double rim_width = kUsualRimWidth;
 
   /// Moves one frame against those that are trusted, or all that are in, from where it is.
@@ -54,7 +54,7 @@ class JointAlignment {
   [[nodiscard]] static Matrix6 of_single_pairs(const Matrix6& agreed);
 
  private:
-  static constexpr double kUsualRimWidth = 0.03;
+  static constexpr double kUsualRimWidth = 0.03;  // between what simulated views want, 0 to 0.055
 
   // What one iteration looks at.
   struct Pass {

@@ -11,7 +11,7 @@ namespace viewgain::detail {
 namespace {
 
 constexpr int kMaxHalfWindow = 20;  // [px]
-constexpr int kWindow = 25;         // readings
+constexpr int kWindow = 25;         // pixels of 5x5
 constexpr int kLeastForNormal = 15;
 // Smoothed readings may have fewer: those at rims hold poses sideways.
 constexpr int kLeastSmoothed = 12;
