@@ -84,30 +84,30 @@ Kind kind_of(const FileOption& option, const std::string& subcommand) {
   return subcommand == "reconstruct" || subcommand == "study" ? Kind::run_output : option.kind;
 }
 
-void check_values(const CLI::App& subcommand) {
-  for (const CLI::Option* option : subcommand.get_options()) {
+void check_values(const App& subcommand) {
+  for (const Option* option : subcommand.options()) {
     for (const std::string& value : option->results()) {
       if (value.empty()) {
-        throw Error(ErrorCode::invalid_argument, option->get_name() + ": the value is empty");
+        throw Error(ErrorCode::invalid_argument, option->name() + ": the value is empty");
       }
     }
   }
-  for (const CLI::App* group : subcommand.get_subcommands({})) check_values(*group);
+  for (const App* group : subcommand.subcommands()) check_values(*group);
 }
 
-std::vector<NamedFile> named_files(const CLI::App& subcommand) {
+std::vector<NamedFile> named_files(const App& subcommand) {
   std::vector<NamedFile> files;
   for (const FileOption& file_option : kFileOptions) {
-    const CLI::Option* option = subcommand.get_option_no_throw(std::string(file_option.name));
+    const Option* option = subcommand.find_option(file_option.name);
     if (option == nullptr) continue;
     for (const std::string& value : option->results()) {
       if (file_option.name == "--sensor" && !is_sensor_file(value)) continue;
       if (file_option.name == "--hazard" && !is_hazard_file(value)) continue;
       if (file_option.name == "--obstacle" && !is_obstacle_file(value)) continue;
       // There it is a switch, and the page a file of --out.
-      if (file_option.name == "--report" && subcommand.get_name() == "reconstruct") continue;
+      if (file_option.name == "--report" && subcommand.name() == "reconstruct") continue;
       files.push_back(
-          {std::string(file_option.name), value, kind_of(file_option, subcommand.get_name())});
+          {std::string(file_option.name), value, kind_of(file_option, subcommand.name())});
     }
   }
   return files;
@@ -173,7 +173,7 @@ void check_not_read(const NamedFile& output, const std::vector<NamedFile>& files
 
 }  // namespace
 
-void check_call(const CLI::App& subcommand) {
+void check_call(const App& subcommand) {
   check_values(subcommand);
   const std::vector<NamedFile> files = named_files(subcommand);
   for (const NamedFile& file : files) {

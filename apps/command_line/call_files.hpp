@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 
 namespace viewgain::app {
 
@@ -15,6 +15,6 @@ namespace viewgain::app {
 ///   `integrate --map` may name its --out: a map is continued where it stands;
 /// - a file to be written can be written.
 /// Throws Error, naming option and file.
-void check_call(const CLI::App& subcommand);
+void check_call(const App& subcommand);
 
 }  // namespace viewgain::app

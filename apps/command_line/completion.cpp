@@ -17,18 +17,19 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-std::vector<const CLI::App*> shown_subcommands(const CLI::App& program) {
-  return program.get_subcommands(
-      [](const CLI::App* subcommand) { return !subcommand->get_group().empty(); });
+std::vector<const App*> shown_subcommands(const App& program) {
+  std::vector<const App*> shown = program.subcommands();
+  std::erase_if(shown, [](const App* subcommand) { return subcommand->group_name().empty(); });
+  return shown;
 }
 
-std::vector<std::string> values_of(const CLI::Option& option) {
-  return flag_of(option) == "--sensor" ? sensor_preset_names() : choices_of(option);
+std::vector<std::string> values_of(const Option& option) {
+  return option.name() == "--sensor" ? sensor_preset_names() : choices_of(option);
 }
 
 // The presets stand where sensors names one.
-std::vector<std::string> positionals_of(const CLI::App& subcommand) {
-  return subcommand.get_name() == "sensors" ? sensor_preset_names() : std::vector<std::string>();
+std::vector<std::string> positionals_of(const App& subcommand) {
+  return subcommand.name() == "sensors" ? sensor_preset_names() : std::vector<std::string>();
 }
 
 // A text within single quotes of a shell.
@@ -53,20 +54,20 @@ std::string bracketed(const std::string& text) {
 
 }  // namespace
 
-std::string bash_completion(const CLI::App& program) {
+std::string bash_completion(const App& program) {
   std::string names, cases;
-  for (const CLI::App* subcommand : shown_subcommands(program)) {
-    names += subcommand->get_name() + " ";
+  for (const App* subcommand : shown_subcommands(program)) {
+    names += subcommand->name() + " ";
     std::vector<std::string> flags;
     std::string values;
-    for (const CLI::Option* option : all_options(*subcommand)) {
+    for (const Option* option : all_options(*subcommand)) {
       if (!option->nonpositional()) continue;
-      flags.push_back(flag_of(*option));
-      if (is_bare(*option)) continue;
+      flags.push_back(option->name());
+      if (option->is_bare()) continue;
       values.append("        ").append(flags.back()).append(") values='");
       values.append(joined(values_of(*option))).append("' flags= ;;\n");
     }
-    cases.append("    ").append(subcommand->get_name()).append(")\n      flags='");
+    cases.append("    ").append(subcommand->name()).append(")\n      flags='");
     cases.append(joined(flags)).append("' values='").append(joined(positionals_of(*subcommand)));
     cases.append("'\n      case $before in\n").append(values).append("      esac\n      ;;\n");
   }
@@ -97,17 +98,17 @@ complete -o default -F _viewgain viewgain
 )";
 }
 
-std::string zsh_completion(const CLI::App& program) {
+std::string zsh_completion(const App& program) {
   std::string names, cases;
-  for (const CLI::App* subcommand : shown_subcommands(program)) {
-    names += "    '" + subcommand->get_name() + ":" + quoted(subcommand->get_description()) + "'\n";
-    cases += "    " + subcommand->get_name() + ")\n      _arguments \\\n";
-    for (const CLI::Option* option : all_options(*subcommand)) {
+  for (const App* subcommand : shown_subcommands(program)) {
+    names += "    '" + subcommand->name() + ":" + quoted(subcommand->description()) + "'\n";
+    cases += "    " + subcommand->name() + ")\n      _arguments \\\n";
+    for (const Option* option : all_options(*subcommand)) {
       if (!option->nonpositional()) continue;
-      const std::string repeated = option->get_expected_max() > 1 ? "*" : "";
-      cases += "        '" + repeated + flag_of(*option) + "[" +
-               bracketed(option->get_description()) + "]";
-      if (!is_bare(*option)) {
+      const std::string repeated = option->is_repeated() ? "*" : "";
+      cases += "        '" + repeated + option->name() + "[" +
+               bracketed(option->description()) + "]";
+      if (!option->is_bare()) {
         const std::string values = joined(values_of(*option));
         cases += ":value:" + (values.empty() ? "_files" : "(" + values + ")");
       }

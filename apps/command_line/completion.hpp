@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 #include <string>
 
 namespace viewgain::app {
 
 /// A script for bash, or zsh, that completes subcommands, flags and the values that have names;
 /// elsewhere it leaves the word to the completion of files.
-[[nodiscard]] std::string bash_completion(const CLI::App& program);
-[[nodiscard]] std::string zsh_completion(const CLI::App& program);
+[[nodiscard]] std::string bash_completion(const App& program);
+[[nodiscard]] std::string zsh_completion(const App& program);
 
 }  // namespace viewgain::app

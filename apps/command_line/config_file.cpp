@@ -18,11 +18,11 @@ namespace viewgain::app {
 namespace {
 
 using Kind = SettingValue::Kind;
-using Options = std::vector<const CLI::Option*>;
+using Options = std::vector<const Option*>;
 
-std::string key_of(const CLI::Option& option) {
-  if (option.nonpositional()) return option.get_lnames().front();
-  std::string key = option.get_name(true);
+std::string key_of(const Option& option) {
+  if (option.nonpositional()) return option.long_name();
+  std::string key = option.name();
   for (char& c : key) {
     c = c == '_' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
@@ -30,31 +30,31 @@ std::string key_of(const CLI::Option& option) {
 }
 
 // Those that a file can hold.
-Options settable_options(const CLI::App& subcommand) {
+Options settable_options(const App& subcommand) {
   Options options = all_options(subcommand);
-  std::erase_if(options, [](const CLI::Option* option) {
+  std::erase_if(options, [](const Option* option) {
     const std::string key = key_of(*option);
     return key == "help" || key == "config" || key == "save-config";
   });
   return options;
 }
 
-bool is_switch(const CLI::Option& option) {
+bool is_switch(const Option& option) {
   return choices_of(option) == std::vector<std::string>{"on", "off"};
 }
 
-bool is_repeated(const CLI::Option& option) { return option.get_expected_max() > 1; }
+bool is_repeated(const Option& option) { return option.is_repeated(); }
 
-Kind kind_of(const CLI::Option& option) {
-  if (is_bare(option) || is_switch(option)) return Kind::boolean;
-  const std::string type = option.get_type_name();
+Kind kind_of(const Option& option) {
+  if (option.is_bare() || is_switch(option)) return Kind::boolean;
+  const std::string type = option.type_name();
   if (type.starts_with("FLOAT")) return Kind::number;
   return type.starts_with("INT") || type.starts_with("UINT") ? Kind::whole_number : Kind::text;
 }
 
 // A value as the command line has it.
 std::string word_of(const std::string& path, const Setting& setting, const SettingValue& value,
-                    const CLI::Option& option) {
+                    const Option& option) {
   const auto is_plain = [](const SettingValue& element) {
     return element.kind != Kind::list && element.kind != Kind::boolean;
   };
@@ -81,10 +81,10 @@ std::string word_of(const std::string& path, const Setting& setting, const Setti
   refuse_setting(path, setting, "must be a text, a number, or a list of these");
 }
 
-void add_words(const std::string& path, const Setting& setting, const CLI::Option& option,
+void add_words(const std::string& path, const Setting& setting, const Option& option,
                std::vector<std::string>& words) {
-  const std::string flag = flag_of(option);
-  if (is_bare(option)) {
+  const std::string flag = option.name();
+  if (option.is_bare()) {
     if (word_of(path, setting, setting.value, option) == "on") words.push_back(flag);
   } else if (!is_repeated(option)) {
     words.push_back(flag + "=" + word_of(path, setting, setting.value, option));
@@ -99,7 +99,7 @@ void add_words(const std::string& path, const Setting& setting, const CLI::Optio
 }
 
 std::vector<std::string> positional_words(const std::string& path, const Setting& setting,
-                                          const CLI::Option& option) {
+                                          const Option& option) {
   if (!is_repeated(option) || setting.value.kind != Kind::list) {
     return {word_of(path, setting, setting.value, option)};
   }
@@ -111,12 +111,12 @@ std::vector<std::string> positional_words(const std::string& path, const Setting
 }
 
 // Whether the command line has said this, or another one of a group of which one may be given.
-bool is_given(const CLI::App& subcommand, const CLI::Option& option, const GivenWords& given) {
+bool is_given(const App& subcommand, const Option& option, const GivenWords& given) {
   if (given.options.contains(&option)) return true;
-  for (const CLI::App* group : subcommand.get_subcommands({})) {
-    if (group->get_require_option_max() != 1) continue;
-    const Options members = group->get_options();
-    const auto is_on_the_line = [&](const CLI::Option* member) {
+  for (const App* group : subcommand.subcommands()) {
+    if (!group->takes_one_option()) continue;
+    const Options members = group->options();
+    const auto is_on_the_line = [&](const Option* member) {
       return given.options.contains(member);
     };
     if (std::find(members.begin(), members.end(), &option) != members.end() &&
@@ -138,12 +138,12 @@ std::string config_of(const std::vector<std::string>& words) {
 }
 
 // What was given, as TOML has it.
-SettingValue value_of(const CLI::Option& option) {
+SettingValue value_of(const Option& option) {
   const std::string& text = option.results().back();
   switch (kind_of(option)) {
     case Kind::boolean:
       return {Kind::boolean,
-              text == "on" || (is_bare(option) && option.as<bool>()) ? "true" : "false"};
+              text == "on" || (option.is_bare() && option.as<bool>()) ? "true" : "false"};
     case Kind::number:
       return {Kind::number, short_text(option.as<double>())};
     case Kind::whole_number:
@@ -155,8 +155,8 @@ SettingValue value_of(const CLI::Option& option) {
   return {Kind::text, text};
 }
 
-SettingValue default_of(const CLI::Option& option) {
-  const std::string text = option.get_default_str();
+SettingValue default_of(const Option& option) {
+  const std::string text = option.default_text();
   const Kind kind = kind_of(option);
   if (kind == Kind::boolean) return {kind, text == "on" ? "true" : "false"};
   return {kind, text};
@@ -164,14 +164,14 @@ SettingValue default_of(const CLI::Option& option) {
 
 }  // namespace
 
-std::vector<std::string> with_config(const CLI::App& subcommand,
+std::vector<std::string> with_config(const App& subcommand,
                                      const std::vector<std::string>& words) {
   const GivenWords given = sort_words(subcommand, words);
   const std::string path = config_of(words);
   if (path.empty()) return words;
   const Options options = settable_options(subcommand);
   std::vector<std::string> keys;
-  for (const CLI::Option* option : options) keys.push_back(key_of(*option));
+  for (const Option* option : options) keys.push_back(key_of(*option));
   const auto earlier = earlier_flags(subcommand);
   for (const auto& [flag, now] : earlier) keys.push_back(flag);
   const std::vector<Setting> settings = read_settings_toml(path, keys);
@@ -183,7 +183,7 @@ std::vector<std::string> with_config(const CLI::App& subcommand,
 
   std::vector<std::string> all, positionals;
   std::size_t position = 0;
-  for (const CLI::Option* option : options) {
+  for (const Option* option : options) {
     const std::string key = key_of(*option);
     const bool is_on_the_line = option->nonpositional() ? is_given(subcommand, *option, given)
                                                         : position++ < given.positionals;
@@ -209,15 +209,15 @@ std::vector<std::string> with_config(const CLI::App& subcommand,
   return all;
 }
 
-std::string config_text(const CLI::App& subcommand, const std::vector<std::string>& left_out) {
-  std::string text = "# viewgain " + subcommand.get_name() +
+std::string config_text(const App& subcommand, const std::vector<std::string>& left_out) {
+  std::string text = "# viewgain " + subcommand.name() +
                      " --config FILE; what is behind a # is " + "the default\n";
-  for (const CLI::Option* option : settable_options(subcommand)) {
+  for (const Option* option : settable_options(subcommand)) {
     const std::string key = key_of(*option);
     if (std::find(left_out.begin(), left_out.end(), key) != left_out.end()) continue;
     std::string line;
     if (option->empty()) {
-      if (option->get_default_str().empty()) continue;
+      if (option->default_text().empty()) continue;
       line = "# " + setting_line(key, default_of(*option));
     } else if (is_repeated(*option)) {
       SettingValue list{Kind::list, {}, {}};

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 #include <string>
 #include <vector>
 
@@ -18,13 +18,13 @@ namespace viewgain::app {
 /// says holds: an option, all repetitions of one, or one of a group of which only one may be given.
 /// Throws Error: as sort_words() and read_settings_toml(), and Error(format), naming file and line,
 /// for a value of the wrong type.
-[[nodiscard]] std::vector<std::string> with_config(const CLI::App& subcommand,
+[[nodiscard]] std::vector<std::string> with_config(const App& subcommand,
                                                    const std::vector<std::string>& words);
 
 /// What a parsed subcommand was given, as with_config() reads it back, and as comments the defaults
 /// of the rest. Without the keys `left_out`, config and save-config. A value that is no UTF-8,
 /// which TOML cannot hold, becomes a comment.
-[[nodiscard]] std::string config_text(const CLI::App& subcommand,
+[[nodiscard]] std::string config_text(const App& subcommand,
                                       const std::vector<std::string>& left_out = {});
 
 }  // namespace viewgain::app

@@ -11,16 +11,16 @@
 
 namespace viewgain::app {
 
-void write_help_files(const CLI::App& program, const std::filesystem::path& folder) {
+void write_help_files(const App& program, const std::filesystem::path& folder) {
   const auto write = [&](const std::string& name, const std::string& text) {
     std::error_code ignored;
     std::filesystem::create_directories((folder / name).parent_path(), ignored);
     write_file_atomically(folder / name, text);  // which says what is wrong
   };
   write("man1/viewgain.1", man_page(program));
-  for (const CLI::App* subcommand : program.get_subcommands({})) {
-    if (subcommand->get_group().empty()) continue;
-    write("man1/viewgain-" + subcommand->get_name() + ".1", subcommand_man_page(*subcommand));
+  for (const App* subcommand : program.subcommands()) {
+    if (subcommand->group_name().empty()) continue;
+    write("man1/viewgain-" + subcommand->name() + ".1", subcommand_man_page(*subcommand));
   }
   write("bash-completion/completions/viewgain", bash_completion(program));
   write("zsh/site-functions/_viewgain", zsh_completion(program));

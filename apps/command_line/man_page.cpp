@@ -71,8 +71,8 @@ std::string exit_status() {
          "an internal error.\n";
 }
 
-std::string value_text(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
+std::string value_text(const Option& option) {
+  const std::string type = option.type_name();
   const std::size_t begin = type.find('{');
   if (begin == std::string::npos) {
     if (type.starts_with("FLOAT")) return italic("NUMBER");
@@ -83,28 +83,28 @@ std::string value_text(const CLI::Option& option) {
   return bold(choices);
 }
 
-std::string option_text(const CLI::Option& option) {
-  std::string roff = ".TP\n" + (option.nonpositional() ? bold : italic)(flag_of(option));
-  if (option.nonpositional() && !is_bare(option)) roff += " " + value_text(option);
-  if (option.get_required() && option.nonpositional()) roff += " (needed)";
-  roff += "\n" + escaped(option.get_description());
-  if (!option.get_default_str().empty() && !is_bare(option)) {
-    roff += " (default: " + escaped(option.get_default_str()) + ")";
+std::string option_text(const Option& option) {
+  std::string roff = ".TP\n" + (option.nonpositional() ? bold : italic)(option.name());
+  if (option.nonpositional() && !option.is_bare()) roff += " " + value_text(option);
+  if (option.is_required() && option.nonpositional()) roff += " (needed)";
+  roff += "\n" + escaped(option.description());
+  if (!option.default_text().empty() && !option.is_bare()) {
+    roff += " (default: " + escaped(option.default_text()) + ")";
   }
   return roff + "\n";
 }
 
-std::string options_text(const CLI::App& subcommand) {
+std::string options_text(const App& subcommand) {
   std::string roff;
   for (const bool positional : {true, false}) {
-    for (const CLI::Option* option : subcommand.get_options()) {
-      const bool is_of_group = subcommand.get_name().empty() && option == subcommand.get_help_ptr();
+    for (const Option* option : subcommand.options()) {
+      const bool is_of_group = subcommand.name().empty() && option == subcommand.help_option();
       if (option->nonpositional() != positional && !is_of_group) roff += option_text(*option);
     }
   }
-  for (const CLI::App* group : subcommand.get_subcommands({})) {
-    if (!group->get_name().empty()) continue;
-    roff += ".SS " + escaped(group->get_group() + ", " + group->get_description()) + "\n";
+  for (const App* group : subcommand.subcommands()) {
+    if (!group->name().empty()) continue;
+    roff += ".SS " + escaped(group->group_name() + ", " + group->description()) + "\n";
     roff += options_text(*group);
   }
   return roff;
@@ -112,39 +112,39 @@ std::string options_text(const CLI::App& subcommand) {
 
 }  // namespace
 
-std::string man_page(const CLI::App& program) {
+std::string man_page(const App& program) {
   std::string roff =
       heading("viewgain") + ".SH NAME\nviewgain \\- scores camera poses by expected " +
       "information gain\n.SH SYNOPSIS\n" + bold("viewgain") + " " + italic("SUBCOMMAND") + " [" +
-      italic("OPTIONS") + "]\n.SH DESCRIPTION\n" + escaped(program.get_description()) + "\n";
+      italic("OPTIONS") + "]\n.SH DESCRIPTION\n" + escaped(program.description()) + "\n";
   std::string group;
   std::string also;
-  for (const CLI::App* subcommand : program.get_subcommands({})) {
-    if (subcommand->get_group().empty()) continue;
-    if (subcommand->get_group() != group) {
-      group = subcommand->get_group();
+  for (const App* subcommand : program.subcommands()) {
+    if (subcommand->group_name().empty()) continue;
+    if (subcommand->group_name() != group) {
+      group = subcommand->group_name();
       roff += ".SS " + escaped(group) + "\n";
     }
-    const std::string page = "viewgain-" + subcommand->get_name();
-    roff += ".TP\n" + bold(subcommand->get_name()) + "\n" + escaped(subcommand->get_description()) +
+    const std::string page = "viewgain-" + subcommand->name();
+    roff += ".TP\n" + bold(subcommand->name()) + "\n" + escaped(subcommand->description()) +
             "\n";
     also += (also.empty() ? "" : ",\n") + bold(page) + "(1)";
   }
-  return roff + examples(program.get_footer()) + exit_status() + ".SH SEE ALSO\n" + also + "\n";
+  return roff + examples(program.footer_text()) + exit_status() + ".SH SEE ALSO\n" + also + "\n";
 }
 
-std::string subcommand_man_page(const CLI::App& subcommand) {
-  const std::string& name = subcommand.get_name();
+std::string subcommand_man_page(const App& subcommand) {
+  const std::string& name = subcommand.name();
   std::string roff = heading("viewgain-" + name) + ".SH NAME\n" + escaped("viewgain-" + name) +
-                     " \\- " + escaped(brief(subcommand.get_description())) + "\n.SH SYNOPSIS\n" +
+                     " \\- " + escaped(brief(subcommand.description())) + "\n.SH SYNOPSIS\n" +
                      bold("viewgain " + name) + " [" + italic("OPTIONS") + "]";
-  for (const CLI::Option* option : subcommand.get_options()) {
+  for (const Option* option : subcommand.options()) {
     if (option->nonpositional()) continue;
-    const std::string shown = italic(flag_of(*option));
-    roff += option->get_required() ? " " + shown : " [" + shown + "]";
+    const std::string shown = italic(option->name());
+    roff += option->is_required() ? " " + shown : " [" + shown + "]";
   }
-  return roff + "\n.SH DESCRIPTION\n" + escaped(subcommand.get_description()) + "\n.SH OPTIONS\n" +
-         options_text(subcommand) + examples(subcommand.get_footer()) + exit_status() +
+  return roff + "\n.SH DESCRIPTION\n" + escaped(subcommand.description()) + "\n.SH OPTIONS\n" +
+         options_text(subcommand) + examples(subcommand.footer_text()) + exit_status() +
          ".SH SEE ALSO\n" + bold("viewgain") + "(1)\n";
 }
 

@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 #include <string>
 
 namespace viewgain::app {
 
 /// viewgain(1) of the program, in roff: what it is, its subcommands by their groups.
-[[nodiscard]] std::string man_page(const CLI::App& program);
+[[nodiscard]] std::string man_page(const App& program);
 
 /// viewgain-SUBCOMMAND(1): what its help says.
-[[nodiscard]] std::string subcommand_man_page(const CLI::App& subcommand);
+[[nodiscard]] std::string subcommand_man_page(const App& subcommand);
 
 }  // namespace viewgain::app

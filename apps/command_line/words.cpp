@@ -26,37 +26,37 @@ constexpr std::array kRenamed{Renamed{"reconstruct", "--no-refine", "--refine of
 constexpr std::string_view kSpread =
     "fibonacci is the sphere now; reconstruct --policy fibonacci spreads its poses out";
 
-[[noreturn]] void refuse(const CLI::App& subcommand, const std::string& flag, std::string what) {
-  if (!subcommand.get_name().empty() && subcommand.get_parent() != nullptr) {
-    what.append(" (see viewgain ").append(subcommand.get_name()).append(" --help)");
+[[noreturn]] void refuse(const App& subcommand, const std::string& flag, std::string what) {
+  if (!subcommand.name().empty() && subcommand.has_parent()) {
+    what.append(" (see viewgain ").append(subcommand.name()).append(" --help)");
   }
   throw Error(ErrorCode::invalid_argument, flag + ": " + what);
 }
 
-[[noreturn]] void refuse_unknown(const CLI::App& subcommand, const std::string& flag) {
+[[noreturn]] void refuse_unknown(const App& subcommand, const std::string& flag) {
   for (const Renamed& old : kRenamed) {
-    if (old.flag == flag && old.subcommand == subcommand.get_name()) {
+    if (old.flag == flag && old.subcommand == subcommand.name()) {
       refuse(subcommand, flag, std::string("is written ").append(old.now).append(" now"));
     }
   }
   std::vector<std::string> flags;
-  for (const CLI::Option* option : all_options(subcommand)) {
-    if (option->nonpositional()) flags.push_back(flag_of(*option));
+  for (const Option* option : all_options(subcommand)) {
+    if (option->nonpositional()) flags.push_back(option->name());
   }
   refuse(subcommand, flag,
          std::string("no such flag of ")
-             .append(subcommand.get_name())
+             .append(subcommand.name())
              .append(did_you_mean(flag, flags)));
 }
 
-[[noreturn]] void refuse_without_value(const CLI::App& subcommand, const CLI::Option& option) {
+[[noreturn]] void refuse_without_value(const App& subcommand, const Option& option) {
   const std::vector<std::string> choices = choices_of(option);
   std::string what = "needs a value";
   if (!choices.empty()) what.append("; there are ").append(listed(choices));
-  if (subcommand.get_name() == "simulate" && flag_of(option) == "--center") {
+  if (subcommand.name() == "simulate" && option.name() == "--center") {
     what.append(", x,y,z that poses look at; the mesh is moved by --recenter on");
   }
-  refuse(subcommand, flag_of(option), what);
+  refuse(subcommand, option.name(), what);
 }
 
 // No subcommand has any but -h; a number may stand for a name.
@@ -69,37 +69,31 @@ bool is_flag(const std::string& word) { return word.size() > 2 && word.starts_wi
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> earlier_flags(const CLI::App& subcommand) {
+std::vector<std::pair<std::string, std::string>> earlier_flags(const App& subcommand) {
   std::vector<std::pair<std::string, std::string>> flags;
   for (const Renamed& old : kRenamed) {
-    if (old.subcommand == subcommand.get_name()) flags.emplace_back(old.flag.substr(2), old.now);
+    if (old.subcommand == subcommand.name()) flags.emplace_back(old.flag.substr(2), old.now);
   }
   return flags;
 }
 
-std::vector<const CLI::Option*> all_options(const CLI::App& subcommand) {
-  std::vector<const CLI::Option*> options = subcommand.get_options();
-  for (const CLI::App* group : subcommand.get_subcommands({})) {
-    if (!group->get_name().empty()) continue;
-    for (const CLI::Option* option : all_options(*group)) {
-      if (option != group->get_help_ptr()) options.push_back(option);  // the subcommand has its own
+std::vector<const Option*> all_options(const App& subcommand) {
+  std::vector<const Option*> options = subcommand.options();
+  for (const App* group : subcommand.subcommands()) {
+    if (!group->name().empty()) continue;
+    for (const Option* option : all_options(*group)) {
+      if (option != group->help_option()) options.push_back(option);  // the subcommand has its own
     }
   }
   return options;
 }
 
-std::string flag_of(const CLI::Option& option) {
-  return option.nonpositional() ? "--" + option.get_lnames().front() : option.get_name(true);
-}
-
-bool is_bare(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
-
-const CLI::App* subcommand_of(const CLI::App& program, const std::vector<std::string>& words) {
+const App* subcommand_of(const App& program, const std::vector<std::string>& words) {
   if (words.empty() || words[0].starts_with("-")) return nullptr;
   std::vector<std::string> names;
-  for (const CLI::App* subcommand : program.get_subcommands({})) {
-    if (subcommand->get_name() == words[0]) return subcommand;
-    if (!subcommand->get_group().empty()) names.push_back(subcommand->get_name());
+  for (const App* subcommand : program.subcommands()) {
+    if (subcommand->name() == words[0]) return subcommand;
+    if (!subcommand->group_name().empty()) names.push_back(subcommand->name());
   }
   const std::string nearest = did_you_mean(words[0], names);
   throw Error(ErrorCode::invalid_argument,
@@ -107,8 +101,8 @@ const CLI::App* subcommand_of(const CLI::App& program, const std::vector<std::st
                   (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names));
 }
 
-GivenWords sort_words(const CLI::App& subcommand, const std::vector<std::string>& words) {
-  const std::vector<const CLI::Option*> options = all_options(subcommand);
+GivenWords sort_words(const App& subcommand, const std::vector<std::string>& words) {
+  const std::vector<const Option*> options = all_options(subcommand);
   GivenWords given;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (given.has_mark || !words[i].starts_with("--")) {
@@ -122,12 +116,12 @@ GivenWords sort_words(const CLI::App& subcommand, const std::vector<std::string>
     }
     const std::size_t equals = words[i].find('=');
     const std::string flag = words[i].substr(0, equals);
-    const auto found = std::find_if(options.begin(), options.end(), [&](const CLI::Option* option) {
-      return option->nonpositional() && flag_of(*option) == flag;
+    const auto found = std::find_if(options.begin(), options.end(), [&](const Option* option) {
+      return option->nonpositional() && option->name() == flag;
     });
     if (found == options.end()) refuse_unknown(subcommand, flag);
     given.options.insert(*found);
-    if (is_bare(**found)) continue;
+    if ((*found)->is_bare()) continue;
     const bool is_inside = equals != std::string::npos;
     if (!is_inside && (i + 1 == words.size() || words[i + 1] == "--" || is_flag(words[i + 1]))) {
       refuse_without_value(subcommand, **found);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 #include <cstddef>
 #include <set>
 #include <string>
@@ -14,32 +14,26 @@ namespace viewgain::app {
 /// The flags of a subcommand that had another spelling once, without their --, and the present one
 /// for each.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> earlier_flags(
-    const CLI::App& subcommand);
+    const App& subcommand);
 
 /// What is given on the command line of a subcommand itself.
 struct GivenWords {
-  std::set<const CLI::Option*> options;
+  std::set<const Option*> options;
   std::size_t positionals = 0;
   bool has_mark = false;  ///< a bare --, after which all words are positionals
 };
 
 /// The options of a subcommand and of the groups in it, positionals among them, in their order.
-[[nodiscard]] std::vector<const CLI::Option*> all_options(const CLI::App& subcommand);
-
-/// "--voxel" of an option with a flag, the name of a positional.
-[[nodiscard]] std::string flag_of(const CLI::Option& option);
-
-/// Whether it stands alone, without a value.
-[[nodiscard]] bool is_bare(const CLI::Option& option);
+[[nodiscard]] std::vector<const Option*> all_options(const App& subcommand);
 
 /// The subcommand that the first word names; null where it is a flag or there is none. Throws
 /// Error(invalid_argument) for another word, naming the nearest subcommand.
-[[nodiscard]] const CLI::App* subcommand_of(const CLI::App& program,
+[[nodiscard]] const App* subcommand_of(const App& program,
                                             const std::vector<std::string>& words);
 
 /// Sorts the words after the subcommand. Throws Error(invalid_argument) for a flag that is not
 /// there, naming its present spelling or the nearest, and for one whose value is missing.
-[[nodiscard]] GivenWords sort_words(const CLI::App& subcommand,
+[[nodiscard]] GivenWords sort_words(const App& subcommand,
                                     const std::vector<std::string>& words);
 
 }  // namespace viewgain::app

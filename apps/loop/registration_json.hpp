@@ -3,7 +3,7 @@
 #pragma once
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <numbers>
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@
 namespace viewgain::app {
 
 /// The keys of `registration` in run.json.
-[[nodiscard]] inline nlohmann::ordered_json to_json(const FrameRegistration& registration) {
+[[nodiscard]] inline Json to_json(const FrameRegistration& registration) {
   return {{"status", registration_status_name(registration.status)},
           {"reason", registration.reason},
           {"pose", to_json(registration.T_world_camera)},
@@ -29,9 +29,9 @@ namespace viewgain::app {
 }
 
 /// How many came to what.
-[[nodiscard]] inline nlohmann::ordered_json registration_counts(
+[[nodiscard]] inline Json registration_counts(
     const std::vector<FrameRegistration>& registrations) {
-  nlohmann::ordered_json json;
+  Json json;
   for (const auto status : {RegistrationStatus::registered, RegistrationStatus::too_little_overlap,
                             RegistrationStatus::refused}) {
     json[registration_status_name(status)] =
@@ -42,7 +42,7 @@ namespace viewgain::app {
 }
 
 /// registration_counts() for people.
-[[nodiscard]] inline std::string registration_text(const nlohmann::ordered_json& counts) {
+[[nodiscard]] inline std::string registration_text(const Json& counts) {
   return "registration: " + counts["registered"].dump() + " registered, " +
          counts["too_little_overlap"].dump() + " too_little_overlap, " + counts["refused"].dump() +
          " refused";

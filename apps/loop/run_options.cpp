@@ -24,18 +24,18 @@ const std::string kSensorOfRunHelp =
     std::string(kSensorHelp) + "; needed with a mesh; default: that of the folder of frames";
 
 auto counted(std::size_t least, std::size_t most) {
-  return [=](CLI::Option& option) { option.check(CLI::Range(least, most, "count")); };
+  return [=](Option& option) { option.range(least, most, "count"); };
 }
 
 auto counted_with_default(std::size_t least, std::size_t most) {
-  return [=](CLI::Option& option) {
+  return [=](Option& option) {
     counted(least, most)(option);
     shows_default(option);
   };
 }
 
 auto named(const std::vector<std::string>& names, const char* what) {
-  return [&names, what](CLI::Option& option) {
+  return [&names, what](Option& option) {
     one_of(option, names, what);
     shows_default(option);
   };
@@ -58,7 +58,7 @@ void describe(Options& o, Visitor& visit) {
       "x0,y0,z0,x1,y1,z1 [m]; default: a cube of the longest side * 0.4/0.35 around the object",
       as_it_is);
   visit.derived("prior_sigma");
-  visit.option("up", "--up", o.up, "axis of the mesh file that points up", [](CLI::Option& option) {
+  visit.option("up", "--up", o.up, "axis of the mesh file that points up", [](Option& option) {
     one_of(*option.capture_default_str(), {"x", "y", "z"}, "axis");
   });
   visit.option("start", "--start", o.start,
@@ -79,7 +79,7 @@ void describe(Options& o, Visitor& visit) {
                "where candidates come from: boundary, sphere, dome, rings, shell, sequence, or "
                "several with commas; default: boundary (random and fibonacci: sphere, sequence: "
                "sequence)",
-               [](CLI::Option& option) { several_of(option, generator_names(), "generator"); });
+               [](Option& option) { several_of(option, generator_names(), "generator"); });
   visit.option("sphere_poses", "--count", o.count,
                "poses of the sphere, dome or shell (default 500; sphere of --policy fibonacci: "
                "--max-views); rings: 48, 80, 288 or 864 (default 48)",
@@ -87,11 +87,11 @@ void describe(Options& o, Visitor& visit) {
   visit.option("gain", "--gain", o.gain,
                "of --policy gain: paper (entropy removed), surface (new surface to be expected) or "
                "combined (default); or a gain of the literature",
-               [](CLI::Option& option) { one_of(option, all_gain_names(), "gain"); });
+               [](Option& option) { one_of(option, all_gain_names(), "gain"); });
   visit.option("semantics", "--semantics", o.semantics,
                "of a gain of the literature: as the papers define it (default) or as the code that "
                "was shipped with them computes it",
-               [](CLI::Option& option) { one_of(option, gain_semantics_names(), "semantics"); });
+               [](Option& option) { one_of(option, gain_semantics_names(), "semantics"); });
   visit.option("overlap", "--overlap", o.overlap, kOverlapHelp, shows_default);
   visit.option("region_depth", "--region-depth", o.region_depth, kRegionDepthHelp, shows_default);
   visit.option("object_size", "--object-size", o.object_size, kObjectSizeHelp, as_it_is);
@@ -128,7 +128,7 @@ void describe(Options& o, Visitor& visit) {
                as_it_is);
   // Recorded where there are any.
   visit.option(nullptr, "--obstacle", o.obstacles, kObstacleHelp,
-               [](CLI::Option& option) { option.allow_extra_args(false); });
+               [](Option& option) { option.allow_extra_args(false); });
   // Recorded as a part of the sensor.
   visit.option(nullptr, "--body", o.body, kBodyHelp, as_it_is);
   describe_sensing(o.sensing, visit);
@@ -167,8 +167,8 @@ void describe(Options& o, Visitor& visit) {
       as_it_is);
   visit.option(nullptr, "--least-confidence", o.least_confidence,
                "of a folder of frames: least value of --confidence that counts, 1..255",
-               [](CLI::Option& option) {
-                 option.check(CLI::Range(1, 255, "confidence"));
+               [](Option& option) {
+                 option.range(1, 255, "confidence");
                  shows_default(option);
                });
   visit.option(nullptr, "--top", o.top, "of a folder of frames: next views to name at most",
@@ -177,7 +177,7 @@ void describe(Options& o, Visitor& visit) {
 
 }  // namespace
 
-void add_options(CLI::App& app, ReconstructOptions& o) {
+void add_options(App& app, ReconstructOptions& o) {
   o.sensing.noise = "on";
   const OptionDeclaration declaration(app);
   describe(o, declaration);
@@ -187,8 +187,8 @@ void add_options(CLI::App& app, ReconstructOptions& o) {
            "--pictures off --out run");
 }
 
-nlohmann::ordered_json settings_json(const ReconstructOptions& options,
-                                     const nlohmann::ordered_json& resolved) {
+Json settings_json(const ReconstructOptions& options,
+                                     const Json& resolved) {
   OptionRecord record(resolved);
   describe(options, record);
   return record.json();

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,12 +64,12 @@ struct ReconstructOptions {
 };
 
 /// Declares the flags, with o's values as defaults.
-void add_options(CLI::App& app, ReconstructOptions& o);
+void add_options(App& app, ReconstructOptions& o);
 
 /// What can change the answer, for run.json: each such flag under its key; `resolved` has what the
 /// run made of a flag, and what follows from several. Not in it: threads and where results go.
-[[nodiscard]] nlohmann::ordered_json settings_json(const ReconstructOptions& options,
-                                                   const nlohmann::ordered_json& resolved);
+[[nodiscard]] Json settings_json(const ReconstructOptions& options,
+                                                   const Json& resolved);
 
 /// Throws Error(invalid_argument), naming the flag, for numbers that no run on a mesh can have.
 void check(const ReconstructOptions& options);

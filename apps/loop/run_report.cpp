@@ -16,10 +16,8 @@
 namespace viewgain::app {
 namespace {
 
-using nlohmann::ordered_json;
-
-ordered_json to_json(const StageSeconds& seconds) {
-  ordered_json json = ordered_json::object();
+Json to_json(const StageSeconds& seconds) {
+  Json json = Json::object();
   double total = 0;
   for (const auto& [stage, value] : seconds) {
     json[stage] = value;
@@ -29,14 +27,14 @@ ordered_json to_json(const StageSeconds& seconds) {
   return json;
 }
 
-ordered_json to_json(const std::map<std::string, std::size_t>& counts) {
-  ordered_json json = ordered_json::object();
+Json to_json(const std::map<std::string, std::size_t>& counts) {
+  Json json = Json::object();
   for (const auto& [reason, count] : counts) json[reason] = count;
   return json;
 }
 
 // The figures that both a view and the whole run have.
-void put_figures(ordered_json& json, const QualityFigures& quality, const ModelProgress& progress) {
+void put_figures(Json& json, const QualityFigures& quality, const ModelProgress& progress) {
   json["coverage"] = quality.coverage;
   json["coverage_visible"] = quality.coverage_visible;
   json["coverage_2_5mm"] = quality.coverage_2_5mm;
@@ -121,15 +119,15 @@ std::string RunReport::progress_line() const {
   return text;
 }
 
-ordered_json RunReport::entry_json(std::size_t index) const {
+Json RunReport::entry_json(std::size_t index) const {
   const Entry& e = views_[index];
-  ordered_json json{{"index", e.record.index}, {"pose", app::to_json(e.record.T_world_camera)}};
+  Json json{{"index", e.record.index}, {"pose", app::to_json(e.record.T_world_camera)}};
   const bool chosen = e.record.chosen_as.has_value();
   const bool of_boundary = chosen && e.record.chosen_as->boundary_class;
   json["class"] = of_boundary
-                      ? ordered_json(boundary_class_name(*e.record.chosen_as->boundary_class))
-                      : ordered_json();
-  json["generator"] = chosen ? ordered_json(e.record.chosen_as->generator) : ordered_json("start");
+                      ? Json(boundary_class_name(*e.record.chosen_as->boundary_class))
+                      : Json();
+  json["generator"] = chosen ? Json(e.record.chosen_as->generator) : Json("start");
   // The proposal that this view was chosen from came after the view before it.
   const Proposal empty;
   const Proposal& from = index > 0 ? views_[index - 1].record.proposal : empty;
@@ -143,9 +141,9 @@ ordered_json RunReport::entry_json(std::size_t index) const {
       e.quality.covered_area - (index > 0 ? views_[index - 1].quality.covered_area : 0.0);
   // What the stopping rules look at: the best view there is now.
   json["next_gain_per_voxel"] =
-      e.record.decision ? ordered_json(e.record.decision->gain_per_voxel) : ordered_json();
+      e.record.decision ? Json(e.record.decision->gain_per_voxel) : Json();
   json["next_area"] =
-      e.record.decision ? ordered_json(e.record.decision->best_area) : ordered_json();
+      e.record.decision ? Json(e.record.decision->best_area) : Json();
   put_figures(json, e.quality, e.record.progress);
   json["travelled"] = e.record.travelled;
   if (index < registrations_.size()) {
@@ -163,10 +161,10 @@ const Proposal& RunReport::last_proposal() const {
   return views_.back().record.proposal;
 }
 
-ordered_json RunReport::json(StopReason reason) const {
+Json RunReport::json(StopReason reason) const {
   const Entry& last = views_.back();
-  ordered_json json{{"stop_reason", stop_reason_name(reason)}, {"views", views_.size()}};
-  json["gain_model"] = ranked_by_.empty() ? ordered_json() : ordered_json(ranked_by_);
+  Json json{{"stop_reason", stop_reason_name(reason)}, {"views", views_.size()}};
+  json["gain_model"] = ranked_by_.empty() ? Json() : Json(ranked_by_);
   put_figures(json, last.quality, last.record.progress);
   json["travelled"] = last.record.travelled;
   const Proposal& proposal = last_proposal();
@@ -174,7 +172,7 @@ ordered_json RunReport::json(StopReason reason) const {
   json["final_dropped"] = to_json(proposal.dropped);
   if (!registrations_.empty()) json["registration"] = registration_counts(registrations_);
   json["seconds"] = to_json(totals_);
-  json["per_view"] = ordered_json::array();
+  json["per_view"] = Json::array();
   for (std::size_t i = 0; i < views_.size(); ++i) json["per_view"].push_back(entry_json(i));
   return json;
 }

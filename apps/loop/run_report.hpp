@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,7 +31,7 @@ class RunReport {
   void set_registrations(std::vector<FrameRegistration> registrations);
 
   /// The keys of `reconstruct --json`.
-  [[nodiscard]] nlohmann::ordered_json json(StopReason reason) const;
+  [[nodiscard]] Json json(StopReason reason) const;
 
   /// The same for people.
   [[nodiscard]] std::string text(StopReason reason) const;
@@ -46,7 +46,7 @@ class RunReport {
     double realised_area;  ///< [m²]
     StageSeconds seconds;  ///< of this view alone
   };
-  [[nodiscard]] nlohmann::ordered_json entry_json(std::size_t index) const;
+  [[nodiscard]] Json entry_json(std::size_t index) const;
 
   std::string_view ranked_by_;  ///< the gain; empty: the policy ranks by another thing
   std::string_view gain_unit_, entropy_unit_;

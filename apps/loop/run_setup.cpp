@@ -169,8 +169,8 @@ void set_gain(const ReconstructOptions& options, PolicyConfig& policy) {
                     parse_gain_semantics(options.semantics.empty() ? "paper" : options.semantics)};
 }
 
-nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, const RunSetup& setup) {
-  nlohmann::ordered_json generators = nlohmann::ordered_json::array();
+Json resolved_settings(const ReconstructOptions& options, const RunSetup& setup) {
+  Json generators = Json::array();
   if (setup.generation.at_boundaries) generators.push_back("boundary");
   for (const PoseSet& set : setup.generation.sets) generators.push_back(set.generator);
   return {
@@ -192,7 +192,7 @@ nlohmann::ordered_json resolved_settings(const ReconstructOptions& options, cons
       {"register", setup.registration.has_value()},
       {"pose_sigma", setup.registration ? pose_sigmas_json({setup.registration->sigma_translation,
                                                             setup.registration->sigma_rotation})
-                                        : nlohmann::ordered_json()},
+                                        : Json()},
       {"refine", options.refine == "on"}};
 }
 

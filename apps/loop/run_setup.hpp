@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <optional>
 
 #include "run_options.hpp"
@@ -36,7 +36,7 @@ struct RunSetup {
   GenerationConfig generation{};
   PolicyConfig policy{};
   PlanningConfig planning{};
-  nlohmann::ordered_json settings;  ///< of run.json
+  Json settings;  ///< of run.json
 };
 
 /// Reads the files that the options name and checks everything. Throws Error.

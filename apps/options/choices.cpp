@@ -18,33 +18,33 @@ std::string shown(const std::vector<std::string>& names) {
 
 }  // namespace
 
-void one_of(CLI::Option& option, const std::vector<std::string>& names, const char* what) {
-  option.check(CLI::Validator(
-      [flag = option.get_name(), names, what](std::string& value) {
+void one_of(Option& option, const std::vector<std::string>& names, const char* what) {
+  option.check(
+      [flag = option.name(), names, what](std::string& value) {
         check_one_of(flag, value, names, what);
         return std::string();
       },
-      shown(names)));
+      shown(names));
 }
 
-void several_of(CLI::Option& option, const std::vector<std::string>& names, const char* what) {
-  option.check(CLI::Validator(
-      [flag = option.get_name(), names, what](std::string& value) {
+void several_of(Option& option, const std::vector<std::string>& names, const char* what) {
+  option.check(
+      [flag = option.name(), names, what](std::string& value) {
         (void)parse_names(flag, value, names, what);
         return std::string();
       },
-      shown(names)));
+      shown(names));
 }
 
-void on_or_off(CLI::Option& option) { one_of(option, {"on", "off"}, "position of a switch"); }
+void on_or_off(Option& option) { one_of(option, {"on", "off"}, "position of a switch"); }
 
-void takes_seed(CLI::Option& option) {
-  option.check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number"))
+void takes_seed(Option& option) {
+  option.range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number")
       ->capture_default_str();
 }
 
-std::vector<std::string> choices_of(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
+std::vector<std::string> choices_of(const Option& option) {
+  const std::string type = option.type_name();
   const std::size_t begin = type.find('{');
   std::vector<std::string> names;
   if (begin == std::string::npos) return names;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 #include <string>
 #include <vector>
 
@@ -10,18 +10,18 @@ namespace viewgain::app {
 
 /// The option takes one of these names, which help and completion show; check_one_of() refuses
 /// others.
-void one_of(CLI::Option& option, const std::vector<std::string>& names, const char* what);
+void one_of(Option& option, const std::vector<std::string>& names, const char* what);
 
 /// Likewise for several of them with commas.
-void several_of(CLI::Option& option, const std::vector<std::string>& names, const char* what);
+void several_of(Option& option, const std::vector<std::string>& names, const char* what);
 
 /// The option takes on or off.
-void on_or_off(CLI::Option& option);
+void on_or_off(Option& option);
 
 /// The option takes a seed, with the same bounds in every subcommand, and shows its default.
-void takes_seed(CLI::Option& option);
+void takes_seed(Option& option);
 
 /// What an option takes that one_of() or several_of() was called for, else nothing.
-[[nodiscard]] std::vector<std::string> choices_of(const CLI::Option& option);
+[[nodiscard]] std::vector<std::string> choices_of(const Option& option);
 
 }  // namespace viewgain::app

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 #include <cstdint>
 #include <string>
 
@@ -17,7 +17,7 @@ struct CommonOptions {
   int threads = 0;
   std::string config, save_config;  ///< main() reads and writes them
 };
-inline void add_common_options(CLI::App& app, CommonOptions& options) {
+inline void add_common_options(App& app, CommonOptions& options) {
   app.add_flag("--json", options.json, "print one JSON object instead of text");
   app.add_flag("--quiet", options.quiet, "say nothing of how far the call is");
   app.add_option("--threads", options.threads, "threads; 0: as many as the machine has")
@@ -37,7 +37,7 @@ inline constexpr const char* kLookGroup = "Look and convert";
 
 /// Where the subcommand stands in the program's help, and a call that works where those of
 /// simulate, integrate, score and so on were made before it.
-inline void add_help(CLI::App& app, const char* group, const char* example) {
+inline void add_help(App& app, const char* group, const char* example) {
   app.group(group)->footer(std::string("Example:\n  viewgain ") + example);
 }
 
@@ -61,7 +61,7 @@ inline constexpr const char* kRegionDepthHelp =
     "how far inward from a boundary the surface is fitted that candidates go on from [m]";
 
 /// --seed, the same bounds in every subcommand.
-inline void add_seed_option(CLI::App& app, std::uint64_t& seed, const char* of_what) {
+inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {
   takes_seed(*app.add_option("--seed", seed, of_what));
 }
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include "cli/app.hpp"
+#include "cli/json.hpp"
 #include <optional>
 #include <string>
 
@@ -17,20 +17,20 @@ namespace viewgain::app {
 //   visit.derived(key)                            what follows from others and is recorded too
 //
 // `key` is what run.json calls it, null where it cannot change the answer or is recorded elsewhere;
-// `adjust(CLI::Option&)` adds checks. The visitors below declare the flags and record the values.
+// `adjust(Option&)` adds checks. The visitors below declare the flags and record the values.
 
-inline constexpr auto as_it_is = [](CLI::Option&) {};
-inline constexpr auto shows_default = [](CLI::Option& option) { option.capture_default_str(); };
-inline constexpr auto switched = [](CLI::Option& option) {
+inline constexpr auto as_it_is = [](Option&) {};
+inline constexpr auto shows_default = [](Option& option) { option.capture_default_str(); };
+inline constexpr auto switched = [](Option& option) {
   on_or_off(option);
   option.capture_default_str();
 };
-inline constexpr auto needed = [](CLI::Option& option) { option.required(); };
+inline constexpr auto needed = [](Option& option) { option.required(); };
 
 /// Declares the flags; the values stand for the defaults.
 class OptionDeclaration {
  public:
-  explicit OptionDeclaration(CLI::App& app) : app_(app) {}
+  explicit OptionDeclaration(App& app) : app_(app) {}
 
   template <typename Value, typename Adjust>
   void option(const char* /*key*/, const char* flag, Value& value, const char* help,
@@ -40,14 +40,14 @@ class OptionDeclaration {
   void derived(const char* /*key*/) const {}
 
  private:
-  CLI::App& app_;
+  App& app_;
 };
 
 /// Records the values under their keys, in the order of the description. What the run made of an
 /// option, `resolved` under the same key, counts instead of what was given. Not given is null.
 class OptionRecord {
  public:
-  explicit OptionRecord(const nlohmann::ordered_json& resolved) : resolved_(resolved) {}
+  explicit OptionRecord(const Json& resolved) : resolved_(resolved) {}
 
   template <typename Value, typename Adjust>
   void option(const char* key, const char* /*flag*/, const Value& value, const char* /*help*/,
@@ -56,27 +56,27 @@ class OptionRecord {
   }
   void derived(const char* key) { json_[key] = resolved_.at(key); }
 
-  [[nodiscard]] const nlohmann::ordered_json& json() const noexcept { return json_; }
+  [[nodiscard]] const Json& json() const noexcept { return json_; }
 
  private:
   template <typename Value>
-  static nlohmann::ordered_json given(const Value& value) {
+  static Json given(const Value& value) {
     return value;
   }
   template <typename Value>
-  static nlohmann::ordered_json given(const std::optional<Value>& value) {
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+  static Json given(const std::optional<Value>& value) {
+    return value ? Json(*value) : Json();
   }
-  static nlohmann::ordered_json given(const std::string& text) {
-    return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
+  static Json given(const std::string& text) {
+    return text.empty() ? Json() : Json(text);
   }
   template <typename Value>
   void put(const char* key, const Value& value) {
     if (key != nullptr) json_[key] = resolved_.contains(key) ? resolved_[key] : given(value);
   }
 
-  const nlohmann::ordered_json& resolved_;
-  nlohmann::ordered_json json_ = nlohmann::ordered_json::object();
+  const Json& resolved_;
+  Json json_ = Json::object();
 };
 
 }  // namespace viewgain::app

@@ -22,7 +22,7 @@ FrameSequence frames_of(const FrameFolderOptions& options) {
 
 }  // namespace
 
-void add_frame_folder_options(CLI::App& app, FrameFolderOptions& options) {
+void add_frame_folder_options(App& app, FrameFolderOptions& options) {
   app.add_option(
       "--depth-scale", options.depth_scale,
       "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
@@ -31,7 +31,7 @@ void add_frame_folder_options(CLI::App& app, FrameFolderOptions& options) {
   app.add_option("--confidence", options.confidence, kConfidenceHelp);
   app.add_option("--least-confidence", options.least_confidence, kLeastConfidenceHelp)
       ->capture_default_str()
-      ->check(CLI::Range(1, 255, "confidence"));
+      ->range(1, 255, "confidence");
 }
 
 std::vector<MaskFolder> mask_folders(const FrameFolderOptions& options,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -31,7 +31,7 @@ struct FrameFolderOptions {
 };
 
 /// --depth-scale, --mask and --confidence, the same in every subcommand that reads frames.
-void add_frame_folder_options(CLI::App& app, FrameFolderOptions& options);
+void add_frame_folder_options(App& app, FrameFolderOptions& options);
 
 /// Recorded or simulated frames with their poses, and what masks leave of them.
 class FrameFolder {

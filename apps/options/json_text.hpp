@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <string>
 #include <utility>
 
@@ -13,11 +13,11 @@
 
 namespace viewgain::app {
 
-[[nodiscard]] inline nlohmann::ordered_json to_json(const Box& box) {
+[[nodiscard]] inline Json to_json(const Box& box) {
   return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
 }
 
-[[nodiscard]] inline nlohmann::ordered_json to_json(const Pose& pose) {
+[[nodiscard]] inline Json to_json(const Pose& pose) {
   const auto& m = pose.m;
   return {{m[0], m[1], m[2], m[3]},
           {m[4], m[5], m[6], m[7]},
@@ -26,20 +26,18 @@ namespace viewgain::app {
 }
 
 /// With every text made UTF-8: a file name may be any bytes.
-[[nodiscard]] inline nlohmann::ordered_json with_utf8_text(nlohmann::ordered_json json) {
-  if (json.is_string()) return utf8_text(json.get_ref<const std::string&>());
-  if (json.is_structured()) {
-    for (nlohmann::ordered_json& part : json) part = with_utf8_text(std::move(part));
-  }
+[[nodiscard]] inline Json with_utf8_text(Json json) {
+  if (json.is_string()) return utf8_text(json.get<std::string>());
+  for (Json& part : json) part = with_utf8_text(std::move(part));
   return json;
 }
 
 /// What run.json and --json hold.
-[[nodiscard]] inline std::string json_text(const nlohmann::ordered_json& json) {
+[[nodiscard]] inline std::string json_text(const Json& json) {
   return with_utf8_text(json).dump(2) + "\n";
 }
 
-inline void print_json(const nlohmann::ordered_json& json) {
+inline void print_json(const Json& json) {
   std::fputs(json_text(json).c_str(), stdout);
 }
 

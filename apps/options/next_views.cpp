@@ -24,15 +24,15 @@ std::string why(const NextView& view) {
 
 }  // namespace
 
-nlohmann::ordered_json to_json(const NextViews& next) {
-  nlohmann::ordered_json json{{"gain_model", gain_model_name(next.model)},
+Json to_json(const NextViews& next) {
+  Json json{{"gain_model", gain_model_name(next.model)},
                               {"gain_unit", gain_unit(next.model, kCriterion)},
                               {"candidates", next.candidates},
-                              {"dropped", nlohmann::ordered_json::object()},
-                              {"next", nlohmann::ordered_json::array()}};
+                              {"dropped", Json::object()},
+                              {"next", Json::array()}};
   for (const auto& [reason, count] : next.dropped) json["dropped"][reason] = count;
   for (const NextView& view : next.views) {
-    nlohmann::ordered_json one{{"gain", view.gain.gain},  // a NaN becomes null
+    Json one{{"gain", view.gain.gain},  // a NaN becomes null
                                {"area", view.gain.area},
                                {"generator", view.generator},
                                {"class", nullptr},

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <map>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +33,7 @@ struct NextViews {
 };
 
 /// gain_model, gain_unit, candidates, dropped, next; apps/README.md names the keys of a view.
-[[nodiscard]] nlohmann::ordered_json to_json(const NextViews& next);
+[[nodiscard]] Json to_json(const NextViews& next);
 
 /// "12 of 480 possible views; dropped: 3 collision"
 [[nodiscard]] std::string summary_of(const NextViews& next);

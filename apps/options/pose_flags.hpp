@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 
 #include "pose_source.hpp"
 
@@ -10,7 +10,7 @@ namespace viewgain::app {
 
 /// The flags of PoseOptions, the same in every subcommand that is given poses; one set of poses,
 /// or, unless `needed`, none.
-inline void add_pose_options(CLI::App& app, PoseOptions& options, bool needed = true) {
+inline void add_pose_options(App& app, PoseOptions& options, bool needed = true) {
   auto* poses = app.add_option_group("poses", needed ? "exactly one of" : "at most one of");
   poses->add_option(
       "--poses", options.file,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <numbers>
 
 #include "viewgain/planner/pose_noise.hpp"
@@ -10,7 +10,7 @@
 namespace viewgain::app {
 
 /// The sigmas [m, deg]; null where both are 0.
-[[nodiscard]] inline nlohmann::ordered_json pose_sigmas_json(const PoseNoise& noise) {
+[[nodiscard]] inline Json pose_sigmas_json(const PoseNoise& noise) {
   if (noise.sigma_translation == 0 && noise.sigma_rotation == 0) return {};
   return {noise.sigma_translation, noise.sigma_rotation * 180 / std::numbers::pi};
 }

@@ -11,7 +11,7 @@
 
 namespace viewgain::app {
 
-void add_registration_options(CLI::App& app, RegistrationOptions& options) {
+void add_registration_options(App& app, RegistrationOptions& options) {
   on_or_off(*app.add_option("--register", options.is_on,
                             "register each frame against the map before it goes in; one that "
                             "contradicts the map is left out")

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 #include <optional>
 #include <string>
 
@@ -18,7 +18,7 @@ struct RegistrationOptions {
 };
 
 /// --register and --pose-sigma, for frames that go into a map one after the other.
-void add_registration_options(CLI::App& app, RegistrationOptions& options);
+void add_registration_options(App& app, RegistrationOptions& options);
 
 /// By how much reported poses may be off: what --pose-sigma says, else `noise` (--pose-noise) where
 /// it is not 0; nothing without --register on. Throws Error(invalid_argument), naming the flag,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 
 #include "choices.hpp"
 #include "described_options.hpp"
@@ -37,7 +37,7 @@ void describe_sensing(Options& o, Visitor& visit) {
   visit.option(nullptr, "--seed", o.seed, "of the noise of readings and of poses", takes_seed);
 }
 
-inline void add_sensing_options(CLI::App& app, SensingOptions& options) {
+inline void add_sensing_options(App& app, SensingOptions& options) {
   const OptionDeclaration declaration(app);
   describe_sensing(options, declaration);
 }

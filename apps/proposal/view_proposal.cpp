@@ -56,12 +56,12 @@ std::vector<HalfSpace> inside_of_workspace(const BeliefGrid& grid) {
 
 }  // namespace
 
-void add_proposal_options(CLI::App& app, ProposalOptions& o) {
+void add_proposal_options(App& app, ProposalOptions& o) {
   const EstimatorConfig usual = default_estimator(1.0);
   app.add_option("--count", o.count,
                  "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
                  "(default 48)")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
+      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
   app.add_option("--distance", o.distance,
                  "boundary: from the surface; else from the centre [m]; default: the sensor's "
                  "working distance; the workspace fills the view");

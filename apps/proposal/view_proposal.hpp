@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -38,7 +38,7 @@ struct ProposalOptions {
 };
 
 /// The flags, but for --generator and --gain: what these do by default is not the same everywhere.
-void add_proposal_options(CLI::App& app, ProposalOptions& options);
+void add_proposal_options(App& app, ProposalOptions& options);
 
 /// Throws Error(invalid_argument), naming the flag: also for what a generator or a gain has no use
 /// for, which would be ignored in silence.

@@ -71,7 +71,7 @@ bool is_frame_folder(const std::filesystem::path& path) {
   return std::filesystem::is_directory(path, ignored);
 }
 
-void add_frame_map_options(CLI::App& app, FrameMapOptions& options) {
+void add_frame_map_options(App& app, FrameMapOptions& options) {
   app.add_option("--voxel", options.voxel, "of a folder of frames: voxel size [m], needed");
   app.add_option("--workspace", options.workspace,
                  "of a folder of frames: x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: "
@@ -83,7 +83,7 @@ void add_frame_map_options(CLI::App& app, FrameMapOptions& options) {
   add_frame_folder_options(app, options.folder);
 }
 
-void refuse_frame_map_options(const CLI::App& app, std::string_view why) {
+void refuse_frame_map_options(const App& app, std::string_view why) {
   for (const char* flag : kFlags) {
     if (app.count(flag) == 0) continue;
     throw Error(ErrorCode::invalid_argument, std::string(flag).append(" ").append(why));

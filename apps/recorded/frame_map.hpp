@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -31,9 +31,9 @@ struct FrameMapOptions {
 
 /// --voxel, --workspace, --jump-edge-filter and those of a folder, for a subcommand that takes
 /// maps, too.
-void add_frame_map_options(CLI::App& app, FrameMapOptions& options);
+void add_frame_map_options(App& app, FrameMapOptions& options);
 /// Throws Error(invalid_argument) if any of them is given.
-void refuse_frame_map_options(const CLI::App& app, std::string_view why);
+void refuse_frame_map_options(const App& app, std::string_view why);
 
 /// The map as frames of a folder go into it, in the folder's order.
 class FrameMap {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <optional>
 #include <set>
 #include <string>
@@ -41,8 +41,6 @@
 namespace viewgain::app {
 namespace {
 
-using nlohmann::ordered_json;
-
 // Of a recording so many moments are drawn, evenly, the last among them: each is a surface anew.
 constexpr std::size_t kMaxShown = 6;
 
@@ -64,7 +62,7 @@ FrameMapOptions frame_options(const ReconstructOptions& options) {
   return frames;
 }
 
-ProposalOptions proposal_options(const ReconstructOptions& options, const CLI::App& app) {
+ProposalOptions proposal_options(const ReconstructOptions& options, const App& app) {
   ProposalOptions proposal;
   if (!options.generator.empty()) proposal.generator = options.generator;
   check_one_of("--generator", proposal.generator, generator_names(), "generator");
@@ -109,7 +107,7 @@ struct Moment {
 
 class Recording {
  public:
-  Recording(const ReconstructOptions& options, const CLI::App& app)
+  Recording(const ReconstructOptions& options, const App& app)
       : options_(options),
         proposal_(proposal_options(options, app)),
         exec_{options.common.threads} {
@@ -148,7 +146,7 @@ class Recording {
   }
 
   // Surface, next views, report; what run.json holds.
-  ordered_json finish(RunFolder& folder) {
+  Json finish(RunFolder& folder) {
     Stopwatch watch;
     Moment moment(*map_, proposal_, exec_);
     views_->add_seconds("surface", watch.seconds());
@@ -167,7 +165,7 @@ class Recording {
     write_surfaces(moment.model, folder.file("surface.ply"), folder.file("points.ply"));
     write_tum(folder.file("views.txt"), moment.model.grid().views());
     write_tum(folder.file("next.txt"), poses_of(next_));
-    ordered_json run{{"settings", settings()},
+    Json run{{"settings", settings()},
                      {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}}};
     run.update(views_->json(moment.model, next_));
     write_file_atomically(folder.file("run.json"), json_text(run));
@@ -205,10 +203,10 @@ class Recording {
     views_->add_seconds("pictures", watch.seconds());
   }
 
-  [[nodiscard]] ordered_json settings() const {
+  [[nodiscard]] Json settings() const {
     const FrameSequence& frames = map_->folder().frames();
     const BeliefGrid& grid = map_->model().grid();
-    ordered_json settings{{"frames", options_.mesh},
+    Json settings{{"frames", options_.mesh},
                           {"sensor", sensor_toml(sensor())},
                           {"depth_scale", frames.depth_scale},
                           {"mask", nullptr},
@@ -251,7 +249,7 @@ class Recording {
   NextViews next_;
 };
 
-void print(const ReconstructOptions& options, const ordered_json& run, const NextViews& next) {
+void print(const ReconstructOptions& options, const Json& run, const NextViews& next) {
   std::printf("%zu frames, %s readings, %s of them in the workspace\n",
               run["views"].get<std::size_t>(),
               with_commas(run["readings"].get<std::uint64_t>()).c_str(),
@@ -273,7 +271,7 @@ void print(const ReconstructOptions& options, const ordered_json& run, const Nex
 
 }  // namespace
 
-void reconstruct_frames(const ReconstructOptions& options, const CLI::App& app) {
+void reconstruct_frames(const ReconstructOptions& options, const App& app) {
   for (const char* flag : kFlagsOfMeshes) {
     if (app.count(flag) == 0) continue;
     throw Error(ErrorCode::invalid_argument,
@@ -284,7 +282,7 @@ void reconstruct_frames(const ReconstructOptions& options, const CLI::App& app) 
   Recording recording(options, app);
   RunFolder folder(options.out);
   recording.add_frames(folder, interrupt.token());
-  const ordered_json run = recording.finish(folder);
+  const Json run = recording.finish(folder);
   write_file_atomically(folder.file("config.toml"),
                         config_text(app, {"out", "json", "quiet", "threads"}));
   folder.commit();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 
 #include "loop/run_options.hpp"
 
@@ -12,6 +12,6 @@ namespace viewgain::app {
 /// other; the views that it would take next end the run. Leaves the folder that a run on a mesh
 /// leaves, and next.txt. Throws Error, naming the flag, for those that only a mesh or a choice of
 /// views has a use for.
-void reconstruct_frames(const ReconstructOptions& options, const CLI::App& app);
+void reconstruct_frames(const ReconstructOptions& options, const App& app);
 
 }  // namespace viewgain::app

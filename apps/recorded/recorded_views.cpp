@@ -13,16 +13,14 @@
 namespace viewgain::app {
 namespace {
 
-using nlohmann::ordered_json;
-
 double sum_of(const StageSeconds& seconds) {
   double sum = 0;
   for (const auto& [stage, value] : seconds) sum += value;
   return sum;
 }
 
-ordered_json seconds_json(const StageSeconds& seconds) {
-  ordered_json json = ordered_json::object();
+Json seconds_json(const StageSeconds& seconds) {
+  Json json = Json::object();
   for (const auto& [stage, value] : seconds) json[stage] = value;
   json["total"] = sum_of(seconds);
   return json;
@@ -76,10 +74,10 @@ std::set<std::string> RecordedViews::identities() const {
   return frames;
 }
 
-ordered_json RecordedViews::entry_json(std::size_t index) const {
+Json RecordedViews::entry_json(std::size_t index) const {
   const ViewRecord& record = records_[index];
   const FrameFolder& folder = map_.folder();
-  ordered_json json{{"index", record.index},
+  Json json{{"index", record.index},
                     {"frame", folder.frames().images[record.index].filename().string()},
                     {"pose", app::to_json(folder.T_world_camera(record.index))},
                     {"generator", "recorded"},
@@ -93,10 +91,10 @@ ordered_json RecordedViews::entry_json(std::size_t index) const {
   return json;
 }
 
-ordered_json RecordedViews::json(const SurfaceModel& model, const NextViews& next) const {
+Json RecordedViews::json(const SurfaceModel& model, const NextViews& next) const {
   const ViewRecord& last = records_.back();
   const bool is_whole = records_.size() == map_.folder().size();
-  ordered_json run{{"map_hash", model.grid().content_hash()},
+  Json run{{"map_hash", model.grid().content_hash()},
                    {"stop_reason", is_whole ? "no_frames" : "interrupted"},
                    {"views", records_.size()},
                    {"readings", readings_.readings},
@@ -113,7 +111,7 @@ ordered_json RecordedViews::json(const SurfaceModel& model, const NextViews& nex
   if (is_aligned()) run["registration"] = registration_counts(registrations_);
   run.update(app::to_json(next));
   run["seconds"] = seconds_json(seconds_);
-  run["per_view"] = ordered_json::array();
+  run["per_view"] = Json::array();
   for (std::size_t i = 0; i < records_.size(); ++i) run["per_view"].push_back(entry_json(i));
   return run;
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <set>
 #include <string>
 #include <vector>
@@ -35,12 +35,12 @@ class RecordedViews {
   /// Those in the map, as its file notes them.
   [[nodiscard]] std::set<std::string> identities() const;
   /// What run.json holds, without settings and versions. `model` is of the map as it is now.
-  [[nodiscard]] nlohmann::ordered_json json(const SurfaceModel& model, const NextViews& next) const;
+  [[nodiscard]] Json json(const SurfaceModel& model, const NextViews& next) const;
 
  private:
   [[nodiscard]] bool is_aligned() const { return !registrations_.empty(); }
   [[nodiscard]] bool is_refused(std::size_t index) const;
-  [[nodiscard]] nlohmann::ordered_json entry_json(std::size_t index) const;
+  [[nodiscard]] Json entry_json(std::size_t index) const;
 
   FrameMap& map_;
   std::vector<FrameRegistration> registrations_;

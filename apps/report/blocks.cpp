@@ -15,8 +15,6 @@
 namespace viewgain::app {
 namespace {
 
-using nlohmann::ordered_json;
-
 static_assert(std::endian::native == std::endian::little);
 
 std::string gzip(std::string_view bytes) {
@@ -38,7 +36,7 @@ std::string gzip(std::string_view bytes) {
   return packed;
 }
 
-ordered_json block(const char* type, std::size_t columns, std::size_t count,
+Json block(const char* type, std::size_t columns, std::size_t count,
                    std::string_view bytes) {
   return {{"type", type},
           {"columns", columns},
@@ -113,23 +111,23 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-ordered_json float_block(const std::vector<float>& values, std::size_t columns) {
+Json float_block(const std::vector<float>& values, std::size_t columns) {
   return block("f32", columns, values.size(),
                {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
 }
 
-ordered_json index_block(const std::vector<std::uint32_t>& values, std::size_t columns) {
+Json index_block(const std::vector<std::uint32_t>& values, std::size_t columns) {
   return block("u32", columns, values.size(), planes(values, columns));
 }
 
-ordered_json byte_block(const std::vector<std::uint8_t>& values) {
+Json byte_block(const std::vector<std::uint8_t>& values) {
   return block("u8", 1, values.size(), planes(values, 1));
 }
 
-ordered_json point_block(std::span<const Eigen::Vector3d> points) {
+Json point_block(std::span<const Eigen::Vector3d> points) {
   constexpr double kLevels = std::numeric_limits<std::uint16_t>::max() - 1;  // the last one is NaN
   std::vector<std::uint16_t> levels(3 * points.size());
-  ordered_json min = ordered_json::array(), step = ordered_json::array();
+  Json min = Json::array(), step = Json::array();
   for (Eigen::Index c = 0; c < 3; ++c) {
     const Range range =
         range_of(points.size(), kLevels, [&](std::size_t i) { return points[i][c]; });
@@ -139,19 +137,19 @@ ordered_json point_block(std::span<const Eigen::Vector3d> points) {
     min.push_back(range.min);
     step.push_back(range.step);
   }
-  ordered_json json = block("u16", 3, levels.size(), planes(levels, 3));
+  Json json = block("u16", 3, levels.size(), planes(levels, 3));
   json["min"] = std::move(min);
   json["step"] = std::move(step);
   return json;
 }
 
-ordered_json shade_block(const std::vector<double>& values) {
+Json shade_block(const std::vector<double>& values) {
   constexpr double kLevels = std::numeric_limits<std::uint8_t>::max() - 1;
   const Range range = range_of(values.size(), kLevels, [&](std::size_t i) { return values[i]; });
   std::vector<std::uint8_t> levels;
   levels.reserve(values.size());
   for (const double value : values) levels.push_back(level_of<std::uint8_t>(value, range));
-  ordered_json json = block("u8", 1, levels.size(), planes(levels, 1));
+  Json json = block("u8", 1, levels.size(), planes(levels, 1));
   json["min"] = {range.min};
   json["step"] = {range.step};
   return json;

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,17 +16,17 @@ namespace viewgain::app {
 // Numbers as the report's page reads them; README.md, "Data", says how a block is stored. Rows one
 // after the other; throws Error(backend) if zlib fails.
 
-[[nodiscard]] nlohmann::ordered_json float_block(const std::vector<float>& values,
+[[nodiscard]] Json float_block(const std::vector<float>& values,
                                                  std::size_t columns);
-[[nodiscard]] nlohmann::ordered_json index_block(const std::vector<std::uint32_t>& values,
+[[nodiscard]] Json index_block(const std::vector<std::uint32_t>& values,
                                                  std::size_t columns);
-[[nodiscard]] nlohmann::ordered_json byte_block(const std::vector<std::uint8_t>& values);
+[[nodiscard]] Json byte_block(const std::vector<std::uint8_t>& values);
 
 /// Points [m], each coordinate to 1/65,534 of their bounding box.
-[[nodiscard]] nlohmann::ordered_json point_block(std::span<const Eigen::Vector3d> points);
+[[nodiscard]] Json point_block(std::span<const Eigen::Vector3d> points);
 
 /// One number a row, to 1/254 of their range; not finite is NaN. For colours.
-[[nodiscard]] nlohmann::ordered_json shade_block(const std::vector<double>& values);
+[[nodiscard]] Json shade_block(const std::vector<double>& values);
 
 [[nodiscard]] std::string base64(std::string_view bytes);
 

@@ -28,14 +28,14 @@ void check_report_page(std::string_view flag) {
                   "of reach when it was built (install nodejs and npm, configure and build again)");
 }
 
-std::string report_page(const nlohmann::ordered_json& data, std::string_view page) {
+std::string report_page(const Json& data, std::string_view page) {
   const std::size_t place = page.find(kPlace);
   if (place == std::string_view::npos || page.find(kPlace, place + 1) != std::string_view::npos) {
     throw Error(ErrorCode::format, "the report's page must have " + std::string(kPlace) + " once");
   }
   std::string text(page.substr(0, place));
   // A '<' is text in any JSON string, where it may be written as an escape: so no tag begins.
-  for (const char c : data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) {
+  for (const char c : data.dump()) {
     if (c == '<') {
       text += "\\u003c";
     } else {
@@ -46,11 +46,11 @@ std::string report_page(const nlohmann::ordered_json& data, std::string_view pag
   return text;
 }
 
-std::string report_page(const nlohmann::ordered_json& data) {
+std::string report_page(const Json& data) {
   return report_page(data, built_page());
 }
 
-void write_report(const std::filesystem::path& path, const nlohmann::ordered_json& data) {
+void write_report(const std::filesystem::path& path, const Json& data) {
   write_file_atomically(path, report_page(data));
 }
 

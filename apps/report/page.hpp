@@ -3,7 +3,7 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <string>
 #include <string_view>
 
@@ -16,10 +16,10 @@ void check_report_page(std::string_view flag);
 /// The page with these data in it: `page`, or the one that the program was built with. Text that is
 /// not UTF-8 is shown with replacement characters; nothing in the data can end the element that
 /// holds them. Throws Error(format) unless the page has the place for data once.
-[[nodiscard]] std::string report_page(const nlohmann::ordered_json& data);
-[[nodiscard]] std::string report_page(const nlohmann::ordered_json& data, std::string_view page);
+[[nodiscard]] std::string report_page(const Json& data);
+[[nodiscard]] std::string report_page(const Json& data, std::string_view page);
 
 /// Atomic: a temporary file is renamed. Throws Error(io).
-void write_report(const std::filesystem::path& path, const nlohmann::ordered_json& data);
+void write_report(const std::filesystem::path& path, const Json& data);
 
 }  // namespace viewgain::app

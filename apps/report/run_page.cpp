@@ -16,8 +16,6 @@ namespace viewgain::app {
 namespace {
 
 using Eigen::Vector3d;
-using nlohmann::ordered_json;
-
 // So that a run of 40 views stays under 25 MB.
 constexpr std::size_t kMaxVertices = 20'000, kMaxTruthVertices = 100'000, kMaxPoints = 1'500,
                       kMaxExpected = 4'000, kMaxExact = 100;
@@ -32,7 +30,7 @@ ShownMesh shown_surface(const SurfaceModel& model, const Truth* truth) {
   return thinned(std::move(mesh), kMaxVertices);
 }
 
-ordered_json points_json(const std::vector<FusedPoint>& points) {
+Json points_json(const std::vector<FusedPoint>& points) {
   std::vector<Vector3d> positions;
   std::vector<float> covariances;
   const std::size_t count = std::min(points.size(), kMaxPoints);
@@ -47,9 +45,9 @@ ordered_json points_json(const std::vector<FusedPoint>& points) {
   return {{"positions", point_block(positions)}, {"covariances", float_block(covariances, 6)}};
 }
 
-ordered_json boundaries_json(const SurfaceMesh& surface, const std::vector<BoundaryRun>& runs) {
+Json boundaries_json(const SurfaceMesh& surface, const std::vector<BoundaryRun>& runs) {
   std::vector<Vector3d> points;
-  ordered_json starts = ordered_json::array(), classes = starts, closed = starts;
+  Json starts = Json::array(), classes = starts, closed = starts;
   for (const BoundaryRun& run : runs) {
     starts.push_back(points.size());
     classes.push_back(boundary_class_name(run.boundary_class));
@@ -61,7 +59,7 @@ ordered_json boundaries_json(const SurfaceMesh& surface, const std::vector<Bound
 }
 
 // Each patch as a lattice over the region that it was fitted to and as far past the boundary.
-ordered_json patches_json(const EstimatedViews& estimated, double length) {
+Json patches_json(const EstimatedViews& estimated, double length) {
   constexpr std::uint32_t kColumns = 7, kRows = 4;  // along u and v
   if (estimated.patches.empty()) return nullptr;
   ShownMesh mesh;
@@ -106,7 +104,7 @@ void add_gains(ShownCandidates& shown, const GainEvaluator& evaluator,
   shown.exact = std::move(exact);
 }
 
-ordered_json candidates_json(const Proposal& proposal, const CandidateGeneration& generation,
+Json candidates_json(const Proposal& proposal, const CandidateGeneration& generation,
                              const GainEvaluator& evaluator,
                              const std::optional<std::size_t>& chosen) {
   ShownCandidates shown;
@@ -128,8 +126,8 @@ ordered_json candidates_json(const Proposal& proposal, const CandidateGeneration
 }
 
 // The unknown voxels from which most is expected of a view.
-ordered_json expected_json(const GainEvaluator& evaluator, const Pose& T_world_camera,
-                           const ordered_json& unit) {
+Json expected_json(const GainEvaluator& evaluator, const Pose& T_world_camera,
+                           const Json& unit) {
   std::vector<VoxelContribution> voxels = evaluator.contributions(T_world_camera);
   std::erase_if(voxels, [](const VoxelContribution& v) {
     return v.state != VoxelState::unknown || !(v.gain > 0);
@@ -144,7 +142,7 @@ ordered_json expected_json(const GainEvaluator& evaluator, const Pose& T_world_c
   return contributions_json(evaluator.scene().snapshot(), voxels, unit);
 }
 
-ordered_json truth_json(const SurfaceScene& object) {
+Json truth_json(const SurfaceScene& object) {
   ShownMesh truth;
   for (const auto& p : object.mesh().vertices) truth.add_vertex(p);
   truth.triangles = object.mesh().triangles;
@@ -166,7 +164,7 @@ void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
   if (views_.empty()) {
     head_ = page_head("reconstruct", title_, evaluator, sensor_, criterion_);
   }
-  ordered_json view{{"pose", pose_rows(record.T_world_camera)},
+  Json view{{"pose", pose_rows(record.T_world_camera)},
                     {"surface", to_json(shown_surface(model, truth_.get()))},
                     {"points", points_json(model.points())}};
   view["boundaries"] = boundaries_json(model.surface(), estimated.runs);
@@ -188,14 +186,14 @@ void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
   indices_.push_back(record.index);
 }
 
-ordered_json RunPage::json(const ordered_json& run, const SurfaceScene* object) const {
-  ordered_json page = head_;
+Json RunPage::json(const Json& run, const SurfaceScene* object) const {
+  Json page = head_;
   page["settings"] = run.at("settings");
   page["summary"] = run;
   page["summary"].erase("settings");
   page["summary"].erase("per_view");
   page["summary"].erase("next");
-  page["truth"] = object == nullptr ? ordered_json() : truth_json(*object);
+  page["truth"] = object == nullptr ? Json() : truth_json(*object);
   page["views"] = views_;
   for (std::size_t i = 0; i < views_.size(); ++i) {
     page["views"][i]["figures"] = run.at("per_view").at(indices_[i]);

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <string>
 #include <vector>
 
@@ -39,14 +39,14 @@ class RunPage {
 
   /// The page's data. `run` is what run.json holds; there must have been a view. Each view has the
   /// figures of run.json's view of its index. `object` may be null, too.
-  [[nodiscard]] nlohmann::ordered_json json(const nlohmann::ordered_json& run,
+  [[nodiscard]] Json json(const Json& run,
                                             const SurfaceScene* object) const;
 
  private:
   std::string title_, criterion_;
   Sensor sensor_;
   std::shared_ptr<const Truth> truth_;
-  nlohmann::ordered_json head_, views_ = nlohmann::ordered_json::array();
+  Json head_, views_ = Json::array();
   std::vector<std::size_t> indices_;  ///< of the views
 };
 

@@ -12,11 +12,9 @@ namespace viewgain::app {
 namespace {
 
 using Eigen::Vector3d;
-using nlohmann::ordered_json;
-
 constexpr std::size_t kShownCubes = 100'000;  // a file is not to grow large
 
-ordered_json map_json(const GridSnapshot& snapshot) {
+Json map_json(const GridSnapshot& snapshot) {
   const LatticeCubes cubes = occupied_cubes(snapshot, kShownCubes);
   std::vector<Vector3d> centers;
   for (const Index3& at : cubes.at) {
@@ -26,10 +24,10 @@ ordered_json map_json(const GridSnapshot& snapshot) {
   return {{"centers", point_block(centers)}, {"size", cubes.side}};
 }
 
-ordered_json shown_json(const GainEvaluator& evaluator, const Pose& T_world_camera,
-                        const ordered_json& unit) {
+Json shown_json(const GainEvaluator& evaluator, const Pose& T_world_camera,
+                        const Json& unit) {
   const std::vector<VoxelContribution> voxels = evaluator.contributions(T_world_camera);
-  ordered_json json = contributions_json(evaluator.scene().snapshot(), voxels, unit);
+  Json json = contributions_json(evaluator.scene().snapshot(), voxels, unit);
   std::vector<std::uint8_t> states;
   for (const VoxelContribution& voxel : voxels) {
     states.push_back(voxel.state == VoxelState::unknown ? 1 : 2);
@@ -40,12 +38,12 @@ ordered_json shown_json(const GainEvaluator& evaluator, const Pose& T_world_came
 
 }  // namespace
 
-ordered_json ScorePage::json() const {
-  ordered_json page = page_head("score", title, evaluator, sensor, criterion);
+Json ScorePage::json() const {
+  Json page = page_head("score", title, evaluator, sensor, criterion);
   page["settings"] = settings;
   page["summary"] = summary;
   page["truth"] = nullptr;
-  ordered_json contributions = ordered_json::array();
+  Json contributions = Json::array();
   for (const std::size_t i : shown) {
     contributions.push_back(
         {{"candidate", i},

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <span>
 #include <string>
 #include <vector>
@@ -25,13 +25,13 @@ struct ScorePage {
   std::vector<double> areas;       ///< likewise, or none
   std::vector<std::size_t> exact;  ///< poses whose gain is by all rays and no estimate
   /// The ranking: what its columns are called; a row a pose, best first, the pose's index in it.
-  nlohmann::ordered_json columns, rows;
+  Json columns, rows;
   std::vector<std::size_t> shown;  ///< poses whose rays and voxels the page has
-  nlohmann::ordered_json settings, summary;
+  Json settings, summary;
   RgbImage picture;  ///< of the best pose
 
   /// The page's data; README.md, "Data". Traces the poses of `shown`.
-  [[nodiscard]] nlohmann::ordered_json json() const;
+  [[nodiscard]] Json json() const;
 };
 
 }  // namespace viewgain::app

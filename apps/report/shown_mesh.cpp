@@ -65,11 +65,11 @@ ShownMesh thinned(ShownMesh mesh, std::size_t most) {
   return merged(mesh, cells, count);
 }
 
-nlohmann::ordered_json to_json(const ShownMesh& mesh) {
+Json to_json(const ShownMesh& mesh) {
   std::vector<std::uint32_t> indices;
   indices.reserve(3 * mesh.triangles.size());
   for (const auto& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
-  nlohmann::ordered_json json{{"vertices", point_block(mesh.vertices)},
+  Json json{{"vertices", point_block(mesh.vertices)},
                               {"triangles", index_block(indices, 3)}};
   if (!mesh.sigma.empty()) json["sigma"] = shade_block(mesh.sigma);
   if (!mesh.error.empty()) json["error"] = shade_block(mesh.error);

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <vector>
 
 namespace viewgain::app {
@@ -25,6 +25,6 @@ struct ShownMesh {
 [[nodiscard]] ShownMesh thinned(ShownMesh mesh, std::size_t most);
 
 /// A mesh of README.md, "Data".
-[[nodiscard]] nlohmann::ordered_json to_json(const ShownMesh& mesh);
+[[nodiscard]] Json to_json(const ShownMesh& mesh);
 
 }  // namespace viewgain::app

@@ -16,14 +16,12 @@ namespace viewgain::app {
 namespace {
 
 using Eigen::Vector3d;
-using nlohmann::ordered_json;
-
 constexpr std::size_t kMaxRays = 1500;
 
 // Each text as its place in `names`, which has every text once; -1 for an empty one.
-ordered_json numbered(const std::vector<std::string>& texts, ordered_json& names) {
+Json numbered(const std::vector<std::string>& texts, Json& names) {
   std::vector<std::string> found;
-  ordered_json numbers = ordered_json::array();
+  Json numbers = Json::array();
   for (const std::string& text : texts) {
     if (text.empty()) {
       numbers.push_back(-1);
@@ -37,7 +35,7 @@ ordered_json numbered(const std::vector<std::string>& texts, ordered_json& names
   return numbers;
 }
 
-ordered_json column_of(const std::vector<double>& values, std::size_t rows) {
+Json column_of(const std::vector<double>& values, std::size_t rows) {
   std::vector<float> column(rows, std::numeric_limits<float>::quiet_NaN());
   std::copy_n(values.begin(), std::min(rows, values.size()), column.begin());
   return float_block(column, 1);
@@ -45,13 +43,13 @@ ordered_json column_of(const std::vector<double>& values, std::size_t rows) {
 
 }  // namespace
 
-ordered_json page_head(const std::string& kind, const std::string& title,
+Json page_head(const std::string& kind, const std::string& title,
                        const GainEvaluator& evaluator, const Sensor& sensor,
                        std::string_view criterion) {
   const GridSnapshot& snapshot = evaluator.scene().snapshot();
   const auto bound = [&](std::int32_t index) { return snapshot.voxel_size * index; };
   const Index3 low = snapshot.min_index, size = snapshot.dims;
-  ordered_json frustum = ordered_json::array();
+  Json frustum = Json::array();
   for (const Vector3d& p : image_corners(sensor, Pose(), 1)) frustum.push_back({p.x(), p.y()});
   return {{"format", 1},
           {"kind", kind},
@@ -67,20 +65,20 @@ ordered_json page_head(const std::string& kind, const std::string& title,
           {"frustum", frustum}};
 }
 
-ordered_json pose_rows(const Pose& T_world_camera) { return T_world_camera.m; }
+Json pose_rows(const Pose& T_world_camera) { return T_world_camera.m; }
 
-ordered_json to_json(const ShownCandidates& candidates) {
+Json to_json(const ShownCandidates& candidates) {
   const std::size_t count = candidates.poses.size();
   std::vector<float> poses;
   poses.reserve(12 * count);
   for (const Pose& pose : candidates.poses) {
     for (const double number : pose.m) poses.push_back(static_cast<float>(number));
   }
-  ordered_json json{{"poses", float_block(poses, 12)},
+  Json json{{"poses", float_block(poses, 12)},
                     {"gain", column_of(candidates.gains, count)},
                     {"area", column_of(candidates.areas, count)}};
   json["exact"] = candidates.exact;
-  ordered_json names;
+  Json names;
   json["class"] = numbered(candidates.classes, names);
   json["classes"] = names;
   json["generator"] = numbered(candidates.generators, names);
@@ -90,7 +88,7 @@ ordered_json to_json(const ShownCandidates& candidates) {
   return json;
 }
 
-ordered_json bundle_json(const GainEvaluator& evaluator, const Sensor& sensor,
+Json bundle_json(const GainEvaluator& evaluator, const Sensor& sensor,
                          const Pose& T_world_camera) {
   std::vector<Vector3d> ends;
   std::vector<std::uint8_t> kinds;
@@ -103,9 +101,9 @@ ordered_json bundle_json(const GainEvaluator& evaluator, const Sensor& sensor,
   return {{"ends", point_block(ends)}, {"kind", byte_block(kinds)}};
 }
 
-ordered_json contributions_json(const GridSnapshot& snapshot,
+Json contributions_json(const GridSnapshot& snapshot,
                                 const std::vector<VoxelContribution>& voxels,
-                                const ordered_json& unit) {
+                                const Json& unit) {
   std::vector<Vector3d> centers;
   std::vector<float> values;
   for (const VoxelContribution& voxel : voxels) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <span>
 #include <string>
 #include <vector>
@@ -18,12 +18,12 @@ namespace viewgain::app {
 // What the pages of runs and of scores both show; README.md, "Data", says each part's keys.
 
 /// The keys that every page has: what it is, the space, the camera.
-[[nodiscard]] nlohmann::ordered_json page_head(const std::string& kind, const std::string& title,
+[[nodiscard]] Json page_head(const std::string& kind, const std::string& title,
                                                const GainEvaluator& evaluator, const Sensor& sensor,
                                                std::string_view criterion);
 
 /// Twelve numbers, the rows of T_world_camera.
-[[nodiscard]] nlohmann::ordered_json pose_rows(const Pose& T_world_camera);
+[[nodiscard]] Json pose_rows(const Pose& T_world_camera);
 
 /// Candidates as parallel lists. `gains` may be shorter: the rest have none.
 struct ShownCandidates {
@@ -32,16 +32,16 @@ struct ShownCandidates {
   std::vector<std::size_t> exact;  ///< whose gain is by all rays; of the others it is estimated
   std::vector<std::string> generators, classes, reasons;  ///< one a pose; an empty text is none
 };
-[[nodiscard]] nlohmann::ordered_json to_json(const ShownCandidates& candidates);
+[[nodiscard]] Json to_json(const ShownCandidates& candidates);
 
 /// Where the rays of a view end: an even subset of those that end in a voxel.
-[[nodiscard]] nlohmann::ordered_json bundle_json(const GainEvaluator& evaluator,
+[[nodiscard]] Json bundle_json(const GainEvaluator& evaluator,
                                                  const Sensor& sensor, const Pose& T_world_camera);
 
 /// What voxels bring to a view: centres, values and the value's unit.
-[[nodiscard]] nlohmann::ordered_json contributions_json(
+[[nodiscard]] Json contributions_json(
     const GridSnapshot& snapshot, const std::vector<VoxelContribution>& voxels,
-    const nlohmann::ordered_json& unit);
+    const Json& unit);
 
 /// A PNG of a third of the picture's width and height, in base64: enough where there is no WebGL.
 [[nodiscard]] std::string small_picture(const RgbImage& picture);

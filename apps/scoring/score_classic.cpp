@@ -18,8 +18,6 @@
 namespace viewgain::app {
 namespace {
 
-using nlohmann::ordered_json;
-
 // What there is no such thing of for classic gains.
 void check_classic(const ScoreOptions& options) {
   const std::array<std::pair<const char*, bool>, 11> given{
@@ -103,15 +101,15 @@ Table ClassicScores::table() const {
 
 void ClassicScores::print_json(std::size_t top) const {
   const std::vector<ClassicGain>& asked = evaluator.config().gains;
-  ordered_json counts = ordered_json::object(), names = ordered_json::array(),
-               units = ordered_json::array(), best_views = ordered_json::array();
+  Json counts = Json::object(), names = Json::array(),
+               units = Json::array(), best_views = Json::array();
   for (const auto& [reason, count] : dropped) counts[reason] = count;
   for (const ClassicGain gain : asked) {
     names.push_back(name_of(gain));
     units.push_back(classic_gain_unit(gain));
   }
   for (const std::size_t i : best(top)) {
-    ordered_json view{{"index", numbers[i]}};
+    Json view{{"index", numbers[i]}};
     for (std::size_t g = 0; g < asked.size(); ++g) {
       view[name_of(asked[g])] = gains[i * asked.size() + g];  // a NaN becomes null
     }

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <map>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <vector>

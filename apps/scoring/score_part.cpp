@@ -3,7 +3,7 @@
 #include "score_part.hpp"
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,15 +22,13 @@
 namespace viewgain::app {
 namespace {
 
-using nlohmann::ordered_json;
-
 std::string hash_of_file(const std::filesystem::path& path) {
   return "file " + hash_of(file_bytes(path));
 }
 
 // Flags that were not given stand for the same in all parts and are left out.
-ordered_json settings_of(const ScoreOptions& options) {
-  ordered_json settings{{"gain", options.gain},
+Json settings_of(const ScoreOptions& options) {
+  Json settings{{"gain", options.gain},
                         {"semantics", options.semantics},
                         {"criterion", options.criterion},
                         {"stride", options.stride},
@@ -80,7 +78,7 @@ PartHead head_of(const ScoreOptions& options, const BeliefGrid& grid, const Sens
   head.version = VIEWGAIN_VERSION;
   head.map = grid.content_hash();
   head.sensor = on_a_line(sensor.name) + " " + hash_of(sensor_toml(sensor));
-  head.settings = settings_of(options).dump(-1, ' ', true, ordered_json::error_handler_t::replace);
+  head.settings = settings_of(options).dump();
   head.isa = isa;
   head.poses = source.total;
   head.poses_hash = source.hash;

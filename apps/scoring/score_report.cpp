@@ -16,8 +16,6 @@
 namespace viewgain::app {
 namespace {
 
-using nlohmann::ordered_json;
-
 Table table_of(const ScoredViews& views, GainModel model) {
   const bool has_area = model != GainModel::paper;
   Table table{{{"index", ColumnType::row},
@@ -64,8 +62,8 @@ Table table_of(const Estimates& estimates) {
   return table;
 }
 
-ordered_json entries(const ScoredViews& views, const PoseSource& poses) {
-  ordered_json list = ordered_json::array();
+Json entries(const ScoredViews& views, const PoseSource& poses) {
+  Json list = Json::array();
   for (std::size_t rank = 0; rank < views.indices.size(); ++rank) {
     const ViewGain& r = views.gains[rank];
     list.push_back({{"index", views.indices[rank]},
@@ -85,8 +83,8 @@ ordered_json entries(const ScoredViews& views, const PoseSource& poses) {
   return list;
 }
 
-ordered_json entries(const Estimates& estimates, const PoseSource& poses) {
-  ordered_json list = ordered_json::array();
+Json entries(const Estimates& estimates, const PoseSource& poses) {
+  Json list = Json::array();
   for (const std::size_t i : estimates.best) {
     list.push_back({{"index", estimates.indices[i]},
                     {"gain", estimates.gains[i].gain},
@@ -157,8 +155,8 @@ Table table_of(const Scores& scores, GainModel model) {
   return estimates != nullptr ? table_of(*estimates) : table_of(scored_in_full(scores), model);
 }
 
-ordered_json ScoreReport::summary() const {
-  ordered_json dropped = ordered_json::object();
+Json ScoreReport::summary() const {
+  Json dropped = Json::object();
   for (const auto& [reason, count] : scores.dropped) dropped[reason] = count;
   return {{"poses", source.poses.size()},
           {"dropped", dropped},
@@ -181,7 +179,7 @@ ordered_json ScoreReport::summary() const {
 }
 
 void ScoreReport::print_json() const {
-  ordered_json json = summary();
+  Json json = summary();
   if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
     json["best"] = entries(ranking->best, source);
   } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
@@ -227,7 +225,7 @@ void ScoreReport::print_table() const {
   }
 }
 
-ordered_json ScoreReport::page(const std::string& title, RgbImage picture) const {
+Json ScoreReport::page(const std::string& title, RgbImage picture) const {
   constexpr std::size_t kRows = 1000, kShown = 10;
   std::vector<ViewGain> ranked(source.poses.size());
   for (ViewGain& gain : ranked) gain.gain = std::numeric_limits<double>::quiet_NaN();
@@ -243,19 +241,19 @@ ordered_json ScoreReport::page(const std::string& title, RgbImage picture) const
     gains.push_back(gain.gain);
     if (by_area) areas.push_back(gain.area);
   }
-  ordered_json columns{"pose", "gain"}, rows = ordered_json::array();
+  Json columns{"pose", "gain"}, rows = Json::array();
   if (by_area) columns.push_back("area");
-  if (estimates == nullptr) columns.insert(columns.end(), {"hits", "unknown", "occupied"});
+  if (estimates == nullptr) for (const char* name : {"hits", "unknown", "occupied"}) columns.push_back(name);
   std::vector<std::size_t> shown;
   const std::vector<std::size_t> order =
       std::holds_alternative<JointViews>(scores.found) ? full.indices : best_indices(ranked, kRows);
   for (const std::size_t i : order) {
     const ViewGain& r = ranked[i];
     if (std::isnan(r.gain)) break;
-    ordered_json row{i, r.gain};
+    Json row{i, r.gain};
     if (by_area) row.push_back(r.area);
     if (estimates == nullptr) {
-      row.insert(row.end(), {r.hits, r.unknown_voxels, r.occupied_voxels});
+      for (const std::size_t n : {r.hits, r.unknown_voxels, r.occupied_voxels}) row.push_back(n);
     }
     rows.push_back(std::move(row));
     if (shown.size() < kShown) shown.push_back(i);

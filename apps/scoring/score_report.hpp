@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <variant>
@@ -74,10 +74,10 @@ struct ScoreReport {
   /// For people.
   void print_table() const;
   /// The data of report.html; `picture` is of the best pose.
-  [[nodiscard]] nlohmann::ordered_json page(const std::string& title, RgbImage picture) const;
+  [[nodiscard]] Json page(const std::string& title, RgbImage picture) const;
 
  private:
-  [[nodiscard]] nlohmann::ordered_json summary() const;
+  [[nodiscard]] Json summary() const;
 };
 
 }  // namespace viewgain::app

@@ -11,23 +11,21 @@
 namespace viewgain::app {
 namespace {
 
-using nlohmann::ordered_json;
-
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // What is not finite is null in JSON.
-double number_of(const ordered_json& value) {
+double number_of(const Json& value) {
   return value.is_number() ? value.get<double>() : kNone;
 }
 
-double mean_over_views(const ordered_json& prediction, const char* key) {
+double mean_over_views(const Json& prediction, const char* key) {
   std::vector<double> values;
-  for (const ordered_json& view : prediction) values.push_back(number_of(view.at(key)));
+  for (const Json& view : prediction) values.push_back(number_of(view.at(key)));
   return mean_of(values).mean;
 }
 
-ordered_json or_null(const std::string& text) {
-  return text.empty() ? ordered_json() : ordered_json(text);
+Json or_null(const std::string& text) {
+  return text.empty() ? Json() : Json(text);
 }
 
 }  // namespace
@@ -43,13 +41,13 @@ double ResultRow::counted_views_to(std::size_t goal) const {
   return static_cast<double>(views_to[goal].value_or(coverage_by_view.size() + 1));
 }
 
-ResultRow row_of(const StudySpec& spec, const StudyRun& run, const ordered_json& json) {
+ResultRow row_of(const StudySpec& spec, const StudyRun& run, const Json& json) {
   ResultRow row;
   row.run = &run;
   row.views = json.at("views").get<std::size_t>();
   row.stop_reason = json.at("stop_reason").get<std::string>();
   (void)json.at("per_view").at(0);  // there is one
-  for (const ordered_json& view : json.at("per_view")) {
+  for (const Json& view : json.at("per_view")) {
     const double coverage = number_of(view.at("coverage_visible"));
     row.coverage_by_view.push_back(std::isnan(coverage) ? 0 : coverage);
   }
@@ -108,24 +106,24 @@ std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& row
   return csv;
 }
 
-ordered_json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows) {
-  ordered_json results = ordered_json::array();
+Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows) {
+  Json results = Json::array();
   for (const ResultRow& row : rows) {
     const StudyRun& run = *row.run;
     const StudyPolicy& policy = spec.policies[run.policy];
-    ordered_json json{{"object", spec.objects[run.object].name},
+    Json json{{"object", spec.objects[run.object].name},
                       {"policy", policy.policy},
                       {"gain", or_null(policy.gain)},
                       {"semantics", or_null(policy.semantics)},
                       {"seed", run.seed},
                       {"sensor", run.sensor},
                       {"voxel", run.voxel},
-                      {"size", run.size ? ordered_json(*run.size) : ordered_json()},
+                      {"size", run.size ? Json(*run.size) : Json()},
                       {"views", row.views},
                       {"stop_reason", row.stop_reason}};
     const std::array<const char*, kGoals.size()> keys{"views_to_80", "views_to_90", "views_to_95"};
     for (std::size_t goal = 0; goal < keys.size(); ++goal) {
-      json[keys[goal]] = row.views_to[goal] ? ordered_json(*row.views_to[goal]) : ordered_json();
+      json[keys[goal]] = row.views_to[goal] ? Json(*row.views_to[goal]) : Json();
     }
     json["auc"] = row.auc;
     json["coverage_visible"] = row.coverage_visible;

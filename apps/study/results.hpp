@@ -4,7 +4,7 @@
 
 #include <array>
 #include <cstddef>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,15 +32,15 @@ struct ResultRow {
   double travelled = 0;  ///< [m]
   std::string isa;       ///< instruction set that the run was made with
   double seconds = 0;
-  nlohmann::ordered_json prediction;  ///< as in results.json
+  Json prediction;  ///< as in results.json
 
   /// Views to a goal as tables count them: one more than the budget where it was never reached.
   [[nodiscard]] double counted_views_to(std::size_t goal) const;
 };
 
-/// From a run's run.json. Throws nlohmann::json::exception where something is missing in it.
+/// From a run's run.json. Throws JsonError where something is missing in it.
 [[nodiscard]] ResultRow row_of(const StudySpec& spec, const StudyRun& run,
-                               const nlohmann::ordered_json& json);
+                               const Json& json);
 
 /// A text as CSV has it: with a comma, a quote or a line's end in quotes (RFC 4180).
 [[nodiscard]] std::string csv_text(const std::string& text);
@@ -52,7 +52,7 @@ inline constexpr const char* kRunColumns = "object,policy,gain,semantics,seed,se
 
 /// The contents of results.csv and results.json, a row a run in the spec's order.
 [[nodiscard]] std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows);
-[[nodiscard]] nlohmann::ordered_json results_json(const StudySpec& spec,
+[[nodiscard]] Json results_json(const StudySpec& spec,
                                                   const std::vector<ResultRow>& rows);
 
 }  // namespace viewgain::app

@@ -158,10 +158,9 @@ bool StudyFolder::has(const StudyRun& run) const {
   return fs::exists(file(run, "run.json"), ignored);
 }
 
-nlohmann::ordered_json StudyFolder::read(const StudyRun& run) const {
+Json StudyFolder::read(const StudyRun& run) const {
   const fs::path path = file(run, "run.json");
-  nlohmann::ordered_json json =
-      nlohmann::ordered_json::parse(file_bytes(path), nullptr, /*allow_exceptions=*/false);
+  Json json = Json::parse_or_null(file_bytes(path));
   if (!json.is_object() || !json.contains("configuration") ||
       json["configuration"] != run.configuration) {
     throw Error(ErrorCode::format,

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -32,7 +32,7 @@ class StudyFolder {
 
   [[nodiscard]] bool has(const StudyRun& run) const;
   /// run.json. Throws Error(format) that names the file if it is not that of this run.
-  [[nodiscard]] nlohmann::ordered_json read(const StudyRun& run) const;
+  [[nodiscard]] Json read(const StudyRun& run) const;
   /// prediction.csv without its head. Throws Error(io), Error(format).
   [[nodiscard]] std::string prediction_rows(const StudyRun& run) const;
   void write(const StudyRun& run, const StudyResult& result) const;

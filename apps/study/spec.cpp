@@ -22,8 +22,6 @@ namespace viewgain::app {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
-
 constexpr int kRunFormat = 2;  // of run.json and prediction.csv; grows when one changes
 constexpr std::size_t kMostRuns = 1'000'000;
 constexpr std::int64_t kMostViews = 1000, kMostCandidates = 100'000;
@@ -289,7 +287,7 @@ StudySpec read_study_spec(const fs::path& path) {
                   {"seed", seed},
                   {"sensor", is_sensor_file(sensor) ? identity_of(sensor) : sensor},
                   {"voxel", voxel},
-                  {"size", size ? ordered_json(*size) : ordered_json()},
+                  {"size", size ? Json(*size) : Json()},
                   {"max_views", spec.max_views},
                   {"flags", flags},
                   {"prediction_views", spec.prediction.views},

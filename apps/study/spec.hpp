@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +33,7 @@ struct StudyRun {
   std::string sensor;                    ///< preset or file, as in the spec
   double voxel = 0;                      ///< [m]
   std::optional<double> size;            ///< longest side [m]; none: the file's own
-  nlohmann::ordered_json configuration;  ///< all that can change its result
+  Json configuration;  ///< all that can change its result
   std::string hash;                      ///< of that: the name of the run's folder
 };
 

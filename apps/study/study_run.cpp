@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study_run.hpp"
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 #include <algorithm>
 #include <vector>
 
@@ -20,20 +20,12 @@
 namespace viewgain::app {
 namespace {
 
-using nlohmann::ordered_json;
-
 // As the command line of `reconstruct` has them.
 ReconstructOptions options_of(const StudySpec& spec, const StudyRun& run) {
-  CLI::App app("reconstruct");
+  App app("", "reconstruct");
   ReconstructOptions options;
   add_options(app, options);
-  std::vector<std::string> words = reconstruct_words(spec, run);
-  std::reverse(words.begin(), words.end());  // as CLI11 wants them
-  try {
-    app.parse(std::move(words));
-  } catch (const CLI::ParseError& error) {
-    throw Error(ErrorCode::invalid_argument, error.what());
-  }
+  (void)app.parse(reconstruct_words(spec, run));
   return options;
 }
 
@@ -47,7 +39,7 @@ auto named(const StudySpec& spec, const StudyRun& run, Work&& work) {
   }
 }
 
-ordered_json prediction_json(const PredictionQuality& quality) {
+Json prediction_json(const PredictionQuality& quality) {
   return {{"view", quality.view},
           {"candidates", quality.outcomes.size()},
           {"spearman_area", quality.spearman_area},
@@ -85,7 +77,7 @@ std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& stud
   Run run(std::move(setup), options.frames_per_view, exec);
   RunReport report(run.setup().policy);
   StudyResult result;
-  ordered_json prediction = ordered_json::array();
+  Json prediction = Json::array();
   const std::vector<std::size_t>& views = spec.prediction.views;
   StageSeconds seconds;
   const PlanningResult planned = run.go([&](const ViewRecord& record) {

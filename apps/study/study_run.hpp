@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -13,7 +13,7 @@ namespace viewgain::app {
 
 /// What a run leaves in the study's folder.
 struct StudyResult {
-  nlohmann::ordered_json run;   ///< run.json: configuration, figures, those of each view, seconds
+  Json run;   ///< run.json: configuration, figures, those of each view, seconds
   std::string prediction_rows;  ///< prediction.csv without its head: a row a candidate
 };
 

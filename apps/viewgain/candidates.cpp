@@ -63,8 +63,8 @@ Order rank(const ProposalOptions& options, const GainEvaluator& evaluator,
   return ranking;
 }
 
-nlohmann::ordered_json candidate_json(const Candidate& candidate, const EstimatedViews& estimated) {
-  nlohmann::ordered_json json{{"generator", candidate.generator},
+Json candidate_json(const Candidate& candidate, const EstimatedViews& estimated) {
+  Json json{{"generator", candidate.generator},
                               {"T_world_camera", to_json(candidate.T_world_camera)}};
   if (candidate.boundary_class) {
     const BoundaryCandidate& proposed = estimated.candidates[candidate.number.value()];
@@ -109,14 +109,14 @@ void candidates(const Options& options) {
 
   const EstimatedViews& estimated = generation.estimated();
   if (options.common.json) {
-    nlohmann::ordered_json json{{"generator", options.proposal.generator},
+    Json json{{"generator", options.proposal.generator},
                                 {"candidates", poses.size()},
                                 {"gain_model", nullptr},
                                 {"gain_unit", nullptr},
-                                {"dropped", nlohmann::ordered_json::object()},
-                                {"runs", nlohmann::ordered_json::array()},
-                                {"per_candidate", nlohmann::ordered_json::array()},
-                                {"per_dropped", nlohmann::ordered_json::array()},
+                                {"dropped", Json::object()},
+                                {"runs", Json::array()},
+                                {"per_candidate", Json::array()},
+                                {"per_dropped", Json::array()},
                                 {"out", options.out}};
     if (!ranking.gains.empty()) {
       json["gain_model"] = gain_model_name(ranking.model);
@@ -166,9 +166,9 @@ void candidates(const Options& options) {
 
 }  // namespace
 
-Command add_candidates(CLI::App& program) {
+Command add_candidates(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "candidates",
       "Candidate views for a map, as a poses file for score; --json says for each why it exists or "
       "why it was dropped.");

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/app.hpp"
 #include <functional>
 #include <string>
 
@@ -14,7 +14,7 @@ namespace viewgain::app {
 /// One subcommand: its options are in `app`, `run` does the work after parsing. run throws Error
 /// for bad input; nothing half-written stays behind. The subcommand of the group "" is not shown.
 struct Command {
-  CLI::App* app = nullptr;
+  App* app = nullptr;
   std::function<void()> run;
 };
 
@@ -23,21 +23,21 @@ struct Stopped {
   std::string message;
 };
 
-[[nodiscard]] Command add_simulate(CLI::App& program);
-[[nodiscard]] Command add_calibrate(CLI::App& program);
-[[nodiscard]] Command add_import(CLI::App& program);
-[[nodiscard]] Command add_integrate(CLI::App& program);
-[[nodiscard]] Command add_score(CLI::App& program);
-[[nodiscard]] Command add_merge(CLI::App& program);
-[[nodiscard]] Command add_reconstruct(CLI::App& program);
-[[nodiscard]] Command add_candidates(CLI::App& program);
-[[nodiscard]] Command add_next(CLI::App& program);
-[[nodiscard]] Command add_info(CLI::App& program);
-[[nodiscard]] Command add_convert(CLI::App& program);
-[[nodiscard]] Command add_surface(CLI::App& program);
-[[nodiscard]] Command add_render(CLI::App& program);
-[[nodiscard]] Command add_sensors(CLI::App& program);
-[[nodiscard]] Command add_follow(CLI::App& program);
-[[nodiscard]] Command add_study(CLI::App& program);
+[[nodiscard]] Command add_simulate(App& program);
+[[nodiscard]] Command add_calibrate(App& program);
+[[nodiscard]] Command add_import(App& program);
+[[nodiscard]] Command add_integrate(App& program);
+[[nodiscard]] Command add_score(App& program);
+[[nodiscard]] Command add_merge(App& program);
+[[nodiscard]] Command add_reconstruct(App& program);
+[[nodiscard]] Command add_candidates(App& program);
+[[nodiscard]] Command add_next(App& program);
+[[nodiscard]] Command add_info(App& program);
+[[nodiscard]] Command add_convert(App& program);
+[[nodiscard]] Command add_surface(App& program);
+[[nodiscard]] Command add_render(App& program);
+[[nodiscard]] Command add_sensors(App& program);
+[[nodiscard]] Command add_follow(App& program);
+[[nodiscard]] Command add_study(App& program);
 
 }  // namespace viewgain::app

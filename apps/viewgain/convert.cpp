@@ -60,7 +60,7 @@ void convert(const Options& options) {
   const GridStatistics statistics = grid.statistics();
   const Index3 dims = grid.dims();
   if (options.common.json) {
-    nlohmann::ordered_json json = {{"in", options.in}, {"out", options.out}};
+    Json json = {{"in", options.in}, {"out", options.out}};
     json.update(map_json(grid, statistics));
     json.update({{"lost_beliefs", lost.beliefs},
                  {"lost_views", lost.views},
@@ -85,9 +85,9 @@ void convert(const Options& options) {
 
 }  // namespace
 
-Command add_convert(CLI::App& program) {
+Command add_convert(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "convert",
       "A map from one format into another: .vdb, OctoMap's .ot and (read only) .bt. OctoMap trees "
       "keep states and log-odds, a .bt only states; they have no beliefs, prior or views, and a "

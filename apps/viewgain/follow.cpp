@@ -174,7 +174,7 @@ class Following {
                                                    (bad.empty() ? "" : "; bad: " + bad));
     }
     if (options_.common.json) {
-      nlohmann::ordered_json json = counts();
+      Json json = counts();
       json["added"] = added_;
       json["masked_pixels"] = masked_pixels_;
       json["orthonormalized_poses"] = watch_->folder() ? watch_->folder()->orthonormalized : 0;
@@ -266,10 +266,10 @@ class Following {
                  reason ? stop_reason_name(*reason).data() : "");
   }
 
-  [[nodiscard]] nlohmann::ordered_json counts() const {
-    nlohmann::ordered_json json{{"frames", count()},
+  [[nodiscard]] Json counts() const {
+    Json json{{"frames", count()},
                                 {"waiting", watch_->waiting()},
-                                {"bad", nlohmann::ordered_json::object()},
+                                {"bad", Json::object()},
                                 {"stop_reason", nullptr}};
     for (const auto& [reason, number] : watch_->bad()) json["bad"][reason] = number;
     if (map_ && map_->should_stop()) json["stop_reason"] = stop_reason_name(*map_->should_stop());
@@ -283,7 +283,7 @@ class Following {
 
   void write_json() {
     said_ = counts();
-    nlohmann::ordered_json json = said_;
+    Json json = said_;
     json.update(to_json(next_));
     write_file_atomically(out_ / "next.json", json_text(json));
   }
@@ -302,7 +302,7 @@ class Following {
   bool has_news_ = false;            // that are not yet written
   std::optional<Stopwatch> since_written_;
   NextViews next_;
-  nlohmann::ordered_json said_;  // counts(), as next.json has them
+  Json said_;  // counts(), as next.json has them
 };
 
 void follow(const Options& options) {
@@ -324,9 +324,9 @@ void follow(const Options& options) {
 
 }  // namespace
 
-Command add_follow(CLI::App& program) {
+Command add_follow(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "follow",
       "Watches a folder into which a robot's program writes depth frames, puts each into a map as "
       "soon as it is complete, and says where to look next: OUT/next.txt (poses, best first) and "
@@ -366,10 +366,10 @@ Command add_follow(CLI::App& program) {
                   "height z of the table [m]: its readings carve but do not hit; default: none");
   app->add_option("--top", o.top, "how many views to say, at most")
       ->capture_default_str()
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
+      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
   app->add_option("--max-views", o.max_views, "view budget: a reason to stop")
       ->capture_default_str()
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
+      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
   add_registration_options(*app, o.registration);
   app->add_option("--out", o.out, "folder for state.vdb, next.txt, next.json")->required();
   add_common_options(*app, o.common);

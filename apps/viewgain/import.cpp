@@ -37,7 +37,7 @@ bool has_own_intrinsics(RecordingFormat format) {
   return format == RecordingFormat::bop || format == RecordingFormat::scannet;
 }
 
-void check(const Options& options, const CLI::App& app, RecordingFormat format) {
+void check(const Options& options, const App& app, RecordingFormat format) {
   const auto refuse = [&options](const std::string& what) {
     throw Error(ErrorCode::invalid_argument, what + " --format " + options.format);
   };
@@ -78,7 +78,7 @@ void print_summary(const Options& options, const Recording& recording, const Imp
   const PinholeCamera& camera = recording.camera;
   const std::size_t frames = recording.frames.size();
   if (options.common.json) {
-    nlohmann::ordered_json json{{"format", options.format},
+    Json json{{"format", options.format},
                                 {"frames", frames},
                                 {"dropped", recording.dropped},
                                 {"orthonormalized_poses", recording.orthonormalized},
@@ -116,7 +116,7 @@ void print_summary(const Options& options, const Recording& recording, const Imp
   if (!options.amplitude.empty()) std::printf("amplitudes: of %zu frames\n", report.amplitudes);
 }
 
-void import_frames(const Options& options, const CLI::App& app) {
+void import_frames(const Options& options, const App& app) {
   const Stopwatch watch;
   const RecordingFormat format = recording_format(options.format);
   check(options, app, format);
@@ -137,9 +137,9 @@ void import_frames(const Options& options, const CLI::App& app) {
 
 }  // namespace
 
-Command add_import(CLI::App& program) {
+Command add_import(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "import",
       "A recording in another format as a folder of frames that integrate reads. tum: depth.txt, "
       "groundtruth.txt, images in 1/5000 m. bop: a scene's depth/ and scene_camera.json. scannet: "
@@ -167,7 +167,7 @@ Command add_import(CLI::App& program) {
                   "are under --least-confidence, an image says nothing");
   app->add_option("--least-confidence", options->least_confidence, kLeastConfidenceHelp)
       ->capture_default_str()
-      ->check(CLI::Range(1, 255, "confidence"));
+      ->range(1, 255, "confidence");
   app->add_option("--amplitude", options->amplitude,
                   "folder of grayscale PNGs, up to 16 bits, with the names of the recording's "
                   "images: how strong the light is that comes back, which tells a shot noise "

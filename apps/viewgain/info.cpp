@@ -41,7 +41,7 @@ std::optional<Region> region_of(const Options& options, const BeliefGrid& grid,
   return Region{box, s};
 }
 
-nlohmann::ordered_json region_json(const Region& region) {
+Json region_json(const Region& region) {
   const RegionStatistics& s = region.statistics;
   return {{"box", to_json(region.box)},
           {"entropy_removed", s.entropy_removed},
@@ -64,10 +64,10 @@ void print(const Region& region, const char* unit) {
 }
 
 // What frames have said of the hazard of unknown space; null where none was asked.
-nlohmann::ordered_json hazard_factors(const BeliefGrid& grid) {
+Json hazard_factors(const BeliefGrid& grid) {
   const HazardCounters& counters = grid.hazard_counters();
   if (counters.empty()) return nullptr;
-  nlohmann::ordered_json factors = nlohmann::ordered_json::array();
+  Json factors = Json::array();
   for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) factors.push_back(counters.factor(k));
   return factors;
 }
@@ -90,7 +90,7 @@ void info(const Options& options) {
   const double per_occupied = static_cast<double>(statistics.bytes) /
                               static_cast<double>(statistics.occupied);  // NaN or infinity: null
   if (options.common.json) {
-    nlohmann::ordered_json json{{"voxel_size", grid.voxel_size()},
+    Json json{{"voxel_size", grid.voxel_size()},
                                 {"workspace", to_json(grid.workspace())},
                                 {"T_world_grid", to_json(grid.T_world_grid())},
                                 {"dims", {dims.x, dims.y, dims.z}},
@@ -103,8 +103,8 @@ void info(const Options& options) {
                                 {"entropy_removed", statistics.entropy_removed},
                                 {"prior_sigma", grid.prior_sigma()},
                                 {"views", grid.views().size()},
-                                {"sensor", map.sensor ? nlohmann::ordered_json(map.sensor->name)
-                                                      : nlohmann::ordered_json()},
+                                {"sensor", map.sensor ? Json(map.sensor->name)
+                                                      : Json()},
                                 {"hazard_factors", hazard_factors(grid)},
                                 {"hash", grid.content_hash()}};
     if (region) json["region"] = region_json(*region);
@@ -141,9 +141,9 @@ void info(const Options& options) {
 
 }  // namespace
 
-Command add_info(CLI::App& program) {
+Command add_info(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "info", "What a map holds: dimensions, voxel states, memory, entropy removed, views.");
   app->add_option("MAP", options->map, kMapHelp)->required();
   app->add_flag("--hash", options->hash,

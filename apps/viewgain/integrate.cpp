@@ -168,7 +168,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   const std::optional<double> frame_seconds = median(totals.seconds);
   if (options.common.json) {
     const std::optional<double> scale = source.depth_scale();
-    nlohmann::ordered_json json = {
+    Json json = {
         {part_name(options) + std::string("s"), taken},
         {"skipped", totals.skipped},
         {"views", grid.views().size()},
@@ -182,7 +182,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
         {"orthonormalized_poses", source.orthonormalized()},
         {"registration", nullptr},
         {"sensor", source.sensor().name},
-        {"depth_scale", scale ? nlohmann::ordered_json(*scale) : nullptr}};
+        {"depth_scale", scale ? Json(*scale) : nullptr}};
     if (options.registration.is_on == "on") {
       json["registration"] = registration_counts(totals.registrations);
     }
@@ -192,7 +192,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
          {"hash", grid.content_hash()},
          {"out", options.out},
          {"seconds", seconds},
-         {"seconds_per_frame", frame_seconds ? nlohmann::ordered_json(*frame_seconds) : nullptr}});
+         {"seconds_per_frame", frame_seconds ? Json(*frame_seconds) : nullptr}});
     print_json(json);
     return;
   }
@@ -242,7 +242,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
 }
 
 // Flags of depth frames with clouds and the other way round say what cannot be had.
-void check_flags(const Options& options, const CLI::App& app) {
+void check_flags(const Options& options, const App& app) {
   const auto refuse = [&app](std::initializer_list<const char*> flags, const char* why) {
     for (const char* flag : flags) {
       if (app.count(flag) > 0) {
@@ -273,7 +273,7 @@ void refuse_empty(const Options& options, const ReadingSource& source, const Tot
                   " readings lies in the workspace" + scale_text(source));
 }
 
-void integrate(const Options& options, const CLI::App& app) {
+void integrate(const Options& options, const App& app) {
   const Stopwatch watch;
   check_flags(options, app);
   check_map_name(options.out);
@@ -304,9 +304,9 @@ void integrate(const Options& options, const CLI::App& app) {
 
 }  // namespace
 
-Command add_integrate(CLI::App& program) {
+Command add_integrate(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "integrate",
       "Depth frames or point clouds into a voxel map. FRAMES_DIR holds what simulate writes, or "
       "recorded frames: "

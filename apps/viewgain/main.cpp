@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -44,8 +43,8 @@ int end_of_output() {
 }
 
 // What CLI11 is to parse: the command line, with what a --config stands for.
-std::vector<std::string> all_words(const CLI::App& program, std::vector<std::string> words) {
-  const CLI::App* subcommand = viewgain::app::subcommand_of(program, words);
+std::vector<std::string> all_words(const viewgain::app::App& program, std::vector<std::string> words) {
+  const viewgain::app::App* subcommand = viewgain::app::subcommand_of(program, words);
   if (subcommand == nullptr) {
     if (!words.empty()) (void)viewgain::app::sort_words(program, {words[0]});
     return words;
@@ -57,7 +56,7 @@ std::vector<std::string> all_words(const CLI::App& program, std::vector<std::str
 }
 
 int run(int argc, char** argv) {
-  CLI::App program(
+  viewgain::app::App program(
       "viewgain scores camera poses by expected information gain: simulate or read depth frames, "
       "integrate them into a voxel map, score candidate views against it. Units: m, rad, s, nat, "
       "unless said otherwise.",
@@ -75,7 +74,7 @@ int run(int argc, char** argv) {
       viewgain::app::add_follow(program),      viewgain::app::add_merge(program)};
   // For the build alone.
   std::string help_folder;
-  CLI::App* help_files =
+  viewgain::app::App* help_files =
       program.add_subcommand("help-files", "man pages and completion")->group("");
   help_files->add_option("FOLDER", help_folder, "folder to write")->required();
   program.footer(
@@ -83,15 +82,10 @@ int run(int argc, char** argv) {
       "  viewgain reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 3 "
       "--out run\n"
       "  viewgain score run/map.vdb --sphere 2000,0.6 --race --top 3");
+  std::vector<std::string> words = all_words(program, {argv + 1, argv + argc});
   try {
-    std::vector<std::string> words = all_words(program, {argv + 1, argv + argc});
-    std::reverse(words.begin(), words.end());  // as CLI11 wants them
-    program.parse(std::move(words));
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
-      program.exit(error);  // prints --help or --version
-      return end_of_output();
-    }
+    if (!program.parse(std::move(words))) return end_of_output();
+  } catch (const viewgain::app::UsageError& error) {
     return report(std::string(error.what()) + " (see --help)", kBadInput);
   }
   if (help_files->parsed()) viewgain::app::write_help_files(program, help_folder);
@@ -99,9 +93,9 @@ int run(int argc, char** argv) {
     if (!command.app->parsed()) continue;
     viewgain::app::check_call(*command.app);
     command.run();
-    const CLI::Option* save = command.app->get_option_no_throw("--save-config");
+    const viewgain::app::Option* save = command.app->find_option("--save-config");
     if (save != nullptr && !save->empty()) {
-      viewgain::write_file_atomically(save->as<std::string>(),
+      viewgain::write_file_atomically(save->results().back(),
                                       viewgain::app::config_text(*command.app));
     }
   }

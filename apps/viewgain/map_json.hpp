@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <string>
 
 #include "commands.hpp"
@@ -13,7 +13,7 @@
 namespace viewgain::app {
 
 /// What a call says in JSON of a map that it has written.
-[[nodiscard]] inline nlohmann::ordered_json map_json(const BeliefGrid& grid,
+[[nodiscard]] inline Json map_json(const BeliefGrid& grid,
                                                      const GridStatistics& statistics) {
   const Index3 dims = grid.dims();
   return {{"voxel_size", grid.voxel_size()},  {"workspace", to_json(grid.workspace())},

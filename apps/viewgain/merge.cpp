@@ -28,9 +28,9 @@ struct Options {
 };
 
 // The best rows: number and gain.
-nlohmann::ordered_json best_json(const Table& best) {
+Json best_json(const Table& best) {
   const std::size_t bytes = row_bytes(best.columns);
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  Json list = Json::array();
   for (std::size_t i = 0; i < std::min(best.size(), kShown); ++i) {
     const char* row = best.bytes.data() + i * bytes;
     list.push_back({{"index", value_at<std::int64_t>(row)},
@@ -76,9 +76,9 @@ void merge(const Options& options) {
 
 }  // namespace
 
-Command add_merge(CLI::App& program) {
+Command add_merge(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "merge",
       "Puts parts that score --shard or --rows have left together, or takes the best of them; "
       "refuses parts of different jobs and names what is missing.");
@@ -90,7 +90,7 @@ Command add_merge(CLI::App& program) {
          "--top", options->top,
          "so many of the best alone, best first: ties to the lower row, NaN last; default: "
          "all rows")
-      ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000'000}, "count"));
+      ->range(std::size_t{0}, std::size_t{1'000'000'000}, "count");
   add_common_options(*app, options->common);
   add_help(*app, kViewsGroup, "merge part.csv --out best.csv --top 5");
   return {app, [options] { merge(*options); }};

@@ -31,7 +31,7 @@ struct Options {
   std::string out;
 };
 
-SensedMap map_of(const Options& options, const CLI::App& app, const ExecConfig& exec) {
+SensedMap map_of(const Options& options, const App& app, const ExecConfig& exec) {
   if (!is_frame_folder(options.source)) {
     refuse_frame_map_options(app, "is for a folder of frames, not for a map");
     SensedMap map = load_sensed_map(options.source, options.frames.folder.sensor);
@@ -49,7 +49,7 @@ SensedMap map_of(const Options& options, const CLI::App& app, const ExecConfig& 
   return {map.model().grid().clone(), map.model().sensor()};
 }
 
-void next(const Options& options, const CLI::App& app) {
+void next(const Options& options, const App& app) {
   const Stopwatch watch;
   check(options.proposal);
   const ExecConfig exec{options.common.threads};
@@ -62,7 +62,7 @@ void next(const Options& options, const CLI::App& app) {
   const NextViews views = best_views(evaluator, proposal, options.top);
   if (!options.out.empty()) write_tum(options.out, poses_of(views));
   if (options.common.json) {
-    nlohmann::ordered_json json{{"views", model.grid().views().size()}};
+    Json json{{"views", model.grid().views().size()}};
     json.update(to_json(views));
     json["out"] = nullptr;
     if (!options.out.empty()) json["out"] = options.out;
@@ -78,10 +78,10 @@ void next(const Options& options, const CLI::App& app) {
 
 }  // namespace
 
-Command add_next(CLI::App& program) {
+Command add_next(App& program) {
   auto options = std::make_shared<Options>();
   options->proposal.gain = "combined";
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "next",
       "Where the camera should look next: the best views for a map, or for a folder of frames, "
       "each with its gain and why it was proposed. None is an answer, too: nothing is left to "
@@ -105,7 +105,7 @@ Command add_next(CLI::App& program) {
          gain_model_names(), "gain");
   app->add_option("--top", o.top, "views to name at most")
       ->capture_default_str()
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
+      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
   app->add_option("--out", o.out, "TUM file of camera-to-world poses to write, best first");
   add_common_options(*app, o.common);
   add_help(*app, kViewsGroup, "next map.vdb --sensor sr4000 --top 3 --out next.txt");

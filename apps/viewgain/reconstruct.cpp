@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include "cli/json.hpp"
 #include <string>
 #include <vector>
 
@@ -62,14 +62,14 @@ void add_to(StageSeconds& totals, const StageSeconds& seconds) {
 }
 
 // What a run leaves beside what it wrote after each view. Returns what run.json holds.
-nlohmann::ordered_json write_results(const RunFolder& folder, const RunSetup& setup,
+Json write_results(const RunFolder& folder, const RunSetup& setup,
                                      std::uint64_t seed, const SurfaceModel& model,
                                      const std::vector<Pose>& views,
-                                     const nlohmann::ordered_json& report) {
+                                     const Json& report) {
   save_vdb(model.grid(), folder.file("map.vdb"), noting_sensor(setup.sensor));
   write_surfaces(model, folder.file("surface.ply"), folder.file("points.ply"));
   write_tum(folder.file("views.txt"), views);
-  nlohmann::ordered_json run{
+  Json run{
       {"settings", setup.settings},
       {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}},
       {"seed", seed},
@@ -83,7 +83,7 @@ std::string run_title(const ReconstructOptions& options, const RunSetup& setup) 
   return std::filesystem::path(options.mesh).filename().string() + ", " + setup.sensor.name;
 }
 
-void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
+void reconstruct(const ReconstructOptions& options, const App& app) {
   if (is_frame_folder(options.mesh)) return reconstruct_frames(options, app);
   if (options.report == "on") check_report_page("--report");
   StageSeconds seconds;
@@ -141,10 +141,10 @@ void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
     views[i] = registrations[i].T_world_camera;
   }
   report.set_registrations(registrations);
-  const nlohmann::ordered_json json = report.json(result.reason);
+  const Json json = report.json(result.reason);
   write_file_atomically(folder.file("config.toml"),
                         config_text(app, {"out", "json", "quiet", "threads"}));
-  const nlohmann::ordered_json run =
+  const Json run =
       write_results(folder, setup, options.sensing.seed, model, views, json);
   if (with_report) {
     write_report(folder.file("report.html"), page.json(run, setup.stage.scene.get()));
@@ -166,9 +166,9 @@ void reconstruct(const ReconstructOptions& options, const CLI::App& app) {
 
 }  // namespace
 
-Command add_reconstruct(CLI::App& program) {
+Command add_reconstruct(App& program) {
   auto options = std::make_shared<ReconstructOptions>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "reconstruct",
       "The whole loop on a mesh: acquire with a simulated camera, update map and surface, propose "
       "views, rank them, move, until little is left to gain. Or on a folder of recorded frames: "

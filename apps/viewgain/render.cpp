@@ -56,7 +56,7 @@ struct Options {
 }
 
 // What a kind of picture has no use for would be ignored in silence.
-void check(const Options& options, const CLI::App& app) {
+void check(const Options& options, const App& app) {
   const auto only_for = [&](const std::string& what, std::initializer_list<const char*> flags) {
     if (options.what == what) return;
     for (const char* flag : flags) {
@@ -234,12 +234,12 @@ Picture picture_of(const Options& options, const ExecConfig& exec) {
   return {surface_image(MapSurface(grid, exec), false, {}, viewer, exec)};
 }
 
-void render(const Options& options, const CLI::App& app) {
+void render(const Options& options, const App& app) {
   check(options, app);
   const Picture picture = picture_of(options, {options.common.threads});
   write_png(options.out, picture.image);
   if (options.common.json) {
-    nlohmann::ordered_json json{{"what", options.what},
+    Json json{{"what", options.what},
                                 {"width", picture.image.width},
                                 {"height", picture.image.height},
                                 {"colours", nullptr},
@@ -262,9 +262,9 @@ void render(const Options& options, const CLI::App& app) {
 
 }  // namespace
 
-Command add_render(CLI::App& program) {
+Command add_render(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "render", "A picture of a map or of a run's folder, for papers and talks (PNG).");
   Options& o = *options;
   app->add_option("INPUT", o.inputs,
@@ -281,7 +281,7 @@ Command add_render(CLI::App& program) {
   app->add_option("--width", o.width,
                   "of the picture [px], of each where there are several, of step at most; default: "
                   "1280, sheet and step 640")
-      ->check(CLI::Range(64, 8192, "width"));
+      ->range(64, 8192, "width");
   app->add_option("--azimuth", o.azimuth, "of the viewer, from +x to +y [deg]")
       ->capture_default_str();
   app->add_option("--elevation", o.elevation, "of the viewer [deg]")->capture_default_str();
@@ -291,7 +291,7 @@ Command add_render(CLI::App& program) {
   app->add_option("--views", o.views,
                   "step: numbers of views, say 0,2,5; default: up to six, evenly");
   app->add_option("--columns", o.columns, "step: pictures in a row")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{100}, "count"))
+      ->range(std::size_t{1}, std::size_t{100}, "count")
       ->capture_default_str();
   add_pose_options(*app, o.poses, false);
   add_seed_option(*app, o.seed, "of --shell");

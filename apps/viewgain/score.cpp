@@ -282,9 +282,9 @@ void score(const Options& options) {
 
 }  // namespace
 
-Command add_score(CLI::App& program) {
+Command add_score(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "score",
       "Candidate poses by expected information gain against a map: the best ones, and how "
       "fast it went.");
@@ -324,7 +324,7 @@ Command add_score(CLI::App& program) {
               ->capture_default_str(),
          criterion_names(), "criterion");
   app->add_option("--stride", options->stride, "every s-th pixel of every s-th row")
-      ->check(CLI::Range(1, std::numeric_limits<int>::max(), "stride"))
+      ->range(1, std::numeric_limits<int>::max(), "stride")
       ->capture_default_str();
   app->add_option(
          "--weight", options->weights,
@@ -336,7 +336,7 @@ Command add_score(CLI::App& program) {
   app->add_option("--min-range", options->min_range, "along the ray [m]; default: the sensor's");
   app->add_option("--max-range", options->max_range, "along the ray [m]; default: the sensor's");
   app->add_option("--top", options->top, "how many of the best to print")
-      ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000'000}, "count"))
+      ->range(std::size_t{0}, std::size_t{1'000'000'000}, "count")
       ->capture_default_str();
   auto* selection = app->add_option_group("selection", "at most one of; default: score all poses");
   selection->add_flag(
@@ -346,12 +346,12 @@ Command add_score(CLI::App& program) {
       ->add_option(
           "--approximate", options->approximate,
           "SHARE: estimates with standard errors from at most this share of each view's rays")
-      ->check(CLI::Range(1e-6, 1.0, "share in (0, 1]"));
+      ->range(1e-6, 1.0, "share in (0, 1]");
   selection
       ->add_option(
           "--set", options->set,
           "K views that are good together on this map, with what each adds to those before")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}, "count"));
+      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
   selection->require_option(0, 1);
   add_seed_option(*app, options->seed, "of --shell, --race (the paper's gain) and --approximate");
   auto* part = app->add_option_group("part", "at most one of; needs --out; see merge");

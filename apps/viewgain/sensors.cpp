@@ -24,7 +24,7 @@ double field_of_view(double pixels, double focal, double center) {
   return (std::atan(low) + std::atan(high)) * 180 / std::numbers::pi;
 }
 
-nlohmann::ordered_json sensor_json(const Sensor& sensor) {
+Json sensor_json(const Sensor& sensor) {
   const PinholeCamera& camera = sensor.camera;
   const MeasurementSigmas sigmas = sensor.sigmas(sensor.working_distance);
   return {{"name", sensor.name},
@@ -59,7 +59,7 @@ void sensors(const Options& options) {
     std::printf("%s", sensor_toml(sensor).c_str());
     return;
   }
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  Json json = Json::array();
   if (!options.common.json) {
     std::printf("%-18s %11s %13s %12s %8s %7s %7s  %s\n%-18s %11s %13s %12s %8s %7s %7s\n",
                 "preset", "image", "field of view", "range", "working", "axial", "lateral",
@@ -82,9 +82,9 @@ void sensors(const Options& options) {
 
 }  // namespace
 
-Command add_sensors(CLI::App& program) {
+Command add_sensors(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand("sensors",
+  App* app = program.add_subcommand("sensors",
                                          "The presets of --sensor with their figures; with NAME "
                                          "that one's file, to begin an own from.");
   app->add_option("NAME", options->name, "preset or .toml file to print");

@@ -160,8 +160,8 @@ void simulate(const Options& options) {
          {"flying_pixels", sensing.has_flying_pixels(sensor)},
          {"wiggling", sensing.wiggling},
          {"calibrated", sensing.calibrate == "on"},
-         {"support_plane", sensing.support_plane ? nlohmann::ordered_json(*sensing.support_plane)
-                                                 : nlohmann::ordered_json()},
+         {"support_plane", sensing.support_plane ? Json(*sensing.support_plane)
+                                                 : Json()},
          {"pose_noise", pose_sigmas_json(pose_noise)},
          {"amplitude", options.writes_amplitude(sensor)},
          {"seed", sensing.seed},
@@ -183,9 +183,9 @@ void simulate(const Options& options) {
 
 }  // namespace
 
-Command add_simulate(CLI::App& program) {
+Command add_simulate(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "simulate",
       "Depth frames of a mesh: frame-NNNNNN.depth.png (16 bit, depth along z in 0.1 mm, 0 invalid, "
       "65535 out of range), frame-NNNNNN.amplitude.png (16 bit, cos/range^2 in 1e-3 m^-2), "
@@ -206,7 +206,7 @@ Command add_simulate(CLI::App& program) {
   add_sensing_options(*app, options->sensing);
   app->add_option("--frames-per-view", options->frames_per_view,
                   "frames from each pose, numbered on; poses.txt repeats the pose")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000}, "number"))
+      ->range(std::size_t{1}, std::size_t{1000}, "number")
       ->capture_default_str();
   on_or_off(*app->add_option("--amplitude", options->amplitude,
                              "write amplitude images; default: on for sensors with shot noise"));

@@ -102,10 +102,10 @@ void check_folder(const std::filesystem::path& dir, const std::filesystem::path&
 }
 
 ResultRow row_in(const StudyFolder& folder, const StudySpec& spec, const StudyRun& run) {
-  const nlohmann::ordered_json json = folder.read(run);
+  const Json json = folder.read(run);
   try {
     return row_of(spec, run, json);
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const JsonError& error) {
     throw Error(ErrorCode::format, folder.file(run, "run.json").string() + ": " + error.what() +
                                        "; a run whose folder is removed is made again");
   }
@@ -135,7 +135,7 @@ void study(const Options& options) {
 
   std::vector<ResultRow> rows;
   for (const StudyRun& run : spec.runs) rows.push_back(row_in(folder, spec, run));
-  const nlohmann::ordered_json json = results_json(spec, rows);
+  const Json json = results_json(spec, rows);
   const std::string table = results_markdown(spec, rows);
   const bool has_predictions = !spec.prediction.views.empty();
   const std::string predictions = has_predictions ? predictions_csv(spec, folder) : "";
@@ -166,9 +166,9 @@ void study(const Options& options) {
 
 }  // namespace
 
-Command add_study(CLI::App& program) {
+Command add_study(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "study",
       "Compares policies and gains: a run of `reconstruct` for every object, policy, seed, sensor, "
       "voxel and size of a spec, in one table; stopped and called again it goes on.");
@@ -176,7 +176,7 @@ Command add_study(CLI::App& program) {
   app->add_option("--out", options->out, "folder for results; several machines may share it")
       ->required();
   app->add_option("--jobs", options->jobs, "runs at once; default: as many as threads")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000}, "count"));
+      ->range(std::size_t{1}, std::size_t{1000}, "count");
   switched(*app->add_option("--plots", options->plots, "draw plots, where python3 has matplotlib"));
   add_common_options(*app, options->common);
   add_help(*app, kLoopGroup, "study spec.toml --out study");

@@ -41,7 +41,7 @@ struct Options {
   std::string recenter = "off", up = "z";
 };
 
-void check(const Options& options, const CLI::App& app) {
+void check(const Options& options, const App& app) {
   if (options.out.empty() && options.points.empty()) {
     throw Error(ErrorCode::invalid_argument, "needs --out or --points");
   }
@@ -108,8 +108,8 @@ Figures figures_of(const SurfaceScene& mesh, const MapOfSensor& map, const Surfa
   return figures;
 }
 
-nlohmann::ordered_json to_json(const Figures& figures) {
-  nlohmann::ordered_json json{{"coverage", figures.coverage},
+Json to_json(const Figures& figures) {
+  Json json{{"coverage", figures.coverage},
                               {"coverage_seen", nullptr},
                               {"coverage_2_5mm", figures.coverage_2_5mm},
                               {"rms_error", figures.surface_error.rms},
@@ -138,7 +138,7 @@ void print(const Figures& figures) {
               figures.consistency.mean_clipped, figures.consistency.outliers);
 }
 
-void surface(const Options& options, const CLI::App& app) {
+void surface(const Options& options, const App& app) {
   const Stopwatch watch;
   check(options, app);
   const ExecConfig exec{options.common.threads};
@@ -162,7 +162,7 @@ void surface(const Options& options, const CLI::App& app) {
   if (truth) figures = figures_of(*truth, map, surface, points, exec);
 
   if (options.common.json) {
-    nlohmann::ordered_json json{{"points", points.size()},
+    Json json{{"points", points.size()},
                                 {"vertices", surface.vertices.size()},
                                 {"triangles", surface.triangles.size()},
                                 {"area", mesh_area(surface)},
@@ -191,9 +191,9 @@ void surface(const Options& options, const CLI::App& app) {
 
 }  // namespace
 
-Command add_surface(CLI::App& program) {
+Command add_surface(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "surface",
       "The surface in a map and the points that it goes through, as PLY: each vertex with normal "
       "and sigma along it [m]. With --truth, how far they are from a mesh.");

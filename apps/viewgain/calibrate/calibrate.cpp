@@ -133,8 +133,8 @@ std::uint64_t used_readings(const WallCalibrationResult& result) {
   return used;
 }
 
-nlohmann::ordered_json or_null(const std::optional<double>& value) {
-  return value ? nlohmann::ordered_json(*value) : nullptr;
+Json or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : nullptr;
 }
 
 double degrees(double angle) { return angle * 180 / std::numbers::pi; }
@@ -143,7 +143,7 @@ std::string base_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-nlohmann::ordered_json frame_json(const WallFrameFigures& frame) {
+Json frame_json(const WallFrameFigures& frame) {
   return {{"name", base_name(frame.name)},  {"distance", frame.distance},
           {"tilt", degrees(frame.tilt)},    {"readings", frame.used},
           {"border", frame.border},         {"sparse", frame.sparse},
@@ -153,7 +153,7 @@ nlohmann::ordered_json frame_json(const WallFrameFigures& frame) {
 
 void print_json_summary(const Options& options, const Calibrated& calibrated, double seconds) {
   const WallCalibrationResult& result = calibrated.result;
-  nlohmann::ordered_json per_frame = nlohmann::ordered_json::array();
+  Json per_frame = Json::array();
   for (const WallFrameFigures& frame : result.frames) per_frame.push_back(frame_json(frame));
   print_json({{"frames", result.frames.size()},
               {"dropped", calibrated.dropped},
@@ -235,9 +235,9 @@ void calibrate(const Options& options) {
 
 }  // namespace
 
-Command add_calibrate(CLI::App& program) {
+Command add_calibrate(App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* app = program.add_subcommand(
+  App* app = program.add_subcommand(
       "calibrate",
       "The systematic error of a depth camera, by the range, from frames of a flat wall: a sensor "
       "file with a table that is subtracted from readings wherever frames are read. FRAMES_DIR is "
