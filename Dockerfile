@@ -13,7 +13,7 @@ COPY --from=build /source/build/packages/packages/*.deb /packages/
 # For the library in a base image of your own, add /packages/libviewgain-dev_*.deb.
 RUN apt-get update \
  && apt-get install -y --no-install-recommends \
-      /packages/libviewgain0_*.deb /packages/libviewgain-mesh0_*.deb /packages/viewgain_*.deb \
+      /packages/libviewgain0.1_*.deb /packages/libviewgain-mesh0.1_*.deb /packages/viewgain_*.deb \
  && rm -rf /var/lib/apt/lists/*
 WORKDIR /data
 ENTRYPOINT ["viewgain"]

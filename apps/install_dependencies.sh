@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
 # Installs the Debian packages, those that are missing only, that are needed
 #   apps/install_dependencies.sh          to build and run the program, and for the demo's mesh
-#   apps/install_dependencies.sh --tests  for tests, benchmarks, examples, the Python package and packages as well
-#   apps/install_dependencies.sh --docs   for all that and the documentation site (target `docs`)
+#   apps/install_dependencies.sh --tests    for what tests/run.sh builds and runs as well
+#   apps/install_dependencies.sh --perf     for all that and the benchmarks
+#   apps/install_dependencies.sh --browser  for all that and the test of the report in a browser
+#   apps/install_dependencies.sh --docs     for all that and the documentation site (target `docs`)
+#   apps/install_dependencies.sh --all      for all of it and for packages
 # Asks nothing; uses sudo only if not root.
 set -euo pipefail
 
@@ -14,22 +17,22 @@ packages=(
 )
 # Node.js may come from elsewhere than Debian.
 npm --version >/dev/null 2>&1 || packages+=(nodejs npm)
+tests=(
+  pkg-config python3 pybind11-dev python3-dev python3-numpy python3-pytest python3-matplotlib
+  libgtest-dev liboctomap-dev libompl-dev libopenvdb-tools groff-base file locales parallel python3-distributed
+)
+perf=(libbenchmark-dev)
+browser=(chromium-headless-shell)
+docs=(doxygen doxygen-awesome-css python3-sphinx python3-myst-parser furo libjs-mathjax)
 case "${1:-}" in
   "") ;;
-  --tests | --docs)
-    packages+=(
-      pkg-config python3 pybind11-dev python3-dev python3-numpy python3-pytest python3-matplotlib
-      libgtest-dev liboctomap-dev libompl-dev libbenchmark-dev libopenvdb-tools groff-base
-      chromium-headless-shell file dpkg-dev parallel python3-distributed
-    )
-    ;;
-  *) echo "$0: no option $1; there are --tests and --docs" >&2; exit 2 ;;
+  --tests) packages+=("${tests[@]}") ;;
+  --perf) packages+=("${tests[@]}" "${perf[@]}") ;;
+  --browser) packages+=("${tests[@]}" "${browser[@]}") ;;
+  --docs) packages+=("${tests[@]}" "${docs[@]}") ;;
+  --all) packages+=("${tests[@]}" "${perf[@]}" "${browser[@]}" "${docs[@]}" dpkg-dev) ;;
+  *) echo "$0: no option $1; there are --tests, --perf, --browser, --docs and --all" >&2; exit 2 ;;
 esac
-if [ "${1:-}" = --docs ]; then
-  packages+=(
-    doxygen doxygen-awesome-css python3-sphinx python3-myst-parser furo libjs-mathjax
-  )
-fi
 
 missing=()
 for package in "${packages[@]}"; do

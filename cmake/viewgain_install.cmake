@@ -81,8 +81,9 @@ if(VIEWGAIN_INSTALL)
   configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/viewgainConfig.cmake.in
     ${PROJECT_BINARY_DIR}/viewgainConfig.cmake INSTALL_DESTINATION ${VIEWGAIN_CMAKE_DIR}
     NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
-  configure_file(${PROJECT_SOURCE_DIR}/cmake/viewgainConfigVersion.cmake.in
-                 ${PROJECT_BINARY_DIR}/viewgainConfigVersion.cmake @ONLY)
+  # As the binary interface: the same minor version while the version is 0.x.
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/viewgainConfigVersion.cmake
+                                   COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_BINARY_DIR}/viewgainConfig.cmake
                 ${PROJECT_BINARY_DIR}/viewgainConfigVersion.cmake
           DESTINATION ${VIEWGAIN_CMAKE_DIR} COMPONENT dev)

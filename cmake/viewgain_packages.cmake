@@ -35,13 +35,13 @@ endmacro()
 
 set(CPACK_COMPONENTS_ALL "")
 if(BUILD_SHARED_LIBS)
-  viewgain_package(runtime libviewgain0 Apache-2.0
+  viewgain_package(runtime libviewgain${VIEWGAIN_SOVERSION} Apache-2.0
     "Expected information gain of camera poses, shared libraries" SECTION libs)
   set(dev_depends runtime)
   set(dev_licence Apache-2.0)
   if(VIEWGAIN_BUILD_MESH)
     # Surface work is built from parts of CGAL that are GPL.
-    viewgain_package(mesh-runtime libviewgain-mesh0 GPL-3.0-or-later
+    viewgain_package(mesh-runtime libviewgain-mesh${VIEWGAIN_SOVERSION} GPL-3.0-or-later
       "Surfaces and candidate views for viewgain, shared libraries" SECTION libs DEPENDS runtime)
     list(APPEND dev_depends mesh-runtime)
   endif()

@@ -20,15 +20,43 @@ function(viewgain_compile_rules target)
   endif()
 endfunction()
 
-# SIMD through Highway: on x86-64 each source is compiled for SSE4, AVX2 and AVX-512 and no others, and
-# nothing lower, whatever the compiler's flags. core/isa.hpp chooses among them at run time.
+# viewgain_use_highway(target sources...): SIMD through Highway: on x86-64 each of the sources is compiled
+# for SSE4, AVX2 and AVX-512 and no others, and nothing lower, whatever the compiler's flags. core/isa.hpp
+# chooses among them at run time.
 function(viewgain_use_highway target)
+  # Each is a translation unit of its own, since it includes itself anew for each instruction set.
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_link_libraries(${target} PRIVATE hwy::hwy)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
     target_compile_definitions(${target} PRIVATE
       "HWY_BASELINE_TARGETS=HWY_SSE4"
       "HWY_DISABLED_TARGETS=(~(HWY_SSE4|HWY_AVX2|HWY_AVX3))")
   endif()
+endfunction()
+
+# viewgain_reuse_headers(target owner): the precompiled headers of another target, whose flags are the same.
+function(viewgain_reuse_headers target owner)
+  target_precompile_headers(${target} REUSE_FROM ${owner})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND NOT VIEWGAIN_SANITIZE)
+    # GCC takes what it inlines from a precompiled <string> for ours, with its own false alarms.
+    target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
+  endif()
+endfunction()
+
+# viewgain_compile_together(target sources...): the sources of a folder are one translation unit, which
+# halves what a build costs: most of a source's time goes into the same headers.
+function(viewgain_compile_together target)
+  if(NOT VIEWGAIN_UNITY)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  foreach(source IN LISTS ARGN)
+    cmake_path(GET source PARENT_PATH folder)
+    string(MAKE_C_IDENTIFIER "${folder}" folder)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
+  endforeach()
+  # GCC takes an anonymous namespace that a unit includes for one of a header.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
 
 # A module: an object library whose include/ is public and whose src/ is private. Arguments after the
@@ -38,6 +66,7 @@ function(viewgain_add_module name)
   target_include_directories(${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/include
                                      PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   viewgain_compile_rules(${name})
+  viewgain_compile_together(${name} ${ARGN})
   # Only what says VIEWGAIN_EXPORT leaves a library. Inline functions never do: those of a client that is
   # compiled for another instruction set must not take the place of ours.
   set_target_properties(${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
@@ -69,38 +98,14 @@ endfunction()
 
 # viewgain_add_library(name modules... [PUBLIC libraries...] [PRIVATE libraries...]): a library that users
 # link, made of modules; shared if BUILD_SHARED_LIBS is on.
-#
-# A shared library hides what benchmarks of private parts need. For them the same objects are also the
-# archive <name>_whole, and what may end up in either kind of program links <name>_in_tree, which stands
-# for the archive in executables with the property VIEWGAIN_WHOLE and for the library elsewhere: no
-# program holds both.
 function(viewgain_add_library name)
   cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
   string(REGEX REPLACE "^viewgain_" "" short_name ${name})
   add_library(${name})
   add_library(viewgain::${short_name} ALIAS ${name})
   viewgain_assemble(${name} ${ARG_UNPARSED_ARGUMENTS})
-  # What SOVERSION promises is said in core/README.md.
   set_target_properties(${name} PROPERTIES EXPORT_NAME ${short_name} VERSION ${PROJECT_VERSION}
-                        SOVERSION ${PROJECT_VERSION_MAJOR})
+                        SOVERSION ${VIEWGAIN_SOVERSION})
   viewgain_find_beside(${name} ".")
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
-
-  add_library(${name}_in_tree INTERFACE)
-  if(NOT BUILD_SHARED_LIBS)
-    target_link_libraries(${name}_in_tree INTERFACE ${name})
-    return()
-  endif()
-  add_library(${name}_whole STATIC EXCLUDE_FROM_ALL)
-  viewgain_assemble(${name}_whole ${ARG_UNPARSED_ARGUMENTS})
-  foreach(kind IN ITEMS PUBLIC PRIVATE)
-    foreach(library IN LISTS ARG_${kind})
-      if(TARGET ${library}_whole)
-        string(APPEND library _whole)
-      endif()
-      target_link_libraries(${name}_whole ${kind} ${library})
-    endforeach()
-  endforeach()
-  target_link_libraries(${name}_in_tree INTERFACE
-    $<IF:$<BOOL:$<TARGET_PROPERTY:VIEWGAIN_WHOLE>>,${name}_whole,${name}>)
 endfunction()

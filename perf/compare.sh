@@ -59,7 +59,7 @@ for side in base head; do
   fi
   echo "building $side, ${commit:0:12}" >&2
   cmake -S "$work/$side" -B "$work/$side/build/release" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-    -DVIEWGAIN_BUILD_TESTS=OFF \
+    -DVIEWGAIN_BUILD_TESTS=OFF -DVIEWGAIN_BUILD_PERF=ON -DBUILD_SHARED_LIBS=OFF \
     >"$work/$side.log" 2>&1 &&
     cmake --build "$work/$side/build/release" --target viewgain_bench \
       -j "${JOBS:-$(nproc)}" >>"$work/$side.log" 2>&1 || {

@@ -12,7 +12,7 @@ jobs=${VIEWGAIN_JOBS:-$(nproc)}
 fail() { echo "packages.sh: $*" >&2; exit 1; }
 need_root
 
-./apps/install_dependencies.sh --docs
+./apps/install_dependencies.sh --all
 mkdir -p "$work"
 
 # Packages.
@@ -21,13 +21,13 @@ cmake --build --preset packages -j "$jobs"
 rm -rf build/packages/packages
 (cd build/packages && cpack >"$work/cpack.log" 2>&1) || { cat "$work/cpack.log" >&2; exit 1; }
 ls build/packages/packages
-for name in libviewgain0 libviewgain-mesh0 libviewgain-dev viewgain viewgain-doc python3-viewgain python3-viewgain-mesh; do
+for name in libviewgain0.1 libviewgain-mesh0.1 libviewgain-dev viewgain viewgain-doc python3-viewgain python3-viewgain-mesh; do
   test -f build/packages/packages/"$name"_*.deb || fail "no $name"
 done
 
 # Only the surfaces and what links them need CGAL's libraries.
 binaries=0
-for deb in build/packages/packages/{libviewgain0,python3-viewgain}_*.deb; do
+for deb in build/packages/packages/{libviewgain0.1,python3-viewgain}_*.deb; do
   rm -rf "$work/content" && dpkg-deb -x "$deb" "$work/content"
   dpkg-deb -f "$deb" Depends | tee "$work/depends"
   ! grep -E 'gmp|mpfr|cgal|mesh' "$work/depends" || fail "$deb depends on CGAL's libraries"
@@ -60,11 +60,11 @@ cat >"$root/program.sh" <<'INSIDE'
 set -euo pipefail
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C
 apt-get update -qq
-apt-get install -y -qq --no-install-recommends /debs/libviewgain0_*.deb /debs/libviewgain-mesh0_*.deb \
+apt-get install -y -qq --no-install-recommends /debs/libviewgain0.1_*.deb /debs/libviewgain-mesh0.1_*.deb \
   /debs/viewgain_*.deb >/dev/null
 dpkg -l | awk '$2 ~ /viewgain/ {print $1, $2, $3}'
 if dpkg -l | grep -E '^ii +lib[a-z0-9]+-dev '; then exit 1; fi # nothing to develop with
-grep -q 'Apache License' /usr/share/doc/libviewgain0/copyright
+grep -q 'Apache License' /usr/share/doc/libviewgain0.1/copyright
 grep -q 'GNU GENERAL PUBLIC LICENSE' /usr/share/doc/viewgain/copyright
 viewgain --version
 viewgain --help >/dev/null
@@ -103,7 +103,7 @@ cmake --build build >/dev/null
 ./by_pkg_config | tee first.txt
 ./build/gain | cmp - first.txt
 grep -qE '^[1-9][0-9]*\.[0-9]+$' first.txt
-apt-get remove -y -qq libviewgain0 >/dev/null # takes all that depends on it along
+apt-get remove -y -qq libviewgain0.1 >/dev/null # takes all that depends on it along
 if dpkg -l | grep -E '^ii +(libviewgain|viewgain|python3-viewgain)'; then exit 1; fi
 INSIDE
 cat >"$root/documentation.sh" <<'INSIDE'

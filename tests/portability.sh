@@ -29,7 +29,7 @@ cat >"$root/inside.sh" <<'INSIDE'
 set -euo pipefail
 export LC_ALL=C CCACHE_DIR=/ccache CCACHE_MAXSIZE=2G
 cd /source
-./apps/install_dependencies.sh --docs
+./apps/install_dependencies.sh --all
 dpkg-query -W ccache >/dev/null 2>&1 ||
   DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends ccache >/dev/null
 cmake --preset release -DCMAKE_BUILD_TYPE=Release -DVIEWGAIN_WERROR=ON \

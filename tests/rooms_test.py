@@ -4,7 +4,6 @@
 """The rooms are as the READMEs draw them.
 
     rooms_test.py ROOT          compares; prints one line per fault and ends with 1 if there is any
-    rooms_test.py --self-test   finds every kind of fault in a small tree made for it
 
 Each module but core draws its rooms in a block of its README:
 
@@ -19,8 +18,6 @@ the room is a library of its own with public headers, as `#include "viewgain/for
 import pathlib
 import re
 import sys
-import tempfile
-import unittest
 
 MOST_SOURCES = 16  # .cpp in a folder
 MOST_LINES = 400
@@ -187,132 +184,7 @@ def faults_of(root):
     return faults
 
 
-class FindsFaults(unittest.TestCase):
-    """Each case changes one thing in a tree without faults; the line is what must be printed."""
-
-    TREE = {
-        "core/src/pose.cpp": '#include "viewgain/core/pose.hpp"\n',
-        "core/include/viewgain/core/pose.hpp": "#include <Eigen/Core>\n",
-        "grid/README.md": "# grid\n```rooms\nmap:\nupdate: map\n```\n",
-        "grid/include/viewgain/grid/grid.hpp": '#include "viewgain/core/pose.hpp"\n',
-        "grid/src/map/storage.hpp": "#include <openvdb/openvdb.h>\n",
-        "grid/src/update/apply.cpp": '#include "map/storage.hpp"\n#include "readings.hpp"\n',
-        "grid/src/update/readings.hpp": "\n",
-        "raycast/README.md": "```rooms\nscene:\ntrace: scene\ngain: scene, trace\n```\n",
-        "raycast/src/scene/scene.hpp": '#include "viewgain/grid/grid.hpp"\n',
-        "raycast/src/trace/trace.hpp": '#include "scene/scene.hpp"\n',
-        "raycast/src/gain/gain.cpp": '#include "scene/scene.hpp"\n#include "trace/trace.hpp"\n',
-        "mesh/README.md": "```rooms\nsurface:\n```\n",
-        "mesh/include/viewgain/mesh/surface.hpp": "\n",
-        "mesh/src/surface/surface.cpp": "#include <CGAL/Surface_mesh.h>\n",
-        "apps/README.md": "```rooms\nformats:\nplanner: formats\nviewgain: planner\n```\n",
-        "apps/formats/include/viewgain/formats/ply.hpp": "\n",
-        "apps/planner/files.cpp": '#include "viewgain/formats/ply.hpp"\n',
-        "apps/planner/stage.hpp": '#include "viewgain/mesh/surface.hpp"\n',
-        "apps/viewgain/main.cpp": '#include "planner/stage.hpp"\n#include "viewgain/core/pose.hpp"\n',
-        "perf/README.md": "```rooms\nmicro:\n```\n",
-        "perf/measure.hpp": "\n",
-        "perf/micro/micro.cpp": '#include "measure.hpp"\n#include "scene/scene.hpp"\n',
-        "tests/grid/vdb_test.cpp": '#include "map/storage.hpp"\n',
-    }
-
-    def faults(self, changes):
-        with tempfile.TemporaryDirectory() as folder:
-            root = pathlib.Path(folder)
-            for name, text in {**self.TREE, **changes}.items():
-                (root / name).parent.mkdir(parents=True, exist_ok=True)
-                (root / name).write_text(text, encoding="utf-8")
-            return faults_of(root)
-
-    def expect(self, start, changes):
-        faults = self.faults(changes)
-        self.assertEqual(len(faults), 1, faults)
-        self.assertTrue(faults[0].startswith(start), f"{faults[0]!r} does not begin with {start!r}")
-
-    def test_none(self):
-        self.assertEqual(self.faults({}), [])
-
-    def test_arrow_not_drawn(self):
-        self.expect("raycast/src/gain/gain.cpp:2: the arrow gain -> trace is not in raycast/README.md",
-                    {"raycast/README.md": "```rooms\nscene:\ntrace: scene\ngain: scene\n```\n"})
-
-    def test_arrow_to_a_public_header(self):
-        self.expect('apps/viewgain/main.cpp:1: the arrow viewgain -> formats is not in apps/README.md',
-                    {"apps/viewgain/main.cpp": '#include "viewgain/formats/ply.hpp"\n#include "planner/stage.hpp"\n'})
-
-    def test_arrow_not_found(self):
-        self.expect("grid/README.md:4: no source of update includes one of map",
-                    {"grid/src/update/apply.cpp": '#include "readings.hpp"\n'})
-
-    def test_circle(self):
-        self.expect("grid/src/map/storage.hpp:1: the arrows go in a circle: map -> update -> map",
-                    {"grid/README.md": "```rooms\nmap: update\nupdate: map\n```\n",
-                     "grid/src/map/storage.hpp": '#include "update/readings.hpp"\n'})
-
-    def test_arrow_back(self):
-        faults = self.faults({"raycast/src/scene/scene.hpp": '\n#include "trace/trace.hpp"\n'})
-        self.assertEqual([f.split(": ")[0] for f in faults], 2 * ["raycast/src/scene/scene.hpp:2"])
-
-    def test_room_not_listed(self):
-        self.expect("mesh/src/quality/tree.cpp:1: the room quality is not in mesh/README.md",
-                    {"mesh/src/quality/tree.cpp": "\n"})
-
-    def test_room_not_there(self):
-        self.expect("mesh/README.md:3: there is no room quality", {"mesh/README.md": "```rooms\nsurface:\nquality:\n```\n"})
-
-    def test_no_block(self):
-        faults = self.faults({"perf/README.md": "# perf\n"})
-        self.assertEqual(faults, ["perf/README.md:1: has no block ```rooms",
-                                  "perf/micro/micro.cpp:1: the room micro is not in perf/README.md"])
-
-    def test_line_without_a_room(self):
-        self.expect("mesh/README.md:3: a line of a rooms block is", {"mesh/README.md": "```rooms\nsurface:\nfree text\n```\n"})
-
-    def test_other_room_not_named(self):
-        self.expect('apps/viewgain/info.cpp:1: "stage.hpp" is in another room: "planner/stage.hpp"',
-                    {"apps/viewgain/info.cpp": '#include "stage.hpp"\n'})
-
-    def test_path_up(self):
-        self.expect('apps/viewgain/info.cpp:2: "../planner/stage.hpp" goes up',
-                    {"apps/viewgain/info.cpp": '\n#include "../planner/stage.hpp"\n'})
-
-    def test_too_many_sources(self):
-        many = {f"mesh/src/surface/s{i:02}.cpp": "\n" for i in range(MOST_SOURCES)}
-        self.expect("mesh/src/surface/surface.cpp:1: mesh/src/surface has 17 .cpp", many)
-        many = {f"core/src/s{i:02}.cpp": "\n" for i in range(MOST_SOURCES)}
-        self.expect("core/src/s15.cpp:1: core/src has 17 .cpp", many)
-
-    def test_long_source(self):
-        self.assertEqual(self.faults({"perf/micro/long.cpp": "\n" * MOST_LINES}), [])
-        self.expect("perf/micro/long.cpp:401: over 400 lines", {"perf/micro/long.cpp": "\n" * (MOST_LINES + 1)})
-
-    def test_module_above(self):
-        cases = 0
-        for name, above in (("core/src/pose.cpp", "grid"), ("grid/src/map/map.cpp", "raycast"), ("mesh/src/surface/s.cpp", "grid"),
-                            ("raycast/src/scene/s.cpp", "mesh"), ("mesh/include/viewgain/mesh/m.hpp", "raycast"),
-                            ("raycast/src/scene/s.cpp", "planner")):
-            module = name.split("/")[0]
-            self.expect(f"{name}:1: {module} must not include {above}", {name: f'#include "viewgain/{above}/x.hpp"\n'})
-            cases += 1
-        self.assertEqual(cases, 6)
-
-    def test_public_header(self):
-        for library in ("openvdb/openvdb.h", "embree4/rtcore.h", "CGAL/Kernel.h"):
-            self.expect("grid/include/viewgain/grid/x.hpp:1: a public header includes",
-                        {"grid/include/viewgain/grid/x.hpp": f"#include <{library}>\n"})
-
-    def test_tbb(self):
-        self.expect("raycast/src/gain/t.cpp:1: no header of TBB", {"raycast/src/gain/t.cpp": "#include <tbb/parallel_for.h>\n"})
-
-    def test_too_many_with_openvdb(self):
-        # apply.cpp and vdb_test.cpp include it through storage.hpp.
-        many = {f"tests/grid/t{i}_test.cpp": '#include "map/storage.hpp"\n' for i in range(7)}
-        self.expect("tests/grid/vdb_test.cpp:1: 9 sources include openvdb, 8 are the most", many)
-
-
 def main():
-    if sys.argv[1:] == ["--self-test"]:
-        unittest.main(argv=sys.argv[:1])
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     faults = faults_of(pathlib.Path(sys.argv[1]))

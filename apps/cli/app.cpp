@@ -101,8 +101,7 @@ template Option* App::add_option(const std::string&, std::optional<int>&, const 
 template Option* App::add_option(const std::string&, std::optional<std::size_t>&,
                                  const std::string&);
 template Option* App::add_option(const std::string&, std::optional<double>&, const std::string&);
-template Option* App::add_option(const std::string&, std::vector<std::string>&,
-                                 const std::string&);
+template Option* App::add_option(const std::string&, std::vector<std::string>&, const std::string&);
 
 Option* App::add_flag(const std::string& name, bool& value, const std::string& description) {
   return wrapped(app_->add_flag(name, value, description));

@@ -41,7 +41,7 @@ std::string text_of(const nlohmann::json& value) {
 }
 
 // The types of Json's value in their order.
-constexpr std::array<const char*, 8> kTypes{"null",   "a boolean", "a number", "a number",
+constexpr std::array<const char*, 8> kTypes{"null",     "a boolean", "a number", "a number",
                                             "a number", "a text",    "an array", "an object"};
 
 [[noreturn]] void refuse(const char* wanted, std::size_t type) {
@@ -239,9 +239,12 @@ const Json* Json::end() const noexcept {
   return nullptr;
 }
 
-std::vector<std::string> Json::keys() const {
+std::vector<Json::Item> Json::items() const {
   if (!is_object()) refuse("an object", value_.index());
-  return std::get<Members>(value_).keys;
+  const auto& [keys, values] = std::get<Members>(value_);
+  std::vector<Item> items;
+  for (std::size_t i = 0; i < keys.size(); ++i) items.push_back({keys[i], values[i]});
+  return items;
 }
 
 void Json::write(std::string& text, int indent, int depth) const {
@@ -292,14 +295,16 @@ bool operator==(const Json& a, const Json& b) {
   if (a.is_object()) {
     // In any order.
     const std::vector<std::string>& keys = std::get<Json::Members>(a.value_).keys;
-    return a.size() == b.size() && std::all_of(keys.begin(), keys.end(), [&](const std::string& key) {
+    return a.size() == b.size() &&
+           std::all_of(keys.begin(), keys.end(), [&](const std::string& key) {
              return b.contains(key) && a.at(key) == b.at(key);
            });
   }
   return std::visit(
       [&](const auto& value) {
         using Value = std::decay_t<decltype(value)>;
-        if constexpr (std::same_as<Value, std::vector<Json>> || std::same_as<Value, Json::Members>) {
+        if constexpr (std::same_as<Value, std::vector<Json>> ||
+                      std::same_as<Value, Json::Members>) {
           return false;
         } else {
           return value == std::get<Value>(b.value_);

@@ -39,8 +39,8 @@ class Json {
   Json(std::string_view text) : value_(std::string(text)) {}
   Json(const std::filesystem::path& path) : value_(path.string()) {}
   template <typename Number>
-    requires std::is_arithmetic_v<Number>
-  Json(Number number) noexcept {
+  requires std::is_arithmetic_v<Number> Json(Number number)
+  noexcept {
     if constexpr (std::same_as<Number, bool>) {
       value_ = number;
     } else if constexpr (std::floating_point<Number>) {
@@ -95,8 +95,7 @@ class Json {
     return value;
   }
   template <typename Value>
-    requires(std::is_arithmetic_v<Value> || std::same_as<Value, std::string>)
-  operator Value() const {
+  requires(std::is_arithmetic_v<Value> || std::same_as<Value, std::string>) operator Value() const {
     return get<Value>();
   }
 
@@ -149,8 +148,9 @@ class Json {
   [[nodiscard]] Json* end() noexcept;
   [[nodiscard]] const Json* begin() const noexcept;
   [[nodiscard]] const Json* end() const noexcept;
-  /// Of an object, in order.
-  [[nodiscard]] std::vector<std::string> keys() const;
+  struct Item;
+  /// Keys and values of an object, in order. Throws JsonError.
+  [[nodiscard]] std::vector<Item> items() const;
 
   /// As text, its levels indented by so many blanks, or in one line. A number that is not finite is
   /// null; bytes that are no UTF-8 are replaced, as a file name may be any bytes.
@@ -159,12 +159,10 @@ class Json {
   /// Numbers are equal by their values.
   friend bool operator==(const Json& a, const Json& b);
   template <typename Number>
-    requires std::is_arithmetic_v<Number>
-  friend bool operator==(const Json& a, Number b) {
-    return a == Json(b);
-  }
+  requires std::is_arithmetic_v<Number>
+  friend bool operator==(const Json& a, Number b) { return a == Json(b); }
   template <typename Number>
-    requires std::is_arithmetic_v<Number>
+  requires std::is_arithmetic_v<Number>
   friend std::partial_ordering operator<=>(const Json& a, Number b) {
     return a.get<double>() <=> static_cast<double>(b);
   }
@@ -186,10 +184,11 @@ class Json {
   void read(std::uint64_t& value) const;
   void read(std::string& value) const;
   template <typename Number>
-    requires std::is_arithmetic_v<Number>
+  requires std::is_arithmetic_v<Number>
   void read(Number& value) const {
-    std::conditional_t<std::floating_point<Number>, double,
-                       std::conditional_t<std::signed_integral<Number>, std::int64_t, std::uint64_t>>
+    std::conditional_t<
+        std::floating_point<Number>, double,
+        std::conditional_t<std::signed_integral<Number>, std::int64_t, std::uint64_t>>
         wide{};
     read(wide);
     value = static_cast<Number>(wide);
@@ -211,6 +210,11 @@ class Json {
   std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double, std::string,
                std::vector<Json>, Members>
       value_;
+};
+
+struct Json::Item {
+  const std::string& key;
+  const Json& value;
 };
 
 }  // namespace viewgain::app

@@ -106,8 +106,8 @@ std::string zsh_completion(const App& program) {
     for (const Option* option : all_options(*subcommand)) {
       if (!option->nonpositional()) continue;
       const std::string repeated = option->is_repeated() ? "*" : "";
-      cases += "        '" + repeated + option->name() + "[" +
-               bracketed(option->description()) + "]";
+      cases +=
+          "        '" + repeated + option->name() + "[" + bracketed(option->description()) + "]";
       if (!option->is_bare()) {
         const std::string values = joined(values_of(*option));
         cases += ":value:" + (values.empty() ? "_files" : "(" + values + ")");

@@ -164,22 +164,14 @@ SettingValue default_of(const Option& option) {
 
 }  // namespace
 
-std::vector<std::string> with_config(const App& subcommand,
-                                     const std::vector<std::string>& words) {
+std::vector<std::string> with_config(const App& subcommand, const std::vector<std::string>& words) {
   const GivenWords given = sort_words(subcommand, words);
   const std::string path = config_of(words);
   if (path.empty()) return words;
   const Options options = settable_options(subcommand);
   std::vector<std::string> keys;
   for (const Option* option : options) keys.push_back(key_of(*option));
-  const auto earlier = earlier_flags(subcommand);
-  for (const auto& [flag, now] : earlier) keys.push_back(flag);
   const std::vector<Setting> settings = read_settings_toml(path, keys);
-  for (const Setting& setting : settings) {
-    for (const auto& [flag, now] : earlier) {
-      if (setting.key == flag) refuse_setting(path, setting, "is the flag " + now + " now");
-    }
-  }
 
   std::vector<std::string> all, positionals;
   std::size_t position = 0;
@@ -200,7 +192,6 @@ std::vector<std::string> with_config(const App& subcommand,
     }
     if (!is_on_the_line) all.insert(all.end(), more.begin(), more.end());
   }
-  (void)sort_words(subcommand, all);  // refuses earlier names among the values
   all.insert(all.end(), words.begin(), words.end());
   const bool needs_mark = std::any_of(positionals.begin(), positionals.end(),
                                       [](const std::string& p) { return p.starts_with("-"); });
@@ -210,8 +201,8 @@ std::vector<std::string> with_config(const App& subcommand,
 }
 
 std::string config_text(const App& subcommand, const std::vector<std::string>& left_out) {
-  std::string text = "# viewgain " + subcommand.name() +
-                     " --config FILE; what is behind a # is " + "the default\n";
+  std::string text = "# viewgain " + subcommand.name() + " --config FILE; what is behind a # is " +
+                     "the default\n";
   for (const Option* option : settable_options(subcommand)) {
     const std::string key = key_of(*option);
     if (std::find(left_out.begin(), left_out.end(), key) != left_out.end()) continue;

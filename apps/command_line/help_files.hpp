@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/app.hpp"
 #include <filesystem>
+
+#include "cli/app.hpp"
 
 namespace viewgain::app {
 

@@ -126,8 +126,7 @@ std::string man_page(const App& program) {
       roff += ".SS " + escaped(group) + "\n";
     }
     const std::string page = "viewgain-" + subcommand->name();
-    roff += ".TP\n" + bold(subcommand->name()) + "\n" + escaped(subcommand->description()) +
-            "\n";
+    roff += ".TP\n" + bold(subcommand->name()) + "\n" + escaped(subcommand->description()) + "\n";
     also += (also.empty() ? "" : ",\n") + bold(page) + "(1)";
   }
   return roff + examples(program.footer_text()) + exit_status() + ".SH SEE ALSO\n" + also + "\n";

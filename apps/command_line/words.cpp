@@ -3,9 +3,7 @@
 #include "words.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <string_view>
 
 #include "formats/src/nearest_name.hpp"
 #include "options/choices.hpp"
@@ -13,18 +11,6 @@
 
 namespace viewgain::app {
 namespace {
-
-// Flags that had another spelling once.
-struct Renamed {
-  std::string_view subcommand, flag, now;
-};
-constexpr std::array kRenamed{Renamed{"reconstruct", "--no-refine", "--refine off"},
-                              Renamed{"reconstruct", "--no-pictures", "--pictures off"},
-                              Renamed{"reconstruct", "--sphere-poses", "--count N"}};
-
-// Values likewise.
-constexpr std::string_view kSpread =
-    "fibonacci is the sphere now; reconstruct --policy fibonacci spreads its poses out";
 
 [[noreturn]] void refuse(const App& subcommand, const std::string& flag, std::string what) {
   if (!subcommand.name().empty() && subcommand.has_parent()) {
@@ -34,28 +20,19 @@ constexpr std::string_view kSpread =
 }
 
 [[noreturn]] void refuse_unknown(const App& subcommand, const std::string& flag) {
-  for (const Renamed& old : kRenamed) {
-    if (old.flag == flag && old.subcommand == subcommand.name()) {
-      refuse(subcommand, flag, std::string("is written ").append(old.now).append(" now"));
-    }
-  }
   std::vector<std::string> flags;
   for (const Option* option : all_options(subcommand)) {
     if (option->nonpositional()) flags.push_back(option->name());
   }
-  refuse(subcommand, flag,
-         std::string("no such flag of ")
-             .append(subcommand.name())
-             .append(did_you_mean(flag, flags)));
+  refuse(
+      subcommand, flag,
+      std::string("no such flag of ").append(subcommand.name()).append(did_you_mean(flag, flags)));
 }
 
 [[noreturn]] void refuse_without_value(const App& subcommand, const Option& option) {
   const std::vector<std::string> choices = choices_of(option);
   std::string what = "needs a value";
   if (!choices.empty()) what.append("; there are ").append(listed(choices));
-  if (subcommand.name() == "simulate" && option.name() == "--center") {
-    what.append(", x,y,z that poses look at; the mesh is moved by --recenter on");
-  }
   refuse(subcommand, option.name(), what);
 }
 
@@ -68,14 +45,6 @@ bool is_short_flag(const std::string& word) {
 bool is_flag(const std::string& word) { return word.size() > 2 && word.starts_with("--"); }
 
 }  // namespace
-
-std::vector<std::pair<std::string, std::string>> earlier_flags(const App& subcommand) {
-  std::vector<std::pair<std::string, std::string>> flags;
-  for (const Renamed& old : kRenamed) {
-    if (old.subcommand == subcommand.name()) flags.emplace_back(old.flag.substr(2), old.now);
-  }
-  return flags;
-}
 
 std::vector<const Option*> all_options(const App& subcommand) {
   std::vector<const Option*> options = subcommand.options();
@@ -121,14 +90,11 @@ GivenWords sort_words(const App& subcommand, const std::vector<std::string>& wor
     });
     if (found == options.end()) refuse_unknown(subcommand, flag);
     given.options.insert(*found);
-    if ((*found)->is_bare()) continue;
-    const bool is_inside = equals != std::string::npos;
-    if (!is_inside && (i + 1 == words.size() || words[i + 1] == "--" || is_flag(words[i + 1]))) {
+    if ((*found)->is_bare() || equals != std::string::npos) continue;
+    if (i + 1 == words.size() || words[i + 1] == "--" || is_flag(words[i + 1])) {
       refuse_without_value(subcommand, **found);
     }
-    const std::string value = is_inside ? words[i].substr(equals + 1) : words[++i];
-    if (flag == "--generator" && value == "fibonacci")
-      refuse(subcommand, flag, std::string(kSpread));
+    ++i;
   }
   return given;
 }

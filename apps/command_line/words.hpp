@@ -2,19 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/app.hpp"
 #include <cstddef>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
-namespace viewgain::app {
+#include "cli/app.hpp"
 
-/// The flags of a subcommand that had another spelling once, without their --, and the present one
-/// for each.
-[[nodiscard]] std::vector<std::pair<std::string, std::string>> earlier_flags(
-    const App& subcommand);
+namespace viewgain::app {
 
 /// What is given on the command line of a subcommand itself.
 struct GivenWords {
@@ -28,12 +23,10 @@ struct GivenWords {
 
 /// The subcommand that the first word names; null where it is a flag or there is none. Throws
 /// Error(invalid_argument) for another word, naming the nearest subcommand.
-[[nodiscard]] const App* subcommand_of(const App& program,
-                                            const std::vector<std::string>& words);
+[[nodiscard]] const App* subcommand_of(const App& program, const std::vector<std::string>& words);
 
 /// Sorts the words after the subcommand. Throws Error(invalid_argument) for a flag that is not
-/// there, naming its present spelling or the nearest, and for one whose value is missing.
-[[nodiscard]] GivenWords sort_words(const App& subcommand,
-                                    const std::vector<std::string>& words);
+/// there, naming the nearest, and for one whose value is missing.
+[[nodiscard]] GivenWords sort_words(const App& subcommand, const std::vector<std::string>& words);
 
 }  // namespace viewgain::app

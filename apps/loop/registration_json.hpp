@@ -3,11 +3,11 @@
 #pragma once
 
 #include <algorithm>
-#include "cli/json.hpp"
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "options/json_text.hpp"
 #include "viewgain/planner/register_frame.hpp"
 
@@ -29,8 +29,7 @@ namespace viewgain::app {
 }
 
 /// How many came to what.
-[[nodiscard]] inline Json registration_counts(
-    const std::vector<FrameRegistration>& registrations) {
+[[nodiscard]] inline Json registration_counts(const std::vector<FrameRegistration>& registrations) {
   Json json;
   for (const auto status : {RegistrationStatus::registered, RegistrationStatus::too_little_overlap,
                             RegistrationStatus::refused}) {

@@ -187,8 +187,7 @@ void add_options(App& app, ReconstructOptions& o) {
            "--pictures off --out run");
 }
 
-Json settings_json(const ReconstructOptions& options,
-                                     const Json& resolved) {
+Json settings_json(const ReconstructOptions& options, const Json& resolved) {
   OptionRecord record(resolved);
   describe(options, record);
   return record.json();

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstddef>
-#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "options/common_options.hpp"
 #include "options/registration_options.hpp"
 #include "options/sensing.hpp"
@@ -68,8 +68,7 @@ void add_options(App& app, ReconstructOptions& o);
 
 /// What can change the answer, for run.json: each such flag under its key; `resolved` has what the
 /// run made of a flag, and what follows from several. Not in it: threads and where results go.
-[[nodiscard]] Json settings_json(const ReconstructOptions& options,
-                                                   const Json& resolved);
+[[nodiscard]] Json settings_json(const ReconstructOptions& options, const Json& resolved);
 
 /// Throws Error(invalid_argument), naming the flag, for numbers that no run on a mesh can have.
 void check(const ReconstructOptions& options);

@@ -124,9 +124,8 @@ Json RunReport::entry_json(std::size_t index) const {
   Json json{{"index", e.record.index}, {"pose", app::to_json(e.record.T_world_camera)}};
   const bool chosen = e.record.chosen_as.has_value();
   const bool of_boundary = chosen && e.record.chosen_as->boundary_class;
-  json["class"] = of_boundary
-                      ? Json(boundary_class_name(*e.record.chosen_as->boundary_class))
-                      : Json();
+  json["class"] =
+      of_boundary ? Json(boundary_class_name(*e.record.chosen_as->boundary_class)) : Json();
   json["generator"] = chosen ? Json(e.record.chosen_as->generator) : Json("start");
   // The proposal that this view was chosen from came after the view before it.
   const Proposal empty;
@@ -142,8 +141,7 @@ Json RunReport::entry_json(std::size_t index) const {
   // What the stopping rules look at: the best view there is now.
   json["next_gain_per_voxel"] =
       e.record.decision ? Json(e.record.decision->gain_per_voxel) : Json();
-  json["next_area"] =
-      e.record.decision ? Json(e.record.decision->best_area) : Json();
+  json["next_area"] = e.record.decision ? Json(e.record.decision->best_area) : Json();
   put_figures(json, e.quality, e.record.progress);
   json["travelled"] = e.record.travelled;
   if (index < registrations_.size()) {

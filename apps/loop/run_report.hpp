@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "cli/json.hpp"
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner/register_frame.hpp"
 #include "viewgain/planner_mesh/policies.hpp"

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "cli/json.hpp"
 #include <optional>
 
+#include "cli/json.hpp"
 #include "run_options.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/reach.hpp"

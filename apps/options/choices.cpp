@@ -39,8 +39,7 @@ void several_of(Option& option, const std::vector<std::string>& names, const cha
 void on_or_off(Option& option) { one_of(option, {"on", "off"}, "position of a switch"); }
 
 void takes_seed(Option& option) {
-  option.range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number")
-      ->capture_default_str();
+  option.range(std::uint64_t{0}, std::uint64_t{1} << 62U, "number")->capture_default_str();
 }
 
 std::vector<std::string> choices_of(const Option& option) {

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/app.hpp"
 #include <string>
 #include <vector>
+
+#include "cli/app.hpp"
 
 namespace viewgain::app {
 

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/app.hpp"
 #include <cstdint>
 #include <string>
 
 #include "choices.hpp"
+#include "cli/app.hpp"
 
 namespace viewgain::app {
 

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/app.hpp"
-#include "cli/json.hpp"
 #include <optional>
 #include <string>
 
 #include "choices.hpp"
+#include "cli/app.hpp"
+#include "cli/json.hpp"
 
 namespace viewgain::app {
 
@@ -67,9 +67,7 @@ class OptionRecord {
   static Json given(const std::optional<Value>& value) {
     return value ? Json(*value) : Json();
   }
-  static Json given(const std::string& text) {
-    return text.empty() ? Json() : Json(text);
-  }
+  static Json given(const std::string& text) { return text.empty() ? Json() : Json(text); }
   template <typename Value>
   void put(const char* key, const Value& value) {
     if (key != nullptr) json_[key] = resolved_.contains(key) ? resolved_[key] : given(value);

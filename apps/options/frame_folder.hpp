@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/app.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/app.hpp"
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/pose.hpp"

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdio>
-#include "cli/json.hpp"
 #include <string>
 #include <utility>
 
+#include "cli/json.hpp"
 #include "values.hpp"
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/pose.hpp"
@@ -37,8 +37,6 @@ namespace viewgain::app {
   return with_utf8_text(json).dump(2) + "\n";
 }
 
-inline void print_json(const Json& json) {
-  std::fputs(json_text(json).c_str(), stdout);
-}
+inline void print_json(const Json& json) { std::fputs(json_text(json).c_str(), stdout); }
 
 }  // namespace viewgain::app

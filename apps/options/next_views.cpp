@@ -26,17 +26,17 @@ std::string why(const NextView& view) {
 
 Json to_json(const NextViews& next) {
   Json json{{"gain_model", gain_model_name(next.model)},
-                              {"gain_unit", gain_unit(next.model, kCriterion)},
-                              {"candidates", next.candidates},
-                              {"dropped", Json::object()},
-                              {"next", Json::array()}};
+            {"gain_unit", gain_unit(next.model, kCriterion)},
+            {"candidates", next.candidates},
+            {"dropped", Json::object()},
+            {"next", Json::array()}};
   for (const auto& [reason, count] : next.dropped) json["dropped"][reason] = count;
   for (const NextView& view : next.views) {
     Json one{{"gain", view.gain.gain},  // a NaN becomes null
-                               {"area", view.gain.area},
-                               {"generator", view.generator},
-                               {"class", nullptr},
-                               {"T_world_camera", to_json(view.T_world_camera)}};
+             {"area", view.gain.area},
+             {"generator", view.generator},
+             {"class", nullptr},
+             {"T_world_camera", to_json(view.T_world_camera)}};
     if (view.boundary_class) one["class"] = boundary_class_name(*view.boundary_class);
     json["next"].push_back(std::move(one));
   }

@@ -4,11 +4,11 @@
 
 #include <cstddef>
 #include <map>
-#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "viewgain/core/boundary_class.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -32,7 +32,8 @@ struct NextViews {
   GainModel model = GainModel::combined;       ///< of the gains
 };
 
-/// gain_model, gain_unit, candidates, dropped, next; apps/README.md names the keys of a view.
+/// gain_model, gain_unit, candidates, dropped, next; apps/docs/reference/json.md names the keys of
+/// a view.
 [[nodiscard]] Json to_json(const NextViews& next);
 
 /// "12 of 480 possible views; dropped: 3 collision"

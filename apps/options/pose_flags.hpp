@@ -3,7 +3,6 @@
 #pragma once
 
 #include "cli/app.hpp"
-
 #include "pose_source.hpp"
 
 namespace viewgain::app {

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/json.hpp"
 #include <numbers>
 
+#include "cli/json.hpp"
 #include "viewgain/planner/pose_noise.hpp"
 
 namespace viewgain::app {

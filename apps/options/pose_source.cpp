@@ -45,8 +45,7 @@ using CenteredGenerator = std::vector<Pose> (*)(std::size_t, double, const Eigen
 
 std::vector<Pose> round_center(const std::string& flag, const std::string& text,
                                const Eigen::Vector3d& center, CenteredGenerator generator) {
-  const std::vector<double> n = parse_numbers(flag, text, 1, 16);
-  if (n.size() != 2) refuse(flag, text, "needs N,RADIUS; the centre is given by --center x,y,z");
+  const std::vector<double> n = parse_numbers(flag, text, 2, 2);
   const std::size_t count = parse_count(flag, n[0]);
   return naming_the_flag(flag, text, [&] { return generator(count, n[1], center); });
 }
@@ -64,11 +63,7 @@ std::vector<Pose> orbit(const std::string& text, const Eigen::Vector3d& center) 
 
 std::vector<Pose> shell(const std::string& text, const Eigen::Vector3d& center,
                         std::uint64_t seed) {
-  const std::vector<double> n = parse_numbers("--shell", text, 3, 7);
-  if (n.size() != 3) {
-    refuse("--shell", text,
-           "needs N,RMIN,RMAX; the seed is given by --seed, the centre by --center x,y,z");
-  }
+  const std::vector<double> n = parse_numbers("--shell", text, 3, 3);
   const std::size_t count = parse_count("--shell", n[0]);
   return naming_the_flag("--shell", text,
                          [&] { return shell_poses(count, n[1], n[2], seed, center); });

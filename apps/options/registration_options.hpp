@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/app.hpp"
 #include <optional>
 #include <string>
 
+#include "cli/app.hpp"
 #include "viewgain/planner/pose_noise.hpp"
 #include "viewgain/planner/register_frame.hpp"
 

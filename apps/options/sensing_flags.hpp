@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/app.hpp"
-
 #include "choices.hpp"
+#include "cli/app.hpp"
 #include "described_options.hpp"
 #include "sensing.hpp"
 

@@ -112,9 +112,10 @@ constexpr std::array<Chance, ChancePaints::kLevels> kChances{
 
 }  // namespace
 
-ChancePaints::ChancePaints(PaintedMesh& scene) {
+ChancePaints::ChancePaints(PaintedMesh& scene, bool for_squares) {
   for (std::size_t k = 0; k < kLevels; ++k) {
-    const double opacity = kChances[k].opacity;
+    const double face = kChances[k].opacity;
+    const double opacity = for_squares ? 1 - (1 - face) * (1 - face) : face;
     paints_[k] = scene.add_paint({.color = kUnknownColor,
                                   .lit = opacity == 1,
                                   .opacity = opacity,

@@ -66,7 +66,8 @@ class ChancePaints {
  public:
   static constexpr std::size_t kLevels = 6;
 
-  explicit ChancePaints(PaintedMesh& scene);
+  /// For cubes, or for squares that each stand for the two faces of a cube that a ray passes.
+  explicit ChancePaints(PaintedMesh& scene, bool for_squares = false);
 
   /// 0: at least even chances, opaque; nothing: less than 1 %, not worth drawing.
   [[nodiscard]] static std::optional<std::size_t> level(const VoxelContribution& contribution);

@@ -19,8 +19,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kSamplesPerSide = 2;  // of a pixel
-constexpr int kOcclusionRays = 6;   // a sample
+constexpr int kSamplesPerSide = 2;  // of a pixel at an edge
+constexpr int kEdgeSkyRays = 4;     // of each sample there
+constexpr int kSmoothSkyRays = 10;  // of the one sample of any other pixel
 constexpr double kAmbient = 0.62;   // share of the sky's light, the sun has the rest
 constexpr double kHidden = 0.02;    // less visible than this is not looked at any more
 constexpr double kOffset = 1.5e-4;  // of the occlusion range: a ray must not hit its own start
@@ -64,26 +65,64 @@ class Renderer {
         to_sun_(to_sun),
         occlusion_range_(occlusion_range) {}
 
-  // `height` in [0, 1] runs down the picture; `seed` is unique to the sample.
-  [[nodiscard]] Vector3d color(const Vector3d& eye, const Vector3d& direction, double height,
-                               std::uint64_t seed) const {
+  // What a ray meets. The light of the sky, which takes most rays, is left to color().
+  struct Sample {
+    Vector3d flat = Vector3d::Zero();  // what is drawn flat, in front of the rest
+    double visible = 1;                // share of what is lit behind it; 0: there is nothing
+    double range = 0;
+    const PaintedMesh::Part* part = nullptr;
+    std::uint32_t triangle = 0;
+    bool front = true;
+    Vector3d normal = Vector3d::Zero(), smooth = normal, point = normal;  // of the lit surface
+    double sun = 0;
+  };
+
+  // `height` in [0, 1] runs down the picture.
+  [[nodiscard]] Sample sample(const Vector3d& eye, const Vector3d& direction, double height) const {
     const SurfaceHit behind = solid_.intersect(eye, direction, kFar);
-    Vector3d sum = Vector3d::Zero();
-    double visible = 1;  // share of what lies behind the translucent triangles so far
+    Sample found;
     for (double start = 0; start < behind.range;) {
       const Vector3d origin = eye + start * direction;
       const SurfaceHit hit = overlay_.intersect(origin, direction, behind.range - start);
       if (!std::isfinite(hit.range)) break;
       const Paint& paint = painted_.paint_of(overlay_.part, hit.triangle);
-      if (paint.lit || paint.opacity >= 1 || visible < kHidden) {
-        return sum + visible * shaded(overlay_.part, origin, direction, hit, seed);
+      if (paint.lit || paint.opacity >= 1 || found.visible < kHidden) {
+        meet(overlay_.part, origin, direction, hit, found);
+        found.range += start;
+        return found;
       }
-      sum += visible * paint.opacity * paint.color;
-      visible *= 1 - paint.opacity;
+      found.flat += found.visible * paint.opacity * paint.color;
+      found.visible *= 1 - paint.opacity;
       start += hit.range + kOffset * occlusion_range_;
     }
-    if (!std::isfinite(behind.range)) return sum + visible * background(height);
-    return sum + visible * shaded(solid_.part, eye, direction, behind, seed);
+    if (std::isfinite(behind.range)) {
+      meet(solid_.part, eye, direction, behind, found);
+    } else {
+      found.flat += found.visible * background(height);
+      found.visible = 0;
+    }
+    return found;
+  }
+
+  // `seed` is unique to the sample.
+  [[nodiscard]] Vector3d color(const Sample& found, int sky_rays, std::uint64_t seed) const {
+    if (!(found.visible > 0)) return found.flat;
+    const Paint& paint = painted_.paint_of(*found.part, found.triangle);
+    const double light = kAmbient * open_sky(found.point, found.smooth, sky_rays, seed) +
+                         (1 - kAmbient) * 1.5 * found.sun;
+    return found.flat + found.visible * (found.front ? 1 : paint.back_side) * light * paint.color;
+  }
+
+  // Whether two neighbours show so much the same that no edge lies between them.
+  [[nodiscard]] bool is_smooth(const Sample& a, const Sample& b) const {
+    constexpr double kSameColor = 0.04, kSameSide = 0.8, kSameRange = 0.03, kSameSun = 0.1;
+    if (!((a.flat - b.flat).cwiseAbs().maxCoeff() < kSameColor)) return false;
+    if (!(std::abs(a.visible - b.visible) < kSameColor)) return false;
+    if (a.visible == 0 && b.visible == 0) return true;
+    return a.part == b.part && a.front == b.front &&
+           a.part->paint_of_triangle[a.triangle] == b.part->paint_of_triangle[b.triangle] &&
+           a.smooth.dot(b.smooth) > kSameSide && std::abs(a.sun - b.sun) < kSameSun &&
+           std::abs(a.range - b.range) < kSameRange * a.range;
   }
 
  private:
@@ -94,20 +133,24 @@ class Renderer {
     return top + height * (bottom - top);
   }
 
-  [[nodiscard]] Vector3d shaded(const PaintedMesh::Part& part, const Vector3d& eye,
-                                const Vector3d& direction, const SurfaceHit& hit,
-                                std::uint64_t seed) const {
+  void meet(const PaintedMesh::Part& part, const Vector3d& eye, const Vector3d& direction,
+            const SurfaceHit& hit, Sample& found) const {
     const Paint& paint = painted_.paint_of(part, hit.triangle);
-    if (!paint.lit) return paint.color;
-    const bool front = hit.normal.dot(direction) < 0;
-    const Vector3d normal = front ? hit.normal : Vector3d(-hit.normal);
+    if (!paint.lit) {
+      found.flat += found.visible * paint.color;
+      found.visible = 0;
+      return;
+    }
+    found.part = &part;
+    found.triangle = hit.triangle;
+    found.range = hit.range;
+    found.front = hit.normal.dot(direction) < 0;
+    found.normal = found.front ? hit.normal : Vector3d(-hit.normal);
     const Vector3d on_surface = eye + hit.range * direction;
-    const Vector3d smooth = part.shading_normal(hit.triangle, on_surface, normal);
-    const Vector3d point = on_surface + kOffset * occlusion_range_ * normal;
-    const double facing = std::max(0.0, smooth.dot(to_sun_));
-    const double sun = facing > 0 && !blocked(point, to_sun_, kFar) ? facing : 0.0;
-    const double light = kAmbient * open_sky(point, smooth, seed) + (1 - kAmbient) * 1.5 * sun;
-    return front ? Vector3d(paint.color * light) : Vector3d(paint.back_side * light * paint.color);
+    found.smooth = part.shading_normal(hit.triangle, on_surface, found.normal);
+    found.point = on_surface + kOffset * occlusion_range_ * found.normal;
+    const double facing = std::max(0.0, found.smooth.dot(to_sun_));
+    found.sun = facing > 0 && !blocked(found.point, to_sun_, kFar) ? facing : 0.0;
   }
 
   [[nodiscard]] bool blocked(const Vector3d& from, const Vector3d& direction, double range) const {
@@ -116,21 +159,20 @@ class Renderer {
   }
 
   // Share of the sky that the point sees, cosine-weighted, stratified in azimuth.
-  [[nodiscard]] double open_sky(const Vector3d& point, const Vector3d& normal,
+  [[nodiscard]] double open_sky(const Vector3d& point, const Vector3d& normal, int rays,
                                 std::uint64_t seed) const {
     const auto [u, v] = tangents(normal);
     int open = 0;
-    for (int i = 0; i < kOcclusionRays; ++i) {
-      const std::uint64_t ray = seed * kOcclusionRays + static_cast<std::uint64_t>(i);
-      const double azimuth =
-          2 * std::numbers::pi * (i + random_unit(2 * ray)) / static_cast<double>(kOcclusionRays);
+    for (int i = 0; i < rays; ++i) {
+      const std::uint64_t ray = seed * kSmoothSkyRays + static_cast<std::uint64_t>(i);
+      const double azimuth = 2 * std::numbers::pi * (i + random_unit(2 * ray)) / rays;
       const double r2 = random_unit(2 * ray + 1);
       const double r = std::sqrt(r2);
       const Vector3d direction =
           r * std::cos(azimuth) * u + r * std::sin(azimuth) * v + std::sqrt(1 - r2) * normal;
       open += blocked(point, direction.normalized(), occlusion_range_) ? 0 : 1;
     }
-    return static_cast<double>(open) / kOcclusionRays;
+    return static_cast<double>(open) / rays;
   }
 
   const PaintedMesh& painted_;
@@ -245,23 +287,44 @@ RgbImage render(const PaintedMesh& scene, const PinholeCamera& camera, const Pos
   const auto columns = static_cast<std::size_t>(camera.width);
   const auto rows = static_cast<std::size_t>(camera.height);
   image.pixels.resize(3 * columns * rows);
+  const auto sample = [&](std::size_t u, std::size_t v, double du, double dv) {
+    const Vector3d ray = camera.ray(static_cast<double>(u) + du, static_cast<double>(v) + dv);
+    return renderer.sample(eye, (R_world_camera * ray).normalized(),
+                           static_cast<double>(v) / static_cast<double>(rows));
+  };
+  // One ray a pixel tells where the edges are; only there are more needed.
+  std::vector<Renderer::Sample> centers(columns * rows);
   ThreadPool pool(exec.num_threads);
   pool.for_each_chunk(rows, 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      for (std::size_t u = 0; u < columns; ++u) {
-        Vector3d sum = Vector3d::Zero();
-        for (int s = 0; s < kSamplesPerSide * kSamplesPerSide; ++s) {
+    for (std::size_t i = begin * columns; i < end * columns; ++i) {
+      centers[i] = sample(i % columns, i / columns, 0, 0);
+    }
+  });
+  const auto is_smooth = [&](std::size_t u, std::size_t v) {
+    const std::size_t i = v * columns + u;
+    return (u == 0 || renderer.is_smooth(centers[i], centers[i - 1])) &&
+           (v == 0 || renderer.is_smooth(centers[i], centers[i - columns])) &&
+           (u + 1 == columns || renderer.is_smooth(centers[i], centers[i + 1])) &&
+           (v + 1 == rows || renderer.is_smooth(centers[i], centers[i + columns]));
+  };
+  constexpr int kSamples = kSamplesPerSide * kSamplesPerSide;
+  pool.for_each_chunk(rows, 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin * columns; i < end * columns; ++i) {
+      const std::size_t u = i % columns, v = i / columns;
+      Vector3d sum = Vector3d::Zero();
+      if (is_smooth(u, v)) {
+        sum = renderer.color(centers[i], kSmoothSkyRays, kSamples * i);
+      } else {
+        for (int s = 0; s < kSamples; ++s) {
           const double du = (s % kSamplesPerSide + 0.5) / kSamplesPerSide - 0.5;
           const double dv = (s / kSamplesPerSide + 0.5) / kSamplesPerSide - 0.5;
-          const Vector3d ray = camera.ray(static_cast<double>(u) + du, static_cast<double>(v) + dv);
-          const auto seed = 4 * (v * columns + u) + static_cast<std::size_t>(s);
-          sum += renderer.color(eye, (R_world_camera * ray).normalized(),
-                                static_cast<double>(v) / static_cast<double>(rows), seed);
+          sum += renderer.color(sample(u, v, du, dv), kEdgeSkyRays,
+                                kSamples * i + static_cast<std::size_t>(s));
         }
-        sum /= kSamplesPerSide * kSamplesPerSide;
-        for (std::size_t k = 0; k < 3; ++k) {
-          image.pixels[3 * (v * columns + u) + k] = encoded(sum[static_cast<Eigen::Index>(k)]);
-        }
+        sum /= kSamples;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        image.pixels[3 * i + k] = encoded(sum[static_cast<Eigen::Index>(k)]);
       }
     }
   });

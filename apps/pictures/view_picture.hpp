@@ -26,9 +26,11 @@ struct ViewPicture {
   std::optional<Pose> chosen{};           ///< the next one
   const GainEvaluator& evaluator;         ///< traces the chosen view's rays
   const Sensor& sensor;
+  /// What the chosen view touches, by `evaluator`; null: looked for here.
+  const std::vector<VoxelContribution>* contributions = nullptr;
 };
 
-/// A picture, 1280x960 px: the surface in grey; boundary runs in class colours (left red, right
+/// A picture, 640x480 px: the surface in grey; boundary runs in class colours (left red, right
 /// green, top blue, bottom yellow); candidates as small frusta, those of boundaries in their
 /// class's colour, others grey; the view just taken as a black frustum; the chosen one as a larger
 /// green frustum with some of its rays, orange where they end in unknown voxels, blue in occupied

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "cli/app.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/app.hpp"
 #include "options/next_views.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/planning.hpp"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "cli/app.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "cli/app.hpp"
 #include "options/frame_folder.hpp"
 #include "proposal/view_proposal.hpp"
 #include "viewgain/core/exec_config.hpp"

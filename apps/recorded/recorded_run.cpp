@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include "cli/json.hpp"
 #include <optional>
 #include <set>
 #include <string>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "aligned_frames.hpp"
+#include "cli/json.hpp"
 #include "command_line/config_file.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/progress.hpp"
@@ -166,7 +166,7 @@ class Recording {
     write_tum(folder.file("views.txt"), moment.model.grid().views());
     write_tum(folder.file("next.txt"), poses_of(next_));
     Json run{{"settings", settings()},
-                     {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}}};
+             {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}}};
     run.update(views_->json(moment.model, next_));
     write_file_atomically(folder.file("run.json"), json_text(run));
     if (options_.report == "on") {
@@ -191,14 +191,17 @@ class Recording {
                       std::nullopt,
                       moment.evaluator,
                       sensor()};
+    std::vector<VoxelContribution> contributions;
     if (record.decision) {
       parts.chosen = record.proposal.candidates[record.decision->candidate].T_world_camera;
+      contributions = moment.evaluator.contributions(*parts.chosen);
+      parts.contributions = &contributions;
     }
     const RgbImage picture = view_picture(parts, exec_);
     if (options_.pictures == "on") write_png(folder.view(record.index, ".png"), picture);
     if (options_.report == "on") {
       page_->add_view(record, moment.model, moment.generation, estimated, moment.evaluator,
-                      picture);
+                      std::move(contributions), picture);
     }
     views_->add_seconds("pictures", watch.seconds());
   }
@@ -207,24 +210,24 @@ class Recording {
     const FrameSequence& frames = map_->folder().frames();
     const BeliefGrid& grid = map_->model().grid();
     Json settings{{"frames", options_.mesh},
-                          {"sensor", sensor_toml(sensor())},
-                          {"depth_scale", frames.depth_scale},
-                          {"mask", nullptr},
-                          {"confidence", nullptr},
-                          {"least_confidence", nullptr},
-                          {"voxel", grid.voxel_size()},
-                          {"workspace", app::to_json(grid.workspace())},
-                          {"prior_sigma", grid.prior_sigma()},
-                          {"support_plane", nullptr},
-                          {"jump_edge_filter", options_.jump_edge_filter},
-                          {"refine", options_.refine == "on"},
-                          {"register", sigmas_.has_value()},
-                          {"pose_sigma", nullptr},
-                          {"generator", proposal_.generator},
-                          {"gain", proposal_.gain},
-                          {"reach", nullptr},
-                          {"obstacles", options_.obstacles},
-                          {"top", options_.top}};
+                  {"sensor", sensor_toml(sensor())},
+                  {"depth_scale", frames.depth_scale},
+                  {"mask", nullptr},
+                  {"confidence", nullptr},
+                  {"least_confidence", nullptr},
+                  {"voxel", grid.voxel_size()},
+                  {"workspace", app::to_json(grid.workspace())},
+                  {"prior_sigma", grid.prior_sigma()},
+                  {"support_plane", nullptr},
+                  {"jump_edge_filter", options_.jump_edge_filter},
+                  {"refine", options_.refine == "on"},
+                  {"register", sigmas_.has_value()},
+                  {"pose_sigma", nullptr},
+                  {"generator", proposal_.generator},
+                  {"gain", proposal_.gain},
+                  {"reach", nullptr},
+                  {"obstacles", options_.obstacles},
+                  {"top", options_.top}};
     if (sigmas_) {
       settings["pose_sigma"] =
           pose_sigmas_json({sigmas_->sigma_translation, sigmas_->sigma_rotation});

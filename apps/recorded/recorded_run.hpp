@@ -3,7 +3,6 @@
 #pragma once
 
 #include "cli/app.hpp"
-
 #include "loop/run_options.hpp"
 
 namespace viewgain::app {

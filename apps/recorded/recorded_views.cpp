@@ -78,15 +78,15 @@ Json RecordedViews::entry_json(std::size_t index) const {
   const ViewRecord& record = records_[index];
   const FrameFolder& folder = map_.folder();
   Json json{{"index", record.index},
-                    {"frame", folder.frames().images[record.index].filename().string()},
-                    {"pose", app::to_json(folder.T_world_camera(record.index))},
-                    {"generator", "recorded"},
-                    {"realised_gain", record.realised_gain},
-                    {"realised_area", new_areas_[index]},
-                    {"entropy_removed", record.progress.entropy_removed},
-                    {"unknown_voxels", record.progress.unknown_voxels},
-                    {"travelled", record.travelled},
-                    {"seconds", seconds_json(record.seconds)}};
+            {"frame", folder.frames().images[record.index].filename().string()},
+            {"pose", app::to_json(folder.T_world_camera(record.index))},
+            {"generator", "recorded"},
+            {"realised_gain", record.realised_gain},
+            {"realised_area", new_areas_[index]},
+            {"entropy_removed", record.progress.entropy_removed},
+            {"unknown_voxels", record.progress.unknown_voxels},
+            {"travelled", record.travelled},
+            {"seconds", seconds_json(record.seconds)}};
   if (is_aligned()) json["registration"] = app::to_json(registrations_[record.index]);
   return json;
 }
@@ -95,19 +95,19 @@ Json RecordedViews::json(const SurfaceModel& model, const NextViews& next) const
   const ViewRecord& last = records_.back();
   const bool is_whole = records_.size() == map_.folder().size();
   Json run{{"map_hash", model.grid().content_hash()},
-                   {"stop_reason", is_whole ? "no_frames" : "interrupted"},
-                   {"views", records_.size()},
-                   {"readings", readings_.readings},
-                   {"readings_inside", readings_.readings_inside},
-                   {"masked_pixels", map_.masked_pixels()},
-                   {"flying_pixels", flying_pixels_},
-                   {"orthonormalized_poses", map_.folder().frames().orthonormalized},
-                   {"entropy_removed", last.progress.entropy_removed},
-                   {"unknown_voxels", last.progress.unknown_voxels},
-                   {"points", model.points().size()},
-                   {"triangles", model.surface().triangles.size()},
-                   {"surface_area", mesh_area(model.surface())},
-                   {"travelled", last.travelled}};
+           {"stop_reason", is_whole ? "no_frames" : "interrupted"},
+           {"views", records_.size()},
+           {"readings", readings_.readings},
+           {"readings_inside", readings_.readings_inside},
+           {"masked_pixels", map_.masked_pixels()},
+           {"flying_pixels", flying_pixels_},
+           {"orthonormalized_poses", map_.folder().frames().orthonormalized},
+           {"entropy_removed", last.progress.entropy_removed},
+           {"unknown_voxels", last.progress.unknown_voxels},
+           {"points", model.points().size()},
+           {"triangles", model.surface().triangles.size()},
+           {"surface_area", mesh_area(model.surface())},
+           {"travelled", last.travelled}};
   if (is_aligned()) run["registration"] = registration_counts(registrations_);
   run.update(app::to_json(next));
   run["seconds"] = seconds_json(seconds_);

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstddef>
-#include "cli/json.hpp"
 #include <set>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "frame_map.hpp"
 #include "options/next_views.hpp"
 #include "viewgain/core/planning.hpp"

@@ -36,8 +36,7 @@ std::string gzip(std::string_view bytes) {
   return packed;
 }
 
-Json block(const char* type, std::size_t columns, std::size_t count,
-                   std::string_view bytes) {
+Json block(const char* type, std::size_t columns, std::size_t count, std::string_view bytes) {
   return {{"type", type},
           {"columns", columns},
           {"rows", columns == 0 ? 0 : count / columns},

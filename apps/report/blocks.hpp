@@ -5,21 +5,20 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include "cli/json.hpp"
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "cli/json.hpp"
 
 namespace viewgain::app {
 
 // Numbers as the report's page reads them; README.md, "Data", says how a block is stored. Rows one
 // after the other; throws Error(backend) if zlib fails.
 
-[[nodiscard]] Json float_block(const std::vector<float>& values,
-                                                 std::size_t columns);
-[[nodiscard]] Json index_block(const std::vector<std::uint32_t>& values,
-                                                 std::size_t columns);
+[[nodiscard]] Json float_block(const std::vector<float>& values, std::size_t columns);
+[[nodiscard]] Json index_block(const std::vector<std::uint32_t>& values, std::size_t columns);
 [[nodiscard]] Json byte_block(const std::vector<std::uint8_t>& values);
 
 /// Points [m], each coordinate to 1/65,534 of their bounding box.

@@ -46,9 +46,7 @@ std::string report_page(const Json& data, std::string_view page) {
   return text;
 }
 
-std::string report_page(const Json& data) {
-  return report_page(data, built_page());
-}
+std::string report_page(const Json& data) { return report_page(data, built_page()); }
 
 void write_report(const std::filesystem::path& path, const Json& data) {
   write_file_atomically(path, report_page(data));

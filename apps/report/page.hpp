@@ -3,9 +3,10 @@
 #pragma once
 
 #include <filesystem>
-#include "cli/json.hpp"
 #include <string>
 #include <string_view>
+
+#include "cli/json.hpp"
 
 namespace viewgain::app {
 

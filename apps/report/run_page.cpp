@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector3d;
 // So that a run of 40 views stays under 25 MB.
 constexpr std::size_t kMaxVertices = 20'000, kMaxTruthVertices = 100'000, kMaxPoints = 1'500,
-                      kMaxExpected = 4'000, kMaxExact = 100;
+                      kMaxExpected = 4'000, kMaxExact = 20;
 
 ShownMesh shown_surface(const SurfaceModel& model, const Truth* truth) {
   const SurfaceMesh& surface = model.surface();
@@ -86,7 +86,8 @@ void add_gains(ShownCandidates& shown, const GainEvaluator& evaluator,
                const std::optional<std::size_t>& chosen) {
   if (shown.poses.empty()) return;
   std::vector<ApproximateGain> estimates(shown.poses.size());
-  evaluator.approximate(shown.poses, estimates);
+  constexpr ApproximateConfig config{.share = 0.02};  // ranks as well as a tenth
+  evaluator.approximate(shown.poses, estimates, config);
   std::vector<ViewGain> ranked(estimates.size());
   for (std::size_t i = 0; i < ranked.size(); ++i) ranked[i].gain = estimates[i].gain;
   std::vector<std::size_t> exact = best_indices(ranked, kMaxExact);
@@ -105,8 +106,7 @@ void add_gains(ShownCandidates& shown, const GainEvaluator& evaluator,
 }
 
 Json candidates_json(const Proposal& proposal, const CandidateGeneration& generation,
-                             const GainEvaluator& evaluator,
-                             const std::optional<std::size_t>& chosen) {
+                     const GainEvaluator& evaluator, const std::optional<std::size_t>& chosen) {
   ShownCandidates shown;
   const auto add = [&](const Candidate& candidate, const std::string& reason) {
     shown.poses.push_back(candidate.T_world_camera);
@@ -126,9 +126,8 @@ Json candidates_json(const Proposal& proposal, const CandidateGeneration& genera
 }
 
 // The unknown voxels from which most is expected of a view.
-Json expected_json(const GainEvaluator& evaluator, const Pose& T_world_camera,
-                           const Json& unit) {
-  std::vector<VoxelContribution> voxels = evaluator.contributions(T_world_camera);
+Json expected_json(const GridSnapshot& snapshot, std::vector<VoxelContribution> voxels,
+                   const Json& unit) {
   std::erase_if(voxels, [](const VoxelContribution& v) {
     return v.state != VoxelState::unknown || !(v.gain > 0);
   });
@@ -139,7 +138,7 @@ Json expected_json(const GainEvaluator& evaluator, const Pose& T_world_camera,
                              std::tie(a.gain, b.voxel.x, b.voxel.y, b.voxel.z);
                     });
   voxels.resize(count);
-  return contributions_json(evaluator.scene().snapshot(), voxels, unit);
+  return contributions_json(snapshot, voxels, unit);
 }
 
 Json truth_json(const SurfaceScene& object) {
@@ -160,13 +159,14 @@ RunPage::RunPage(std::string title, const Sensor& sensor, std::string criterion,
 
 void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
                        const CandidateGeneration& generation, const EstimatedViews& estimated,
-                       const GainEvaluator& evaluator, const RgbImage& picture) {
+                       const GainEvaluator& evaluator, std::vector<VoxelContribution> contributions,
+                       const RgbImage& picture) {
   if (views_.empty()) {
     head_ = page_head("reconstruct", title_, evaluator, sensor_, criterion_);
   }
   Json view{{"pose", pose_rows(record.T_world_camera)},
-                    {"surface", to_json(shown_surface(model, truth_.get()))},
-                    {"points", points_json(model.points())}};
+            {"surface", to_json(shown_surface(model, truth_.get()))},
+            {"points", points_json(model.points())}};
   view["boundaries"] = boundaries_json(model.surface(), estimated.runs);
   view["patches"] = patches_json(estimated, generation.config().boundary.estimator.patch_length);
   view["candidates"] =
@@ -179,7 +179,8 @@ void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
     const Pose& next = record.proposal.candidates[record.decision->candidate].T_world_camera;
     view["chosen"] = record.decision->candidate;
     view["bundle"] = bundle_json(evaluator, sensor_, next);
-    view["expected"] = expected_json(evaluator, next, head_["gain_unit"]);
+    view["expected"] =
+        expected_json(evaluator.scene().snapshot(), std::move(contributions), head_["gain_unit"]);
   }
   view["picture"] = small_picture(picture);
   views_.push_back(std::move(view));

@@ -4,10 +4,10 @@
 
 #include <cstddef>
 #include <memory>
-#include "cli/json.hpp"
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -31,16 +31,16 @@ class RunPage {
 
   /// To be called once a view, in order. `estimated`: the boundaries of the surface then, none
   /// where no candidates were asked for. `evaluator` is of the model's scene and scores the
-  /// candidates; `picture` is for browsers that
-  /// cannot draw.
+  /// candidates; `contributions` are those of the chosen view, if there is one; `picture` is for
+  /// browsers that cannot draw.
   void add_view(const ViewRecord& record, const SurfaceModel& model,
                 const CandidateGeneration& generation, const EstimatedViews& estimated,
-                const GainEvaluator& evaluator, const RgbImage& picture);
+                const GainEvaluator& evaluator, std::vector<VoxelContribution> contributions,
+                const RgbImage& picture);
 
   /// The page's data. `run` is what run.json holds; there must have been a view. Each view has the
   /// figures of run.json's view of its index. `object` may be null, too.
-  [[nodiscard]] Json json(const Json& run,
-                                            const SurfaceScene* object) const;
+  [[nodiscard]] Json json(const Json& run, const SurfaceScene* object) const;
 
  private:
   std::string title_, criterion_;

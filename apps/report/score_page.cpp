@@ -24,8 +24,7 @@ Json map_json(const GridSnapshot& snapshot) {
   return {{"centers", point_block(centers)}, {"size", cubes.side}};
 }
 
-Json shown_json(const GainEvaluator& evaluator, const Pose& T_world_camera,
-                        const Json& unit) {
+Json shown_json(const GainEvaluator& evaluator, const Pose& T_world_camera, const Json& unit) {
   const std::vector<VoxelContribution> voxels = evaluator.contributions(T_world_camera);
   Json json = contributions_json(evaluator.scene().snapshot(), voxels, unit);
   std::vector<std::uint8_t> states;

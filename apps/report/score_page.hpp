@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstddef>
-#include "cli/json.hpp"
 #include <span>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/png.hpp"

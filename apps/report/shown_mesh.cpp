@@ -69,8 +69,7 @@ Json to_json(const ShownMesh& mesh) {
   std::vector<std::uint32_t> indices;
   indices.reserve(3 * mesh.triangles.size());
   for (const auto& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
-  Json json{{"vertices", point_block(mesh.vertices)},
-                              {"triangles", index_block(indices, 3)}};
+  Json json{{"vertices", point_block(mesh.vertices)}, {"triangles", index_block(indices, 3)}};
   if (!mesh.sigma.empty()) json["sigma"] = shade_block(mesh.sigma);
   if (!mesh.error.empty()) json["error"] = shade_block(mesh.error);
   return json;

@@ -6,8 +6,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include "cli/json.hpp"
 #include <vector>
+
+#include "cli/json.hpp"
 
 namespace viewgain::app {
 

@@ -43,9 +43,8 @@ Json column_of(const std::vector<double>& values, std::size_t rows) {
 
 }  // namespace
 
-Json page_head(const std::string& kind, const std::string& title,
-                       const GainEvaluator& evaluator, const Sensor& sensor,
-                       std::string_view criterion) {
+Json page_head(const std::string& kind, const std::string& title, const GainEvaluator& evaluator,
+               const Sensor& sensor, std::string_view criterion) {
   const GridSnapshot& snapshot = evaluator.scene().snapshot();
   const auto bound = [&](std::int32_t index) { return snapshot.voxel_size * index; };
   const Index3 low = snapshot.min_index, size = snapshot.dims;
@@ -75,8 +74,8 @@ Json to_json(const ShownCandidates& candidates) {
     for (const double number : pose.m) poses.push_back(static_cast<float>(number));
   }
   Json json{{"poses", float_block(poses, 12)},
-                    {"gain", column_of(candidates.gains, count)},
-                    {"area", column_of(candidates.areas, count)}};
+            {"gain", column_of(candidates.gains, count)},
+            {"area", column_of(candidates.areas, count)}};
   json["exact"] = candidates.exact;
   Json names;
   json["class"] = numbered(candidates.classes, names);
@@ -88,8 +87,7 @@ Json to_json(const ShownCandidates& candidates) {
   return json;
 }
 
-Json bundle_json(const GainEvaluator& evaluator, const Sensor& sensor,
-                         const Pose& T_world_camera) {
+Json bundle_json(const GainEvaluator& evaluator, const Sensor& sensor, const Pose& T_world_camera) {
   std::vector<Vector3d> ends;
   std::vector<std::uint8_t> kinds;
   const GridSnapshot& snapshot = evaluator.scene().snapshot();
@@ -101,9 +99,8 @@ Json bundle_json(const GainEvaluator& evaluator, const Sensor& sensor,
   return {{"ends", point_block(ends)}, {"kind", byte_block(kinds)}};
 }
 
-Json contributions_json(const GridSnapshot& snapshot,
-                                const std::vector<VoxelContribution>& voxels,
-                                const Json& unit) {
+Json contributions_json(const GridSnapshot& snapshot, const std::vector<VoxelContribution>& voxels,
+                        const Json& unit) {
   std::vector<Vector3d> centers;
   std::vector<float> values;
   for (const VoxelContribution& voxel : voxels) {
@@ -116,6 +113,6 @@ Json contributions_json(const GridSnapshot& snapshot,
           {"size", snapshot.voxel_size}};
 }
 
-std::string small_picture(const RgbImage& picture) { return base64(png_bytes(shrunk(picture, 3))); }
+std::string small_picture(const RgbImage& picture) { return base64(png_bytes(shrunk(picture, 2))); }
 
 }  // namespace viewgain::app

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstddef>
-#include "cli/json.hpp"
 #include <span>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/png.hpp"
@@ -19,8 +19,8 @@ namespace viewgain::app {
 
 /// The keys that every page has: what it is, the space, the camera.
 [[nodiscard]] Json page_head(const std::string& kind, const std::string& title,
-                                               const GainEvaluator& evaluator, const Sensor& sensor,
-                                               std::string_view criterion);
+                             const GainEvaluator& evaluator, const Sensor& sensor,
+                             std::string_view criterion);
 
 /// Twelve numbers, the rows of T_world_camera.
 [[nodiscard]] Json pose_rows(const Pose& T_world_camera);
@@ -35,13 +35,13 @@ struct ShownCandidates {
 [[nodiscard]] Json to_json(const ShownCandidates& candidates);
 
 /// Where the rays of a view end: an even subset of those that end in a voxel.
-[[nodiscard]] Json bundle_json(const GainEvaluator& evaluator,
-                                                 const Sensor& sensor, const Pose& T_world_camera);
+[[nodiscard]] Json bundle_json(const GainEvaluator& evaluator, const Sensor& sensor,
+                               const Pose& T_world_camera);
 
 /// What voxels bring to a view: centres, values and the value's unit.
-[[nodiscard]] Json contributions_json(
-    const GridSnapshot& snapshot, const std::vector<VoxelContribution>& voxels,
-    const Json& unit);
+[[nodiscard]] Json contributions_json(const GridSnapshot& snapshot,
+                                      const std::vector<VoxelContribution>& voxels,
+                                      const Json& unit);
 
 /// A PNG of a third of the picture's width and height, in base64: enough where there is no WebGL.
 [[nodiscard]] std::string small_picture(const RgbImage& picture);

@@ -101,8 +101,8 @@ Table ClassicScores::table() const {
 
 void ClassicScores::print_json(std::size_t top) const {
   const std::vector<ClassicGain>& asked = evaluator.config().gains;
-  Json counts = Json::object(), names = Json::array(),
-               units = Json::array(), best_views = Json::array();
+  Json counts = Json::object(), names = Json::array(), units = Json::array(),
+       best_views = Json::array();
   for (const auto& [reason, count] : dropped) counts[reason] = count;
   for (const ClassicGain gain : asked) {
     names.push_back(name_of(gain));

@@ -4,11 +4,11 @@
 
 #include <cstddef>
 #include <map>
-#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "columns/table.hpp"
 #include "options/pose_source.hpp"
 #include "score_options.hpp"

@@ -3,11 +3,11 @@
 #include "score_part.hpp"
 
 #include <filesystem>
-#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "cli/json.hpp"
 #include "columns/part_reader.hpp"
 #include "columns/part_writer.hpp"
 #include "options/hazard_source.hpp"
@@ -29,10 +29,10 @@ std::string hash_of_file(const std::filesystem::path& path) {
 // Flags that were not given stand for the same in all parts and are left out.
 Json settings_of(const ScoreOptions& options) {
   Json settings{{"gain", options.gain},
-                        {"semantics", options.semantics},
-                        {"criterion", options.criterion},
-                        {"stride", options.stride},
-                        {"feasible", options.feasible}};
+                {"semantics", options.semantics},
+                {"criterion", options.criterion},
+                {"stride", options.stride},
+                {"feasible", options.feasible}};
   const auto add = [&](const char* key, const std::optional<double>& value) {
     if (value) settings[key] = *value;
   };

@@ -243,7 +243,8 @@ Json ScoreReport::page(const std::string& title, RgbImage picture) const {
   }
   Json columns{"pose", "gain"}, rows = Json::array();
   if (by_area) columns.push_back("area");
-  if (estimates == nullptr) for (const char* name : {"hits", "unknown", "occupied"}) columns.push_back(name);
+  if (estimates == nullptr)
+    for (const char* name : {"hits", "unknown", "occupied"}) columns.push_back(name);
   std::vector<std::size_t> shown;
   const std::vector<std::size_t> order =
       std::holds_alternative<JointViews>(scores.found) ? full.indices : best_indices(ranked, kRows);

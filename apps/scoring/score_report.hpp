@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "columns/table.hpp"
 #include "options/pose_source.hpp"
 #include "viewgain/formats/png.hpp"

@@ -14,9 +14,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // What is not finite is null in JSON.
-double number_of(const Json& value) {
-  return value.is_number() ? value.get<double>() : kNone;
-}
+double number_of(const Json& value) { return value.is_number() ? value.get<double>() : kNone; }
 
 double mean_over_views(const Json& prediction, const char* key) {
   std::vector<double> values;
@@ -24,9 +22,7 @@ double mean_over_views(const Json& prediction, const char* key) {
   return mean_of(values).mean;
 }
 
-Json or_null(const std::string& text) {
-  return text.empty() ? Json() : Json(text);
-}
+Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 }  // namespace
 
@@ -112,15 +108,15 @@ Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows) {
     const StudyRun& run = *row.run;
     const StudyPolicy& policy = spec.policies[run.policy];
     Json json{{"object", spec.objects[run.object].name},
-                      {"policy", policy.policy},
-                      {"gain", or_null(policy.gain)},
-                      {"semantics", or_null(policy.semantics)},
-                      {"seed", run.seed},
-                      {"sensor", run.sensor},
-                      {"voxel", run.voxel},
-                      {"size", run.size ? Json(*run.size) : Json()},
-                      {"views", row.views},
-                      {"stop_reason", row.stop_reason}};
+              {"policy", policy.policy},
+              {"gain", or_null(policy.gain)},
+              {"semantics", or_null(policy.semantics)},
+              {"seed", run.seed},
+              {"sensor", run.sensor},
+              {"voxel", run.voxel},
+              {"size", run.size ? Json(*run.size) : Json()},
+              {"views", row.views},
+              {"stop_reason", row.stop_reason}};
     const std::array<const char*, kGoals.size()> keys{"views_to_80", "views_to_90", "views_to_95"};
     for (std::size_t goal = 0; goal < keys.size(); ++goal) {
       json[keys[goal]] = row.views_to[goal] ? Json(*row.views_to[goal]) : Json();

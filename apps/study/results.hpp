@@ -4,11 +4,11 @@
 
 #include <array>
 #include <cstddef>
-#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "spec.hpp"
 
 namespace viewgain::app {
@@ -39,8 +39,7 @@ struct ResultRow {
 };
 
 /// From a run's run.json. Throws JsonError where something is missing in it.
-[[nodiscard]] ResultRow row_of(const StudySpec& spec, const StudyRun& run,
-                               const Json& json);
+[[nodiscard]] ResultRow row_of(const StudySpec& spec, const StudyRun& run, const Json& json);
 
 /// A text as CSV has it: with a comma, a quote or a line's end in quotes (RFC 4180).
 [[nodiscard]] std::string csv_text(const std::string& text);
@@ -52,7 +51,6 @@ inline constexpr const char* kRunColumns = "object,policy,gain,semantics,seed,se
 
 /// The contents of results.csv and results.json, a row a run in the spec's order.
 [[nodiscard]] std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows);
-[[nodiscard]] Json results_json(const StudySpec& spec,
-                                                  const std::vector<ResultRow>& rows);
+[[nodiscard]] Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows);
 
 }  // namespace viewgain::app

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
-#include "cli/json.hpp"
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "spec.hpp"
 #include "study_run.hpp"
 

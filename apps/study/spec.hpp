@@ -5,10 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include "cli/json.hpp"
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "cli/json.hpp"
 
 namespace viewgain::app {
 
@@ -30,11 +31,11 @@ struct StudyPrediction {
 struct StudyRun {
   std::size_t object = 0, policy = 0;  ///< indices in the spec
   std::uint64_t seed = 1;
-  std::string sensor;                    ///< preset or file, as in the spec
-  double voxel = 0;                      ///< [m]
-  std::optional<double> size;            ///< longest side [m]; none: the file's own
-  Json configuration;  ///< all that can change its result
-  std::string hash;                      ///< of that: the name of the run's folder
+  std::string sensor;          ///< preset or file, as in the spec
+  double voxel = 0;            ///< [m]
+  std::optional<double> size;  ///< longest side [m]; none: the file's own
+  Json configuration;          ///< all that can change its result
+  std::string hash;            ///< of that: the name of the run's folder
 };
 
 struct StudyObject {

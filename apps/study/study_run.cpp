@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study_run.hpp"
 
-#include "cli/app.hpp"
 #include <algorithm>
 #include <vector>
 
+#include "cli/app.hpp"
 #include "loop/run.hpp"
 #include "loop/run_options.hpp"
 #include "loop/run_report.hpp"

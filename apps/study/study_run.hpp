@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "cli/json.hpp"
 #include <optional>
 #include <stop_token>
 #include <string>
 
+#include "cli/json.hpp"
 #include "spec.hpp"
 
 namespace viewgain::app {
 
 /// What a run leaves in the study's folder.
 struct StudyResult {
-  Json run;   ///< run.json: configuration, figures, those of each view, seconds
+  Json run;                     ///< run.json: configuration, figures, those of each view, seconds
   std::string prediction_rows;  ///< prediction.csv without its head: a row a candidate
 };
 

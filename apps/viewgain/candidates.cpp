@@ -65,7 +65,7 @@ Order rank(const ProposalOptions& options, const GainEvaluator& evaluator,
 
 Json candidate_json(const Candidate& candidate, const EstimatedViews& estimated) {
   Json json{{"generator", candidate.generator},
-                              {"T_world_camera", to_json(candidate.T_world_camera)}};
+            {"T_world_camera", to_json(candidate.T_world_camera)}};
   if (candidate.boundary_class) {
     const BoundaryCandidate& proposed = estimated.candidates[candidate.number.value()];
     const std::uint32_t patch = proposed.patch;
@@ -110,14 +110,14 @@ void candidates(const Options& options) {
   const EstimatedViews& estimated = generation.estimated();
   if (options.common.json) {
     Json json{{"generator", options.proposal.generator},
-                                {"candidates", poses.size()},
-                                {"gain_model", nullptr},
-                                {"gain_unit", nullptr},
-                                {"dropped", Json::object()},
-                                {"runs", Json::array()},
-                                {"per_candidate", Json::array()},
-                                {"per_dropped", Json::array()},
-                                {"out", options.out}};
+              {"candidates", poses.size()},
+              {"gain_model", nullptr},
+              {"gain_unit", nullptr},
+              {"dropped", Json::object()},
+              {"runs", Json::array()},
+              {"per_candidate", Json::array()},
+              {"per_dropped", Json::array()},
+              {"out", options.out}};
     if (!ranking.gains.empty()) {
       json["gain_model"] = gain_model_name(ranking.model);
       json["gain_unit"] = gain_unit(ranking.model, kCriterion);

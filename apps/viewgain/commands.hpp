@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/app.hpp"
 #include <functional>
 #include <string>
 
+#include "cli/app.hpp"
 #include "options/common_options.hpp"
 #include "options/json_text.hpp"
 

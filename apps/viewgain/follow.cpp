@@ -268,9 +268,9 @@ class Following {
 
   [[nodiscard]] Json counts() const {
     Json json{{"frames", count()},
-                                {"waiting", watch_->waiting()},
-                                {"bad", Json::object()},
-                                {"stop_reason", nullptr}};
+              {"waiting", watch_->waiting()},
+              {"bad", Json::object()},
+              {"stop_reason", nullptr}};
     for (const auto& [reason, number] : watch_->bad()) json["bad"][reason] = number;
     if (map_ && map_->should_stop()) json["stop_reason"] = stop_reason_name(*map_->should_stop());
     return json;

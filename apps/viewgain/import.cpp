@@ -79,21 +79,21 @@ void print_summary(const Options& options, const Recording& recording, const Imp
   const std::size_t frames = recording.frames.size();
   if (options.common.json) {
     Json json{{"format", options.format},
-                                {"frames", frames},
-                                {"dropped", recording.dropped},
-                                {"orthonormalized_poses", recording.orthonormalized},
-                                {"width", camera.width},
-                                {"height", camera.height},
-                                {"intrinsics", {camera.fx, camera.fy, camera.cx, camera.cy}},
-                                {"depth_scale", recording.depth_scale},
-                                {"rows_reversed", recording.rows_reversed},
-                                {"readings", report.readings},
-                                {"masks", report.masks},
-                                {"masked_pixels", report.masked_pixels},
-                                {"amplitudes", report.amplitudes},
-                                {"sensor", nullptr},
-                                {"out", options.out},
-                                {"seconds", seconds}};
+              {"frames", frames},
+              {"dropped", recording.dropped},
+              {"orthonormalized_poses", recording.orthonormalized},
+              {"width", camera.width},
+              {"height", camera.height},
+              {"intrinsics", {camera.fx, camera.fy, camera.cx, camera.cy}},
+              {"depth_scale", recording.depth_scale},
+              {"rows_reversed", recording.rows_reversed},
+              {"readings", report.readings},
+              {"masks", report.masks},
+              {"masked_pixels", report.masked_pixels},
+              {"amplitudes", report.amplitudes},
+              {"sensor", nullptr},
+              {"out", options.out},
+              {"seconds", seconds}};
     if (sensor) json["sensor"] = sensor->name;
     print_json(json);
     return;

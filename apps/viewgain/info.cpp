@@ -91,22 +91,21 @@ void info(const Options& options) {
                               static_cast<double>(statistics.occupied);  // NaN or infinity: null
   if (options.common.json) {
     Json json{{"voxel_size", grid.voxel_size()},
-                                {"workspace", to_json(grid.workspace())},
-                                {"T_world_grid", to_json(grid.T_world_grid())},
-                                {"dims", {dims.x, dims.y, dims.z}},
-                                {"unknown", statistics.unknown},
-                                {"free", statistics.free},
-                                {"occupied", statistics.occupied},
-                                {"bytes", statistics.bytes},
-                                {"bytes_per_occupied_voxel", per_occupied},
-                                {"criterion", criterion_name(criterion)},
-                                {"entropy_removed", statistics.entropy_removed},
-                                {"prior_sigma", grid.prior_sigma()},
-                                {"views", grid.views().size()},
-                                {"sensor", map.sensor ? Json(map.sensor->name)
-                                                      : Json()},
-                                {"hazard_factors", hazard_factors(grid)},
-                                {"hash", grid.content_hash()}};
+              {"workspace", to_json(grid.workspace())},
+              {"T_world_grid", to_json(grid.T_world_grid())},
+              {"dims", {dims.x, dims.y, dims.z}},
+              {"unknown", statistics.unknown},
+              {"free", statistics.free},
+              {"occupied", statistics.occupied},
+              {"bytes", statistics.bytes},
+              {"bytes_per_occupied_voxel", per_occupied},
+              {"criterion", criterion_name(criterion)},
+              {"entropy_removed", statistics.entropy_removed},
+              {"prior_sigma", grid.prior_sigma()},
+              {"views", grid.views().size()},
+              {"sensor", map.sensor ? Json(map.sensor->name) : Json()},
+              {"hazard_factors", hazard_factors(grid)},
+              {"hash", grid.content_hash()}};
     if (region) json["region"] = region_json(*region);
     print_json(json);
     return;

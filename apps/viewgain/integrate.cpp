@@ -168,31 +168,29 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   const std::optional<double> frame_seconds = median(totals.seconds);
   if (options.common.json) {
     const std::optional<double> scale = source.depth_scale();
-    Json json = {
-        {part_name(options) + std::string("s"), taken},
-        {"skipped", totals.skipped},
-        {"views", grid.views().size()},
-        {"readings", totals.sum.readings},
-        {"readings_inside", totals.sum.readings_inside},
-        {"plane_readings", totals.sum.plane_readings},
-        {"masked_pixels", totals.masked_pixels},
-        {"jump_edge_removed", totals.jump_edge_removed},
-        {"out_of_range", totals.sum.out_of_range},
-        {"invalid", totals.sum.invalid},
-        {"orthonormalized_poses", source.orthonormalized()},
-        {"registration", nullptr},
-        {"sensor", source.sensor().name},
-        {"depth_scale", scale ? Json(*scale) : nullptr}};
+    Json json = {{part_name(options) + std::string("s"), taken},
+                 {"skipped", totals.skipped},
+                 {"views", grid.views().size()},
+                 {"readings", totals.sum.readings},
+                 {"readings_inside", totals.sum.readings_inside},
+                 {"plane_readings", totals.sum.plane_readings},
+                 {"masked_pixels", totals.masked_pixels},
+                 {"jump_edge_removed", totals.jump_edge_removed},
+                 {"out_of_range", totals.sum.out_of_range},
+                 {"invalid", totals.sum.invalid},
+                 {"orthonormalized_poses", source.orthonormalized()},
+                 {"registration", nullptr},
+                 {"sensor", source.sensor().name},
+                 {"depth_scale", scale ? Json(*scale) : nullptr}};
     if (options.registration.is_on == "on") {
       json["registration"] = registration_counts(totals.registrations);
     }
     json.update(map_json(grid, statistics));
-    json.update(
-        {{"lost_T_world_grid", lost.T_world_grid},
-         {"hash", grid.content_hash()},
-         {"out", options.out},
-         {"seconds", seconds},
-         {"seconds_per_frame", frame_seconds ? Json(*frame_seconds) : nullptr}});
+    json.update({{"lost_T_world_grid", lost.T_world_grid},
+                 {"hash", grid.content_hash()},
+                 {"out", options.out},
+                 {"seconds", seconds},
+                 {"seconds_per_frame", frame_seconds ? Json(*frame_seconds) : nullptr}});
     print_json(json);
     return;
   }

@@ -43,7 +43,8 @@ int end_of_output() {
 }
 
 // What CLI11 is to parse: the command line, with what a --config stands for.
-std::vector<std::string> all_words(const viewgain::app::App& program, std::vector<std::string> words) {
+std::vector<std::string> all_words(const viewgain::app::App& program,
+                                   std::vector<std::string> words) {
   const viewgain::app::App* subcommand = viewgain::app::subcommand_of(program, words);
   if (subcommand == nullptr) {
     if (!words.empty()) (void)viewgain::app::sort_words(program, {words[0]});

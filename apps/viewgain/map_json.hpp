@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdio>
-#include "cli/json.hpp"
 #include <string>
 
+#include "cli/json.hpp"
 #include "commands.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
@@ -13,8 +13,7 @@
 namespace viewgain::app {
 
 /// What a call says in JSON of a map that it has written.
-[[nodiscard]] inline Json map_json(const BeliefGrid& grid,
-                                                     const GridStatistics& statistics) {
+[[nodiscard]] inline Json map_json(const BeliefGrid& grid, const GridStatistics& statistics) {
   const Index3 dims = grid.dims();
   return {{"voxel_size", grid.voxel_size()},  {"workspace", to_json(grid.workspace())},
           {"dims", {dims.x, dims.y, dims.z}}, {"prior_sigma", grid.prior_sigma()},

@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include "cli/json.hpp"
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "command_line/config_file.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/progress.hpp"
@@ -47,13 +47,23 @@ EstimatedViews estimated_views(const ViewRecord& record, const CandidateGenerati
   return proposed ? generation.estimated() : EstimatedViews{};
 }
 
+std::optional<Pose> chosen_view(const ViewRecord& record) {
+  if (!record.decision) return std::nullopt;
+  return record.proposal.candidates[record.decision->candidate].T_world_camera;
+}
+
 RgbImage step_picture(const ViewRecord& record, const SurfaceModel& model,
                       const EstimatedViews& estimated, const GainEvaluator& evaluator,
-                      const Sensor& sensor, const ExecConfig& exec) {
-  const std::vector<Candidate>& candidates = record.proposal.candidates;
-  ViewPicture picture{model.surface(), estimated, candidates, record.T_world_camera,
-                      std::nullopt,    evaluator, sensor};
-  if (record.decision) picture.chosen = candidates[record.decision->candidate].T_world_camera;
+                      const std::vector<VoxelContribution>& contributions, const Sensor& sensor,
+                      const ExecConfig& exec) {
+  const ViewPicture picture{model.surface(),
+                            estimated,
+                            record.proposal.candidates,
+                            record.T_world_camera,
+                            chosen_view(record),
+                            evaluator,
+                            sensor,
+                            &contributions};
   return view_picture(picture, exec);
 }
 
@@ -62,18 +72,15 @@ void add_to(StageSeconds& totals, const StageSeconds& seconds) {
 }
 
 // What a run leaves beside what it wrote after each view. Returns what run.json holds.
-Json write_results(const RunFolder& folder, const RunSetup& setup,
-                                     std::uint64_t seed, const SurfaceModel& model,
-                                     const std::vector<Pose>& views,
-                                     const Json& report) {
+Json write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t seed,
+                   const SurfaceModel& model, const std::vector<Pose>& views, const Json& report) {
   save_vdb(model.grid(), folder.file("map.vdb"), noting_sensor(setup.sensor));
   write_surfaces(model, folder.file("surface.ply"), folder.file("points.ply"));
   write_tum(folder.file("views.txt"), views);
-  Json run{
-      {"settings", setup.settings},
-      {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}},
-      {"seed", seed},
-      {"map_hash", model.grid().content_hash()}};
+  Json run{{"settings", setup.settings},
+           {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}},
+           {"seed", seed},
+           {"map_hash", model.grid().content_hash()}};
   run.update(report);
   write_file_atomically(folder.file("run.json"), json_text(run));
   return run;
@@ -115,8 +122,11 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
       const Stopwatch watch;
       const GainEvaluator evaluator = step_evaluator(model, setup, exec);
       const EstimatedViews estimated = estimated_views(record, generation);
+      const std::optional<Pose> chosen = chosen_view(record);
+      std::vector<VoxelContribution> contributions;
+      if (chosen) contributions = evaluator.contributions(*chosen);
       const RgbImage picture =
-          step_picture(record, model, estimated, evaluator, setup.sensor, exec);
+          step_picture(record, model, estimated, evaluator, contributions, setup.sensor, exec);
       const DepthFrame& frame = loop.acquisition().last_frame();
       if (with_pictures) write_png(folder.view(record.index, ".png"), picture);
       if (with_pictures && !frame.amplitude.empty()) {
@@ -125,7 +135,8 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
       seconds["pictures"] += watch.seconds();
       if (with_report) {
         const Stopwatch report_watch;
-        page.add_view(record, model, generation, estimated, evaluator, picture);
+        page.add_view(record, model, generation, estimated, evaluator, std::move(contributions),
+                      picture);
         seconds["report"] += report_watch.seconds();
       }
     }
@@ -144,8 +155,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   const Json json = report.json(result.reason);
   write_file_atomically(folder.file("config.toml"),
                         config_text(app, {"out", "json", "quiet", "threads"}));
-  const Json run =
-      write_results(folder, setup, options.sensing.seed, model, views, json);
+  const Json run = write_results(folder, setup, options.sensing.seed, model, views, json);
   if (with_report) {
     write_report(folder.file("report.html"), page.json(run, setup.stage.scene.get()));
   }

@@ -240,10 +240,10 @@ void render(const Options& options, const App& app) {
   write_png(options.out, picture.image);
   if (options.common.json) {
     Json json{{"what", options.what},
-                                {"width", picture.image.width},
-                                {"height", picture.image.height},
-                                {"colours", nullptr},
-                                {"out", options.out}};
+              {"width", picture.image.width},
+              {"height", picture.image.height},
+              {"colours", nullptr},
+              {"out", options.out}};
     if (picture.colours) {
       json["colours"] = {{"of", picture.colours->what},
                          {"unit", picture.colours->unit},

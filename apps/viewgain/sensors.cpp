@@ -85,8 +85,8 @@ void sensors(const Options& options) {
 Command add_sensors(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand("sensors",
-                                         "The presets of --sensor with their figures; with NAME "
-                                         "that one's file, to begin an own from.");
+                                    "The presets of --sensor with their figures; with NAME "
+                                    "that one's file, to begin an own from.");
   app->add_option("NAME", options->name, "preset or .toml file to print");
   add_common_options(*app, options->common);
   add_help(*app, kLookGroup, "sensors d435");

@@ -145,29 +145,27 @@ void simulate(const Options& options) {
 
   if (options.common.json) {
     const SensingOptions& sensing = options.sensing;
-    print_json(
-        {{"frames", poses.size()},
-         {"views", source.poses.size()},
-         {"frames_per_view", options.frames_per_view},
-         {"width", sensor.camera.width},
-         {"height", sensor.camera.height},
-         {"sensor", sensor.name},
-         {"triangles", triangles},
-         {"readings", counts.readings},
-         {"out_of_range", counts.out_of_range},
-         {"invalid", counts.invalid},
-         {"noise", sensing.noise == "on"},
-         {"flying_pixels", sensing.has_flying_pixels(sensor)},
-         {"wiggling", sensing.wiggling},
-         {"calibrated", sensing.calibrate == "on"},
-         {"support_plane", sensing.support_plane ? Json(*sensing.support_plane)
-                                                 : Json()},
-         {"pose_noise", pose_sigmas_json(pose_noise)},
-         {"amplitude", options.writes_amplitude(sensor)},
-         {"seed", sensing.seed},
-         {"orthonormalized_poses", source.orthonormalized},
-         {"out", options.out},
-         {"seconds", seconds}});
+    print_json({{"frames", poses.size()},
+                {"views", source.poses.size()},
+                {"frames_per_view", options.frames_per_view},
+                {"width", sensor.camera.width},
+                {"height", sensor.camera.height},
+                {"sensor", sensor.name},
+                {"triangles", triangles},
+                {"readings", counts.readings},
+                {"out_of_range", counts.out_of_range},
+                {"invalid", counts.invalid},
+                {"noise", sensing.noise == "on"},
+                {"flying_pixels", sensing.has_flying_pixels(sensor)},
+                {"wiggling", sensing.wiggling},
+                {"calibrated", sensing.calibrate == "on"},
+                {"support_plane", sensing.support_plane ? Json(*sensing.support_plane) : Json()},
+                {"pose_noise", pose_sigmas_json(pose_noise)},
+                {"amplitude", options.writes_amplitude(sensor)},
+                {"seed", sensing.seed},
+                {"orthonormalized_poses", source.orthonormalized},
+                {"out", options.out},
+                {"seconds", seconds}});
     return;
   }
   std::printf("%zu frames of %dx%d px (%s) of %s triangles in %.2f s: %s\n", poses.size(),

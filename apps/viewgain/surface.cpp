@@ -110,16 +110,16 @@ Figures figures_of(const SurfaceScene& mesh, const MapOfSensor& map, const Surfa
 
 Json to_json(const Figures& figures) {
   Json json{{"coverage", figures.coverage},
-                              {"coverage_seen", nullptr},
-                              {"coverage_2_5mm", figures.coverage_2_5mm},
-                              {"rms_error", figures.surface_error.rms},
-                              {"p95_error", figures.surface_error.p95},
-                              {"rms_error_points", figures.points_error.rms},
-                              {"p95_error_points", figures.points_error.p95},
-                              {"consistency", figures.consistency.mean_clipped},
-                              {"consistency_median", figures.consistency.median},
-                              {"consistency_above_9", figures.consistency.above_9},
-                              {"outliers", figures.consistency.outliers}};
+            {"coverage_seen", nullptr},
+            {"coverage_2_5mm", figures.coverage_2_5mm},
+            {"rms_error", figures.surface_error.rms},
+            {"p95_error", figures.surface_error.p95},
+            {"rms_error_points", figures.points_error.rms},
+            {"p95_error_points", figures.points_error.p95},
+            {"consistency", figures.consistency.mean_clipped},
+            {"consistency_median", figures.consistency.median},
+            {"consistency_above_9", figures.consistency.above_9},
+            {"outliers", figures.consistency.outliers}};
   if (figures.coverage_seen) json["coverage_seen"] = *figures.coverage_seen;
   return json;
 }
@@ -163,14 +163,14 @@ void surface(const Options& options, const App& app) {
 
   if (options.common.json) {
     Json json{{"points", points.size()},
-                                {"vertices", surface.vertices.size()},
-                                {"triangles", surface.triangles.size()},
-                                {"area", mesh_area(surface)},
-                                {"median_sigma", nullptr},
-                                {"truth", nullptr},
-                                {"out", nullptr},
-                                {"points_out", nullptr},
-                                {"seconds", watch.seconds()}};
+              {"vertices", surface.vertices.size()},
+              {"triangles", surface.triangles.size()},
+              {"area", mesh_area(surface)},
+              {"median_sigma", nullptr},
+              {"truth", nullptr},
+              {"out", nullptr},
+              {"points_out", nullptr},
+              {"seconds", watch.seconds()}};
     if (median) json["median_sigma"] = *median;
     if (figures) json["truth"] = to_json(*figures);
     if (!options.out.empty()) json["out"] = options.out;

@@ -22,6 +22,12 @@ std::string read_file(const fs::path& path) {
 
 }  // namespace
 
+std::vector<std::string> joined(std::vector<std::string> call,
+                                const std::vector<std::string>& more) {
+  call.insert(call.end(), more.begin(), more.end());
+  return call;
+}
+
 ProgramTest::ProgramTest() {
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
   dir = fs::temp_directory_path() /
@@ -80,6 +86,28 @@ std::string ProgramTest::run_well(const std::vector<std::string>& arguments) con
   EXPECT_EQ(result.exit_code, 0) << arguments.front() << ": " << result.err;
   EXPECT_EQ(result.err, "") << arguments.front();
   return result.out;
+}
+
+void ProgramTest::expect_refused(const std::vector<std::string>& arguments,
+                                 const std::string& word) const {
+  const auto before = contents();
+  const ProgramResult result = run(arguments);
+  std::string shown = "viewgain";
+  for (const std::string& argument : arguments) shown += ' ' + argument;
+  shown += "\n" + result.err;
+  EXPECT_EQ(result.exit_code, 2) << shown;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << shown;
+  EXPECT_TRUE(result.err.starts_with("viewgain: ")) << shown;
+  EXPECT_NE(result.err.find(word), std::string::npos) << word << " is not in " << shown;
+  EXPECT_EQ(result.out, "") << shown;
+  EXPECT_TRUE(contents() == before) << shown;
+}
+
+void ProgramTest::expect_refused(const Refusals& calls) const { expect_refused_with({}, calls); }
+
+void ProgramTest::expect_refused_with(const std::vector<std::string>& call,
+                                      const Refusals& flags) const {
+  for (const auto& [more, word] : flags) expect_refused(joined(call, more), word);
 }
 
 void ProgramTest::write(const std::string& name, const std::string& bytes) const {

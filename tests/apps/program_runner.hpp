@@ -19,6 +19,13 @@ struct ProgramResult {
   std::string err;
 };
 
+/// Calls, and what the message that refuses each must have.
+using Refusals = std::vector<std::pair<std::vector<std::string>, std::string>>;
+
+/// One call's words and more.
+[[nodiscard]] std::vector<std::string> joined(std::vector<std::string> call,
+                                              const std::vector<std::string>& more);
+
 /// A test in an empty folder of its own that can run the built program as a user would.
 class ProgramTest : public testing::Test {
  protected:
@@ -37,6 +44,13 @@ class ProgramTest : public testing::Test {
 
   /// As run(), and fails the test unless the exit code is 0 and stderr empty. Returns stdout.
   std::string run_well(const std::vector<std::string>& arguments) const;
+
+  /// The call ends with 2, one line on stderr that has the word, nothing on stdout, and every byte
+  /// as it was.
+  void expect_refused(const std::vector<std::string>& arguments, const std::string& word) const;
+  void expect_refused(const Refusals& calls) const;
+  /// Each of these flags at the end of a call.
+  void expect_refused_with(const std::vector<std::string>& call, const Refusals& flags) const;
 
   void write(const std::string& name, const std::string& bytes) const;
   [[nodiscard]] std::string read(const std::string& name) const;

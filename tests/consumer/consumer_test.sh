@@ -3,7 +3,7 @@
 #   consumer_test.sh KIND SOURCE_FOLDER BUILD_FOLDER WORK_FOLDER EXPECTED_GAIN_PROGRAM
 # KIND: install, install_static (these two first: the others use what they leave in WORK_FOLDER);
 # find_package, native, moved, static, static_native, pkg_config, add_subdirectory, headers, python,
-# octomap, absolute_folders, versions, missing_dependency, wrong_version, no_component.
+# octomap, absolute_folders, versions, missing_dependency.
 set -euo pipefail
 kind=$1 source=$2 build=$3 work=$4 expected=$5
 here=$source/tests/consumer
@@ -25,11 +25,18 @@ check_gain() { # PROGRAM [c]
   echo "$kind: gain $gain"
 }
 
+# A source of this folder compiled by what viewgain.pc's folder, $pc, says of a package.
+by_pkg_config() { # PACKAGE SOURCE PROGRAM [flags]
+  # Split on purpose.
+  # shellcheck disable=SC2046
+  c++ -std=c++20 "$here/$2" -o "$work/$kind/$3" "${@:4}" $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs "$1")
+}
+
 # A project that finds viewgain under a prefix, built, and its three programs run.
 check_project() { # PREFIX [cmake arguments]
   local folder=$work/$kind
   rm -rf "$folder"
-  cmake -S "$here/find_package" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  cmake -S "$here/find_package" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Debug \
     "-DCMAKE_PREFIX_PATH=$1" "${@:2}" >/dev/null
   quiet_build "$folder"
   check_gain "$folder/gain"
@@ -73,56 +80,37 @@ case $kind in
     check_project "$work/static_prefix"
     ! ldd "$work/static/gain" | grep viewgain || fail "not linked statically"
     pc=$(dirname "$(find "$work/static_prefix" -name viewgain.pc)")
-    # Split on purpose.
-    # shellcheck disable=SC2046
-    c++ -std=c++20 "$here/gain.cpp" -o "$work/$kind/by_pkg_config" \
-      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain)
+    by_pkg_config viewgain gain.cpp by_pkg_config
     check_gain "$work/$kind/by_pkg_config"
-    # shellcheck disable=SC2046
-    c++ -std=c++20 "$here/files.cpp" -o "$work/$kind/files_by_pkg_config" \
-      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-formats)
+    by_pkg_config viewgain-formats files.cpp files_by_pkg_config
     [ "$("$work/$kind/files_by_pkg_config" "$work/$kind/sensor.toml")" = 111 ] || fail "files.cpp"
-    # shellcheck disable=SC2046
-    c++ -std=c++20 "$here/planner.cpp" -o "$work/$kind/planner_by_pkg_config" \
-      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-planner)
+    by_pkg_config viewgain-planner planner.cpp planner_by_pkg_config
     [ "$("$work/$kind/planner_by_pkg_config" "$work/$kind/state.vdb")" = 11111 ] || fail "planner.cpp"
     ;;
   static_native) check_project "$work/static_prefix" -DCMAKE_CXX_FLAGS=-march=native ;;
   pkg_config)
     mkdir -p "$work/$kind"
     pc=$(dirname "$(find "$work/prefix" -name viewgain.pc)")
-    libraries=$(dirname "$pc")
-    # Split on purpose.
-    # shellcheck disable=SC2046
-    c++ -std=c++20 "$here/gain.cpp" -o "$work/$kind/gain" "-Wl,-rpath,$libraries" \
-      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs "viewgain >= 0.1")
+    rpath=-Wl,-rpath,$(dirname "$pc")
+    by_pkg_config "viewgain >= 0.1" gain.cpp gain "$rpath"
     check_gain "$work/$kind/gain"
     # C99 with the one header.
     # shellcheck disable=SC2046
     cc -std=c99 -pedantic -Wall -Wextra -Werror "$here/gain.c" -o "$work/$kind/gain_c" \
-      "-Wl,-rpath,$libraries" $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain)
+      "$rpath" $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain)
     check_gain "$work/$kind/gain_c" c
-    # shellcheck disable=SC2046
-    c++ -std=c++20 "$here/boundary.cpp" -o "$work/$kind/boundary" "-Wl,-rpath,$libraries" \
-      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-mesh)
+    by_pkg_config viewgain-mesh boundary.cpp boundary "$rpath"
     [ "$("$work/$kind/boundary" "$work/$kind/map.vdb")" = 11111111 ] || fail "boundary.cpp"
     # shellcheck disable=SC2046
     cc -std=c99 -pedantic -Wall -Wextra -Werror -fsyntax-only -include viewgain/formats.h "$here/gain.c" \
       $(PKG_CONFIG_PATH=$pc pkg-config --cflags viewgain-formats)
-    # shellcheck disable=SC2046
-    c++ -std=c++20 "$here/files.cpp" -o "$work/$kind/files" "-Wl,-rpath,$libraries" \
-      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-formats)
+    by_pkg_config viewgain-formats files.cpp files "$rpath"
     [ "$("$work/$kind/files" "$work/$kind/sensor.toml")" = 111 ] || fail "files.cpp"
     cc -std=c99 -pedantic -Wall -Wextra -Werror -fsyntax-only -include viewgain/planner.h "$here/gain.c" \
       $(PKG_CONFIG_PATH=$pc pkg-config --cflags viewgain-planner)
-    # shellcheck disable=SC2046
-    c++ -std=c++20 "$here/planner.cpp" -o "$work/$kind/planner" "-Wl,-rpath,$libraries" \
-      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-planner)
+    by_pkg_config viewgain-planner planner.cpp planner "$rpath"
     [ "$("$work/$kind/planner" "$work/$kind/state.vdb")" = 11111 ] || fail "planner.cpp"
-    # shellcheck disable=SC2046
-    c++ -std=c++20 -DWITH_SURFACES "$here/planner.cpp" -o "$work/$kind/planner_mesh" \
-      "-Wl,-rpath,$libraries" \
-      $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs viewgain-planner_mesh)
+    by_pkg_config viewgain-planner_mesh planner.cpp planner_mesh -DWITH_SURFACES "$rpath"
     [ "$("$work/$kind/planner_mesh" "$work/$kind/state.vdb")" = 11111 ] || fail "planner.cpp with surfaces"
     ;;
   add_subdirectory)
@@ -148,6 +136,9 @@ case $kind in
     grep -q Eigen "$work/all.d" || fail "no Eigen in the list"
     ! grep -oE '[^ ]*/((openvdb|embree[34]?|CGAL|tbb|oneapi|hwy|boost|Imath|toml\+\+)/[^ ]*|png\.h( |$))' "$work/all.d" ||
       fail "a public header brings in a private library"
+    # Nor does a public type hold what Eigen aligns as -march says: clients may be compiled for another processor.
+    ! grep -rnE '^  (std::[a-z]+<)?Eigen::(Vector[24]|Matrix[24]|Isometry|Affine|Transform|Quaternion)' "$work/prefix/include" ||
+      fail "a public type's layout depends on the instruction set"
     ;;
   python)
     # Both modules, found where they were installed, with libraries of the same prefix.
@@ -207,9 +198,7 @@ PROGRAM
 cmake_minimum_required(VERSION 3.22)
 project(consumer LANGUAGES CXX)
 set(cases 0)
-foreach(case IN ITEMS "0.1;yes" "0.1.0;yes" "0.1...0.5;yes" "0.0...0.1;yes" "0.1...0.1;yes" "0.1...<0.2;yes"
-        "0...1;yes" "0.1.0...0.1.0;yes" "0.0;no" "0.2;no" "0.1.99;no" "1.0;no" "0.2...0.5;no"
-        "0.0...<0.1;no" "0.0...0.0.9;no" "0.1.99...0.5;no" "9...10;no")
+foreach(case IN ITEMS "0.1;yes" "0.1.0;yes" "0.1...0.1.9;yes" "0.0;no" "0.2;no" "0.1.99;no" "1.0;no")
   list(GET case 0 version)
   list(GET case 1 expected)
   set(viewgain_DIR viewgain_DIR-NOTFOUND CACHE PATH "" FORCE)
@@ -228,7 +217,7 @@ message(STATUS "${cases} requests")
 PROJECT
     cmake -S "$folder" -B "$folder/build" -G Ninja "-DCMAKE_PREFIX_PATH=$work/prefix" >"$folder/log" 2>&1 ||
       { cat "$folder/log" >&2; fail "find_package answered otherwise"; }
-    grep -q '17 requests' "$folder/log" || fail "not all requests were made"
+    grep -q '7 requests' "$folder/log" || fail "not all requests were made"
     ;;
   missing_dependency)
     cases=0
@@ -261,7 +250,8 @@ PROJECT
     check_request "viewgain REQUIRED COMPONENTS octomap" 'CMake Error.*octomap' "$shared" "$no_octomap"
     check_request "viewgain OPTIONAL_COMPONENTS octomap" 'answer:(0|FALSE):.*Eigen3 could not be found' \
       "$shared" -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON
-    [ "$cases" = 10 ] || fail "$cases cases"
+    check_request "viewgain 9.0 REQUIRED" 'compatible with requested version "9.0"' "$shared"
+    [ "$cases" = 11 ] || fail "$cases cases"
     ;;
   absolute_folders)
     # Distributions give folders as absolute paths.
@@ -276,23 +266,6 @@ PROJECT
     [ "$(pkg-config --variable=includedir viewgain)" = "$folder/usr/inc" ] ||
       fail "$(pkg-config --variable=includedir viewgain)"
     [ "$(pkg-config --variable=prefix viewgain)" = "$folder/usr" ] || fail "$(pkg-config --variable=prefix viewgain)"
-    ;;
-  wrong_version | no_component)
-    folder=$work/$kind
-    rm -rf "$folder" && mkdir "$folder"
-    if [ "$kind" = wrong_version ]; then
-      request="viewgain 9.0 REQUIRED"
-      message='compatible with requested version "9.0"'
-    else
-      request="viewgain REQUIRED COMPONENTS mesh hovercraft"
-      message='without the component hovercraft'
-    fi
-    printf 'cmake_minimum_required(VERSION 3.22)\nproject(consumer LANGUAGES CXX)\nfind_package(%s)\n' \
-      "$request" >"$folder/CMakeLists.txt"
-    if cmake -S "$folder" -B "$folder/build" -G Ninja "-DCMAKE_PREFIX_PATH=$work/prefix" >"$folder/log" 2>&1; then
-      fail "find_package($request) was accepted"
-    fi
-    tr -s ' \n' ' ' <"$folder/log" | grep -qF "$message" || { cat "$folder/log" >&2; fail "no clear message"; }
     ;;
   *) fail "unknown kind" ;;
 esac

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <clocale>
+#include <cstdlib>
 #include <locale>
 #include <string>
 
@@ -14,13 +17,16 @@ struct CommaPunctuation : std::numpunct<char> {
   std::string do_grouping() const override { return "\3"; }
 };
 
-/// Commas for decimals in C++ streams always, in the C library where such a locale is installed.
+/// Commas for decimals in C++ streams always, in the C library where there is such a locale, as
+/// tests/run.sh makes one; a test that has none where CI is set fails.
 class CommaLocale {
  public:
   CommaLocale() : old_(std::locale::global(std::locale(std::locale(), new CommaPunctuation))) {
+    bool found = false;
     for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8"}) {
-      if (std::setlocale(LC_NUMERIC, name) != nullptr) break;
+      if ((found = std::setlocale(LC_NUMERIC, name) != nullptr)) break;
     }
+    if (!found && std::getenv("CI") != nullptr) ADD_FAILURE() << "no locale with decimal commas";
   }
   ~CommaLocale() {
     std::locale::global(old_);

@@ -15,8 +15,7 @@ using test::RandomValues;
 
 TEST(SymmetricMatrix3, AgreesWithEigen) {
   RandomValues random(1);
-  int cases = 0;
-  for (int i = 0; i < 2000; ++i, ++cases) {
+  for (int i = 0; i < 2000; ++i) {
     const Eigen::Matrix3d a = random.spd(0.1, 10), b = random.spd(0.1, 10);
     const Eigen::Vector3d v = random.vector();
     const auto m = SymmetricMatrix3::from(a);
@@ -27,7 +26,6 @@ TEST(SymmetricMatrix3, AgreesWithEigen) {
     ASSERT_NEAR(m.determinant() / a.determinant(), 1, 1e-10);
     ASSERT_LT((m.inverse().matrix() * a - Eigen::Matrix3d::Identity()).norm(), 1e-10);
   }
-  EXPECT_EQ(cases, 2000);
 }
 
 TEST(SymmetricMatrix3, KeepsTheOrderOfTheMapFiles) {
@@ -72,8 +70,7 @@ TEST(SymmetricMatrix3, OnlyPositiveDefiniteOnesHaveAnInverse) {
 
 TEST(Measurement, CovarianceHasTheSigmasAlongAndAcrossTheRay) {
   RandomValues random(2);
-  int cases = 0;
-  for (int i = 0; i < 2000; ++i, ++cases) {
+  for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3d d = random.unit_vector();
     const MeasurementSigmas s{random.magnitude(1e-4, 1e-1), random.magnitude(1e-4, 1e-1)};
     const Eigen::Matrix3d covariance = measurement_covariance(d, s).matrix();
@@ -85,30 +82,17 @@ TEST(Measurement, CovarianceHasTheSigmasAlongAndAcrossTheRay) {
     const Eigen::Vector3d side = d.unitOrthogonal();
     ASSERT_NEAR(side.dot(covariance * side) / (s.lateral * s.lateral), 1, 1e-9);
   }
-  EXPECT_EQ(cases, 2000);
 }
 
 TEST(Measurement, InformationIsTheInverseOfTheCovariance) {
   RandomValues random(3);
-  int cases = 0;
-  for (int i = 0; i < 2000; ++i, ++cases) {
+  for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3d d = random.unit_vector();
     const MeasurementSigmas s{random.magnitude(1e-3, 1e-2), random.magnitude(1e-3, 1e-2)};
     const Eigen::Matrix3d product =
         measurement_information(d, s).matrix() * measurement_covariance(d, s).matrix();
     ASSERT_LT((product - Eigen::Matrix3d::Identity()).norm(), 1e-12);
   }
-  EXPECT_EQ(cases, 2000);
-}
-
-TEST(Measurement, FusionOfEqualReadingsDividesTheCovariance) {
-  // Eq. (4) in information form: n equal readings leave Σ / n.
-  const Eigen::Vector3d d = Eigen::Vector3d(1, -2, 2) / 3.0;
-  const MeasurementSigmas s{3.6e-3, 1.8e-3};
-  SymmetricMatrix3 fused;
-  for (int i = 0; i < 10; ++i) fused += measurement_information(d, s);
-  const Eigen::Matrix3d expected = measurement_covariance(d, s).matrix() / 10.0;
-  EXPECT_LT((fused.inverse().matrix() - expected).norm(), 1e-12 * expected.norm());
 }
 
 }  // namespace

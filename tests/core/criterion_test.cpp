@@ -44,22 +44,18 @@ LongMatrix widened(const SymmetricMatrix3& m) { return m.matrix().cast<long doub
 
 TEST(Entropy, EqualsTheDefinition) {
   RandomValues random(1);
-  int cases = 0;
   for (int i = 0; i < 3000; ++i) {
     const auto information = SymmetricMatrix3::from(random.spd(1e3, 1e7));
     for (const Criterion c : kCriteria) {
       const double expected = static_cast<double>(explicit_entropy(widened(information), c));
       ASSERT_NEAR(entropy(information, c), expected, 1e-10 * (1 + std::abs(expected)))
           << criterion_name(c);
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 9000);
 }
 
 TEST(Entropy, SurvivesIllConditionedMatrices) {
   RandomValues random(2);
-  int cases = 0;
   for (int i = 0; i < 2000; ++i) {
     // One to three stiff axes: eigenvalues 1 .. 1e10, where plain cofactors lose everything.
     const auto information = SymmetricMatrix3::from(random.spd(1, 1e10));
@@ -67,29 +63,23 @@ TEST(Entropy, SurvivesIllConditionedMatrices) {
       const double expected = static_cast<double>(explicit_entropy(widened(information), c));
       ASSERT_NEAR(entropy(information, c), expected, 1e-5 * (1 + std::abs(expected)))
           << criterion_name(c);
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 6000);
 }
 
 TEST(Entropy, OfWhatIsNotPositiveDefiniteIsNan) {
-  int cases = 0;
   for (const SymmetricMatrix3& m :
        {SymmetricMatrix3{}, SymmetricMatrix3{-1, -1, -1, 0, 0, 0},
         SymmetricMatrix3{1, 1, 1, 2, 0, 0}, SymmetricMatrix3{-1, -1, 1, 0, 0, 0},
         SymmetricMatrix3{NAN, 1, 1, 0, 0, 0}}) {
     for (const Criterion c : kCriteria) {
       EXPECT_TRUE(std::isnan(entropy(m, c)));
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 15);
 }
 
 TEST(EntropyReduction, EqualsTheDifference) {
   RandomValues random(3);
-  int cases = 0;
   for (int i = 0; i < 3000; ++i) {
     const auto before = SymmetricMatrix3::from(random.spd(1e3, 1e6));
     const auto added = SymmetricMatrix3::from(random.magnitude(1e-3, 1e3) * random.spd(1e3, 1e6));
@@ -101,15 +91,12 @@ TEST(EntropyReduction, EqualsTheDifference) {
       ASSERT_NEAR(entropy_reduction(before, added, c),
                   entropy(before, c) - entropy(before + added, c),
                   1e-8 * (1 + std::abs(entropy(before, c))));
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 9000);
 }
 
 TEST(EntropyReduction, KeepsTheDigitsOfTinyAdditions) {
   RandomValues random(4);
-  int cases = 0;
   for (int i = 0; i < 2000; ++i) {
     // A difference of two entropies in double would keep 16 - 10 digits at most, here they are 9.
     const auto before = SymmetricMatrix3::from(random.spd(1e4, 1e6));
@@ -121,55 +108,25 @@ TEST(EntropyReduction, KeepsTheDigitsOfTinyAdditions) {
     const long double diagonal_gain =
         (drop.diagonal().array() / covariance.diagonal().array()).sum() / 2;
     const std::array<long double, 3> expected{diagonal_gain, determinant_gain, drop.trace()};
-    for (std::size_t c = 0; c < 3; ++c, ++cases) {
+    for (std::size_t c = 0; c < 3; ++c) {
       ASSERT_NEAR(entropy_reduction(before, added, kCriteria[c]) / static_cast<double>(expected[c]),
                   1, 3e-6);
     }
   }
-  EXPECT_EQ(cases, 6000);
 }
 
 TEST(EntropyReduction, OfNothingIsZero) {
   RandomValues random(5);
-  int cases = 0;
   for (int i = 0; i < 300; ++i) {
     const auto before = SymmetricMatrix3::from(random.spd(1, 1e8));
     for (const Criterion c : kCriteria) {
       ASSERT_EQ(entropy_reduction(before, {}, c), 0.0);
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 900);
-}
-
-TEST(EntropyReduction, GrowsWithWhatIsAdded) {
-  RandomValues random(6);
-  int cases = 0;
-  for (int i = 0; i < 3000; ++i) {
-    const auto before = SymmetricMatrix3::from(random.spd(1e4, 1e6));
-    const SymmetricMatrix3 first = measurement_information(
-        random.unit_vector(), {random.magnitude(1e-3, 1e-2), random.magnitude(1e-3, 1e-2)});
-    const SymmetricMatrix3 second = measurement_information(
-        random.unit_vector(), {random.magnitude(1e-3, 1e-2), random.magnitude(1e-3, 1e-2)});
-    for (const Criterion c : kCriteria) {
-      const double one = entropy_reduction(before, first, c);
-      const double both = entropy_reduction(before, first + second, c);
-      ASSERT_GT(one, 0);
-      ASSERT_GT(both, one);
-      // In two steps as in one.
-      ASSERT_NEAR(one + entropy_reduction(before + first, second, c), both, 1e-9 * both);
-      ++cases;
-    }
-    // Submodular: the same reading is worth less once another is there.
-    ASSERT_LE(entropy_reduction(before + first, second, Criterion::log_determinant),
-              entropy_reduction(before, second, Criterion::log_determinant) * (1 + 1e-12));
-  }
-  EXPECT_EQ(cases, 9000);
 }
 
 TEST(EntropyReduction, LargestEigenvalueIsABound) {
   RandomValues random(7);
-  int cases = 0;
   for (int i = 0; i < 3000; ++i) {
     const auto before = SymmetricMatrix3::from(random.spd(1e4, 1e6));
     const Eigen::Matrix3d added = random.spd(1e2, 1e8);
@@ -178,10 +135,8 @@ TEST(EntropyReduction, LargestEigenvalueIsABound) {
     for (const Criterion c : kCriteria) {
       ASSERT_LE(entropy_reduction(before, SymmetricMatrix3::from(added), c),
                 entropy_reduction(before, bound, c) * (1 + 1e-9));
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 9000);
 }
 
 TEST(EntropyReduction, RotationLeavesDeterminantAndTraceButNotTheDiagonal) {
@@ -211,12 +166,9 @@ TEST(EntropyReduction, RotationLeavesDeterminantAndTraceButNotTheDiagonal) {
 TEST(CriterionNames, RoundTripAndListTheValidOnes) {
   EXPECT_EQ(criterion_names(),
             (std::vector<std::string>{"log_diagonal", "log_determinant", "trace"}));
-  int cases = 0;
   for (const Criterion c : kCriteria) {
     EXPECT_EQ(parse_criterion(criterion_name(c)), c);
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
   expect_error(ErrorCode::invalid_argument,
                "unknown criterion 'entropy', valid are log_diagonal, log_determinant, trace",
                [] { (void)parse_criterion("entropy"); });

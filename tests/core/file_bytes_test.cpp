@@ -29,7 +29,6 @@ std::string some_bytes(std::size_t count) {
 
 TEST(FileBytes, OfFilesOfAnySize) {
   const TemporaryFolder folder;
-  int cases = 0;
   for (const std::size_t size :
        {0U, 1U, 15U, 16U, 4096U, 1U << 20U, (1U << 20U) + 1U, 5'000'000U}) {
     const std::string bytes = some_bytes(size);
@@ -41,9 +40,7 @@ TEST(FileBytes, OfFilesOfAnySize) {
       expect_error(ErrorCode::capacity, path.string() + ": has more than",
                    [&] { (void)file_bytes(path, size - 1); });
     }
-    ++cases;
   }
-  EXPECT_EQ(cases, 8);
   EXPECT_FALSE(file_bytes("/proc/self/status").empty());  // has a length of 0
 }
 

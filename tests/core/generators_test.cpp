@@ -46,30 +46,14 @@ TEST(SpherePoses, AreTheFibonacciLattice) {
   EXPECT_EQ(cases, 2010);
 }
 
-TEST(SpherePoses, AreSpreadEvenly) {
-  const auto poses = sphere_poses(1000, 1.0);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double nearest = 4;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    sum += poses[i].translation();
-    for (std::size_t k = 0; k < i; ++k) {
-      nearest = std::min(nearest, (poses[i].translation() - poses[k].translation()).norm());
-    }
-  }
-  EXPECT_LT(sum.norm() / 1000, 1e-3);
-  EXPECT_GT(nearest, 0.08);  // a hexagonal packing of 1000 points would have 0.12
-}
-
 TEST(DomePoses, AreTheUpperHalf) {
   const auto poses = dome_poses(500, 0.6);
   const auto sphere = sphere_poses(1000, 0.6);
   ASSERT_EQ(poses.size(), 500U);
-  int cases = 0;
-  for (std::size_t i = 0; i < 500; ++i, ++cases) {
+  for (std::size_t i = 0; i < 500; ++i) {
     ASSERT_EQ(poses[i], sphere[i]);
     ASSERT_GT(poses[i].translation().z(), 0);
   }
-  EXPECT_EQ(cases, 500);
 }
 
 TEST(OrbitPoses, LieOnACircleOfLatitude) {
@@ -77,8 +61,7 @@ TEST(OrbitPoses, LieOnACircleOfLatitude) {
   const Eigen::Vector3d center(1, 2, 3);
   const auto poses = orbit_poses(3, 0.6, 27 * degree, 10 * degree, 46 * degree, center);
   ASSERT_EQ(poses.size(), 3U);
-  int cases = 0;
-  for (std::size_t i = 0; i < 3; ++i, ++cases) {
+  for (std::size_t i = 0; i < 3; ++i) {
     const double azimuth = (10 + 46 * static_cast<double>(i)) * degree;
     const Eigen::Vector3d expected(std::cos(27 * degree) * std::cos(azimuth),
                                    std::cos(27 * degree) * std::sin(azimuth),
@@ -86,7 +69,6 @@ TEST(OrbitPoses, LieOnACircleOfLatitude) {
     EXPECT_LT((poses[i].translation() - center - 0.6 * expected).norm(), 1e-15);
     expect_looks_at(poses[i], center, 0.6);
   }
-  EXPECT_EQ(cases, 3);
 }
 
 TEST(OrbitPoses, StepDefaultsToAFullTurn) {
@@ -126,11 +108,10 @@ RingPlace place_of(const Pose& pose, const Eigen::Vector3d& center) {
 TEST(RingPoses, AreARingThatLooksDown) {
   const Eigen::Vector3d center(1, -2, 0.5);
   const double degree = std::numbers::pi / 180;
-  int cases = 0;
   for (const double tilt : {-30.0, 0.0, 22.5, 89.0}) {
     const auto poses = ring_poses(7, 0.6, 0.35, tilt * degree, 0.3, center);
     ASSERT_EQ(poses.size(), 7U);
-    for (std::size_t i = 0; i < 7; ++i, ++cases) {
+    for (std::size_t i = 0; i < 7; ++i) {
       const RingPlace place = place_of(poses[i], center);
       EXPECT_NEAR(place.radius, 0.6, 1e-15);
       EXPECT_NEAR(place.height, 0.35, 1e-15);
@@ -143,7 +124,6 @@ TEST(RingPoses, AreARingThatLooksDown) {
       EXPECT_GE(-poses[i].rotation()(2, 1), 0);  // image-up does not point below the horizon
     }
   }
-  EXPECT_EQ(cases, 28);
   EXPECT_EQ(ring_poses(1, 1, 0, 90 * degree)[0].rotation().col(2).z(), -1);
 }
 

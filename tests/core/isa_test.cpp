@@ -64,17 +64,14 @@ TEST(Isa, AWishTheCpuLacksGivesTheBestItHas) {
   // CPUs by what they support, whatever this one does.
   const std::vector<std::vector<Isa>> cpus{
       {Isa::sse4}, {Isa::avx2, Isa::sse4}, {Isa::avx512, Isa::avx2, Isa::sse4}};
-  std::size_t cases = 0;
   for (const std::vector<Isa>& cpu : cpus) {
     for (const Isa wish : {Isa::avx512, Isa::avx2, Isa::sse4}) {
       const IsaEnvironment environment(std::string(isa_name(wish)).c_str());
       EXPECT_EQ(select_isa(cpu), wish > cpu.front() ? cpu.front() : wish);
-      ++cases;
     }
     const IsaEnvironment unset(nullptr);
     EXPECT_EQ(select_isa(cpu), cpu.front());
   }
-  EXPECT_EQ(cases, 9U);
   test::expect_error(ErrorCode::backend, "SSE4.2", [] { (void)select_isa(std::vector<Isa>{}); });
 }
 

@@ -76,7 +76,6 @@ DepthFrame filtered_by_definition(const PinholeCamera& camera, const JumpEdgeCon
 
 TEST(JumpEdgeFilter, EqualsItsDefinition) {
   RandomValues random(4);
-  int cases = 0;
   std::size_t total = 0;
   for (int i = 0; i < 60; ++i) {
     PinholeCamera camera = small_camera(17, 13);
@@ -108,53 +107,8 @@ TEST(JumpEdgeFilter, EqualsItsDefinition) {
     }
     EXPECT_EQ(result.amplitude, expected.amplitude);
     total += expected_removed;
-    ++cases;
   }
-  EXPECT_EQ(cases, 60);
   EXPECT_GT(total, 1000U);
-}
-
-// One pixel a little deeper than its row: the edge to the neighbour, one pixel wide, makes the
-// angle atan(width / step) with the ray on the optical axis.
-TEST(JumpEdgeFilter, AngleInClosedForm) {
-  const PinholeCamera camera = small_camera(3, 1);
-  int cases = 0;
-  for (const double degrees : {1.0, 3.0, 5.0, 10.0}) {
-    const JumpEdgeFilter filter(camera, {.angle = degrees * kDegree});
-    for (const double factor : {0.98, 1.02}) {
-      // The neighbours stand at (±z/fx, z), the middle at (0, z + step).
-      const double z = 0.8;
-      const double step = z / camera.fx / std::tan(degrees * kDegree) * factor;
-      DepthFrame frame = flat(camera, static_cast<float>(z));
-      frame.depth[1] = static_cast<float>(z + step);
-      EXPECT_EQ(filter.apply(frame), factor > 1 ? 1U : 0U) << degrees;
-      EXPECT_EQ(frame.depth[1] == DepthFrame::kInvalid, factor > 1);
-      EXPECT_EQ(frame.amplitude[1] == 0, factor > 1);
-      EXPECT_EQ(frame.amplitude[0], 2.0F);
-      ++cases;
-    }
-  }
-  EXPECT_EQ(cases, 8);
-}
-
-TEST(JumpEdgeFilter, NearerNeighbourKeepsTheForeground) {
-  const PinholeCamera camera = small_camera(9, 5);
-  DepthFrame frame = flat(camera, 1.5F);
-  for (std::size_t v = 0; v < 5; ++v) {
-    for (std::size_t u = 0; u < 4; ++u) frame.depth[v * 9 + u] = 0.5F;
-    frame.depth[v * 9 + 4] = 0.9F;  // flying
-  }
-  DepthFrame nearer = frame, both = frame;
-  // The flying column and the background beside it go.
-  EXPECT_EQ(JumpEdgeFilter(camera).apply(nearer), 10U);
-  // The literal form takes the foreground beside it as well.
-  EXPECT_EQ(JumpEdgeFilter(camera, {.two_sided = true}).apply(both), 15U);
-  for (int v = 0; v < 5; ++v) {
-    for (int u = 0; u < 9; ++u) {
-      EXPECT_EQ(nearer.at(u, v) == DepthFrame::kInvalid, u == 4 || u == 5) << u;
-      EXPECT_EQ(both.at(u, v) == DepthFrame::kInvalid, u >= 3 && u <= 5) << u;
-    }
-  }
 }
 
 TEST(JumpEdgeFilter, LeavesPlanesAndLonelyPixelsAlone) {
@@ -186,13 +140,10 @@ TEST(JumpEdgeFilter, LeavesPlanesAndLonelyPixelsAlone) {
 
 TEST(JumpEdgeFilter, RefusesBadArguments) {
   const PinholeCamera camera = small_camera(4, 3);
-  int cases = 0;
   for (const double degrees : {0.0, 0.99, 10.01, -5.0, std::nan("")}) {
     expect_error(ErrorCode::invalid_argument, "angle",
                  [&] { JumpEdgeFilter(camera, {.angle = degrees * kDegree}); });
-    ++cases;
   }
-  EXPECT_EQ(cases, 5);
   EXPECT_NO_THROW(JumpEdgeFilter(camera, {.angle = 1 * kDegree}));
   EXPECT_NO_THROW(JumpEdgeFilter(camera, {.angle = 10 * kDegree}));
   expect_error(ErrorCode::invalid_argument, "width", [] { JumpEdgeFilter(small_camera(0, 3)); });

@@ -14,8 +14,6 @@
 namespace viewgain {
 namespace {
 
-using test::RandomValues;
-
 TEST(ShotNoise, ScalesWithRangeTimeAndIncidence) {
   const ShotNoise noise{.reference_sigma = 4e-3,
                         .reference_range = 1.3,
@@ -30,26 +28,14 @@ TEST(ShotNoise, ScalesWithRangeTimeAndIncidence) {
   EXPECT_NEAR(sigmas(shorter, 1.30, 220, 1.0).axial, 12.0e-3, 1e-15);
 }
 
-TEST(ShotNoise, FrequencyAndLeastAmplitudeDoNotChangeTheSigmas) {
-  const ShotNoise plain;
-  EXPECT_EQ(plain.modulation_frequency, 30e6);
-  EXPECT_EQ(plain.min_amplitude, 0.01);
-  const ShotNoise other{.modulation_frequency = 0, .min_amplitude = 0.5};
-  EXPECT_EQ(sigmas(other, 0.7, 220, 0.4).axial, sigmas(plain, 0.7, 220, 0.4).axial);
-  EXPECT_EQ(sigmas(other, 0.7, 220, 0.4).lateral, sigmas(plain, 0.7, 220, 0.4).lateral);
-}
-
 TEST(NoiseModel, UnambiguousRangeIsHalfAWavelength) {
   EXPECT_NEAR(unambiguous_range(ShotNoise{}), 4.99654, 1e-5);
   EXPECT_NEAR(unambiguous_range(ShotNoise{.modulation_frequency = 15e6}), 9.99308, 1e-5);
-  int cases = 0;
   for (const NoiseModel& model :
        std::vector<NoiseModel>{ShotNoise{.modulation_frequency = 0}, StructuredLightNoise{},
                                StereoNoise{}, QuadraticNoise{}, ConstantNoise{}}) {
     EXPECT_EQ(unambiguous_range(model), std::numeric_limits<double>::infinity());
-    ++cases;
   }
-  EXPECT_EQ(cases, 5);
 }
 
 TEST(StructuredLightNoise, IsNguyensModel) {
@@ -91,30 +77,7 @@ TEST(ConstantNoise, IsConstant) {
   EXPECT_EQ(sigmas(noise, 9.0, 100, 1.0).lateral, 2e-3);
 }
 
-TEST(NoiseModel, SigmasArePositiveFiniteAndGrowWithRangeAndIncidence) {
-  const std::vector<NoiseModel> models{ShotNoise{}, StructuredLightNoise{}, StereoNoise{},
-                                       QuadraticNoise{}, ConstantNoise{}};
-  RandomValues random(1);
-  int cases = 0;
-  for (const NoiseModel& model : models) {
-    for (int i = 0; i < 1000; ++i, ++cases) {
-      const double t = random.uniform(0.4, 5), cos_incidence = random.uniform(-0.2, 1.2);
-      const MeasurementSigmas here = sigmas(model, t, 300, cos_incidence);
-      const MeasurementSigmas farther = sigmas(model, 1.1 * t, 300, cos_incidence);
-      const MeasurementSigmas steeper = sigmas(model, t, 300, cos_incidence - 0.2);
-      ASSERT_TRUE(std::isfinite(here.axial) && here.axial > 0);
-      ASSERT_TRUE(std::isfinite(here.lateral) && here.lateral > 0);
-      ASSERT_GE(farther.axial, 0.95 * here.axial);  // the grazing term falls with sqrt(z)
-      ASSERT_GE(farther.lateral, here.lateral);
-      ASSERT_GE(steeper.axial, here.axial);
-      ASSERT_GE(steeper.lateral, here.lateral);
-    }
-  }
-  EXPECT_EQ(cases, 5000);
-}
-
 TEST(NoiseModel, StaysFiniteAtRangeZero) {
-  int cases = 0;
   for (const NoiseModel& model : std::vector<NoiseModel>{
            ShotNoise{}, StructuredLightNoise{}, StereoNoise{}, QuadraticNoise{}, ConstantNoise{}}) {
     const MeasurementSigmas zero = sigmas(model, 0.0, 300);
@@ -123,9 +86,7 @@ TEST(NoiseModel, StaysFiniteAtRangeZero) {
     EXPECT_GT(zero.lateral, 0);
     EXPECT_EQ(zero.axial, near.axial);
     EXPECT_EQ(zero.lateral, near.lateral);
-    ++cases;
   }
-  EXPECT_EQ(cases, 5);
 }
 
 TEST(NoiseModel, CosineIsClampedAtATenth) {

@@ -32,7 +32,6 @@ void put(int file, const std::string& text) {
 
 // { echo head; viewgain ... --out /dev/stdout; echo tail; } > log, and >> log
 TEST(AtomicFile, AnOpenFileIsWrittenThrough) {
-  int cases = 0;
   for (const int flags : {O_TRUNC, O_APPEND}) {
     for (const char* const names : {"/dev/fd/", "/proc/self/fd/", "link"}) {
       const TemporaryFolder folder;
@@ -57,10 +56,8 @@ TEST(AtomicFile, AnOpenFileIsWrittenThrough) {
       EXPECT_EQ(read_all(log),
                 std::string(flags == O_APPEND ? "before, " : "") + "head, body, two parts, tail");
       EXPECT_EQ(folder.entries(), names == std::string("link") ? 2 : 1);
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 6);
 }
 
 TEST(AtomicFile, AFileThatIsOpenForReadingIsNoTarget) {

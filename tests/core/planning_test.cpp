@@ -229,7 +229,6 @@ TEST(Planning, StopsWhenNoCandidatePromisesEnoughArea) {
 }
 
 TEST(Planning, NoShareOfTheSurfaceOrNoAreaNeverStops) {
-  int cases = 0;
   for (const double share : {0.0, 0.5}) {
     for (const double best : {0.0, kNan}) {
       for (const double surface : {0.0, 2.0}) {
@@ -240,17 +239,14 @@ TEST(Planning, NoShareOfTheSurfaceOrNoAreaNeverStops) {
         script.decisions = {Decision{0, 9, kNan, kNan, best}};
         const bool stops = share > 0 && best == 0.0 && surface > 0;
         EXPECT_EQ(script.run(config).reason, stops ? StopReason::area : StopReason::max_views);
-        ++cases;
       }
     }
   }
-  EXPECT_EQ(cases, 8);
   EXPECT_EQ(PlanningConfig{}.stop_area, kStopArea);
   EXPECT_EQ(PlanningConfig{}.stop_gain, kStopGain);
 }
 
 TEST(Planning, NoCandidatesOrOutOfReach) {
-  int cases = 0;
   for (const bool some_left : {false, true}) {
     for (const std::size_t unreachable : {std::size_t{0}, std::size_t{4}}) {
       Script script;
@@ -267,10 +263,8 @@ TEST(Planning, NoCandidatesOrOutOfReach) {
       EXPECT_EQ(script.calls, some_left ? "augd." : "aug.");
       EXPECT_FALSE(result.views.back().decision);
       EXPECT_EQ(result.views.back().proposal.dropped.at("collision"), 9U);
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 4);
   Script none_counted;
   none_counted.proposals = {{{}, {{std::string(kUnreachable), 0}}}};
   EXPECT_EQ(none_counted.run(never_idle()).reason, StopReason::no_candidates);
@@ -349,7 +343,6 @@ TEST(Planning, EndsBetweenTheStepsWhenAsked) {
   const std::vector<Case> cases{{1, "au.", false, false},      {2, "au.", false, false},
                                 {3, "aug.", true, false},      {4, "augd.", true, true},
                                 {5, "augd.au.", false, false}, {8, "augd.augd.", true, true}};
-  std::size_t count = 0;
   for (const Case& c : cases) {
     Script script;
     script.stop_after = c.stop_after;
@@ -358,9 +351,7 @@ TEST(Planning, EndsBetweenTheStepsWhenAsked) {
     EXPECT_EQ(script.calls, c.calls);
     EXPECT_EQ(!result.views.back().proposal.candidates.empty(), c.has_proposal);
     EXPECT_EQ(result.views.back().decision.has_value(), c.has_decision);
-    ++count;
   }
-  EXPECT_EQ(count, 6U);
 }
 
 // All rules that could hold do; taking the first away shows the next.
@@ -401,14 +392,12 @@ TEST(Planning, TheOrderOfTheRules) {
 }
 
 TEST(Planning, ExceptionsPassThrough) {
-  int cases = 0;
-  for (std::size_t call = 1; call <= 8; ++call, ++cases) {
+  for (std::size_t call = 1; call <= 8; ++call) {
     Script script;
     script.throw_after = call;
     EXPECT_THROW((void)script.run(never_idle()), std::runtime_error);
     EXPECT_EQ(script.observed, call <= 4 ? 0U : 1U);
   }
-  EXPECT_EQ(cases, 8);
 }
 
 TEST(Planning, RefusesWhatMakesNoSense) {
@@ -429,17 +418,6 @@ TEST(Planning, RefusesWhatMakesNoSense) {
   wrong.decisions = {Decision{2, 1, 1}};
   expect_error(ErrorCode::invalid_argument, "candidate 2 of 2",
                [&wrong] { (void)wrong.run(never_idle()); });
-}
-
-TEST(Planning, ReasonsHaveNames) {
-  std::set<std::string_view> names;
-  for (const StopReason reason :
-       {StopReason::gain, StopReason::area, StopReason::no_candidates, StopReason::unreachable,
-        StopReason::idle, StopReason::max_views, StopReason::coverage, StopReason::interrupted}) {
-    names.insert(stop_reason_name(reason));
-  }
-  EXPECT_EQ(names, (std::set<std::string_view>{"gain", "area", "no_candidates", "unreachable",
-                                               "idle", "max_views", "coverage", "interrupted"}));
 }
 
 }  // namespace

@@ -120,14 +120,11 @@ TEST(Tum, MalformedLinesAreNamed) {
       {"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa",
        "'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...'"},
   };
-  std::size_t cases = 0;
   for (const Case& c : bad) {
     const auto path = folder.file("bad.txt", "# header\n" + good + "\n" + c.line + "\n" + good);
     expect_error(ErrorCode::format, path.string() + ":4: ", [&] { (void)read_tum(path); });
     expect_error(ErrorCode::format, c.message, [&] { (void)read_tum(path); });
-    ++cases;
   }
-  EXPECT_EQ(cases, 21U);
 }
 
 TEST(Tum, AByteZeroIsNoNumber) {
@@ -232,14 +229,11 @@ TEST(PoseMatrix, RefusesWhatIsNoPose) {
       {"1 0 0 0\n0 1.02 0 0\n0 0 1 0\n0 0 0 1", "not a rigid transform"},
       {"0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 1", "not a rigid transform"},
   };
-  std::size_t cases = 0;
   for (const Case& c : bad) {
     const auto path = folder.file("bad.txt", c.contents);
     expect_error(ErrorCode::format, path.string() + ":", [&] { (void)read_pose_matrix(path); });
     expect_error(ErrorCode::format, c.message, [&] { (void)read_pose_matrix(path); });
-    ++cases;
   }
-  EXPECT_EQ(cases, 10U);
   expect_error(ErrorCode::io, "missing",
                [&] { (void)read_pose_matrix(folder.path() / "missing"); });
 }

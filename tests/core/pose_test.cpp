@@ -35,8 +35,7 @@ TEST(Pose, IsPlain) {
 
 TEST(Pose, ConvertsFromAndToEigenExactly) {
   RandomValues random(1);
-  int cases = 0;
-  for (int i = 0; i < 1000; ++i, ++cases) {
+  for (int i = 0; i < 1000; ++i) {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.linear() = random.rotation();
     T.translation() = 10 * random.vector();
@@ -46,13 +45,11 @@ TEST(Pose, ConvertsFromAndToEigenExactly) {
     ASSERT_EQ(pose.m[7], T.translation().y());
     ASSERT_EQ(pose.m[6], T.linear()(1, 2));
   }
-  EXPECT_EQ(cases, 1000);
 }
 
 TEST(Pose, ComposesAndInvertsAsEigen) {
   RandomValues random(2);
-  int cases = 0;
-  for (int i = 0; i < 1000; ++i, ++cases) {
+  for (int i = 0; i < 1000; ++i) {
     const Pose a(random.rotation(), random.vector());
     const Pose b(random.rotation(), random.vector());
     const Eigen::Vector3d p = random.vector();
@@ -61,7 +58,6 @@ TEST(Pose, ComposesAndInvertsAsEigen) {
     ASSERT_LT(largest_difference(a * a.inverse(), Pose()), 1e-14);
     ASSERT_LT(largest_difference(a.inverse(), Pose(a.isometry().inverse())), 1e-14);
   }
-  EXPECT_EQ(cases, 1000);
 }
 
 TEST(Orthonormality, MeasuresTheLargestEntry) {
@@ -71,21 +67,17 @@ TEST(Orthonormality, MeasuresTheLargestEntry) {
   EXPECT_NEAR(orthonormality_error({1.01 * Eigen::Matrix3d::Identity(), {0, 0, 0}}), 0.0201, 1e-12);
   EXPECT_EQ(orthonormality_error({-Eigen::Matrix3d::Identity(), {0, 0, 0}}), kInfinity);
   EXPECT_EQ(orthonormality_error({Eigen::Matrix3d::Zero(), {0, 0, 0}}), kInfinity);
-  int cases = 0;
   for (std::size_t i = 0; i < 12; ++i) {
     for (const double bad : {kNan, kInfinity, -kInfinity}) {
       Pose pose;
       pose.m[i] = bad;
       EXPECT_EQ(orthonormality_error(pose), kInfinity) << i;
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 36);
 }
 
 TEST(Orthonormality, MendsToTheNearestRotation) {
   RandomValues random(4);
-  int cases = 0;
   for (int i = 0; i < 300; ++i) {
     const Eigen::Matrix3d R = random.rotation();
     Eigen::Matrix3d off = R;
@@ -94,12 +86,11 @@ TEST(Orthonormality, MendsToTheNearestRotation) {
     ASSERT_LE(orthonormality_error(mended), 4e-15);
     ASSERT_EQ(mended.translation(), Eigen::Vector3d(1, 2, 3));
     const double distance = (mended.rotation() - off).norm();
-    for (int k = 0; k < 20; ++k, ++cases) {
+    for (int k = 0; k < 20; ++k) {
       const Eigen::AngleAxisd turn(random.magnitude(1e-5, 0.1), random.unit_vector());
       ASSERT_GE((turn.toRotationMatrix() * mended.rotation() - off).norm(), distance);
     }
   }
-  EXPECT_EQ(cases, 6000);
 }
 
 TEST(Orthonormality, AReflectionBecomesARotation) {
@@ -128,8 +119,7 @@ void expect_looks(const Pose& pose, const Eigen::Vector3d& eye, const Eigen::Vec
 
 TEST(LookAt, PointsTheAxisAndKeepsUpUp) {
   RandomValues random(5);
-  int cases = 0;
-  for (int i = 0; i < 5000; ++i, ++cases) {
+  for (int i = 0; i < 5000; ++i) {
     const Eigen::Vector3d eye = random.vector(), target = random.vector(), up = random.vector();
     expect_looks(look_at(eye, target, up), eye, target, up, 1e-10);
     const Pose pose = look_at(eye, target);
@@ -139,7 +129,6 @@ TEST(LookAt, PointsTheAxisAndKeepsUpUp) {
     ASSERT_LT(seen.head<2>().norm(), 1e-14 * (1 + eye.norm() + target.norm()));
     ASSERT_GT(seen.z(), 0);
   }
-  EXPECT_EQ(cases, 5000);
 }
 
 TEST(LookAt, AtThePolesImageUpIsPlusX) {
@@ -154,9 +143,8 @@ TEST(LookAt, AtThePolesImageUpIsPlusX) {
 }
 
 TEST(LookAt, StaysOrthonormalNearThePoles) {
-  int cases = 0;
   for (int exponent = 1; exponent <= 20; ++exponent) {
-    for (int azimuth = 0; azimuth < 50; ++azimuth, ++cases) {
+    for (int azimuth = 0; azimuth < 50; ++azimuth) {
       const double s = std::pow(10.0, -exponent);
       const Pose pose = look_at({s * std::cos(azimuth), s * std::sin(azimuth), 1}, {0, 0, 0});
       ASSERT_LE(orthonormality_error(pose), 1e-15) << exponent << " " << azimuth;
@@ -166,20 +154,16 @@ TEST(LookAt, StaysOrthonormalNearThePoles) {
       }
     }
   }
-  EXPECT_EQ(cases, 1000);
 }
 
 TEST(LookAt, DoesNotMindTheScale) {
   RandomValues random(6);
-  int cases = 0;
   for (const double scale : {1e-300, 1e-160, 1e-30, 1e30, 1e160, 1e300}) {
     const Eigen::Vector3d eye = random.vector(), target = random.vector(), up = random.vector();
     const Pose reference = look_at(eye, target, up);
     const Pose scaled = look_at(scale * eye, scale * target, scale * up);
     EXPECT_LT((reference.rotation() - scaled.rotation()).norm(), 1e-14) << scale;
-    ++cases;
   }
-  EXPECT_EQ(cases, 6);
 }
 
 TEST(LookAt, RefusesWhatHasNoAnswer) {

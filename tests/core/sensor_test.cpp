@@ -19,10 +19,6 @@ namespace {
 
 using test::expect_error;
 
-double field_of_view(int pixels, double focal) {
-  return 2 * std::atan(pixels / (2 * focal)) * 180 / std::numbers::pi;
-}
-
 TEST(SensorPresets, AreAllValid) {
   EXPECT_EQ(sensor_preset_names(), (std::vector<std::string>{"sr4000", "azure_kinect_nfov",
                                                              "kinect_v1", "d435", "laser_line"}));
@@ -45,14 +41,11 @@ TEST(SensorPresets, AreAllValid) {
 TEST(SensorPresets, MakersHousingsDiffer) {
   EXPECT_FALSE(sensor_preset("sr4000").body_size);  // what SensorBody has
   EXPECT_EQ(sensor_preset("d435").body_size, (std::array<double, 3>{0.090, 0.025, 0.025}));
-  int cases = 0;
   for (const double wrong : {0.0, -0.1, std::nan("")}) {
     Sensor sensor = sensor_preset("d435");
     sensor.body_size = {0.1, wrong, 0.1};
     EXPECT_THROW(sensor.validate(), Error);
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 TEST(SensorPresets, ATableOfRangesHasToLeaveRanges) {
@@ -60,32 +53,15 @@ TEST(SensorPresets, ATableOfRangesHasToLeaveRanges) {
   EXPECT_TRUE(sensor.range_calibration.table.empty());
   sensor.range_calibration.table = {{0.5, 0.01}, {1.0, -0.02}};
   EXPECT_NO_THROW(sensor.validate());
-  int cases = 0;
   const auto refused = [&](std::vector<std::array<double, 2>> table, const char* part) {
     sensor.range_calibration.table = std::move(table);
     expect_error(ErrorCode::invalid_argument, part, [&] { sensor.validate(); });
-    ++cases;
   };
   refused({{1.0, 0.0}, {0.5, 0.0}}, "rise");
   refused({{0.0, -0.1}}, "no range");
   refused({{-1.0, -2.0}}, "no range");
   refused({{0.5, 0.0}, {1.0, 1.0}}, "no range");
   refused({{0.5, std::nan("")}}, "finite");
-  EXPECT_EQ(cases, 5);
-}
-
-TEST(SensorPresets, Sr4000) {
-  const Sensor s = sensor_preset("sr4000");
-  EXPECT_EQ(s.camera, (PinholeCamera{176, 144, 220.0, 231.2, 87.5, 71.5, {}}));
-  EXPECT_NEAR(field_of_view(176, s.camera.fx), 43.6, 0.05);
-  EXPECT_NEAR(field_of_view(144, s.camera.fy), 34.6, 0.05);
-  EXPECT_EQ(s.min_range, 0.2);
-  EXPECT_EQ(s.max_range, 5.0);
-  EXPECT_EQ(s.working_distance, 0.4);
-  EXPECT_EQ(std::get<ShotNoise>(s.noise).integration_time, 1e-3);
-  EXPECT_NEAR(s.sigmas(0.4).axial, 3.6e-3, 0.05e-3);
-  EXPECT_NEAR(s.sigmas(0.4).axial, 4e-3 * (0.4 / 1.3) * std::sqrt(8.5), 1e-15);
-  EXPECT_NEAR(s.sigmas(0.4).lateral, 1.8e-3, 0.05e-3);
 }
 
 TEST(SensorPresets, AzureKinectMeetsItsMakersBoundAtTheFarEnd) {
@@ -97,36 +73,6 @@ TEST(SensorPresets, AzureKinectMeetsItsMakersBoundAtTheFarEnd) {
   EXPECT_NEAR(s.sigmas(3.86).axial, 17e-3, 0.01e-3);
   EXPECT_NEAR(s.sigmas(1.0).axial, 2.074e-3, 1e-15);
   EXPECT_NEAR(s.sigmas(1.0).lateral, 1 / 417.0, 1e-15);
-}
-
-TEST(SensorPresets, KinectV1) {
-  const Sensor s = sensor_preset("kinect_v1");
-  EXPECT_EQ(s.camera, (PinholeCamera{640, 480, 585, 585, 319.5, 239.5, {}}));
-  EXPECT_EQ(s.min_range, 0.5);
-  EXPECT_EQ(s.max_range, 4.5);
-  EXPECT_EQ(s.working_distance, 1.0);
-  EXPECT_NEAR(s.sigmas(1.0).axial, 1.2e-3 + 1.9e-3 * 0.36, 1e-15);
-  EXPECT_NEAR(s.sigmas(1.0).lateral, 0.8 / 585, 1e-15);
-}
-
-TEST(SensorPresets, D435) {
-  const Sensor s = sensor_preset("d435");
-  EXPECT_EQ(s.camera, (PinholeCamera{640, 480, 447, 447, 319.5, 239.5, {}}));
-  EXPECT_EQ(s.min_range, 0.2);
-  EXPECT_EQ(s.max_range, 3.0);
-  EXPECT_EQ(s.working_distance, 0.5);
-  EXPECT_NEAR(s.sigmas(0.5).axial, 0.25 * 0.08 / (447 * 0.05), 1e-15);
-  EXPECT_NEAR(s.sigmas(0.5).lateral, 0.5 / 447, 1e-15);
-}
-
-TEST(SensorPresets, LaserLineIsOneRowAndIsotropic) {
-  const Sensor s = sensor_preset("laser_line");
-  EXPECT_EQ(s.camera, (PinholeCamera{640, 1, 800, 800, 319.5, 0, {}}));
-  EXPECT_EQ(s.min_range, 0.1);
-  EXPECT_EQ(s.max_range, 1.0);
-  EXPECT_EQ(s.working_distance, 0.4);
-  EXPECT_EQ(s.sigmas(0.3, 0.2).axial, 0.2e-3);
-  EXPECT_EQ(s.sigmas(0.9).lateral, 0.2e-3);
 }
 
 TEST(Sensor, ValidateNamesTheField) {
@@ -177,7 +123,6 @@ TEST(Sensor, SigmasOfAReadingHaveThePosesError) {
   Sensor sensor = sensor_preset("sr4000");
   EXPECT_EQ(sensor.sigmas(0.7, 0.5).axial, sensor.noise_sigmas(0.7, 0.5).axial);
   EXPECT_EQ(sensor.sigmas(0.7, 0.5).lateral, sensor.noise_sigmas(0.7, 0.5).lateral);
-  int cases = 0;
   for (const PoseSigma& pose : {PoseSigma{0.005, 0}, PoseSigma{0, 0.01}, PoseSigma{0.01, 0.0175}}) {
     sensor.pose_sigma = pose;
     for (const Eigen::Vector3d& p : {Eigen::Vector3d(0, 0, 0.4), Eigen::Vector3d(0.3, -0.2, 1.1),
@@ -199,10 +144,8 @@ TEST(Sensor, SigmasOfAReadingHaveThePosesError) {
                                        J * variances.asDiagonal() * J.transpose();
       EXPECT_LT((covariance(sensor.sigmas(p.norm(), 0.8)) - expected).norm(),
                 1e-12 * expected.norm());
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 9);
 }
 
 TEST(Sensor, DefaultPriorIsNeverSurerThanTwoReadings) {

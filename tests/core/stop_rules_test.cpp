@@ -17,8 +17,6 @@
 namespace viewgain {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 TEST(StopRules, GoOnFromWhatTheyRemember) {
   std::mt19937 random(5);
   const auto chance = [&](double p) { return std::bernoulli_distribution(p)(random); };
@@ -55,22 +53,6 @@ TEST(StopRules, GoOnFromWhatTheyRemember) {
   }
   EXPECT_EQ(stops, 200);
   EXPECT_GT(steps, 600);
-}
-
-TEST(StopRules, NoDecisionIsNowhereToGo) {
-  StopRules rules{PlanningConfig{}};
-  Proposal proposal;
-  EXPECT_EQ(rules.after_decision(std::nullopt, proposal, 1), StopReason::no_candidates);
-  proposal.dropped["unreachable"] = 3;
-  EXPECT_EQ(rules.after_decision(std::nullopt, proposal, 1), StopReason::unreachable);
-  EXPECT_EQ(rules.memory().decisions, 0U);
-}
-
-TEST(StopRules, RefuseWhatMakesNoSense) {
-  PlanningConfig config;
-  config.idle_fraction = kNan;
-  test::expect_error(ErrorCode::invalid_argument, "idle_fraction",
-                     [&] { const StopRules never(config); });
 }
 
 }  // namespace

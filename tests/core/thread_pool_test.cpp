@@ -39,7 +39,6 @@ bool meet(std::atomic<int>& arrived, int expected) {
 }
 
 TEST(ThreadPool, CoversEveryIndexOnce) {
-  int cases = 0;
   for (const int threads : {1, 2, 3, 8}) {
     ThreadPool pool(threads);
     ASSERT_EQ(pool.num_threads(), threads);
@@ -55,11 +54,9 @@ TEST(ThreadPool, CoversEveryIndexOnce) {
         });
         ASSERT_EQ(bad_ranges.load(), 0);
         for (const auto& v : visits) ASSERT_EQ(v.load(), 1);
-        ++cases;
       }
     }
   }
-  EXPECT_EQ(cases, 140);
 }
 
 TEST(ThreadPool, CountsNearTheLargestSizeDoNotOverflow) {
@@ -78,8 +75,7 @@ TEST(ThreadPool, CountsNearTheLargestSizeDoNotOverflow) {
 
 TEST(ThreadPool, AllThreadsWorkAtOnce) {
   ThreadPool pool(4);
-  int cases = 0;
-  for (int repetition = 0; repetition < 50; ++repetition, ++cases) {
+  for (int repetition = 0; repetition < 50; ++repetition) {
     std::atomic<int> arrived{0};
     std::atomic<bool> met{true};
     pool.for_each_chunk(4, 1, [&](std::size_t, std::size_t) {
@@ -87,7 +83,6 @@ TEST(ThreadPool, AllThreadsWorkAtOnce) {
     });
     ASSERT_TRUE(met.load());
   }
-  EXPECT_EQ(cases, 50);
 }
 
 TEST(ThreadPool, OneThreadIsTheCallerInOrder) {
@@ -169,10 +164,9 @@ TEST(ThreadPool, ACallerThatFindsThePoolBusyIsNotHeldUp) {
 }
 
 TEST(ThreadPool, ExceptionsReachTheCallerAndThePoolLives) {
-  int cases = 0;
   for (const int threads : {1, 2, 4}) {
     ThreadPool pool(threads);
-    for (std::size_t bad = 0; bad < 40; ++bad, ++cases) {
+    for (std::size_t bad = 0; bad < 40; ++bad) {
       try {
         pool.for_each_chunk(40, 1, [&](std::size_t begin, std::size_t) {
           if (begin == bad) throw std::out_of_range("index " + std::to_string(begin));
@@ -186,7 +180,6 @@ TEST(ThreadPool, ExceptionsReachTheCallerAndThePoolLives) {
       ASSERT_EQ(visits.load(), 40);
     }
   }
-  EXPECT_EQ(cases, 120);
 }
 
 TEST(ThreadPool, AnExceptionEndsTheLoopEarly) {
@@ -211,8 +204,7 @@ TEST(ThreadPool, AnExceptionEndsTheLoopEarly) {
 
 TEST(ThreadPool, AllThrowingAtOnceGivesOneOfTheExceptions) {
   ThreadPool pool(4);
-  int cases = 0;
-  for (int i = 0; i < 200; ++i, ++cases) {
+  for (int i = 0; i < 200; ++i) {
     std::atomic<int> arrived{0};
     ASSERT_THROW(pool.for_each_chunk(4, 1,
                                      [&](std::size_t, std::size_t) {
@@ -221,34 +213,6 @@ TEST(ThreadPool, AllThrowingAtOnceGivesOneOfTheExceptions) {
                                      }),
                  std::runtime_error);
   }
-  EXPECT_EQ(cases, 200);
-}
-
-TEST(ThreadPool, ManyShortLoops) {
-  ThreadPool pool(3);
-  int cases = 0;
-  for (int i = 0; i < 20'000; ++i, ++cases) {
-    std::atomic<int> sum{0};
-    const auto count = static_cast<std::size_t>(i % 5);
-    pool.for_each_chunk(count, 1, [&](std::size_t begin, std::size_t) {
-      sum.fetch_add(static_cast<int>(begin) + 1);
-    });
-    ASSERT_EQ(sum.load(), static_cast<int>(count * (count + 1) / 2));
-  }
-  EXPECT_EQ(cases, 20'000);
-}
-
-TEST(ThreadPool, PlainResultsAreVisibleAfterTheLoop) {
-  ThreadPool pool(4);
-  std::vector<std::size_t> out(1000);
-  int cases = 0;
-  for (std::size_t round = 0; round < 500; ++round, ++cases) {
-    pool.for_each_chunk(out.size(), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) out[i] = i * round;
-    });
-    for (std::size_t i = 0; i < out.size(); ++i) ASSERT_EQ(out[i], i * round);
-  }
-  EXPECT_EQ(cases, 500);
 }
 
 TEST(ThreadPool, SleepingWorkersWakeUp) {
@@ -265,8 +229,7 @@ TEST(ThreadPool, SleepingWorkersWakeUp) {
 }
 
 TEST(ThreadPool, StartsAndStopsManyTimes) {
-  int cases = 0;
-  for (int i = 0; i < 200; ++i, ++cases) {
+  for (int i = 0; i < 200; ++i) {
     ThreadPool pool(1 + i % 5);
     std::atomic<int> visits{0};
     if (i % 3 != 0) {
@@ -274,32 +237,6 @@ TEST(ThreadPool, StartsAndStopsManyTimes) {
       ASSERT_EQ(visits.load(), 10);
     }
   }
-  EXPECT_EQ(cases, 200);
-}
-
-std::atomic<std::size_t> g_covered{0};
-void cover(std::size_t begin, std::size_t end) { g_covered.fetch_add(end - begin); }
-
-TEST(ThreadPool, TakesEveryKindOfCallable) {
-  ThreadPool pool(2);
-  std::atomic<std::size_t> covered{0};
-  const auto constant = [&covered](std::size_t begin, std::size_t end) { covered += end - begin; };
-  pool.for_each_chunk(10, 2, constant);
-  struct {
-    std::atomic<std::size_t> covered{0};
-    void operator()(std::size_t begin, std::size_t end) { covered += end - begin; }
-  } mutable_body;
-  pool.for_each_chunk(10, 2, mutable_body);
-  pool.for_each_chunk(10, 2, [calls = 0, &covered](std::size_t, std::size_t) mutable {
-    (void)calls;
-    covered += 1;
-  });
-  g_covered = 0;
-  void (*const pointer)(std::size_t, std::size_t) = cover;
-  pool.for_each_chunk(10, 2, pointer);
-  EXPECT_EQ(covered.load(), 15U);
-  EXPECT_EQ(mutable_body.covered.load(), 10U);
-  EXPECT_EQ(g_covered.load(), 10U);
 }
 
 TEST(ThreadPool, RefusesBadArguments) {

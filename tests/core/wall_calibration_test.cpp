@@ -122,7 +122,6 @@ TEST(WallCalibration, FindsAWigglingErrorFromTenFramesOfUnknownTilt) {
 TEST(WallCalibration, IsNearlyExactWithoutNoiseAndWithKnownWalls) {
   const Sensor sensor = sensor_preset("sr4000");
   test::RandomValues random(5);
-  int cases = 0;
   const std::vector<ErrorCurve> errors{[](double) { return 0.0; }, [](double) { return 0.03; },
                                        wiggling,
                                        [](double t) { return -0.02 + 0.01 * t * t / 10; }};
@@ -137,9 +136,7 @@ TEST(WallCalibration, IsNearlyExactWithoutNoiseAndWithKnownWalls) {
     const auto [rms, largest] = what_is_left(result, error);
     EXPECT_LT(rms, 0.1e-3);
     EXPECT_LT(largest, 0.6e-3);
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
 }
 
 TEST(WallCalibration, LeavesOutWhatIsNotTheWall) {
@@ -173,7 +170,6 @@ TEST(WallCalibration, LeavesOutWhatIsNotTheWall) {
 
 TEST(WallCalibration, TakesOneRowOfPixelsAndASmallImage) {
   test::RandomValues random(9);
-  int cases = 0;
   Sensor small = sensor_preset("sr4000");
   small.camera = {24, 18, 27.5, 28.9, 11.5, 8.5, {}};
   for (const Sensor& sensor : {sensor_preset("laser_line"), small}) {
@@ -184,9 +180,7 @@ TEST(WallCalibration, TakesOneRowOfPixelsAndASmallImage) {
       calibration.add(frame_of(sensor, wall, error, 0.1, random), wall.distance, "wall");
     }
     EXPECT_LT(what_is_left(calibration.solve(), error).first, 0.5e-3) << sensor.name;
-    ++cases;
   }
-  EXPECT_EQ(cases, 2);
 }
 
 // Without a range that two frames share nothing can be told of what is left.
@@ -224,10 +218,8 @@ TEST(WallCalibration, RefusesFramesThatCannotBe) {
   const auto none = [](double) { return 0.0; };
   const DepthFrame wall = frame_of(sensor, {1, 0, 0}, none, 1, random);
   WallCalibration calibration(sensor);
-  int cases = 0;
   const auto refused = [&](const char* part, const auto& call) {
     expect_error(ErrorCode::invalid_argument, part, call);
-    ++cases;
   };
   refused("not 0 in all", [&] { (void)calibration.solve(); });
   calibration.add(wall, 1, "a");
@@ -276,7 +268,6 @@ TEST(WallCalibration, RefusesFramesThatCannotBe) {
   refused("within the sensor's range limits", [&] { calibration.add(far, 4.9, "c"); });
   empty.width = 3;
   refused("3", [&] { calibration.add(empty, 1, "c"); });
-  EXPECT_EQ(cases, 21);
 }
 
 }  // namespace

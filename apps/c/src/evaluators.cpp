@@ -165,13 +165,13 @@ vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* poses, 
   return guarded([&] {
     require(evaluator, "evaluator");
     require_array(views, count, "views");
-    require_known_size(view_size, Sizes<vg_view_gain>::known, "vg_view_gain (view_size)");
+    require_size<vg_view_gain>(view_size, "vg_view_gain (view_size)");
     Watcher watcher(watch, count);
     const std::vector<Pose> candidates = poses_of(poses, count);
     std::vector<ViewGain> own(count);
     const bool complete =
         score(evaluator->evaluator, candidates, own, watch != nullptr, watcher.control());
-    write_items(std::span<const ViewGain>(own), views, view_size, written);
+    std::transform(own.begin(), own.end(), views, written);
     watcher.finish(complete);
   });
 }
@@ -241,8 +241,7 @@ vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_c
     require(T_world_camera, "T_world_camera");
     require_array(contributions, capacity, "contributions");
     require(found, "found");
-    require_known_size(contribution_size, Sizes<vg_contribution>::known,
-                       "vg_contribution (contribution_size)");
+    require_size<vg_contribution>(contribution_size, "vg_contribution (contribution_size)");
     const Pose pose = rigid_pose_of(T_world_camera);
     const std::vector<VoxelContribution> own = evaluator->evaluator.contributions(pose);
     if (own.empty() && evaluator->evaluator.evaluate(pose).status == ViewStatus::bad_pose) {
@@ -251,7 +250,7 @@ vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_c
     }
     *found = own.size();
     const std::span<const VoxelContribution> wanted(own.data(), std::min(capacity, own.size()));
-    write_items(wanted, contributions, contribution_size, [](const VoxelContribution& part) {
+    std::transform(wanted.begin(), wanted.end(), contributions, [](const VoxelContribution& part) {
       return vg_contribution{.voxel = {part.voxel.x, part.voxel.y, part.voxel.z},
                              .state = static_cast<std::int32_t>(part.state),
                              .rays = part.rays,

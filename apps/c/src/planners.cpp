@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_set>
@@ -167,7 +166,7 @@ struct RankCall {
     require_array(costs, cost_count, "costs");
     require_array(views, k, "views");
     require(found, "found");
-    require_known_size(view_size, Sizes<vg_ranked_view>::known, "vg_ranked_view (view_size)");
+    require_size<vg_ranked_view>(view_size, "vg_ranked_view (view_size)");
     *found = 0;
   }
   template <typename Rank>
@@ -177,7 +176,7 @@ struct RankCall {
     if (cost_count > 0) config.costs = {costs, cost_count};
     config.cost_per_metre = cost_per_metre;
     const Ranking ranking = rank(config, watcher.control());
-    write_items(std::span<const RankedView>(ranking.views), views, view_size, written);
+    std::transform(ranking.views.begin(), ranking.views.end(), views, written);
     *found = ranking.views.size();
     watcher.finish(ranking.complete);
   }

@@ -106,7 +106,8 @@ PlannerState state_of(const std::string& name, std::string_view text) {
     }
     if (at < 4 && at != needed++) reader.fail("entry " + quoted(key) + " is not in its place");
     if (key == "version" && reader.count(1, kMost) != kVersion) {
-      reader.fail("this version of a planner's state cannot be read");
+      reader.fail("a planner's state of version " + std::to_string(reader.count(1, kMost)) +
+                  "; this library reads version " + std::to_string(kVersion));
     } else if (key == "seen_area") {
       state.seen_area = reader.number(1);
     } else if (key == "before_choice") {

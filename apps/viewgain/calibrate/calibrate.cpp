@@ -133,9 +133,7 @@ std::uint64_t used_readings(const WallCalibrationResult& result) {
   return used;
 }
 
-Json or_null(const std::optional<double>& value) {
-  return value ? Json(*value) : nullptr;
-}
+Json or_null(const std::optional<double>& value) { return value ? Json(*value) : nullptr; }
 
 double degrees(double angle) { return angle * 180 / std::numbers::pi; }
 

@@ -63,7 +63,6 @@ struct VdbContents {
   ~VdbContents() {
     for (const auto& grid : *grids) {
       take_down_a<openvdb::FloatGrid>(*grid);
-      take_down_a<openvdb::Int32Grid>(*grid);
       take_down_a<openvdb::Vec3SGrid>(*grid);
     }
   }

@@ -17,12 +17,11 @@
 // What the writer and the reader of map files share.
 namespace viewgain::detail {
 
-// Versions of the layout: 2 has `state` and `hits` as floats, since OpenVDB's Python module knows
-// Float, Bool and Vec3S alone; 1 had them as Int32. A float holds whole numbers up to 2^24. Where a
-// voxel has more hits, `hits` is rounded and `hits_rest`, a grid that is there only then, says what
-// is to be added.
+// The version of the layout; files of another are refused. `state` and `hits` are floats, since
+// OpenVDB's Python module knows Float, Bool and Vec3S alone. A float holds whole numbers up to
+// 2^24. Where a voxel has more hits, `hits` is rounded and `hits_rest`, a grid that is there only
+// then, says what is to be added.
 inline constexpr std::int32_t kVdbLayoutVersion = 2;
-inline constexpr std::int32_t kOldestVdbLayoutVersion = 1;
 
 /// The grid of rates in a file of save_hazard_vdb().
 inline constexpr const char* kHazardGridName = "hazard";

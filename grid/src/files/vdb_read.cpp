@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -32,7 +31,6 @@ using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 using openvdb::FloatTree;
-using openvdb::Int32Grid;
 using openvdb::Vec3f;
 using openvdb::Vec3SGrid;
 
@@ -43,6 +41,7 @@ class Loader {
   [[nodiscard]] VdbMap load() const {
     const VdbContents contents(path_);
     try {
+      check_version(*contents.metadata);
       auto storage = make_storage(*contents.metadata);
       load_states(contents, *storage);
       load_beliefs(contents, *storage);
@@ -86,13 +85,12 @@ class Loader {
   }
 
   /// Of the layout (vdb_layout.hpp).
-  [[nodiscard]] std::int32_t version(const openvdb::MetaMap& metadata) const {
+  void check_version(const openvdb::MetaMap& metadata) const {
     const auto found = value<openvdb::Int32Metadata>(metadata, "viewgain_version");
-    if (found < kOldestVdbLayoutVersion || found > kVdbLayoutVersion) {
+    if (found != kVdbLayoutVersion) {
       fail("has viewgain_version " + std::to_string(found) + ", this program reads " +
-           std::to_string(kOldestVdbLayoutVersion) + " to " + std::to_string(kVdbLayoutVersion));
+           std::to_string(kVdbLayoutVersion));
     }
-    return found;
   }
 
   [[nodiscard]] std::unique_ptr<GridStorage> make_storage(const openvdb::MetaMap& metadata) const {
@@ -176,10 +174,7 @@ class Loader {
 
   void load_states(const VdbContents& contents, GridStorage& s) const {
     const auto& log_odds = tree<FloatGrid>(contents, s, "log_odds");
-    std::optional<FloatTree> from_integers;
-    const FloatTree& state = version(*contents.metadata) == 1
-                                 ? from_integers.emplace(tree<Int32Grid>(contents, s, "state"))
-                                 : tree<FloatGrid>(contents, s, "state");
+    const auto& state = tree<FloatGrid>(contents, s, "state");
     if (log_odds.activeVoxelCount() != state.activeVoxelCount()) {
       fail("grids 'state' and 'log_odds' do not know the same voxels");
     }
@@ -258,32 +253,21 @@ class Loader {
   class Hits {
    public:
     Hits(const Loader& loader, const VdbContents& contents, const GridStorage& s)
-        : loader_(loader) {
-      if (loader.version(*contents.metadata) == 1) {
-        integers_ = &loader.tree<Int32Grid>(contents, s, "hits");
-        return;
-      }
-      floats_ = &loader.tree<FloatGrid>(contents, s, "hits");
+        : loader_(loader), hits_(loader.tree<FloatGrid>(contents, s, "hits")) {
       if (loader.has_grid(contents, "hits_rest")) {
         rest_ = &loader.tree<FloatGrid>(contents, s, "hits_rest");
       }
     }
 
-    [[nodiscard]] std::uint64_t voxels() const {
-      return integers_ != nullptr ? integers_->activeVoxelCount() : floats_->activeVoxelCount();
-    }
+    [[nodiscard]] std::uint64_t voxels() const { return hits_.activeVoxelCount(); }
 
     [[nodiscard]] std::uint32_t at(const Coord& voxel) const {
-      std::int32_t integer = 0;
       float rounded = 0;
-      if (integers_ != nullptr ? !integers_->probeValue(voxel, integer)
-                               : !floats_->probeValue(voxel, rounded)) {
+      if (!hits_.probeValue(voxel, rounded)) {
         loader_.fail("the grids of beliefs do not hold the same voxels");
       }
       const double hits =
-          integers_ != nullptr
-              ? integer
-              : double{rounded} + double{rest_ != nullptr ? rest_->getValue(voxel) : 0.0F};
+          double{rounded} + double{rest_ != nullptr ? rest_->getValue(voxel) : 0.0F};
       constexpr double kMost = std::numeric_limits<std::int32_t>::max();
       if (!(hits >= 0 && hits <= kMost && hits == std::floor(hits))) {
         loader_.fail("grid 'hits' has the count " + short_text(hits));
@@ -293,8 +277,8 @@ class Loader {
 
    private:
     const Loader& loader_;
-    const openvdb::Int32Tree* integers_ = nullptr;
-    const FloatTree *floats_ = nullptr, *rest_ = nullptr;
+    const FloatTree& hits_;
+    const FloatTree* rest_ = nullptr;
   };
 
   void load_beliefs(const VdbContents& contents, GridStorage& s) const {

@@ -11,7 +11,7 @@
 namespace viewgain::detail {
 namespace {
 
-constexpr std::size_t kPixelChunk = 1024;
+constexpr std::size_t kHitChunk = 1024;
 
 /// Orders the hits by block, keeping their order within each block. `scratch` is working space.
 void sort_by_block(std::vector<Hit>& hits, std::vector<Hit>& scratch) {
@@ -42,7 +42,7 @@ void FrameHits::find(const PlacedFrame& frame, const BlockLattice& lattice, doub
                      ThreadPool& pool) {
   const Readings& pixels = frame.readings;
   by_pixel_.resize(pixels.size());
-  pool.for_each_chunk(pixels.size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
+  pool.for_each_chunk(pixels.size(), kHitChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       by_pixel_[i].offset = kBlockVoxels;
       if (pixels.kind(i) != PixelKind::reading) continue;

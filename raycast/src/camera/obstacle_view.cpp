@@ -19,7 +19,7 @@
 namespace viewgain {
 namespace {
 
-constexpr std::size_t kPixelChunk = 1024;
+constexpr std::size_t kRayChunk = 1024;
 
 }  // namespace
 
@@ -59,7 +59,7 @@ void ObstacleView::mark(DepthFrame& frame, const Pose& T_world_camera) const {
   frame.known_depth.assign(m.rays.size(), DepthFrame::kOutOfRange);
   const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
   const Eigen::Vector3d eye = T_world_camera.translation();
-  m.pool.for_each_chunk(m.rays.size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
+  m.pool.for_each_chunk(m.rays.size(), kRayChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!m.rays[i].allFinite()) continue;
       const double norm = m.rays[i].norm();  // range per depth

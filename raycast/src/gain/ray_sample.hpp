@@ -34,7 +34,7 @@ struct SampledVoxel {
   }
 
  private:
-  // Fitted on maps of a room, see perf/README.md.
+  // Fitted on maps of a room, see perf/results/choosing.md.
   static constexpr double kLoneHit = 1.6, kTwoHits = 1.15;
 };
 

@@ -12,7 +12,7 @@ namespace {
 // Errors as shares of what is gained in voxels that one ray met: of how many small ones there are,
 // more where there are large ones too, since the small ones are then farther off and partly hidden;
 // of large ones. And the error of a lattice as a share of that of as many rays at random; so few
-// rays as kFewRays know their scatter badly. Fitted, see perf/README.md.
+// rays as kFewRays know their scatter badly. Fitted, see perf/results/choosing.md.
 constexpr double kChanceError = 0.031, kMixedError = 0.73, kLoneError = 0.24;
 constexpr double kLatticeError = 0.87, kFewRays = 760;
 

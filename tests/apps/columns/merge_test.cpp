@@ -60,9 +60,7 @@ class Merge : public test::ProgramTest {
     return text.replace(at, from.size(), to);
   }
   void expect_refused(const Strings& parts, const Strings& words) const {
-    Strings call{"merge", "--out", "out.csv"};
-    call.insert(call.end(), parts.begin(), parts.end());
-    const test::ProgramResult result = run(call);
+    const test::ProgramResult result = run(test::joined({"merge", "--out", "out.csv"}, parts));
     EXPECT_EQ(result.exit_code, 2) << result.err;
     for (const std::string& word : words) {
       EXPECT_NE(result.err.find(word), std::string::npos) << word << " in: " << result.err;
@@ -106,7 +104,6 @@ TEST_F(Merge, AllRowsComeInOrder) {
 }
 
 TEST_F(Merge, PartsOfOtherJobsAreNamed) {
-  std::size_t cases = 0;
   for (const auto& [from, to, word] : std::vector<std::array<std::string, 3>>{
            {"viewgain 1.2.3", "viewgain 1.2.4", "viewgain 1.2.4, not 1.2.3 as in b.csv"},
            {"map 0123", "map 0124", "map 0124, not 0123 as in b.csv"},
@@ -118,9 +115,7 @@ TEST_F(Merge, PartsOfOtherJobsAreNamed) {
            {"index,gain,hits", "index,gain,rays", "columns index,gain,rays,status, not index,"}}) {
     write("mixed.csv", changed(from, to));
     expect_refused({"b.csv", "c.csv", "mixed.csv"}, {"mixed.csv: ", word});
-    ++cases;
   }
-  EXPECT_EQ(cases, 8U);
 }
 
 TEST_F(Merge, GapsAndOverlapsAreNamed) {

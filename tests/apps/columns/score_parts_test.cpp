@@ -38,15 +38,10 @@ class ScoreParts : public test::ProgramTest {
   }
 
   [[nodiscard]] static Strings arguments(const Strings& more) {
-    Strings all{"score", "map.vdb", "--sensor", "small.toml", "--sphere", "40,0.45"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+    return test::joined({"score", "map.vdb", "--sensor", "small.toml", "--sphere", "40,0.45"},
+                        more);
   }
   void score(const Strings& more) const { (void)run_well(arguments(more)); }
-  [[nodiscard]] static Strings with(Strings words, const Strings& more) {
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  }
   // Without lines of #.
   [[nodiscard]] std::string rows_of(const std::string& name) const {
     std::istringstream in(read(name));
@@ -82,17 +77,17 @@ TEST_F(ScoreParts, TogetherAreTheWholeForEveryGain) {
                                                    {"--gain", "unknown_count,rear_side_voxel"},
                                                    {"--approximate", "0.3"},
                                                    {"--reach", "reach.toml"}}) {
-    score(with(flags, {"--out", "plain.csv"}));
+    score(test::joined(flags, {"--out", "plain.csv"}));
     for (const std::string ending : {".csv", ".npy"}) {
-      score(with(flags, {"--rows", "0:40", "--out", "whole" + ending}));
+      score(test::joined(flags, {"--rows", "0:40", "--out", "whole" + ending}));
       // Of 50 shards some have no pose.
       const std::vector<int> counts = flags.empty() ? std::vector{1, 3, 50} : std::vector{3};
       for (const int shards : counts) {
         Strings merge{"merge", "--out", "merged" + ending};
         for (int i = shards - 1; i >= 0; --i) {
           const std::string part = "part" + std::to_string(i) + ending;
-          score(with(flags, {"--shard", std::to_string(i) + "/" + std::to_string(shards),
-                             "--threads", std::to_string(1 + i % 2), "--out", part}));
+          score(test::joined(flags, {"--shard", std::to_string(i) + "/" + std::to_string(shards),
+                                     "--threads", std::to_string(1 + i % 2), "--out", part}));
           merge.push_back(part);
         }
         (void)run_well(merge);
@@ -145,7 +140,7 @@ TEST_F(ScoreParts, PosesInColumnsAreThoseOfText) {
             "(40,)", columns);
   const Strings head{"score", "map.vdb", "--sensor", "small.toml"};
   const auto rows = [&](const Strings& more) {
-    (void)run_well(with(with(head, more), {"--rows", "5:31", "--out", "part.csv"}));
+    (void)run_well(test::joined(test::joined(head, more), {"--rows", "5:31", "--out", "part.csv"}));
     return rows_of("part.csv");
   };
   const std::string sphere = rows({"--sphere", "40,0.45"});
@@ -175,7 +170,6 @@ TEST_F(ScoreParts, BadColumnsOfPosesAreNamed) {
   write_npy("row.npy", "'<f8'", "(1, 4, 4)", row);
   write_npy("nan.npy", "'<f8'", "(1, 4, 4)", nan);
   const Strings head{"score", "map.vdb", "--sensor", "small.toml", "--poses"};
-  std::size_t cases = 0;
   for (const auto& [name, word] :
        std::vector<std::pair<std::string, std::string>>{{"none.npy", "no .npy"},
                                                         {"short.npy", "cut off"},
@@ -190,40 +184,30 @@ TEST_F(ScoreParts, BadColumnsOfPosesAreNamed) {
                                                         {"row.npy", "last row"},
                                                         {"nan.npy", "row 0"},
                                                         {"missing.npy", "missing.npy"}}) {
-    const test::ProgramResult result = run(with(head, {name}));
+    const test::ProgramResult result = run(test::joined(head, {name}));
     EXPECT_EQ(result.exit_code, 2) << name;
     EXPECT_NE(result.err.find(word), std::string::npos) << name << ": " << result.err;
     EXPECT_NE(result.err.find(name), std::string::npos) << name << ": " << result.err;
-    ++cases;
   }
-  EXPECT_EQ(cases, 13U);
-  EXPECT_EQ(run(with(head, {"good.npy"})).exit_code, 0);
+  EXPECT_EQ(run(test::joined(head, {"good.npy"})).exit_code, 0);
 }
 
 TEST_F(ScoreParts, FlagsThatDoNotGoTogetherAreRefused) {
-  std::size_t cases = 0;
-  for (const auto& [flags, word] : std::vector<std::pair<Strings, std::string>>{
-           {{"--shard", "3/3"}, "below n"},
-           {{"--shard", "0/0"}, "below n"},
-           {{"--shard", "-1/3"}, "i/n"},
-           {{"--shard", "1"}, "i/n"},
-           {{"--shard", "1/3x"}, "i/n"},
-           {{"--rows", "5:5"}, "below b"},
-           {{"--rows", "5:41"}, "there are 40 poses"},
-           {{"--rows", "5"}, "a:b"},
-           {{"--rows", "0:5", "--shard", "0/2"}, "at most 1"},
-           {{"--rows", "0:5", "--race"}, "--race"},
-           {{"--shard", "0/2", "--set", "2"}, "--set"},
-           {{"--shard", "0/2", "--picture", "p.png"}, "--picture"},
-           {{"--shard", "0/2", "--report", "p.html"}, "--report"}}) {
-    const test::ProgramResult result = run(arguments(with(flags, {"--out", "part.csv"})));
-    EXPECT_EQ(result.exit_code, 2) << flags[1];
-    EXPECT_NE(result.err.find(word), std::string::npos) << flags[1] << ": " << result.err;
-    ++cases;
-  }
-  EXPECT_EQ(cases, 13U);
-  EXPECT_NE(run(arguments({"--shard", "0/2"})).err.find("--out"), std::string::npos);
-  EXPECT_EQ(list(), (Strings{"map.vdb", "reach.toml", "small.toml"}));
+  expect_refused_with(arguments({"--out", "part.csv"}),
+                      {{{"--shard", "3/3"}, "below n"},
+                       {{"--shard", "0/0"}, "below n"},
+                       {{"--shard", "-1/3"}, "i/n"},
+                       {{"--shard", "1"}, "i/n"},
+                       {{"--shard", "1/3x"}, "i/n"},
+                       {{"--rows", "5:5"}, "below b"},
+                       {{"--rows", "5:41"}, "there are 40 poses"},
+                       {{"--rows", "5"}, "a:b"},
+                       {{"--rows", "0:5", "--shard", "0/2"}, "at most 1"},
+                       {{"--rows", "0:5", "--race"}, "--race"},
+                       {{"--shard", "0/2", "--set", "2"}, "--set"},
+                       {{"--shard", "0/2", "--picture", "p.png"}, "--picture"},
+                       {{"--shard", "0/2", "--report", "p.html"}, "--report"}});
+  expect_refused(arguments({"--shard", "0/2"}), "--out");
 }
 
 }  // namespace

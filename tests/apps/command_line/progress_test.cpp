@@ -67,18 +67,9 @@ class ProgressLine : public test::ProgramTest {
   }
 
   static Strings simulate(int frames, const Strings& more = {}) {
-    Strings arguments{"simulate",
-                      "cube.off",
-                      "--orbit",
-                      "1,6,20",
-                      "--sensor",
-                      "tof.toml",
-                      "--out",
-                      "frames",
-                      "--frames-per-view",
-                      std::to_string(frames)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
+    return test::joined({"simulate", "cube.off", "--orbit", "1,6,20", "--sensor", "tof.toml",
+                         "--out", "frames", "--frames-per-view", std::to_string(frames)},
+                        more);
   }
 };
 

@@ -97,16 +97,13 @@ TEST_F(Files, SensorsReadBackEqual) {
 TEST_F(Files, SensorsOfBeforeHaveTheDefaultFrequencyAndLeastAmplitude) {
   const Sensor sensor = sensor_preset("sr4000");
   std::string text = sensor_toml(sensor);
-  int cases = 0;
   for (const std::string key : {"modulation_frequency", "min_amplitude"}) {
     const std::size_t begin = text.find(key);
     ASSERT_NE(begin, std::string::npos);
     text.erase(begin, text.find('\n', begin) + 1 - begin);
     write("sensor.toml", text);
     EXPECT_TRUE(equal(read_sensor_toml(dir / "sensor.toml"), sensor)) << text;
-    ++cases;
   }
-  EXPECT_EQ(cases, 2);
   EXPECT_NE(sensor_error(text + "modulation_frequency = -1.0\n").find("modulation_frequency"),
             std::string::npos);
 }
@@ -130,15 +127,12 @@ TEST_F(Files, SensorsSayHowSurePosesAre) {
   EXPECT_NE(text.find("pose_sigma = [0.005, 0.0087]"), std::string::npos) << text;
   write("sensor.toml", text);
   EXPECT_EQ(read_sensor_toml(dir / "sensor.toml").pose_sigma, sensor.pose_sigma);
-  std::size_t cases = 0;
   for (const char* bad : {"0.005", "[0.005]", "[0.005, -0.1]", "[nan, 0.0]", "[0.1, 0.1, 0.1]"}) {
     const std::string key = "pose_sigma = ";
     std::string damaged = text;
     damaged.replace(damaged.find(key), key.size() + 15, key + bad);
     EXPECT_NE(sensor_error(damaged).find("pose_sigma"), std::string::npos) << bad;
-    ++cases;
   }
-  EXPECT_EQ(cases, 5U);
 }
 
 TEST_F(Files, StereoWithoutAFocalLengthGoesByTheCameras) {
@@ -165,7 +159,6 @@ TEST_F(Files, MapsRememberTheirFrames) {
   save_map(octree_map(), dir / "map.vdb", noting_frames({}, noting_sensor(sensor_preset("d435"))));
   EXPECT_TRUE(load_map_of_sensor(dir / "map.vdb").frames.empty());
   EXPECT_EQ(load_map_of_sensor(dir / "map.vdb").sensor->name, "d435");
-  int cases = 0;
   for (const char* note : {"frame-000000.depth.png\n", "0123456789abcdef\n", "0123456789abcdef \n",
                            "0123456789ABCDEF a.png\n", "0123456789abcdef0 a.png\n", "\n"}) {
     save_vdb(octree_map(), dir / "bad.vdb",
@@ -177,9 +170,7 @@ TEST_F(Files, MapsRememberTheirFrames) {
       EXPECT_EQ(error.code(), ErrorCode::format);
       EXPECT_NE(std::string(error.what()).find("bad.vdb"), std::string::npos) << error.what();
     }
-    ++cases;
   }
-  EXPECT_EQ(cases, 6);
   EXPECT_THROW((void)frame_identity(FrameSequence{}, 0), Error);
 }
 
@@ -239,13 +230,10 @@ TEST_F(Files, SensorErrorsNameTheKey) {
        "\"range_calibration.unit\" is unknown"},
       {with("[camera]", "range_calibration = 3\n[camera]"),
        "\"range_calibration\" must be a table"}};
-  int count = 0;
   for (const auto& [text, wanted] : cases) {
     const std::string message = sensor_error(text);
     EXPECT_NE(message.find(wanted), std::string::npos) << message << " <- " << wanted;
-    ++count;
   }
-  EXPECT_EQ(count, 28);
   EXPECT_THROW((void)load_sensor("none.toml"), Error);
   EXPECT_THROW((void)load_sensor("sr5000"), Error);
 }

@@ -25,18 +25,8 @@
 namespace viewgain {
 namespace {
 
-TEST(Formats, SensorsComeBackAsTheyWere) {
+TEST(Formats, WrongSensorsAreNotWritten) {
   const test::TemporaryFolder folder;
-  std::size_t cases = 0;
-  for (const std::string& name : sensor_preset_names()) {
-    const Sensor sensor = sensor_preset(name);
-    const auto path = folder.path() / (name + ".toml");
-    write_sensor_toml(path, sensor);
-    EXPECT_EQ(sensor_toml(load_sensor(path.string())), sensor_toml(sensor)) << name;
-    ++cases;
-  }
-  EXPECT_EQ(cases, 5U);
-  EXPECT_EQ(folder.entries(), 5);
   Sensor wrong = sensor_preset("sr4000");
   wrong.min_range = -1;
   test::expect_error(ErrorCode::invalid_argument, "range",
@@ -44,7 +34,7 @@ TEST(Formats, SensorsComeBackAsTheyWere) {
   test::expect_error(ErrorCode::io, "none", [&] {
     write_sensor_toml(folder.path() / "none" / "a.toml", sensor_preset("sr4000"));
   });
-  EXPECT_EQ(folder.entries(), 5);
+  EXPECT_EQ(folder.entries(), 0);
 }
 
 TEST(Formats, RegionsComeBackAsTheyWere) {
@@ -60,7 +50,6 @@ TEST(Formats, RegionsComeBackAsTheyWere) {
                   regions[4].poses, {0.02, 0.1},       {}};
     return regions;
   }();
-  std::size_t cases = 0;
   for (const ReachRegion& written : parts) {
     const auto path = folder.path() / "cell.toml";
     write_reach_toml(path, written);
@@ -83,46 +72,25 @@ TEST(Formats, RegionsComeBackAsTheyWere) {
     EXPECT_EQ(read.tolerance.distance, written.tolerance.distance);
     EXPECT_NEAR(read.tolerance.angle, written.tolerance.angle, 1e-15);
     EXPECT_EQ(reach_poses_file(path).has_value(), !written.poses.empty());
-    ++cases;
   }
-  EXPECT_EQ(cases, 6U);
   EXPECT_EQ(folder.entries(), 2);  // cell.toml, cell.poses.txt
   region.predicate = [](const Pose&) { return true; };
   test::expect_error(ErrorCode::invalid_argument, "predicate",
                      [&] { write_reach_toml(folder.path() / "p.toml", region); });
 }
 
-TEST(Formats, FramesComeBackAsTheyWere) {
+TEST(Formats, WhatIsNotThereIsNoFrame) {
   const test::TemporaryFolder folder;
   Sensor sensor = sensor_preset("sr4000");
   sensor.camera.width = 3, sensor.camera.height = 2;
-  const std::vector<Pose> poses = sphere_poses(2, 0.6);
   FramesWriter writer(folder.path() / "frames");
-  const DepthFrame frame{3, 2, {0.F, 0.5F, 1.25F, DepthFrame::kOutOfRange, 6.5F, 0.0001F}, {}};
-  DepthFrame with_amplitude = frame;
-  with_amplitude.amplitude = {0.F, 1.F, 2.5F, 0.001F, 65.F, 4.F};
-  writer.write_frame(0, frame);
-  writer.write_frame(1, with_amplitude);
+  writer.write_frame(0, {3, 2, std::vector<float>(6, 0.5F), {}});
   EXPECT_EQ(folder.entries(), 1);  // hidden
-  writer.commit(poses, sensor);
-
+  writer.commit(sphere_poses(1, 0.6), sensor);
   const FrameSequence frames = open_frames(folder.path() / "frames");
-  EXPECT_EQ(sensor_toml(frames.sensor), sensor_toml(sensor));
-  ASSERT_EQ(frames.images.size(), 2U);
-  EXPECT_EQ(frames.poses[1].translation(), poses[1].translation());
-  EXPECT_TRUE(load_frame(frames, 0).amplitude.empty());
-  const DepthFrame read = load_frame(frames, 1);
-  for (std::size_t i = 0; i < 6; ++i) {
-    if (i == 3) continue;
-    EXPECT_NEAR(read.depth[i], frame.depth[i], 1e-6) << i;
-    EXPECT_NEAR(read.amplitude[i], with_amplitude.amplitude[i], 1e-5) << i;
-  }
-  EXPECT_NEAR(read.amplitude[3], with_amplitude.amplitude[3], 1e-5);
-  EXPECT_EQ(read.depth[3], DepthFrame::kOutOfRange);
-  EXPECT_EQ(load_frame(frames, 1, OutOfRangeMeaning::invalid).depth[3], DepthFrame::kInvalid);
   EXPECT_NEAR(load_frame(open_frames(folder.path() / "frames", "", 1e-3), 0).depth[1], 5.F, 1e-5);
-  test::expect_error(ErrorCode::invalid_argument, "no frame 2 of 2",
-                     [&] { (void)load_frame(frames, 2); });
+  test::expect_error(ErrorCode::invalid_argument, "no frame 1 of 1",
+                     [&] { (void)load_frame(frames, 1); });
   for (const double scale : {0.0, -1e-3, std::nan("")}) {
     test::expect_error(ErrorCode::invalid_argument, "depth scale",
                        [&] { (void)open_frames(folder.path() / "frames", "", scale); });
@@ -241,10 +209,8 @@ TEST(Formats, FramesThatCannotBeAreRefusedAndNothingIsWritten) {
   const auto dir = folder.path() / "frames";
   FramesWriter writer(dir);
   writer.write_frame(0, {3, 2, six, {}});
-  std::size_t cases = 0;
   const auto refuses = [&](const char* part, const auto& call) {
     test::expect_error(ErrorCode::invalid_argument, part, call);
-    ++cases;
   };
   refuses("5 depths", [&] { writer.write_frame(1, {3, 2, five, {}}); });
   refuses("5 amplitudes", [&] { writer.write_frame(1, {3, 2, six, five}); });
@@ -257,7 +223,6 @@ TEST(Formats, FramesThatCannotBeAreRefusedAndNothingIsWritten) {
   refuses("values", [&] { write_png(folder.path() / "a.png", GrayImage{3, 2, {1, 2, 3}}); });
   refuses("values", [&] { write_png(folder.path() / "a.png", RgbImage{1, 1, {1}}); });
   refuses("px", [&] { (void)read_gray_png(folder.file("b.png", ""), -1, 2); });
-  EXPECT_EQ(cases, 11U);
   EXPECT_FALSE(std::filesystem::exists(dir));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "a.png"));
 }
@@ -281,31 +246,15 @@ TEST(Formats, RegionsWithPosesNeedANameForThem) {
   const test::TemporaryFolder folder;
   ReachRegion region;
   region.poses = sphere_poses(3, 0.5);
-  std::size_t cases = 0;
   for (const std::string name : {"cell.txt", "cell", "\xff.toml"}) {
     test::expect_error(ErrorCode::invalid_argument, "cell",
                        [&] { write_reach_toml(folder.path() / ("cell" + name), region); });
-    ++cases;
   }
-  EXPECT_EQ(cases, 3U);
   test::expect_error(ErrorCode::io, "none",
                      [&] { write_reach_toml(folder.path() / "none" / "cell.toml", region); });
   EXPECT_EQ(folder.entries(), 0);
   region.poses.clear();
   write_reach_toml(folder.path() / "cell.txt", region);  // no second file
-  EXPECT_EQ(folder.entries(), 1);
-}
-
-TEST(Formats, APointIsWrittenAsPly) {
-  const test::TemporaryFolder folder;
-  const std::vector<std::array<double, 3>> points{{1, 2, 3}};
-  write_ply(folder.path() / "p.ply", {points});
-  const std::string bytes = test::read_all(folder.path() / "p.ply");
-  EXPECT_EQ(bytes.size(), bytes.find("end_header\n") + 11 + 24);
-  const std::vector<float> sigma(2, 0.1F);
-  test::expect_error(ErrorCode::invalid_argument, "1 points but 2 sigmas", [&] {
-    write_ply(folder.path() / "q.ply", {points, {}, sigma});
-  });
   EXPECT_EQ(folder.entries(), 1);
 }
 

@@ -63,7 +63,6 @@ Value value_at(const std::string& bytes, std::size_t at) {
 
 TEST_F(Ply, MeshComesBackExactly) {
   const SurfaceMesh mesh = tetrahedron();
-  std::size_t cases = 0;
   for (const std::vector<float>& sigma :
        {std::vector<float>{}, std::vector<float>{0.5F, 0.25F, 0.125F, 0.001F}}) {
     const auto path = folder_ / "surface.ply";
@@ -71,9 +70,7 @@ TEST_F(Ply, MeshComesBackExactly) {
     const TriangleMesh read = read_mesh(path);
     EXPECT_EQ(read.vertices, mesh.vertices);
     EXPECT_EQ(read.triangles, mesh.triangles);
-    ++cases;
   }
-  EXPECT_EQ(cases, 2U);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
 }
 
@@ -104,7 +101,6 @@ TEST_F(Ply, PointsWithAndWithoutNormals) {
   const SurfaceMesh mesh = tetrahedron();
   const std::vector<float> sigma(4, 0.5F);
   const std::string end = "end_header\n";
-  std::size_t cases = 0;
   for (const bool normals : {false, true}) {
     for (const bool sigmas : {false, true}) {
       const auto path = folder_ / "points.ply";
@@ -116,10 +112,8 @@ TEST_F(Ply, PointsWithAndWithoutNormals) {
       EXPECT_EQ(bytes.find("face"), std::string::npos);
       const std::size_t vertex = 24U + (normals ? 12U : 0U) + (sigmas ? 4U : 0U);
       EXPECT_EQ(bytes.size(), bytes.find(end) + end.size() + 4 * vertex);
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 4U);
   write_ply(folder_ / "none.ply", {});
   EXPECT_NE(bytes_of(folder_ / "none.ply").find("element vertex 0\n"), std::string::npos);
 }

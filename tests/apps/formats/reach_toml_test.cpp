@@ -95,7 +95,6 @@ TEST_F(ReachFiles, ErrorsNameFileAndKey) {
       {"[tolerance]\nangle = 3", "\"tolerance.angle\" is unknown"},
       {"[tolerance]\nangle_deg = -3", "tolerance's angle"},
       {"[[box]", "line 1"}};
-  std::size_t count = 0;
   for (const auto& [text, wanted] : cases) {
     try {
       (void)read_region(text);
@@ -106,9 +105,7 @@ TEST_F(ReachFiles, ErrorsNameFileAndKey) {
       EXPECT_NE(message.find("reach.toml"), std::string::npos) << message;
       EXPECT_NE(message.find(wanted), std::string::npos) << message << " <- " << wanted;
     }
-    ++count;
   }
-  EXPECT_EQ(count, 19U);
   EXPECT_THROW((void)read_reach_toml(dir / "none.toml"), Error);
   EXPECT_THROW((void)read_region("poses = \"none.txt\""), Error);
   std::filesystem::create_directories(dir / "cell");

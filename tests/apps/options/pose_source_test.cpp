@@ -57,19 +57,13 @@ TEST(PoseSource, ErrorsNameTheFlag) {
       {&PoseOptions::sphere, "10,0.4", "0,0", "--center"},
       {&PoseOptions::sphere, "10,0.4", "0,0,x", "--center"},
       {&PoseOptions::file, "poses.txt", "0,0,0", "--center"},
-      // As they were spelled once.
-      {&PoseOptions::shell, "10,0.4,0.9,7", "", "given by --seed"},
-      {&PoseOptions::shell, "10,0.4,0.9,7,1,2,3", "", "by --center x,y,z"},
-      {&PoseOptions::sphere, "10,0.4,1,2,3", "", "given by --center x,y,z"},
-      {&PoseOptions::dome, "10,0.4,1,2,3", "", "given by --center x,y,z"},
-      {&PoseOptions::rings, "48,0.5,1,2,3", "", "given by --center x,y,z"}};
-  std::size_t count = 0;
+      {&PoseOptions::shell, "10,0.4,0.9,7", "", "--shell 10,0.4,0.9,7: needs 3 numbers"},
+      {&PoseOptions::sphere, "10,0.4,1,2,3", "", "--sphere 10,0.4,1,2,3: needs 2 numbers"},
+      {&PoseOptions::dome, "10,0.4,1", "", "--dome 10,0.4,1: needs 2 numbers"}};
   for (const Case& wrong : cases) {
     test::expect_error(ErrorCode::invalid_argument, wrong.word,
                        [&] { (void)poses(wrong.set, wrong.text, wrong.center); });
-    ++count;
   }
-  EXPECT_EQ(count, 17U);
 }
 
 }  // namespace

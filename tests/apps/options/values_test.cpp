@@ -29,14 +29,11 @@ TEST(Values, NumbersAndBoxes) {
     EXPECT_THROW((void)parse_count("--n", bad), Error) << bad;
   }
   std::mt19937_64 random(3);
-  int cases = 0;
   for (int i = 0; i < 1000; ++i) {
     const double value = std::ldexp(static_cast<double>(random()), i % 200 - 150);
     EXPECT_EQ(std::stod(exact_text(value)), value);
     EXPECT_EQ(std::stod(short_text(value)), value);
-    ++cases;
   }
-  EXPECT_EQ(cases, 1000);
   EXPECT_EQ(exact_text(-std::nan("")), "nan");
 }
 
@@ -52,12 +49,9 @@ TEST(Utf8Text, BytesThatAreNoUtf8AreShown) {
       {"\xed\xa0\x80", "\\xED\\xA0\\x80"},           // half of a surrogate pair
       {"\xf4\x90\x80\x80", "\\xF4\\x90\\x80\\x80"},  // past the last code point
       {"a\nb", "a\nb"}};
-  std::size_t cases = 0;
   for (const auto& [bytes, text] : texts) {
     EXPECT_EQ(utf8_text(bytes), text);
-    ++cases;
   }
-  EXPECT_EQ(cases, 9U);
 }
 
 TEST(Values, ChecksNameFlagAndValue) {

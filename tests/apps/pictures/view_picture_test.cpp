@@ -166,7 +166,6 @@ class ViewPictureTest : public testing::Test {
 TEST_F(ViewPictureTest, EachClassHasItsColor) {
   Sheet sheet = make_sheet();
   sheet.surface.triangles.clear();  // only the runs
-  int cases = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     EstimatedViews estimated;
     estimated.runs = {sheet.runs[k]};
@@ -174,12 +173,10 @@ TEST_F(ViewPictureTest, EachClassHasItsColor) {
     for (std::size_t c = 0; c < 4; ++c) {
       const int pixels = image.count(kIsOfClass[c]);
       const std::string what = "run " + std::to_string(k) + ", color " + std::to_string(c);
-      EXPECT_EQ(pixels > 300, c == k) << what << ": " << pixels;
+      EXPECT_EQ(pixels > 75, c == k) << what << ": " << pixels;
       EXPECT_EQ(pixels == 0, c != k) << what << ": " << pixels;
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 16);
 }
 
 TEST_F(ViewPictureTest, CandidatesHaveTheColorOfTheirClass) {
@@ -214,21 +211,21 @@ TEST_F(ViewPictureTest, TheChosenViewBringsItsRays) {
   const std::vector<Candidate> candidates{{chosen(), "test", BoundaryClass::left}};
   const Sheet sheet = make_sheet();
   const Image with = drawn(picture(sheet.surface, {}, candidates, chosen()));
-  EXPECT_EQ(with.width, 1280);
-  EXPECT_EQ(with.height, 960);
-  EXPECT_GT(with.count(is_orange), 300);
-  EXPECT_GT(with.count(is_ray_blue), 300);
-  EXPECT_GT(with.count(is_dark_green), 1000);
-  EXPECT_GT(with.count(is_black), 200);
+  EXPECT_EQ(with.width, 640);
+  EXPECT_EQ(with.height, 480);
+  EXPECT_GT(with.count(is_orange), 75);
+  EXPECT_GT(with.count(is_ray_blue), 75);
+  EXPECT_GT(with.count(is_dark_green), 250);
+  EXPECT_GT(with.count(is_black), 50);
   EXPECT_EQ(with.count(kIsOfClass[0]), 0);
 
   const Image without = drawn(picture(sheet.surface, {}));
-  EXPECT_EQ(without.width, 1280);
-  EXPECT_EQ(without.height, 960);
+  EXPECT_EQ(without.width, 640);
+  EXPECT_EQ(without.height, 480);
   EXPECT_EQ(without.count(is_orange), 0);
   EXPECT_EQ(without.count(is_ray_blue), 0);
   EXPECT_EQ(without.count(is_dark_green), 0);
-  EXPECT_GT(without.count(is_black), 200);
+  EXPECT_GT(without.count(is_black), 50);
 }
 
 TEST_F(ViewPictureTest, TheSurfaceGainShowsWhereSurfaceMayBe) {
@@ -247,14 +244,13 @@ TEST_F(ViewPictureTest, TheSurfaceGainShowsWhereSurfaceMayBe) {
   const ViewPicture by_surface{nothing, none, {}, taken(), behind, surface, sensor_};
   // Translucent: any reddish pixel counts.
   const auto is_reddish = [](const Pixel& p) { return p.r > p.g + 12 && p.g > p.b; };
-  EXPECT_GT(drawn(by_surface).count(is_reddish), drawn(by_paper).count(is_reddish) + 10000);
+  EXPECT_GT(drawn(by_surface).count(is_reddish), drawn(by_paper).count(is_reddish) + 2500);
 }
 
 TEST(ChancePaints, TheLikelierTheStronger) {
   VoxelContribution voxel;
   voxel.rays = 200;
   std::size_t before = 0;
-  int cases = 0;
   for (const double chance : {1.0, 0.5, 0.3, 0.15, 0.06, 0.03, 0.0101}) {
     voxel.expected_rays = 200 * chance;
     const auto level = ChancePaints::level(voxel);
@@ -263,9 +259,7 @@ TEST(ChancePaints, TheLikelierTheStronger) {
     EXPECT_GE(*level, before);
     EXPECT_LT(*level, ChancePaints::kLevels);
     before = *level;
-    ++cases;
   }
-  EXPECT_EQ(cases, 7);
   EXPECT_EQ(before, ChancePaints::kLevels - 1);
   voxel.expected_rays = 1.9;
   EXPECT_FALSE(ChancePaints::level(voxel));
@@ -294,13 +288,13 @@ TEST_F(ViewPictureTest, TheSurfaceIsShadedAndDarkerFromBehind) {
       sum += p.r;
       ++pixels;
     }
-    EXPECT_GT(pixels, 5000);
+    EXPECT_GT(pixels, 1200);
     return sum / pixels;
   };
   const Sheet front = make_sheet(), back = make_sheet(true);
   EXPECT_GT(mean_grey(drawn(picture(front.surface, {}))),
             1.1 * mean_grey(drawn(picture(back.surface, {}))));
-  EXPECT_LT(drawn(picture({}, {})).count(is_surface_grey), 500);
+  EXPECT_LT(drawn(picture({}, {})).count(is_surface_grey), 125);
 }
 
 TEST_F(ViewPictureTest, RefusesWhatItCannotDraw) {
@@ -333,9 +327,8 @@ TEST_F(ViewPictureTest, AmplitudesAreDrawnByTheirSquareRoot) {
   const Image image = read_png(folder_ / "a.png");
   ASSERT_EQ(image.width, 500);  // 5 is the least factor that reaches 480
   ASSERT_EQ(image.height, 15);
-  int checked = 0;
   for (int v = 0; v < 15; ++v) {
-    for (int u = 0; u < 500; ++u, ++checked) {
+    for (int u = 0; u < 500; ++u) {
       // White is column 98: 98 % of the 297 positive values lie under it, 99 % up to it.
       const int expected = static_cast<int>(std::lround(255 * std::min(u / 5, 98) / 98.0));
       const Pixel& p = image.pixels[static_cast<std::size_t>(500 * v + u)];
@@ -344,31 +337,6 @@ TEST_F(ViewPictureTest, AmplitudesAreDrawnByTheirSquareRoot) {
       ASSERT_EQ(p.b, p.r);
     }
   }
-  EXPECT_EQ(checked, 7500);
-}
-
-TEST_F(ViewPictureTest, AmplitudePicturesOfUnusualFrames) {
-  DepthFrame frame{600, 2, std::vector<float>(1200, 1.0F), std::vector<float>(1200, 0.0F)};
-  write_amplitude_picture(folder_ / "a.png", frame);
-  const Image image = read_png(folder_ / "a.png");
-  EXPECT_EQ(image.width, 600);  // wide enough as it is
-  EXPECT_EQ(image.height, 2);
-  EXPECT_EQ(image.count([](const Pixel& p) { return p.r == 0; }), 1200);
-
-  const auto code = [this](const DepthFrame& f) {
-    try {
-      write_amplitude_picture(folder_ / "b.png", f);
-    } catch (const Error& error) {
-      return std::optional(error.code());
-    }
-    return std::optional<ErrorCode>();
-  };
-  frame.amplitude.pop_back();
-  EXPECT_EQ(code(frame), ErrorCode::invalid_argument);
-  frame.amplitude.clear();
-  EXPECT_EQ(code(frame), ErrorCode::invalid_argument);
-  EXPECT_EQ(code({}), ErrorCode::invalid_argument);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "b.png"));
 }
 
 }  // namespace

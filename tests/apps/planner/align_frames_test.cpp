@@ -95,7 +95,6 @@ TEST(AlignFrames, WhatSlidesStaysAsReported) {
   FrameAlignment frames = alignment(scene);
   const Pose first = test::camera_at(0, 5, test::RegistrationScene::kDistance);
   (void)frames.add(scene.see(first, 0), {first, kShift, kTurn});
-  int cases = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Pose pose = test::disturbed(first, kShift, kTurn, seed);
     const FrameRegistration result = frames.add(scene.see(first, seed), {pose, kShift, kTurn});
@@ -104,9 +103,7 @@ TEST(AlignFrames, WhatSlidesStaysAsReported) {
     const Eigen::Vector3d way = result.T_world_camera.translation() - pose.translation();
     EXPECT_LT(std::hypot(way.y(), way.z()), 1e-3);
     EXPECT_LT(std::abs(result.T_world_camera.translation().x() - first.translation().x()), 1e-3);
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 // What is not in reach of the prior moves nothing and is kept out, unless it lies where it might be
@@ -144,7 +141,6 @@ TEST(AlignFrames, FarOffIsRefused) {
 TEST(AlignFrames, WhoIsWrongIsToldByThoseThatAgree) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
   const std::vector<Pose> truth = ring(8);
-  int cases = 0;
   for (const Pose& wrong :
        {test::disturbed(truth[4], 0.1, 0, 5), test::disturbed(truth[4], 0, 30 * kDegree, 6)}) {
     FrameAlignment frames = alignment(scene);
@@ -159,10 +155,8 @@ TEST(AlignFrames, WhoIsWrongIsToldByThoseThatAgree) {
     for (std::size_t i = 2; i < 8; ++i) {
       EXPECT_EQ(frames.registrations()[i].status, RegistrationStatus::registered)
           << i << " " << frames.registrations()[i].reason;
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 12);
 }
 
 // Poses that are better than their sigmas say are not made worse.

@@ -37,7 +37,6 @@ TEST(BoundaryGeneration, ProposesWhatTheLoopDoes) {
   planner.add_generation(generation);
   EXPECT_TRUE(planner.propose().candidates.empty());  // no surface yet
 
-  int views = 0;
   for (const Pose& pose :
        {look_at({0.35, 0.2, 0.25}, {0, 0, 0}), look_at({-0.1, 0.4, 0.2}, {0, 0, 0})}) {
     const DepthFrame frame = camera.acquire(pose);
@@ -55,19 +54,14 @@ TEST(BoundaryGeneration, ProposesWhatTheLoopDoes) {
     }
     EXPECT_EQ(generation->surface().triangles, model.surface().triangles);
     EXPECT_EQ(generation->estimated().runs.size(), loop.estimated().runs.size());
-    ++views;
   }
-  EXPECT_EQ(views, 2);
 }
 
 TEST(BoundaryGeneration, RefusesASpacingThatIsNone) {
-  int cases = 0;
   for (const double spacing : {0.0, -0.01, std::numeric_limits<double>::quiet_NaN()}) {
     test::expect_error(ErrorCode::invalid_argument, "spacing",
                        [&] { (void)default_boundary(test::half_sr4000(), spacing); });
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 }  // namespace

@@ -108,7 +108,6 @@ TEST(Classic, ChoosesTheFirstOfTheBestByItsGain) {
   const SeenBox box;
   const auto model = box.model_after({box.start});
   PolicyConfig config;
-  std::size_t checked = 0;
   for (const ClassicGain gain : {ClassicGain::unknown_count, ClassicGain::proximity_count}) {
     config.classic = {gain, GainSemantics::shipped};
     const auto map = ClassicMap::build(model->scene(), model->grid(), Acquisition{box.sensor});
@@ -124,10 +123,8 @@ TEST(Classic, ChoosesTheFirstOfTheBestByItsGain) {
       EXPECT_EQ(decision->candidate, static_cast<std::size_t>(best - values.begin()));
       EXPECT_EQ(decision->gain, *best);
       EXPECT_GT(decision->area, 0);
-      ++checked;
     }
   }
-  EXPECT_EQ(checked, 4U);
 }
 
 TEST(Classic, OfManyThirtyTwoAreScoredInFull) {
@@ -208,8 +205,7 @@ TEST(Oracle, CountsUncoveredSamplesInView) {
       box.sensor, test::model_config(box.sensor, 0.12, 0.005), nullptr, box.exec);
   const OracleChoice from_nothing(*empty, box.sensor, {box.mesh, box.truth, {}}, box.exec);
   const std::vector<std::size_t> all = from_nothing.uncovered_in_view(box.candidates);
-  std::size_t cases = 0;
-  for (std::size_t i = 0; i < 30; ++i, ++cases) {
+  for (std::size_t i = 0; i < 30; ++i) {
     const Eigen::Vector3d eye = box.candidates[i].T_world_camera.translation();
     std::size_t expected = 0;
     for (const SurfaceSample& sample : box.truth->ground_truth().samples()) {
@@ -221,7 +217,6 @@ TEST(Oracle, CountsUncoveredSamplesInView) {
         << i;
     EXPECT_LE(counts[i], all[i]);
   }
-  EXPECT_EQ(cases, 30U);
 }
 
 TEST(Oracle, NeedsTheObject) {

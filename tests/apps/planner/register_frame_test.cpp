@@ -43,7 +43,6 @@ double median(std::vector<double> values) {
 TEST(RegisterFrame, WithoutNoiseThePoseIsRecovered) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), false, test::views_round());
   const DepthFrame frame = scene.see(true_pose());
-  int cases = 0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Pose reported = test::disturbed(true_pose(), kShift, kTurn, seed);
     const FrameRegistration result = registered(scene, frame, reported);
@@ -59,15 +58,12 @@ TEST(RegisterFrame, WithoutNoiseThePoseIsRecovered) {
     EXPECT_NEAR(result.translation, (corrected.translation() - reported.translation()).norm(),
                 1e-12);
     EXPECT_NEAR(result.rotation, test::error_of(corrected, reported).rotation, 1e-9);
-    ++cases;
   }
-  EXPECT_EQ(cases, 10);
 }
 
 TEST(RegisterFrame, AMapsPointsThatTheFrameMayShowAreEnough) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, test::views_round());
   const MapRegistration registration(scene.sensor, {}, {2});
-  int cases = 0;
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const DepthFrame frame = scene.see(true_pose(), 1000 + seed);
     const Pose reported = test::disturbed(true_pose(), kShift, kTurn, seed);
@@ -80,9 +76,7 @@ TEST(RegisterFrame, AMapsPointsThatTheFrameMayShowAreEnough) {
     const test::PoseError error = test::error_of(part.T_world_camera, whole.T_world_camera);
     EXPECT_LT(error.translation, 2e-4);
     EXPECT_LT(error.rotation, 0.02 * kDegree);
-    ++cases;
   }
-  EXPECT_EQ(cases, 5);
 
   DepthFrame nothing = scene.see(true_pose());
   std::fill(nothing.depth.begin(), nothing.depth.end(), DepthFrame::kInvalid);
@@ -139,17 +133,6 @@ TEST(RegisterFrame, WithNoiseItIsRecoveredToMillimetresAndKnowsHowWell) {
   EXPECT_LT(median(rotations), 0.4 * kDegree);
   EXPECT_GT(squares / 10, 0.2);
   EXPECT_LT(squares / 10, 3.0);
-}
-
-TEST(RegisterFrame, ExactPosesHardlyMove) {
-  for (const bool noise : {false, true}) {
-    const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), noise,
-                                        test::views_round());
-    const FrameRegistration result = registered(scene, scene.see(true_pose()), true_pose());
-    ASSERT_EQ(result.status, RegistrationStatus::registered) << result.reason;
-    EXPECT_LT(result.translation, noise ? 2.5e-3 : 0.5e-3);
-    EXPECT_LT(result.rotation, (noise ? 0.3 : 0.1) * kDegree);
-  }
 }
 
 // A shape on which the camera can move without a change, and how many such motions there are.
@@ -217,7 +200,6 @@ TEST(RegisterFrame, WhatSlidesStaysWithThePrior) {
 
 TEST(RegisterFrame, FarOffIsRefused) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, test::views_round());
-  int cases = 0;
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const DepthFrame frame = scene.see(true_pose(), 1000 + seed);
     for (const Pose& reported : {test::disturbed(true_pose(), 0.1, 0, seed),
@@ -227,15 +209,12 @@ TEST(RegisterFrame, FarOffIsRefused) {
           << seed << " " << result.reason << " " << result.translation;
       EXPECT_FALSE(result.reason.empty());
       EXPECT_EQ(result.T_world_camera, orthonormalized(reported));
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 16);
 }
 
 TEST(RegisterFrame, TheSameBitsForAnyNumberOfThreads) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, test::views_round());
-  int cases = 0;
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
     const DepthFrame frame = scene.see(true_pose(), 1000 + seed);
     const Pose reported = test::disturbed(true_pose(), kShift, kTurn, seed);
@@ -249,10 +228,8 @@ TEST(RegisterFrame, TheSameBitsForAnyNumberOfThreads) {
       EXPECT_EQ(more.pairs, one.pairs);
       EXPECT_EQ(more.contradiction, one.contradiction);
       EXPECT_EQ(more.iterations, one.iterations);
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 6);
 }
 
 TEST(RegisterFrame, TooLittleOverlapLeavesThePose) {

@@ -48,13 +48,10 @@ TEST(Truth, ShellsThatLeaveOutTheWorkingDistanceShowWhatTheyShow) {
   farther.shells.push_back({{0, 0, 0}, 0.6, 0.9});
   nearer.shells.push_back({{0, 0, 0}, 0.25, 0.3});
   thin.shells.push_back({{0, 0, 0}, 0.7, 0.703});
-  int cases = 0;
   for (const ReachRegion& reach : {ReachRegion{}, farther, nearer, thin}) {
     // A sixth; samples near edges are nearer than 5 mm to it too.
     EXPECT_NEAR(share_of_the_face(from_the_side(reach)), 1.0 / 6, 0.03);
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
 }
 
 TEST(Truth, CoveredAreaIsThatOfTheMesh) {
@@ -86,14 +83,11 @@ TEST(Truth, ASensorThatSeesFarTakesNoMoreMemoryAndNoLonger) {
   ReachRegion nowhere, farther;
   nowhere.shells.push_back({{5000, 0, 0}, 0, 1});
   farther.shells.push_back({{0, 0, 0}, 40, 41});
-  int cases = 0;
   for (const auto& [reach, share] :
        {std::pair(ReachRegion{}, 1.0 / 6), std::pair(nowhere, 1.0), std::pair(farther, 1.0 / 6)}) {
     const Truth truth(scene, sensor, from_the_side(reach), {});
     EXPECT_NEAR(truth.figures(seen_face(), {}).coverage_visible, share, 0.03);
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 // A lens whose model turns back at 37° folds what lies beyond into the image.

@@ -78,14 +78,13 @@ class Parts {
 
 TEST(ViewPlanner, SaysWhatThePartsSay) {
   const BinScene scene;
-  int cases = 0;
   for (const GainModel model : {GainModel::paper, GainModel::surface, GainModel::combined}) {
     const PlannerConfig config = scene.config(model);
     ViewPlanner planner(scene.sensor, config, {2});
     planner.add_poses({"dome", scene.views});
     Parts parts(scene, config);
     Pose next = scene.views[3];
-    for (std::size_t view = 0; view < 3; ++view, ++cases) {
+    for (std::size_t view = 0; view < 3; ++view) {
       const DepthFrame frame = scene.see(next, view);
       const double before = parts.grid().statistics().entropy_removed;
       const AddedView added = planner.add(frame, next);
@@ -127,28 +126,6 @@ TEST(ViewPlanner, SaysWhatThePartsSay) {
       next = ranking.views.front().T_world_camera;
     }
   }
-  EXPECT_EQ(cases, 9);
-}
-
-TEST(ViewPlanner, ReadingsOfKnownObstaclesCarveButDoNotHit) {
-  const BinScene scene;
-  const auto walls_occupied = [&](const PlannerConfig& config) {
-    ViewPlanner planner(scene.sensor, config, {1});
-    for (std::size_t i = 0; i < scene.views.size(); i += 4) {
-      planner.add(scene.see(scene.views[i], i), scene.views[i]);
-    }
-    int walls = 0, block = 0;
-    planner.grid().for_each_occupied([&](const OccupiedVoxel& v) {
-      const Eigen::Vector3d p = planner.grid().center(v.voxel);
-      (std::abs(p.x()) > 0.09 ? walls : block) += 1;
-    });
-    EXPECT_GT(block, 300);
-    return walls;
-  };
-  PlannerConfig config = scene.config();
-  EXPECT_EQ(walls_occupied(config), 0);
-  config.obstacles = {};
-  EXPECT_GT(walls_occupied(config), 300);
 }
 
 TEST(ViewPlanner, WhatWasTriedIsNotProposedAgain) {
@@ -414,13 +391,11 @@ TEST(ViewPlanner, WhyToEndDoesNotHangOnHowManyAreAskedFor) {
     return planner.should_stop();
   };
   std::set<bool> seen;
-  int cases = 0;
-  for (double share = 0.02; share < 0.9; share *= 2.5, ++cases) {
+  for (double share = 0.02; share < 0.9; share *= 2.5) {
     EXPECT_EQ(reason_with(1, share), reason_with(scene.views.size(), share)) << share;
     seen.insert(reason_with(1, share).has_value());
   }
   EXPECT_EQ(seen.size(), 2U);
-  EXPECT_EQ(cases, 5);
 }
 
 TEST(ViewPlanner, AStoppedRankingIsNoDecision) {

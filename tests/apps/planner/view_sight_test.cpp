@@ -67,16 +67,13 @@ class HiddenPlate : public testing::Test {
 
 TEST_F(HiddenPlate, IsSeenFromTheSideAlone) {
   ViewSight sight(model.scene(), sensor, views, {});
-  int points = 0;
   for (const double x : {-0.09, 0.0, 0.09}) {
     for (const double y : {-0.09, 0.0, 0.09}) {
       EXPECT_TRUE(sight.sees(0, {x, y, 0})) << x << ' ' << y;
       EXPECT_FALSE(sight.sees(1, {x, y, 0})) << x << ' ' << y;
       EXPECT_TRUE(sight.sees(1, {x, y, kRoof})) << x << ' ' << y;
-      ++points;
     }
   }
-  EXPECT_EQ(points, 9);
   EXPECT_FALSE(sight.sees(1, {0, 0, 0.7}));  // behind the camera
   EXPECT_FALSE(sight.sees(1, {5, 0, 0}));    // outside the image
 }

@@ -1,9 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
+import os
+
 import numpy as np
 import pytest
 
 import viewgain
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport(item):
+    """Where CI is set, a test that is skipped has failed."""
+    report = (yield).get_result()
+    if report.skipped and os.environ.get("CI"):
+        report.outcome, report.longrepr = "failed", f"skipped: {report.longrepr}"
 
 
 @pytest.fixture(scope="session")

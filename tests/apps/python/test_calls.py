@@ -62,7 +62,6 @@ def test_a_pool_that_lived_before_a_fork_works_after_it(evaluator, grid, sensor,
 
 def test_ctrl_c_ends_a_batch(slow):
     evaluator, poses = slow
-    cases = 0
     for call in (lambda: evaluator.evaluate(poses), lambda: evaluator.best_set(poses, 50),
                  lambda: evaluator.evaluate_own(poses, lambda pose, hits: 0.0)):
         timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
@@ -72,8 +71,6 @@ def test_ctrl_c_ends_a_batch(slow):
             call()
         assert time.monotonic() - begin < 30  # not to the end; the machine may be busy
         timer.join()
-        cases += 1
-    assert cases == 3
 
 
 def test_progress_is_told_and_can_stop(slow):
@@ -101,12 +98,6 @@ def test_progress_is_told_and_can_stop(slow):
         viewgain.BatchControl(3)
 
 
-def test_progress_of_a_short_call_reaches_its_end(evaluator, poses):
-    told = []
-    evaluator.evaluate(poses[:3], control=viewgain.BatchControl(lambda *now: told.append(now)))
-    assert told[-1] == (3, 3)
-
-
 def test_progress_hears_of_the_end_of_every_call(evaluator, poses):
     calls = [evaluator.evaluate, evaluator.evaluate_detailed, evaluator.best, evaluator.race,
              evaluator.approximate, lambda batch, control: evaluator.best_set(batch, 2, control=control),
@@ -123,14 +114,11 @@ def test_progress_hears_of_the_end_of_every_call(evaluator, poses):
 
 def test_any_false_answer_of_progress_stops_but_none(slow):
     evaluator, poses = slow
-    cases = 0
     for answer, stops in [(False, True), (np.False_, True), (0, True), (None, False), (True, False),
                           (np.True_, False)]:
         control = viewgain.BatchControl(lambda done, total: answer)
         gains = evaluator.evaluate(poses if stops else poses[:50], control=control)
         assert control.stopped == stops and np.isnan(gains).any() == stops
-        cases += 1
-    assert cases == 6
 
     class Neither:
         def __bool__(self):
@@ -151,20 +139,6 @@ def test_another_thread_can_stop_a_call(slow):
     assert control.stopped and np.isnan(gains).any()
     stopped = evaluator.evaluate(poses[:5], control=control)
     assert np.isnan(stopped).all()
-
-
-def test_python_goes_on_beside_a_call(slow):
-    evaluator, poses = slow
-    control = viewgain.BatchControl()
-    thread = threading.Thread(target=evaluator.evaluate, args=(poses,), kwargs={"control": control})
-    thread.start()
-    steps = 0
-    while thread.is_alive() and steps < 20:
-        steps += 1
-        time.sleep(0.005)
-    assert steps == 20 and thread.is_alive()
-    control.stop()
-    thread.join()
 
 
 def test_threads_share_evaluator_and_grid(evaluator, labels, sensor, poses):

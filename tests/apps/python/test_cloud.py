@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 import numpy as np
 import pytest
-from conftest import box_mesh
 
 import viewgain
 
@@ -19,40 +18,6 @@ def laser():
 
 def empty_grid(sensor):
     return viewgain.BeliefGrid(voxel_size=0.01, workspace=WORKSPACE, sensor=sensor)
-
-
-def test_a_cloud_says_what_its_frame_says(laser):
-    camera = viewgain.SimulatedSensor(*box_mesh([-0.1] * 3, [0.1] * 3), laser, background_radius=1.5)
-    frames, clouds = viewgain.FrameIntegrator(laser, carve="lines"), viewgain.CloudIntegrator(laser)
-    of_frames, of_clouds = empty_grid(laser), empty_grid(laser)
-    for pose in viewgain.orbit_poses(4, 0.6, 0.4):
-        depth, _ = camera.acquire(pose)
-        # Nothing up to max_range is a point beyond it.
-        z = np.where(np.isinf(depth), 9.0, depth.astype(float))
-        points = (laser.camera.rays() * z[..., None]).reshape(-1, 3)
-        points[::97] = np.nan
-        depth.ravel()[::97] = np.nan
-        one = frames.integrate(of_frames, depth, pose)
-        other = clouds.integrate(of_clouds, points, pose)
-        assert one["readings"] == other["readings"] > 1500 and one["invalid"] == other["invalid"] > 60
-        bounds = viewgain.cloud_bounds(laser, points, pose)
-        assert np.allclose(bounds, viewgain.reading_bounds(laser, depth, pose), atol=1e-6)
-    assert np.array_equal(of_clouds.views(), of_frames.views()) and len(of_clouds.views()) == 4
-    same = of_clouds.states() == of_frames.states()  # but for points at a face of voxels
-    assert same.size == 40**3 and np.count_nonzero(~same) < 64
-    assert of_clouds.statistics()["occupied"] > 1000
-    assert viewgain.cloud_bounds(laser, points * np.nan, pose) is None
-
-
-def test_the_same_map_for_any_number_of_threads(laser):
-    points = np.random.default_rng(1).normal(size=(5000, 3)) * 0.05 + [0, 0, 0.6]
-    pose = viewgain.look_at([0, -0.6, 0], [0, 0, 0])
-    hashes = set()
-    for num_threads in (1, 2, 3):
-        grid = empty_grid(laser)
-        viewgain.CloudIntegrator(laser, num_threads=num_threads).integrate(grid, points, pose)
-        hashes.add(grid.content_hash())
-    assert len(hashes) == 1
 
 
 def test_files(tmp_path, laser):

@@ -49,7 +49,7 @@ def test_files_of_parts_need_no_dask(tmp_path):
 
 def test_damaged_parts_are_named(tmp_path):
     parts = importlib.import_module("viewgain._parts")
-    path, cases = tmp_path / "rows-3-7.npy", 0
+    path = tmp_path / "rows-3-7.npy"
     rows = np.zeros(4, parts.dtype_of({}))
     rows["index"] = np.arange(3, 7)
     parts.write_part(path, rows, "# head\n", 3)
@@ -67,22 +67,6 @@ def test_damaged_parts_are_named(tmp_path):
         path.write_bytes(content)
         with pytest.raises(ValueError, match=r"rows-3-7\.npy: .*; delete it"):
             parts.read_part(path, "# head\n", rows.dtype)
-        cases += 1
-    assert cases == 14
-
-
-def test_best_are_those_of_a_sort():
-    parts = importlib.import_module("viewgain._parts")
-    random = np.random.default_rng(1)
-    rows = np.zeros(500, parts.dtype_of({}))
-    rows["index"], rows["gain"] = np.arange(500), random.integers(0, 40, 500)
-    rows["gain"][::17] = np.nan
-    order = sorted(range(500), key=lambda i: (np.isnan(rows["gain"][i]), -np.nan_to_num(rows["gain"][i]), i))
-    for top in (0, 1, 30, 480, 500, 900):
-        best = parts.Best(top, rows.dtype)
-        for piece in random.permutation(np.arange(10)):
-            best.add(rows[50 * piece:50 * piece + 50])
-        assert best.rows["index"].tolist() == order[:top]
 
 
 def test_poses_in_columns_are_matrices():
@@ -225,16 +209,13 @@ def test_settings_that_are_none_are_refused_by_the_client(client, grid, sensor, 
     def score(**settings):
         return viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "out", pixel_stride=8, **settings)
 
-    cases = 0
     for _ in range(2):  # the workers have the evaluator the second time
         for name in ("pixle_stride", "strides", "seed"):
             with pytest.raises(TypeError, match=f"no setting '{name}'.*pixel_stride"):
                 score(**{name: 2})
-            cases += 1
         assert score().poses == len(poses)
         for path in (tmp_path / "out").iterdir():
             path.unlink()
-    assert cases == 6
     parts = importlib.import_module("viewgain._parts")
     given = {"gain": "combined", "criterion": "log_determinant", "refinement_weight": 0.5, "support_plane": -0.1,
              "prior_sigma": 0.1, "min_range": 0.3, "max_range": 2.0, "weights": [([[0, 0, 0], [1, 1, 1]], 2)],
@@ -253,14 +234,11 @@ def test_parts_with_the_same_rows_are_named(client, grid, sensor, poses, tmp_pat
         head = path.read_bytes()[-2000:].decode(errors="replace")
         path.unlink()
     head = head[head.index("# viewgain"):head.index("# rows")]
-    cases = 0
     for first, second in (((0, 9), (0, 9)), ((0, 9), (0, 20)), ((0, 20), (5, 9)), ((3, 9), (8, 20))):
         for name, (begin, end) in (("rows-a.npy", first), ("rows-b.npy", second)):
             parts.write_part(tmp_path / name, rows[begin:end], head, begin)
         with pytest.raises(ValueError, match=r"rows-b\.npy: rows .* overlap rows .*rows-a\.npy"):
             score()
-        cases += 1
-    assert cases == 4
     parts.write_part(tmp_path / "rows-b.npy", rows[9:20], head, 9)
     assert score().resumed == 17 and np.array_equal(rows_of(score()), rows)
 

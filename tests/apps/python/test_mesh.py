@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: GPL-3.0-or-later
 import copy
+import importlib.util
 import pickle
 import sys
 import threading
@@ -185,7 +186,7 @@ def test_surface_and_boundaries(camera, sensor, start):
     assert surface.source.max() < len(points)
     poses, reasons = viewgain.mesh.boundary_candidates(surface, [start], sensor, spacing=VOXEL)
     assert poses.shape == (len(reasons), 4, 4) and len(reasons) > 10
-    assert set(reasons["boundary_class"]) <= set(range(len(viewgain.mesh.BOUNDARY_CLASS_NAMES)))
+    assert {viewgain.mesh.BoundaryClass(int(code)).name.lower() for code in reasons["boundary_class"]} <= set(viewgain.mesh.BOUNDARY_CLASS_NAMES)
     assert reasons["nominal"].any() and np.all(reasons["run_length"] > 0)
     away = np.linalg.norm(poses[:, :3, 3] - reasons["target"], axis=1)
     assert np.allclose(away, reasons["distance"])
@@ -213,24 +214,6 @@ def plate():
     return viewgain.mesh.reconstruct_surface(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), spacing=VOXEL)
 
 
-def test_surfaces_are_equal_by_value(plate):
-    again = viewgain.mesh.reconstruct_surface(plate.vertices, plate.normals, spacing=VOXEL, smoothing_neighbors=0)
-    assert plate == plate and not plate != plate and plate != "surface"
-    assert (plate == again) == (np.array_equal(plate.vertices, again.vertices) and np.array_equal(plate.normals, again.normals)
-                                and np.array_equal(plate.triangles, again.triangles) and np.array_equal(plate.source, again.source))
-    few = viewgain.mesh.reconstruct_surface(plate.vertices[:60], plate.normals[:60], spacing=VOXEL)
-    assert plate != few
-
-
-def test_boundary_candidates_have_names(plate, sensor):
-    views = [viewgain.look_at([0.05, 0.05, 0.5], [0.05, 0.05, 0.0])]
-    found = viewgain.mesh.boundary_candidates(plate, views, sensor, spacing=VOXEL)
-    poses, reasons = found
-    assert isinstance(found, viewgain.mesh.BoundaryCandidates) and found.T_world_camera is poses and found["reasons"] is reasons
-    classes = {viewgain.mesh.BoundaryClass(int(code)) for code in np.unique(reasons["boundary_class"])}
-    assert viewgain.mesh.BoundaryClass.LEFT in classes and viewgain.mesh.BoundaryClass.__module__ == "viewgain.mesh"
-
-
 class Trimesh:
     """Of the stand-in for trimesh: what its constructor is given."""
 
@@ -245,10 +228,11 @@ def stand_ins():
             "open3d": types.SimpleNamespace(utility=vectors, geometry=types.SimpleNamespace(TriangleMesh=types.SimpleNamespace))}
 
 
-@pytest.mark.parametrize("real", [False, True])
-@pytest.mark.parametrize("name", ["trimesh", "open3d"])
+# The real ones too, where they are: tests/portability.sh installs what the release has.
+@pytest.mark.parametrize("name, real", [
+    (name, real) for name in ("trimesh", "open3d") for real in (False, True) if not real or importlib.util.find_spec(name)])
 def test_a_surface_goes_to_other_packages(plate, monkeypatch, name, real):
-    monkeypatch.setitem(sys.modules, name, pytest.importorskip(name) if real else stand_ins()[name])
+    monkeypatch.setitem(sys.modules, name, importlib.import_module(name) if real else stand_ins()[name])
     mesh = getattr(plate, f"to_{name}")()
     normals, triangles = mesh.vertex_normals, mesh.faces if name == "trimesh" else mesh.triangles
     assert np.array_equal(mesh.vertices, plate.vertices) and np.allclose(normals, plate.normals, atol=1e-12)
@@ -265,6 +249,7 @@ def test_a_surface_goes_through_bytes_and_pickles(plate):
         for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
             assert pickle.loads(pickle.dumps(one, protocol)) == one
         assert copy.copy(one) == one == copy.deepcopy(one)
+    assert plate != empty and plate != "surface"
     data = plate.to_bytes()
     damaged = [data[:at] + bytes([data[at] ^ 4]) + data[at + 1:] for at in range(0, len(data), 61)]
     damaged += [data[:length] for length in range(0, len(data), 97)] + [data + b"x", viewgain.ReachRegion().to_bytes()]
@@ -272,17 +257,6 @@ def test_a_surface_goes_through_bytes_and_pickles(plate):
         with pytest.raises(viewgain.Error, match="no surface that to_bytes"):
             viewgain.mesh.Surface.from_bytes(bad)
     assert len(damaged) > 200
-
-
-def test_an_object_in_anothers_place_is_named(plate, sensor, camera, start):
-    calls = [(lambda: viewgain.mesh.surface_of_grid(plate), "grid must be a BeliefGrid, not Surface"),
-             (lambda: viewgain.mesh.boundary_candidates(plate.vertices, [start], sensor, spacing=VOXEL), "surface must be a Surface, not ndarray"),
-             (lambda: viewgain.mesh.boundary_candidates(plate, [start], "sr4000", spacing=VOXEL), "sensor must be a Sensor, not str"),
-             (lambda: reconstruct(camera, "sr4000", start), "sensor must be a Sensor, not str")]
-    for call, text in calls:
-        with pytest.raises(TypeError, match=text):
-            call()
-    assert len(calls) == 4
 
 
 @pytest.mark.parametrize("name", ["trimesh", "open3d"])

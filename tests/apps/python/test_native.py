@@ -4,7 +4,6 @@
 import copy
 import importlib.util
 import inspect
-import multiprocessing
 import os
 import pickle
 import runpy
@@ -16,10 +15,6 @@ import pytest
 from conftest import box_mesh
 
 import viewgain
-
-
-def hash_of(grid):
-    return grid.content_hash()
 
 
 def test_all_is_of_the_package_that_users_import():
@@ -49,7 +44,6 @@ def test_sensors_are_equal_by_value(sensor):
     others += [viewgain.Sensor(**keywords, body_size=[0.1, 0.1, 0.2]),
                viewgain.Sensor(**keywords, body_size=sensor.body_size, T_flange_camera=np.eye(4)),
                viewgain.Sensor(**keywords, body_size=sensor.body_size, range_calibration=[[1.0, 0.01], [2.0, 0.02]])]
-    assert len(others) == 13
     for other in others:
         assert sensor != other
     assert sensor != "sr4000"
@@ -60,18 +54,15 @@ def test_a_grid_goes_through_bytes_and_pickles(grid, sensor):
     full = grid.clone()
     viewgain.FrameIntegrator(sensor).integrate(
         full, np.full((144, 176), 0.5, np.float32), viewgain.look_at([0.5, 0, 0], [0, 0, 0]))
-    checked = 0
     for one in (grid, full):
         again = viewgain.BeliefGrid.from_bytes(one.to_bytes())
         assert again.content_hash() == one.content_hash() and np.array_equal(again.views(), one.views())
         for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
             assert pickle.loads(pickle.dumps(one, protocol)).content_hash() == one.content_hash()
-            checked += 1
         for copied in (copy.copy(one), copy.deepcopy(one), copy.deepcopy([one])[0]):
             before = one.content_hash()
             copied.set([[0, 0, 0]], [3.0])
             assert one.content_hash() == before != copied.content_hash()
-    assert checked == 2 * (pickle.HIGHEST_PROTOCOL + 1)
 
 
 def test_bytes_that_are_no_map_are_refused(grid, tmp_path, monkeypatch):
@@ -86,20 +77,6 @@ def test_bytes_that_are_no_map_are_refused(grid, tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())  # nothing is left
 
 
-def test_a_subclass_of_the_grid_is_not_pickled_as_another_class():
-    class Mine(viewgain.BeliefGrid):
-        pass
-
-    mine = Mine(voxel_size=0.1, workspace=[[0, 0, 0], [1, 1, 1]], prior_sigma=0.01)
-    with pytest.raises(TypeError, match="cannot pickle 'Mine' object"):
-        pickle.dumps(mine)
-
-
-def test_a_pool_of_processes_gets_grids(grid):
-    with multiprocessing.get_context("spawn").Pool(1) as pool:
-        assert pool.map(hash_of, [grid, grid.clone()]) == [grid.content_hash()] * 2
-
-
 def test_codes_have_names(grid, evaluator, poses):
     states = grid.states()
     assert np.count_nonzero(states == viewgain.VoxelState.FREE) == grid.statistics()["free"]
@@ -107,13 +84,10 @@ def test_codes_have_names(grid, evaluator, poses):
     assert {viewgain.HitKind(int(kind)).name for kind in np.unique(kinds)} <= {"NONE", "UNKNOWN", "OCCUPIED"}
     assert evaluator.evaluate_detailed(poses[0])["status"] == viewgain.ViewStatus.OK
     assert viewgain.FeasibilityChecker(evaluator.scene).reasons(poses[0]) == viewgain.Infeasibility.NONE
-    checked = 0
     for enumeration, names in ((viewgain.ViewStatus, viewgain.VIEW_STATUS_NAMES), (viewgain.HitKind, viewgain.HIT_KIND_NAMES),
                                (viewgain.Infeasibility, viewgain.INFEASIBILITY_NAMES)):
         assert [member.name.lower() for member in enumeration] == list(names)
         assert enumeration.__doc__ and pickle.loads(pickle.dumps(enumeration(0))) is enumeration(0)
-        checked += 1
-    assert checked == 3
 
 
 def test_results_of_several_things_are_named_tuples(grid, sensor, evaluator, poses, tmp_path):
@@ -163,7 +137,6 @@ def test_grids_and_regions_are_equal_by_value(grid, poses):
     for name, value in changes.items():
         changed = viewgain.ReachRegion(**{**parts, name: value})
         assert changed == changed and changed != region, name
-    assert len(changes) == 7
 
 
 class OtherArray:
@@ -201,7 +174,6 @@ def test_arrays_of_other_libraries_come_in_by_dlpack(grid, labels, sensor, evalu
         others = [OtherArray(array) for array in arrays]
         assert np.array_equal(call(*others), call(*arrays))
         assert all(other.exports > 0 for other in others)
-    assert len(calls) == 9
     for device in (2, 8, 10):  # CUDA, Metal, ROCm
         with pytest.raises(ValueError, match="T_world_camera must be .* in the memory of the CPU"):
             evaluator.evaluate(OtherArray(poses, device))
@@ -263,7 +235,6 @@ def test_pictures_of_what_cannot_be_drawn_say_why(evaluator, poses, sensor):
     for call, message in cases:
         with pytest.raises(ValueError, match=message):
             call()
-    assert len(cases) == 9
 
 
 def test_the_tutorial_on_depth_images_runs(tmp_path, monkeypatch, capsys):

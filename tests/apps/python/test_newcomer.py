@@ -53,7 +53,6 @@ def test_labels_may_be_of_any_integers(labels):
     others += [labels.tolist(), np.asfortranarray(labels), labels.astype(np.int64)[::1], np.flip(np.flip(labels.astype(int), 1), 1)]
     for other in others:
         assert grid_of(other) == wanted
-    assert len(others) == 11
     masked = np.ma.array(labels.astype(int), mask=labels == 2)
     assert np.array_equal(grid_of(masked).states(), np.where(labels == 2, 0, labels))
 
@@ -90,27 +89,13 @@ def test_an_object_in_anothers_place_is_named(grid, sensor, evaluator, poses):
     of_sensor = r"sensor must be a Sensor, not {}; sensor_preset\(name\)"
     calls = [(lambda: viewgain.GainEvaluator(grid, sensor), of_scene, "BeliefGrid"),
              (lambda: viewgain.GainEvaluator(scene, "sr4000"), of_sensor, "str"),
-             (lambda: evaluator.with_scene(grid), of_scene, "BeliefGrid"),
              (lambda: viewgain.VoxelScene(np.zeros((4, 4, 4), np.uint8)), of_grid, "ndarray"),
              (lambda: viewgain.VoxelScene(None), of_grid, "NoneType"),
-             (lambda: scene.update(scene), of_grid, "VoxelScene"),
-             (lambda: viewgain.FeasibilityChecker(grid), of_scene, "BeliefGrid"),
-             (lambda: viewgain.FeasibilityChecker(scene, sensor="sr4000"), of_sensor, "str"),
              (lambda: viewgain.FeasibilityChecker(scene, reach=poses), "reach must be a ReachRegion, not {}", "ndarray"),
-             (lambda: viewgain.FeasibilityChecker(scene).with_scene(grid), of_scene, "BeliefGrid"),
-             (lambda: frames.integrate(depth, depth, poses[0]), of_grid, "ndarray"),
              (lambda: frames.calibrate_hazard(grid, grid, depth, poses[0]), of_scene, "BeliefGrid"),
              (lambda: clouds.integrate(poses[0], np.ones((1, 3)), poses[0]), of_grid, "ndarray"),
-             (lambda: viewgain.FrameIntegrator("sr4000"), of_sensor, "str"),
-             (lambda: viewgain.CloudIntegrator(sensor.camera), of_sensor, "PinholeCamera"),
-             (lambda: viewgain.reading_bounds("sr4000", depth, poses[0]), of_sensor, "str"),
-             (lambda: viewgain.cloud_bounds("sr4000", np.ones((1, 3)), poses[0]), of_sensor, "str"),
              (lambda: viewgain.ViewPlanner("sr4000", **box), of_sensor, "str"),
-             (lambda: viewgain.ViewPlanner(sensor, **box, reach=poses), "reach must be a ReachRegion, not {}", "ndarray"),
-             (lambda: viewgain.BeliefGrid(**box, sensor="sr4000"), of_sensor, "str"),
              (lambda: make(np.zeros((2, 2, 2), int), voxel_size=0.1, sensor="sr4000"), of_sensor, "str"),
-             (lambda: viewgain.default_prior_sigma(0.01, "sr4000"), of_sensor, "str"),
-             (lambda: viewgain.SimulatedSensor(np.zeros((3, 3)), [[0, 1, 2]], "sr4000"), of_sensor, "str"),
              (lambda: evaluator.evaluate(poses, control=print), r"control must be a BatchControl, not {}; BatchControl\(progress\)",
               "builtin_function_or_method"),
              (lambda: viewgain.Sensor(MATRIX, min_range=0.1, max_range=1, working_distance=0.5, noise=viewgain.ConstantNoise()),
@@ -118,7 +103,6 @@ def test_an_object_in_anothers_place_is_named(grid, sensor, evaluator, poses):
     for call, text, given in calls:
         with pytest.raises(TypeError, match=text.format(given)):
             call()
-    assert len(calls) == 25
     assert viewgain.BeliefGrid(**box, sensor=None, prior_sigma=0.01).prior_sigma == 0.01
 
 
@@ -163,13 +147,3 @@ def test_bytes_that_are_no_region_are_refused(region, grid):
     assert len(damaged) > 200
     with pytest.raises(TypeError):
         viewgain.ReachRegion.from_bytes("text")
-
-
-def test_how_many_candidates_there_are_is_said(sensor, poses):
-    planner = viewgain.ViewPlanner(sensor, **{"voxel_size": 0.02, "workspace": WORKSPACE})
-    planner.add_poses(poses)
-    planner.add(np.full((144, 176), 0.5), poses[0])
-    proposal, ranking = planner.propose(), planner.rank(3)
-    assert len(proposal) == 3 and len(proposal.T_world_camera) == len(proposal.generator) > 0
-    assert len(ranking) == 6 and len(ranking.index) == 3
-    assert "len(proposal.T_world_camera)" in viewgain.Proposal.__doc__ and "len(ranking.index)" in viewgain.Ranking.__doc__

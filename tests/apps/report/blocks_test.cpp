@@ -18,7 +18,7 @@
 namespace viewgain::app {
 namespace {
 
-using nlohmann::ordered_json;
+using ordered_json = viewgain::app::Json;
 
 // The other direction, by the words of apps/report/README.md.
 
@@ -197,7 +197,6 @@ TEST(ShownMesh, IsThinnedToWhatWasAsked) {
   const ShownMesh same = thinned(mesh, 10'000);
   EXPECT_EQ(same.vertices.size(), 10'000U);
   EXPECT_EQ(same.triangles, mesh.triangles);
-  int cases = 0;
   for (const std::size_t most : {5'000U, 1'000U, 50U, 1U}) {
     const ShownMesh thin = thinned(mesh, most);
     EXPECT_LE(thin.vertices.size(), most);
@@ -219,9 +218,7 @@ TEST(ShownMesh, IsThinnedToWhatWasAsked) {
     for (std::size_t i = 0; i < thin.vertices.size(); ++i) {
       EXPECT_NEAR(thin.sigma[i], thin.vertices[i].x(), 1e-12);
     }
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
 }
 
 }  // namespace

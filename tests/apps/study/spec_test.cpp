@@ -8,12 +8,12 @@
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "cli/json.hpp"
 #include "study/markdown.hpp"
 #include "study/results.hpp"
 #include "viewgain/core/error.hpp"
@@ -21,7 +21,7 @@
 namespace viewgain {
 namespace {
 
-using nlohmann::ordered_json;
+using ordered_json = viewgain::app::Json;
 using Strings = std::vector<std::string>;
 
 constexpr const char* kSpec = R"(objects = ["cube.off", "more/ball.off"]
@@ -149,15 +149,12 @@ TEST_F(StudySpecTest, WhatIsWrongIsNamedWithItsLine) {
       {"candidates = 7", "canddates = 7", {"line 11", "canddates", "candidates"}},
       {"max_views", "max_view", {"max_view"}},
   };
-  std::size_t cases = 0;
   for (const Case& each : wrong) {
     const std::string error = error_of(with(each.from, each.to));
     for (const std::string& word : each.words) {
       EXPECT_NE(error.find(word), std::string::npos) << each.to << ": " << error;
     }
-    ++cases;
   }
-  EXPECT_EQ(cases, 24U);
 }
 
 // A run of these coverages; the rest of its figures follow from the first.

@@ -45,7 +45,6 @@ TEST(Statistics, RanksAreThoseByCounting) {
 TEST(Statistics, SpearmanInClosedForm) {
   // Without ties it is 1 - 6 Σd² / (n (n² - 1)).
   std::mt19937 random(5);
-  std::size_t cases = 0;
   for (int n = 2; n < 30; ++n) {
     std::vector<double> a, b;
     for (int i = 0; i < n; ++i) a.push_back(i), b.push_back(std::exp(0.1 * i));
@@ -57,9 +56,7 @@ TEST(Statistics, SpearmanInClosedForm) {
     }
     EXPECT_NEAR(app::spearman(a, b), 1 - 6 * squares / (n * (n * n - 1.0)), 1e-12);
     EXPECT_NEAR(app::spearman(a, a), 1, 1e-12);
-    ++cases;
   }
-  EXPECT_EQ(cases, 28U);
   // Places 1, 2.5, 2.5, 4 against 1..4: 4.5 / sqrt(4.5 * 5).
   EXPECT_NEAR(app::spearman(std::vector<double>{0, 1, 1, 7}, std::vector<double>{1, 2, 3, 4}),
               std::sqrt(0.9), 1e-12);

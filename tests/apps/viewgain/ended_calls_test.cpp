@@ -10,18 +10,18 @@
 #include <csignal>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "cli/json.hpp"
 
 namespace viewgain {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using json = viewgain::app::Json;
 using Strings = std::vector<std::string>;
 
 class EndedCalls : public test::ProgramTest {
@@ -71,16 +71,13 @@ class EndedCalls : public test::ProgramTest {
 
 TEST_F(EndedCalls, SimulateLeavesNothing) {
   const auto before = contents();
-  int cases = 0;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
     // Also the folders on the way are not there yet.
     const int status = ended_by(simulate("new/frames", "1000"), signal,
                                 [&] { return fs::exists(dir / "new") && !hidden("new").empty(); });
     EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << signal << ": " << status;
     EXPECT_TRUE(contents() == before) << signal;
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
 }
 
 TEST_F(EndedCalls, ASignalThatWasIgnoredStaysSo) {
@@ -98,7 +95,6 @@ TEST_F(EndedCalls, ASignalThatWasIgnoredStaysSo) {
 }
 
 TEST_F(EndedCalls, AClosedTerminalEndsARunAfterTheViewAtHand) {
-  int cases = 0;
   for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
     const std::string run = "run" + std::to_string(signal);
     const int status = ended_by(reconstruct(run, "60"), signal, [&] {
@@ -108,9 +104,7 @@ TEST_F(EndedCalls, AClosedTerminalEndsARunAfterTheViewAtHand) {
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << signal << ": " << status;
     EXPECT_EQ(json::parse(read(run + "/run.json"))["stop_reason"], "interrupted") << signal;
     EXPECT_TRUE(hidden(".").empty());
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 TEST_F(EndedCalls, AKilledRunLeavesTheOneBeforeWhole) {
@@ -135,20 +129,6 @@ TEST_F(EndedCalls, AKilledRunLeavesTheOneBeforeWhole) {
   EXPECT_EQ(list("run/maps"), Strings{"00.vdb"});
 }
 
-TEST_F(EndedCalls, TheNextCallRemovesWhatKilledOnesLeft) {
-  const auto is_writing = [&] { return !hidden(".").empty(); };
-  (void)ended_by(simulate("frames", "1000"), SIGKILL, is_writing);
-  EXPECT_FALSE(hidden(".").empty());
-  run_well(simulate("frames"));
-  EXPECT_TRUE(hidden(".").empty());
-  (void)ended_by(simulate("frames", "1000"), SIGKILL, [&] { return !hidden("frames").empty(); });
-  EXPECT_FALSE(hidden("frames").empty());
-  const auto before = read("frames/frame-000000.depth.png");
-  run_well(simulate("frames"));
-  EXPECT_TRUE(hidden("frames").empty());
-  EXPECT_EQ(read("frames/frame-000000.depth.png"), before);
-}
-
 TEST_F(EndedCalls, NamesThatAreNoUtf8) {
   const std::string name = "lat\xe9";
   fs::copy_file(dir / "cube.off", dir / (name + ".off"));
@@ -161,7 +141,6 @@ TEST_F(EndedCalls, NamesThatAreNoUtf8) {
   const std::string frames = name + "_frames", map = name + ".vdb", poses = name + ".txt";
   Strings simulation = simulate(frames);
   simulation.emplace_back("--json");
-  int cases = 0;
   for (const auto& [call, out] :
        {std::pair{simulation, frames},
         std::pair{Strings{"integrate", frames, "--voxel", "0.02", "--out", map, "--json"}, map},
@@ -173,21 +152,16 @@ TEST_F(EndedCalls, NamesThatAreNoUtf8) {
     ASSERT_EQ(result.exit_code, 0) << call[0] << ": " << result.err;
     EXPECT_EQ(json::parse(result.out)["out"], "lat\\xE9" + out.substr(name.size())) << call[0];
     EXPECT_TRUE(fs::exists(dir / out)) << call[0];
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
 }
 
 TEST_F(EndedCalls, AFullDeviceIsAnError) {
-  int cases = 0;
   for (const Strings& arguments : {Strings{"--help"}, Strings{"score", "--help"},
                                    Strings{"--version"}, Strings{"simulate", "--help"}}) {
     const test::ProgramResult result = run_into("/dev/full", arguments);
     EXPECT_EQ(result.exit_code, 1) << arguments[0];
     EXPECT_NE(result.err.find("standard output"), std::string::npos) << result.err;
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
 }
 
 TEST_F(EndedCalls, WithoutCandidatesJsonSaysWhy) {

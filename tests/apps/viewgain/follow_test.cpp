@@ -12,7 +12,6 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
 #include <set>
@@ -24,6 +23,7 @@
 
 #include "apps/program_runner.hpp"
 #include "apps/viewgain/pose_file_text.hpp"
+#include "cli/json.hpp"
 #include "core/temporary_folder.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
@@ -37,7 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
-using nlohmann::json;
+using json = viewgain::app::Json;
 using test::matrix_text;
 using Strings = std::vector<std::string>;
 
@@ -74,8 +74,8 @@ class Reader {
         for (double number = 0; words >> number;) ++numbers;
       }
       if (numbers % 8 != 0 || !poses.ends_with('\n')) fault = "next.txt: " + poses;
-      const json read = json::parse(text, nullptr, false);
-      if (read.is_discarded() || !read.contains("next")) fault = "next.json: " + text;
+      const json read = json::parse_or_null(text);
+      if (read.is_null() || !read.contains("next")) fault = "next.json: " + text;
     }
   }
 
@@ -112,19 +112,10 @@ class Follow : public test::ProgramTest {
   }
 
   static Strings follow(const Strings& more = {}) {
-    Strings call{"follow",
-                 "live",
-                 "--voxel",
-                 "0.025",
-                 "--workspace",
-                 "-0.2,-0.2,-0.2,0.2,0.2,0.2",
-                 "--jump-edge-filter",
-                 "off",
-                 "--out",
-                 "plan",
-                 "--quiet"};
-    call.insert(call.end(), more.begin(), more.end());
-    return call;
+    return test::joined(
+        {"follow", "live", "--voxel", "0.025", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+         "--jump-edge-filter", "off", "--out", "plan", "--quiet"},
+        more);
   }
 
   static int end_of(pid_t child) {
@@ -142,8 +133,8 @@ class Follow : public test::ProgramTest {
   // Until next.json says so many frames.
   [[nodiscard]] bool wait_for(std::size_t frames) const {
     for (int tries = 0; tries < 2000; ++tries) {
-      const json next = json::parse(read("plan/next.json"), nullptr, false);
-      if (!next.is_discarded() && next["frames"] == frames) return true;
+      const json next = json::parse_or_null(read("plan/next.json"));
+      if (!next.is_null() && next["frames"] == frames) return true;
       std::this_thread::sleep_for(5ms);
     }
     return false;
@@ -244,7 +235,6 @@ TEST_F(Follow, TakesEachGoodFrameOnceThroughKills) {
   poses.push_back(poses[4]);
   images.push_back(images[5]);
   poses.push_back(nan);
-  int cases = 0;
   for (const int kills : {0, 20}) {
     fs::remove_all(dir / "live");
     fs::remove_all(dir / "plan");
@@ -285,9 +275,7 @@ TEST_F(Follow, TakesEachGoodFrameOnceThroughKills) {
     EXPECT_EQ(next["stop_reason"], "max_views");
     EXPECT_EQ(list("plan"), (Strings{"next.json", "next.txt", "state.vdb"}));
     expect_each_once(kGood);
-    ++cases;
   }
-  EXPECT_EQ(cases, 2);
 }
 
 TEST_F(Follow, SaysWhereToLookNext) {
@@ -380,49 +368,38 @@ TEST_F(Follow, EachBadFrameIsALine) {
 TEST_F(Follow, RefusesWhatItCannotGoOnWith) {
   put(0);
   write("live/done", "");
-  const auto refuses = [&](const Strings& call, const std::string& word) {
-    const auto before = contents();
-    const test::ProgramResult result = run(call);
-    EXPECT_EQ(result.exit_code, 2) << word;
-    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    EXPECT_TRUE(contents() == before) << word;
-    return 1;
-  };
-  int cases = 0;
   write("mine/next.txt", "notes");
   Strings call = follow();
   *std::find(call.begin(), call.end(), "plan") = "mine";
-  cases += refuses(call, "mine/next.txt");
+  expect_refused(call, "mine/next.txt");
   *std::find(call.begin(), call.end(), "mine") = "live";
-  cases += refuses(call, "FRAMES_DIR");
+  expect_refused(call, "FRAMES_DIR");
   call = follow();
   call[1] = "nowhere";
-  cases += refuses(call, "nowhere");
+  expect_refused(call, "nowhere");
   write("reach.toml", "poses = \"plan/next.txt\"\n");
-  cases += refuses(follow({"--reach", "reach.toml"}), "--reach");
-  cases += refuses(follow({"--gain", "paper", "--object-size", "0.2"}), "--object-size");
+  expect_refused(follow({"--reach", "reach.toml"}), "--reach");
+  expect_refused(follow({"--gain", "paper", "--object-size", "0.2"}), "--object-size");
   run_well(follow());
   call = follow();
   *std::find(call.begin(), call.end(), "0.025") = "0.02";
-  cases += refuses(call, "0.025");
+  expect_refused(call, "0.025");
   write("other.toml", read("small.toml") + "\n");
   std::string other = read("small.toml");
   other.replace(other.find("60.0"), 4, "61.0");
   write("other.toml", other);
-  cases += refuses(follow({"--sensor", "other.toml"}), "plan/state.vdb: its frames are of small");
+  expect_refused(follow({"--sensor", "other.toml"}), "plan/state.vdb: its frames are of small");
   run_well({"integrate", "whole", "--voxel", "0.025", "--out", "map.vdb"});
   fs::copy_file(dir / "map.vdb", dir / "plan/state.vdb", fs::copy_options::overwrite_existing);
-  cases += refuses(follow(), "plan/state.vdb");
+  expect_refused(follow(), "plan/state.vdb");
   fs::remove_all(dir / "plan");
   fs::remove(dir / "live/done");
   const pid_t child = start(follow());
   EXPECT_TRUE(wait_for(1));
-  cases += refuses(follow(), "plan: another process");
+  expect_refused(follow(), "plan: another process");
   EXPECT_EQ(::kill(child, SIGINT), 0);
   const int status = end_of(child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  EXPECT_EQ(cases, 9);
 }
 
 }  // namespace

@@ -9,12 +9,12 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "cli/json.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
@@ -23,7 +23,7 @@
 namespace viewgain {
 namespace {
 
-using nlohmann::json;
+using json = viewgain::app::Json;
 using Strings = std::vector<std::string>;
 
 class ForeignMaps : public test::ProgramTest {
@@ -55,17 +55,6 @@ class ForeignMaps : public test::ProgramTest {
             viewpoint + "POINTS 1682\nDATA ascii\n",
         shift);
   }
-
-  void expect_refused(const Strings& arguments, const std::string& word) {
-    const Strings before = list();
-    const auto result = run(arguments);
-    EXPECT_EQ(result.exit_code, 2) << word << result.err;
-    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
-    EXPECT_EQ(list(), before);
-    ++cases_;
-  }
-
-  int cases_ = 0;
 };
 
 TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
@@ -167,56 +156,8 @@ TEST_F(ForeignMaps, EndingsAreLargeOrSmallAndOthersRefused) {
   expect_refused({"integrate", "--cloud", "a.pcd", "--origin", "0,0,0", "--sensor", "small.toml",
                   "--voxel", "0.1", "--out", "map.txt"},
                  "must end in .vdb or .ot");
-  EXPECT_EQ(cases_, 7);
   // What is no file of its own has no ending.
   EXPECT_EQ(run({"convert", "a.vdb", "/dev/null"}).exit_code, 0);
-}
-
-// A read that fails is bad input, no internal error.
-TEST_F(ForeignMaps, FilesThatCannotBeReadAreBadInput) {
-  for (const char* name : {"mem.vdb", "mem.ot"}) {
-    std::filesystem::create_symlink("/proc/self/mem", dir / name);
-    expect_refused({"info", name}, name);
-  }
-  std::filesystem::create_symlink("/proc/self/mem", dir / "mem.toml");
-  write("a.pcd", pcd(0));
-  expect_refused({"integrate", "--cloud", "a.pcd", "--origin", "0,0,0", "--sensor", "mem.toml",
-                  "--voxel", "0.1", "--out", "map.vdb"},
-                 "mem.toml");
-  EXPECT_EQ(cases_, 3);
-}
-
-// 2^24 occupied voxels in a file of a hundred bytes: as .vdb they take long enough to be met.
-TEST_F(ForeignMaps, AnEndedProgramLeavesNoTemporaryFile) {
-  std::string nodes;
-  for (int depth = 0; depth <= 8; ++depth) {
-    const float log_odds = 1;
-    nodes += std::string(reinterpret_cast<const char*>(&log_odds), sizeof log_odds) +
-             std::string(1, depth < 8 ? '\1' : '\0');
-  }
-  write("solid.ot", "# Octomap OcTree file\nid OcTree\nsize 9\nres 0.1\ndata\n" + nodes);
-  const Strings before = list();
-  int cases = 0;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    const pid_t child = start({"convert", "solid.ot", "solid.vdb"});
-    // The second temporary file, the first being there only to see whether it can be written.
-    const auto writing = [&] {
-      for (const std::string& name : list()) {
-        if (name.starts_with(".solid.tmp-") && name.ends_with("-1.vdb")) return true;
-      }
-      return false;
-    };
-    int status = 0;
-    while (!writing() && ::waitpid(child, &status, WNOHANG) == 0) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    ASSERT_EQ(::kill(child, signal), 0);
-    ASSERT_EQ(::waitpid(child, &status, 0), child);
-    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
-    EXPECT_EQ(list(), before);
-    ++cases;
-  }
-  EXPECT_EQ(cases, 3);
 }
 
 TEST_F(ForeignMaps, CloudsAreIntegrated) {
@@ -265,9 +206,6 @@ TEST_F(ForeignMaps, CloudsAreIntegrated) {
   };
   EXPECT_GT(seen_from_near("a.vdb"), 0);
   EXPECT_EQ(seen_from_near("v.vdb"), 0);
-  EXPECT_EQ(integrate({"--cloud", "a.pcd", "--origin", "0,0,0", "--out", "t.vdb", "--threads", "1"})
-                .at("hash"),
-            a.at("hash"));
   // Two clouds in the sensor's frame; the second sensor stands 0.2 m beside the first.
   write("two.txt", "0 0 0 0 0 0 0 1\n1 0 0.2 0 0 0 0 1\n");
   const json two =
@@ -325,7 +263,6 @@ TEST_F(ForeignMaps, WrongUseIsRefused) {
   expect_refused({"convert", "map.vdb", "new.ot", "--prior-sigma", "1"}, "--prior-sigma");
   expect_refused({"convert", "map.vdb", "new.ot", "--with-covariance", "on"}, "--with-covariance");
   expect_refused({"convert", "map.vdb"}, "OUT");
-  EXPECT_EQ(cases_, 21);
 }
 
 }  // namespace

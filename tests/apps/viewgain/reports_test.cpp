@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What the program puts into a report; tests/apps/report tries the page in a browser.
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "cli/json.hpp"
 
 namespace viewgain {
 namespace {
 
-using nlohmann::json;
+using json = viewgain::app::Json;
 
 class Reports : public test::ProgramTest {
  protected:
@@ -95,15 +95,12 @@ TEST_F(Reports, HoldTheRunAndTheRanking) {
 
 TEST_F(Reports, OddNamesAreRefused) {
   ASSERT_EQ(reconstruct("off").exit_code, 0);
-  int refused = 0;
   for (const char* name : {"report.txt", "run/map.vdb", "-", "no/such/folder/report.html"}) {
     const test::ProgramResult result =
         run({"score", "run/map.vdb", "--sphere", "10,0.6", "--report", name});
     EXPECT_EQ(result.exit_code, 2) << name;
     EXPECT_NE(result.err.find("report"), std::string::npos) << result.err;
-    ++refused;
   }
-  EXPECT_EQ(refused, 4);
   EXPECT_EQ(reconstruct("perhaps").exit_code, 2);
 }
 

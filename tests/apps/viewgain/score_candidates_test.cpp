@@ -3,13 +3,13 @@
 
 // Which poses `score` scores, and among which obstacles: against the library's own answers.
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "cli/json.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -20,7 +20,7 @@
 namespace viewgain {
 namespace {
 
-using nlohmann::json;
+using json = viewgain::app::Json;
 using Strings = std::vector<std::string>;
 
 class ScoreCandidates : public test::ProgramTest {
@@ -45,10 +45,9 @@ class ScoreCandidates : public test::ProgramTest {
     return json::parse(run_well(arguments(more)));
   }
   [[nodiscard]] static Strings arguments(const Strings& more) {
-    Strings all{"score",   "map.vdb", "--sensor", "small.toml", "--sphere",
-                "40,0.45", "--top",   "40",       "--json"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+    return test::joined({"score", "map.vdb", "--sensor", "small.toml", "--sphere", "40,0.45",
+                         "--top", "40", "--json"},
+                        more);
   }
 
   // Index -> gain.
@@ -72,32 +71,11 @@ class ScoreCandidates : public test::ProgramTest {
 };
 
 TEST_F(ScoreCandidates, ObstaclesBlockAsTheyDoInTheLibrary) {
-  write_cube();  // from 0 to 2
-  const Box wall{{0.25, -1, -1}, {0.3, 1, 1}};
-  Obstacles obstacles;
-  obstacles.boxes = {wall};
-  TriangleMesh cube;
-  for (int i = 0; i < 8; ++i)
-    cube.vertices.push_back({2.0 * (i & 1), 1.0 * (i & 2), 0.5 * (i & 4)});
-  cube.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  std::size_t cases = 0;
-  for (const bool with_mesh : {false, true}) {
-    Strings flags{"--obstacle", "0.25,-1,-1,0.3,1,1"};
-    if (with_mesh) {
-      obstacles.meshes = {cube};
-      flags.insert(flags.end(), {"--obstacle", "cube.off"});
-    }
-    const std::vector<double> expected = gains_among(obstacles);
-    const auto found = gains(score(flags));
-    ASSERT_EQ(found.size(), poses.size());
-    for (const auto& [index, gain] : found) {
-      EXPECT_NEAR(gain, expected[index], 1e-9 * expected[index]) << index;
-      ++cases;
-    }
-  }
-  EXPECT_EQ(cases, 80U);
-  EXPECT_NE(gains(score({})), gains(score({"--obstacle", "0.25,-1,-1,0.3,1,1"})));
+  const std::vector<double> expected = gains_among({{{{0.25, -1, -1}, {0.3, 1, 1}}}, {}});
+  const auto found = gains(score({"--obstacle", "0.25,-1,-1,0.3,1,1"}));
+  ASSERT_EQ(found.size(), poses.size());
+  for (const auto& [index, gain] : found) EXPECT_EQ(gain, expected[index]) << index;
+  EXPECT_NE(gains(score({})), found);
 }
 
 TEST_F(ScoreCandidates, PosesOutOfReachAreDroppedAndTheOthersKeepTheirNumbers) {
@@ -128,20 +106,16 @@ TEST_F(ScoreCandidates, PosesOutOfReachAreDroppedAndTheOthersKeepTheirNumbers) {
   }
   EXPECT_EQ(rows, inside);
   // Whatever is chosen, it is among them and has its own number.
-  std::size_t cases = 0;
   for (const Strings& selection :
        {Strings{"--race"}, Strings{"--set", "3"}, Strings{"--approximate", "1"}}) {
-    Strings flags{"--reach", "reach.toml", "--out", "scores.csv", "--picture", "best.png"};
-    flags.insert(flags.end(), selection.begin(), selection.end());
-    const json chosen = score(flags);
+    const json chosen = score(test::joined(
+        {"--reach", "reach.toml", "--out", "scores.csv", "--picture", "best.png"}, selection));
     ASSERT_GE(chosen.at("best").size(), 3U) << selection[0];
     const json& best = chosen.at("best")[0];
     const auto index = best.at("index").get<std::size_t>();
     EXPECT_EQ(index, scores.at("best")[0].at("index")) << selection[0];
     EXPECT_EQ(best.at("T_world_camera"), scores.at("best")[0].at("T_world_camera"));
-    ++cases;
   }
-  EXPECT_EQ(cases, 3U);
   EXPECT_EQ(score({}).at("dropped"), json::object());
 }
 
@@ -167,27 +141,6 @@ TEST_F(ScoreCandidates, InfeasiblePosesAreDroppedByReason) {
   const json scores = score(flags);
   EXPECT_EQ(scores.at("dropped"), json(dropped));
   EXPECT_EQ(scores.at("best").size(), possible);
-  // Those that are left keep their numbers, with a limit of reach beside and a view that was taken.
-  ReachRegion reach;
-  reach.half_spaces = {{Eigen::Vector3d::UnitX(), -0.2}};
-  write_reach_toml(dir / "reach.toml", reach);
-  config.reach = reach;
-  BeliefGrid grid = load_vdb(dir / "map.vdb");
-  const std::size_t view = scores.at("best")[0].at("index").get<std::size_t>();
-  grid.append_view(poses[view]);
-  save_vdb(grid, dir / "map.vdb");
-  const auto reasons = FeasibilityChecker(scene, config).check(poses, grid.views());
-  EXPECT_EQ(reasons[view],
-            reach.contains(poses[view]) ? Infeasibility::taken : Infeasibility::unreachable);
-  Strings more = flags;
-  more.insert(more.end(), {"--reach", "reach.toml"});
-  for (const bool approximately : {false, true}) {
-    if (approximately) more.insert(more.end(), {"--approximate", "0.5"});
-    const auto left = gains(score(more));
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      EXPECT_EQ(left.contains(i), reasons[i] == Infeasibility::none) << i;
-    }
-  }
   Strings text = arguments(flags);
   std::erase(text, "--json");
   EXPECT_NE(run_well(text).find(" of 40 poses; dropped: "), std::string::npos);
@@ -196,7 +149,7 @@ TEST_F(ScoreCandidates, InfeasiblePosesAreDroppedByReason) {
 TEST_F(ScoreCandidates, RefusesWhatCannotBe) {
   write("far.toml", "[[shell]]\ncenter = [0, 0, 0]\nmin_radius = 5.0\nmax_radius = 6.0\n");
   write_cube();
-  const std::vector<std::pair<Strings, std::string>> inputs{
+  const test::Refusals inputs{
       {{"--reach", "far.toml"}, "40 unreachable"},
       {{"--reach", "none.toml"}, "none.toml"},
       {{"--obstacle", "none.off"}, "none.off"},
@@ -208,17 +161,7 @@ TEST_F(ScoreCandidates, RefusesWhatCannotBe) {
       {{"--feasible", "on", "--body", "0.1,0.1,0"}, "--body"},
       {{"--support-plane", "0"}, "--feasible on"},
   };
-  const std::string cube = read("cube.off");
-  std::size_t cases = 0;
-  for (const auto& [more, word] : inputs) {
-    const test::ProgramResult result = run(arguments(more));
-    EXPECT_EQ(result.exit_code, 2) << word << ": " << result.err;
-    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
-    EXPECT_EQ(result.out, "") << word;
-    ++cases;
-  }
-  EXPECT_EQ(cases, 10U);
-  EXPECT_EQ(read("cube.off"), cube);
+  expect_refused_with(arguments({}), inputs);
 }
 
 }  // namespace

@@ -3,12 +3,12 @@
 
 // `score` by gains of the literature: against the library's own answers, and what it refuses.
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "cli/json.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/vdb_io.hpp"
@@ -17,7 +17,7 @@
 namespace viewgain {
 namespace {
 
-using nlohmann::json;
+using json = viewgain::app::Json;
 using Strings = std::vector<std::string>;
 
 class ScoreClassic : public test::ProgramTest {
@@ -37,9 +37,8 @@ class ScoreClassic : public test::ProgramTest {
   }
 
   [[nodiscard]] static Strings arguments(const Strings& more) {
-    Strings all{"score", "map.vdb", "--sensor", "small.toml", "--sphere", "40,0.45"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+    return test::joined({"score", "map.vdb", "--sensor", "small.toml", "--sphere", "40,0.45"},
+                        more);
   }
 
   [[nodiscard]] std::vector<double> library(const ClassicConfig& config) const {
@@ -110,40 +109,25 @@ TEST_F(ScoreClassic, RanksByTheFirstAndDropsPoses) {
 }
 
 TEST_F(ScoreClassic, RefusesWhatDoesNotGoTogether) {
-  std::size_t refused = 0;
-  const auto refuses = [&](const Strings& more, const std::string& word) {
-    const test::ProgramResult result = run(arguments(more));
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
-    ++refused;
-  };
-  const Strings one{"--gain", "unknown_count"};
-  const std::vector<std::pair<Strings, std::string>> flags{
-      {{"--race"}, "--race"},
-      {{"--set", "2"}, "--set"},
-      {{"--approximate", "0.1"}, "--approximate"},
-      {{"--picture", "p.png"}, "--picture"},
-      {{"--report", "r.html"}, "--report"},
-      {{"--weight", "0,0,0,1,1,1,2"}, "--weight"},
-      {{"--criterion", "trace"}, "--criterion"},
-      {{"--prior-sigma", "0.1"}, "--prior-sigma"},
-      {{"--object-size", "0.1"}, "--object-size"},
-      {{"--refinement-weight", "0.1"}, "--refinement-weight"}};
-  for (const auto& [more, word] : flags) {
-    Strings all = one;
-    all.insert(all.end(), more.begin(), more.end());
-    refuses(all, word);
-  }
-  refuses({"--gain", "paper,unknown_count"}, "paper stands alone");
-  refuses({"--gain", "unknown_count,unknown_count"}, "twice");
-  refuses({"--gain", "unknwn_count"}, "unknown_count");
-  refuses({"--semantics", "shipped"}, "--semantics shipped");
-  EXPECT_EQ(refused, 14U);
+  const test::Refusals flags{{{"--race"}, "--race"},
+                             {{"--set", "2"}, "--set"},
+                             {{"--approximate", "0.1"}, "--approximate"},
+                             {{"--picture", "p.png"}, "--picture"},
+                             {{"--report", "r.html"}, "--report"},
+                             {{"--weight", "0,0,0,1,1,1,2"}, "--weight"},
+                             {{"--criterion", "trace"}, "--criterion"},
+                             {{"--prior-sigma", "0.1"}, "--prior-sigma"},
+                             {{"--object-size", "0.1"}, "--object-size"},
+                             {{"--refinement-weight", "0.1"}, "--refinement-weight"}};
+  expect_refused_with(arguments({"--gain", "unknown_count"}), flags);
+  expect_refused_with(arguments({}), {{{"--gain", "paper,unknown_count"}, "paper stands alone"},
+                                      {{"--gain", "unknown_count,unknown_count"}, "twice"},
+                                      {{"--gain", "unknwn_count"}, "unknown_count"},
+                                      {{"--semantics", "shipped"}, "--semantics shipped"}});
   // A map that remembers no views.
   BeliefGrid blank({0.02, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.02});
   save_vdb(blank, dir / "map.vdb");
-  refuses({"--gain", "proximity_count"}, "remembers no views");
+  expect_refused(arguments({"--gain", "proximity_count"}), "remembers no views");
 }
 
 }  // namespace

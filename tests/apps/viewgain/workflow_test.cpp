@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "cli/json.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -22,7 +22,7 @@
 namespace viewgain {
 namespace {
 
-using nlohmann::json;
+using json = viewgain::app::Json;
 using Strings = std::vector<std::string>;
 
 std::vector<Strings> rows_of(const std::string& csv) {
@@ -45,20 +45,16 @@ class Workflow : public test::ProgramTest {
   }
 
   void simulate(const std::string& out, const Strings& more = {}) const {
-    Strings arguments{"simulate",   "cube.off",   "--orbit", "3,0.6,27,0,46",
-                      "--sensor",   "small.toml", "--size",  "0.3",
-                      "--recenter", "on",         "--out",   out};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    run_well(arguments);
+    run_well(test::joined({"simulate", "cube.off", "--orbit", "3,0.6,27,0,46", "--sensor",
+                           "small.toml", "--size", "0.3", "--recenter", "on", "--out", out},
+                          more));
   }
 
   void integrate(const std::string& frames, const std::string& map,
                  const Strings& more = {}) const {
-    Strings arguments{
-        "integrate", frames, "--voxel", "0.02", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
-        "--out",     map};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    run_well(arguments);
+    run_well(test::joined({"integrate", frames, "--voxel", "0.02", "--workspace",
+                           "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", map},
+                          more));
   }
 
   [[nodiscard]] std::string hash(const std::string& map) const {
@@ -86,13 +82,6 @@ TEST_F(Workflow, JsonHasTheDocumentedKeys) {
   EXPECT_EQ(integrated.at("depth_scale"), 1e-4);
 
   const json info = json::parse(run_well({"info", "map.vdb", "--json"}));
-  for (const char* key :
-       {"voxel_size", "bytes_per_occupied_voxel", "entropy_removed", "prior_sigma"}) {
-    EXPECT_TRUE(info.at(key).is_number_float()) << key;
-  }
-  for (const char* key : {"unknown", "free", "occupied", "bytes", "views"}) {
-    EXPECT_TRUE(info.at(key).is_number_unsigned()) << key;
-  }
   EXPECT_EQ(info.at("voxel_size"), 0.02);
   EXPECT_EQ(info.at("views"), 3);
   EXPECT_EQ(info.at("workspace").size(), 6U);
@@ -121,43 +110,11 @@ TEST_F(Workflow, JsonHasTheDocumentedKeys) {
   ASSERT_EQ(scored.at("best").size(), 7U);
   double last = std::numeric_limits<double>::infinity();
   for (const json& entry : scored.at("best")) {
-    for (const char* key : {"index", "rays", "hits", "unknown_voxels", "occupied_voxels"}) {
-      EXPECT_TRUE(entry.at(key).is_number_unsigned()) << key;
-    }
-    for (const char* key : {"gain", "exploration", "refinement", "posterior_entropy"}) {
-      EXPECT_TRUE(entry.at(key).is_number_float()) << key;
-    }
     EXPECT_EQ(entry.at("status"), "ok");
     EXPECT_LE(entry.at("gain"), last);
     last = entry.at("gain");
   }
   EXPECT_GT(last, 0);
-}
-
-TEST_F(Workflow, WaysOfChoosingViews) {
-  simulate("frames");
-  integrate("frames", "map.vdb");
-  const auto score = [&](const Strings& more) {
-    Strings arguments{"score",      "map.vdb",   "--sphere", "60,0.6", "--sensor",
-                      "small.toml", "--threads", "2",        "--json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return json::parse(run_well(arguments));
-  };
-  const json all = score({"--top", "3"});
-  const json raced = score({"--top", "1", "--race"});
-  EXPECT_GE(raced["best"][0]["gain"].get<double>(), 0.9 * all["best"][0]["gain"].get<double>());
-  const json set = score({"--set", "3"});
-  ASSERT_EQ(set["best"].size(), 3U);
-  EXPECT_EQ(set["best"][0], all["best"][0]);
-  double sum = 0;
-  for (const json& view : set["best"]) sum += view["gain"].get<double>();
-  EXPECT_NEAR(set["set_gain"].get<double>(), sum, 1e-9 * sum);
-  const json estimated = score({"--top", "3", "--approximate", "0.5"});
-  EXPECT_GT(estimated["best"][0]["standard_error"].get<double>(), 0);
-  EXPECT_EQ(run({"score", "map.vdb", "--sphere", "60,0.6", "--sensor", "small.toml", "--set", "3",
-                 "--race"})
-                .exit_code,
-            2);
 }
 
 TEST_F(Workflow, CsvReadsBackTheSameDoubles) {
@@ -191,28 +148,6 @@ TEST_F(Workflow, CsvReadsBackTheSameDoubles) {
   EXPECT_EQ(cases, 30U);
 }
 
-TEST_F(Workflow, TheSameForAnyNumberOfThreadsAndRunAfterRun) {
-  std::string first_hash, first_csv;
-  int cases = 0;
-  for (const std::string threads : {"1", "3", "1", "8"}) {
-    simulate("frames" + threads, {"--threads", threads, "--noise", "on", "--seed", "5"});
-    integrate("frames" + threads, "map.vdb", {"--threads", threads});
-    run_well({"score", "map.vdb", "--dome", "50,0.6", "--sensor", "small.toml", "--out", "s.csv",
-              "--threads", threads});
-    if (cases == 0) {
-      first_hash = hash("map.vdb");
-      first_csv = read("s.csv");
-    }
-    EXPECT_EQ(hash("map.vdb"), first_hash) << threads;
-    EXPECT_EQ(read("s.csv"), first_csv) << threads;
-    ++cases;
-  }
-  EXPECT_EQ(cases, 4);
-  simulate("other", {"--noise", "on", "--seed", "6"});
-  integrate("other", "other.vdb");
-  EXPECT_NE(hash("other.vdb"), first_hash);
-}
-
 TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
   simulate("frames");
   integrate("frames", "own.vdb");
@@ -243,25 +178,16 @@ TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
 
   // Without the scale the depths are ten times too long: all readings lie out of range. A sensor
   // file of the user's beside the recording changes nothing about that.
-  int cases = 0;
-  const auto refuses = [&](const Strings& arguments, const std::string& word) {
-    const auto result = run(arguments);
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
-    EXPECT_FALSE(std::filesystem::exists(dir / "none.vdb"));
-    ++cases;
-  };
-  refuses({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02", "--workspace",
-           "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "none.vdb"},
-          "0.001 m per unit");
+  expect_refused({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
+                  "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "none.vdb"},
+                 "0.001 m per unit");
   write("recorded/sensor.toml", read("wrong.toml"));
-  refuses({"integrate", "recorded", "--voxel", "0.02", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
-           "--out", "none.vdb"},
-          "0.001 m per unit");
-  refuses({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02", "--depth-scale",
-           "1e-6", "--out", "none.vdb"},
-          "1e-06 m per unit");
-  EXPECT_EQ(cases, 3);
+  expect_refused({"integrate", "recorded", "--voxel", "0.02", "--workspace",
+                  "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "none.vdb"},
+                 "0.001 m per unit");
+  expect_refused({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
+                  "--depth-scale", "1e-6", "--out", "none.vdb"},
+                 "1e-06 m per unit");
   EXPECT_NE(run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
                       "--depth-scale", "1e-4", "--out", "own.vdb"})
                 .find("depth images: 1e-04 m per unit"),
@@ -316,27 +242,18 @@ TEST_F(Workflow, AMapIsContinued) {
   run_well({"integrate", "more", "--map", "once.vdb", "--out", "once.vdb"});
   EXPECT_EQ(hash("once.vdb"), hash("twice.vdb"));
   EXPECT_EQ(json::parse(run_well({"info", "once.vdb", "--json"})).at("views"), 6);
-  int cases = 0;
   for (const Strings& conflict : std::vector<Strings>{
            {"--voxel", "0.03"}, {"--workspace", "0,0,0,1,1,1"}, {"--prior-sigma", "0.5"}}) {
-    Strings arguments{"integrate", "frames", "--map", "once.vdb", "--out", "new.vdb"};
-    arguments.insert(arguments.end(), conflict.begin(), conflict.end());
-    const auto result = run(arguments);
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_NE(result.err.find("conflicts"), std::string::npos) << result.err;
-    EXPECT_FALSE(std::filesystem::exists(dir / "new.vdb"));
-    ++cases;
+    expect_refused_with({"integrate", "frames", "--map", "once.vdb", "--out", "new.vdb"},
+                        {{conflict, "conflicts"}});
   }
-  EXPECT_EQ(cases, 3);
 }
 
 // A folder that grows can be given again and again.
 TEST_F(Workflow, FramesThatAMapHasAreSkipped) {
   simulate("frames", {"--frames-per-view", "2", "--noise", "on"});
   const auto grow = [this](const Strings& more) {
-    Strings arguments{"integrate", "frames", "--json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return json::parse(run_well(arguments));
+    return json::parse(run_well(test::joined({"integrate", "frames", "--json"}, more)));
   };
   integrate("frames", "all.vdb");
   // As a camera's driver leaves them, half of them first.
@@ -387,47 +304,15 @@ TEST_F(Workflow, FramesThatAMapHasAreSkipped) {
   EXPECT_EQ(grow({"--map", "tree.ot", "--out", "new.vdb"})["skipped"], 0);
 }
 
-TEST_F(Workflow, MasksSayWhatIsNoPartOfTheScene) {
-  simulate("frames");
-  Gray8Image left{48, 36, std::vector<std::uint8_t>(48 * 36)};
-  for (std::size_t k = 0; k < left.pixels.size(); ++k) left.pixels[k] = k % 48 < 24 ? 255 : 0;
-  std::filesystem::create_directories(dir / "masks");
-  write_png(dir / "masks/frame-000001.depth.png", left);
-  const Strings plain{"integrate", "frames", "--voxel", "0.03", "--json", "--out", "map.vdb"};
-  Strings masked = plain;
-  masked.insert(masked.end(), {"--mask", "masks"});
-  const json all = json::parse(run_well(plain));
-  const json some = json::parse(run_well(masked));
-  EXPECT_EQ(all["masked_pixels"], 0);
-  EXPECT_EQ(some["masked_pixels"], 24 * 36);
-  EXPECT_EQ(some["invalid"], all["invalid"].get<int>() + 24 * 36);
-  std::size_t cases = 0;
-  std::filesystem::create_directories(dir / "empty");
-  for (const char* folder : {"empty", "nowhere"}) {
-    masked.back() = folder;
-    const test::ProgramResult refused = run(masked);
-    EXPECT_EQ(refused.exit_code, 2);
-    EXPECT_NE(refused.err.find(folder), std::string::npos) << refused.err;
-    ++cases;
-  }
-  EXPECT_EQ(cases, 2U);
-  const test::ProgramResult cloud =
-      run({"integrate", "--cloud", "cube.ply", "--sensor", "small.toml", "--voxel", "0.03",
-           "--mask", "masks", "--out", "new.vdb"});
-  EXPECT_EQ(cloud.exit_code, 2);
-  EXPECT_NE(cloud.err.find("--mask is for depth frames"), std::string::npos) << cloud.err;
-}
-
 // A pose that contradicts the map: the map is what it is without that frame.
 TEST_F(Workflow, FramesThatContradictTheMapAreLeftOut) {
   run_well({"simulate", "cube.off", "--size", "0.2", "--recenter", "on", "--orbit", "12,0.6,27",
             "--sensor", "sr4000", "--out", "whole"});
   const auto integrated = [this](const std::string& folder, const Strings& more) {
-    Strings call{"integrate", folder,        "--voxel",
-                 "0.01",      "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
-                 "--json",    "--out",       "map.vdb"};
-    call.insert(call.end(), more.begin(), more.end());
-    return json::parse(run_well(call));
+    return json::parse(
+        run_well(test::joined({"integrate", folder, "--voxel", "0.01", "--workspace",
+                               "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--json", "--out", "map.vdb"},
+                              more)));
   };
   const Strings registered{"--register", "on"};
   const json good = integrated("whole", registered);
@@ -464,66 +349,21 @@ TEST_F(Workflow, FramesThatContradictTheMapAreLeftOut) {
   EXPECT_EQ(again["registration"]["refused"], 1);
   EXPECT_EQ(again["hash"], left_out["hash"]);
 
-  std::size_t cases = 0;
-  for (const auto& [more, word] : std::vector<std::pair<Strings, std::string>>{
-           {{"--pose-sigma", "0.01,1"}, "goes with --register on"},
-           {{"--register", "on", "--pose-sigma", "0,1"}, "--pose-sigma"},
-           {{"--register", "on", "--pose-sigma", "x"}, "--pose-sigma"}}) {
-    Strings call{"integrate", "whole", "--voxel", "0.01", "--out", "no.vdb"};
-    call.insert(call.end(), more.begin(), more.end());
-    const test::ProgramResult refused = run(call);
-    EXPECT_EQ(refused.exit_code, 2) << word;
-    EXPECT_NE(refused.err.find(word), std::string::npos) << refused.err;
-    ++cases;
-  }
-  EXPECT_EQ(cases, 3U);
-}
-
-TEST_F(Workflow, ConfidencesUnderTheLeastSayNothing) {
-  simulate("frames");
-  // 0, 1, 2 in thirds of the image.
-  Gray8Image thirds{48, 36, std::vector<std::uint8_t>(48 * 36)};
-  for (std::size_t k = 0; k < thirds.pixels.size(); ++k) {
-    thirds.pixels[k] = static_cast<std::uint8_t>(k % 48 / 16);
-  }
-  std::filesystem::create_directories(dir / "sure");
-  write_png(dir / "sure/frame-000002.depth.png", thirds);
-  const auto masked = [this](const Strings& more) {
-    Strings arguments{"integrate", "frames", "--voxel", "0.03", "--json", "--out", "map.vdb"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return json::parse(run_well(arguments))["masked_pixels"].get<int>();
-  };
-  EXPECT_EQ(masked({"--confidence", "sure"}), 16 * 36);
-  EXPECT_EQ(masked({"--confidence", "sure", "--least-confidence", "2"}), 32 * 36);
-  EXPECT_EQ(masked({"--confidence", "sure", "--least-confidence", "3"}), 48 * 36);
-  // With masks, too: a pixel goes once.
-  std::filesystem::create_directories(dir / "masks");
-  write_png(dir / "masks/frame-000002.depth.png", thirds);
-  EXPECT_EQ(masked({"--confidence", "sure", "--mask", "masks"}), 48 * 36);
-  std::size_t cases = 0;
-  std::filesystem::create_directories(dir / "empty");
-  for (const Strings& bad : {Strings{"--confidence", "empty"}, Strings{"--confidence", "nowhere"},
-                             Strings{"--confidence", "sure", "--least-confidence", "0"},
-                             Strings{"--confidence", "sure", "--least-confidence", "256"}}) {
-    Strings arguments{"integrate", "frames", "--voxel", "0.03", "--out", "new.vdb"};
-    arguments.insert(arguments.end(), bad.begin(), bad.end());
-    const test::ProgramResult refused = run(arguments);
-    EXPECT_EQ(refused.exit_code, 2) << bad.back();
-    EXPECT_NE(refused.err.find(bad.back()), std::string::npos) << refused.err;
-    EXPECT_FALSE(std::filesystem::exists(dir / "new.vdb"));
-    ++cases;
-  }
-  EXPECT_EQ(cases, 4U);
+  expect_refused_with({"integrate", "whole", "--voxel", "0.01", "--out", "no.vdb"},
+                      {{{"--pose-sigma", "0.01,1"}, "goes with --register on"},
+                       {{"--register", "on", "--pose-sigma", "0,1"}, "--pose-sigma"},
+                       {{"--register", "on", "--pose-sigma", "x"}, "--pose-sigma"}});
 }
 
 TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   simulate("frames");
   integrate("frames", "map.vdb");
   const auto best = [this](const Strings& more) {
-    Strings arguments{"score",  "map.vdb", "--poses", "frames/poses.txt", "--sensor", "small.toml",
-                      "--json", "--top",   "1"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return json::parse(run_well(arguments)).at("best").at(0);
+    return json::parse(run_well(test::joined({"score", "map.vdb", "--poses", "frames/poses.txt",
+                                              "--sensor", "small.toml", "--json", "--top", "1"},
+                                             more)))
+        .at("best")
+        .at(0);
   };
   const double gain = best({}).at("gain");
   EXPECT_EQ(best({}).at("rays"), 48 * 36);
@@ -563,11 +403,12 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
 
   // A cube that stands off the origin is seen by the orbit only when it is moved there.
   const auto readings = [this](const Strings& more) {
-    Strings arguments{"simulate", "cube.off",     "--orbit", "2,0.6,20",
-                      "--sensor", "small.toml",   "--out",   "other_frames",
-                      "--json",   "--background", "0"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return json::parse(run_well(arguments)).at("readings").get<int>();
+    return json::parse(run_well(test::joined(
+                           {"simulate", "cube.off", "--orbit", "2,0.6,20", "--sensor", "small.toml",
+                            "--out", "other_frames", "--json", "--background", "0"},
+                           more)))
+        .at("readings")
+        .get<int>();
   };
   EXPECT_GT(readings({"--recenter", "on", "--size", "0.35"}),
             readings({"--recenter", "on", "--size", "0.1"}));
@@ -577,9 +418,7 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
 TEST_F(Workflow, FramesSayWhatTheHazardIs) {
   simulate("frames");
   integrate("frames", "plain.vdb");
-  integrate("frames", "one.vdb", {"--calibrate-hazard", "on", "--threads", "1"});
-  integrate("frames", "three.vdb", {"--calibrate-hazard", "on", "--threads", "3"});
-  EXPECT_EQ(hash("one.vdb"), hash("three.vdb"));
+  integrate("frames", "one.vdb", {"--calibrate-hazard", "on"});
   const auto factors = [this](const std::string& map) {
     return json::parse(run_well({"info", map, "--json"})).at("hazard_factors");
   };
@@ -608,95 +447,6 @@ TEST_F(Workflow, ThePictureIsAPictureAndTheOnlyNewFile) {
   ASSERT_GT(png.size(), 10000U);
   EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x05\0\0\0\x03\xc0", 8));  // 1280 x 960
-}
-
-TEST_F(Workflow, HelpNamesEveryFlag) {
-  // Options, arguments, units and, after "=", defaults.
-  const std::vector<std::pair<std::string, std::string>> commands{
-      {"simulate",
-       "MESH --poses --sphere --dome --rings --shell --orbit --center --sensor --size --recenter "
-       "--background --up --support-plane --noise --flying-pixels --wiggling --calibrate "
-       "--pose-noise --frames-per-view --amplitude --seed --out --json --threads =1.5 [m]"},
-      {"integrate",
-       "FRAMES_DIR --cloud --origin --poses --voxel --workspace --sensor --depth-scale "
-       "--mask --confidence --least-confidence "
-       "--out-of-range --carve --occupancy --jump-edge-filter --jump-edge-two-sided "
-       "--calibrate-hazard --support-plane --prior-sigma --register --pose-sigma --with-covariance "
-       "--out --map --json "
-       "--threads =carve "
-       "=cones =probabilistic =viewpoint 1e-4 [m]"},
-      {"follow",
-       "FRAMES_DIR --voxel --workspace --sensor --depth-scale --mask --confidence "
-       "--least-confidence --out-of-range --jump-edge-filter --jump-edge-two-sided "
-       "--gain --object-size --hazard --reach --obstacle --body --support-plane --top "
-       "--max-views --register --pose-sigma --out --json --threads =carve =combined =10 [m]"},
-      {"import",
-       "SOURCE --format --sensor --intrinsics --max-time-gap --mask --confidence "
-       "--least-confidence --amplitude --amplitude-scale --out --json --threads =0.02 "
-       "[s] [px]"},
-      {"convert",
-       "IN OUT --workspace --prior-sigma --sensor --with-covariance --json --threads .ot [m]"},
-      {"score",
-       "MAP --poses --sphere --dome --rings --shell --orbit --center --sensor --gain --semantics "
-       "--refinement-weight "
-       "--object-size --hazard --support-plane --obstacle --reach --feasible --body --criterion "
-       "--stride --weight --prior-sigma "
-       "--min-range --max-range --top --race --approximate --set --seed "
-       "--shard --rows --out --picture --report --json --threads =log_diagonal =10 [m]"},
-      {"merge", "PART --out --top --json --threads"},
-      {"sensors", "NAME --json --threads"},
-      {"study", "SPEC --out --jobs --plots --json --threads"},
-      {"surface", "MAP --out --points --truth --size --recenter --up --json --threads =off =z [m]"},
-      {"info", "MAP --hash --criterion --region --json --threads =log_diagonal"},
-      {"candidates",
-       "MAP --generator --sensor --count --distance --center --reach --body --support-plane "
-       "--obstacle --overlap --region-depth --gain --object-size --hazard --seed --out --json "
-       "--threads"},
-      {"reconstruct",
-       "MESH --sensor --voxel --size --workspace --up --start --distance --policy --generator "
-       "--count --gain --semantics --overlap --region-depth --object-size --hazard --criterion "
-       "--max-views --stop-gain "
-       "--stop-area --stop-idle --stop-coverage "
-       "--travel-cost --travel-speed --reach --body --background --support-plane --noise "
-       "--flying-pixels --seed --wiggling --calibrate --frames-per-view --jump-edge-filter "
-       "--pose-noise --register --pose-sigma --depth-scale --mask --confidence --least-confidence "
-       "--top "
-       "--refine --obstacle --save-maps --pictures --report --out --json --threads"},
-      {"render",
-       "INPUT --what --width --azimuth --elevation --ellipsoids --views --columns --poses --sphere "
-       "--dome --rings --shell --orbit --center --seed --sensor --gain --out --json --threads =30 "
-       "[px]"}};
-  const std::string top = run_well({"--help"});
-  int words = 0;
-  for (const auto& [command, listed] : commands) {
-    EXPECT_NE(top.find(command), std::string::npos);
-    const std::string help = run_well({command, "--help"});
-    std::set<std::string> known{"--help", "--quiet", "--config", "--save-config"}, found;
-    std::istringstream in(listed);
-    for (std::string word; in >> word; ++words) {
-      if (word.starts_with("--")) {
-        known.insert(word);
-        continue;
-      }
-      // CLI11 writes a default as =10, later versions as [10].
-      const bool is_default = word[0] == '=';
-      EXPECT_TRUE(help.find(word) != std::string::npos ||
-                  (is_default && help.find('[' + word.substr(1) + ']') != std::string::npos))
-          << command << " " << word;
-    }
-    // Options begin a line.
-    const std::regex option(R"(\n +(?:-\w,)?(--[a-z-]+))");
-    for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it) {
-      found.insert((*it)[1]);
-    }
-    EXPECT_EQ(found, known) << command;
-  }
-  EXPECT_EQ(words, 281);
-  const std::string help = run_well({"simulate", "--help"});
-  for (const std::string& name : sensor_preset_names()) {
-    EXPECT_NE(help.find(name), std::string::npos) << name;
-  }
-  EXPECT_EQ(run_well({"--version"}).substr(0, 9), "viewgain ");
 }
 
 }  // namespace

@@ -89,7 +89,6 @@ TEST_F(DamagedOctomap, HeadersAreNamedByLine) {
   // A .bt's tree behind a .ot's header and the other way round.
   expect_refused("", with(full_, "# Octomap OcTree file", "# Octomap OcTree binary file"));
   expect_refused("", with(binary_, "# Octomap OcTree binary file", "# Octomap OcTree file"));
-  EXPECT_EQ(cases_, 25);
   EXPECT_NO_THROW((void)load_octomap(
       folder_.file("good.ot", with(full_, "id OcTree", "# comment\nauthor me\nid OcTree"))));
   expect_error(ErrorCode::io, "none.ot", [&] { (void)load_octomap(folder_.path() / "none.ot"); });
@@ -138,7 +137,6 @@ TEST_F(DamagedOctomap, ForgedTrees) {
           .statistics()
           .occupied,
       18U * 18 * 18);
-  EXPECT_EQ(cases_, 7);
 }
 
 TEST_F(DamagedOctomap, FlippedBitsNeverCrash) {

@@ -287,7 +287,6 @@ TEST(Octomap, AFrameOfWholeVoxelsMovesTheTree) {
   const Index3 low{-37, 11, -150};
   const std::string in_world = octomap_bytes(blobs(low, {}));
   EXPECT_GT(in_world.size(), 20000U);
-  int cases = 0;
   for (const Index3 shift :
        {Index3{1, 0, 0}, Index3{-3, 5, 7}, Index3{8, -16, 24}, Index3{128, 256, -128},
         Index3{-2048, 0, 2048}, Index3{-32768 - 37, 32000, -1}, Index3{32000, 1000001, 3}}) {
@@ -298,10 +297,8 @@ TEST(Octomap, AFrameOfWholeVoxelsMovesTheTree) {
       const BeliefGrid grid = blobs(own, T);
       EXPECT_TRUE(octomap_keeps_frame(grid));
       EXPECT_TRUE(octomap_bytes(grid) == in_world) << shift.x << " " << shift.y << " " << shift.z;
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 14);
   EXPECT_TRUE(*octree_from_grid(blobs({0, 0, 0}, {upright, {-3.7, 1.1, -15.0}})) ==
               *octree_from_grid(blobs(low, {})));
 }
@@ -345,34 +342,6 @@ TEST(Octomap, IndicesBeyondATreeAreRefused) {
   EXPECT_EQ(octree_from_grid(grid)->getNumLeafNodes(), 1U);
   grid.set({32768, 0, 0}, 1.0F);
   expect_error(ErrorCode::capacity, "32768", [&] { (void)octomap_bytes(grid); });
-}
-
-TEST(Octomap, AMillionLeavesAreReadWithinSeconds) {
-  const TemporaryFolder folder;
-  octomap::OcTree tree(0.01);
-  for (int x = 0; x < 128; ++x) {
-    for (int y = 0; y < 100; ++y) {
-      for (int z = 0; z < 80; ++z) {
-        const bool occupied = (x ^ y ^ z) % 2 == 0;
-        tree.setNodeValue(key_of({x - 64, y - 50, z - 40}), occupied ? 0.85F : -0.4F, true);
-      }
-    }
-  }
-  tree.updateInnerOccupancy();
-  tree.write((folder.path() / "a.ot").string());
-  const auto start = std::chrono::steady_clock::now();
-  const BeliefGrid grid = load_octomap(folder.path() / "a.ot");
-  const auto read = std::chrono::steady_clock::now();
-  save_octomap(grid, folder.path() / "b.ot");
-  const auto written = std::chrono::steady_clock::now();
-  const auto seconds = [](auto from, auto to) {
-    return std::chrono::duration<double>(to - from).count();
-  };
-  std::printf("%zu leaves: read in %.2f s, written in %.2f s\n", tree.getNumLeafNodes(),
-              seconds(start, read), seconds(read, written));
-  const GridStatistics statistics = grid.statistics();
-  EXPECT_EQ(statistics.free + statistics.occupied, 1024000U);
-  EXPECT_LT(seconds(start, written), 20.0);  // generous: a loaded machine
 }
 
 }  // namespace

@@ -76,7 +76,6 @@ TEST(VdbIo, RoundTripsAreExact) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "map.vdb";
   std::mt19937 random(41);
-  int cases = 0;
   const auto check = [&](const BeliefGrid& grid) {
     save_vdb(grid, path);
     const BeliefGrid loaded = load_vdb(path);
@@ -86,7 +85,6 @@ TEST(VdbIo, RoundTripsAreExact) {
     const std::string bytes = file_bytes(path);
     save_vdb(loaded, path, {.with_covariance = true});
     EXPECT_TRUE(file_bytes(path) == bytes);  // an equal map makes an equal file
-    ++cases;
   };
   check(seen_object(64));
   check(BeliefGrid(object_grid(16)));                                              // nothing known
@@ -118,7 +116,6 @@ TEST(VdbIo, RoundTripsAreExact) {
   }
   for (int i = 0; i < 100; ++i) grid.append_view(ring_view(i));
   check(grid);
-  EXPECT_EQ(cases, 8);
 }
 
 TEST(VdbIo, VdbPrintListsTheGrids) {
@@ -148,39 +145,6 @@ TEST(VdbIo, VdbPrintListsTheGrids) {
   for (const char* part : {"covariance_diagonal", "covariance_offdiagonal", "position"}) {
     EXPECT_NE(full.find(part), std::string::npos) << part;
   }
-}
-
-TEST(VdbIo, PythonsOpenVdbReadsTheGrids) {
-  const std::string python = "/usr/bin/python3";
-  if (std::system((python + " -c 'import pyopenvdb' 2> /dev/null").c_str()) != 0) {
-    GTEST_SKIP() << "no python3-openvdb";
-  }
-  const TemporaryFolder folder;
-  const auto path = folder.path() / "map.vdb";
-  const BeliefGrid grid = seen_object(40);
-  save_vdb(grid, path, {.with_covariance = true});
-  const auto script =
-      folder.file("read.py",
-                  "import pyopenvdb, sys\n"
-                  "grids, metadata = pyopenvdb.readAll(sys.argv[1])\n"
-                  "grids = {g.name: g for g in grids}\n"
-                  "states = [v['value'] for v in grids['state'].citerOnValues()]\n"
-                  "hits = sum(v['value'] for v in grids['hits'].citerOnValues())\n"
-                  "names = ' '.join(sorted(grids))\n"
-                  "print(states.count(2), int(hits), metadata['voxel_size'], names)\n");
-  FILE* pipe =
-      ::popen((python + " '" + script.string() + "' '" + path.string() + "' 2>&1").c_str(), "r");
-  std::array<char, 1024> text{};
-  const std::size_t length = std::fread(text.data(), 1, text.size(), pipe);
-  EXPECT_EQ(::pclose(pipe), 0);
-  std::uint64_t hits = 0;
-  for (const BeliefBlockAt& block : grid.belief_blocks()) {
-    for (const Belief& belief : block.beliefs->beliefs) hits += belief.hits;
-  }
-  EXPECT_EQ(std::string(text.data(), length),
-            std::to_string(grid.statistics().occupied) + " " + std::to_string(hits) +
-                " 0.01 covariance_diagonal covariance_offdiagonal hits information_diagonal "
-                "information_offdiagonal information_vector log_odds position state\n");
 }
 
 TEST(VdbIo, VoxelsAreAsSmallAsCanBeSaved) {
@@ -241,15 +205,12 @@ TEST(VdbIo, CorruptAnywhere) {
   const std::string whole = read_all(path);
   std::mt19937 random(7);
   std::uniform_int_distribution<std::size_t> where(0, whole.size() - 25);  // before the seal
-  int cases = 0;
   for (int i = 0; i < 60; ++i) {
     std::string bytes = whole;
     bytes[where(random)] ^= static_cast<char>(1U << (i % 8));
     const auto bad = folder.file("bad.vdb", bytes);
     expect_error(ErrorCode::format, "bad.vdb", [&] { (void)load_vdb(bad); });
-    ++cases;
   }
-  EXPECT_EQ(cases, 60);
   // Cut within the seal: refused as long as enough of it is left to know it by.
   for (std::size_t cut = 1; cut <= 20; ++cut) {
     const auto bad = folder.file("bad.vdb", whole.substr(0, whole.size() - cut));

@@ -32,19 +32,20 @@ void put(BeliefGrid& grid, Index3 voxel, std::uint32_t hits, double sigma = 0.00
   grid.set(voxel, 1.0F, belief);
 }
 
+Index3 any_voxel(const BeliefGrid& grid, std::mt19937& random) {
+  const Index3 base = grid.min_index();
+  const auto any = [&](int size) {
+    return std::uniform_int_distribution<int>(0, size - 1)(random);
+  };
+  return {base.x + any(grid.dims().x), base.y + any(grid.dims().y), base.z + any(grid.dims().z)};
+}
+
 TEST(HazardField, DistancesAreThoseOfBruteForce) {
   std::mt19937 random(7);
   std::size_t checks = 0, finite = 0;
   for (int shift = 0; shift < 4; ++shift) {
     BeliefGrid grid = grid_of({41, 29, 35});
-    const Index3 base = grid.min_index();
-    const auto any = [&](int size) {
-      return std::uniform_int_distribution<int>(0, size - 1)(random);
-    };
-    const auto voxel = [&] {
-      return Index3{base.x + any(grid.dims().x), base.y + any(grid.dims().y),
-                    base.z + any(grid.dims().z)};
-    };
+    const auto voxel = [&] { return any_voxel(grid, random); };
     for (int k = 0; k < 5; ++k) put(grid, voxel(), 3);
     for (int k = 0; k < 50; ++k) {  // too little evidence
       const Index3 v = voxel();
@@ -79,14 +80,7 @@ TEST(HazardField, VoxelsFinerThanTheFootprintCountTogether) {
   for (int pooling = 0; pooling < 4; ++pooling) {
     const double footprint = 1.2 * kVoxel * (1 << pooling);
     BeliefGrid grid = grid_of({41, 29, 35});
-    const Index3 base = grid.min_index();
-    const auto any = [&](int size) {
-      return std::uniform_int_distribution<int>(0, size - 1)(random);
-    };
-    const auto voxel = [&] {
-      return Index3{base.x + any(grid.dims().x), base.y + any(grid.dims().y),
-                    base.z + any(grid.dims().z)};
-    };
+    const auto voxel = [&] { return any_voxel(grid, random); };
     for (int k = 0; k < 150; ++k) put(grid, voxel(), 1, footprint);
     const HazardModel model{30.0, 8 * kVoxel, 0.5};
     const HazardField field(grid.snapshot(), {.model = model});

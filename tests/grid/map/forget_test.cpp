@@ -122,14 +122,11 @@ TEST(Forget, EverywhereLeavesAnEmptyMap) {
 TEST(Forget, NothingIsForgottenOfARegionWithoutVoxels) {
   BeliefGrid grid = known_map(8);
   const std::string hash = grid.content_hash();
-  int regions = 0;
   for (const Box& region : {Box{{5, 5, 5}, {6, 6, 6}}, Box{{0, 1.2, 0}, {0, 1.3, 0.1}},
                             Box{{0.04, 1.4, 0.1}, {-0.1, 1.2, -0.02}},
                             Box{{kInf, kInf, kInf}, {-kInf, -kInf, -kInf}}}) {
     EXPECT_EQ(grid.forget(region), 0U);
-    ++regions;
   }
-  EXPECT_EQ(regions, 4);
   EXPECT_EQ(grid.content_hash(), hash);
   test::expect_error(ErrorCode::invalid_argument, "y is not a number", [&] {
     grid.forget({{0, std::numeric_limits<double>::quiet_NaN(), 0}, {1, 1, 1}});

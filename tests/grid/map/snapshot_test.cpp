@@ -299,22 +299,5 @@ TEST(Snapshot, FromTheOneBeforeIsTheSameAtARimWithinABlock) {
   EXPECT_GT(leaves, 100U);
 }
 
-TEST(Snapshot, OutlivesTheGrid) {
-  GridSnapshot snapshot;
-  {
-    BeliefGrid grid(object_grid(32));
-    const Sensor sensor = small_sensor(32, 24);
-    FrameIntegrator(sensor).integrate(
-        grid, see_spheres(sensor, ring_view(0), three_spheres_in_a_room()), ring_view(0));
-    snapshot = grid.snapshot();
-  }
-  std::uint64_t hits = 0;
-  for (const SnapshotLeaf& leaf : snapshot.leaves) {
-    if (leaf.beliefs == nullptr) continue;
-    for (const Belief& belief : leaf.beliefs->beliefs) hits += belief.hits;
-  }
-  EXPECT_GT(hits, 50U);
-}
-
 }  // namespace
 }  // namespace viewgain

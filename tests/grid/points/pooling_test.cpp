@@ -37,17 +37,14 @@ BeliefGrid read_from_afar(double voxel, double sigma_axial, double sigma_lateral
 }
 
 TEST(Pooling, TheFootprintIsTheSigmaAcrossTheRay) {
-  int cases = 0;
   for (const double lateral : {0.001, 0.0018, 0.004}) {
     for (const double ratio : {0.2, 0.9, 1.0, 2.0, 8.0}) {  // axial over lateral, either way
       const BeliefGrid grid = read_from_afar(lateral / 1.2, ratio * lateral, lateral, 300);
       const Pooling pooling = pooling_of(grid.snapshot());
       EXPECT_EQ(pooling.shift, 0);
       EXPECT_NEAR(pooling.length, lateral, 2e-3 * lateral) << ratio;
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 15);
 }
 
 TEST(Pooling, CubesAreAboutAsLargeAsTheFootprint) {
@@ -56,16 +53,13 @@ TEST(Pooling, CubesAreAboutAsLargeAsTheFootprint) {
     int shift;
     double length;
   };
-  int cases = 0;
   for (const Case& c : {Case{0.01, 0, 0.01}, Case{0.003125, 0, 0.003125}, Case{0.0015, 0, 0.0018},
                         Case{0.001, 1, 0.002}, Case{0.0005, 2, 0.002}, Case{0.0004, 2, 0.0018},
                         Case{0.0001, 3, 0.0018}}) {
     const Pooling pooling = pooling_of(read_from_afar(c.voxel, 0.0036, 0.0018, 300).snapshot());
     EXPECT_EQ(pooling.shift, c.shift) << c.voxel;
     EXPECT_NEAR(pooling.length, c.length, 1e-5) << c.voxel;
-    ++cases;
   }
-  EXPECT_EQ(cases, 7);
 }
 
 TEST(Pooling, AMapWithoutReadingsHasItsVoxels) {

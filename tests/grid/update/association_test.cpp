@@ -52,7 +52,6 @@ DepthFrame noisy(const Sensor& sensor, DepthFrame frame, std::mt19937& random) {
 
 TEST(Association, EqualsASearch) {
   std::mt19937 random(3);
-  int cases = 0;
   for (const double sigma : {0.3, 0.5, 0.9, 2.0, 5.0}) {  // voxels
     for (const Carve carve : {Carve::cones, Carve::lines}) {
       Sensor sensor = carve == Carve::cones ? small_sensor(48, 36) : small_sensor(12, 9);
@@ -70,7 +69,6 @@ TEST(Association, EqualsASearch) {
         EXPECT_EQ(oracle.differences(grid), 0U) << sigma << " voxels, view " << view;
         EXPECT_EQ(report.voxels_hit, oracle.hit()) << sigma << " voxels, view " << view;
         moved += oracle.moved();
-        ++cases;
       }
       if (sigma < 0.5) {
         EXPECT_EQ(moved, 0U);
@@ -79,7 +77,6 @@ TEST(Association, EqualsASearch) {
       }
     }
   }
-  EXPECT_EQ(cases, 40);
 }
 
 /// One pixel that looks along +z from the origin.
@@ -241,15 +238,12 @@ TEST(Association, WallsStayThinAndThinThingsStay) {
     }
     return thickness(grid);
   };
-  int cases = 0;
   for (const double z : {0.0004, 0.0025, 0.005, 0.0075}) {  // in the voxel
     EXPECT_LE(seen(z, false, 40), 2.6) << z;
     const double plate = seen(z, true, 40);
     EXPECT_LE(plate, 2.6) << z;
     EXPECT_GE(plate, 1.0) << z;
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
 }
 
 TEST(Association, IsTheSameForAnyNumberOfThreadsAndOrderOfPoints) {

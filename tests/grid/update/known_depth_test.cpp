@@ -25,7 +25,6 @@ TEST(KnownDepth, CountsFromThereOn) {
   sensor.min_range = 0.05;
   sensor.noise = ConstantNoise{0.002, 0.002};
   const Pose down = look_at({0.005, 0.005, 0.5}, {0.005, 0.005, 0});
-  int cases = 0;
   for (const Carve carve : {Carve::cones, Carve::lines}) {
     for (const auto& [before, is_known] : {std::pair(0.1F, false),
                                            {1e-6F, false},
@@ -43,10 +42,8 @@ TEST(KnownDepth, CountsFromThereOn) {
       EXPECT_EQ(report.voxels_hit, is_known ? 0U : 1U);
       EXPECT_GT(report.voxels_crossed, 5U);
       EXPECT_EQ(reading_bounds(sensor, frame, down).has_value(), !is_known);
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 12);
 }
 
 TEST(KnownDepth, ItsSizeIsLookedAt) {

@@ -361,12 +361,5 @@ TEST(BoundaryRuns, RefuseBadArguments) {
   expect_error(invalid, "max_view_angle", [&] { (void)runs_of(surface, {Pose()}, config); });
 }
 
-TEST(BoundaryClasses, HaveNames) {
-  EXPECT_EQ(boundary_class_name(BoundaryClass::left), "left");
-  EXPECT_EQ(boundary_class_name(BoundaryClass::right), "right");
-  EXPECT_EQ(boundary_class_name(BoundaryClass::top), "top");
-  EXPECT_EQ(boundary_class_name(BoundaryClass::bottom), "bottom");
-}
-
 }  // namespace
 }  // namespace viewgain

@@ -299,19 +299,6 @@ TEST(EstimateViews, ComponentsDoNotMixAndThePredicateIsHeard) {
   EXPECT_EQ(seen_by, (std::set<std::uint32_t>{0}));
 }
 
-TEST(EstimateViews, TheSameInputGivesTheSameBits) {
-  const SurfaceMesh surface = cylinder_sheet(0.07, 0.1, 1.2, 0.003, 0.0008, 5);
-  EstimatorConfig config = smooth_config();
-  config.tilts = {0.0, 0.2};
-  const EstimatedViews a = estimate(surface, kFront, config);
-  const EstimatedViews b = estimate(surface, kFront, config);
-  ASSERT_EQ(a.candidates.size(), b.candidates.size());
-  ASSERT_GT(a.candidates.size(), 10U);
-  for (std::size_t i = 0; i < a.candidates.size(); ++i) {
-    EXPECT_EQ(a.candidates[i].T_world_camera, b.candidates[i].T_world_camera);
-  }
-}
-
 TEST(EstimateViews, RefusesBadArguments) {
   const auto invalid = ErrorCode::invalid_argument;
   const SurfaceMesh surface = plane_sheet(0.1, 0.1, 0.02);

@@ -28,19 +28,16 @@ class MeshDialects : public testing::Test {
     const TriangleMesh mesh = read_mesh(folder_.file(name, bytes));
     EXPECT_EQ(mesh.vertices, kCorners) << name;
     EXPECT_EQ(mesh.triangles, kTriangles) << name;
-    ++cases_;
   }
   void expect_refused(const std::string& name, const std::string& part, const std::string& bytes) {
     const auto path = folder_.file(name, bytes);
     expect_error(ErrorCode::format, part, [&] { (void)read_mesh(path); });
     expect_error(ErrorCode::format, path.string(), [&] { (void)read_mesh(path); });
-    ++cases_;
   }
 
   const std::vector<std::array<double, 3>> kCorners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   const std::vector<std::array<std::uint32_t, 3>> kTriangles{{0, 1, 2}, {0, 2, 3}};
   test::TemporaryFolder folder_;
-  int cases_ = 0;
 };
 
 const std::string kObjVertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -56,7 +53,6 @@ TEST_F(MeshDialects, ObjWithLinesAndTabs) {
   expect_square("tabs.obj", kObjVertices + "f\t1\t2\t3\t4\n");
   expect_square("slashes.obj", kObjVertices + "f 1/1/1\t2/2/1\t3//1\t4\n");
   expect_square("vertices.obj", "v\t0 0\t0\nv\t1\t0\t0\nv 1 1 0\r\nv 0 1 0\nf 1 2 3 4\r\n");
-  EXPECT_EQ(cases_, 4);
   expect_refused("zero.obj", "zero.obj:6: index 0", kObjVertices + "l 0 1\nf\t1\t0\t3\n");
   expect_refused("only.obj", "no faces", kObjVertices + "l 1 2 3 4\n");
 }
@@ -84,7 +80,6 @@ TEST_F(MeshDialects, NormalsThatAreNoNumbers) {
   expect_square("ascii.ply", ascii + "4 0 1 2 3\n");
   expect_square("binary.ply", binary);
   expect_square("normals.off", off + "4 0 1 2 3\n");
-  EXPECT_EQ(cases_, 3);
   // Positions must be.
   std::string bad = kPly;
   bad.replace(bad.find("1 1 0\n"), 5, "1 nan 0");
@@ -100,7 +95,6 @@ TEST_F(MeshDialects, ByteOrderMarks) {
       "mark.stl", mark + "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex "
                          "1 0 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid s\n"));
   EXPECT_EQ(stl.triangles.size(), 1U);
-  EXPECT_EQ(cases_, 3);
   expect_refused("mark.off", "empty", mark);
 }
 
@@ -123,7 +117,6 @@ TEST_F(MeshDialects, PlyLayouts) {
                 "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
                 "element vertex 4\nproperty double z\nproperty double x\nproperty double y\n"
                 "end_header\n4 0 1 2 3\n0 0 0\n0 1 0\n0 1 1\n0 0 1\n");
-  EXPECT_EQ(cases_, 6);
   expect_refused("float.ply", "whole numbers", with(kPly, "uchar int", "uchar float"));
   expect_refused("half.ply", "half.ply:14: '1.5' is not a whole", with(kPly, "4 0 1 ", "4 0 1.5 "));
   expect_refused("list.ply", "list.ply:14: ", with(kPly, "4 0 1 2 3", "1000000000 0 1 2 3"));

@@ -187,14 +187,11 @@ TEST_F(MeshIo, ReadsPlyAndStlAsciiAndBinary) {
                                                                {"a.stl", ascii_stl()},
                                                                {"b.stl", binary_stl("an exporter")},
                                                                {"s.stl", binary_stl("solid x")}};
-  int cases = 0;
   for (const auto& [name, bytes] : files) {
     const TriangleMesh mesh = read_mesh(write(name, bytes));
     EXPECT_NEAR(volume(mesh), 1.0 / 6, 1e-12) << name;
     EXPECT_EQ(mesh.triangles.size(), 4U) << name;
-    ++cases;
   }
-  EXPECT_EQ(cases, 6);
 }
 
 TEST_F(MeshIo, MissingAndForeignFiles) {
@@ -229,7 +226,6 @@ TEST_F(MeshIo, NoFaces) {
 
 TEST_F(MeshIo, CoordinatesThatAreNotFinite) {
   const std::string triangle = "3 0 1 2\n";
-  int cases = 0;
   for (const std::string bad : {"nan", "inf", "-inf", "NaN"}) {
     EXPECT_NE(error_of("a.off", "OFF\n3 1 0\n0 0 0\n1 " + bad + " 0\n0 1 0\n" + triangle)
                   .find("not finite"),
@@ -237,9 +233,7 @@ TEST_F(MeshIo, CoordinatesThatAreNotFinite) {
     EXPECT_NE(
         error_of("a.obj", "v 0 0 0\nv 1 " + bad + " 0\nv 0 1 0\nf 1 2 3\n").find("not finite"),
         std::string::npos);
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
   std::string ply = binary_ply(false);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(ply.data() + ply.find("end_header\n") + 11 + 12, &nan, sizeof nan);
@@ -247,7 +241,6 @@ TEST_F(MeshIo, CoordinatesThatAreNotFinite) {
 }
 
 TEST_F(MeshIo, HeadersThatPromiseTooMuch) {
-  int cases = 0;
   for (const std::string count :
        {"4000000000", "4294967295", "2147483647", "99999999999999999999"}) {
     (void)error_of("v.off", "OFF\n" + count + " 1 0\n0 0 0\n3 0 0 0\n");
@@ -267,9 +260,7 @@ TEST_F(MeshIo, HeadersThatPromiseTooMuch) {
                        "element face 1\nproperty list uint int vertex_indices\nend_header\n"
                        "0 0 0\n" +
                        count + " 0 0 0\n");
-    ++cases;
   }
-  EXPECT_EQ(cases, 4);
   std::string stl = binary_stl("x");
   stl.replace(80, 4, "\xff\xff\xff\xff");
   EXPECT_NE(error_of("p.stl", stl).find("promises 4294967295"), std::string::npos);
@@ -300,41 +291,6 @@ TEST_F(MeshIo, ForgedPlyHeaders) {
   (void)error_of("c.ply", head + "element vertex 1\nproperty float x\nproperty float y\n" + face +
                               "0 0\n3 0 0 0\n");
   (void)error_of("d.ply", head + "element vertex 1\nproperty quad x\n" + face + "0 0\n3 0 0 0\n");
-}
-
-// Whatever is cut off or flipped: an Error or a mesh that keeps its promises, never anything else.
-TEST_F(MeshIo, TruncatedAndFlippedFiles) {
-  const std::vector<std::pair<std::string, std::string>> files{
-      {"t.off", kBoxOff},          {"l.ply", binary_ply(false)},
-      {"b.ply", binary_ply(true)}, {"b.stl", binary_stl("x")},
-      {"a.stl", ascii_stl()},      {"t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}};
-  std::mt19937 random(20261121);
-  int cases = 0;
-  for (const auto& [name, bytes] : files) {
-    for (int i = 0; i < 300; ++i) {
-      std::string broken = bytes;
-      if (i % 3 == 0) {
-        broken.resize(random() % bytes.size());
-      } else {
-        for (int k = 0; k < 1 + i % 4; ++k)
-          broken[random() % broken.size()] = static_cast<char>(random());
-      }
-      const fs::path path = write(name, broken);
-      try {
-        const TriangleMesh mesh = read_mesh(path);
-        EXPECT_FALSE(mesh.triangles.empty());
-        for (const auto& v : mesh.vertices) {
-          EXPECT_TRUE(std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]));
-        }
-        for (const auto& t : mesh.triangles) {
-          for (const std::uint32_t index : t) EXPECT_LT(index, mesh.vertices.size());
-        }
-      } catch (const Error&) {
-      }
-      ++cases;
-    }
-  }
-  EXPECT_EQ(cases, 1800);
 }
 
 TEST_F(MeshIo, Placement) {

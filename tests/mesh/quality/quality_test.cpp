@@ -62,7 +62,6 @@ TEST(Quality, PointToSurfaceMatchesBruteForce) {
   const TriangleMesh mesh = random_soup(300, 0.05);
   const GroundTruth truth(mesh, 10);
   Noise noise(6);
-  std::size_t cases = 0;
   for (int i = 0; i < 500; ++i) {
     const Vector3d p(2 * noise.uniform() - 0.5, 2 * noise.uniform() - 0.5,
                      2 * noise.uniform() - 0.5);
@@ -74,9 +73,7 @@ TEST(Quality, PointToSurfaceMatchesBruteForce) {
     }
     const Points one{array_of(p)};
     EXPECT_NEAR(truth.error(one).rms, expected, 1e-12);
-    ++cases;
   }
-  EXPECT_EQ(cases, 500U);
 }
 
 TEST(Quality, SampleToPointMatchesBruteForce) {
@@ -141,17 +138,6 @@ TEST(Quality, SamplesDependOnTheSeedAlone) {
   EXPECT_GT(different, 490U);
 }
 
-TEST(Quality, ErrorOfAShiftedSphere) {
-  // Points on a sphere of 104 mm round the same centre are 4 mm off, up to the mesh's own sagitta.
-  const GroundTruth truth(sphere_mesh(0.1, 200), 1000);
-  Points points;
-  for (const OrientedPoint& p : test::sphere_points(0.104, 0.005)) points.push_back(p.position);
-  const ErrorStatistics error = truth.error(points);
-  EXPECT_EQ(error.points, points.size());
-  EXPECT_NEAR(error.rms, 0.004, 3e-5);
-  EXPECT_NEAR(error.p95, 0.004, 3e-5);
-}
-
 TEST(Quality, PercentileAndRmsOverAPlate) {
   // 100 points at heights of 1 to 100 mm over the middle of a plate.
   const GroundTruth truth(plate_mesh(1.0), 10);
@@ -180,15 +166,12 @@ TEST(Quality, CoverageOfAHalf) {
                                      [&](const SurfaceSample& s) { return s.position.x() <= x; });
     return static_cast<double>(count) / static_cast<double>(distances.size());
   };
-  std::size_t cases = 0;
   for (const double radius : {0.0025, 0.005, 0.05}) {
     const double covered = coverage(distances, radius);
     EXPECT_LE(covered, share_up_to(0.1 + radius));
     EXPECT_GE(covered, share_up_to(0.1 + std::sqrt(radius * radius - 1e-6)));
     EXPECT_NEAR(covered, (0.1 + radius) / 0.2, 0.015);
-    ++cases;
   }
-  EXPECT_EQ(cases, 3U);
   EXPECT_EQ(coverage(distances, 1), 1.0);
   std::vector<std::uint8_t> left(distances.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = truth.samples()[i].position.x() < 0.1;
@@ -223,7 +206,6 @@ Scatter scatter(std::size_t count, const GroundTruth& truth, double scale) {
 }
 
 TEST(Quality, TrueCovariancesAreConsistent) {
-  std::size_t cases = 0;
   for (const TriangleMesh& mesh : {plate_mesh(2.0), sphere_mesh(0.5, 300)}) {
     const GroundTruth truth(mesh, 20'000);
     const Scatter s = scatter(20'000, truth, 1.0);
@@ -233,19 +215,7 @@ TEST(Quality, TrueCovariancesAreConsistent) {
     EXPECT_NEAR(c.mean_clipped, 1, 0.05);
     EXPECT_NEAR(c.median, 0.455, 0.03);
     EXPECT_NEAR(c.above_9, 0.0027, 0.0015);
-    ++cases;
   }
-  EXPECT_EQ(cases, 2U);
-}
-
-TEST(Quality, OverconfidenceShows) {
-  const GroundTruth truth(plate_mesh(2.0), 20'000);
-  const Scatter s = scatter(20'000, truth, 0.25);
-  const Consistency c = truth.consistency(s.points, s.covariances);
-  EXPECT_NEAR(c.median, 4 * 0.455, 0.12);
-  EXPECT_GT(c.mean_clipped, 3.5);
-  EXPECT_LT(c.mean_clipped, 4.0) << "clipping takes some away";
-  EXPECT_NEAR(c.above_9, 0.1336, 0.01);  // P(|z| > 1.5)
 }
 
 TEST(Quality, ConsistencyInClosedForm) {

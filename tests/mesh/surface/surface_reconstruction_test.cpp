@@ -57,40 +57,6 @@ TEST(SurfaceReconstruction, SphereIsClosedAndOutward) {
   EXPECT_NEAR(area_of(mesh), 4 * std::numbers::pi * kRadius * kRadius, 0.01 * area_of(mesh));
 }
 
-TEST(SurfaceReconstruction, HalfSphereStaysOpen) {
-  const auto points = sphere_points(kRadius, kSpacing, 0, 0.0);
-  const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
-  const Topology topology = check_surface(mesh, points);
-  EXPECT_EQ(topology.components, 1U);
-  EXPECT_EQ(topology.border_loops, 1U);
-  EXPECT_EQ(topology.euler, 1) << "a disc";
-  EXPECT_EQ(good_normals(mesh, points), 1.0);
-  EXPECT_NEAR(area_of(mesh), 2 * std::numbers::pi * kRadius * kRadius, 0.04 * area_of(mesh));
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
-  for (const auto& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) ++uses[std::minmax({t[k], t[(k + 1) % 3]})];
-  }
-  std::size_t border_edges = 0;
-  for (const auto& [edge, count] : uses) {
-    if (count != 1) continue;
-    ++border_edges;
-    EXPECT_LT(mesh.vertices[edge.first][2], 3 * kSpacing) << "the border is at the rim";
-  }
-  EXPECT_GT(border_edges, 50U);
-}
-
-TEST(SurfaceReconstruction, TwoSpheresStayApart) {
-  auto points = sphere_points(0.03, kSpacing);
-  const auto other = sphere_points(0.03, kSpacing, 0, -2, {0.06 + 5 * kSpacing, 0, 0});
-  points.insert(points.end(), other.begin(), other.end());
-  const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
-  const Topology topology = check_surface(mesh, points);
-  EXPECT_EQ(topology.components, 2U);
-  EXPECT_EQ(topology.border_edges, 0U);
-  EXPECT_EQ(topology.euler, 4);
-  EXPECT_EQ(good_normals(mesh, points), 1.0);
-}
-
 TEST(SurfaceReconstruction, ExactLatticeBecomesAPlateWithOneBorder) {
   constexpr int kSide = 30;
   for (const double up : {1.0, -1.0}) {
@@ -129,7 +95,6 @@ TEST(SurfaceReconstruction, LayersOfAThinPlateAreNotFused) {
 }
 
 TEST(SurfaceReconstruction, SmoothingTakesNoiseAway) {
-  std::size_t cases = 0;
   for (const double sigma : {0.3, 0.5}) {  // spacings
     const auto points = sphere_points(kRadius, kSpacing, sigma * kSpacing);
     const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
@@ -150,9 +115,7 @@ TEST(SurfaceReconstruction, SmoothingTakesNoiseAway) {
     EXPECT_NEAR(rms(rough), sigma * kSpacing, 0.1 * sigma * kSpacing);
     // A quadric through n points leaves about 2 σ / √n in its middle; n = 24.
     EXPECT_LT(rms(mesh), 0.5 * sigma * kSpacing);
-    ++cases;
   }
-  EXPECT_EQ(cases, 2U);
 }
 
 TEST(SurfaceReconstruction, OutliersGoAndNothingElse) {
@@ -249,21 +212,6 @@ TEST(SurfaceReconstruction, ManyCopiesOfOnePointAreNoSurface) {
   EXPECT_TRUE(reconstruct_surface(points, kConfig).vertices.empty());
 }
 
-TEST(SurfaceReconstruction, SameInputSameBits) {
-  const auto points = sphere_points(kRadius, kSpacing, 0.4 * kSpacing, -0.2);
-  const auto lattice = plate_points(40, kSpacing);
-  const SurfaceMesh first = reconstruct_surface(points, kConfig);
-  const SurfaceMesh flat = reconstruct_surface(lattice, kConfig);
-  ASSERT_FALSE(first.triangles.empty());
-  ASSERT_FALSE(flat.triangles.empty());
-  std::vector<std::vector<char>> ballast;  // moves what comes next to other addresses
-  for (std::size_t run = 0; run < 4; ++run) {
-    ballast.emplace_back(100'000 + 77'777 * run);
-    EXPECT_TRUE(same(reconstruct_surface(points, kConfig), first));
-    EXPECT_TRUE(same(reconstruct_surface(lattice, kConfig), flat));
-  }
-}
-
 // Ties and roundings must not go by where memory was free, as it differs between two processes. The
 // points are rough and thinned, so that CGAL closes and opens holes by the hundred.
 TEST(SurfaceReconstruction, PlacesInMemoryDoNotMatter) {
@@ -274,7 +222,6 @@ TEST(SurfaceReconstruction, PlacesInMemoryDoNotMatter) {
   ASSERT_GT(points.size(), 10'000U);
   const SurfaceMesh first = reconstruct_surface(points, config);
   EXPECT_GT(first.triangles.size(), 10'000U);
-  std::size_t cases = 0;
   for (int layout = 0; layout < 3; ++layout) {
     // A heap with holes in no order, of the sizes in which CGAL asks for memory.
     std::vector<std::unique_ptr<char[]>> kept;
@@ -284,9 +231,7 @@ TEST(SurfaceReconstruction, PlacesInMemoryDoNotMatter) {
     std::shuffle(kept.begin(), kept.end(), random);
     kept.resize(kept.size() / 2);
     EXPECT_TRUE(same(reconstruct_surface(points, config), first)) << layout;
-    ++cases;
   }
-  EXPECT_EQ(cases, 3U);
 }
 
 TEST(SurfaceReconstruction, FarFromTheOriginAndInOtherUnits) {
@@ -321,14 +266,11 @@ TEST(SurfaceReconstruction, PointsFarOutOfRangeAreOutliers) {
 
 TEST(SurfaceReconstruction, TooFewPointsGiveAnEmptyMesh) {
   const auto points = sphere_points(kRadius, kSpacing);
-  std::size_t cases = 0;
   for (const std::size_t count : {0U, 1U, 2U, 3U, 39U}) {
     const std::vector<OrientedPoint> few(points.begin(),
                                          points.begin() + static_cast<std::ptrdiff_t>(count));
     EXPECT_TRUE(reconstruct_surface(few, kConfig).triangles.empty()) << count;
-    ++cases;
   }
-  EXPECT_EQ(cases, 5U);
   // With no least size they are only too few for a triangle, or on a line.
   SurfaceConfig config = kConfig;
   config.min_component = 0;
@@ -342,12 +284,9 @@ TEST(SurfaceReconstruction, TooFewPointsGiveAnEmptyMesh) {
 TEST(SurfaceReconstruction, BadInputIsRefused) {
   auto points = sphere_points(kRadius, kSpacing);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  std::size_t cases = 0;
   for (const double bad : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(static_cast<void>(reconstruct_surface(points, {.spacing = bad})), Error);
-    ++cases;
   }
-  EXPECT_EQ(cases, 4U);
   points[5].position[1] = nan;
   try {
     static_cast<void>(reconstruct_surface(points, kConfig));

@@ -106,20 +106,6 @@ TEST(SimulatedSensor, NothingHitOrTooFarIsOutOfRangeAndTooNearIsInvalid) {
   EXPECT_NEAR(near.at(0, 0), 0.39, 1e-5);
 }
 
-TEST(SimulatedSensor, NoiseIsReproducibleAndDiffersByFrameAndSeed) {
-  const Sensor sensor = sensor_without_distortion();
-  const SimulationConfig noisy{.noise = true, .seed = 5};
-  const Pose pose;
-  const SimulatedSensor one(plane_at(0.75), sensor, noisy, {.num_threads = 1});
-  const SimulatedSensor many(plane_at(0.75), sensor, noisy, {.num_threads = 3});
-  const DepthFrame frame = one.acquire(pose, 4);
-  EXPECT_EQ(frame, one.acquire(pose, 4));
-  EXPECT_EQ(frame, many.acquire(pose, 4));
-  EXPECT_NE(frame, one.acquire(pose, 5));
-  const SimulatedSensor reseeded(plane_at(0.75), sensor, {.noise = true, .seed = 6});
-  EXPECT_NE(frame, reseeded.acquire(pose, 4));
-}
-
 TEST(SimulatedSensor, NoiseIsGaussianAlongTheRayWithTheModelsSigma) {
   // Inside a sphere, seen from its centre: every ray meets it frontally at 1.5 m.
   const Sensor sensor = sensor_without_distortion();

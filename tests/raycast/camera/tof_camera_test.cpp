@@ -186,7 +186,6 @@ TEST(TofCamera, SensorsWithoutPhaseSeeTheCentreRay) {
 
 TEST(TofCamera, WigglingIsTheFourthHarmonicAndIsCalibratedAway) {
   const Sensor sensor = one_pixel();
-  int cases = 0;
   for (const int sub_rays : {1, 3}) {
     SimulationConfig config{.sub_rays = sub_rays, .wiggling = 0.012};
     const SimulatedSensor wrong(plane_at(0), sensor, config);
@@ -194,14 +193,13 @@ TEST(TofCamera, WigglingIsTheFourthHarmonicAndIsCalibratedAway) {
     ASSERT_EQ(config.calibration.table.size(), 200U);
     const SimulatedSensor corrected(plane_at(0), sensor, config);
     double worst = 0;
-    for (double t = 0.25; t < 4.8; t += 0.0171, ++cases) {
+    for (double t = 0.25; t < 4.8; t += 0.0171) {
       const double error = 0.012 * std::sin(4 * 2 * std::numbers::pi * t / kPeriod);
       EXPECT_NEAR(wrong.acquire(back_by(t)).depth[0], t + error, 2e-6);
       worst = std::max(worst, std::abs(corrected.acquire(back_by(t)).depth[0] - t));
     }
     EXPECT_LT(worst, 5e-5);
   }
-  EXPECT_EQ(cases, 2 * 267);
   // Without an error the table says so.
   for (const auto& [measured, error] :
        measure_calibration(sensor_preset("d435"), {}, 0.3, 2.9, 20).table) {

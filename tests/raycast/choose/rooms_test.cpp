@@ -53,7 +53,6 @@ TEST_P(ApproximateInARoom, StandardErrorsCoverTheTruth) {
   const GainEvaluator evaluator(room(), small_kinect(), {.model = GetParam()});
   const std::vector<Pose> poses = test::poses_in(room()->snapshot(), 300, 3);
   const std::vector<ViewGain> truth = evaluator.evaluate(poses);
-  std::size_t cases = 0;
   for (const double share : {0.02, 0.1, 0.5}) {
     std::size_t within = 0, count = 0;
     double sum = 0, true_sum = 0;
@@ -72,9 +71,7 @@ TEST_P(ApproximateInARoom, StandardErrorsCoverTheTruth) {
     EXPECT_GE(part, 0.9) << share;
     EXPECT_LE(part, 0.99) << share;
     EXPECT_NEAR(sum, true_sum, 0.08 * true_sum) << share;
-    ++cases;
   }
-  EXPECT_EQ(cases, 3U);
 }
 
 TEST_P(ApproximateInARoom, AllRaysAreTheGainItself) {

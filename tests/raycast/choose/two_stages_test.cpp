@@ -106,16 +106,13 @@ TEST_P(TwoStages, FindsNearlyTheBestAndReportsExactGains) {
 TEST_P(TwoStages, SameBitsForAnyNumberOfThreads) {
   const auto scene = VoxelScene::build(ball(3));
   const RacedViews expected = evaluator(scene, 1).race(poses_, 3);
-  int checks = 0;
   for (const int threads : {2, 5}) {
     const RacedViews actual = evaluator(scene, threads).race(poses_, 3);
     EXPECT_EQ(actual.indices, expected.indices);
     EXPECT_EQ(actual.scored_indices, expected.scored_indices);
     EXPECT_TRUE(test::same_bits(actual.scored_gains, expected.scored_gains));
     EXPECT_EQ(actual.rays_traced, expected.rays_traced);
-    ++checks;
   }
-  EXPECT_EQ(checks, 2);
 }
 
 TEST_P(TwoStages, TakesOddRequests) {
@@ -165,7 +162,6 @@ TEST_P(TwoStages, StopsInEitherStage) {
   EXPECT_EQ(none.rays_traced, 0U);
 
   const RacedViews whole = one.race(poses_, 2);
-  int cases = 0;
   // It is asked before each pose of each stage.
   for (const std::size_t scored : {std::size_t{0}, std::size_t{5}, std::size_t{23}}) {
     SCOPED_TRACE(scored);
@@ -179,9 +175,7 @@ TEST_P(TwoStages, StopsInEitherStage) {
       EXPECT_TRUE(test::same_bits(part.scored_gains[j], whole.scored_gains[j]));
     }
     EXPECT_EQ(part.indices.size(), std::min<std::size_t>(2, scored));
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
   std::size_t asked = 0;
   const RacedViews early =
       one.race(poses_, 2, {}, {.is_cancelled = [&] { return ++asked > poses_.size() / 2; }});

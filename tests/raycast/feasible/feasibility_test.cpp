@@ -241,37 +241,6 @@ TEST(Feasibility, AnUnknownWorkspaceBlocksAndNothingBlocksOutside) {
   EXPECT_EQ(checker.check(looking_down({1e6, -1e6, 0})), Infeasibility::none);
 }
 
-TEST(Feasibility, TheMountingPlacesTheBody) {
-  // The camera looks along the flange's x axis from beside the housing: the body hangs to the side.
-  FeasibilityConfig config;
-  config.body.size = {0.004, 0.006, 0.020};
-  Eigen::Matrix3d R_flange_camera;
-  R_flange_camera.col(0) = Eigen::Vector3d(0, 0, -1);
-  R_flange_camera.col(1) = Eigen::Vector3d(0, 1, 0);
-  R_flange_camera.col(2) = Eigen::Vector3d(1, 0, 0);
-  config.body.T_flange_camera = Pose(R_flange_camera, {0.002, 0, 0.020});
-  // A camera at the identity: flange z is -x of the camera, so the body reaches from 0 to +0.020
-  // along x, 0.003 to both sides in y, and back by 0.004 in z. One occupied voxel tells where.
-  const auto occupied_at = [&](double x, double y, double z) {
-    const GridConfig grid_config{0.001,
-                                 {{0, 0, 0}, {0.001, 0.001, 0.001}},
-                                 Pose(Eigen::Matrix3d::Identity(), {x, y, z}),
-                                 0.01};
-    const FeasibilityChecker checker =
-        checker_of(BeliefGrid::from_states(grid_config, std::vector<std::uint8_t>{2}), config);
-    return checker.check(Pose()) == Infeasibility::collision;
-  };
-  EXPECT_TRUE(occupied_at(0.010, 0, -0.002));
-  EXPECT_TRUE(occupied_at(0.0001, 0, -0.0011));
-  EXPECT_TRUE(occupied_at(0.0199, 0.0029, -0.0049));
-  EXPECT_TRUE(occupied_at(0.0199, -0.0039, -0.0001));
-  EXPECT_FALSE(occupied_at(0.0201, 0, -0.002));
-  EXPECT_FALSE(occupied_at(-0.0011, 0, -0.002));
-  EXPECT_FALSE(occupied_at(0.010, 0.0031, -0.002));
-  EXPECT_FALSE(occupied_at(0.010, 0, -0.0051));
-  EXPECT_FALSE(occupied_at(0.010, 0, 0.0001));
-}
-
 TEST(Feasibility, ACameraInsideARegionCollidesWhereverItsBodyIs) {
   const BeliefGrid grid = map_of(16, {}, [](int x, int, int) { return x >= 4; });
   FeasibilityConfig config;

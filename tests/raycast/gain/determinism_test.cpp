@@ -99,23 +99,6 @@ TEST(Determinism, OnePoseOnSeveralThreadsUnderEveryCriterionAndWeight) {
   EXPECT_GT(both_classes, 60);
 }
 
-TEST(Determinism, SameBitsAfterSaveAndLoad) {
-  const std::filesystem::path path =
-      std::filesystem::path(testing::TempDir()) / "viewgain_determinism_test.vdb";
-  for (const test::MapFamily family : kFamilies) {
-    const Made made = make(12, family);
-    save_vdb(made.map.grid, path);
-    const BeliefGrid loaded = load_vdb(path);
-    EXPECT_EQ(loaded.content_hash(), made.map.grid.content_hash());
-    const GainEvaluator before(VoxelScene::build(made.map.grid), made.sensor);
-    const GainEvaluator after(VoxelScene::build(loaded), made.sensor);
-    const std::vector<ViewGain> gains = before.evaluate(made.poses);
-    EXPECT_TRUE(test::same_bits(gains, after.evaluate(made.poses)));
-    EXPECT_GT(test::gaining(gains), gains.size() / 2);
-  }
-  std::filesystem::remove(path);
-}
-
 TEST(Determinism, SameBitsAcrossInstructionSets) {
   for (const test::MapFamily family : kFamilies) {
     const Made made = make(13, family);
@@ -147,35 +130,6 @@ TEST(Determinism, SceneOutlivesTheGridAndIgnoresItsChanges) {
   EXPECT_FALSE(test::same_bits(expected, changed.evaluate(made.poses)));
   made.map.grid = test::sparse_map({4, 4, 4}, {});
   EXPECT_TRUE(test::same_bits(expected, evaluator.evaluate(made.poses)));
-}
-
-TEST(Determinism, EightThreadsOnOneConstEvaluator) {
-  const Made made = make(15, test::MapFamily::salt_and_pepper_30);
-  const GainEvaluator evaluator(VoxelScene::build(made.map.grid), made.sensor, {},
-                                {.num_threads = 2});
-  const std::vector<ViewGain> expected = evaluator.evaluate(made.poses);
-  std::array<int, 8> same{};
-  {
-    std::vector<std::jthread> threads;
-    for (std::size_t t = 0; t < same.size(); ++t) {
-      threads.emplace_back([&, t] {
-        // Half of the threads score batches, half single poses, all at once.
-        for (int run = 0; run < 3; ++run) {
-          if (t % 2 == 0) {
-            same[t] += test::same_bits(expected, evaluator.evaluate(made.poses)) ? 1 : 0;
-            continue;
-          }
-          bool all = true;
-          for (std::size_t i = 0; i < made.poses.size(); ++i) {
-            all = all && test::same_bits(expected[i], evaluator.evaluate(made.poses[i]));
-            all = all && evaluator.trace(made.poses[i]).size() == evaluator.rays_per_pose();
-          }
-          same[t] += all ? 1 : 0;
-        }
-      });
-    }
-  }
-  for (const int count : same) EXPECT_EQ(count, 3);
 }
 
 }  // namespace

@@ -53,46 +53,6 @@ TEST_P(SurfaceCalls, ContributionsAddUpToTheGain) {
   EXPECT_EQ(known > 0, GetParam() == GainModel::combined);
 }
 
-TEST_P(SurfaceCalls, AWeightOfOneChangesNothing) {
-  const GainConfig plain{.model = GetParam()};
-  GainConfig weighted = plain;
-  weighted.weights = {{made_.grid.workspace(), 1.0}};
-  const std::vector<ViewGain> expected = GainEvaluator(scene_, sensor_, plain).evaluate(poses_);
-  const std::vector<ViewGain> actual = GainEvaluator(scene_, sensor_, weighted).evaluate(poses_);
-  for (std::size_t i = 0; i < poses_.size(); ++i) {
-    EXPECT_EQ(actual[i].status, expected[i].status);
-    EXPECT_EQ(actual[i].hits, expected[i].hits);
-    EXPECT_NEAR(actual[i].gain, expected[i].gain, 1e-5 * expected[i].gain);
-  }
-  EXPECT_GT(test::gaining(expected), 20U);
-}
-
-TEST_P(SurfaceCalls, BestAndRaceReportExactGains) {
-  const GainEvaluator evaluator(scene_, sensor_, {.model = GetParam()});
-  const std::vector<ViewGain> all = evaluator.evaluate(poses_);
-  const std::vector<std::size_t> order = best_indices(all, 3);
-  EXPECT_EQ(evaluator.best(poses_, 3).indices, order);
-  const RacedViews raced = evaluator.race(poses_, 3);
-  ASSERT_EQ(raced.indices.size(), 3U);
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_TRUE(test::same_bits(raced.gains[i], all[raced.indices[i]]));
-    EXPECT_GE(raced.gains[i].gain, 0.9 * all[order[i]].gain);
-  }
-}
-
-TEST_P(SurfaceCalls, EstimatesComeNearTheGain) {
-  const GainEvaluator evaluator(scene_, sensor_, {.model = GetParam()});
-  const std::vector<ViewGain> all = evaluator.evaluate(poses_);
-  std::vector<ApproximateGain> estimates(poses_.size());
-  evaluator.approximate(poses_, estimates, {.share = 0.6});
-  double error = 0, sum = 0;
-  for (std::size_t i = 0; i < poses_.size(); ++i) {
-    error += std::abs(estimates[i].gain - all[i].gain);
-    sum += all[i].gain;
-  }
-  EXPECT_LT(error, 0.2 * sum);
-}
-
 TEST_P(SurfaceCalls, SetsAreThePapers) {
   const GainEvaluator evaluator(scene_, sensor_, {.model = GetParam()});
   test::expect_error(ErrorCode::invalid_argument, "by the paper's gain, not by",

@@ -15,7 +15,7 @@ namespace {
 
 using test::MapFamily;
 
-#ifdef __OPTIMIZE__
+#ifndef VIEWGAIN_SLOW_BUILD
 constexpr int kMaps = 40;
 constexpr std::size_t kPosesPerMap = 3;
 #else

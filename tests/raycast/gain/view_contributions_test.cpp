@@ -16,7 +16,7 @@
 namespace viewgain {
 namespace {
 
-#ifdef __OPTIMIZE__
+#ifndef VIEWGAIN_SLOW_BUILD
 constexpr std::uint64_t kSeeds = 6;
 #else
 constexpr std::uint64_t kSeeds = 1;

@@ -25,7 +25,7 @@ namespace {
 constexpr int kChanges = 30;
 constexpr std::size_t kPoses = 4;
 constexpr std::size_t kManyPrimitives = 4096;  ///< more than that are grouped into cells
-#ifdef __OPTIMIZE__
+#ifndef VIEWGAIN_SLOW_BUILD
 constexpr int kFine = 176;
 #else
 constexpr int kFine = 144;

@@ -14,31 +14,6 @@
 namespace viewgain {
 namespace {
 
-TEST(Camel, IsPlacedAsTheDesignSays) {
-  const TriangleMesh mesh = test::camel_mesh();
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9);
-  Eigen::Vector3d high = -low;
-  for (const auto& v : mesh.vertices) {
-    const Eigen::Vector3d p(v[0], v[1], v[2]);
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  EXPECT_NEAR((high - low).maxCoeff(), 0.35, 1e-12);
-  EXPECT_NEAR((high + low).norm(), 0, 1e-12);
-  EXPECT_GT(mesh.triangles.size(), 10'000U);
-}
-
-TEST(Camel, OneInElevenVoxelsOfCamel128IsUnknown) {
-  const BeliefGrid grid = test::camel_grid(128);
-  const GridStatistics statistics = grid.statistics();
-  const auto all = static_cast<double>(grid.voxel_count());
-  EXPECT_EQ(grid.voxel_count(), 128U * 128U * 128U);
-  EXPECT_NEAR(static_cast<double>(statistics.unknown) / all, 0.09, 0.01);
-  EXPECT_LT(static_cast<double>(statistics.occupied) / all, 0.02);
-  EXPECT_EQ(grid.views().size(), 3U);
-  RecordProperty("unknown_share", std::to_string(static_cast<double>(statistics.unknown) / all));
-}
-
 TEST(Camel, RaysOfCamel64AgreeWithTheOracleUnderEachInstructionSet) {
   const BeliefGrid grid = test::camel_grid(64);
   const oracle::DenseMap map(grid);

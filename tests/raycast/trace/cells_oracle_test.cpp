@@ -29,7 +29,7 @@ struct Layout {
   int cube;
   int specks;
 };
-#ifdef __OPTIMIZE__
+#ifndef VIEWGAIN_SLOW_BUILD
 constexpr std::size_t kPoses = 6;
 constexpr std::array kLayouts{Layout{"Cells32", 32, {-37, 5, -70}, {150, 141, 139}, 8, 1},
                               Layout{"Cells64", 64, {-750, -750, -2}, {1500, 1500, 4}, 32, 2},

@@ -20,17 +20,6 @@ using test::sparse_map;
 
 RayHit hit(RayHit::Kind kind, Index3 voxel = {}) { return {kind, voxel, 0}; }
 
-TEST(Oracle, VisitsVoxelsOfADiagonalOnce) {
-  const DenseMap map(sparse_map({4, 4, 4}, {}));
-  const Ray ray{{-1, -1, -1}, Eigen::Vector3d(1, 1, 1).normalized()};
-  std::vector<Index3> visited;
-  oracle::walk(map, ray, [&](Index3 voxel, double, double) {
-    visited.push_back(voxel);
-    return false;
-  });
-  EXPECT_EQ(visited, (std::vector<Index3>{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}}));
-}
-
 TEST(Oracle, VisitsAreConsecutiveAndInsideTheirVoxels) {
   test::Random random(7);
   const DenseMap map(sparse_map({9, 7, 5}, {}));

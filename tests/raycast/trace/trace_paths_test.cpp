@@ -233,17 +233,23 @@ TEST(TracePaths, AnotherWayIsAnError) {
   }
 }
 
+constexpr int kSmallEdge = 24;
+
+// A cube of voxels, this share of them unknown.
+BeliefGrid speckled(double share, test::Random& random) {
+  std::vector<Index3> unknown;
+  for (int i = 0; i < kSmallEdge * kSmallEdge * kSmallEdge; ++i) {
+    const Index3 voxel{i / kSmallEdge / kSmallEdge, i / kSmallEdge % kSmallEdge, i % kSmallEdge};
+    if (test::uniform(random, 0, 1) < share) unknown.push_back(voxel);
+  }
+  return test::sparse_map({kSmallEdge, kSmallEdge, kSmallEdge}, unknown, VoxelState::unknown);
+}
+
 // Rays that count from the camera on, where it touches the faces, edges and corners of voxels: what
 // lies beside it is met in any direction, however near.
 TEST(TracePaths, CamerasThatTouchVoxelsSeeTheSameBits) {
-  constexpr int kEdge = 24;
   test::Random random(7);
-  std::vector<Index3> unknown;
-  for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
-    const Index3 voxel{i / kEdge / kEdge, i / kEdge % kEdge, i % kEdge};
-    if (test::uniform(random, 0, 1) < 0.2) unknown.push_back(voxel);
-  }
-  const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
+  const BeliefGrid grid = speckled(0.2, random);
   Sensor sensor = test::lattice_sensor(21, 17);
   sensor.camera.fx = sensor.camera.fy = 12;
   std::vector<Pose> poses;
@@ -252,7 +258,7 @@ TEST(TracePaths, CamerasThatTouchVoxelsSeeTheSameBits) {
       Eigen::Vector3d at;
       for (int k = 0; k < 3; ++k) {
         const bool is_moved = (i >> k & 1) != 0;
-        at[k] = test::uniform_int(random, 1, kEdge - 1) + (is_moved ? step : 0.0);
+        at[k] = test::uniform_int(random, 1, kSmallEdge - 1) + (is_moved ? step : 0.0);
       }
       poses.push_back(test::axis_pose(at, i % 3, i % 2 == 0));
       Pose turned = test::random_rigid(random, 1);
@@ -268,17 +274,11 @@ TEST(TracePaths, CamerasThatTouchVoxelsSeeTheSameBits) {
 // Cameras so far away that single precision moves a box by many hundredths of a voxel: neither way
 // may lose what the kernels meet.
 TEST(TracePaths, FarCamerasSeeTheSameBits) {
-  constexpr int kEdge = 24;
   test::Random random(16);
-  std::vector<Index3> unknown;
-  for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
-    const Index3 voxel{i / kEdge / kEdge, i / kEdge % kEdge, i % kEdge};
-    if (test::uniform(random, 0, 1) < 0.05) unknown.push_back(voxel);
-  }
-  const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
+  const BeliefGrid grid = speckled(0.05, random);
   Sensor sensor = test::lattice_sensor(61, 47);
   sensor.max_range = 2e6 * test::kExactVoxel;
-  const double middle = 0.5 * kEdge * test::kExactVoxel;
+  const double middle = 0.5 * kSmallEdge * test::kExactVoxel;
   std::size_t hits = 0;
   for (const double distance : {1.5e4, 5e4, 1.3e5, 4e5, 9e5}) {  // [voxels]
     sensor.camera.fx = sensor.camera.fy = 2 * distance;          // two pixels a voxel

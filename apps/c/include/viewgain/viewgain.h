@@ -23,12 +23,9 @@
    said; an array of length 0 may be null.
 
    Structs that a function takes begin with struct_size; call the struct's _init function first,
-   with its sizeof, which sets it and the defaults, then change what you like. Structs grow at their
-   end, so a library takes every size that a struct has had in headers of its VG_ABI_VERSION: what a
-   smaller struct lacks has its default, or is not filled. It refuses any other size by
-   VG_INVALID_ARGUMENT and a message with both, a larger one too, so that a program never runs with
-   a library older than its header. The size given with an array of vg_view_gain or vg_contribution
-   counts in the same way; vg_weight_region never grows.
+   with its sizeof, which sets it and the defaults, then change what you like. Another size than the
+   library's own, so of another header, is refused by VG_INVALID_ARGUMENT and a message with both.
+   The size given with an array of vg_view_gain or vg_contribution counts in the same way.
 
    Handles are released by the function that bears their name, in any order: what is made from a
    handle keeps what it needs of it. Releasing null does nothing. A handle must not be used, or

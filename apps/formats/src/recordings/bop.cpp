@@ -20,8 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kMillimetre = 1e-3;  // [m]
-
 [[noreturn]] void fail(const std::string& what) { throw Error(ErrorCode::format, what); }
 
 json read_json(const fs::path& path) {

@@ -14,6 +14,8 @@
 
 namespace viewgain {
 
+inline constexpr double kMillimetre = 1e-3;  // [m]
+
 // The formats, a file each. They leave the camera's size, the frames of other sizes and reversed
 // rows to open_recording().
 [[nodiscard]] Recording open_tum(const std::filesystem::path& source,

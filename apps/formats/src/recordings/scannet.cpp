@@ -17,8 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMillimetre = 1e-3;  // [m]
-
 std::vector<double> numbers_of(const fs::path& path) {
   const std::string bytes = file_bytes(path);
   std::vector<double> numbers;

@@ -10,13 +10,6 @@
 #include "viewgain/core/noise.hpp"
 
 namespace viewgain::detail {
-namespace {
-
-constexpr double kGateSigmas = 4;
-constexpr double kCauchy = 2.385;  // 95 % efficient for Gaussian errors
-
-}  // namespace
-
 AlignedView::AlignedView(const DepthFrame& frame, const PinholeCamera& camera,
                          std::vector<Reading> readings)
     : camera_(camera), readings_(std::move(readings)), depth_(frame.depth) {

@@ -11,7 +11,8 @@
 namespace viewgain {
 namespace {
 
-constexpr double kMargin = 10;  // pooling lengths beyond what the frame shows: readings have some
+constexpr double kReadingMargin =
+    10;  // pooling lengths beyond what the frame shows: readings have some
 
 }  // namespace
 
@@ -33,7 +34,7 @@ FrameRegistration MapRegistration::register_frame(const BeliefGrid& grid, DepthF
   if (filter_) filter_->apply(frame);
   obstacles_.mark(frame, prior.T_world_camera);
   const detail::SeenSpace seen(frame, sensor_, rays_, prior, config_.max_sigmas,
-                               kMargin * pooling_of(grid.snapshot()).length);
+                               kReadingMargin * pooling_of(grid.snapshot()).length);
   FusedPointsConfig points;
   points.where = [&](const Eigen::Vector3d& p_world) { return seen.contains(p_world); };
   return registrar_.register_frame(grid, fused_points(grid, points, exec_), frame, prior);

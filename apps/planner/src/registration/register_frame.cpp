@@ -38,7 +38,7 @@ using detail::Reading;
 using detail::Vector6;
 
 // Lengths in pooling lengths.
-constexpr double kNormalRadius = 5;  // as FusedPointsConfig::normal_radius
+constexpr double kPointNormalRadius = 5;  // as FusedPointsConfig::normal_radius
 constexpr double kAlongSurface = 2;
 constexpr double kCube = 10;
 // What all points of the map share does not show in residuals. Measured: squared errors of poses
@@ -186,8 +186,8 @@ FrameRegistration FrameRegistrar::Impl::run(const BeliefGrid& grid,
     return result;
   }
   const double length = pooling_of(grid.snapshot()).length;
-  std::vector<Reading> readings = detail::readings_of(frame, sensor, rays, kNormalRadius * length,
-                                                      false, config.max_readings, pool);
+  std::vector<Reading> readings = detail::readings_of(
+      frame, sensor, rays, kPointNormalRadius * length, false, config.max_readings, pool);
   std::erase_if(readings, [&](const Reading& r) { return !is_of_map(r, grid, T_reported); });
   result.readings = readings.size();
   if (readings.empty()) {

@@ -13,9 +13,7 @@ namespace {
 
 constexpr std::size_t kBlock = 512;  // readings summed together
 constexpr std::uint64_t kEmpty = std::numeric_limits<std::uint64_t>::max();
-constexpr double kGateSigmas = 4;
-constexpr double kCauchy = 2.385;  // 95 % efficient for Gaussian errors
-constexpr int kMaxCell = 32;       // [px]
+constexpr int kMaxCell = 32;  // [px]
 // Columns of radius 1 round points 0.75 to 1 apart: each reading of the map is in about three.
 constexpr double kPointsPerReading = 3;
 

@@ -34,6 +34,11 @@ struct RegistrationModel {
 
 [[nodiscard]] RegistrationModel registration_model(std::span<const FusedPoint> points, double edge);
 
+/// How many sigmas apart the two of a pair may be, and from where on they count less: 95 %
+/// efficient for Gaussian errors.
+inline constexpr double kGateSigmas = 4;
+inline constexpr double kCauchy = 2.385;
+
 /// Which reading may belong to which point.
 struct PairGates {
   double slack_translation = 0;  ///< by which the pose may still be off, 1 sigma [m]

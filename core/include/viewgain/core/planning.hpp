@@ -120,8 +120,8 @@ inline constexpr double kStopGain = 1.2;  // [nat]
 /// The same for the criterion trace, as a share of the first decision's.
 inline constexpr double kStopGainShare = 0.01;
 
-/// Default of PlanningConfig::stop_area, a share of the surface so far; perf/README.md says where
-/// the camel stops by it.
+/// Default of PlanningConfig::stop_area, a share of the surface so far; perf/results/loop.md says
+/// where the camel stops by it.
 inline constexpr double kStopArea = 1.6e-3;
 
 /// When to stop.

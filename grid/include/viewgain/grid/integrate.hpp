@@ -83,7 +83,7 @@ class VIEWGAIN_EXPORT FrameIntegrator {
   /// are orthonormalised) or a sigma is negative or not finite; the grid is unchanged then. If
   /// memory runs out (std::bad_alloc), part of the frame may be in the grid, which stays one that
   /// can be saved and loaded, and the pose is not. Cost: grows with the voxels crossed; 6 ms a
-  /// frame of 176 x 144 px at 128³ voxels (perf/README.md).
+  /// frame of 176 x 144 px at 128³ voxels (perf/results/loop.md).
   IntegrationReport integrate(BeliefGrid& grid, const DepthFrame& frame, const Pose& T_world_camera,
                               const PoseSigma& pose_sigma = {});
 

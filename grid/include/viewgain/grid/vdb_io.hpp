@@ -26,18 +26,19 @@ struct VIEWGAIN_EXPORT VdbMap {
   std::map<std::string, std::string> notes;  ///< VdbWriteConfig::notes
 };
 
-/// Writes the map as a plain OpenVDB file (active = known; grid/README.md has the layout), of types
-/// that OpenVDB's Python module reads. Atomic: a temporary file beside it is renamed. Throws
-/// Error(io). If memory runs out (std::bad_alloc), the file that was there stays. Cost: grows with
-/// the leaves and beliefs of the map.
+/// Writes the map as a plain OpenVDB file (active = known; apps/docs/reference/formats.md has the
+/// layout), of types that OpenVDB's Python module reads. Atomic: a temporary file beside it is
+/// renamed. Throws Error(io). If memory runs out (std::bad_alloc), the file that was there stays.
+/// Cost: grows with the leaves and beliefs of the map.
 VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
                               const VdbWriteConfig& config = {});
 
-/// Reads a file that save_vdb wrote, of any version, or another program in the same layout; exact:
-/// the loaded map has the saved one's content_hash(). Throws Error(io) if it cannot be opened and
-/// Error(format), naming the file and what is missing or out of bounds, if it is truncated or no
-/// viewgain map; Error(capacity) if tiles hold more than 2^27 occupied voxels, or the file is over
-/// 16 GiB. Cost: grows with the leaves and beliefs of the map; the file is read once.
+/// Reads a file that save_vdb wrote, or another program in the same layout; exact: the loaded map
+/// has the saved one's content_hash(). Throws Error(io) if it cannot be opened and Error(format),
+/// naming the file and what is missing or out of bounds, if it is truncated, of another version of
+/// the layout or no viewgain map; Error(capacity) if tiles hold more than 2^27 occupied voxels, or
+/// the file is over 16 GiB. Cost: grows with the leaves and beliefs of the map; the file is read
+/// once.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_vdb(const std::filesystem::path& path);
 /// The same with its notes: both of one state of the file, whoever rewrites it meanwhile.
 [[nodiscard]] VIEWGAIN_EXPORT VdbMap load_vdb_map(const std::filesystem::path& path);

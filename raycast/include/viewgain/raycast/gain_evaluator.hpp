@@ -196,15 +196,15 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// them in full (by the other gains 1.6 %), so gains reported are exact; best first, ties to the
   /// lower index. A view is lost if its 400 rays make it look worse than that many others: by the
   /// paper's gain the best of 2,000 poses on 3 to 6 of 200 maps of objects, 0.4 % of its gain at
-  /// most (perf/README.md). Images of under 900 rays are all scored in full. By a measure of the
-  /// user's own: the same two stages, in which the measure is asked about few rays. Where there are
-  /// costs, such measures are brought to the scale of all rays by the median ratio of eight poses
-  /// that are measured by both. Works with obstacles, weights and distortion. Deterministic for a
-  /// seed and any number of threads. control.progress counts poses that are out, after each stage.
-  /// Stopped in the first, it returns nothing, stopped in the second the best of those that were
-  /// scored; either is not `complete`. Of 2,000 poses it costs 0.22 times what scoring all takes,
-  /// by the paper's gain (perf/README.md). Throws Error(invalid_argument) for costs as best() and
-  /// for two measures.
+  /// most (perf/results/choosing.md). Images of under 900 rays are all scored in full. By a measure
+  /// of the user's own: the same two stages, in which the measure is asked about few rays. Where
+  /// there are costs, such measures are brought to the scale of all rays by the median ratio of
+  /// eight poses that are measured by both. Works with obstacles, weights and distortion.
+  /// Deterministic for a seed and any number of threads. control.progress counts poses that are
+  /// out, after each stage. Stopped in the first, it returns nothing, stopped in the second the
+  /// best of those that were scored; either is not `complete`. Of 2,000 poses it costs 0.22 times
+  /// what scoring all takes, by the paper's gain (perf/README.md). Throws Error(invalid_argument)
+  /// for costs as best() and for two measures.
   [[nodiscard]] RacedViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                 const RaceConfig& config = {},
                                 const BatchControl& control = {}) const;
@@ -233,10 +233,10 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// lattices, the estimate of how much is seen of narrow voxels, and larger voxels that one ray
   /// met where several should, as they are partly hidden. It is fitted so that 90 to 97 % of the
   /// gains lie within two of them over maps of objects and of a room; on one map or lattice 86 %
-  /// was seen (perf/README.md). No pose's estimate depends on others. Bad poses: NaN. Same for a
-  /// seed and any number of threads. Returns how many poses were estimated: fewer than all if a
-  /// stop was requested. Throws Error(invalid_argument) for a share out of range or if the sizes
-  /// differ; Error(backend), Error(capacity) as race().
+  /// was seen (perf/results/choosing.md). No pose's estimate depends on others. Bad poses: NaN.
+  /// Same for a seed and any number of threads. Returns how many poses were estimated: fewer than
+  /// all if a stop was requested. Throws Error(invalid_argument) for a share out of range or if the
+  /// sizes differ; Error(backend), Error(capacity) as race().
   std::size_t approximate(std::span<const Pose> T_world_camera, std::span<ApproximateGain> results,
                           const ApproximateConfig& config = {},
                           const BatchControl& control = {}) const;

@@ -19,7 +19,8 @@
 extern "C" {
 #endif
 
-/* Grows when something is removed or changes its meaning; additions leave it as it is. */
+/* Grows when something is removed or changes, a struct's size too; new functions leave it as it is.
+ */
 #define VG_ABI_VERSION 1
 VG_API int32_t vg_abi_version(void); /* of the library */
 VG_API const char* vg_version(void); /* "major.minor.patch" of the library */

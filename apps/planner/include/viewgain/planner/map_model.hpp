@@ -51,8 +51,8 @@ struct VIEWGAIN_EXPORT MapUpdate {
 ///
 /// Thread safety: const members may run from many threads at once; nothing may run beside update().
 /// Scenes that it has handed out stay as they are. Cost of update(): FrameIntegrator::integrate() a
-/// frame and VoxelScene::update(), 6 and 2 ms after eight views of the camel (perf/README.md); of
-/// the constructor VoxelScene::build().
+/// frame and VoxelScene::update(), 6 and 2 ms after eight views of the camel
+/// (perf/results/loop.md); of the constructor VoxelScene::build().
 class VIEWGAIN_EXPORT MapModel {
  public:
   /// An empty map. Throws Error(invalid_argument) as the parts: a sensor, grid, obstacle or filter

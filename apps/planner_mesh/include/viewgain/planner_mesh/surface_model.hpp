@@ -46,7 +46,7 @@ struct VIEWGAIN_EXPORT ModelOutlook {
 ///
 /// Thread safety: const members may run from many threads at once; nothing may run beside the
 /// others. Cost of update(): MapModel::update(), fused_points() and reconstruct_surface(); 8 and
-/// 574 ms after eight views of the camel (perf/README.md).
+/// 574 ms after eight views of the camel (perf/results/loop.md).
 class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
  public:
   /// `truth` may be null: then there is no quality. Throws as MapModel.

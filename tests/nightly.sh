@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# The checks that take too long for tests/run.sh, in parts that each end in a summary:
+#   tests/nightly.sh PART [...]
+#     statistics  tests of the release build that repeat for statistics' sake
+#     asan        core, grid, raycast, C and Python under AddressSanitizer and UBSan
+#     tsan        what runs at once, under ThreadSanitizer
+#     golden      the loop and the scores as recorded, under every instruction set
+#     packages    Debian packages, installed and used in a clean system (root)
+#     browser     reports of a run and of a ranking in a real browser
+#     docs        the documentation site without warnings, and whether every public name is documented
+#     perf        every benchmark at its smallest size
+#     debian13    all of it in a clean Debian 13 (root)
+#     vdb         .vdb files: damaged ones, with little memory, read by OpenVDB's own tools
+# Dates, commits and results are appended to tests/nightly.log, which is committed.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+all="statistics asan tsan golden packages browser docs perf debian13 vdb"
+
+if [ $# -eq 0 ]; then
+  echo "usage: tests/nightly.sh PART [...], of: $all" >&2
+  exit 2
+fi
+for part in "$@"; do
+  [[ " $all " == *" $part "* ]] || { echo "tests/nightly.sh: no part $part; there are $all" >&2; exit 2; }
+done
+
+. tests/checks.sh
+mkdir -p build
+
+# build PRESET [ARGUMENTS of the configuration]
+build() {
+  local preset=$1
+  shift
+  cmake --preset "$preset" "$@" >build/configure.log || { cat build/configure.log >&2; return 1; }
+  cmake --build --preset "$preset"
+}
+
+# One part, in a shell of its own.
+run_part() {
+  set -euo pipefail
+  ./apps/install_dependencies.sh --tests
+  make_locale
+  case "$1" in
+    statistics) build release; run_ctest --preset statistics ;;
+    asan) build asan; run_ctest --preset asan ;;
+    tsan)
+      build tsan
+      # ThreadSanitizer does not see the locks of TBB, which OpenVDB and Embree run on: it comes compiled without.
+      # On one CPU TBB starts no threads, and so needs no list of suppressions; our own threads are as many as ever.
+      taskset -c "$(taskset -cp $$ | grep -oE '[0-9]+' | sed -n 2p)" ctest --preset tsan
+      ;;
+    golden) build program; ./tests/golden.sh ;;
+    packages) ./tests/packages.sh ;;
+    browser)
+      ./apps/install_dependencies.sh --browser
+      build release
+      run_ctest --preset browser
+      ;;
+    docs)
+      ./apps/install_dependencies.sh --docs
+      build release
+      cmake --build build/release --target docs
+      run_ctest --preset docs
+      ;;
+    perf) ./apps/install_dependencies.sh --perf; build perf; run_ctest --preset perf ;;
+    debian13) ./tests/portability.sh debian13 ;;
+    vdb) build release; run_ctest --preset vdb ;;
+  esac
+}
+
+failed=0
+for part in "$@"; do
+  SECONDS=0
+  result=passed
+  # Not in a condition, which would switch `set -e` off inside.
+  set +e
+  (run_part "$part")
+  [ $? -eq 0 ] || result=FAILED failed=1
+  set -e
+  summary=$(grep -E 'tests passed|tests failed' build/ctest.log 2>/dev/null | tail -n 1 || true)
+  case "$part" in golden | packages | debian13 | tsan) summary= ;; esac
+  line="$(date -u +%F) $(git rev-parse --short HEAD) $part: $result in $((SECONDS / 60)) min${summary:+, $summary}"
+  echo "$line" | tee -a tests/nightly.log
+done
+exit "$failed"

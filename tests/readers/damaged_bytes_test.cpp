@@ -1,0 +1,431 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Every reader of foreign bytes over good files, all their cuts and thousands of single changes: it
+// reads or throws Error, and under sanitizers nothing else happens. What a reader says of which
+// damage is tested beside it.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "columns/mapped_poses.hpp"
+#include "columns/npy_header.hpp"
+#include "columns/part_reader.hpp"
+#include "columns/part_writer.hpp"
+#include "core/temporary_folder.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/masks.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/formats/recordings.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/grid/cloud_io.hpp"
+#include "viewgain/grid/octomap_io.hpp"
+#include "viewgain/mesh/mesh_io.hpp"
+
+namespace viewgain {
+namespace {
+
+namespace fs = std::filesystem;
+using test::read_all;
+using test::TemporaryFolder;
+
+constexpr std::size_t kCuts = 400, kChanges = 1500;  // of a file, at most
+
+/// Good files below a folder, those of them that are to be damaged, and what reads them.
+struct Reader {
+  std::string name;
+  std::function<void(const TemporaryFolder&)> write;
+  std::vector<std::string> damaged;
+  std::function<void(const fs::path&)> read;
+};
+
+void PrintTo(const Reader& reader, std::ostream* out) { *out << reader.name; }
+
+std::vector<Pose> three_poses() {
+  return {look_at({1, 0, 0.5}, {0, 0, 0}), look_at({0, 1, 0.5}, {0, 0, 0}),
+          look_at({-1, 0.2, 0.3}, {0, 0, 0})};
+}
+
+GrayImage small_image(int width, int height) {
+  GrayImage image{width, height, {}};
+  for (int k = 0; k < width * height; ++k) {
+    image.pixels.push_back(static_cast<std::uint16_t>(2000 + 37 * k));
+  }
+  return image;
+}
+
+Sensor small_sensor() {
+  Sensor sensor = sensor_preset("kinect_v1");
+  sensor.camera = {8, 6, 9.0, 9.0, 3.5, 2.5, {0.1, -0.05, 0.001, 0.002, 0.01}};
+  return sensor;
+}
+
+std::string matrix_text(const Pose& pose) {
+  std::string text;
+  for (std::size_t i = 0; i < 12; ++i)
+    text += std::to_string(pose.m[i]) + (i % 4 == 3 ? "\n" : " ");
+  return text + "0 0 0 1\n";
+}
+
+template <typename Value>
+void append(std::string& bytes, Value value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+void write_images(const TemporaryFolder& folder, const std::string& below,
+                  const std::vector<std::string>& names) {
+  fs::create_directories(folder.path() / below);
+  for (const std::string& name : names) {
+    write_png(folder.path() / below / name, small_image(8, 6));
+  }
+}
+
+void load_recording(const fs::path& folder, RecordingFormat format) {
+  RecordingConfig config;
+  if (format == RecordingFormat::tum) config.camera = PinholeCamera{8, 6, 9, 9, 3.5, 2.5, {}};
+  const Recording recording = open_recording(folder, format, config);
+  for (std::size_t i = 0; i < recording.frames.size(); ++i) (void)load_depth(recording, i);
+}
+
+std::string binary_stl() {
+  std::string bytes(80, ' ');
+  append(bytes, std::uint32_t{2});
+  for (int t = 0; t < 2; ++t) {
+    for (int k = 0; k < 12; ++k) append(bytes, static_cast<float>((k * 7 + t) % 5));
+    append(bytes, std::uint16_t{0});
+  }
+  return bytes;
+}
+
+std::string binary_ply(bool faces) {
+  std::string bytes =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float "
+      "y\nproperty float z\n";
+  if (faces) bytes += "element face 2\nproperty list uchar int vertex_indices\n";
+  bytes += "end_header\n";
+  for (int k = 0; k < 12; ++k) append(bytes, static_cast<float>(k * k % 7));
+  for (std::int32_t f = 0; faces && f < 2; ++f) {
+    append(bytes, std::uint8_t{3});
+    for (std::int32_t k = 0; k < 3; ++k) append(bytes, f + k);
+  }
+  return bytes;
+}
+
+std::string binary_pcd() {
+  std::string bytes =
+      "VERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 4\nHEIGHT "
+      "1\nVIEWPOINT 0 0 1 1 0 0 0\nPOINTS 4\nDATA binary\n";
+  for (int k = 0; k < 16; ++k) append(bytes, static_cast<float>(k * k % 11));
+  return bytes;
+}
+
+std::string octomap_of_boxes() {
+  BeliefGrid grid(
+      {.voxel_size = 0.1, .workspace = {{-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4}}, .prior_sigma = 0.1});
+  for (std::int32_t i = -3; i < 3; ++i) {
+    grid.set({i, i, -i}, 0.85F);
+    grid.set({i, 0, 3}, -0.4F);
+  }
+  return octomap_bytes(grid);
+}
+
+app::Table small_table() {
+  app::Table table{{{"index", app::ColumnType::row},
+                    {"gain", app::ColumnType::real},
+                    {"hits", app::ColumnType::count},
+                    {"status", app::ColumnType::status}}};
+  for (std::int64_t row = 0; row < 5; ++row) {
+    table.add(row);
+    table.add(1.5 * static_cast<double>(row));
+    table.add(static_cast<std::uint32_t>(7 * row));
+    table.add(std::uint8_t{0});
+  }
+  return table;
+}
+
+void write_part(const fs::path& path) {
+  app::PartHead head{"0.1.0", "map", "sensor", "{}", "avx2", 5, "hash", {0, 5}, 5};
+  app::write_table(path, small_table(), head);
+}
+
+void read_part(const fs::path& path) {
+  app::PartReader reader(path);
+  while (reader.next() != nullptr) {
+  }
+}
+
+// One file, its bytes and what reads it.
+Reader file_reader(const std::string& name, const std::string& bytes,
+                   std::function<void(const fs::path&)> read) {
+  return {name,
+          [=](const TemporaryFolder& folder) { folder.file(name, bytes); },
+          {name},
+          [=](const fs::path& folder) { read(folder / name); }};
+}
+
+std::vector<Reader> pose_readers() {
+  const auto cloud_of_poses = [](const TemporaryFolder& folder) {
+    std::vector<app::Column> columns;
+    for (const char* name : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
+      columns.push_back({name, app::ColumnType::real});
+    }
+    std::string bytes = app::npy_header(columns, 3);
+    for (int row = 0; row < 3; ++row) {
+      for (const double x : {0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0}) append(bytes, x);
+    }
+    folder.file("poses.npy", bytes);
+  };
+  return {
+      {"poses.txt",
+       [](const TemporaryFolder& folder) { write_tum(folder.path() / "poses.txt", three_poses()); },
+       {"poses.txt"},
+       [](const fs::path& folder) { (void)read_tum(folder / "poses.txt"); }},
+      file_reader("pose.txt", matrix_text(three_poses()[0]),
+                  [](const fs::path& path) { (void)read_pose_matrix(path); }),
+      {"poses.npy", cloud_of_poses, {"poses.npy"}, [](const fs::path& folder) {
+         const app::MappedPoses poses(folder / "poses.npy");
+         for (std::size_t row = 0; row < std::min<std::size_t>(poses.size(), 100); ++row) {
+           bool mended = false;
+           (void)poses.at(row, mended);
+         }
+       }}};
+}
+
+std::vector<Reader> settings_readers() {
+  return {file_reader("sensor.toml", sensor_toml(small_sensor()),
+                      [](const fs::path& path) { (void)read_sensor_toml(path); }),
+          {"reach.toml",
+           [](const TemporaryFolder& folder) {
+             ReachRegion region;
+             region.boxes.push_back({{0, 0, 0}, {1, 1, 1}});
+             region.poses = three_poses();
+             write_reach_toml(folder.path() / "reach.toml", region);
+           },
+           {"reach.toml", "reach.poses.txt"},
+           [](const fs::path& folder) { (void)read_reach_toml(folder / "reach.toml"); }}};
+}
+
+std::vector<Reader> image_readers() {
+  const auto write_both = [](const TemporaryFolder& folder) {
+    write_images(folder, ".", {"gray.png"});
+    write_png(folder.path() / "rgb.png",
+              RgbImage{5, 4, std::vector<std::uint8_t>(60, std::uint8_t{77})});
+    write_png(folder.path() / "gray8.png",
+              Gray8Image{8, 6, std::vector<std::uint8_t>(48, std::uint8_t{255})});
+  };
+  return {{"png", write_both, {"gray.png", "rgb.png", "gray8.png"}, [](const fs::path& folder) {
+             (void)png_size(folder / "gray.png");
+             (void)read_gray_png(folder / "gray.png", 8, 6);
+             (void)read_rgb_png(folder / "rgb.png");
+             (void)read_gray8_png(folder / "gray8.png", 8, 6);
+           }}};
+}
+
+std::vector<Reader> frame_readers() {
+  const auto write_frames = [](const TemporaryFolder& folder) {
+    write_images(folder, "frames", {"frame-000000.depth.png", "frame-000001.depth.png"});
+    write_images(folder, "masks", {"frame-000000.depth.png"});
+    write_tum(folder.path() / "frames/poses.txt", std::vector(2, three_poses()[0]));
+    write_sensor_toml(folder.path() / "frames/sensor.toml", small_sensor());
+  };
+  const auto write_tum_recording = [](const TemporaryFolder& folder) {
+    write_images(folder, "depth", {"1.png", "2.png"});
+    folder.file("depth.txt", "# timestamp filename\n1.0 depth/1.png\n2.0 depth/2.png\n");
+    write_tum(folder.path() / "groundtruth.txt", std::vector(2, three_poses()[0]),
+              std::vector<double>{1.0, 2.0});
+  };
+  const auto write_bop = [](const TemporaryFolder& folder) {
+    write_images(folder, "depth", {"000000.png"});
+    folder.file("scene_camera.json",
+                R"({"0": {"cam_K": [9, 0, 3.5, 0, 9, 2.5, 0, 0, 1], "depth_scale": 0.1,
+"cam_R_w2c": [1, 0, 0, 0, 1, 0, 0, 0, 1], "cam_t_w2c": [0, 0, 500.0]}})");
+  };
+  const auto write_scannet = [](const TemporaryFolder& folder) {
+    write_images(folder, "depth", {"0.png"});
+    fs::create_directories(folder.path() / "pose");
+    fs::create_directories(folder.path() / "intrinsic");
+    folder.file("pose/0.txt", matrix_text(three_poses()[0]));
+    folder.file("intrinsic/intrinsic_depth.txt", "9 0 3.5 0\n0 9 2.5 0\n0 0 1 0\n0 0 0 1\n");
+  };
+  const auto write_icl = [](const TemporaryFolder& folder) {
+    write_images(folder, "depth", {"0.png", "1.png"});
+    write_tum(folder.path() / "traj0.gt.freiburg", std::vector(2, three_poses()[0]),
+              std::vector<double>{0, 1});
+  };
+  const auto recorded = [](RecordingFormat format) {
+    return [format](const fs::path& folder) { load_recording(folder, format); };
+  };
+  return {
+      {"frames",
+       write_frames,
+       {"frames/frame-000001.depth.png", "frames/poses.txt", "frames/sensor.toml"},
+       [](const fs::path& folder) {
+         const FrameSequence frames = open_frames(folder / "frames");
+         for (std::size_t i = 0; i < frames.images.size(); ++i) (void)load_frame(frames, i);
+       }},
+      {"tum",
+       write_tum_recording,
+       {"depth.txt", "groundtruth.txt", "depth/2.png"},
+       recorded(RecordingFormat::tum)},
+      {"bop", write_bop, {"scene_camera.json", "depth/000000.png"}, recorded(RecordingFormat::bop)},
+      {"scannet",
+       write_scannet,
+       {"pose/0.txt", "intrinsic/intrinsic_depth.txt"},
+       recorded(RecordingFormat::scannet)},
+      {"icl",
+       write_icl,
+       {"traj0.gt.freiburg", "depth/1.png"},
+       recorded(RecordingFormat::icl_nuim)}};
+}
+
+std::vector<Reader> cloud_and_map_readers() {
+  const auto cloud = [](const fs::path& path) { (void)load_cloud(path); };
+  return {file_reader("ascii.pcd",
+                      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH "
+                      "3\nHEIGHT 1\nVIEWPOINT 0 0 1 1 0 0 0\nPOINTS 3\nDATA ascii\n0 0 0\n1 0.5 "
+                      "2\n0.1 0.2 0.3\n",
+                      cloud),
+          file_reader("binary.pcd", binary_pcd(), cloud),
+          file_reader("ascii.ply",
+                      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
+                      "y\nproperty float z\nend_header\n0 0 0\n1 0.5 2\n0.1 0.2 0.3\n",
+                      cloud),
+          file_reader("binary.ply", binary_ply(false), cloud),
+          file_reader("map.ot", octomap_of_boxes(),
+                      [](const fs::path& path) { (void)load_octomap(path); })};
+}
+
+std::vector<Reader> mesh_readers() {
+  const auto mesh = [](const fs::path& path) { (void)read_mesh(path); };
+  const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  return {
+      file_reader("m.off", "OFF\n4 2 0\n" + vertices + "3 0 1 2\n3 0 1 3\n", mesh),
+      file_reader("m.obj", "# obj\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1//1 2//1 4//1\n",
+                  mesh),
+      file_reader("a.stl",
+                  "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 "
+                  "0\nvertex 0 1 0\nendloop\nendfacet\nendsolid x\n",
+                  mesh),
+      file_reader("b.stl", binary_stl(), mesh),
+      file_reader("a.ply",
+                  "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float "
+                  "y\nproperty float z\nelement face 2\nproperty list uchar int "
+                  "vertex_indices\nend_header\n" +
+                      vertices + "3 0 1 2\n3 0 1 3\n",
+                  mesh),
+      file_reader("b.ply", binary_ply(true), mesh)};
+}
+
+std::vector<Reader> part_readers() {
+  std::vector<Reader> readers;
+  for (const std::string name : {"part.csv", "part.npy"}) {
+    readers.push_back({name,
+                       [=](const TemporaryFolder& f) { write_part(f.path() / name); },
+                       {name},
+                       [=](const fs::path& folder) { read_part(folder / name); }});
+  }
+  return readers;
+}
+
+std::vector<Reader> all_readers() {
+  std::vector<Reader> all;
+  for (const auto& some : {pose_readers(), settings_readers(), image_readers(), frame_readers(),
+                           cloud_and_map_readers(), mesh_readers(), part_readers()}) {
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+class DamagedBytes : public testing::TestWithParam<Reader> {
+ protected:
+  // Whether the reader took it; anything but Error ends the test.
+  bool is_read() const {
+    try {
+      GetParam().read(folder_.path());
+      return true;
+    } catch (const Error& error) {
+      EXPECT_FALSE(std::string(error.what()).empty());
+      return false;
+    }
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_P(DamagedBytes, AreReadOrRefused) {
+  const Reader& reader = GetParam();
+  reader.write(folder_);
+  ASSERT_TRUE(is_read());
+  std::mt19937 random(7);
+  const auto below = [&](std::size_t count) { return random() % count; };
+  for (const std::string& name : reader.damaged) {
+    const std::string good = read_all(folder_.path() / name);
+    ASSERT_GT(good.size(), 10U) << name;
+    std::size_t cases = 0, refused = 0;
+    const auto check = [&](const std::string& bytes) {
+      folder_.file(name, bytes);
+      ++cases;
+      refused += is_read() ? 0 : 1;
+    };
+    const std::size_t step = (good.size() + kCuts - 1) / kCuts;
+    for (std::size_t length = 0; length < good.size(); length += step) {
+      check(good.substr(0, length));
+    }
+    EXPECT_GT(refused, 0U) << name;
+    for (std::size_t i = 0; i < kChanges; ++i) {
+      std::string bytes = good;
+      const std::size_t at = below(bytes.size());
+      switch (i % 6) {
+        case 0:
+          bytes[at] = static_cast<char>(bytes[at] ^ (1U << below(8)));
+          break;
+        case 1:
+          bytes[at] = static_cast<char>(below(256));
+          break;
+        case 2:
+          bytes.erase(at, 1 + below(4));
+          break;
+        case 3:
+          bytes.insert(at, 1 + below(40), "0919-e.\n \xff"[below(10)]);
+          break;
+        case 4:  // a number of four bytes, as counts and sizes are
+          for (std::size_t k = 0; k < 4 && at + k < bytes.size(); ++k) {
+            bytes[at + k] = static_cast<char>(i % 12 == 4 ? 0xff : below(256));
+          }
+          break;
+        default:
+          bytes += bytes.substr(at);
+      }
+      check(bytes);
+    }
+    folder_.file(name, good);
+    EXPECT_EQ(cases, (good.size() + step - 1) / step + kChanges) << name;
+    ASSERT_TRUE(is_read()) << name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Readers, DamagedBytes, testing::ValuesIn(all_readers()),
+                         [](const auto& reader) {
+                           std::string name = reader.param.name;
+                           for (char& c : name) c = std::isalnum(c) != 0 ? c : '_';
+                           return name;
+                         });
+
+TEST(DamagedBytes, EveryReaderIsHere) { EXPECT_EQ(all_readers().size(), 24U); }
+
+}  // namespace
+}  // namespace viewgain
