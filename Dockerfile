@@ -3,7 +3,7 @@
 #   docker run --rm -v "$PWD:/data" viewgain score map.vdb --sphere 2000,0.6 --sensor sr4000
 FROM debian:12 AS build
 COPY apps/install_dependencies.sh /source/apps/
-RUN apt-get update && /source/apps/install_dependencies.sh --tests && rm -rf /var/lib/apt/lists/*
+RUN apt-get update && /source/apps/install_dependencies.sh --packages && rm -rf /var/lib/apt/lists/*
 COPY . /source
 WORKDIR /source
 RUN cmake --preset packages && cmake --build --preset packages && cd build/packages && cpack

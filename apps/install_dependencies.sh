@@ -5,7 +5,8 @@
 #   apps/install_dependencies.sh --perf     for all that and the benchmarks
 #   apps/install_dependencies.sh --browser  for all that and the test of the report in a browser
 #   apps/install_dependencies.sh --docs     for all that and the documentation site (target `docs`)
-#   apps/install_dependencies.sh --all      for all of it and for packages
+#   apps/install_dependencies.sh --packages for all that --tests is for and Debian packages
+#   apps/install_dependencies.sh --all      for all of it
 # Asks nothing; uses sudo only if not root.
 set -euo pipefail
 
@@ -30,8 +31,9 @@ case "${1:-}" in
   --perf) packages+=("${tests[@]}" "${perf[@]}") ;;
   --browser) packages+=("${tests[@]}" "${browser[@]}") ;;
   --docs) packages+=("${tests[@]}" "${docs[@]}") ;;
+  --packages) packages+=("${tests[@]}" dpkg-dev) ;;
   --all) packages+=("${tests[@]}" "${perf[@]}" "${browser[@]}" "${docs[@]}" dpkg-dev) ;;
-  *) echo "$0: no option $1; there are --tests, --perf, --browser, --docs and --all" >&2; exit 2 ;;
+  *) echo "$0: no option $1; there are --tests, --perf, --browser, --docs, --packages and --all" >&2; exit 2 ;;
 esac
 
 missing=()

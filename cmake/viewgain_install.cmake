@@ -3,23 +3,38 @@
 include(CMakePackageConfigHelpers)
 set(VIEWGAIN_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/viewgain)
 
+# viewgain_link_flags(variable libraries...): -l of each library, a target or a file.
+function(viewgain_link_flags variable)
+  set(flags "")
+  foreach(library IN LISTS ARGN)
+    if(TARGET ${library})
+      get_target_property(library ${library} LOCATION)
+    endif()
+    cmake_path(GET library FILENAME name)
+    string(REGEX REPLACE "^lib(.+)\\.(so|a)[.0-9]*$" "-l\\1" flag "${name}")
+    list(APPEND flags ${flag})
+  endforeach()
+  set(${variable} ${flags} PARENT_SCOPE)
+endfunction()
+
 # viewgain_install_libraries(names... [COMPONENT name] [RUNTIME name] [HEADERS folders...]
 #                            [DEPENDENCIES lines...] [STATIC_DEPENDENCIES lines...] [AFTERWARDS lines...]
-#                            [REQUIRES modules...] [STATIC_FLAGS flags...])
+#                            [REQUIRES modules...] [STATIC_REQUIRES modules...] [STATIC_LIBRARIES libraries...])
 # Installs libraries made by viewgain_add_library and what finds them.
 #   COMPONENT: what a user asks find_package for; without one they come with the package itself.
 #   RUNTIME: the install component of a shared library; all else is in `dev`.
 #   HEADERS: folders whose contents go to include/.
 #   DEPENDENCIES: find_dependency lines that clients need; STATIC_DEPENDENCIES: for static libraries too.
 #   AFTERWARDS: lines once the targets are defined.
-#   REQUIRES, STATIC_FLAGS: pkg-config's modules that clients need; what linking statically takes besides.
+#   REQUIRES: pkg-config's modules that clients need. STATIC_REQUIRES, STATIC_LIBRARIES: what linking statically
+#     takes besides, modules and libraries (targets or files) that have none.
 # A library comes after those it uses.
 function(viewgain_install_libraries)
   if(NOT VIEWGAIN_INSTALL)
     return()
   endif()
   cmake_parse_arguments(ARG "" "COMPONENT;RUNTIME"
-    "HEADERS;DEPENDENCIES;STATIC_DEPENDENCIES;AFTERWARDS;REQUIRES;STATIC_FLAGS" ${ARGN})
+    "HEADERS;DEPENDENCIES;STATIC_DEPENDENCIES;AFTERWARDS;REQUIRES;STATIC_REQUIRES;STATIC_LIBRARIES" ${ARGN})
   set(stem viewgain)
   if(ARG_COMPONENT)
     set(stem viewgain-${ARG_COMPONENT})
@@ -35,10 +50,12 @@ function(viewgain_install_libraries)
 
   # <stem>-libraries.cmake finds what the libraries need, then defines their targets.
   set(lines ${ARG_DEPENDENCIES})
+  set(private_requires "")
   set(private_flags "")
   if(NOT BUILD_SHARED_LIBS)
     list(APPEND lines ${ARG_STATIC_DEPENDENCIES})
-    set(private_flags ${ARG_STATIC_FLAGS})
+    set(private_requires ${ARG_STATIC_REQUIRES})
+    viewgain_link_flags(private_flags ${ARG_STATIC_LIBRARIES})
   endif()
   list(JOIN lines "\n" lines)
   list(JOIN ARG_AFTERWARDS "\n" afterwards)
@@ -59,6 +76,7 @@ function(viewgain_install_libraries)
   list(JOIN flags " " flags)
   list(JOIN private_flags " " private_flags)
   list(JOIN ARG_REQUIRES ", " requires)
+  list(JOIN private_requires ", " private_requires)
   # Relative to the file, so that the installed tree can be moved; not where a folder is absolute.
   file(RELATIVE_PATH prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
   set(prefix "\${pcfiledir}/${prefix}")

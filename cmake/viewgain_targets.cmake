@@ -4,7 +4,7 @@
 # built at -O3 where rays and voxels are; elsewhere a folder says in VIEWGAIN_OPTIMIZE what it needs,
 # since compiling takes most of a fresh machine's time.
 function(viewgain_compile_rules target)
-  if(VIEWGAIN_OPTIMIZE)
+  if(VIEWGAIN_OPTIMIZE AND PROJECT_IS_TOP_LEVEL)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${VIEWGAIN_OPTIMIZE}>)
   endif()
   target_compile_features(${target} PUBLIC cxx_std_20)
@@ -50,6 +50,7 @@ function(viewgain_compile_together target)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  list(FILTER ARGN EXCLUDE REGEX "^\\$<")  # objects of others
   foreach(source IN LISTS ARGN)
     cmake_path(GET source PARENT_PATH folder)
     string(MAKE_C_IDENTIFIER "${folder}" folder)

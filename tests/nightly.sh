@@ -9,7 +9,7 @@
 #     browser     reports of a run and of a ranking in a real browser
 #     docs        the documentation site without warnings, and whether every public name is documented
 #     perf        every benchmark at its smallest size
-#     debian13    all of it in a clean Debian 13 (root)
+#     debian13    the release build, the site and their tests in a clean Debian 13 (root)
 #     vdb         .vdb files: damaged ones, with little memory, read by OpenVDB's own tools
 # Dates, commits and results are appended to tests/nightly.log, which is committed.
 set -euo pipefail
@@ -47,7 +47,8 @@ run_part() {
       build tsan
       # ThreadSanitizer does not see the locks of TBB, which OpenVDB and Embree run on: it comes compiled without.
       # On one CPU TBB starts no threads, and so needs no list of suppressions; our own threads are as many as ever.
-      taskset -c "$(taskset -cp $$ | grep -oE '[0-9]+' | sed -n 2p)" ctest --preset tsan
+      taskset -cp "$(taskset -cp $BASHPID | grep -oE '[0-9]+' | sed -n 2p)" $BASHPID
+      run_ctest --preset tsan
       ;;
     golden) build program; ./tests/golden.sh ;;
     packages) ./tests/packages.sh ;;
@@ -71,6 +72,7 @@ run_part() {
 failed=0
 for part in "$@"; do
   SECONDS=0
+  rm -f build/ctest.log
   result=passed
   # Not in a condition, which would switch `set -e` off inside.
   set +e
@@ -78,8 +80,8 @@ for part in "$@"; do
   [ $? -eq 0 ] || result=FAILED failed=1
   set -e
   summary=$(grep -E 'tests passed|tests failed' build/ctest.log 2>/dev/null | tail -n 1 || true)
-  case "$part" in golden | packages | debian13 | tsan) summary= ;; esac
-  line="$(date -u +%F) $(git rev-parse --short HEAD) $part: $result in $((SECONDS / 60)) min${summary:+, $summary}"
+  case "$part" in golden | packages | debian13) summary= ;; esac
+  line="$(date -u +%F) $(git describe --always --dirty --exclude "*") $part: $result in $((SECONDS / 60)) min${summary:+, $summary}"
   echo "$line" | tee -a tests/nightly.log
 done
 exit "$failed"

@@ -46,7 +46,7 @@ for package in g++ cmake libembree-dev libopenvdb-dev libcgal-dev libeigen3-dev 
   doxygen python3-sphinx furo; do
   dpkg-query -W -f '  ${Package} ${Version}\n' "$package" 2>/dev/null || true
 done
-ctest --preset release -j "$1"
+ctest --test-dir build/release --output-on-failure -j "$1"
 
 # The package by pip, with Debian's own build tools where the release has them.
 if apt-cache show python3-scikit-build-core >/dev/null 2>&1; then

@@ -63,11 +63,13 @@ template std::int64_t Option::as() const;
 
 App::App(const std::string& description, const std::string& name)
     : own_(std::make_unique<CLI::App>(description, name)), app_(own_.get()) {
-  wrapped(app_->get_help_ptr());
+  wrap_help();
 }
 
-App::App(CLI::App& app, App* parent) : app_(&app), parent_(parent) {
-  wrapped(app_->get_help_ptr());
+App::App(CLI::App& app, App* parent) : app_(&app), parent_(parent) { wrap_help(); }
+
+void App::wrap_help() {
+  if (app_->get_help_ptr() != nullptr) help_ = wrapped(app_->get_help_ptr());
 }
 
 App::~App() = default;
@@ -166,8 +168,6 @@ std::vector<const Option*> App::options() const {
   for (const auto& option : options_) found.push_back(option.get());
   return found;
 }
-
-const Option* App::help_option() const { return options_.front().get(); }
 
 const Option* App::find_option(std::string_view name) const {
   for (const auto& option : options_) {

@@ -110,14 +110,16 @@ class App {
   [[nodiscard]] bool takes_one_option() const;
   /// Subcommands and groups, in the order of their declaration; groups have no name.
   [[nodiscard]] std::vector<const App*> subcommands() const;
-  /// Its own, in the order of their declaration; the first is --help, of a group too.
+  /// Its own, in the order of their declaration; --help, where it has one, is the first.
   [[nodiscard]] std::vector<const Option*> options() const;
-  [[nodiscard]] const Option* help_option() const;
+  /// Null where it has none, as groups may.
+  [[nodiscard]] const Option* help_option() const noexcept { return help_; }
   /// Null where there is none; of its groups, too.
   [[nodiscard]] const Option* find_option(std::string_view name) const;
 
  private:
   App(CLI::App& app, App* parent);
+  void wrap_help();
   Option* wrapped(CLI::Option* option);
 
   std::unique_ptr<CLI::App> own_;  // of the program
@@ -125,6 +127,7 @@ class App {
   App* parent_ = nullptr;
   std::vector<std::unique_ptr<App>> children_;
   std::vector<std::unique_ptr<Option>> options_;
+  const Option* help_ = nullptr;
 };
 
 }  // namespace viewgain::app

@@ -3,13 +3,17 @@
 #include "json.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
 namespace viewgain::app {
 namespace {
 
-Json converted(const nlohmann::ordered_json& parsed) {
+constexpr int kDeepest = 500;  // levels: a Json is copied and destroyed by recursion
+
+Json converted(const nlohmann::ordered_json& parsed, int levels = kDeepest) {
+  if (levels == 0) throw JsonError("JSON: more than " + std::to_string(kDeepest) + " levels");
   switch (parsed.type()) {
     case nlohmann::ordered_json::value_t::boolean:
       return parsed.get<bool>();
@@ -23,12 +27,14 @@ Json converted(const nlohmann::ordered_json& parsed) {
       return parsed.get_ref<const std::string&>();
     case nlohmann::ordered_json::value_t::array: {
       Json array = Json::array();
-      for (const nlohmann::ordered_json& element : parsed) array.push_back(converted(element));
+      for (const nlohmann::ordered_json& element : parsed) {
+        array.push_back(converted(element, levels - 1));
+      }
       return array;
     }
     case nlohmann::ordered_json::value_t::object: {
       Json object = Json::object();
-      for (const auto& [key, value] : parsed.items()) object[key] = converted(value);
+      for (const auto& [key, value] : parsed.items()) object[key] = converted(value, levels - 1);
       return object;
     }
     default:
@@ -94,7 +100,11 @@ Json Json::parse(std::string_view text) {
 }
 
 Json Json::parse_or_null(std::string_view text) {
-  return converted(nlohmann::ordered_json::parse(text, nullptr, /*allow_exceptions=*/false));
+  try {
+    return parse(text);
+  } catch (const JsonError&) {
+    return nullptr;
+  }
 }
 
 bool Json::is_null() const noexcept { return value_.index() == 0; }
@@ -117,15 +127,28 @@ void Json::read(bool& value) const {
 
 namespace {
 
+// Whether a value is a number that the type can hold; then it is that.
 template <typename Number>
 struct ToNumber {
   template <typename Value>
   bool operator()(const Value& value) const {
-    if constexpr (std::is_arithmetic_v<Value> && !std::same_as<Value, bool>) {
+    if constexpr (!std::is_arithmetic_v<Value> || std::same_as<Value, bool>) {
+      return false;
+    } else if constexpr (std::floating_point<Number>) {
+      number = static_cast<Number>(value);
+      return true;
+    } else if constexpr (std::floating_point<Value>) {
+      // 2^63 and 2^64 themselves are too large.
+      if (!(value >= static_cast<Value>(std::numeric_limits<Number>::min()) &&
+            value < static_cast<Value>(std::numeric_limits<Number>::max()))) {
+        return false;
+      }
       number = static_cast<Number>(value);
       return true;
     } else {
-      return false;
+      if (!std::in_range<Number>(value)) return false;
+      number = static_cast<Number>(value);
+      return true;
     }
   }
   Number& number;
@@ -138,11 +161,12 @@ void Json::read(double& value) const {
 }
 
 void Json::read(std::int64_t& value) const {
-  if (!std::visit(ToNumber<std::int64_t>{value}, value_)) refuse("a number", value_.index());
+  if (!std::visit(ToNumber<std::int64_t>{value}, value_)) refuse("a whole number", value_.index());
 }
 
 void Json::read(std::uint64_t& value) const {
-  if (!std::visit(ToNumber<std::uint64_t>{value}, value_)) refuse("a number", value_.index());
+  if (!std::visit(ToNumber<std::uint64_t>{value}, value_))
+    refuse("a number from 0", value_.index());
 }
 
 void Json::read(std::string& value) const {
@@ -288,7 +312,9 @@ std::string Json::dump(int indent) const {
 
 bool operator==(const Json& a, const Json& b) {
   if (a.is_number() && b.is_number() && a.value_.index() != b.value_.index()) {
-    return a.get<double>() == b.get<double>();
+    if (!a.is_number_integer() || !b.is_number_integer()) return a.get<double>() == b.get<double>();
+    const auto* whole = std::get_if<std::int64_t>(&a.value_);
+    return whole != nullptr ? std::cmp_equal(*whole, std::get<std::uint64_t>(b.value_)) : b == a;
   }
   if (a.value_.index() != b.value_.index()) return false;
   if (a.is_array()) return std::equal(a.begin(), a.end(), b.begin(), b.end());

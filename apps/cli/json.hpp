@@ -191,6 +191,9 @@ class Json {
         std::conditional_t<std::signed_integral<Number>, std::int64_t, std::uint64_t>>
         wide{};
     read(wide);
+    if constexpr (std::integral<Number>) {
+      if (!std::in_range<Number>(wide)) throw JsonError("JSON: " + dump() + " is out of range");
+    }
     value = static_cast<Number>(wide);
   }
   void read(Json& value) const { value = *this; }

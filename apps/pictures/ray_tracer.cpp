@@ -122,7 +122,7 @@ class Renderer {
     return a.part == b.part && a.front == b.front &&
            a.part->paint_of_triangle[a.triangle] == b.part->paint_of_triangle[b.triangle] &&
            a.smooth.dot(b.smooth) > kSameSide && std::abs(a.sun - b.sun) < kSameSun &&
-           std::abs(a.range - b.range) < kSameRange * a.range;
+           std::abs(a.range - b.range) < kSameRange * std::min(a.range, b.range);
   }
 
  private:
@@ -292,42 +292,48 @@ RgbImage render(const PaintedMesh& scene, const PinholeCamera& camera, const Pos
     return renderer.sample(eye, (R_world_camera * ray).normalized(),
                            static_cast<double>(v) / static_cast<double>(rows));
   };
-  // One ray a pixel tells where the edges are; only there are more needed.
-  std::vector<Renderer::Sample> centers(columns * rows);
-  ThreadPool pool(exec.num_threads);
-  pool.for_each_chunk(rows, 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin * columns; i < end * columns; ++i) {
-      centers[i] = sample(i % columns, i / columns, 0, 0);
-    }
-  });
-  const auto is_smooth = [&](std::size_t u, std::size_t v) {
-    const std::size_t i = v * columns + u;
-    return (u == 0 || renderer.is_smooth(centers[i], centers[i - 1])) &&
-           (v == 0 || renderer.is_smooth(centers[i], centers[i - columns])) &&
-           (u + 1 == columns || renderer.is_smooth(centers[i], centers[i + 1])) &&
-           (v + 1 == rows || renderer.is_smooth(centers[i], centers[i + columns]));
-  };
+  // One ray a pixel tells where the edges are; only there are more needed. In bands of rows, since
+  // what a ray meets takes a hundred bytes; each band has a row of its neighbours on either side.
+  constexpr std::size_t kBand = 128;
   constexpr int kSamples = kSamplesPerSide * kSamplesPerSide;
-  pool.for_each_chunk(rows, 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin * columns; i < end * columns; ++i) {
-      const std::size_t u = i % columns, v = i / columns;
-      Vector3d sum = Vector3d::Zero();
-      if (is_smooth(u, v)) {
-        sum = renderer.color(centers[i], kSmoothSkyRays, kSamples * i);
-      } else {
-        for (int s = 0; s < kSamples; ++s) {
-          const double du = (s % kSamplesPerSide + 0.5) / kSamplesPerSide - 0.5;
-          const double dv = (s / kSamplesPerSide + 0.5) / kSamplesPerSide - 0.5;
-          sum += renderer.color(sample(u, v, du, dv), kEdgeSkyRays,
-                                kSamples * i + static_cast<std::size_t>(s));
+  std::vector<Renderer::Sample> centers((kBand + 2) * columns);
+  ThreadPool pool(exec.num_threads);
+  for (std::size_t first = 0; first < rows; first += kBand) {
+    const std::size_t last = std::min(first + kBand, rows);
+    const std::size_t top = first == 0 ? 0 : first - 1, bottom = std::min(last + 1, rows);
+    pool.for_each_chunk(bottom - top, 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin * columns; i < end * columns; ++i) {
+        centers[i] = sample(i % columns, top + i / columns, 0, 0);
+      }
+    });
+    const auto is_smooth = [&](std::size_t u, std::size_t v) {
+      const Renderer::Sample* here = &centers[(v - top) * columns + u];
+      return (u == 0 || renderer.is_smooth(*here, here[-1])) &&
+             (v == 0 || renderer.is_smooth(*here, *(here - columns))) &&
+             (u + 1 == columns || renderer.is_smooth(*here, here[1])) &&
+             (v + 1 == rows || renderer.is_smooth(*here, here[columns]));
+    };
+    pool.for_each_chunk(last - first, 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = (first + begin) * columns; i < (first + end) * columns; ++i) {
+        const std::size_t u = i % columns, v = i / columns;
+        Vector3d sum = Vector3d::Zero();
+        if (is_smooth(u, v)) {
+          sum = renderer.color(centers[i - top * columns], kSmoothSkyRays, kSamples * i);
+        } else {
+          for (int s = 0; s < kSamples; ++s) {
+            const double du = (s % kSamplesPerSide + 0.5) / kSamplesPerSide - 0.5;
+            const double dv = (s / kSamplesPerSide + 0.5) / kSamplesPerSide - 0.5;
+            sum += renderer.color(sample(u, v, du, dv), kEdgeSkyRays,
+                                  kSamples * i + static_cast<std::size_t>(s));
+          }
+          sum /= kSamples;
         }
-        sum /= kSamples;
+        for (std::size_t k = 0; k < 3; ++k) {
+          image.pixels[3 * i + k] = encoded(sum[static_cast<Eigen::Index>(k)]);
+        }
       }
-      for (std::size_t k = 0; k < 3; ++k) {
-        image.pixels[3 * i + k] = encoded(sum[static_cast<Eigen::Index>(k)]);
-      }
-    }
-  });
+    });
+  }
   return image;
 }
 

@@ -124,7 +124,9 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
       const EstimatedViews estimated = estimated_views(record, generation);
       const std::optional<Pose> chosen = chosen_view(record);
       std::vector<VoxelContribution> contributions;
-      if (chosen) contributions = evaluator.contributions(*chosen);
+      if (chosen && (with_report || evaluator.model() != GainModel::paper)) {
+        contributions = evaluator.contributions(*chosen);
+      }
       const RgbImage picture =
           step_picture(record, model, estimated, evaluator, contributions, setup.sensor, exec);
       const DepthFrame& frame = loop.acquisition().last_frame();

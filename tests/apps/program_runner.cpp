@@ -13,8 +13,6 @@
 namespace viewgain::test {
 namespace {
 
-namespace fs = std::filesystem;
-
 std::string read_file(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

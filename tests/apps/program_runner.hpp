@@ -10,6 +10,15 @@
 #include <string>
 #include <vector>
 
+namespace viewgain::app {
+class Json;
+}
+namespace viewgain {
+namespace fs = std::filesystem;
+using json = app::Json;
+using Strings = std::vector<std::string>;
+}  // namespace viewgain
+
 namespace viewgain::test {
 
 /// What the program viewgain said.

@@ -9,6 +9,9 @@ kind=$1 source=$2 build=$3 work=$4 expected=$5
 here=$source/tests/consumer
 export VIEWGAIN_OBJECTS=$build
 unset LD_LIBRARY_PATH
+unity=$(grep '^VIEWGAIN_UNITY:' "$build/CMakeCache.txt")  # else its objects are others
+static=
+[[ $kind != static* ]] || static=--static
 mkdir -p "$work"
 
 fail() { echo "$kind: $*" >&2; exit 1; }
@@ -29,7 +32,7 @@ check_gain() { # PROGRAM [c]
 by_pkg_config() { # PACKAGE SOURCE PROGRAM [flags]
   # Split on purpose.
   # shellcheck disable=SC2046
-  c++ -std=c++20 "$here/$2" -o "$work/$kind/$3" "${@:4}" $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs "$1")
+  c++ -std=c++20 "$here/$2" -o "$work/$kind/$3" "${@:4}" $(PKG_CONFIG_PATH=$pc pkg-config $static --cflags --libs "$1")
 }
 
 # A project that finds viewgain under a prefix, built, and its three programs run.
@@ -61,7 +64,7 @@ case $kind in
     rm -rf "$work/static_build" "$work/static_prefix"
     cmake -S "$source" -B "$work/static_build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
       -DBUILD_SHARED_LIBS=OFF -DVIEWGAIN_BUILD_APPS=OFF -DVIEWGAIN_BUILD_TESTS=OFF \
-      -DVIEWGAIN_BUILD_PERF=OFF -DVIEWGAIN_BUILD_PYTHON=OFF \
+      -DVIEWGAIN_BUILD_PERF=OFF -DVIEWGAIN_BUILD_PYTHON=OFF "-D$unity" \
       "-DCMAKE_CXX_COMPILER_LAUNCHER=$here/reuse_objects.sh" >/dev/null
     quiet_build "$work/static_build"
     grep -q '^reuse_objects.sh: no' "$work/static_build/build.log" && fail "compiled anew"
@@ -117,7 +120,7 @@ case $kind in
     folder=$work/$kind
     rm -rf "$folder"
     cmake -S "$here/add_subdirectory" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-      "-DVIEWGAIN_SOURCE=$source" -DVIEWGAIN_INSTALL=ON \
+      "-DVIEWGAIN_SOURCE=$source" -DVIEWGAIN_INSTALL=ON "-D$unity" \
       "-DCMAKE_CXX_COMPILER_LAUNCHER=$here/reuse_objects.sh" >/dev/null
     [ ! -e "$folder/CPackConfig.cmake" ] || fail "viewgain says how its user's project is packed"
     quiet_build "$folder"

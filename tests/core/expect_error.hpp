@@ -23,4 +23,11 @@ void expect_error(ErrorCode code, const std::string& part, const Call& call) {
   }
 }
 
+/// A text with `to` in the place of its first `from`.
+inline std::string with(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
 }  // namespace viewgain::test

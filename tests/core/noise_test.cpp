@@ -9,8 +9,6 @@
 #include <numbers>
 #include <vector>
 
-#include "random_values.hpp"
-
 namespace viewgain {
 namespace {
 

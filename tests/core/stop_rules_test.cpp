@@ -6,13 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-#include <optional>
 #include <random>
-#include <vector>
-
-#include "core/expect_error.hpp"
 
 namespace viewgain {
 namespace {

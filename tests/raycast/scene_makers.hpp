@@ -16,6 +16,13 @@
 
 namespace viewgain::test {
 
+/// Builds with sanitizers look for memory errors; the statistics are the optimised build's.
+#ifdef VIEWGAIN_SLOW_BUILD
+constexpr bool kSlowBuild = true;
+#else
+constexpr bool kSlowBuild = false;
+#endif
+
 using Random = std::mt19937_64;
 
 [[nodiscard]] double uniform(Random& random, double low, double high);
@@ -57,6 +64,14 @@ enum class MapFamily {
   odd_and_far,         ///< no multiple of 8, far off the origin
   rotated,             ///< the same with a random T_world_grid
 };
+
+inline constexpr std::array kMapFamilies{MapFamily::salt_and_pepper_01,
+                                         MapFamily::salt_and_pepper_1,
+                                         MapFamily::salt_and_pepper_30,
+                                         MapFamily::tiles_8,
+                                         MapFamily::tiles_128,
+                                         MapFamily::odd_and_far,
+                                         MapFamily::rotated};
 
 /// For tests with a family as parameter.
 [[nodiscard]] std::string family_name(const testing::TestParamInfo<MapFamily>& info);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "viewgain/core/depth_frame.hpp"
-#include "viewgain/core/sensor.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"

@@ -6,7 +6,6 @@
 #include <memory>
 #include <numbers>
 
-#include "viewgain/core/generators.hpp"
 #include "viewgain/core/mix64.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -87,11 +89,12 @@ void write_struct(Struct* value, Struct whole) noexcept {
   *value = whole;
 }
 
-/// Writes the defaults. A struct of another size, which is another header's, gets that size alone,
-/// by which all functions refuse it.
+/// Writes the defaults. A struct of another size, which is another header's, gets zeros and that
+/// size, by which all functions refuse it.
 template <typename Struct>
 void initialise(Struct* value, std::size_t struct_size) noexcept {
   if (value == nullptr || struct_size < sizeof(value->struct_size)) return;
+  std::memset(static_cast<void*>(value), 0, std::min(struct_size, sizeof(Struct)));
   if (struct_size == sizeof(Struct)) *value = defaults<Struct>();
   value->struct_size = struct_size;
 }

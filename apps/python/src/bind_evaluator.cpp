@@ -41,14 +41,12 @@ std::unique_ptr<Evaluator> held(const Scene& scene, const Sensor& sensor,
                     pixel_stride, std::move(evaluator)});
 }
 
-std::unique_ptr<Evaluator> make(const Given<Scene>& given, const Given<Sensor>& of,
-                                const std::string& gain, const std::string& criterion,
-                                int pixel_stride, std::optional<double> prior_sigma,
-                                std::optional<double> min_range, std::optional<double> max_range,
-                                const py::iterable& weights,
-                                std::optional<double> refinement_weight,
-                                std::optional<double> support_plane, bool posterior_entropy,
-                                int num_threads) {
+std::unique_ptr<Evaluator> make_evaluator(
+    const Given<Scene>& given, const Given<Sensor>& of, const std::string& gain,
+    const std::string& criterion, int pixel_stride, std::optional<double> prior_sigma,
+    std::optional<double> min_range, std::optional<double> max_range, const py::iterable& weights,
+    std::optional<double> refinement_weight, std::optional<double> support_plane,
+    bool posterior_entropy, int num_threads) {
   const Scene& scene = *given;
   const Sensor& sensor = *of;
   GainConfig config;
@@ -204,7 +202,7 @@ void bind_evaluator(py::module_& module) {
   auto evaluator = bound_class<Evaluator>(module, "GainEvaluator", kEvaluatorDoc);
   refuse_pickling(evaluator);
   evaluator
-      .def(py::init(&make), py::arg("scene"), py::arg("sensor"), py::kw_only(),
+      .def(py::init(&make_evaluator), py::arg("scene"), py::arg("sensor"), py::kw_only(),
            py::arg("gain") = "paper", py::arg("criterion") = "log_diagonal",
            py::arg("pixel_stride") = 1, py::arg("prior_sigma") = py::none(),
            py::arg("min_range") = py::none(), py::arg("max_range") = py::none(),

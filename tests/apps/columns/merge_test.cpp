@@ -8,19 +8,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
-#include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "core/expect_error.hpp"
 #include "viewgain/core/mix64.hpp"
 #include "viewgain/core/text.hpp"
 
 namespace viewgain {
 namespace {
-
-using Strings = std::vector<std::string>;
 
 class Merge : public test::ProgramTest {
  protected:
@@ -54,10 +51,7 @@ class Merge : public test::ProgramTest {
   }
   // a.csv with a text in another's place.
   [[nodiscard]] std::string changed(const std::string& from, const std::string& to) const {
-    std::string text = read("a.csv");
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return text.replace(at, from.size(), to);
+    return test::with(read("a.csv"), from, to);
   }
   void expect_refused(const Strings& parts, const Strings& words) const {
     const test::ProgramResult result = run(test::joined({"merge", "--out", "out.csv"}, parts));

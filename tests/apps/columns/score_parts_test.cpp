@@ -11,13 +11,10 @@
 #include "apps/program_runner.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
 namespace {
-
-using Strings = std::vector<std::string>;
 
 class ScoreParts : public test::ProgramTest {
  protected:

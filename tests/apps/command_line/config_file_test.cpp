@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // --config and --save-config: calls that are repeated from a file, and files that are refused.
-#include <algorithm>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,9 +12,6 @@
 
 namespace viewgain {
 namespace {
-
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
 
 json without_seconds(json value) {
   if (value.is_object()) value.erase("seconds");

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -22,9 +21,6 @@
 
 namespace viewgain {
 namespace {
-
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
 
 // In an order in which the examples of their help find what they name.
 const Strings kSubcommands{"simulate", "import",     "calibrate",   "integrate", "next", "follow",

@@ -17,8 +17,6 @@
 namespace viewgain::app {
 namespace {
 
-using Strings = std::vector<std::string>;
-
 TEST(ProgressText, HasRateAndTimeLeft) {
   EXPECT_EQ(progress_text("frame", 30, 120, 2.5), "frame 30 of 120, 25 %, 12/s, 8 s left");
   EXPECT_EQ(progress_text("pose", 1500, 200'000, 3),

@@ -2,17 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What is misspelled is refused by naming what was meant.
-#include <algorithm>
-#include <sstream>
 #include <string>
-#include <vector>
 
 #include "apps/program_runner.hpp"
 
 namespace viewgain {
 namespace {
-
-using Strings = std::vector<std::string>;
 
 class Spelling : public test::ProgramTest {
  protected:

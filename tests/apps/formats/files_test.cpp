@@ -14,6 +14,7 @@
 
 #include "apps/program_runner.hpp"
 #include "core/comma_locale.hpp"
+#include "core/expect_error.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
@@ -24,20 +25,16 @@
 namespace viewgain {
 namespace {
 
+using test::expect_error;
+
 class Files : public test::ProgramTest {
  protected:
-  // The message of the Error that reading `name` throws.
-  std::string sensor_error(const std::string& text) const {
+  // Reading this sensor throws an Error with the word and the file's name.
+  void expect_sensor_error(const std::string& text, const std::string& word) const {
     write("bad.toml", text);
-    try {
-      (void)read_sensor_toml(dir / "bad.toml");
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::format);
-      EXPECT_NE(std::string(error.what()).find("bad.toml"), std::string::npos) << error.what();
-      return error.what();
+    for (const std::string& part : {word, std::string("bad.toml")}) {
+      expect_error(ErrorCode::format, part, [&] { (void)read_sensor_toml(dir / "bad.toml"); });
     }
-    ADD_FAILURE() << "was read: " << text;
-    return {};
   }
 };
 
@@ -104,8 +101,7 @@ TEST_F(Files, SensorsOfBeforeHaveTheDefaultFrequencyAndLeastAmplitude) {
     write("sensor.toml", text);
     EXPECT_TRUE(equal(read_sensor_toml(dir / "sensor.toml"), sensor)) << text;
   }
-  EXPECT_NE(sensor_error(text + "modulation_frequency = -1.0\n").find("modulation_frequency"),
-            std::string::npos);
+  expect_sensor_error(text + "modulation_frequency = -1.0\n", "modulation_frequency");
 }
 
 TEST_F(Files, SensorsAreWrittenAlikeInEveryLocale) {
@@ -131,7 +127,7 @@ TEST_F(Files, SensorsSayHowSurePosesAre) {
     const std::string key = "pose_sigma = ";
     std::string damaged = text;
     damaged.replace(damaged.find(key), key.size() + 15, key + bad);
-    EXPECT_NE(sensor_error(damaged).find("pose_sigma"), std::string::npos) << bad;
+    expect_sensor_error(damaged, "pose_sigma");
   }
 }
 
@@ -147,7 +143,7 @@ TEST_F(Files, StereoWithoutAFocalLengthGoesByTheCameras) {
   EXPECT_TRUE(equal(read, sensor)) << text;
   sensor.noise = StereoNoise{noise.subpixel, sensor.camera.fx, noise.baseline};
   EXPECT_EQ(read.sigmas(1.0).axial, sensor.sigmas(1.0).axial);
-  EXPECT_NE(sensor_error(text + "focal = -1.0\n").find("focal"), std::string::npos);
+  expect_sensor_error(text + "focal = -1.0\n", "focal");
 }
 
 TEST_F(Files, MapsRememberTheirFrames) {
@@ -163,13 +159,7 @@ TEST_F(Files, MapsRememberTheirFrames) {
                            "0123456789ABCDEF a.png\n", "0123456789abcdef0 a.png\n", "\n"}) {
     save_vdb(octree_map(), dir / "bad.vdb",
              {.with_covariance = false, .notes = {{"frames", note}}});
-    try {
-      (void)load_map_of_sensor(dir / "bad.vdb");
-      ADD_FAILURE() << note;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::format);
-      EXPECT_NE(std::string(error.what()).find("bad.vdb"), std::string::npos) << error.what();
-    }
+    expect_error(ErrorCode::format, "bad.vdb", [&] { (void)load_map_of_sensor(dir / "bad.vdb"); });
   }
   EXPECT_THROW((void)frame_identity(FrameSequence{}, 0), Error);
 }
@@ -192,10 +182,7 @@ TEST_F(Files, ATreeIsReadFromAPipeAsFromAFile) {
 TEST_F(Files, SensorErrorsNameTheKey) {
   const std::string good = sensor_toml(sensor_preset("d435"));
   const auto with = [&good](const std::string& from, const std::string& to) {
-    std::string text = good;
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return text.replace(at, from.size(), to);
+    return test::with(good, from, to);
   };
   const std::vector<std::pair<std::string, std::string>> cases{
       {with("fx = 447.0", ""), "\"camera.fx\" is missing"},
@@ -230,10 +217,7 @@ TEST_F(Files, SensorErrorsNameTheKey) {
        "\"range_calibration.unit\" is unknown"},
       {with("[camera]", "range_calibration = 3\n[camera]"),
        "\"range_calibration\" must be a table"}};
-  for (const auto& [text, wanted] : cases) {
-    const std::string message = sensor_error(text);
-    EXPECT_NE(message.find(wanted), std::string::npos) << message << " <- " << wanted;
-  }
+  for (const auto& [text, wanted] : cases) expect_sensor_error(text, wanted);
   EXPECT_THROW((void)load_sensor("none.toml"), Error);
   EXPECT_THROW((void)load_sensor("sr5000"), Error);
 }

@@ -3,17 +3,15 @@
 #include "viewgain/formats/ply.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <span>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/expect_error.hpp"
+#include "core/temporary_folder.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/mesh/surface.hpp"
@@ -23,22 +21,8 @@ namespace {
 
 class Ply : public testing::Test {
  protected:
-  Ply() {
-    const std::string name =
-        testing::UnitTest::GetInstance()->current_test_info()->name() + std::to_string(getpid());
-    folder_ = std::filesystem::temp_directory_path() / ("viewgain_" + name);
-    std::filesystem::create_directories(folder_);
-  }
-  ~Ply() override { std::filesystem::remove_all(folder_); }
-
-  static std::string bytes_of(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << file.rdbuf();
-    return bytes.str();
-  }
-
-  std::filesystem::path folder_;
+  test::TemporaryFolder own_;
+  const std::filesystem::path folder_ = own_.path();
 };
 
 SurfaceMesh tetrahedron() {
@@ -71,7 +55,7 @@ TEST_F(Ply, MeshComesBackExactly) {
     EXPECT_EQ(read.vertices, mesh.vertices);
     EXPECT_EQ(read.triangles, mesh.triangles);
   }
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+  EXPECT_EQ(own_.entries(), 1);
 }
 
 TEST_F(Ply, BytesAreAsTheHeaderSays) {
@@ -79,7 +63,7 @@ TEST_F(Ply, BytesAreAsTheHeaderSays) {
   const std::vector<float> sigma{0.5F, 0.25F, 0.125F, 0.001F};
   const auto path = folder_ / "surface.ply";
   write_ply(path, arrays_of(mesh, sigma));
-  const std::string bytes = bytes_of(path);
+  const std::string bytes = test::read_all(path);
   const std::string end = "end_header\n";
   const std::size_t data = bytes.find(end) + end.size();
   const std::string header = bytes.substr(0, data);
@@ -108,14 +92,14 @@ TEST_F(Ply, PointsWithAndWithoutNormals) {
       if (normals) points.normals = mesh.normals;
       if (sigmas) points.sigma = sigma;
       write_ply(path, points);
-      const std::string bytes = bytes_of(path);
+      const std::string bytes = test::read_all(path);
       EXPECT_EQ(bytes.find("face"), std::string::npos);
       const std::size_t vertex = 24U + (normals ? 12U : 0U) + (sigmas ? 4U : 0U);
       EXPECT_EQ(bytes.size(), bytes.find(end) + end.size() + 4 * vertex);
     }
   }
   write_ply(folder_ / "none.ply", {});
-  EXPECT_NE(bytes_of(folder_ / "none.ply").find("element vertex 0\n"), std::string::npos);
+  EXPECT_NE(test::read_all(folder_ / "none.ply").find("element vertex 0\n"), std::string::npos);
 }
 
 TEST_F(Ply, BadInputIsRefusedAndLeavesNoFile) {
@@ -133,12 +117,8 @@ TEST_F(Ply, BadInputIsRefusedAndLeavesNoFile) {
   mesh.normals.pop_back();
   expect_refused("4 points but 3 normals", {});
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
-  try {
-    write_ply(folder_ / "no such folder" / "surface.ply", {});
-    ADD_FAILURE() << "wrote into a folder that is not there";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::io);
-  }
+  test::expect_error(ErrorCode::io, "",
+                     [&] { write_ply(folder_ / "no such folder" / "surface.ply", {}); });
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "apps/viewgain/pose_file_text.hpp"
 #include "cli/json.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
@@ -25,10 +26,6 @@
 
 namespace viewgain {
 namespace {
-
-namespace fs = std::filesystem;
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
 
 constexpr int kWidth = 48, kHeight = 36;
 constexpr std::size_t kFrames = 5;
@@ -52,14 +49,6 @@ GrayImage image_of(std::size_t i, int width = kWidth, int height = kHeight) {
 GrayImage without_saturated(GrayImage image) {
   std::replace(image.pixels.begin(), image.pixels.end(), std::uint16_t{65535}, std::uint16_t{0});
   return image;
-}
-
-std::string matrix_text(const Pose& pose) {
-  std::string text;
-  for (std::size_t i = 0; i < 12; ++i) {
-    text += exact_text(pose.m[i]) + (i % 4 == 3 ? "\n" : " ");
-  }
-  return text + "0 0 0 1\n";
 }
 
 // Its rotation scaled by this much: off by about twice that.
@@ -132,7 +121,7 @@ class Recordings : public test::ProgramTest {
   void write_scannet_recording() const {
     for (std::size_t i = 0; i < kFrames; ++i) {
       write_image("rec/depth/" + std::to_string(i) + ".png", image_of(i));
-      write("rec/pose/" + std::to_string(i) + ".txt", matrix_text(pose_of(i)));
+      write("rec/pose/" + std::to_string(i) + ".txt", test::matrix_text(pose_of(i)));
     }
     write("rec/intrinsic/intrinsic_depth.txt", "60 0 23.5 0\n0 61 17.5 0\n0 0 1 0\n0 0 0 1\n");
   }
@@ -337,7 +326,7 @@ TEST_F(Recordings, WhatCannotBeUsedIsDroppedAndCounted) {
 
 TEST_F(Recordings, RotationsThatAreOffAreMendedAndCounted) {
   write_scannet_recording();
-  write("rec/pose/2.txt", matrix_text(off_by(pose_of(2), 2e-3)));
+  write("rec/pose/2.txt", test::matrix_text(off_by(pose_of(2), 2e-3)));
   EXPECT_EQ(import_json("scannet")["orthonormalized_poses"], 1);
   expect_frames(1e-3, {0, 1, 2, 3, 4}, 1e-12);
 

@@ -2,26 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/formats/staged_folder.hpp"
 
-#include <clocale>
-#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "options/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/run_folder.hpp"
-#include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain {
 namespace {
-
-namespace fs = std::filesystem;
-using Strings = std::vector<std::string>;
 
 class StagedFolderTest : public test::ProgramTest {
  protected:

@@ -16,8 +16,6 @@
 #include <vector>
 
 #include "core/temporary_folder.hpp"
-#include "viewgain/core/generators.hpp"
-#include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/frame_watch.hpp"
 #include "viewgain/formats/png.hpp"

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 #include <png.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,8 +11,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -22,6 +19,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/expect_error.hpp"
+#include "core/temporary_folder.hpp"
 #include "pictures/picture_parts.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/error.hpp"
@@ -125,13 +124,6 @@ Sheet make_sheet(bool inside_out = false) {
 // In front of the sheet, a map with unknown and occupied voxels.
 class ViewPictureTest : public testing::Test {
  protected:
-  ViewPictureTest()
-      : folder_(std::filesystem::temp_directory_path() /
-                ("viewgain_view_picture_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~ViewPictureTest() override { std::filesystem::remove_all(folder_); }
-
   static void SetUpTestSuite() {
     const BeliefGrid grid = test::camel_grid(48);
     evaluator_ = std::make_unique<GainEvaluator>(VoxelScene::build(grid, {}), sensor_);
@@ -153,12 +145,10 @@ class ViewPictureTest : public testing::Test {
     return read_png(folder_ / "view.png");
   }
 
-  [[nodiscard]] std::string bytes() const {
-    std::ifstream file(folder_ / "view.png", std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  [[nodiscard]] std::string bytes() const { return test::read_all(folder_ / "view.png"); }
 
-  std::filesystem::path folder_;
+  test::TemporaryFolder own_;
+  const std::filesystem::path folder_ = own_.path();
   static inline const Sensor sensor_ = sensor_preset("sr4000");
   static inline std::unique_ptr<GainEvaluator> evaluator_;
 };
@@ -302,12 +292,9 @@ TEST_F(ViewPictureTest, RefusesWhatItCannotDraw) {
   const EstimatedViews none;
   Pose bad = chosen();
   bad.m[0] += 0.1;
-  try {
+  test::expect_error(ErrorCode::invalid_argument, "", [&] {
     (void)view_picture(picture(nothing, none, {}, bad), {.num_threads = 1});
-    FAIL() << "a pose that is not rigid was drawn";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_argument);
-  }
+  });
 
   // A candidate that is no pose is left out.
   const std::vector<Candidate> candidates{{bad, "test", BoundaryClass::left}};

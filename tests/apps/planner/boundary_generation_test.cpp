@@ -8,8 +8,6 @@
 
 #include <limits>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "apps/planner/planner_scene.hpp"
 #include "core/expect_error.hpp"

@@ -4,14 +4,12 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <utility>
 
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
-#include "viewgain/raycast/surface_scene.hpp"
 
 namespace viewgain::test {
 

@@ -14,7 +14,6 @@
 
 #include "apps/planner/planner_scene.hpp"
 #include "core/expect_error.hpp"
-#include "viewgain/core/generators.hpp"
 
 namespace viewgain {
 namespace {

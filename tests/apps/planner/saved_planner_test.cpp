@@ -3,18 +3,10 @@
 
 // A planner that is saved and loaded goes on bit for bit.
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <chrono>
-#include <cmath>
-#include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <set>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 

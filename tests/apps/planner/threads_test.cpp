@@ -12,7 +12,6 @@
 #include <memory>
 
 #include "apps/planner/planner_scene.hpp"
-#include "viewgain/core/generators.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
 #include "viewgain/planner_mesh/truth.hpp"

@@ -9,10 +9,8 @@
 #include <cmath>
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "apps/planner/planner_scene.hpp"
-#include "viewgain/core/generators.hpp"
 
 namespace viewgain {
 namespace {

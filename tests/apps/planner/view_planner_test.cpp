@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -17,7 +16,6 @@
 
 #include "apps/planner/bin_scene.hpp"
 #include "core/expect_error.hpp"
-#include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/planner/feasible_poses.hpp"
 
 namespace viewgain {

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "apps/planner/planner_scene.hpp"
-#include "viewgain/core/generators.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 
 namespace viewgain {

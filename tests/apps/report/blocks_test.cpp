@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>

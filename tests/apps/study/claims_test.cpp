@@ -12,34 +12,26 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "core/temporary_folder.hpp"
 
 namespace viewgain {
 namespace {
 
 namespace fs = std::filesystem;
+using test::read_all;
+using test::TemporaryFolder;
 
 class ClaimsTest : public testing::Test {
  protected:
-  ClaimsTest() {
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-  }
-  ~ClaimsTest() override { fs::remove_all(folder); }
+  [[nodiscard]] std::size_t files() const { return static_cast<std::size_t>(own.entries()); }
+  [[nodiscard]] std::string text(const std::string& name) const { return read_all(folder / name); }
 
-  [[nodiscard]] std::size_t files() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-  }
-  [[nodiscard]] std::string text(const std::string& name) const {
-    std::ifstream in(folder / name);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-
-  fs::path folder = fs::temp_directory_path() / ("viewgain-claims-" + std::to_string(::getpid()));
+  TemporaryFolder own;
+  const fs::path folder = own.path();
 };
 
 TEST_F(ClaimsTest, OneOwnerAPiece) {

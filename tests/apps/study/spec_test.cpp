@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,7 +21,6 @@ namespace viewgain {
 namespace {
 
 using ordered_json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
 
 constexpr const char* kSpec = R"(objects = ["cube.off", "more/ball.off"]
 policies = ["gain:combined", "frontier", "gain:rear_side_voxel:shipped"]

@@ -21,10 +21,6 @@
 namespace viewgain {
 namespace {
 
-namespace fs = std::filesystem;
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
-
 class Study : public test::ProgramTest {
  protected:
   Study() {

@@ -2,14 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <string>
-#include <vector>
 
 #include "apps/program_runner.hpp"
 
 namespace viewgain {
 namespace {
-
-using Strings = std::vector<std::string>;
 
 class BadInputTest : public test::ProgramTest {
  protected:

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/program_runner.hpp"
@@ -17,13 +16,9 @@
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/png.hpp"
-#include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain {
 namespace {
-
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
 
 class Calibrate : public test::ProgramTest {
  protected:

@@ -3,11 +3,9 @@
 
 // `viewgain candidates` as a user would run it, on the map of a short run.
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "apps/program_runner.hpp"
 #include "cli/json.hpp"
@@ -15,9 +13,6 @@
 
 namespace viewgain {
 namespace {
-
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
 
 class Candidates : public test::ProgramTest {
  protected:

@@ -12,17 +12,12 @@
 #include <functional>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "apps/program_runner.hpp"
 #include "cli/json.hpp"
 
 namespace viewgain {
 namespace {
-
-namespace fs = std::filesystem;
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
 
 class EndedCalls : public test::ProgramTest {
  protected:

@@ -3,28 +3,18 @@
 
 // `follow` beside a program that writes masks of the robot's arm, or confidences, with its frames.
 
-#include <sys/wait.h>
-
-#include <algorithm>
-#include <array>
-#include <chrono>
-#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "apps/program_runner.hpp"
 #include "apps/viewgain/pose_file_text.hpp"
 #include "cli/json.hpp"
-#include "core/temporary_folder.hpp"
-#include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/png.hpp"
@@ -32,10 +22,7 @@
 namespace viewgain {
 namespace {
 
-namespace fs = std::filesystem;
-using json = viewgain::app::Json;
 using test::matrix_text;
-using Strings = std::vector<std::string>;
 
 constexpr std::size_t kFrames = 6;
 constexpr int kWidth = 48, kHeight = 36;  // [px]

@@ -29,17 +29,13 @@
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/png.hpp"
-#include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/planner/view_planner.hpp"
 
 namespace viewgain {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace std::chrono_literals;
-using json = viewgain::app::Json;
 using test::matrix_text;
-using Strings = std::vector<std::string>;
 
 constexpr std::size_t kGood = 30;
 constexpr double kVoxel = 0.025;  // [m]

@@ -3,28 +3,16 @@
 
 // OctoMap trees and point clouds on the command line.
 
-#include <sys/wait.h>
-
-#include <chrono>
-#include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include "apps/program_runner.hpp"
 #include "cli/json.hpp"
-#include "viewgain/core/pose_io.hpp"
-#include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
 namespace {
-
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
 
 class ForeignMaps : public test::ProgramTest {
  protected:

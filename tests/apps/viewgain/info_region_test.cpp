@@ -4,14 +4,11 @@
 
 #include "apps/program_runner.hpp"
 #include "cli/json.hpp"
-#include "viewgain/core/generators.hpp"
 #include "viewgain/grid/region_statistics.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
 namespace {
-
-using json = viewgain::app::Json;
 
 class InfoRegion : public test::ProgramTest {
  protected:

@@ -19,9 +19,6 @@
 namespace viewgain {
 namespace {
 
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
-
 // A box [low, high] as OFF, its vertices and faces appended.
 struct Off {
   std::ostringstream vertices, faces;

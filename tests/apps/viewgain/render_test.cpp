@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,8 +12,6 @@
 
 namespace viewgain {
 namespace {
-
-using json = viewgain::app::Json;
 
 // How many colours a picture has.
 std::size_t colours(const RgbImage& image) {

@@ -3,15 +3,12 @@
 
 // What the program puts into a report; tests/apps/report tries the page in a browser.
 #include <string>
-#include <vector>
 
 #include "apps/program_runner.hpp"
 #include "cli/json.hpp"
 
 namespace viewgain {
 namespace {
-
-using json = viewgain::app::Json;
 
 class Reports : public test::ProgramTest {
  protected:

@@ -5,7 +5,6 @@
 #include <map>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/program_runner.hpp"
@@ -19,9 +18,6 @@
 
 namespace viewgain {
 namespace {
-
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
 
 class ScoreCandidates : public test::ProgramTest {
  protected:

@@ -17,9 +17,6 @@
 namespace viewgain {
 namespace {
 
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
-
 class ScoreClassic : public test::ProgramTest {
  protected:
   ScoreClassic() : poses(sphere_poses(40, 0.45)) {

@@ -3,24 +3,18 @@
 
 // What disturbs the simulated time-of-flight camera, and what integrate does about it.
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "apps/program_runner.hpp"
 #include "cli/json.hpp"
-#include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 
 namespace viewgain {
 namespace {
-
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
 
 constexpr int kPixels = 48 * 36;
 

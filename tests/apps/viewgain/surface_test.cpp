@@ -2,18 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // `viewgain surface` as a user would run it, on the map of a short run.
-#include <filesystem>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "apps/program_runner.hpp"
 #include "cli/json.hpp"
 
 namespace viewgain {
 namespace {
-
-using json = viewgain::app::Json;
 
 class Surface : public test::ProgramTest {
  protected:

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <regex>
-#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -13,17 +10,12 @@
 #include "cli/json.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/frames.hpp"
-#include "viewgain/formats/png.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain {
 namespace {
-
-using json = viewgain::app::Json;
-using Strings = std::vector<std::string>;
 
 std::vector<Strings> rows_of(const std::string& csv) {
   std::vector<Strings> rows;

@@ -8,7 +8,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <random>
 
@@ -16,7 +15,6 @@
 #include "core/temporary_folder.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/grid/octomap_tree.hpp"
-#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
 namespace {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 
+#include "core/expect_error.hpp"
 #include "grid/analytic_frames.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/integrate.hpp"
@@ -75,14 +76,8 @@ TEST(Amplitude, OfAnotherSizeIsRefused) {
   FrameIntegrator integrator(sensor);
   for (const std::size_t size : {1U, 11U, 13U}) {
     const DepthFrame frame{4, 3, std::vector<float>(12, 0.5F), std::vector<float>(size, 1.0F)};
-    try {
-      integrator.integrate(grid, frame, Pose{});
-      ADD_FAILURE() << size;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::invalid_argument);
-      EXPECT_NE(std::string(error.what()).find(std::to_string(size) + " amplitudes"),
-                std::string::npos);
-    }
+    expect_error(ErrorCode::invalid_argument, std::to_string(size) + " amplitudes",
+                 [&] { integrator.integrate(grid, frame, Pose{}); });
     EXPECT_THROW((void)reading_bounds(sensor, frame, Pose{}), Error);
   }
   EXPECT_TRUE(grid.views().empty());

@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <string>
 #include <tuple>
@@ -21,40 +20,6 @@ namespace viewgain {
 namespace {
 
 using namespace test;
-
-/// A frame of the object with all three kinds of pixel, readings too near and too far among them.
-DepthFrame mixed_frame(const Sensor& sensor, const Pose& pose, std::mt19937& random) {
-  DepthFrame frame = see_spheres(sensor, pose, three_spheres_in_a_room());
-  std::uniform_int_distribution<int> dice(0, 39);
-  for (float& depth : frame.depth) {
-    switch (dice(random)) {
-      case 0:
-        depth = DepthFrame::kInvalid;
-        break;
-      case 1:
-        depth = DepthFrame::kOutOfRange;
-        break;
-      case 2:
-        depth = std::numeric_limits<float>::quiet_NaN();
-        break;
-      case 3:
-        depth = -depth;
-        break;
-      case 4:
-        depth = 0.01F;
-        break;  // nearer than min_range
-      case 5:
-        depth = 50.0F;
-        break;  // farther than max_range
-      case 6:
-        depth *= 0.7F;
-        break;  // in free space
-      default:
-        break;
-    }
-  }
-  return frame;
-}
 
 struct Setting {
   const char* name;

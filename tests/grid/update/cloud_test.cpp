@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
@@ -30,31 +29,6 @@ Sensor cloud_sensor() {
   Sensor sensor = small_sensor(40, 30);
   sensor.noise = ConstantNoise{0.004, 0.002};
   return sensor;
-}
-
-/// A frame with readings too near, too far, invalid and in free space.
-DepthFrame mixed_frame(const Sensor& sensor, const Pose& pose, std::mt19937& random) {
-  DepthFrame frame = see_spheres(sensor, pose, three_spheres_in_a_room());
-  std::uniform_int_distribution<int> dice(0, 29);
-  for (float& depth : frame.depth) {
-    switch (dice(random)) {
-      case 0:
-        depth = DepthFrame::kInvalid;
-        break;
-      case 1:
-        depth = 0.01F;
-        break;
-      case 2:
-        depth = 50.0F;
-        break;
-      case 3:
-        depth *= 0.7F;
-        break;
-      default:
-        break;
-    }
-  }
-  return frame;
 }
 
 /// The frame's points in the world; NaN where there is no depth.
@@ -84,7 +58,7 @@ TEST(Cloud, MakesTheMapThatTheLiteralLoopsMake) {
       CloudIntegrator integrator(sensor, {occupancy, {}}, {2});
       for (int view = 0; view < 4; ++view) {
         const Pose pose = ring_view(view);
-        const DepthFrame frame = mixed_frame(sensor, pose, random);
+        const DepthFrame frame = mixed_frame(sensor, pose, random, false);
         oracle.integrate(sensor, frame, pose, {Carve::lines, occupancy, {}});
         const IntegrationReport report =
             integrator.integrate(grid, points_of(sensor, frame, pose), pose);
@@ -104,7 +78,7 @@ TEST(Cloud, ThreadsDoNotMatter) {
   const Sensor sensor = cloud_sensor();
   std::mt19937 random(1);
   std::vector<std::string> hashes;
-  const DepthFrame frame = mixed_frame(sensor, ring_view(1), random);
+  const DepthFrame frame = mixed_frame(sensor, ring_view(1), random, false);
   const Points points = points_of(sensor, frame, ring_view(1));
   for (const int threads : {1, 2, 3, 7}) {
     BeliefGrid grid(object_grid(64));

@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "core/expect_error.hpp"

@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cstdlib>
 #include <new>
-#include <string>
 #include <tuple>
 #include <vector>
 

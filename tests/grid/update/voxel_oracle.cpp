@@ -10,6 +10,8 @@
 #include <limits>
 #include <optional>
 
+#include "grid/analytic_frames.hpp"
+
 namespace viewgain::test {
 namespace {
 
@@ -256,6 +258,40 @@ std::uint64_t VoxelOracle::differences(const BeliefGrid& grid) const {
     }
   }
   return differences;
+}
+
+DepthFrame mixed_frame(const Sensor& sensor, const Pose& pose, std::mt19937& random,
+                       bool out_of_range) {
+  DepthFrame frame = see_spheres(sensor, pose, three_spheres_in_a_room());
+  std::uniform_int_distribution<int> dice(0, 39);
+  for (float& depth : frame.depth) {
+    switch (dice(random)) {
+      case 0:
+        depth = DepthFrame::kInvalid;
+        break;
+      case 1:
+        depth = out_of_range ? DepthFrame::kOutOfRange : DepthFrame::kInvalid;
+        break;
+      case 2:
+        depth = std::numeric_limits<float>::quiet_NaN();
+        break;
+      case 3:
+        depth = -depth;
+        break;
+      case 4:
+        depth = 0.01F;
+        break;  // nearer than min_range
+      case 5:
+        depth = 50.0F;
+        break;  // farther than max_range
+      case 6:
+        depth *= 0.7F;
+        break;  // in free space
+      default:
+        break;
+    }
+  }
+  return frame;
 }
 
 }  // namespace viewgain::test

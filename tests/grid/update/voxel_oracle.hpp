@@ -6,12 +6,18 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <random>
 #include <vector>
 
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"
 
 namespace viewgain::test {
+
+/// A frame of the object with all three kinds of pixel, readings too near and too far among them;
+/// `out_of_range`: else those are invalid.
+[[nodiscard]] DepthFrame mixed_frame(const Sensor& sensor, const Pose& pose, std::mt19937& random,
+                                     bool out_of_range = true);
 
 /// The map update of DESIGN.md section 5 as plain loops over all voxels and all pixels, one entry a
 /// voxel. For sensors whose noise does not depend on the angle of incidence.

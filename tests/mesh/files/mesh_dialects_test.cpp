@@ -6,10 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstring>
 #include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/expect_error.hpp"
@@ -99,10 +97,7 @@ TEST_F(MeshDialects, ByteOrderMarks) {
 }
 
 TEST_F(MeshDialects, PlyLayouts) {
-  const auto with = [](std::string text, const std::string& from, const std::string& to) {
-    EXPECT_NE(text.find(from), std::string::npos) << from;
-    return text.replace(text.find(from), from.size(), to);
-  };
+  using test::with;
   expect_square("integers.ply", with(kPly, "float x", "uchar x"));
   expect_square("index.ply", with(kPly, "uchar int vertex_indices", "int uint vertex_index"));
   expect_square("short.ply", with(kPly, "uchar int", "uint16 uint8"));

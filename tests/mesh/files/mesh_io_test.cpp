@@ -3,57 +3,44 @@
 #include "viewgain/mesh/mesh_io.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
+#include "core/expect_error.hpp"
+#include "core/temporary_folder.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain {
 namespace {
 
-namespace fs = std::filesystem;
-
 class MeshIo : public testing::Test {
  protected:
-  MeshIo() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    dir_ = fs::temp_directory_path() /
-           ("viewgain-mesh-" + std::string(info->name()) + "-" + std::to_string(::getpid()));
-    fs::create_directories(dir_);
-  }
-  ~MeshIo() override { fs::remove_all(dir_); }
-
-  fs::path write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(dir_ / name, std::ios::binary) << bytes;
-    return dir_ / name;
-  }
-
-  // The message of the Error that reading throws; fails the test if it throws none.
-  std::string error_of(const std::string& name, const std::string& bytes) const {
-    const fs::path path = write(name, bytes);
+  // Reading throws an Error of one line that has the part and the file's name.
+  void expect_refused(const std::string& name, const std::string& bytes,
+                      const std::string& part = "") const {
+    const auto path = write(name, bytes);
     try {
       (void)read_mesh(path);
+      ADD_FAILURE() << name << " was read: " << bytes.substr(0, 60);
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::format) << error.what();
-      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
-      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-      return error.what();
+      const std::string said = error.what();
+      EXPECT_EQ(error.code(), ErrorCode::format) << said;
+      for (const std::string& word : {name, part}) EXPECT_NE(said.find(word), said.npos) << said;
+      EXPECT_EQ(said.find('\n'), said.npos) << said;
     }
-    ADD_FAILURE() << name << " was read: " << bytes.substr(0, 60);
-    return {};
   }
 
-  fs::path dir_;
+  std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+    return folder_.file(name, bytes);
+  }
+
+  test::TemporaryFolder folder_;
 };
 
 template <typename Number>
@@ -195,67 +182,56 @@ TEST_F(MeshIo, ReadsPlyAndStlAsciiAndBinary) {
 }
 
 TEST_F(MeshIo, MissingAndForeignFiles) {
-  try {
-    (void)read_mesh(dir_ / "none.off");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::io);
-  }
-  EXPECT_NE(error_of("mesh.txt", "OFF").find("not a mesh file"), std::string::npos);
-  EXPECT_NE(error_of("empty.off", "").find("empty"), std::string::npos);
-  (void)error_of("png.off", "\x89PNG\r\n\x1a\n");
-  (void)error_of("png.ply", "\x89PNG\r\n\x1a\n");
-  (void)error_of("png.stl", "\x89PNG\r\n\x1a\n");
-  (void)error_of("png.obj", "\x89PNG\r\n\x1a\n");
-  EXPECT_THROW((void)read_mesh(dir_), Error);
+  test::expect_error(ErrorCode::io, "none.off",
+                     [&] { (void)read_mesh(folder_.path() / "none.off"); });
+  expect_refused("mesh.txt", "OFF", "not a mesh file");
+  expect_refused("empty.off", "", "empty");
+  expect_refused("png.off", "\x89PNG\r\n\x1a\n");
+  expect_refused("png.ply", "\x89PNG\r\n\x1a\n");
+  expect_refused("png.stl", "\x89PNG\r\n\x1a\n");
+  expect_refused("png.obj", "\x89PNG\r\n\x1a\n");
+  EXPECT_THROW((void)read_mesh(folder_.path()), Error);
 }
 
 TEST_F(MeshIo, NoFaces) {
-  EXPECT_NE(error_of("a.off", std::string("OFF\n8 0 0\n") + kBoxVertices).find("no faces"),
-            std::string::npos);
-  EXPECT_NE(error_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n").find("no faces"), std::string::npos);
-  EXPECT_NE(error_of("a.ply",
-                     "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty "
-                     "float y\nproperty float z\nend_header\n0 0 0\n")
-                .find("no faces"),
-            std::string::npos);
-  EXPECT_NE(error_of("a.stl", std::string(84, '\0')).find("no faces"), std::string::npos);
-  EXPECT_NE(error_of("edges.off", "OFF\n2 1 0\n0 0 0\n1 0 0\n2 0 1\n").find("no faces"),
-            std::string::npos);
+  expect_refused("a.off", std::string("OFF\n8 0 0\n") + kBoxVertices, "no faces");
+  expect_refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "no faces");
+  expect_refused("a.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty "
+                 "float y\nproperty float z\nend_header\n0 0 0\n",
+                 "no faces");
+  expect_refused("a.stl", std::string(84, '\0'), "no faces");
+  expect_refused("edges.off", "OFF\n2 1 0\n0 0 0\n1 0 0\n2 0 1\n", "no faces");
 }
 
 TEST_F(MeshIo, CoordinatesThatAreNotFinite) {
   const std::string triangle = "3 0 1 2\n";
   for (const std::string bad : {"nan", "inf", "-inf", "NaN"}) {
-    EXPECT_NE(error_of("a.off", "OFF\n3 1 0\n0 0 0\n1 " + bad + " 0\n0 1 0\n" + triangle)
-                  .find("not finite"),
-              std::string::npos);
-    EXPECT_NE(
-        error_of("a.obj", "v 0 0 0\nv 1 " + bad + " 0\nv 0 1 0\nf 1 2 3\n").find("not finite"),
-        std::string::npos);
+    expect_refused("a.off", "OFF\n3 1 0\n0 0 0\n1 " + bad + " 0\n0 1 0\n" + triangle, "not finite");
+    expect_refused("a.obj", "v 0 0 0\nv 1 " + bad + " 0\nv 0 1 0\nf 1 2 3\n", "not finite");
   }
   std::string ply = binary_ply(false);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(ply.data() + ply.find("end_header\n") + 11 + 12, &nan, sizeof nan);
-  EXPECT_NE(error_of("n.ply", ply).find("not finite"), std::string::npos);
+  expect_refused("n.ply", ply, "not finite");
 }
 
 TEST_F(MeshIo, HeadersThatPromiseTooMuch) {
   for (const std::string count :
        {"4000000000", "4294967295", "2147483647", "99999999999999999999"}) {
-    (void)error_of("v.off", "OFF\n" + count + " 1 0\n0 0 0\n3 0 0 0\n");
-    (void)error_of("f.off", "OFF\n3 " + count + " 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-    (void)error_of("c.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n" + count + " 0 1 2\n");
+    expect_refused("v.off", "OFF\n" + count + " 1 0\n0 0 0\n3 0 0 0\n");
+    expect_refused("f.off", "OFF\n3 " + count + " 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    expect_refused("c.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n" + count + " 0 1 2\n");
     const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
     for (const std::string format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
       const std::string head = "ply\nformat " + format + " 1.0\nelement vertex ";
-      (void)error_of("v.ply", head + count + "\n" + xyz + "end_header\n0 0 0\n");
-      (void)error_of("e.ply", head + count + "\nend_header\n0 0 0\n");
-      (void)error_of("f.ply", head + "1\n" + xyz + "element face " + count +
+      expect_refused("v.ply", head + count + "\n" + xyz + "end_header\n0 0 0\n");
+      expect_refused("e.ply", head + count + "\nend_header\n0 0 0\n");
+      expect_refused("f.ply", head + "1\n" + xyz + "element face " + count +
                                   "\nproperty list uchar int vertex_indices\nend_header\n" +
                                   "0 0 0 0 0 0 0 0 0 0 0 0 0\n");
     }
-    (void)error_of("l.ply",
+    expect_refused("l.ply",
                    "ply\nformat ascii 1.0\nelement vertex 1\n" + xyz +
                        "element face 1\nproperty list uint int vertex_indices\nend_header\n"
                        "0 0 0\n" +
@@ -263,34 +239,30 @@ TEST_F(MeshIo, HeadersThatPromiseTooMuch) {
   }
   std::string stl = binary_stl("x");
   stl.replace(80, 4, "\xff\xff\xff\xff");
-  EXPECT_NE(error_of("p.stl", stl).find("promises 4294967295"), std::string::npos);
+  expect_refused("p.stl", stl, "promises 4294967295");
 }
 
 TEST_F(MeshIo, IndicesOutOfRange) {
   const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
   for (const std::string index : {"3", "-1", "4294967296"}) {
-    EXPECT_NE(
-        error_of("a.off", "OFF\n3 1 0\n" + points + "3 0 1 " + index + "\n").find("out of range"),
-        std::string::npos);
+    expect_refused("a.off", "OFF\n3 1 0\n" + points + "3 0 1 " + index + "\n", "out of range");
   }
   for (const std::string index : {"4", "0", "-4"}) {
-    EXPECT_NE(
-        error_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 " + index + "\n").find("out of range"),
-        std::string::npos);
+    expect_refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 " + index + "\n", "out of range");
   }
   std::string ply = binary_ply(false);
   const int index = 4;
   std::memcpy(ply.data() + ply.size() - 4, &index, sizeof index);
-  EXPECT_NE(error_of("a.ply", ply).find("out of range"), std::string::npos);
+  expect_refused("a.ply", ply, "out of range");
 }
 
 TEST_F(MeshIo, ForgedPlyHeaders) {
   const std::string head = "ply\nformat ascii 1.0\n";
   const std::string face = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-  (void)error_of("a.ply", head + "property float x\nend_header\n");
-  (void)error_of("c.ply", head + "element vertex 1\nproperty float x\nproperty float y\n" + face +
+  expect_refused("a.ply", head + "property float x\nend_header\n");
+  expect_refused("c.ply", head + "element vertex 1\nproperty float x\nproperty float y\n" + face +
                               "0 0\n3 0 0 0\n");
-  (void)error_of("d.ply", head + "element vertex 1\nproperty quad x\n" + face + "0 0\n3 0 0 0\n");
+  expect_refused("d.ply", head + "element vertex 1\nproperty quad x\n" + face + "0 0\n3 0 0 0\n");
 }
 
 TEST_F(MeshIo, Placement) {

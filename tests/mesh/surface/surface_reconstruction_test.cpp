@@ -2,18 +2,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 #include <numbers>
 #include <random>
-#include <string>
-#include <utility>
 #include <vector>
 
+#include "core/expect_error.hpp"
 #include "mesh/shapes.hpp"
 #include "surface_checks.hpp"
 #include "viewgain/core/error.hpp"
@@ -40,6 +37,13 @@ Topology check_surface(const SurfaceMesh& mesh, const std::vector<OrientedPoint>
   return test::check_surface(mesh, points, kConfig);
 }
 
+void expect_topology(const Topology& topology, std::size_t components, std::size_t border_loops,
+                     long euler) {
+  EXPECT_EQ(topology.components, components);
+  EXPECT_EQ(topology.border_loops, border_loops);
+  EXPECT_EQ(topology.euler, euler);
+}
+
 bool same(const SurfaceMesh& a, const SurfaceMesh& b) {
   return a.vertices == b.vertices && a.normals == b.normals && a.triangles == b.triangles &&
          a.source == b.source;
@@ -48,11 +52,8 @@ bool same(const SurfaceMesh& a, const SurfaceMesh& b) {
 TEST(SurfaceReconstruction, SphereIsClosedAndOutward) {
   const auto points = sphere_points(kRadius, kSpacing);
   const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
-  const Topology topology = check_surface(mesh, points);
   EXPECT_EQ(mesh.vertices.size(), points.size());
-  EXPECT_EQ(topology.components, 1U);
-  EXPECT_EQ(topology.border_edges, 0U);
-  EXPECT_EQ(topology.euler, 2);
+  expect_topology(check_surface(mesh, points), 1, 0, 2);
   EXPECT_EQ(good_normals(mesh, points), 1.0);
   EXPECT_NEAR(area_of(mesh), 4 * std::numbers::pi * kRadius * kRadius, 0.01 * area_of(mesh));
 }
@@ -62,10 +63,7 @@ TEST(SurfaceReconstruction, ExactLatticeBecomesAPlateWithOneBorder) {
   for (const double up : {1.0, -1.0}) {
     const auto points = plate_points(kSide, kSpacing, 0.1, up);
     const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
-    const Topology topology = check_surface(mesh, points);
-    EXPECT_EQ(topology.components, 1U);
-    EXPECT_EQ(topology.border_loops, 1U);
-    EXPECT_EQ(topology.euler, 1);
+    expect_topology(check_surface(mesh, points), 1, 1, 1);
     EXPECT_EQ(good_normals(mesh, points), 1.0);
     const double side = (kSide - 1) * kSpacing;
     EXPECT_NEAR(area_of(mesh), side * side, 0.01 * side * side);
@@ -82,10 +80,7 @@ TEST(SurfaceReconstruction, LayersOfAThinPlateAreNotFused) {
     points.insert(points.end(), below.begin(), below.end());
     for (auto& p : points) p.position[2] += 0.2 * kSpacing * noise.normal();
     const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
-    const Topology topology = check_surface(mesh, points);
-    EXPECT_EQ(topology.components, 2U);
-    EXPECT_EQ(topology.border_loops, 2U);
-    EXPECT_EQ(topology.euler, 2);
+    expect_topology(check_surface(mesh, points), 2, 2, 2);
     EXPECT_GT(good_normals(mesh, points), 0.995);
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
       const double z = points[mesh.source[v]].toward_free[2] > 0 ? 0 : -gap * kSpacing;
@@ -106,10 +101,7 @@ TEST(SurfaceReconstruction, SmoothingTakesNoiseAway) {
       for (const auto& v : m.vertices) sum += std::pow(norm(v) - kRadius, 2);
       return std::sqrt(sum / static_cast<double>(m.vertices.size()));
     };
-    const Topology topology = check_surface(mesh, points);
-    EXPECT_EQ(topology.components, 1U);
-    EXPECT_EQ(topology.border_edges, 0U);
-    EXPECT_EQ(topology.euler, 2);
+    expect_topology(check_surface(mesh, points), 1, 0, 2);
     EXPECT_GE(mesh.vertices.size(), points.size() * 98 / 100);
     EXPECT_GT(good_normals(mesh, points), sigma < 0.4 ? 0.99 : 0.9);
     EXPECT_NEAR(rms(rough), sigma * kSpacing, 0.1 * sigma * kSpacing);
@@ -288,13 +280,8 @@ TEST(SurfaceReconstruction, BadInputIsRefused) {
     EXPECT_THROW(static_cast<void>(reconstruct_surface(points, {.spacing = bad})), Error);
   }
   points[5].position[1] = nan;
-  try {
-    static_cast<void>(reconstruct_surface(points, kConfig));
-    ADD_FAILURE() << "a NaN was taken";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_argument);
-    EXPECT_NE(std::string(error.what()).find("point 5"), std::string::npos);
-  }
+  test::expect_error(ErrorCode::invalid_argument, "point 5",
+                     [&] { static_cast<void>(reconstruct_surface(points, kConfig)); });
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "core/comma_locale.hpp"
@@ -211,13 +210,8 @@ TEST(TofCamera, RefusesBadConfigurations) {
   const auto scene = plane_at(1);
   const Sensor sensor = sensor_preset("sr4000");
   const auto refused = [&](const Sensor& s, const SimulationConfig& config, const char* word) {
-    try {
-      SimulatedSensor camera(scene, s, config);
-      ADD_FAILURE() << word;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::invalid_argument);
-      EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
-    }
+    test::expect_error(ErrorCode::invalid_argument, word,
+                       [&] { SimulatedSensor camera(scene, s, config); });
   };
   refused(sensor, {.sub_rays = 0}, "0");
   refused(sensor, {.sub_rays = 17}, "17");

@@ -13,7 +13,6 @@
 
 #include "raycast/scene_makers.hpp"
 #include "surface_makers.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain {

@@ -5,13 +5,10 @@
 // all.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "support/room_scene.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/generators.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain {

@@ -16,11 +16,7 @@ namespace {
 
 using test::MapFamily;
 
-#ifndef VIEWGAIN_SLOW_BUILD
-constexpr int kMaps = 12;
-#else
-constexpr int kMaps = 3;
-#endif
+constexpr int kMaps = test::kSlowBuild ? 3 : 12;
 constexpr std::size_t kPosesPerMap = 3;
 constexpr double kTolerance = 1e-6;
 constexpr double kRounding = 1e-13;  // area_factor is a difference of numbers about 1

@@ -21,11 +21,7 @@ namespace {
 
 using test::MapFamily;
 
-#ifndef VIEWGAIN_SLOW_BUILD
-constexpr int kMaps = 6;
-#else
-constexpr int kMaps = 3;
-#endif
+constexpr int kMaps = test::kSlowBuild ? 3 : 6;
 constexpr std::size_t kPoses = 30;
 
 /// As wide as its stride of 8 allows rays, with and without distortion.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What may run at once, at once: each thread's answers are those of a thread alone.
-// `tests/run.sh --tsan` looks for races in them.
+// `tests/nightly.sh tsan` looks for races in them.
 #include <gtest/gtest.h>
 
 #include <atomic>

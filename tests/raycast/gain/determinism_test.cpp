@@ -5,11 +5,7 @@
 // instruction sets.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <thread>
-
 #include "raycast/scene_makers.hpp"
-#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
 namespace {

@@ -4,7 +4,6 @@
 // Gains that can be worked out by hand.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "oracle/gain.hpp"

@@ -4,9 +4,6 @@
 // The evaluator's other calls with the surface and the combined gain.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/expect_error.hpp"
 #include "raycast/scene_makers.hpp"
 

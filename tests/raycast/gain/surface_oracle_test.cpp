@@ -15,14 +15,8 @@ namespace {
 
 using test::MapFamily;
 
-#ifndef VIEWGAIN_SLOW_BUILD
-constexpr int kMaps = 40;
-constexpr std::size_t kPosesPerMap = 3;
-#else
-// Builds with sanitizers look for memory errors; the statistics are the optimised build's.
-constexpr int kMaps = 6;
-constexpr std::size_t kPosesPerMap = 2;
-#endif
+constexpr int kMaps = test::kSlowBuild ? 6 : 40;
+constexpr std::size_t kPosesPerMap = test::kSlowBuild ? 2 : 3;
 
 /// Hazards of any size of cell, some the same everywhere, some from elsewhere.
 HazardConfig random_hazard(const BeliefGrid& grid, int number, test::Random& random) {
@@ -133,12 +127,7 @@ TEST_P(SurfaceOracle, AgreesUnderEachInstructionSet) {
   EXPECT_GT(exact, checks / 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Maps, SurfaceOracle,
-                         testing::Values(MapFamily::salt_and_pepper_01,
-                                         MapFamily::salt_and_pepper_1,
-                                         MapFamily::salt_and_pepper_30, MapFamily::tiles_8,
-                                         MapFamily::tiles_128, MapFamily::odd_and_far,
-                                         MapFamily::rotated),
+INSTANTIATE_TEST_SUITE_P(Maps, SurfaceOracle, testing::ValuesIn(test::kMapFamilies),
                          test::family_name);
 
 }  // namespace

@@ -5,9 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <map>
 #include <tuple>
 
 #include "oracle/gain.hpp"
@@ -16,11 +14,7 @@
 namespace viewgain {
 namespace {
 
-#ifndef VIEWGAIN_SLOW_BUILD
-constexpr std::uint64_t kSeeds = 6;
-#else
-constexpr std::uint64_t kSeeds = 1;
-#endif
+constexpr std::uint64_t kSeeds = test::kSlowBuild ? 1 : 6;
 
 bool comes_before(const VoxelContribution& a, const VoxelContribution& b) {
   if (a.gain != b.gain) return a.gain > b.gain;

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <optional>
-#include <thread>
 
 #include "raycast/scene_makers.hpp"
 #include "viewgain/core/error.hpp"

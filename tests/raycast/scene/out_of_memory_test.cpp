@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <new>
 #include <optional>
 #include <vector>
 
+#include "raycast/replaced_new.hpp"
 #include "raycast/scene_makers.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -21,35 +21,15 @@ std::atomic<long> allocations_left{-1};
 std::atomic<bool> fails_once{true};  ///< else all fail from then on
 std::atomic<long> failures{0};
 
-void* allocated(std::size_t size, std::size_t alignment) {
+}  // namespace
+
+void on_allocation() {
   if (allocations_left.load() >= 0 && allocations_left.fetch_sub(1) <= 0) {
     if (!fails_once) allocations_left = 0;
     ++failures;
     throw std::bad_alloc();
   }
-  const std::size_t whole = (size + alignment - 1) / alignment * alignment;
-  if (void* memory = std::aligned_alloc(alignment, whole == 0 ? alignment : whole)) return memory;
-  throw std::bad_alloc();
 }
-
-}  // namespace
-
-void* operator new(std::size_t size) { return allocated(size, alignof(std::max_align_t)); }
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  return allocated(size, static_cast<std::size_t>(alignment));
-}
-// For std::stable_sort's buffer; a sanitizer's own would not fit the delete below.
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  try {
-    return operator new(size);
-  } catch (const std::bad_alloc&) {
-    return nullptr;
-  }
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
 // Embree forgets what it has of a scene or device whose making fails.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libembree"; }

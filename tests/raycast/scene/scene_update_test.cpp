@@ -25,11 +25,7 @@ namespace {
 constexpr int kChanges = 30;
 constexpr std::size_t kPoses = 4;
 constexpr std::size_t kManyPrimitives = 4096;  ///< more than that are grouped into cells
-#ifndef VIEWGAIN_SLOW_BUILD
-constexpr int kFine = 176;
-#else
-constexpr int kFine = 144;
-#endif
+constexpr int kFine = test::kSlowBuild ? 144 : 176;
 
 /// A map and what is done to it, one change after the other.
 class ChangingMap {

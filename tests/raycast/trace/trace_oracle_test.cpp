@@ -16,14 +16,8 @@ namespace {
 
 using test::MapFamily;
 
-#ifndef VIEWGAIN_SLOW_BUILD
-constexpr int kMaps = 40;
-constexpr std::size_t kPosesPerMap = 5;
-#else
-// Builds with sanitizers look for memory errors; the statistics are the optimised build's.
-constexpr int kMaps = 6;
-constexpr std::size_t kPosesPerMap = 3;
-#endif
+constexpr int kMaps = test::kSlowBuild ? 6 : 40;
+constexpr std::size_t kPosesPerMap = test::kSlowBuild ? 3 : 5;
 constexpr std::size_t kRaysPerPose = 25 * 19;
 constexpr std::array kCriteria{Criterion::log_diagonal, Criterion::log_determinant,
                                Criterion::trace};
@@ -110,12 +104,7 @@ TEST_P(TraceOracle, AgreesUnderEachInstructionSet) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Maps, TraceOracle,
-                         testing::Values(MapFamily::salt_and_pepper_01,
-                                         MapFamily::salt_and_pepper_1,
-                                         MapFamily::salt_and_pepper_30, MapFamily::tiles_8,
-                                         MapFamily::tiles_128, MapFamily::odd_and_far,
-                                         MapFamily::rotated),
+INSTANTIATE_TEST_SUITE_P(Maps, TraceOracle, testing::ValuesIn(test::kMapFamilies),
                          test::family_name);
 
 }  // namespace

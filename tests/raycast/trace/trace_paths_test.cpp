@@ -7,6 +7,7 @@
 
 #include <array>
 
+#include "core/expect_error.hpp"
 #include "raycast/scene_makers.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -224,13 +225,8 @@ TEST(TracePaths, StrongLensesSeeTheSameBits) {
 
 TEST(TracePaths, AnotherWayIsAnError) {
   const auto scene = VoxelScene::build(test::sparse_map({8, 8, 8}, {{1, 2, 3}}));
-  try {
-    (void)evaluator_by("octree", scene, test::lattice_sensor(5, 5));
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_argument);
-    EXPECT_STREQ(error.what(), "VIEWGAIN_TRACE is 'octree', not sweep or bvh");
-  }
+  test::expect_error(ErrorCode::invalid_argument, "VIEWGAIN_TRACE is 'octree', not sweep or bvh",
+                     [&] { (void)evaluator_by("octree", scene, test::lattice_sensor(5, 5)); });
 }
 
 constexpr int kSmallEdge = 24;

@@ -26,7 +26,7 @@ namespace {
 
 using Cloud = std::vector<std::array<double, 3>>;
 
-using Integrator = SharedIntegrator<CloudIntegrator>;
+using Clouds = SharedIntegrator<CloudIntegrator>;
 
 // The points of a cloud in the world, masked ones NaN.
 Cloud cloud_in_world(const Sensor& sensor, const py::object& points_sensor, const Pose& pose) {
@@ -44,8 +44,8 @@ Cloud cloud_in_world(const Sensor& sensor, const py::object& points_sensor, cons
   return cloud;
 }
 
-py::object integrate(Integrator& self, const Given<SharedGrid>& grid,
-                     const py::object& points_sensor, const py::object& T_world_sensor) {
+py::object integrate_cloud(Clouds& self, const Given<SharedGrid>& grid,
+                           const py::object& points_sensor, const py::object& T_world_sensor) {
   const Pose pose = one_pose(T_world_sensor, "T_world_sensor");
   return self.integrate(*grid, cloud_in_world(self.sensor, points_sensor, pose), pose);
 }
@@ -107,19 +107,19 @@ T_world_sensor : array_like, (4, 4)
     Rotations that are off by up to 1e-3 are orthonormalised.
 
 )") + kIntegrateReturns;
-  auto type = bound_class<Integrator>(module, "CloudIntegrator", doc.c_str());
+  auto type = bound_class<Clouds>(module, "CloudIntegrator", doc.c_str());
   refuse_pickling(type);
   type.def(py::init([](const Given<Sensor>& sensor, const std::string& occupancy,
                        std::optional<double> support_plane, int num_threads) {
              const CloudIntegrationConfig config{parse_occupancy(occupancy), support_plane};
-             return std::make_unique<Integrator>(*sensor, config, num_threads);
+             return std::make_unique<Clouds>(*sensor, config, num_threads);
            }),
            py::arg("sensor"), py::kw_only(), py::arg("occupancy") = "probabilistic",
            py::arg("support_plane") = py::none(), py::arg("num_threads") = 0)
-      .def("integrate", &integrate, py::arg("grid"), py::arg("points"), py::arg("T_world_sensor"),
-           integrate_doc.c_str())
+      .def("integrate", &integrate_cloud, py::arg("grid"), py::arg("points"),
+           py::arg("T_world_sensor"), integrate_doc.c_str())
       .def("__repr__",
-           [](const Integrator& self) { return "<CloudIntegrator of " + self.sensor.name + ">"; });
+           [](const Clouds& self) { return "<CloudIntegrator of " + self.sensor.name + ">"; });
 
   module.def("cloud_bounds", &bounds, py::arg("sensor"), py::arg("points"),
              py::arg("T_world_sensor"), py::kw_only(), py::arg("support_plane") = py::none(),
