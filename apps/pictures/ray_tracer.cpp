@@ -73,7 +73,7 @@ class Renderer {
     const PaintedMesh::Part* part = nullptr;
     std::uint32_t triangle = 0;
     bool front = true;
-    Vector3d normal = Vector3d::Zero(), smooth = normal, point = normal;  // of the lit surface
+    Vector3d smooth = Vector3d::Zero(), point = smooth;  // of the lit surface
     double sun = 0;
   };
 
@@ -145,10 +145,10 @@ class Renderer {
     found.triangle = hit.triangle;
     found.range = hit.range;
     found.front = hit.normal.dot(direction) < 0;
-    found.normal = found.front ? hit.normal : Vector3d(-hit.normal);
+    const Vector3d normal = found.front ? hit.normal : Vector3d(-hit.normal);
     const Vector3d on_surface = eye + hit.range * direction;
-    found.smooth = part.shading_normal(hit.triangle, on_surface, found.normal);
-    found.point = on_surface + kOffset * occlusion_range_ * found.normal;
+    found.smooth = part.shading_normal(hit.triangle, on_surface, normal);
+    found.point = on_surface + kOffset * occlusion_range_ * normal;
     const double facing = std::max(0.0, found.smooth.dot(to_sun_));
     found.sun = facing > 0 && !blocked(found.point, to_sun_, kFar) ? facing : 0.0;
   }
