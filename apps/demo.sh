@@ -16,7 +16,7 @@ viewgain=build/release/bin/viewgain
 out=out/demo
 # The page of the report comes from npm's registry, which may be out of reach.
 report=on
-[ -s build/release/apps/report/report_page.html ] || report=off
+[ -s build/release/apps/show/report/report_page.html ] || report=off
 ./apps/extract_mesh.sh camel.off build/meshes
 
 "$viewgain" reconstruct build/meshes/camel.off --sensor sr4000 --size 0.35 --voxel 0.003125 --max-views 12 \

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Makes every picture of the READMEs and the site from the program's own output: apps/gallery/, perf/*.png, apps/docs/figures/*.png. Needs a
+# Makes every picture of the READMEs and the site from the program's own output: apps/docs/gallery/, perf/*.png, apps/docs/figures/*.png. Needs a
 # full build and some minutes of a quiet machine; coverage, which makes a study, some hours.
 #   apps/make_pictures.sh [demo] [gains] [idea] [speed] [coverage] [approximate] [scaling] [depth_images]; default: all
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export PATH=$PWD/build/release/bin:$PATH PYTHONPATH=$PWD/build/release/python
 python=/usr/bin/python3
-gallery=apps/gallery
+gallery=apps/docs/gallery
 work=build/pictures
 mkdir -p "$work"
 wanted=("$@")

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model_scene.hpp"
 
-#include "options/sensing.hpp"
+#include "program/cli/flags/sensing.hpp"
 
 namespace viewgain::bench {
 namespace {

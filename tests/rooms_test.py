@@ -14,6 +14,7 @@ Each module but core draws its rooms in a block of its README:
 
 A line names a room and the rooms whose files it includes, as `#include "surface/point_grid.hpp"` or, where
 the room is a library of its own with public headers, as `#include "viewgain/formats/frames.hpp"`.
+What lies in a folder `src` is included from nowhere else but tests and perf, which measure parts.
 """
 import pathlib
 import re
@@ -25,8 +26,12 @@ MOST_LINES = 400
 ROOMS = {"grid": "grid/src", "raycast": "raycast/src", "mesh": "mesh/src", "apps": "apps", "perf": "perf"}
 # The modules whose public headers a module may include; apps and perf may include all.
 LOWER = {"core": {"core"}, "grid": {"core", "grid"}, "raycast": {"core", "grid", "raycast"}, "mesh": {"core", "mesh"}}
+# Not a module: what core has for the other modules alone (core/support), which all include.
+SUPPORT = "support"
 # Libraries that are slow to compile, and how many sources may include them.
 HEAVY = {"openvdb": 8, "CGAL": 4}
+# Folders of apps whose folders are rooms, too.
+FLOORS = {"program", "show"}
 SUFFIXES = {".cpp", ".hpp", ".c", ".h", ".py"}
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -57,7 +62,7 @@ def drawn_rooms(root, readme, faults):
             inside = False
         elif inside and line.strip():
             name, colon, targets = line.partition(":")
-            if not colon or not re.fullmatch(r"\w+", name.strip()):
+            if not colon or not re.fullmatch(r"[\w/]+", name.strip()):
                 faults.append(f"{readme}:{number}: a line of a rooms block is `room: rooms that it includes`")
                 continue
             rooms[name.strip()] = (number, {t: number for t in re.split(r"[,\s]+", targets.strip()) if t})
@@ -85,6 +90,12 @@ def circle(arrows):
     return next((found for found in (walk(room, []) for room in sorted(arrows)) if found), None)
 
 
+def room_of(path):
+    """The room of a file, by its path below the module's rooms."""
+    parts = pathlib.PurePath(path).parts
+    return "/".join(parts[:2]) if parts[0] in FLOORS and len(parts) > 2 else parts[0]
+
+
 def check_rooms(root, module, faults):
     folder, readme = ROOMS[module], f"{module}/README.md"
     drawn = drawn_rooms(root, readme, faults)
@@ -92,7 +103,7 @@ def check_rooms(root, module, faults):
     for source in sources(root, folder):
         parts = source.path.relative_to(folder).parts
         if len(parts) > 1:
-            on_disk.setdefault(parts[0], []).append(source)
+            on_disk.setdefault(room_of(source.path.relative_to(folder)), []).append(source)
     for room in sorted(on_disk.keys() - drawn.keys()):
         faults.append(f"{on_disk[room][0].path}:1: the room {room} is not in {readme}")
     for room in sorted(drawn.keys() - on_disk.keys()):
@@ -104,10 +115,10 @@ def check_rooms(root, module, faults):
         for source in members:
             for number, is_quoted, include in source.includes:
                 where = f"{source.path}:{number}"
-                target, is_there = include.split("/")[0], (root / folder / include).is_file()
-                public = re.match(r"viewgain/(\w+)[/.]", include)
-                if public and public[1] in on_disk and (root / folder / public[1] / "include" / include).is_file():
-                    target, is_there = public[1], True
+                target, is_there = room_of(include), (root / folder / include).is_file()
+                for other in on_disk if include.endswith(".hpp") else ():  # C's headers are one, of parts of three libraries
+                    if any((root / folder / other / part / include).is_file() for part in ("include", "support")):
+                        target, is_there = other, True
                 if ".." in include.split("/"):
                     faults.append(f'{where}: "{include}" goes up; name the room')
                 elif not is_quoted:
@@ -129,6 +140,21 @@ def check_rooms(root, module, faults):
         faults.append(f"{found[way[0]][way[1]]}: the arrows go in a circle: {' -> '.join(way)}")
 
 
+def check_privates(root, product, faults):
+    """Nothing includes a header from another library's or program's src."""
+    privates = sorted(p for p in root.glob("*/src") if p.is_dir()) + sorted(p for p in root.glob("apps/*/src") if p.is_dir())
+    for source in (s for s in product if s.path.parts[0] != "perf"):
+        own = next((p for p in privates if (root / source.path).is_relative_to(p.parent)), None)
+        for number, is_quoted, include in source.includes:
+            if "src" in include.split("/"):
+                faults.append(f'{source.path}:{number}: "{include}" names a src')
+            beside = [(root / source.path).parent, root / "apps", root / "perf", *([own] if own else [])]
+            if is_quoted and not include.startswith("viewgain/") and not any((p / include).is_file() for p in beside):
+                other = next((p for p in privates if (p / include).is_file()), None)
+                if other:
+                    faults.append(f'{source.path}:{number}: "{include}" is private to {other.relative_to(root)}')
+
+
 def check_modules(all_sources, faults):
     """Dependencies between modules, and what public headers include."""
     for source in all_sources:
@@ -136,7 +162,7 @@ def check_modules(all_sources, faults):
         for number, _, include in source.includes:
             where = f"{source.path}:{number}"
             match = re.match(r"viewgain/(\w+)/", include)
-            if match and match[1] not in LOWER.get(module, {match[1]}):
+            if match and match[1] != SUPPORT and match[1] not in LOWER.get(module, {match[1]}):
                 faults.append(f"{where}: {module} must not include {match[1]}")
             library = re.match(r"(openvdb|embree|CGAL|tbb|oneapi)", include.split("/")[0])
             if library and library[1] in ("tbb", "oneapi"):
@@ -178,6 +204,7 @@ def faults_of(root):
     for module in ROOMS:
         check_rooms(root, module, faults)
     product = [s for folder in ("core", *ROOMS) for s in sources(root, folder)]
+    check_privates(root, product, faults)
     check_modules(product, faults)
     check_sizes(product, faults)
     check_heavy(product + sources(root, "tests"), faults)

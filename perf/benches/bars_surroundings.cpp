@@ -10,8 +10,8 @@
 #include "mesh/shapes.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/generators.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::bench {
 namespace {

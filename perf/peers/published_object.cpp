@@ -10,7 +10,7 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/grid/cloud_io.hpp"
+#include "viewgain/formats/cloud_io.hpp"
 
 namespace viewgain::bench {
 namespace {

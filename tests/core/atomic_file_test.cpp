@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/core/atomic_file.hpp"
+#include "viewgain/support/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -70,9 +70,7 @@ TEST(AtomicFile, TemporaryFilesOfAProgramThatIsEndedAreRemoved) {
       ::_exit(7);
     });
     AtomicFile first(folder.path() / "map.vdb"), second(folder.path() / "scores.csv"), third(done);
-    {
-      const AtomicFile gone(folder.path() / "gone.csv");
-    }
+    { const AtomicFile gone(folder.path() / "gone.csv"); }
     first.write("half a");
     third.commit();
     std::raise(SIGTERM);

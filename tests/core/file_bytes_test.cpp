@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/core/file_bytes.hpp"
+#include "viewgain/support/file_bytes.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -9,7 +9,7 @@
 #include "temporary_folder.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

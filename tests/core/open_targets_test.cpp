@@ -16,7 +16,7 @@
 
 #include "expect_error.hpp"
 #include "temporary_folder.hpp"
-#include "viewgain/core/atomic_file.hpp"
+#include "viewgain/support/atomic_file.hpp"
 
 namespace viewgain {
 namespace {

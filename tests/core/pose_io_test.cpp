@@ -9,7 +9,7 @@
 #include "expect_error.hpp"
 #include "random_values.hpp"
 #include "temporary_folder.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

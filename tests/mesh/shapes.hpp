@@ -9,9 +9,9 @@
 #include <numbers>
 #include <vector>
 
-#include "viewgain/core/mix64.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/mesh/surface.hpp"
+#include "viewgain/support/mix64.hpp"
 
 namespace viewgain::test {
 

@@ -19,24 +19,24 @@
 #include <string>
 #include <vector>
 
-#include "cli/json.hpp"
-#include "columns/mapped_poses.hpp"
-#include "columns/npy_header.hpp"
-#include "columns/part_reader.hpp"
-#include "columns/part_writer.hpp"
 #include "core/temporary_folder.hpp"
+#include "program/cli/json.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/cloud_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/recordings.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
-#include "viewgain/grid/cloud_io.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
+#include "viewgain/support/columns/mapped_poses.hpp"
+#include "viewgain/support/columns/npy_header.hpp"
+#include "viewgain/support/columns/part_reader.hpp"
+#include "viewgain/support/columns/part_writer.hpp"
 
 namespace viewgain {
 namespace {

@@ -6,10 +6,10 @@
 #include <memory>
 #include <numbers>
 
-#include "viewgain/core/mix64.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
+#include "viewgain/support/mix64.hpp"
 
 namespace viewgain::test {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "convert.hpp"
 #include "handles.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/raycast/depth_image.hpp"
+#include "viewgain/support/text.hpp"
 #include "watcher.hpp"
 
 using namespace viewgain;

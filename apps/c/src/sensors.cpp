@@ -6,7 +6,7 @@
 
 #include "convert.hpp"
 #include "viewgain/core/noise.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::c_api {
 namespace {

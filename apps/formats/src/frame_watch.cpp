@@ -14,10 +14,10 @@
 #include "frame_folder.hpp"
 #include "frame_names.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/formats/png.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -15,14 +15,14 @@
 
 #include "folders.hpp"
 #include "frame_names.hpp"
-#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

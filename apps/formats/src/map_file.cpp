@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/formats/file_names.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/atomic_file.hpp"
 
 namespace viewgain {
 namespace {

@@ -14,9 +14,9 @@
 #include <string_view>
 #include <utility>
 
-#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
+#include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/file_bytes.hpp"
 
 namespace viewgain {
 namespace {

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "toml_table.hpp"
-#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/file_names.hpp"
+#include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/toml_table.hpp"
 
 namespace viewgain {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "folders.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
+#include "viewgain/support/file_bytes.hpp"
 
 namespace viewgain {
 namespace {

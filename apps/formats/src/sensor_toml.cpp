@@ -10,11 +10,11 @@
 #include <variant>
 #include <vector>
 
-#include "nearest_name.hpp"
-#include "toml_table.hpp"
-#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/file_names.hpp"
+#include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/nearest_name.hpp"
+#include "viewgain/support/toml_table.hpp"
 
 namespace viewgain {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "settings_toml.hpp"
+#include "viewgain/support/settings_toml.hpp"
 
-#include "toml_table.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
+#include "viewgain/support/toml_table.hpp"
 
 namespace viewgain {
 namespace {

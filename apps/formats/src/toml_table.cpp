@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "toml_table.hpp"
+#include "viewgain/support/toml_table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,10 @@
 #include <cstdio>
 #include <utility>
 
-#include "nearest_name.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/nearest_name.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 

@@ -9,10 +9,10 @@
 #include <optional>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/planner/view_sight.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 

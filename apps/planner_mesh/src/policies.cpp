@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/mix64.hpp"
 #include "viewgain/planner/proximity_measure.hpp"
 #include "viewgain/planner/stop_settings.hpp"
+#include "viewgain/support/mix64.hpp"
 
 namespace viewgain {
 namespace {

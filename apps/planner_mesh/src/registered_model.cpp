@@ -3,7 +3,7 @@
 #include "viewgain/planner_mesh/registered_model.hpp"
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/stopwatch.hpp"
+#include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain {
 

@@ -9,8 +9,8 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/stopwatch.hpp"
 #include "viewgain/planner_mesh/mesh_area.hpp"
+#include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain {
 

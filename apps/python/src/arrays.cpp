@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::python {
 namespace {

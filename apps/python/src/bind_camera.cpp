@@ -13,7 +13,7 @@
 #include "classes.hpp"
 #include "fields.hpp"
 #include "viewgain/core/camera.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::python {
 namespace {

@@ -15,7 +15,7 @@
 #include "map/depth_images.hpp"
 #include "named.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::python {
 namespace {

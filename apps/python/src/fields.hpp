@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::python {
 

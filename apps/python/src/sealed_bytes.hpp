@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/mix64.hpp"
+#include "viewgain/support/mix64.hpp"
 
 namespace viewgain::python {
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Files of poses and gains in columns, as apps/columns/part_head.hpp and apps/scoring/score_part.cpp have them, so that
+"""Files of poses and gains in columns, as viewgain/support/columns/part_head.hpp and apps/program/commands/score/score_part.cpp have them, so that
 `viewgain merge` takes parts of both. For viewgain.distributed."""
 from __future__ import annotations
 

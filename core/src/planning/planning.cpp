@@ -8,7 +8,7 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/stop_rules.hpp"
-#include "viewgain/core/stopwatch.hpp"
+#include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain {
 namespace {

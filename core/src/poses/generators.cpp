@@ -8,8 +8,8 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/mix64.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

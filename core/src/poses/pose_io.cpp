@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

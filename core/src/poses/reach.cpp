@@ -7,7 +7,7 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

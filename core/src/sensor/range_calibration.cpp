@@ -10,7 +10,7 @@
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/range_corrector.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 

@@ -14,9 +14,9 @@
 #include "octomap_format.hpp"
 #include "solid_voxels.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/grid/octomap_io.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -8,10 +8,10 @@
 #include "map/log_odds_code.hpp"
 #include "octomap_format.hpp"
 #include "octomap_parts.hpp"
-#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/grid/octomap_io.hpp"
+#include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

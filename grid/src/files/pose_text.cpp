@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::detail {
 

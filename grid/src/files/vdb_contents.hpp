@@ -20,7 +20,7 @@
 #include "vdb_layout.hpp"
 #include "vdb_outline.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
+#include "viewgain/support/file_bytes.hpp"
 
 namespace viewgain::detail {
 

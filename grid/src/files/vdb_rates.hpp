@@ -12,9 +12,9 @@
 
 #include "vdb_contents.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/hazard.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::detail {
 

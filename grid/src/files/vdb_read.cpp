@@ -20,8 +20,8 @@
 #include "vdb_layout.hpp"
 #include "vdb_rates.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

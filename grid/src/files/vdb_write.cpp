@@ -17,9 +17,9 @@
 #include "map/code_mask.hpp"
 #include "pose_text.hpp"
 #include "vdb_layout.hpp"
-#include "viewgain/core/atomic_file.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/atomic_file.hpp"
 
 namespace viewgain {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "squared_distances.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/grid/hazard.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::detail {
 namespace {

@@ -14,9 +14,9 @@
 #include "point_thinning.hpp"
 #include "reading_sigma.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/grid/pooling.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::detail {
 

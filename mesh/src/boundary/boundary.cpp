@@ -12,7 +12,7 @@
 
 #include "boundary_edges.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

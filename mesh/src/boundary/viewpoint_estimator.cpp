@@ -14,7 +14,7 @@
 #include "region_grower.hpp"
 #include "surface/surface_access.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/scalar_type.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/scalar_type.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::detail {
 namespace {

@@ -23,8 +23,8 @@
 #include "mesh_file_checks.hpp"
 #include "ply_mesh.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

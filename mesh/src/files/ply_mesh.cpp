@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "mesh_builder.hpp"
-#include "viewgain/core/ply_file.hpp"
+#include "viewgain/support/ply_file.hpp"
 
 namespace viewgain::detail {
 namespace {

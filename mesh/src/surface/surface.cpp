@@ -14,8 +14,8 @@
 #include "face_components.hpp"
 #include "point_cleaning.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/mix64.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

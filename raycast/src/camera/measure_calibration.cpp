@@ -4,8 +4,8 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

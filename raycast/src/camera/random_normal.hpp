@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "viewgain/core/mix64.hpp"
+#include "viewgain/support/mix64.hpp"
 
 namespace viewgain::detail {
 

@@ -12,8 +12,8 @@
 
 #include "tof_pixel.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -11,7 +11,7 @@
 #include "gain/sampled_views.hpp"
 #include "ray_lattices.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 

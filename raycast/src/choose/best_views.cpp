@@ -10,8 +10,8 @@
 
 #include "ranking.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewgain/core/mix64.hpp"
+#include "viewgain/support/mix64.hpp"
 
 namespace viewgain::detail {
 namespace {

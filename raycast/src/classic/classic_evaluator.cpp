@@ -15,7 +15,7 @@
 #include "scene/scene_data.hpp"
 #include "trace/scene_tracing.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace detail {

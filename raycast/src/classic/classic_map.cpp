@@ -13,8 +13,8 @@
 #include "classic_rays.hpp"
 #include "ordered_ray.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

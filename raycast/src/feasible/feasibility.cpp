@@ -14,9 +14,9 @@
 #include "oriented_box.hpp"
 #include "sight_check.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "trace/ray_tile.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 

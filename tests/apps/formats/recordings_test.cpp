@@ -14,15 +14,15 @@
 #include <string>
 #include <vector>
 
+#include "apps/program/commands/pose_file_text.hpp"
 #include "apps/program_runner.hpp"
-#include "apps/viewgain/pose_file_text.hpp"
-#include "cli/json.hpp"
+#include "program/cli/json.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/png.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -17,8 +17,8 @@
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
 #include "grid/analytic_frames.hpp"
-#include "viewgain/core/file_bytes.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/support/file_bytes.hpp"
 
 namespace viewgain {
 namespace {

@@ -14,8 +14,8 @@
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
 #include "grid/analytic_frames.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "viewgain/core/mix64.hpp"
+#include "viewgain/support/mix64.hpp"
 
 namespace viewgain::test {
 namespace {

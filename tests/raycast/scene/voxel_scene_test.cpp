@@ -73,8 +73,8 @@ TEST(Umbrella, HasTheFilesOfTheGridToo) {
        .T_world_grid = Pose(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
                             Eigen::Vector3d::Zero()),
        .prior_sigma = 0.05})));
-  EXPECT_TRUE(PointCloud{}.points.empty());
-  EXPECT_EQ(reading_bounds(sensor_preset("sr4000"), PointCloud{}.points, Pose{}), std::nullopt);
+  EXPECT_EQ(reading_bounds(sensor_preset("sr4000"), std::vector<std::array<double, 3>>{}, Pose{}),
+            std::nullopt);
 }
 
 }  // namespace

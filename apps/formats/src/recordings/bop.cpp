@@ -11,8 +11,8 @@
 
 #include "recordings/parts.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/support/file_bytes.hpp"
 
 namespace viewgain {
 namespace {

@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "folders.hpp"
-#include "nearest_name.hpp"
 #include "recordings/parts.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/masks.hpp"
+#include "viewgain/support/nearest_name.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

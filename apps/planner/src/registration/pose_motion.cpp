@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/text.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::detail {
 namespace {

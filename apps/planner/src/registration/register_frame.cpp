@@ -17,9 +17,9 @@
 #include "registration/registration_readings.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/noise.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/grid/pooling.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -18,7 +18,7 @@
 #include "integration.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/grid/cloud_io.hpp"
+#include "viewgain/formats/cloud_io.hpp"
 #include "viewgain/grid/integrate_cloud.hpp"
 
 namespace viewgain::python {

@@ -16,10 +16,10 @@
 #include "grid_class.hpp"
 #include "prior.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/file_bytes.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/file_bytes.hpp"
 
 namespace viewgain::python {
 

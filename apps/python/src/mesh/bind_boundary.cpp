@@ -14,11 +14,11 @@
 #include "given.hpp"
 #include "mesh/bindings.hpp"
 #include "named.hpp"
-#include "viewgain/core/text.hpp"
 #include "viewgain/mesh/boundary.hpp"
 #include "viewgain/mesh/surface.hpp"
 #include "viewgain/mesh/viewpoint_estimator.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::python {
 

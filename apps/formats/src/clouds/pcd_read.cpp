@@ -1,0 +1,303 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "clouds/cloud_formats.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/support/scalar_type.hpp"
+#include "viewgain/support/text.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+constexpr std::uint64_t kMostPoints = std::numeric_limits<std::uint32_t>::max();
+constexpr double kMendableNorm = 1e-2;
+
+struct Field {
+  std::string_view name;
+  ScalarType type;
+  std::size_t count = 1;
+  std::size_t begin = 0;  ///< in a point [bytes]
+  std::size_t word = 0;   ///< in a line
+};
+
+enum class Data { none, ascii, binary, compressed };
+
+struct Header {
+  std::vector<Field> fields;
+  std::size_t point_bytes = 0, point_words = 0;
+  std::uint64_t points = 0;
+  std::optional<Pose> viewpoint;
+  Data data = Data::none;
+  std::array<std::size_t, 3> xyz{};  ///< positions in `fields`
+};
+
+void read_kinds(const LineReader& line, std::vector<Field>& fields) {
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string_view word = line.words()[i + 1];
+    using Kind = ScalarType::Kind;
+    if (word == "F") {
+      fields[i].type.kind = Kind::floating;
+    } else if (word == "I") {
+      fields[i].type.kind = Kind::signed_integer;
+    } else if (word == "U") {
+      fields[i].type.kind = Kind::unsigned_integer;
+    } else {
+      line.fail("TYPE " + quoted(word) + " is none of F, I, U");
+    }
+  }
+}
+
+Pose read_viewpoint(const LineReader& line) {
+  std::array<double, 7> v{};
+  if (line.words().size() != 8) line.fail("VIEWPOINT needs 7 numbers: tx ty tz qw qx qy qz");
+  for (std::size_t i = 0; i < 7; ++i) {
+    v[i] = line.finite_number(i + 1);
+  }
+  const Eigen::Quaterniond q(v[3], v[4], v[5], v[6]);
+  if (!(std::abs(q.norm() - 1) <= kMendableNorm)) {
+    line.fail("VIEWPOINT's quaternion has the norm " + short_text(q.norm()) + ", not 1");
+  }
+  return {q.normalized().toRotationMatrix(), Eigen::Vector3d(v[0], v[1], v[2])};
+}
+
+/// Works out where the fields lie, and finds x, y, z.
+void lay_out(const LineReader& line, Header& header) {
+  for (Field& field : header.fields) {
+    if (!field.type.is_known()) {
+      line.fail("field " + quoted(field.name) + " has a SIZE that its TYPE cannot have");
+    }
+    field.begin = header.point_bytes;
+    field.word = header.point_words;
+    header.point_bytes += field.count * field.type.size;
+    header.point_words += field.count;
+  }
+  constexpr std::array<std::string_view, 3> kNames{"x", "y", "z"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto found = std::find_if(header.fields.begin(), header.fields.end(),
+                                    [&](const Field& f) { return f.name == kNames[axis]; });
+    if (found == header.fields.end()) line.fail("there is no field " + quoted(kNames[axis]));
+    if (found->count != 1) line.fail("field " + quoted(kNames[axis]) + " must have COUNT 1");
+    header.xyz[axis] = static_cast<std::size_t>(found - header.fields.begin());
+  }
+}
+
+/// Up to the line DATA, behind which the points begin.
+Header read_header(LineReader& line) {
+  Header header;
+  std::uint64_t width = 0, height = 0;
+  bool has_width = false, has_height = false, has_points = false, has_sizes = false;
+  constexpr std::size_t kMostFields = 1000;
+  constexpr std::size_t kMostCount = 100000;
+  while (header.data == Data::none) {
+    if (!line.next()) line.fail("the header is cut: it has no line DATA");
+    const auto& words = line.words();
+    if (words.empty() || words[0].front() == '#' || words[0] == "VERSION") continue;
+    const auto each_field = [&](auto&& read) {
+      if (header.fields.empty()) line.fail("FIELDS must come first");
+      if (words.size() != header.fields.size() + 1) {
+        line.fail(std::string(words[0]) + " needs a word for each of the " +
+                  std::to_string(header.fields.size()) + " fields");
+      }
+      for (std::size_t i = 0; i < header.fields.size(); ++i) read(header.fields[i], i + 1);
+    };
+    if (words[0] == "FIELDS" || words[0] == "COLUMNS") {
+      if (!header.fields.empty()) line.fail("FIELDS stands there twice");
+      if (words.size() < 2 || words.size() > kMostFields) line.fail("FIELDS needs 1 to 999 names");
+      for (std::size_t i = 1; i < words.size(); ++i) header.fields.push_back({words[i], {}});
+    } else if (words[0] == "SIZE") {
+      each_field([&](Field& field, std::size_t i) { field.type.size = line.count(i, 8); });
+      has_sizes = true;
+    } else if (words[0] == "TYPE") {
+      each_field([](Field&, std::size_t) {});
+      read_kinds(line, header.fields);
+    } else if (words[0] == "COUNT") {
+      each_field([&](Field& field, std::size_t i) { field.count = line.count(i, kMostCount); });
+    } else if (words[0] == "WIDTH") {
+      width = line.count(1, kMostPoints);
+      has_width = true;
+    } else if (words[0] == "HEIGHT") {
+      height = line.count(1, kMostPoints);
+      has_height = true;
+    } else if (words[0] == "POINTS") {
+      header.points = line.count(1, kMostPoints);
+      has_points = true;
+    } else if (words[0] == "VIEWPOINT") {
+      header.viewpoint = read_viewpoint(line);
+    } else if (words[0] == "DATA") {
+      const std::string_view data = words.size() > 1 ? words[1] : std::string_view();
+      header.data = data == "ascii"               ? Data::ascii
+                    : data == "binary"            ? Data::binary
+                    : data == "binary_compressed" ? Data::compressed
+                                                  : Data::none;
+      if (header.data == Data::none) {
+        line.fail("DATA " + quoted(data) + " is none of ascii, binary, binary_compressed");
+      }
+    } else {
+      line.fail("the header's word " + quoted(words[0]) + " is unknown");
+    }
+  }
+  if (!has_sizes) line.fail("the header has no line SIZE");
+  if (has_width != has_height) line.fail("the header has only one of WIDTH and HEIGHT");
+  if (!has_width && !has_points) line.fail("the header has no count of points");
+  if (height != 0 && width > kMostPoints / height) line.fail("WIDTH x HEIGHT is too large");
+  if (!has_points) header.points = width * height;
+  if (has_width && header.points != width * height) {
+    line.fail("POINTS " + std::to_string(header.points) + " is not WIDTH x HEIGHT");
+  }
+  lay_out(line, header);
+  return header;
+}
+
+[[noreturn]] void fail_data(const LineReader& line, const std::string& what) {
+  throw Error(ErrorCode::format, line.name() + ": " + what);
+}
+
+void read_ascii(LineReader& line, const Header& header,
+                std::vector<std::array<double, 3>>& points) {
+  while (points.size() < header.points) {
+    if (!line.next()) {
+      line.fail("the file ends after " + std::to_string(points.size()) + " of " +
+                std::to_string(header.points) + " points");
+    }
+    if (line.words().empty() || line.words()[0].front() == '#') continue;
+    if (line.words().size() != header.point_words) {
+      line.fail("a point has " + std::to_string(header.point_words) + " words, here are " +
+                std::to_string(line.words().size()));
+    }
+    auto& point = points.emplace_back();
+    for (std::size_t a = 0; a < 3; ++a) {
+      point[a] = line.number(header.fields[header.xyz[a]].word);
+    }
+  }
+}
+
+void expect_size(const LineReader& line, std::uint64_t points, std::uint64_t point_bytes,
+                 std::uint64_t given) {
+  // The product stays below 2^64: at most 2^32 points of 999 fields of 800,000 bytes.
+  if (points * point_bytes > given) {
+    fail_data(line, std::to_string(points) + " points of " + std::to_string(point_bytes) +
+                        " bytes are said, " + std::to_string(given) + " bytes are there");
+  }
+}
+
+/// LZF (M. Lehmann), as PCL uses it: runs of literal bytes and references backward.
+std::string decompress(const LineReader& line, std::string_view in, std::size_t size) {
+  std::string out;
+  out.reserve(size);
+  const auto cut = [&] { fail_data(line, "the compressed data is damaged"); };
+  std::size_t i = 0;
+  const auto next = [&]() -> std::size_t {
+    if (i >= in.size()) cut();
+    return static_cast<unsigned char>(in[i++]);
+  };
+  while (i < in.size()) {
+    const std::size_t control = next();
+    if (control < 32) {
+      const std::size_t run = control + 1;
+      if (in.size() - i < run || size - out.size() < run) cut();
+      out.append(in.substr(i, run));
+      i += run;
+      continue;
+    }
+    std::size_t run = control >> 5U;
+    if (run == 7) run += next();
+    run += 2;
+    const std::size_t back = ((control & 31U) << 8U | next()) + 1;
+    if (back > out.size() || size - out.size() < run) cut();
+    for (std::size_t k = 0; k < run; ++k) out.push_back(out[out.size() - back]);
+  }
+  if (out.size() != size) cut();
+  return out;
+}
+
+/// `stride` and `begin` [bytes] of each axis say where its values lie.
+void decode_points(std::string_view data, const Header& header,
+                   const std::array<std::size_t, 3>& begin,
+                   const std::array<std::size_t, 3>& stride,
+                   std::vector<std::array<double, 3>>& points) {
+  points.resize(header.points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      points[i][a] =
+          decode(data.data() + begin[a] + i * stride[a], header.fields[header.xyz[a]].type);
+    }
+  }
+}
+
+void read_binary(const LineReader& line, const Header& header,
+                 std::vector<std::array<double, 3>>& points) {
+  expect_size(line, header.points, header.point_bytes, line.rest().size());
+  std::array<std::size_t, 3> begin{};
+  for (std::size_t a = 0; a < 3; ++a) begin[a] = header.fields[header.xyz[a]].begin;
+  const std::size_t stride = header.point_bytes;
+  decode_points(line.rest(), header, begin, {stride, stride, stride}, points);
+}
+
+/// Field by field, each for all points.
+void read_compressed(const LineReader& line, const Header& header,
+                     std::vector<std::array<double, 3>>& points) {
+  if (header.points == 0) return;
+  constexpr ScalarType kLength{ScalarType::Kind::unsigned_integer, 4};
+  constexpr std::size_t kMostExpansion = 264;  // three bytes stand for this many at most
+  std::string_view rest = line.rest();
+  if (rest.size() < 8) fail_data(line, "the file ends before its compressed data");
+  const auto packed = static_cast<std::size_t>(decode(rest.data(), kLength));
+  const auto unpacked = static_cast<std::size_t>(decode(rest.data() + 4, kLength));
+  rest.remove_prefix(8);
+  if (packed > rest.size()) {
+    fail_data(line, std::to_string(packed) + " bytes of compressed data are said, " +
+                        std::to_string(rest.size()) + " are there");
+  }
+  if (unpacked > packed * kMostExpansion) fail_data(line, "the compressed data is damaged");
+  expect_size(line, header.points, header.point_bytes, unpacked);
+  if (header.points * header.point_bytes != unpacked) {
+    // The fields would lie elsewhere than the header says.
+    fail_data(line, std::to_string(unpacked) + " bytes are said to be compressed, " +
+                        std::to_string(header.points) + " points of " +
+                        std::to_string(header.point_bytes) + " bytes are less");
+  }
+  // A few bytes can stand for many, and a point of 3 bytes takes 24 in memory.
+  constexpr std::uint64_t kMostGrowth = 64, kAlwaysAllowed = std::uint64_t{1} << 28U;  // [bytes]
+  const std::uint64_t memory = unpacked + header.points * sizeof(std::array<double, 3>);
+  if (memory > std::max(kAlwaysAllowed, kMostGrowth * packed)) {
+    throw Error(ErrorCode::capacity, line.name() + ": " + std::to_string(packed) +
+                                         " bytes of compressed data stand for " +
+                                         std::to_string(memory) + " bytes in memory");
+  }
+  const std::string data = decompress(line, rest.substr(0, packed), unpacked);
+  std::array<std::size_t, 3> begin{}, stride{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Field& field = header.fields[header.xyz[a]];
+    begin[a] = field.begin * static_cast<std::size_t>(header.points);
+    stride[a] = field.type.size;
+  }
+  decode_points(data, header, begin, stride, points);
+}
+
+}  // namespace
+
+PointCloud parse_pcd(std::string_view bytes, const std::string& name) {
+  LineReader line(name, bytes);
+  const Header header = read_header(line);
+  PointCloud cloud;
+  cloud.viewpoint = header.viewpoint;
+  switch (header.data) {
+    case Data::ascii:
+      read_ascii(line, header, cloud.points);
+      break;
+    case Data::binary:
+      read_binary(line, header, cloud.points);
+      break;
+    default:
+      read_compressed(line, header, cloud.points);
+  }
+  return cloud;
+}
+
+}  // namespace viewgain::detail

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace viewgain {
+
+static_assert(std::endian::native == std::endian::little, "columns are written as they lie");
+
+/// What a column holds, little endian in files of columns.
+enum class ColumnType : std::uint8_t {
+  row,     ///< a row's number: int64, "<i8"
+  real,    ///< double, "<f8"
+  count,   ///< uint32, "<u4"
+  status,  ///< a ViewStatus: uint8, "|u1"; its name in CSV
+};
+
+struct Column {
+  std::string name;
+  ColumnType type = ColumnType::real;
+  bool operator==(const Column&) const = default;
+};
+
+/// numpy's name of a type.
+[[nodiscard]] constexpr std::string_view npy_type(ColumnType type) {
+  switch (type) {
+    case ColumnType::row:
+      return "<i8";
+    case ColumnType::real:
+      return "<f8";
+    case ColumnType::count:
+      return "<u4";
+    case ColumnType::status:
+      return "|u1";
+  }
+  return "";
+}
+
+/// [bytes]
+[[nodiscard]] constexpr std::size_t size_of(ColumnType type) {
+  if (type == ColumnType::status) return 1;
+  return type == ColumnType::count ? 4 : 8;
+}
+[[nodiscard]] inline std::size_t row_bytes(const std::vector<Column>& columns) {
+  std::size_t bytes = 0;
+  for (const Column& column : columns) bytes += size_of(column.type);
+  return bytes;
+}
+
+/// Rows one after the other, each column's value after the other, nothing between: as in a .npy.
+struct Table {
+  std::vector<Column> columns;
+  std::string bytes{};
+
+  /// Appends the next value of a row; its type must have the size of the column's.
+  template <typename Value>
+  void add(Value value) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    const auto* first = reinterpret_cast<const char*>(&value);
+    bytes.append(first, sizeof value);
+  }
+  [[nodiscard]] std::size_t size() const { return bytes.size() / row_bytes(columns); }
+};
+
+/// A value of a row.
+template <typename Value>
+[[nodiscard]] Value value_at(const char* bytes) {
+  Value value;
+  std::memcpy(&value, bytes, sizeof value);
+  return value;
+}
+
+}  // namespace viewgain

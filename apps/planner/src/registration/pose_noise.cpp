@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/planner/pose_noise.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/text.hpp"
+
+namespace viewgain {
+namespace {
+
+// Sets these numbers apart from those of the readings' noise, which may have the same seed.
+constexpr std::uint64_t kStream = 0x706F7365;
+
+void check(const PoseNoise& noise) {
+  for (const auto& [name, sigma] : {std::pair("sigma_translation", noise.sigma_translation),
+                                    std::pair("sigma_rotation", noise.sigma_rotation)}) {
+    if (!(sigma >= 0) || !std::isfinite(sigma)) {
+      throw Error(ErrorCode::invalid_argument, "pose noise: " + std::string(name) + " " +
+                                                   short_text(sigma) +
+                                                   " must be at least 0 and finite");
+    }
+  }
+}
+
+}  // namespace
+
+Pose reported_pose(const Pose& T_world_camera, std::size_t view, const PoseNoise& noise) {
+  check(noise);
+  if (view == 0) return T_world_camera;
+  const std::uint64_t of_view = mix64(mix64(noise.seed ^ mix64(kStream)) ^ view);
+  std::uint64_t drawn = 0;
+  // Box and Muller.
+  const auto normal = [&] {
+    const double u = 1 - unit_number(mix64(of_view ^ mix64(++drawn)));  // in (0, 1]
+    const double turn = 2 * std::numbers::pi * unit_number(mix64(of_view ^ mix64(++drawn)));
+    return std::sqrt(-2 * std::log(u)) * std::cos(turn);
+  };
+  Eigen::Vector3d shift, turn;
+  for (int k = 0; k < 3; ++k) shift[k] = noise.sigma_translation * normal();
+  for (int k = 0; k < 3; ++k) turn[k] = noise.sigma_rotation * normal();
+  Eigen::Matrix3d R = T_world_camera.rotation();
+  if (turn.norm() > 0) {
+    R = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() * R;
+  }
+  return {R, T_world_camera.translation() + shift};
+}
+
+Measurements MisreportedAcquisition::acquire(const Pose& T_world_camera, std::size_t view) {
+  Measurements measurements = camera_.acquire(T_world_camera, view);
+  measurements.T_world_camera = reported_pose(T_world_camera, view, noise_);
+  return measurements;
+}
+
+}  // namespace viewgain

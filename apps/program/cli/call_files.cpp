@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program/cli/call_files.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "program/cli/flags/hazard_source.hpp"
+#include "program/cli/flags/obstacle_source.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/formats/file_names.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/formats/run_folder.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/atomic_file.hpp"
+
+namespace viewgain::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What the value of an option names.
+enum class Kind {
+  input,
+  reach,
+  folder,
+  frames,  // a folder of them, or a file in their place
+  run,
+  output,
+  picture,
+  page,
+  frames_output,
+  run_output,
+  plan_output
+};
+struct FileOption {
+  std::string_view name;
+  Kind kind;
+};
+constexpr std::array kFileOptions{
+    FileOption{"--config", Kind::input},    FileOption{"MESH", Kind::frames},
+    FileOption{"MAP", Kind::frames},        FileOption{"IN", Kind::input},
+    FileOption{"--map", Kind::input},       FileOption{"--cloud", Kind::input},
+    FileOption{"--poses", Kind::input},     FileOption{"--sensor", Kind::input},
+    FileOption{"--reach", Kind::reach},     FileOption{"--hazard", Kind::input},
+    FileOption{"--obstacle", Kind::input},  FileOption{"FRAMES_DIR", Kind::frames},
+    FileOption{"OUT", Kind::output},        FileOption{"--picture", Kind::picture},
+    FileOption{"--out", Kind::output},      FileOption{"--save-config", Kind::output},
+    FileOption{"INPUT", Kind::run},         FileOption{"--report", Kind::page},
+    FileOption{"SPEC", Kind::input},        FileOption{"--truth", Kind::input},
+    FileOption{"--points", Kind::output},   FileOption{"SOURCE", Kind::folder},
+    FileOption{"--mask", Kind::folder},     FileOption{"--confidence", Kind::folder},
+    FileOption{"--distances", Kind::input}, FileOption{"PART", Kind::input},
+    FileOption{"--amplitude", Kind::folder}};
+
+bool is_output(Kind kind) { return kind >= Kind::output; }
+
+struct NamedFile {
+  std::string option;
+  fs::path path;
+  Kind kind;
+};
+
+[[noreturn]] void refuse(const std::string& option, const std::string& value,
+                         const std::string& what) {
+  throw Error(ErrorCode::invalid_argument, option + " " + value + ": " + what);
+}
+
+Kind kind_of(const FileOption& option, const std::string& subcommand) {
+  if (option.name != "--out") return option.kind;
+  if (subcommand == "simulate" || subcommand == "import") return Kind::frames_output;
+  if (subcommand == "render") return Kind::picture;
+  if (subcommand == "follow") return Kind::plan_output;
+  return subcommand == "reconstruct" || subcommand == "study" ? Kind::run_output : option.kind;
+}
+
+void check_values(const App& subcommand) {
+  for (const Option* option : subcommand.options()) {
+    for (const std::string& value : option->results()) {
+      if (value.empty()) {
+        throw Error(ErrorCode::invalid_argument, option->name() + ": the value is empty");
+      }
+    }
+  }
+  for (const App* group : subcommand.subcommands()) check_values(*group);
+}
+
+std::vector<NamedFile> named_files(const App& subcommand) {
+  std::vector<NamedFile> files;
+  for (const FileOption& file_option : kFileOptions) {
+    const Option* option = subcommand.find_option(file_option.name);
+    if (option == nullptr) continue;
+    for (const std::string& value : option->results()) {
+      if (file_option.name == "--sensor" && !is_sensor_file(value)) continue;
+      if (file_option.name == "--hazard" && !is_hazard_file(value)) continue;
+      if (file_option.name == "--obstacle" && !is_obstacle_file(value)) continue;
+      // There it is a switch, and the page a file of --out.
+      if (file_option.name == "--report" && subcommand.name() == "reconstruct") continue;
+      files.push_back(
+          {std::string(file_option.name), value, kind_of(file_option, subcommand.name())});
+    }
+  }
+  return files;
+}
+
+// A file by what it is and not by what it is called.
+struct Identity {
+  fs::path path;
+  std::optional<std::pair<dev_t, ino_t>> node{};  // of what is there
+
+  explicit Identity(const fs::path& given) {
+    std::error_code ignored;
+    path = fs::weakly_canonical(fs::absolute(given, ignored), ignored);
+    struct stat status {};
+    if (::stat(given.c_str(), &status) == 0) node = std::pair(status.st_dev, status.st_ino);
+  }
+  [[nodiscard]] bool is(const Identity& other) const {
+    return node && other.node ? *node == *other.node : path == other.path;
+  }
+};
+
+// The files that a name stands for: a folder for those in it that are read or replaced.
+std::vector<Identity> identities(const NamedFile& file) {
+  std::vector<Identity> found{Identity(file.path)};
+  std::vector<fs::path> inside;
+  if (file.kind == Kind::frames || file.kind == Kind::frames_output)
+    inside = frame_files(file.path);
+  if (file.kind == Kind::run || file.kind == Kind::run_output) inside = run_files(file.path);
+  if (file.kind == Kind::plan_output) inside = {"state.vdb", "next.txt", "next.json"};
+  for (const fs::path& name : inside) found.emplace_back(file.path / name);
+  if (file.kind == Kind::reach && !is_special_file(file.path)) {  // a pipe can be read only once
+    if (const auto poses = reach_poses_file(file.path)) found.emplace_back(*poses);
+  }
+  return found;
+}
+
+// Of a folder any file may be read.
+bool lies_in(const NamedFile& file, const NamedFile& folder) {
+  const fs::path inner = Identity(file.path).path, outer = Identity(folder.path).path;
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+bool have_a_common_file(const NamedFile& a, const NamedFile& b) {
+  if (b.kind == Kind::folder) return lies_in(a, b);
+  const std::vector<Identity> of_b = identities(b);
+  for (const Identity& file : identities(a)) {
+    for (const Identity& other : of_b) {
+      if (file.is(other)) return true;
+    }
+  }
+  return false;
+}
+
+void check_not_read(const NamedFile& output, const std::vector<NamedFile>& files) {
+  if (is_special_file(output.path)) return;  // written to, not replaced
+  for (const NamedFile& other : files) {
+    const bool is_continued = other.option == "--map";
+    if (&other == &output || is_continued || !have_a_common_file(output, other)) continue;
+    refuse(output.option, output.path.string(),
+           "is, or holds, a file of " + other.option + " " + other.path.string());
+  }
+}
+
+}  // namespace
+
+void check_call(const App& subcommand) {
+  check_values(subcommand);
+  const std::vector<NamedFile> files = named_files(subcommand);
+  for (const NamedFile& file : files) {
+    if (!is_output(file.kind)) continue;
+    if (file.path == "-") {
+      refuse(file.option, "-", "is no file's name; /dev/stdout writes to the standard output");
+    }
+    if (file.kind == Kind::picture && small_ending(file.path) != ".png" &&
+        !is_special_file(file.path)) {
+      refuse(file.option, file.path.string(), "the name of a picture must end in .png");
+    }
+    if (file.kind == Kind::page && small_ending(file.path) != ".html" &&
+        !is_special_file(file.path)) {
+      refuse(file.option, file.path.string(), "the name of a report must end in .html");
+    }
+    check_not_read(file, files);
+  }
+  for (const NamedFile& file : files) {
+    if (file.kind == Kind::output || file.kind == Kind::picture || file.kind == Kind::page) {
+      const AtomicFile writable(file.path);  // known now rather than after the work
+    }
+  }
+}
+
+}  // namespace viewgain::app

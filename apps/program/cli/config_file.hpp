@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "program/cli/app.hpp"
+
+namespace viewgain::app {
+
+// A TOML file says of a subcommand what its command line would: keys are the flags without --, and
+// the positionals in small letters with - for _ (MESH is `mesh`, FRAMES_DIR `frames-dir`). Numbers
+// are numbers, switches and flags without a value true or false, options that may be repeated
+// lists; numbers and names with commas may be lists, too. Paths are as on the command line,
+// relative to where the program runs.
+
+/// The words after the subcommand with those that its --config stands for. What the command line
+/// says holds: an option, all repetitions of one, or one of a group of which only one may be given.
+/// Throws Error: as sort_words() and read_settings_toml(), and Error(format), naming file and line,
+/// for a value of the wrong type.
+[[nodiscard]] std::vector<std::string> with_config(const App& subcommand,
+                                                   const std::vector<std::string>& words);
+
+/// What a parsed subcommand was given, as with_config() reads it back, and as comments the defaults
+/// of the rest. Without the keys `left_out`, config and save-config. A value that is no UTF-8,
+/// which TOML cannot hold, becomes a comment.
+[[nodiscard]] std::string config_text(const App& subcommand,
+                                      const std::vector<std::string>& left_out = {});
+
+}  // namespace viewgain::app

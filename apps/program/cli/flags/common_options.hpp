@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "program/cli/app.hpp"
+#include "program/cli/choices.hpp"
+
+namespace viewgain::app {
+
+/// What every subcommand has.
+struct CommonOptions {
+  bool json = false;
+  bool quiet = false;
+  int threads = 0;
+  std::string config, save_config;  ///< main() reads and writes them
+};
+inline void add_common_options(App& app, CommonOptions& options) {
+  app.add_flag("--json", options.json, "print one JSON object instead of text");
+  app.add_flag("--quiet", options.quiet, "say nothing of how far the call is");
+  app.add_option("--threads", options.threads, "threads; 0: as many as the machine has")
+      ->capture_default_str();
+  app.add_option("--config", options.config,
+                 "TOML file: flags without -- and positionals (mesh, map) as keys; what the "
+                 "command line says holds");
+  app.add_option("--save-config", options.save_config,
+                 "TOML file to write what was given to, for --config");
+}
+
+// What the subcommands are for, as the program's help groups them.
+inline constexpr const char* kLoopGroup = "The whole loop";
+inline constexpr const char* kMapGroup = "Make a map";
+inline constexpr const char* kViewsGroup = "Choose views";
+inline constexpr const char* kLookGroup = "Look and convert";
+
+/// Where the subcommand stands in the program's help, and a call that works where those of
+/// simulate, integrate, score and so on were made before it.
+inline void add_help(App& app, const char* group, const char* example) {
+  app.group(group)->footer(std::string("Example:\n  viewgain ") + example);
+}
+
+inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt)";
+
+inline constexpr const char* kSensorHelp =
+    "preset (sr4000, azure_kinect_nfov, kinect_v1, d435, laser_line) or a .toml file";
+
+inline const std::string kMapSensorHelp =
+    std::string(kSensorHelp) +
+    "; default: the one that the map's readings come from, where it says so";
+
+inline constexpr const char* kBodyHelp =
+    "x,y,z: width, height, depth of the sensor's housing [m]; default: the sensor's own, else the "
+    "SR4000's";
+
+inline constexpr const char* kOverlapHelp =
+    "share of a boundary candidate's view that is to show known surface, 0..1";
+
+inline constexpr const char* kRegionDepthHelp =
+    "how far inward from a boundary the surface is fitted that candidates go on from [m]";
+
+/// --seed, the same bounds in every subcommand.
+inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {
+  takes_seed(*app.add_option("--seed", seed, of_what));
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program/cli/flags/frame_folder.hpp"
+
+#include <algorithm>
+
+#include "program/cli/values.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::app {
+namespace {
+
+FrameSequence frames_of(const FrameFolderOptions& options) {
+  if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
+  try {
+    return open_frames(options.folder, options.sensor, options.depth_scale);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::invalid_argument || !options.sensor.empty()) throw;
+    throw Error(error.code(), std::string(error.what()) + " (--sensor)");
+  }
+}
+
+}  // namespace
+
+void add_frame_folder_options(App& app, FrameFolderOptions& options) {
+  app.add_option(
+      "--depth-scale", options.depth_scale,
+      "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
+      "sensor.toml), else 1e-3");
+  app.add_option("--mask", options.mask, kMaskHelp);
+  app.add_option("--confidence", options.confidence, kConfidenceHelp);
+  app.add_option("--least-confidence", options.least_confidence, kLeastConfidenceHelp)
+      ->capture_default_str()
+      ->range(1, 255, "confidence");
+}
+
+std::vector<MaskFolder> mask_folders(const FrameFolderOptions& options,
+                                     const std::vector<std::filesystem::path>& images) {
+  std::vector<MaskFolder> folders;
+  if (!options.mask.empty()) folders.emplace_back(options.mask);
+  if (!options.confidence.empty()) {
+    folders.emplace_back(options.confidence, static_cast<std::uint8_t>(options.least_confidence));
+  }
+  for (const MaskFolder& folder : folders) folder.require_mask_of_any(images);
+  return folders;
+}
+
+FrameFolder::FrameFolder(const FrameFolderOptions& options)
+    : name_(options.folder),
+      frames_(frames_of(options)),
+      meaning_(options.out_of_range == "carve" ? OutOfRangeMeaning::carve
+                                               : OutOfRangeMeaning::invalid),
+      masks_(mask_folders(options, frames_.images)) {}
+
+FrameFolder::MaskedFrame FrameFolder::load(std::size_t index) const {
+  MaskedFrame loaded{load_frame(frames_, index, meaning_)};
+  DepthFrame& frame = loaded.frame;
+  for (const MaskFolder& masks : masks_) {
+    const auto mask = masks.mask_of(frames_.images[index], frame.width, frame.height);
+    if (mask) loaded.masked_pixels += apply_mask(*mask, frame);
+  }
+  return loaded;
+}
+
+std::optional<Box> workspace_around(std::size_t count, double voxel,
+                                    const std::function<std::optional<Box>(std::size_t)>& bounds) {
+  std::optional<Box> around;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::optional<Box> own = bounds(i);
+    if (!own) continue;
+    if (!around) around = own;
+    for (std::size_t k = 0; k < 3; ++k) {
+      around->min[k] = std::min(around->min[k], own->min[k]);
+      around->max[k] = std::max(around->max[k], own->max[k]);
+    }
+  }
+  if (!around) return std::nullopt;
+  for (std::size_t k = 0; k < 3; ++k) {
+    around->min[k] -= voxel / 2;
+    around->max[k] += voxel / 2;
+  }
+  return around;
+}
+
+}  // namespace viewgain::app

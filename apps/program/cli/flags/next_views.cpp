@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program/cli/flags/next_views.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "program/cli/flags/gain_names.hpp"
+#include "program/cli/json_text.hpp"
+#include "program/cli/values.hpp"
+
+namespace viewgain::app {
+namespace {
+
+// The gains of NextViews are of the default criterion.
+constexpr std::string_view kCriterion = "log_diagonal";
+
+std::string why(const NextView& view) {
+  std::string text = view.generator;
+  if (view.boundary_class) text.append(" ").append(boundary_class_name(*view.boundary_class));
+  return text;
+}
+
+}  // namespace
+
+Json to_json(const NextViews& next) {
+  Json json{{"gain_model", gain_model_name(next.model)},
+            {"gain_unit", gain_unit(next.model, kCriterion)},
+            {"candidates", next.candidates},
+            {"dropped", Json::object()},
+            {"next", Json::array()}};
+  for (const auto& [reason, count] : next.dropped) json["dropped"][reason] = count;
+  for (const NextView& view : next.views) {
+    Json one{{"gain", view.gain.gain},  // a NaN becomes null
+             {"area", view.gain.area},
+             {"generator", view.generator},
+             {"class", nullptr},
+             {"T_world_camera", to_json(view.T_world_camera)}};
+    if (view.boundary_class) one["class"] = boundary_class_name(*view.boundary_class);
+    json["next"].push_back(std::move(one));
+  }
+  return json;
+}
+
+std::string summary_of(const NextViews& next) {
+  if (next.candidates == 0 && next.dropped.empty()) return "nothing is left to look at";
+  std::string text = next.candidates == 0
+                         ? "no view is possible"
+                         : "the best of " + with_commas(next.candidates) + " views";
+  if (!next.dropped.empty()) text += "; dropped: " + counts_text(next.dropped);
+  return text;
+}
+
+std::string text_of(const NextViews& next) {
+  if (next.views.empty()) return {};
+  const bool has_area = next.model != GainModel::paper;
+  std::array<char, 160> line{};
+  std::snprintf(line.data(), line.size(), "rank %12s%s  %-26s %-23s why\n",
+                ("gain [" + std::string(gain_unit(next.model, kCriterion)) + "]").c_str(),
+                has_area ? "   area [cm^2]" : "", "eye x y z [m]", "looks along x y z");
+  std::string text = line.data();
+  for (std::size_t i = 0; i < next.views.size(); ++i) {
+    const NextView& view = next.views[i];
+    const Eigen::Vector3d eye = view.T_world_camera.translation();
+    const Eigen::Vector3d axis = view.T_world_camera.rotation().col(2);
+    std::snprintf(line.data(), line.size(), "%4zu %12.6g", i + 1, view.gain.gain);
+    text += line.data();
+    if (has_area) {
+      std::snprintf(line.data(), line.size(), " %13.4g", 1e4 * view.gain.area);
+      text += line.data();
+    }
+    std::snprintf(line.data(), line.size(), "  %8.3f %8.3f %8.3f %7.3f %7.3f %7.3f  ", eye.x(),
+                  eye.y(), eye.z(), axis.x(), axis.y(), axis.z());
+    text.append(line.data()).append(why(view)).append("\n");
+  }
+  return text;
+}
+
+std::vector<Pose> poses_of(const NextViews& next) {
+  std::vector<Pose> poses;
+  for (const NextView& view : next.views) poses.push_back(view.T_world_camera);
+  return poses;
+}
+
+}  // namespace viewgain::app

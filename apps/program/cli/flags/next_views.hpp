@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program/cli/json.hpp"
+#include "viewgain/core/boundary_class.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::app {
+
+/// A view worth taking, and why it was proposed.
+struct NextView {
+  Pose T_world_camera;
+  std::size_t index = 0;  ///< of the candidate in its proposal
+  ViewGain gain;
+  std::string generator;
+  std::optional<BoundaryClass> boundary_class{};  ///< of the boundary that it looks beyond
+};
+
+/// Where a camera should look next.
+struct NextViews {
+  std::vector<NextView> views;                 ///< best first
+  std::size_t candidates = 0;                  ///< that were possible; `views` are the best of them
+  std::map<std::string, std::size_t> dropped;  ///< the impossible ones: reason -> count
+  GainModel model = GainModel::combined;       ///< of the gains
+};
+
+/// gain_model, gain_unit, candidates, dropped, next; apps/docs/reference/json.md names the keys of
+/// a view.
+[[nodiscard]] Json to_json(const NextViews& next);
+
+/// "12 of 480 possible views; dropped: 3 collision"
+[[nodiscard]] std::string summary_of(const NextViews& next);
+
+/// A table for people, one line a view; empty without views.
+[[nodiscard]] std::string text_of(const NextViews& next);
+
+[[nodiscard]] std::vector<Pose> poses_of(const NextViews& next);
+
+}  // namespace viewgain::app

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program/cli/flags/sensed_map.hpp"
+
+#include <cstdio>
+#include <optional>
+#include <utility>
+
+#include "program/cli/values.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+
+namespace viewgain::app {
+namespace {
+
+std::string readings_of(Sensor sensor) {
+  sensor.body_size.reset();
+  sensor.T_flange_camera.reset();
+  return sensor_toml(sensor);
+}
+
+}  // namespace
+
+bool is_same_sensor(const Sensor& a, const Sensor& b) { return readings_of(a) == readings_of(b); }
+
+bool warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const Sensor& sensor) {
+  if (!map.sensor || is_same_sensor(*map.sensor, sensor)) return false;
+  std::fprintf(stderr, "viewgain: warning: the readings in %s come from %s, not from this %s\n",
+               utf8_text(path).c_str(), map.sensor->name.c_str(), sensor.name.c_str());
+  return true;
+}
+
+SensedMap load_sensed_map(const std::string& path, const std::string& sensor_flag) {
+  std::optional<Sensor> asked;
+  if (!sensor_flag.empty()) asked = load_sensor(sensor_flag);
+  MapOfSensor map = load_map_of_sensor(path, asked ? &*asked : nullptr);
+  if (!asked && !map.sensor) {
+    throw Error(ErrorCode::invalid_argument,
+                path + ": does not say which sensor its readings come from; give --sensor");
+  }
+  if (asked) warn_of_other_sensor(path, map, *asked);
+  return {std::move(map.grid), asked ? std::move(*asked) : std::move(*map.sensor)};
+}
+
+}  // namespace viewgain::app

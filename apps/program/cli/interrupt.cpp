@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program/cli/interrupt.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <mutex>
+#include <thread>
+
+#include "viewgain/formats/staged_folder.hpp"
+#include "viewgain/support/atomic_file.hpp"
+
+namespace viewgain::app {
+namespace {
+
+std::mutex mutex;
+std::stop_source* guarded = nullptr;  // of the InterruptGuard that lives
+bool ended = false;
+
+// Whether the signal was only a wish to stop.
+bool asks_for_a_stop(int signal) {
+  const std::lock_guard lock(mutex);
+  if (guarded != nullptr && signal != SIGQUIT && guarded->request_stop()) return true;
+  ended = true;
+  return false;
+}
+
+// A thread waits for the signals that all threads block: unlike a handler it may take locks.
+void watch(const sigset_t& signals) {
+  int signal = 0;
+  while (::sigwait(&signals, &signal) != 0 || asks_for_a_stop(signal)) {
+  }
+  remove_temporary_files();
+  remove_staged_folders();
+  std::signal(signal, SIG_DFL);
+  ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  std::raise(signal);
+}
+
+}  // namespace
+
+void clean_up_when_ended() {
+  sigset_t signals;
+  ::sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+    struct sigaction action {};
+    // Programs in the background and under nohup are started with some ignored.
+    if (::sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
+      ::sigaddset(&signals, signal);
+    }
+  }
+  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::thread(watch, signals).detach();
+}
+
+void wait_if_ended() {
+  const bool is_ended = [] {
+    const std::lock_guard lock(mutex);
+    return ended;
+  }();
+  while (is_ended) ::pause();
+}
+
+InterruptGuard::InterruptGuard() {
+  const std::lock_guard lock(mutex);
+  guarded = &source_;
+}
+
+InterruptGuard::~InterruptGuard() {
+  const std::lock_guard lock(mutex);
+  guarded = nullptr;
+}
+
+}  // namespace viewgain::app

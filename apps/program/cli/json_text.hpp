@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "program/cli/json.hpp"
+#include "program/cli/values.hpp"
+#include "viewgain/core/box.hpp"
+#include "viewgain/core/pose.hpp"
+
+namespace viewgain::app {
+
+[[nodiscard]] inline Json to_json(const Box& box) {
+  return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
+}
+
+[[nodiscard]] inline Json to_json(const Pose& pose) {
+  const auto& m = pose.m;
+  return {{m[0], m[1], m[2], m[3]},
+          {m[4], m[5], m[6], m[7]},
+          {m[8], m[9], m[10], m[11]},
+          {0.0, 0.0, 0.0, 1.0}};
+}
+
+/// With every text made UTF-8: a file name may be any bytes.
+[[nodiscard]] inline Json with_utf8_text(Json json) {
+  if (json.is_string()) return utf8_text(json.get<std::string>());
+  for (Json& part : json) part = with_utf8_text(std::move(part));
+  return json;
+}
+
+/// What run.json and --json hold.
+[[nodiscard]] inline std::string json_text(const Json& json) {
+  return with_utf8_text(json).dump(2) + "\n";
+}
+
+inline void print_json(const Json& json) { std::fputs(json_text(json).c_str(), stdout); }
+
+}  // namespace viewgain::app

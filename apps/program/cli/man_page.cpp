@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program/cli/man_page.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+#include <vector>
+
+#include "program/cli/words.hpp"
+#include "viewgain/version.hpp"
+
+namespace viewgain::app {
+namespace {
+
+// Text that roff shows as it is.
+std::string escaped(const std::string& text) {
+  std::string roff;
+  for (const char c : text) {
+    const bool begins_a_line = roff.empty() || roff.back() == '\n';
+    if (begins_a_line && (c == '.' || c == '\'')) roff += "\\&";
+    switch (c) {
+      case '\\':
+        roff += "\\e";
+        break;
+      case '-':
+        roff += "\\-";
+        break;
+      case '^':
+        roff += "\\(ha";
+        break;
+      case '~':
+        roff += "\\(ti";
+        break;
+      default:
+        roff += c;
+    }
+  }
+  return roff;
+}
+
+std::string bold(const std::string& text) { return "\\fB" + escaped(text) + "\\fR"; }
+std::string italic(const std::string& text) { return "\\fI" + escaped(text) + "\\fR"; }
+
+std::string heading(const std::string& page) {
+  std::string title = page;
+  for (char& c : title) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return ".TH " + escaped(title) + " 1 \"\" \"viewgain " VIEWGAIN_VERSION "\" \"User Commands\"\n";
+}
+
+// The first sentence, or what is before a colon, as NAME has it.
+std::string brief(const std::string& description) {
+  std::string text = description.substr(0, description.find_first_of(":."));
+  text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+// Lines of a help's footer: those that are indented stand as they are.
+std::string examples(const std::string& footer) {
+  if (footer.empty()) return "";
+  std::string roff = ".SH EXAMPLES\n.nf\n";
+  std::istringstream lines(footer);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("  ")) roff += escaped(line.substr(2)) + "\n";
+  }
+  return roff + ".fi\n";
+}
+
+std::string exit_status() {
+  return ".SH EXIT STATUS\n0, 2 for bad input (one line on stderr, nothing half\\-written), 1 for "
+         "an internal error.\n";
+}
+
+std::string value_text(const Option& option) {
+  const std::string type = option.type_name();
+  const std::size_t begin = type.find('{');
+  if (begin == std::string::npos) {
+    if (type.starts_with("FLOAT")) return italic("NUMBER");
+    return italic(type.starts_with("TEXT") ? "TEXT" : "N");
+  }
+  std::string choices = type.substr(begin + 1, type.find('}') - begin - 1);
+  std::replace(choices.begin(), choices.end(), ',', '|');
+  return bold(choices);
+}
+
+std::string option_text(const Option& option) {
+  std::string roff = ".TP\n" + (option.nonpositional() ? bold : italic)(option.name());
+  if (option.nonpositional() && !option.is_bare()) roff += " " + value_text(option);
+  if (option.is_required() && option.nonpositional()) roff += " (needed)";
+  roff += "\n" + escaped(option.description());
+  if (!option.default_text().empty() && !option.is_bare()) {
+    roff += " (default: " + escaped(option.default_text()) + ")";
+  }
+  return roff + "\n";
+}
+
+std::string options_text(const App& subcommand) {
+  std::string roff;
+  for (const bool positional : {true, false}) {
+    for (const Option* option : subcommand.options()) {
+      const bool is_of_group = subcommand.name().empty() && option == subcommand.help_option();
+      if (option->nonpositional() != positional && !is_of_group) roff += option_text(*option);
+    }
+  }
+  for (const App* group : subcommand.subcommands()) {
+    if (!group->name().empty()) continue;
+    roff += ".SS " + escaped(group->group_name() + ", " + group->description()) + "\n";
+    roff += options_text(*group);
+  }
+  return roff;
+}
+
+}  // namespace
+
+std::string man_page(const App& program) {
+  std::string roff =
+      heading("viewgain") + ".SH NAME\nviewgain \\- scores camera poses by expected " +
+      "information gain\n.SH SYNOPSIS\n" + bold("viewgain") + " " + italic("SUBCOMMAND") + " [" +
+      italic("OPTIONS") + "]\n.SH DESCRIPTION\n" + escaped(program.description()) + "\n";
+  std::string group;
+  std::string also;
+  for (const App* subcommand : program.subcommands()) {
+    if (subcommand->group_name().empty()) continue;
+    if (subcommand->group_name() != group) {
+      group = subcommand->group_name();
+      roff += ".SS " + escaped(group) + "\n";
+    }
+    const std::string page = "viewgain-" + subcommand->name();
+    roff += ".TP\n" + bold(subcommand->name()) + "\n" + escaped(subcommand->description()) + "\n";
+    also += (also.empty() ? "" : ",\n") + bold(page) + "(1)";
+  }
+  return roff + examples(program.footer_text()) + exit_status() + ".SH SEE ALSO\n" + also + "\n";
+}
+
+std::string subcommand_man_page(const App& subcommand) {
+  const std::string& name = subcommand.name();
+  std::string roff = heading("viewgain-" + name) + ".SH NAME\n" + escaped("viewgain-" + name) +
+                     " \\- " + escaped(brief(subcommand.description())) + "\n.SH SYNOPSIS\n" +
+                     bold("viewgain " + name) + " [" + italic("OPTIONS") + "]";
+  for (const Option* option : subcommand.options()) {
+    if (option->nonpositional()) continue;
+    const std::string shown = italic(option->name());
+    roff += option->is_required() ? " " + shown : " [" + shown + "]";
+  }
+  return roff + "\n.SH DESCRIPTION\n" + escaped(subcommand.description()) + "\n.SH OPTIONS\n" +
+         options_text(subcommand) + examples(subcommand.footer_text()) + exit_status() +
+         ".SH SEE ALSO\n" + bold("viewgain") + "(1)\n";
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,223 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program/cli/values.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/support/nearest_name.hpp"
+
+namespace viewgain::app {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+std::string general_text(double value, int digits) {
+  if (std::isnan(value)) return "nan";
+  std::array<char, 40> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                          std::chars_format::general, digits);
+  return {buffer.data(), end};
+}
+
+// Bytes of the character at the front, 0 where that is no UTF-8.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xc2 && first <= 0xdf   ? 2
+                             : first >= 0xe0 && first <= 0xef ? 3
+                             : first >= 0xf0 && first <= 0xf4 ? 4
+                                                              : 0;
+  if (length == 0 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0U) != 0x80) return 0;
+  }
+  // Longer than needed, half of a surrogate pair, past the last code point.
+  const bool is_wrong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
+                        (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f);
+  return is_wrong ? 0 : length;
+}
+
+[[noreturn]] void fail(std::string_view flag, std::string_view text, const std::string& what) {
+  throw Error(ErrorCode::invalid_argument,
+              std::string(flag) + " " + std::string(text) + ": " + what);
+}
+
+}  // namespace
+
+std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
+                                  std::size_t min_count, std::size_t max_count) {
+  std::vector<double> numbers;
+  std::string_view rest = text;
+  for (bool more = true; more;) {
+    const std::size_t comma = rest.find(',');
+    more = comma != std::string_view::npos;
+    std::string_view word = trimmed(rest.substr(0, comma));
+    if (more) rest.remove_prefix(comma + 1);
+    if (word.size() > 1 && word.front() == '+') word.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || end != word.data() + word.size()) {
+      fail(flag, text, std::string("\"").append(word).append("\" is no number"));
+    }
+    if (!std::isfinite(value)) fail(flag, text, "numbers must be finite");
+    numbers.push_back(value);
+  }
+  if (numbers.size() < min_count || numbers.size() > max_count) {
+    fail(flag, text,
+         "needs " + std::to_string(min_count) +
+             (min_count == max_count ? "" : " to " + std::to_string(max_count)) +
+             " numbers separated by commas, has " + std::to_string(numbers.size()));
+  }
+  return numbers;
+}
+
+std::size_t parse_count(std::string_view flag, double value) {
+  constexpr double kMaxCount = 1e7;
+  if (!(value >= 0 && value <= kMaxCount && value == std::floor(value))) {
+    fail(flag, short_text(value), "the count must be a whole number from 0 to 10000000");
+  }
+  return static_cast<std::size_t>(value);
+}
+
+Box box_of(std::string_view flag, const std::vector<double>& numbers) {
+  const Box box{{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(box.min[k] < box.max[k])) {
+      fail(flag, describe(box), "the box is inside out or has no extent");
+    }
+  }
+  return box;
+}
+
+Box parse_box(std::string_view flag, std::string_view text) {
+  return box_of(flag, parse_numbers(flag, text, 6, 6));
+}
+
+std::array<double, 3> parse_size(std::string_view flag, std::string_view text) {
+  const std::vector<double> n = parse_numbers(flag, text, 3, 3);
+  for (const double length : n) {
+    if (!(length > 0)) fail(flag, text, "width, height and depth must be positive");
+  }
+  return {n[0], n[1], n[2]};
+}
+
+Pose parse_pose(std::string_view flag, std::string_view text) {
+  const std::vector<double> n = parse_numbers(flag, text, 7, 7);
+  const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);
+  if (!(std::abs(q.norm() - 1) < 1e-2)) {
+    fail(flag, text, "the quaternion qx,qy,qz,qw has the norm " + short_text(q.norm()));
+  }
+  return {q.normalized().toRotationMatrix(), Eigen::Vector3d(n[0], n[1], n[2])};
+}
+
+Eigen::Vector3d parse_point(std::string_view flag, std::string_view text) {
+  const std::vector<double> n = parse_numbers(flag, text, 3, 3);
+  return {n[0], n[1], n[2]};
+}
+
+void check_one_of(std::string_view flag, std::string_view value,
+                  const std::vector<std::string>& names, const char* what) {
+  if (std::find(names.begin(), names.end(), value) != names.end()) return;
+  const std::string nearest = did_you_mean(value, names);
+  fail(flag, value,
+       std::string("no such ") + what +
+           (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names));
+}
+
+std::vector<std::string> parse_names(std::string_view flag, std::string_view text,
+                                     const std::vector<std::string>& valid, const char* what) {
+  std::vector<std::string> names;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    names.emplace_back(text.substr(begin, end - begin));
+    check_one_of(flag, names.back(), valid, what);
+    begin = end + 1;
+  }
+  return names;
+}
+
+std::string describe(const Box& box) {
+  std::string text;
+  for (const auto& corner : {box.min, box.max}) {
+    for (const double value : corner) {
+      text.append(text.empty() ? "" : ",").append(general_text(value, 6));
+    }
+  }
+  return text;
+}
+
+std::string utf8_text(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const auto byte = static_cast<unsigned char>(text[0]);
+    if (length == 0) {
+      result.append("\\x").append(1, kDigits[byte >> 4U]).append(1, kDigits[byte & 15U]);
+    } else {
+      result.append(text.substr(0, length));
+    }
+    text.remove_prefix(std::max(length, std::size_t{1}));
+  }
+  return result;
+}
+
+std::string with_commas(unsigned long long value) {
+  const std::string digits = std::to_string(value);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+    text += digits[i];
+  }
+  return text;
+}
+
+std::string with_unit(double value) {
+  const char* unit = "";
+  for (const char* next : {" k", " M", " G"}) {
+    if (value < 1000) break;
+    value /= 1000;
+    unit = next;
+  }
+  return general_text(value, 3) + unit;
+}
+
+std::string counts_text(const std::map<std::string, std::size_t>& counts) {
+  std::string text;
+  for (const auto& [reason, count] : counts) {
+    text.append(text.empty() ? "" : ", ").append(std::to_string(count)).append(" ").append(reason);
+  }
+  return text;
+}
+
+void check_finite(std::string_view flag, double value) {
+  if (!std::isfinite(value)) fail(flag, short_text(value), "must be finite");
+}
+
+void check_positive(std::string_view flag, double value) {
+  if (!(value > 0 && std::isfinite(value))) {
+    fail(flag, short_text(value), "must be positive and finite");
+  }
+}
+
+void check_at_least_0(std::string_view flag, double value) {
+  if (!(value >= 0 && std::isfinite(value))) {
+    fail(flag, short_text(value), "must be at least 0 and finite");
+  }
+}
+
+void check_inside_0_1(std::string_view flag, double value) {
+  if (!(value > 0 && value < 1)) fail(flag, short_text(value), "must be between 0 and 1");
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/box.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/support/text.hpp"
+
+namespace viewgain::app {
+
+/// Numbers separated by commas; each must be finite and their count in [min_count, max_count].
+/// Throws Error(invalid_argument) that names the flag and the text.
+[[nodiscard]] std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
+                                                std::size_t min_count, std::size_t max_count);
+
+/// A count among parse_numbers' values: a whole number that is not negative and at most 1e7.
+[[nodiscard]] std::size_t parse_count(std::string_view flag, double value);
+
+/// x0,y0,z0,x1,y1,z1 [m]. Throws Error(invalid_argument) if it is inside out or has no extent.
+[[nodiscard]] Box parse_box(std::string_view flag, std::string_view text);
+[[nodiscard]] Box box_of(std::string_view flag, const std::vector<double>& numbers);
+
+/// Width, height, depth of a box [m]. Throws Error(invalid_argument) naming the flag if one is not
+/// positive.
+[[nodiscard]] std::array<double, 3> parse_size(std::string_view flag, std::string_view text);
+
+/// tx,ty,tz,qx,qy,qz,qw. Throws Error(invalid_argument) naming the flag.
+[[nodiscard]] Pose parse_pose(std::string_view flag, std::string_view text);
+
+/// x,y,z [m]. Throws Error(invalid_argument) naming the flag.
+[[nodiscard]] Eigen::Vector3d parse_point(std::string_view flag, std::string_view text);
+
+/// Throws Error(invalid_argument) unless the value is one of the names: "--gain surfce: no such
+/// gain; did you mean surface? There are paper, surface, combined".
+void check_one_of(std::string_view flag, std::string_view value,
+                  const std::vector<std::string>& names, const char* what);
+
+/// A list of names separated by commas, each one of the valid ones as check_one_of() has it.
+[[nodiscard]] std::vector<std::string> parse_names(std::string_view flag, std::string_view text,
+                                                   const std::vector<std::string>& valid,
+                                                   const char* what);
+
+/// x0, y0, z0 .. x1, y1, z1 for people.
+[[nodiscard]] std::string describe(const Box& box);
+
+/// The text as UTF-8, in which a byte that is none stands as \xE9. For file names, which may be any
+/// bytes, in JSON.
+[[nodiscard]] std::string utf8_text(std::string_view text);
+
+/// 2,097,152 for 2097152.
+[[nodiscard]] std::string with_commas(unsigned long long value);
+
+/// 83.2 M for 83200000; one of k, M, G where it helps.
+[[nodiscard]] std::string with_unit(double value);
+
+/// "12 collision, 3 unreachable"
+[[nodiscard]] std::string counts_text(const std::map<std::string, std::size_t>& counts);
+
+/// A flag's value, checked: each throws Error(invalid_argument) that names both. NaN never passes.
+void check_finite(std::string_view flag, double value);
+void check_positive(std::string_view flag, double value);    ///< and finite
+void check_at_least_0(std::string_view flag, double value);  ///< and finite
+void check_inside_0_1(std::string_view flag, double value);  ///< neither 0 nor 1
+
+}  // namespace viewgain::app

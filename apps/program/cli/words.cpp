@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program/cli/words.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "program/cli/choices.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/support/nearest_name.hpp"
+
+namespace viewgain::app {
+namespace {
+
+[[noreturn]] void refuse(const App& subcommand, const std::string& flag, std::string what) {
+  if (!subcommand.name().empty() && subcommand.has_parent()) {
+    what.append(" (see viewgain ").append(subcommand.name()).append(" --help)");
+  }
+  throw Error(ErrorCode::invalid_argument, flag + ": " + what);
+}
+
+[[noreturn]] void refuse_unknown(const App& subcommand, const std::string& flag) {
+  std::vector<std::string> flags;
+  for (const Option* option : all_options(subcommand)) {
+    if (option->nonpositional()) flags.push_back(option->name());
+  }
+  refuse(
+      subcommand, flag,
+      std::string("no such flag of ").append(subcommand.name()).append(did_you_mean(flag, flags)));
+}
+
+[[noreturn]] void refuse_without_value(const App& subcommand, const Option& option) {
+  const std::vector<std::string> choices = choices_of(option);
+  std::string what = "needs a value";
+  if (!choices.empty()) what.append("; there are ").append(listed(choices));
+  refuse(subcommand, option.name(), what);
+}
+
+// No subcommand has any but -h; a number may stand for a name.
+bool is_short_flag(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && word != "-h" &&
+         std::isalpha(static_cast<unsigned char>(word[1])) != 0;
+}
+
+bool is_flag(const std::string& word) { return word.size() > 2 && word.starts_with("--"); }
+
+}  // namespace
+
+std::vector<const Option*> all_options(const App& subcommand) {
+  std::vector<const Option*> options = subcommand.options();
+  for (const App* group : subcommand.subcommands()) {
+    if (!group->name().empty()) continue;
+    for (const Option* option : all_options(*group)) {
+      if (option != group->help_option()) options.push_back(option);  // the subcommand has its own
+    }
+  }
+  return options;
+}
+
+const App* subcommand_of(const App& program, const std::vector<std::string>& words) {
+  if (words.empty() || words[0].starts_with("-")) return nullptr;
+  std::vector<std::string> names;
+  for (const App* subcommand : program.subcommands()) {
+    if (subcommand->name() == words[0]) return subcommand;
+    if (!subcommand->group_name().empty()) names.push_back(subcommand->name());
+  }
+  const std::string nearest = did_you_mean(words[0], names);
+  throw Error(ErrorCode::invalid_argument,
+              words[0] + ": no such subcommand" +
+                  (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names));
+}
+
+GivenWords sort_words(const App& subcommand, const std::vector<std::string>& words) {
+  const std::vector<const Option*> options = all_options(subcommand);
+  GivenWords given;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (given.has_mark || !words[i].starts_with("--")) {
+      if (!given.has_mark && is_short_flag(words[i])) refuse_unknown(subcommand, words[i]);
+      if (given.has_mark || words[i] != "-h") ++given.positionals;
+      continue;
+    }
+    if (words[i] == "--") {
+      given.has_mark = true;
+      continue;
+    }
+    const std::size_t equals = words[i].find('=');
+    const std::string flag = words[i].substr(0, equals);
+    const auto found = std::find_if(options.begin(), options.end(), [&](const Option* option) {
+      return option->nonpositional() && option->name() == flag;
+    });
+    if (found == options.end()) refuse_unknown(subcommand, flag);
+    given.options.insert(*found);
+    if ((*found)->is_bare() || equals != std::string::npos) continue;
+    if (i + 1 == words.size() || words[i + 1] == "--" || is_flag(words[i + 1])) {
+      refuse_without_value(subcommand, **found);
+    }
+    ++i;
+  }
+  return given;
+}
+
+}  // namespace viewgain::app

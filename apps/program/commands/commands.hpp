@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "program/cli/app.hpp"
+#include "program/cli/flags/common_options.hpp"
+#include "program/cli/json_text.hpp"
+
+namespace viewgain::app {
+
+/// One subcommand: its options are in `app`, `run` does the work after parsing. run throws Error
+/// for bad input; nothing half-written stays behind. The subcommand of the group "" is not shown.
+struct Command {
+  App* app = nullptr;
+  std::function<void()> run;
+};
+
+/// Thrown by a command that a signal stopped before it was done: one line, exit code 130.
+struct Stopped {
+  std::string message;
+};
+
+[[nodiscard]] Command add_simulate(App& program);
+[[nodiscard]] Command add_calibrate(App& program);
+[[nodiscard]] Command add_import(App& program);
+[[nodiscard]] Command add_integrate(App& program);
+[[nodiscard]] Command add_score(App& program);
+[[nodiscard]] Command add_merge(App& program);
+[[nodiscard]] Command add_reconstruct(App& program);
+[[nodiscard]] Command add_candidates(App& program);
+[[nodiscard]] Command add_next(App& program);
+[[nodiscard]] Command add_info(App& program);
+[[nodiscard]] Command add_convert(App& program);
+[[nodiscard]] Command add_surface(App& program);
+[[nodiscard]] Command add_render(App& program);
+[[nodiscard]] Command add_sensors(App& program);
+[[nodiscard]] Command add_follow(App& program);
+[[nodiscard]] Command add_study(App& program);
+
+}  // namespace viewgain::app

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "program/cli/choices.hpp"
+#include "program/cli/values.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/map_json.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/stopwatch.hpp"
+
+namespace viewgain::app {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string in;
+  std::string out;
+  std::string workspace, sensor;
+  std::optional<double> prior_sigma;
+  std::string with_covariance = "off";
+};
+
+void check(const Options& options) {
+  const auto refuse = [](const std::string& flag, const std::string& file, const char* why) {
+    throw Error(ErrorCode::invalid_argument, flag + " with " + file + ": " + why);
+  };
+  if (!is_octomap(options.in)) {
+    constexpr const char* kWhy = "the map has its own; the flag is for .ot and .bt";
+    if (!options.workspace.empty()) refuse("--workspace", options.in, kWhy);
+    if (options.prior_sigma) refuse("--prior-sigma", options.in, kWhy);
+    if (!options.sensor.empty()) refuse("--sensor", options.in, kWhy);
+  }
+  check_map_name(options.out);
+  if (options.with_covariance == "on" && is_octomap(options.out)) {
+    refuse("--with-covariance", options.out, "a tree has no place for covariances");
+  }
+}
+
+void convert(const Options& options) {
+  const Stopwatch watch;
+  check(options);
+  OctomapConfig config;
+  if (!options.workspace.empty()) config.workspace = parse_box("--workspace", options.workspace);
+  config.prior_sigma = options.prior_sigma;
+  std::optional<Sensor> sensor;
+  if (!options.sensor.empty()) sensor = load_sensor(options.sensor);
+  const MapOfSensor map = load_map_of_sensor(options.in, sensor ? &*sensor : nullptr, config);
+  const BeliefGrid& grid = map.grid;
+  VdbWriteConfig how = noting_frames(map.frames, {options.with_covariance == "on"});
+  if (map.sensor) how = noting_sensor(*map.sensor, std::move(how));
+  const LostInTree lost = save_map(grid, options.out, how);
+  warn_of_lost_frame(lost, options.out);
+  const GridStatistics statistics = grid.statistics();
+  const Index3 dims = grid.dims();
+  if (options.common.json) {
+    Json json = {{"in", options.in}, {"out", options.out}};
+    json.update(map_json(grid, statistics));
+    json.update({{"lost_beliefs", lost.beliefs},
+                 {"lost_views", lost.views},
+                 {"lost_hazard_counters", lost.hazard_counters},
+                 {"lost_T_world_grid", lost.T_world_grid},
+                 {"hash", grid.content_hash()},
+                 {"seconds", watch.seconds()}});
+    print_json(json);
+    return;
+  }
+  std::printf("workspace %s m: %d x %d x %d voxels of %g m\n", describe(grid.workspace()).c_str(),
+              dims.x, dims.y, dims.z, grid.voxel_size());
+  std::printf("voxels: %s unknown, %s free, %s occupied\n", with_commas(statistics.unknown).c_str(),
+              with_commas(statistics.free).c_str(), with_commas(statistics.occupied).c_str());
+  if (lost.beliefs > 0 || lost.views > 0) {
+    std::printf("not in a tree: the beliefs of %s voxels, %s views%s\n",
+                with_commas(lost.beliefs).c_str(), with_commas(lost.views).c_str(),
+                lost.hazard_counters ? ", hazard counters" : "");
+  }
+  std::printf("%s\n", options.out.c_str());
+}
+
+}  // namespace
+
+Command add_convert(App& program) {
+  auto options = std::make_shared<Options>();
+  App* app = program.add_subcommand(
+      "convert",
+      "A map from one format into another: .vdb, OctoMap's .ot and (read only) .bt. OctoMap trees "
+      "keep states and log-odds, a .bt only states; they have no beliefs, prior or views, and a "
+      "frame only where it is a shift by whole voxels, which moves the tree.");
+  app->add_option("IN", options->in, kMapHelp)->required();
+  app->add_option("OUT", options->out, "map to write (.vdb or .ot)")->required();
+  app->add_option("--workspace", options->workspace,
+                  "x0,y0,z0,x1,y1,z1: the part of a tree to take [m], grown to whole voxels; "
+                  "default: its known voxels");
+  app->add_option("--prior-sigma", options->prior_sigma,
+                  "sigma of an unknown voxel of a tree [m]; default: the sensor's, else voxel/2");
+  app->add_option("--sensor", options->sensor,
+                  std::string("whose readings will be scored, for the prior of a tree's voxels: ") +
+                      kSensorHelp);
+  on_or_off(*app->add_option("--with-covariance", options->with_covariance,
+                             "add covariances and positions to the .vdb, for viewers")
+                 ->capture_default_str());
+  add_common_options(*app, options->common);
+  add_help(*app, kLookGroup, "convert map.vdb tree.ot");
+  return {app, [options] { convert(*options); }};
+}
+
+}  // namespace viewgain::app

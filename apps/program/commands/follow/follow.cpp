@@ -1,0 +1,381 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "program/cli/choices.hpp"
+#include "program/cli/flags/frame_folder.hpp"
+#include "program/cli/flags/hazard_source.hpp"
+#include "program/cli/flags/next_views.hpp"
+#include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/flags/registration_options.hpp"
+#include "program/cli/flags/sensing.hpp"
+#include "program/cli/interrupt.hpp"
+#include "program/cli/values.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/follow/folder_lock.hpp"
+#include "program/commands/follow/followed_map.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/frame_watch.hpp"
+#include "viewgain/formats/masks.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/stopwatch.hpp"
+
+namespace viewgain::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::milliseconds kPause{100};  // between looks at the folder
+// While frames wait, views are proposed and all is written this often at most [s].
+constexpr double kLeastInterval = 0.5;
+
+struct Options {
+  CommonOptions common;
+  FrameFolderOptions frames;
+  double voxel = 0;
+  std::string workspace;
+  std::string jump_edge_filter = "5";
+  std::string jump_edge_two_sided = "off";
+  std::string gain = "combined";
+  std::optional<double> object_size;
+  std::string hazard;
+  std::string reach;
+  std::vector<std::string> obstacles;
+  std::string body;
+  std::optional<double> support_plane;
+  std::size_t top = 10;
+  std::size_t max_views = PlannerConfig{}.max_views;
+  RegistrationOptions registration;
+  std::string out;
+};
+
+// All but what depends on the sensor.
+PlannerConfig planner_config(const Options& options) {
+  PlannerConfig config;
+  check_positive("--voxel", options.voxel);
+  config.grid.voxel_size = options.voxel;
+  config.grid.workspace = parse_box("--workspace", options.workspace);
+  if (options.support_plane) check_finite("--support-plane", *options.support_plane);
+  config.support_plane = options.support_plane;
+  config.obstacles = obstacles_of(options.obstacles);
+  config.jump_edges =
+      parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided == "on");
+  config.gain.model = parse_gain_model(options.gain);
+  if (config.gain.model == GainModel::paper && (options.object_size || !options.hazard.empty())) {
+    throw Error(ErrorCode::invalid_argument,
+                "--object-size and --hazard go with --gain surface or combined");
+  }
+  if (!options.reach.empty()) config.reach = read_reach_toml(options.reach);
+  config.max_views = options.max_views;
+  return config;
+}
+
+// Not yet with a mask in it: they come with the frames.
+MaskFolder mask_folder(const char* flag, const fs::path& folder, const fs::path& frames,
+                       std::optional<std::uint8_t> least_confidence = {}) {
+  std::error_code ignored;
+  if (fs::equivalent(folder, frames, ignored)) {
+    throw Error(ErrorCode::invalid_argument,
+                std::string(flag) + " " + folder.string() +
+                    ": has the depth images, whose names masks have; name a folder in it");
+  }
+  return MaskFolder(folder, least_confidence);
+}
+
+FrameWatch watch_of(const FrameFolderOptions& options, const std::optional<SavedFrames>& saved) {
+  if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
+  FrameWatchConfig config;
+  config.sensor = options.sensor;
+  config.depth_scale = options.depth_scale;
+  if (options.out_of_range == "invalid") config.out_of_range = OutOfRangeMeaning::invalid;
+  if (!options.mask.empty()) {
+    config.masks.push_back(mask_folder("--mask", options.mask, options.folder));
+  }
+  if (!options.confidence.empty()) {
+    config.masks.push_back(mask_folder("--confidence", options.confidence, options.folder,
+                                       static_cast<std::uint8_t>(options.least_confidence)));
+  }
+  if (saved) config.taken = saved->frames;
+  return {options.folder, std::move(config)};
+}
+
+// Files of these names that are somebody else's stay.
+void check_folder(const fs::path& out) {
+  for (const char* name : {"next.txt", "next.json"}) {
+    std::error_code ignored;
+    if (!fs::exists(out / name, ignored)) continue;
+    throw Error(ErrorCode::invalid_argument,
+                (out / name).string() + ": is there, but no state.vdb; name a new folder");
+  }
+}
+
+// A folder that is followed: what comes goes into the map, what is next into the files.
+class Following {
+ public:
+  explicit Following(const Options& options)
+      : options_(options),
+        config_(planner_config(options)),
+        sigmas_(registration_prior(options.registration)),
+        frames_(options.frames.folder),
+        out_(options.out) {
+    if (!options.frames.sensor.empty()) (void)load_sensor(options.frames.sensor);
+    if (!options.body.empty()) body_ = parse_size("--body", options.body);
+    std::error_code ignored;
+    if (!fs::is_directory(frames_, ignored)) {
+      throw Error(ErrorCode::io, frames_.string() + ": no such folder");
+    }
+    lock_.emplace(out_);
+    saved_ = saved_frames(out_ / "state.vdb");
+    if (!saved_) check_folder(out_);
+    watch_.emplace(watch_of(options_.frames, saved_));
+  }
+
+  // One frame at most; returns whether another look is due at once.
+  bool step() {
+    const FolderLook look = watch_->look(std::chrono::steady_clock::now());
+    say(look.bad);
+    if (!map_ && watch_->folder()) open_map();
+    if (look.frame) take(*look.frame);
+    const bool is_due =
+        !look.frame || !since_written_ || since_written_->seconds() > kLeastInterval;
+    if (map_ && has_news_ && is_due) write();
+    write_new_counts();
+    return look.frame.has_value();
+  }
+
+  // Nothing more is to be expected of the frames that are there.
+  [[nodiscard]] bool is_settled() const { return watch_->is_settled(); }
+
+  // What is not there by now will not come, if all is done.
+  void finish(bool is_done) {
+    if (is_done) say(watch_->give_up());
+    if (map_ && has_news_) write();
+    write_new_counts();
+  }
+
+  void print_summary(bool is_done, double seconds) const {
+    if (is_done && count() == 0) {
+      const std::string bad = counts_text(watch_->bad());
+      throw Error(ErrorCode::invalid_argument, frames_.string() + ": done, but without a frame" +
+                                                   (bad.empty() ? "" : "; bad: " + bad));
+    }
+    if (options_.common.json) {
+      Json json = counts();
+      json["added"] = added_;
+      json["masked_pixels"] = masked_pixels_;
+      json["orthonormalized_poses"] = watch_->folder() ? watch_->folder()->orthonormalized : 0;
+      json["ended_by"] = is_done ? "done" : "signal";
+      json["hash"] = nullptr;
+      if (map_) json["hash"] = map_->grid().content_hash();
+      json["out"] = options_.out;
+      json["seconds"] = seconds;
+      return print_json(json);
+    }
+    std::printf("%zu frames in the map, %zu of them new; %zu wait\n", count(), added_,
+                watch_->waiting());
+    for (const auto& [reason, number] : watch_->bad()) {
+      std::printf("left out: %zu %s\n", number, reason.c_str());
+    }
+    if (has_masks()) {
+      std::printf("pixels taken away by masks: %s\n", with_commas(masked_pixels_).c_str());
+    }
+    if (map_ && map_->should_stop()) {
+      std::printf("enough: %s\n", stop_reason_name(*map_->should_stop()).data());
+    }
+    if (map_) {
+      std::printf("%s: state.vdb (hash %s), next.txt, next.json\n", options_.out.c_str(),
+                  map_->grid().content_hash().c_str());
+    }
+  }
+
+ private:
+  void say(const std::string& text) const {
+    if (!options_.common.quiet) std::fprintf(stderr, "viewgain: %s\n", text.c_str());
+  }
+
+  void say(const std::vector<BadFrame>& frames) const {
+    for (const BadFrame& bad : frames) say(bad.what + " (" + bad.reason + "); left out");
+  }
+
+  [[nodiscard]] bool has_masks() const {
+    return !options_.frames.mask.empty() || !options_.frames.confidence.empty();
+  }
+
+  [[nodiscard]] std::size_t count() const { return watch_->taken().size(); }
+
+  void open_map() {
+    const Sensor& sensor = watch_->folder()->sensor;
+    config_.grid.prior_sigma = default_prior_sigma(options_.voxel, sensor);
+    config_.hazard = hazard_source(options_.hazard, options_.object_size, BeliefGrid(config_.grid));
+    map_.emplace(sensor, body_, config_, out_ / "state.vdb", saved_, sigmas_,
+                 ExecConfig{options_.common.threads});
+    // What was next may be missing or older than the state.
+    has_news_ = saved_.has_value();
+  }
+
+  void take(const WatchedFrame& frame) {
+    if (!map_->shows_workspace(frame)) {
+      watch_->refuse(frame, "outside");
+      return say(frame.image.string() + ": no reading" +
+                 (frame.masked_pixels > 0 ? " that masks leave" : "") +
+                 " lies in the workspace (outside); left out");
+    }
+    const std::optional<FrameRegistration> registration = map_->register_in(frame);
+    if (registration && registration->status == RegistrationStatus::refused) {
+      watch_->refuse(frame, "contradicts");
+      return say(frame.image.string() + ": " + registration->reason + " (contradicts); left out");
+    }
+    const AddedView added = map_->add(frame, registration);
+    ++added_;
+    masked_pixels_ += frame.masked_pixels;
+    has_news_ = true;
+    if (options_.common.quiet) return;
+    std::fprintf(stderr, "%s: %.4g cm^2 of new surface, %.4g nat\n", frame.image.filename().c_str(),
+                 1e4 * added.update.new_area, added.entropy_removed);
+  }
+
+  // First the state: what is next takes longest, and can be made of it again.
+  void write() {
+    map_->save(watch_->taken());
+    next_ = map_->next(options_.top);
+    write_tum(out_ / "next.txt", poses_of(next_));
+    write_json();
+    has_news_ = false;
+    since_written_.emplace();
+    if (options_.common.quiet) return;
+    std::fprintf(stderr, "%zu frames: %zu candidates", count(), next_.candidates);
+    if (!next_.views.empty()) {
+      std::fprintf(stderr, ", the best gains %.4g", next_.views.front().gain.gain);
+    }
+    const auto reason = map_->should_stop();
+    std::fprintf(stderr, "%s%s\n", reason ? "; enough: " : "",
+                 reason ? stop_reason_name(*reason).data() : "");
+  }
+
+  [[nodiscard]] Json counts() const {
+    Json json{{"frames", count()},
+              {"waiting", watch_->waiting()},
+              {"bad", Json::object()},
+              {"stop_reason", nullptr}};
+    for (const auto& [reason, number] : watch_->bad()) json["bad"][reason] = number;
+    if (map_ && map_->should_stop()) json["stop_reason"] = stop_reason_name(*map_->should_stop());
+    return json;
+  }
+
+  // Not before the state is there, which says whose these files are.
+  void write_new_counts() {
+    if (map_ && !has_news_ && count() > 0 && said_ != counts()) write_json();
+  }
+
+  void write_json() {
+    said_ = counts();
+    Json json = said_;
+    json.update(to_json(next_));
+    write_file_atomically(out_ / "next.json", json_text(json));
+  }
+
+  const Options& options_;
+  PlannerConfig config_;
+  std::optional<PosePrior> sigmas_;  // of the poses, if frames are registered
+  std::optional<std::array<double, 3>> body_;
+  fs::path frames_, out_;
+  std::optional<FolderLock> lock_;
+  std::optional<SavedFrames> saved_;
+  std::optional<FrameWatch> watch_;
+  std::optional<FollowedMap> map_;   // once the sensor is known
+  std::size_t added_ = 0;            // frames, by this call
+  std::uint64_t masked_pixels_ = 0;  // of these
+  bool has_news_ = false;            // that are not yet written
+  std::optional<Stopwatch> since_written_;
+  NextViews next_;
+  Json said_;  // counts(), as next.json has them
+};
+
+void follow(const Options& options) {
+  const Stopwatch watch;
+  Following following(options);
+  const InterruptGuard interrupt;
+  bool is_done = false;
+  while (!is_done && !interrupt.token().stop_requested()) {
+    // Asked before the look: what came before the file is seen.
+    std::error_code ignored;
+    const bool is_last = fs::exists(fs::path(options.frames.folder) / "done", ignored);
+    if (following.step()) continue;
+    is_done = is_last && following.is_settled();
+    if (!is_done) std::this_thread::sleep_for(kPause);
+  }
+  following.finish(is_done);
+  following.print_summary(is_done, watch.seconds());
+}
+
+}  // namespace
+
+Command add_follow(App& program) {
+  auto options = std::make_shared<Options>();
+  App* app = program.add_subcommand(
+      "follow",
+      "Watches a folder into which a robot's program writes depth frames, puts each into a map as "
+      "soon as it is complete, and says where to look next: OUT/next.txt (poses, best first) and "
+      "OUT/next.json. With --mask or --confidence a frame waits for its mask as for its pose. Ends "
+      "by a signal or when a file FRAMES_DIR/done is there; called again with "
+      "the same OUT it goes on, also after a kill.");
+  Options& o = *options;
+  app->add_option("FRAMES_DIR", o.frames.folder, "folder of frames, as for integrate")->required();
+  app->add_option("--voxel", o.voxel, "voxel size [m]")->required();
+  app->add_option("--workspace", o.workspace, "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels")
+      ->required();
+  app->add_option("--sensor", o.frames.sensor,
+                  std::string(kSensorHelp) + "; default: FRAMES_DIR/sensor.toml");
+  add_frame_folder_options(*app, o.frames);
+  one_of(*app->add_option(
+                 "--out-of-range", o.frames.out_of_range,
+                 "what 65535 says: carve (nothing up to the maximal range) or invalid (no reading)")
+              ->capture_default_str(),
+         {"carve", "invalid"}, "meaning");
+  app->add_option("--jump-edge-filter", o.jump_edge_filter,
+                  "ANGLE_DEG: a reading goes when the edge to a nearer neighbour is within 1..10 "
+                  "degrees of its ray (5 is a good value); or off")
+      ->capture_default_str();
+  on_or_off(*app->add_option("--jump-edge-two-sided", o.jump_edge_two_sided,
+                             "the filter looks at farther neighbours too")
+                 ->capture_default_str());
+  one_of(*app->add_option("--gain", o.gain,
+                          "that views are ranked by: paper, surface or combined, as in score")
+              ->capture_default_str(),
+         gain_model_names(), "gain");
+  app->add_option("--object-size", o.object_size, kObjectSizeHelp);
+  app->add_option("--hazard", o.hazard, kHazardHelp);
+  app->add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
+  app->add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
+  app->add_option("--body", o.body, kBodyHelp);
+  app->add_option("--support-plane", o.support_plane,
+                  "height z of the table [m]: its readings carve but do not hit; default: none");
+  app->add_option("--top", o.top, "how many views to say, at most")
+      ->capture_default_str()
+      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
+  app->add_option("--max-views", o.max_views, "view budget: a reason to stop")
+      ->capture_default_str()
+      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
+  add_registration_options(*app, o.registration);
+  app->add_option("--out", o.out, "folder for state.vdb, next.txt, next.json")->required();
+  add_common_options(*app, o.common);
+  add_help(*app, kViewsGroup,
+           "follow frames --voxel 0.005 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out plan");
+  return {app, [options] { follow(*options); }};
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/commands/follow/followed_map.hpp"
+
+#include <array>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include "program/cli/flags/sensed_map.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/planner_mesh/boundary_generation.hpp"
+
+namespace viewgain::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+ViewPlanner planner_of(Sensor sensor, std::optional<std::array<double, 3>> body,
+                       const PlannerConfig& config, const fs::path& state,
+                       const std::optional<SavedFrames>& saved, const ExecConfig& exec) {
+  if (saved && saved->sensor && !is_same_sensor(*saved->sensor, sensor)) {
+    throw Error(ErrorCode::invalid_argument, state.string() + ": its frames are of " +
+                                                 saved->sensor->name + ", not of this " +
+                                                 sensor.name + "; name a new folder");
+  }
+  if (body) sensor.body_size = body;
+  return saved ? ViewPlanner::load(state, sensor, config, exec) : ViewPlanner(sensor, config, exec);
+}
+
+}  // namespace
+
+std::optional<SavedFrames> saved_frames(const fs::path& state) {
+  std::error_code code;
+  if (!fs::exists(state, code)) return std::nullopt;
+  MapOfSensor map = load_map_of_sensor(state);
+  if (map.frames.size() != map.grid.views().size()) {
+    throw Error(ErrorCode::format, state.string() + ": has " +
+                                       std::to_string(map.grid.views().size()) + " views of " +
+                                       std::to_string(map.frames.size()) +
+                                       " frames with names; is of another program");
+  }
+  return SavedFrames{std::move(map.frames), std::move(map.sensor)};
+}
+
+FollowedMap::FollowedMap(const Sensor& sensor, std::optional<std::array<double, 3>> body,
+                         const PlannerConfig& config, fs::path state,
+                         const std::optional<SavedFrames>& saved,
+                         const std::optional<PosePrior>& sigmas, const ExecConfig& exec)
+    : sensor_(sensor),
+      model_(config.gain.model),
+      state_(std::move(state)),
+      rays_(sensor.camera.ray_table()),
+      planner_(planner_of(sensor, body, config, state_, saved, exec)),
+      prior_(sigmas) {
+  const BoundaryViewsConfig boundary = default_boundary(sensor, planner_.grid().voxel_size());
+  planner_.add_generation(std::make_shared<BoundaryGeneration>(planner_.map(), boundary, exec));
+}
+
+bool FollowedMap::shows_workspace(const WatchedFrame& frame) const {
+  const Box box = planner_.grid().workspace();
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    const Eigen::Vector3d p_camera = static_cast<double>(frame.frame.depth[i]) * rays_[i];
+    const double range = p_camera.norm();
+    // False for pixels without a depth.
+    if (!(range >= sensor_.min_range && range <= sensor_.max_range)) continue;
+    const Eigen::Vector3d p_world = frame.T_world_camera * p_camera;
+    bool is_inside = true;
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      is_inside = is_inside && p_world[k] >= box.min[axis] && p_world[k] < box.max[axis];
+    }
+    if (is_inside) return true;
+  }
+  return false;
+}
+
+std::optional<FrameRegistration> FollowedMap::register_in(const WatchedFrame& frame) const {
+  if (!prior_) return std::nullopt;
+  PosePrior prior = *prior_;
+  prior.T_world_camera = frame.T_world_camera;
+  return planner_.register_frame(frame.frame, prior);
+}
+
+AddedView FollowedMap::add(const WatchedFrame& frame,
+                           const std::optional<FrameRegistration>& registration) {
+  if (!registration) return planner_.add(frame.frame, frame.T_world_camera);
+  return planner_.add(frame.frame, registration->T_world_camera, registration->pose_sigma());
+}
+
+NextViews FollowedMap::next(std::size_t top) {
+  const Proposal& proposal = planner_.propose();
+  NextViews next{{}, proposal.candidates.size(), proposal.dropped, model_};
+  for (const RankedView& view : planner_.rank(top).views) {
+    const Candidate& candidate = proposal.candidates[view.index];
+    next.views.push_back({.T_world_camera = view.T_world_camera,
+                          .index = view.index,
+                          .gain = view.gain,
+                          .generator = candidate.generator,
+                          .boundary_class = candidate.boundary_class});
+  }
+  return next;
+}
+
+void FollowedMap::save(const std::set<std::string>& frames) const {
+  planner_.save(state_, noting_frames(frames, noting_sensor(sensor_)));
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "program/cli/flags/next_views.hpp"
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/frame_watch.hpp"
+#include "viewgain/planner/register_frame.hpp"
+#include "viewgain/planner/view_planner.hpp"
+
+namespace viewgain::app {
+
+/// What an earlier call has left of a map: which frames are in it and which sensor took them.
+struct SavedFrames {
+  std::set<std::string> frames{};  ///< as frame_identity() has them
+  std::optional<Sensor> sensor{};
+};
+
+/// Of FollowedMap::save(); nothing where there is no file. Throws Error(format), naming the file,
+/// for a map that does not say which frames all its views are of, and as load_map_of_sensor().
+[[nodiscard]] std::optional<SavedFrames> saved_frames(const std::filesystem::path& state);
+
+/// A map that frames are put into as they come, the next best views on it, and the file that keeps
+/// both.
+class FollowedMap {
+ public:
+  /// An empty one or, with `saved`, the one of the file `state`. `sensor` is the frames'; `body`
+  /// takes the place of its own. Throws Error as ViewPlanner's constructor and load(), and
+  /// Error(invalid_argument) if the saved frames are another sensor's.
+  /// With `sigmas` of the poses frames are registered.
+  FollowedMap(const Sensor& sensor, std::optional<std::array<double, 3>> body,
+              const PlannerConfig& config, std::filesystem::path state,
+              const std::optional<SavedFrames>& saved, const std::optional<PosePrior>& sigmas,
+              const ExecConfig& exec);
+
+  /// Does any reading of the frame lie in the workspace?
+  [[nodiscard]] bool shows_workspace(const WatchedFrame& frame) const;
+
+  /// What registering the frame against the map comes to; nothing without sigmas.
+  [[nodiscard]] std::optional<FrameRegistration> register_in(const WatchedFrame& frame) const;
+
+  /// At its own pose, or at the one that registering it came to.
+  AddedView add(const WatchedFrame& frame, const std::optional<FrameRegistration>& registration);
+
+  /// The best of the views at the surface's open boundaries and of the reach region's poses.
+  [[nodiscard]] NextViews next(std::size_t top);
+
+  /// Why to end, as ViewPlanner::should_stop().
+  [[nodiscard]] std::optional<StopReason> should_stop() const { return planner_.should_stop(); }
+
+  /// Writes the file: map, planner and the names of the frames that are in, all at once.
+  void save(const std::set<std::string>& frames) const;
+
+  [[nodiscard]] const BeliefGrid& grid() const { return planner_.grid(); }
+
+ private:
+  Sensor sensor_;  // with its own body
+  GainModel model_;
+  std::filesystem::path state_;
+  std::vector<Eigen::Vector3d> rays_;  // of the pixels, (x, y, 1)
+  ViewPlanner planner_;
+  std::optional<PosePrior> prior_;  // its sigmas
+};
+
+}  // namespace viewgain::app

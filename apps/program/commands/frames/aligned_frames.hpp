@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "program/commands/frames/frame_map.hpp"
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/planner/register_frame.hpp"
+
+namespace viewgain::app {
+
+/// Aligns all frames of the folder with one another (MapAlignment), for a map into which none has
+/// gone yet. `sigmas`: by how much each reported pose may be off. One result a frame, in the
+/// folder's order, each as known in the end. Throws as FrameFolder::load() and MapAlignment.
+[[nodiscard]] std::vector<FrameRegistration> align_folder(const FrameMap& map,
+                                                          const PosePrior& sigmas, bool quiet,
+                                                          const ExecConfig& exec);
+
+}  // namespace viewgain::app

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/commands/frames/frame_map.hpp"
+
+#include <array>
+#include <system_error>
+#include <utility>
+
+#include "program/cli/flags/hazard_source.hpp"
+#include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/flags/sensing.hpp"
+#include "program/cli/progress.hpp"
+#include "program/cli/values.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/grid/integrate.hpp"
+
+namespace viewgain::app {
+namespace {
+
+constexpr std::array kFlags{"--voxel", "--workspace",  "--jump-edge-filter", "--depth-scale",
+                            "--mask",  "--confidence", "--least-confidence"};
+
+// What a wrong scale would explain.
+std::string scale_text(const FrameFolder& folder) {
+  return " at " + short_text(folder.frames().depth_scale) +
+         " m per unit of the depth images (--depth-scale)";
+}
+
+Box seen_workspace(const FrameFolder& folder, const Sensor& sensor, const MapModelConfig& config,
+                   bool quiet) {
+  std::optional<JumpEdgeFilter> filter;
+  if (config.jump_edges) filter.emplace(sensor.camera, *config.jump_edges);
+  Progress progress("bounds of frame", quiet);
+  const auto bounds = [&](std::size_t i) {
+    DepthFrame frame = folder.load(i).frame;
+    if (filter) filter->apply(frame);
+    progress.update(i + 1, folder.size());
+    return reading_bounds(sensor, frame, folder.T_world_camera(i), {},
+                          config.integration.support_plane);
+  };
+  const std::optional<Box> seen = workspace_around(folder.size(), config.grid.voxel_size, bounds);
+  if (seen) return *seen;
+  throw Error(ErrorCode::invalid_argument,
+              folder.name() + ": no frame has a reading" + scale_text(folder));
+}
+
+MapModelConfig config_of(const FrameFolder& folder, const FrameMapOptions& options,
+                         const ProposalOptions& proposal, const Sensor& sensor, bool quiet) {
+  if (!options.voxel) {
+    throw Error(ErrorCode::invalid_argument, "--voxel is needed with a folder of frames");
+  }
+  check_positive("--voxel", *options.voxel);
+  MapModelConfig config;
+  config.integration.support_plane = proposal.support_plane;
+  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter, false);
+  config.obstacles = obstacles_of(proposal.obstacles);
+  config.refine = options.refine;
+  config.grid.voxel_size = *options.voxel;
+  config.grid.prior_sigma = default_prior_sigma(*options.voxel, sensor);
+  config.grid.workspace = options.workspace.empty() ? seen_workspace(folder, sensor, config, quiet)
+                                                    : parse_box("--workspace", options.workspace);
+  config.hazard = hazard_source(proposal.hazard, proposal.object_size, BeliefGrid(config.grid));
+  return config;
+}
+
+}  // namespace
+
+bool is_frame_folder(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored);
+}
+
+void add_frame_map_options(App& app, FrameMapOptions& options) {
+  app.add_option("--voxel", options.voxel, "of a folder of frames: voxel size [m], needed");
+  app.add_option("--workspace", options.workspace,
+                 "of a folder of frames: x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: "
+                 "what they see");
+  app.add_option(
+         "--jump-edge-filter", options.jump_edge_filter,
+         "of a folder of frames: angle of the filter that takes flying pixels [deg], or off")
+      ->capture_default_str();
+  add_frame_folder_options(app, options.folder);
+}
+
+void refuse_frame_map_options(const App& app, std::string_view why) {
+  for (const char* flag : kFlags) {
+    if (app.count(flag) == 0) continue;
+    throw Error(ErrorCode::invalid_argument, std::string(flag).append(" ").append(why));
+  }
+}
+
+FrameMap::FrameMap(const FrameMapOptions& options, const ProposalOptions& proposal, bool quiet,
+                   const ExecConfig& exec)
+    : folder_(options.folder),
+      config_(config_of(folder_, options, proposal, with_body(folder_.sensor(), proposal), quiet)),
+      model_(with_body(folder_.sensor(), proposal), config_, exec) {}
+
+MapUpdate FrameMap::add(std::size_t index, const Pose& T_world_camera,
+                        const PoseSigma& pose_sigma) {
+  FrameFolder::MaskedFrame loaded = folder_.load(index);
+  masked_pixels_ += loaded.masked_pixels;
+  Measurements measurements{T_world_camera, {}, pose_sigma};
+  measurements.frames.push_back(std::move(loaded.frame));
+  const MapUpdate update = model_.update(measurements);
+  readings_ += update.counts.readings;
+  readings_used_ += update.counts.readings_inside + update.counts.plane_readings;
+  return update;
+}
+
+void FrameMap::require_readings() const {
+  if (readings_used_ > 0) return;
+  throw Error(ErrorCode::invalid_argument, folder_.name() + ": none of " + with_commas(readings_) +
+                                               " readings lies in the workspace" +
+                                               scale_text(folder_));
+}
+
+}  // namespace viewgain::app

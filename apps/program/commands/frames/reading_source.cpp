@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program/commands/frames/reading_source.hpp"
+
+#include <Eigen/Core>
+
+#include "program/cli/flags/sensing.hpp"
+#include "program/cli/values.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/cloud_io.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/grid/hazard_calibration.hpp"
+#include "viewgain/grid/integrate_cloud.hpp"
+#include "viewgain/planner/map_registration.hpp"
+
+namespace viewgain::app {
+namespace {
+
+IntegrationConfig config_of(const IntegrateOptions& options) {
+  IntegrationConfig config;
+  config.carve = options.carve == "cones" ? Carve::cones : Carve::lines;
+  config.occupancy = options.occupancy_rule();
+  config.support_plane = options.support_plane;
+  return config;
+}
+
+class FrameSource : public ReadingSource {
+ public:
+  explicit FrameSource(const IntegrateOptions& options)
+      : folder_(options.frames),
+        support_plane_(options.support_plane),
+        integrator_(folder_.sensor(), config_of(options), {options.common.threads}) {
+    const auto config =
+        parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided == "on");
+    if (config) filter_.emplace(folder_.sensor().camera, *config);
+    if (options.calibrate_hazard == "on") calibration_.emplace(folder_.sensor(), support_plane_);
+    prior_ = registration_prior(options.registration);
+    if (prior_) {
+      MapModelConfig map;  // flying pixels are taken out when the frame is loaded
+      map.integration = config_of(options);
+      registration_.emplace(folder_.sensor(), map, ExecConfig{options.common.threads});
+    }
+  }
+
+  [[nodiscard]] const Sensor& sensor() const override { return folder_.sensor(); }
+  [[nodiscard]] std::size_t size() const override { return folder_.size(); }
+  [[nodiscard]] std::size_t orthonormalized() const override {
+    return folder_.frames().orthonormalized;
+  }
+
+  [[nodiscard]] std::string identity(std::size_t index) const override {
+    return frame_identity(folder_.frames(), index);
+  }
+
+  void load(std::size_t index) override {
+    loaded_ = folder_.load(index);
+    removed_ = filter_ ? filter_->apply(loaded_.frame) : 0;
+    T_world_camera_ = folder_.T_world_camera(index);
+    pose_sigma_ = {};
+  }
+  [[nodiscard]] std::optional<Box> bounds() const override {
+    return reading_bounds(folder_.sensor(), loaded_.frame, T_world_camera_, {}, support_plane_);
+  }
+  std::optional<FrameRegistration> register_in(const BeliefGrid& grid) override {
+    if (!registration_) return std::nullopt;
+    prior_->T_world_camera = T_world_camera_;
+    FrameRegistration result = registration_->register_frame(grid, loaded_.frame, *prior_);
+    T_world_camera_ = result.T_world_camera;
+    pose_sigma_ = result.pose_sigma();
+    return result;
+  }
+  IntegrationReport integrate(BeliefGrid& grid) override {
+    if (calibration_) {
+      calibration_->count(grid, HazardField(grid.snapshot()), loaded_.frame, T_world_camera_);
+    }
+    return integrator_.integrate(grid, loaded_.frame, T_world_camera_, pose_sigma_);
+  }
+  [[nodiscard]] std::uint64_t masked_pixels() const override { return loaded_.masked_pixels; }
+  [[nodiscard]] std::uint64_t jump_edge_removed() const override { return removed_; }
+  [[nodiscard]] std::optional<double> depth_scale() const override {
+    return folder_.frames().depth_scale;
+  }
+
+ private:
+  FrameFolder folder_;
+  std::optional<double> support_plane_;
+  std::optional<JumpEdgeFilter> filter_;
+  std::optional<HazardCalibration> calibration_;
+  std::optional<PosePrior> prior_;  // its sigmas; of the frame that was registered last
+  std::optional<MapRegistration> registration_;
+  FrameIntegrator integrator_;
+  FrameFolder::MaskedFrame loaded_;
+  Pose T_world_camera_;
+  PoseSigma pose_sigma_;  // by which it may be off
+  std::uint64_t removed_ = 0;
+};
+
+Sensor sensor_of(const IntegrateOptions& options) {
+  if (options.frames.sensor.empty()) {
+    throw Error(ErrorCode::invalid_argument, "--sensor is needed with --cloud");
+  }
+  return load_sensor(options.frames.sensor);
+}
+
+class CloudSource : public ReadingSource {
+ public:
+  explicit CloudSource(const IntegrateOptions& options)
+      : files_(options.clouds),
+        sensor_(sensor_of(options)),
+        support_plane_(options.support_plane),
+        integrator_(sensor_, {options.occupancy_rule(), options.support_plane},
+                    {options.common.threads}) {
+    if (options.poses.empty()) {
+      if (options.origin == "viewpoint") return;
+      const std::vector<double> at = parse_numbers("--origin", options.origin, 3, 3);
+      origin_.emplace(at[0], at[1], at[2]);
+      return;
+    }
+    poses_ = read_tum(options.poses);
+    if (poses_.poses.size() != files_.size()) {
+      throw Error(ErrorCode::invalid_argument,
+                  options.poses + ": has " + std::to_string(poses_.poses.size()) + " poses for " +
+                      std::to_string(files_.size()) + " clouds");
+    }
+  }
+
+  [[nodiscard]] const Sensor& sensor() const override { return sensor_; }
+  [[nodiscard]] std::size_t size() const override { return files_.size(); }
+  [[nodiscard]] std::size_t orthonormalized() const override { return poses_.orthonormalized; }
+
+  void load(std::size_t index) override {
+    cloud_ = load_cloud(files_[index]);
+    if (!poses_.poses.empty()) {
+      T_world_sensor_ = poses_.poses[index];
+      for (auto& point : cloud_.points) {
+        const Eigen::Vector3d p = T_world_sensor_ * Eigen::Vector3d(point[0], point[1], point[2]);
+        point = {p.x(), p.y(), p.z()};
+      }
+    } else if (origin_) {
+      T_world_sensor_ = looking_at_points(*origin_);
+    } else if (cloud_.viewpoint) {
+      T_world_sensor_ = *cloud_.viewpoint;
+    } else {
+      throw Error(ErrorCode::invalid_argument,
+                  files_[index] + ": has no VIEWPOINT, so --origin or --poses is needed");
+    }
+  }
+  [[nodiscard]] std::optional<Box> bounds() const override {
+    return reading_bounds(sensor_, cloud_.points, T_world_sensor_, {}, support_plane_);
+  }
+  IntegrationReport integrate(BeliefGrid& grid) override {
+    return integrator_.integrate(grid, cloud_.points, T_world_sensor_);
+  }
+
+ private:
+  // Points in the world say where their sensor stood but not how it was turned: towards their
+  // middle. Lines are carved the same; what asks for the views of a map has a view to look at.
+  [[nodiscard]] Pose looking_at_points(const Eigen::Vector3d& origin) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double count = 0;
+    for (const auto& point : cloud_.points) {
+      const Eigen::Vector3d p(point[0], point[1], point[2]);
+      if (p.allFinite()) sum += p, ++count;
+    }
+    const bool has_direction = count > 0 && sum / count != origin && origin.allFinite();
+    return has_direction ? look_at(origin, sum / count) : Pose(Eigen::Matrix3d::Identity(), origin);
+  }
+
+  std::vector<std::string> files_;
+  Sensor sensor_;
+  std::optional<double> support_plane_;
+  CloudIntegrator integrator_;
+  PoseList poses_;                         // empty: the points are in the world
+  std::optional<Eigen::Vector3d> origin_;  // of all clouds; nothing: each has its own
+  PointCloud cloud_;                       // in the world
+  Pose T_world_sensor_;
+};
+
+}  // namespace
+
+std::unique_ptr<ReadingSource> open_reading_source(const IntegrateOptions& options) {
+  if (options.clouds.empty()) return std::make_unique<FrameSource>(options);
+  return std::make_unique<CloudSource>(options);
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program/cli/flags/common_options.hpp"
+#include "program/cli/flags/frame_folder.hpp"
+#include "program/cli/flags/registration_options.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/integrate.hpp"
+#include "viewgain/planner/register_frame.hpp"
+
+namespace viewgain::app {
+
+/// The flags of `integrate`; see its help.
+struct IntegrateOptions {
+  CommonOptions common;
+  FrameFolderOptions frames;        ///< without a folder: clouds
+  std::vector<std::string> clouds;  ///< --cloud
+  std::string origin = "viewpoint";
+  std::string poses;
+  std::optional<double> voxel;
+  std::string workspace;
+  std::string carve = "cones";
+  std::string occupancy = "probabilistic";
+  std::string jump_edge_filter = "off";
+  std::string jump_edge_two_sided = "off";
+  std::optional<double> support_plane;
+  std::string calibrate_hazard = "off";
+  std::optional<double> prior_sigma;
+  std::string with_covariance = "off";
+  RegistrationOptions registration;
+  std::string out;
+  std::string map;
+
+  [[nodiscard]] Occupancy occupancy_rule() const {
+    return occupancy == "probabilistic" ? Occupancy::probabilistic : Occupancy::literal;
+  }
+};
+
+/// What `integrate` puts into a map, one part after the other: depth frames or clouds. The order of
+/// calls is load, then bounds, register_in or integrate, of any part any number of times.
+class ReadingSource {
+ public:
+  virtual ~ReadingSource() = default;
+
+  [[nodiscard]] virtual const Sensor& sensor() const = 0;
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  /// Poses that were off and were mended.
+  [[nodiscard]] virtual std::size_t orthonormalized() const = 0;
+
+  /// By name and content, for the map to remember; empty: it is not remembered.
+  [[nodiscard]] virtual std::string identity(std::size_t /*index*/) const { return {}; }
+
+  virtual void load(std::size_t index) = 0;
+  /// Of the part's readings, world frame [m].
+  [[nodiscard]] virtual std::optional<Box> bounds() const = 0;
+  /// What registering the loaded part against the map came to, from whose pose it is then
+  /// integrated; nothing without --register on.
+  virtual std::optional<FrameRegistration> register_in(const BeliefGrid& /*grid*/) { return {}; }
+  virtual IntegrationReport integrate(BeliefGrid& grid) = 0;
+  /// Pixels of the loaded part with a depth that its mask took.
+  [[nodiscard]] virtual std::uint64_t masked_pixels() const { return 0; }
+  /// Readings of the loaded part that the jump-edge filter took.
+  [[nodiscard]] virtual std::uint64_t jump_edge_removed() const { return 0; }
+  /// Metres per unit of depth images; nothing for clouds.
+  [[nodiscard]] virtual std::optional<double> depth_scale() const { return std::nullopt; }
+};
+
+/// Throws Error for what is wrong with flags or files.
+[[nodiscard]] std::unique_ptr<ReadingSource> open_reading_source(const IntegrateOptions& options);
+
+}  // namespace viewgain::app

@@ -1,0 +1,378 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/grid/integrate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "program/cli/choices.hpp"
+#include "program/cli/flags/sensed_map.hpp"
+#include "program/cli/progress.hpp"
+#include "program/cli/values.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/frames/reading_source.hpp"
+#include "program/commands/map_json.hpp"
+#include "program/commands/reconstruct/registration_json.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/support/stopwatch.hpp"
+
+namespace viewgain::app {
+namespace {
+
+using Options = IntegrateOptions;
+
+const char* part_name(const Options& options) { return options.clouds.empty() ? "frame" : "cloud"; }
+
+// What a wrong scale would explain.
+std::string scale_text(const ReadingSource& source) {
+  const std::optional<double> scale = source.depth_scale();
+  return scale ? " at " + short_text(*scale) + " m per unit of the depth images (--depth-scale)"
+               : "";
+}
+
+Box seen_workspace(ReadingSource& source, const Options& options, double voxel) {
+  Progress progress(std::string("bounds of ") + part_name(options), options.common.quiet);
+  const std::optional<Box> seen = workspace_around(source.size(), voxel, [&](std::size_t i) {
+    source.load(i);
+    progress.update(i + 1, source.size());
+    return source.bounds();
+  });
+  if (seen) return *seen;
+  throw Error(
+      ErrorCode::invalid_argument,
+      (options.clouds.empty() ? options.frames.folder + ": no frame" : std::string("no cloud")) +
+          " has a reading" + scale_text(source));
+}
+
+BeliefGrid new_map(ReadingSource& source, const Options& options) {
+  if (!options.voxel) {
+    throw Error(ErrorCode::invalid_argument, "--voxel is needed unless --map is given");
+  }
+  check_positive("--voxel", *options.voxel);
+  GridConfig config;
+  config.voxel_size = *options.voxel;
+  config.prior_sigma =
+      options.prior_sigma.value_or(default_prior_sigma(config.voxel_size, source.sensor()));
+  config.workspace = options.workspace.empty() ? seen_workspace(source, options, config.voxel_size)
+                                               : parse_box("--workspace", options.workspace);
+  return BeliefGrid(config);
+}
+
+// The map that grows, the sensor of its readings so far and the frames that it has, as far as its
+// file says, and whether its readings were of another sensor, or of nobody knows which: then its
+// file does not say which they come from.
+struct GrownMap {
+  BeliefGrid grid;
+  bool is_of_two = false;
+  std::optional<Sensor> sensor{};
+  std::set<std::string> frames{};
+};
+
+// An existing map keeps its layout and prior; flags that say something else are an error.
+GrownMap continued_map(const Sensor& sensor, const Options& options) {
+  OctomapConfig tree;  // which has no prior or workspace of its own
+  tree.prior_sigma = options.prior_sigma;
+  if (!options.workspace.empty()) tree.workspace = parse_box("--workspace", options.workspace);
+  MapOfSensor map = load_map_of_sensor(options.map, &sensor, tree);
+  const bool is_of_two =
+      warn_of_other_sensor(options.map, map, sensor) || (!map.sensor && !map.grid.views().empty());
+  BeliefGrid& grid = map.grid;
+  const auto conflict = [&options](const std::string& flag, const std::string& given,
+                                   const std::string& stored) {
+    throw Error(ErrorCode::invalid_argument,
+                flag + " " + given + " conflicts with " + options.map + ", which has " + stored);
+  };
+  if (options.voxel && *options.voxel != grid.voxel_size()) {
+    check_positive("--voxel", *options.voxel);
+    conflict("--voxel", short_text(*options.voxel), short_text(grid.voxel_size()));
+  }
+  if (options.prior_sigma && *options.prior_sigma != grid.prior_sigma()) {
+    conflict("--prior-sigma", short_text(*options.prior_sigma), short_text(grid.prior_sigma()));
+  }
+  if (!options.workspace.empty()) {
+    const BeliefGrid asked({grid.voxel_size(), parse_box("--workspace", options.workspace),
+                            grid.T_world_grid(), grid.prior_sigma()});
+    if (asked.min_index() != grid.min_index() || asked.dims() != grid.dims()) {
+      conflict("--workspace", options.workspace, describe(grid.workspace()));
+    }
+  }
+  return {std::move(grid), is_of_two, std::move(map.sensor), std::move(map.frames)};
+}
+
+// Of no values none.
+std::optional<double> median(std::vector<double> values) {
+  if (values.empty()) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+}
+
+struct Totals {
+  IntegrationReport sum;
+  std::uint64_t masked_pixels = 0;
+  std::uint64_t jump_edge_removed = 0;
+  std::size_t skipped = 0;                       // frames that the map has already
+  std::vector<FrameRegistration> registrations;  // of the others, if they are registered
+  std::vector<double> seconds;  // of each frame's integration, reading the image not counted
+};
+
+Totals integrate_all(ReadingSource& source, const Options& options, GrownMap& map) {
+  Totals totals;
+  Progress progress(part_name(options), options.common.quiet);
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const std::string identity = source.identity(i);
+    if (!identity.empty() && !map.frames.insert(identity).second) {
+      ++totals.skipped;
+      progress.update(i + 1, source.size());
+      continue;
+    }
+    source.load(i);
+    totals.masked_pixels += source.masked_pixels();
+    totals.jump_edge_removed += source.jump_edge_removed();
+    if (std::optional<FrameRegistration> registration = source.register_in(map.grid)) {
+      totals.registrations.push_back(std::move(*registration));
+      if (totals.registrations.back().status == RegistrationStatus::refused) {
+        map.frames.erase(identity);  // a map that has more may take it
+        progress.update(i + 1, source.size());
+        continue;
+      }
+    }
+    const Stopwatch watch;
+    const IntegrationReport report = source.integrate(map.grid);
+    totals.seconds.push_back(watch.seconds());
+    totals.sum.readings += report.readings;
+    totals.sum.readings_inside += report.readings_inside;
+    totals.sum.plane_readings += report.plane_readings;
+    totals.sum.out_of_range += report.out_of_range;
+    totals.sum.invalid += report.invalid;
+    progress.update(i + 1, source.size());
+  }
+  return totals;
+}
+
+void print_summary(const Options& options, const ReadingSource& source, const BeliefGrid& grid,
+                   const Totals& totals, const LostInTree& lost, double seconds) {
+  const GridStatistics statistics = grid.statistics();
+  const Index3 dims = grid.dims();
+  const std::size_t taken = totals.seconds.size();
+  const std::optional<double> frame_seconds = median(totals.seconds);
+  if (options.common.json) {
+    const std::optional<double> scale = source.depth_scale();
+    Json json = {{part_name(options) + std::string("s"), taken},
+                 {"skipped", totals.skipped},
+                 {"views", grid.views().size()},
+                 {"readings", totals.sum.readings},
+                 {"readings_inside", totals.sum.readings_inside},
+                 {"plane_readings", totals.sum.plane_readings},
+                 {"masked_pixels", totals.masked_pixels},
+                 {"jump_edge_removed", totals.jump_edge_removed},
+                 {"out_of_range", totals.sum.out_of_range},
+                 {"invalid", totals.sum.invalid},
+                 {"orthonormalized_poses", source.orthonormalized()},
+                 {"registration", nullptr},
+                 {"sensor", source.sensor().name},
+                 {"depth_scale", scale ? Json(*scale) : nullptr}};
+    if (options.registration.is_on == "on") {
+      json["registration"] = registration_counts(totals.registrations);
+    }
+    json.update(map_json(grid, statistics));
+    json.update({{"lost_T_world_grid", lost.T_world_grid},
+                 {"hash", grid.content_hash()},
+                 {"out", options.out},
+                 {"seconds", seconds},
+                 {"seconds_per_frame", frame_seconds ? Json(*frame_seconds) : nullptr}});
+    print_json(json);
+    return;
+  }
+  std::printf("workspace %s m: %d x %d x %d voxels of %g m, prior sigma %g m\n",
+              describe(grid.workspace()).c_str(), dims.x, dims.y, dims.z, grid.voxel_size(),
+              grid.prior_sigma());
+  if (const auto scale = source.depth_scale()) {
+    std::printf("depth images: %s m per unit\n", short_text(*scale).c_str());
+  }
+  std::printf(
+      "%zu %ss (%s), %s readings, %s of them in the workspace; %s out of range, %s invalid\n",
+      taken, part_name(options), source.sensor().name.c_str(),
+      with_commas(totals.sum.readings).c_str(), with_commas(totals.sum.readings_inside).c_str(),
+      with_commas(totals.sum.out_of_range).c_str(), with_commas(totals.sum.invalid).c_str());
+  if (options.registration.is_on == "on") {
+    std::printf("%s\n", registration_text(registration_counts(totals.registrations)).c_str());
+  }
+  if (totals.skipped > 0) {
+    std::printf("skipped, since the map has them already: %zu\n", totals.skipped);
+  }
+  if (!options.frames.mask.empty() || !options.frames.confidence.empty()) {
+    std::printf("pixels taken away by masks: %s\n", with_commas(totals.masked_pixels).c_str());
+  }
+  if (options.jump_edge_filter != "off") {
+    std::printf("flying pixels removed: %s\n", with_commas(totals.jump_edge_removed).c_str());
+  }
+  if (options.support_plane) {
+    std::printf("readings of the support plane: %s\n",
+                with_commas(totals.sum.plane_readings).c_str());
+  }
+  if (source.orthonormalized() > 0) {
+    std::printf("rotations that were off and were orthonormalised: %zu of %zu\n",
+                source.orthonormalized(), source.size());
+  }
+  const double voxels = static_cast<double>(grid.voxel_count());
+  std::printf("voxels: %s unknown (%.1f %%), %s free, %s occupied\n",
+              with_commas(statistics.unknown).c_str(),
+              100 * static_cast<double>(statistics.unknown) / voxels,
+              with_commas(statistics.free).c_str(), with_commas(statistics.occupied).c_str());
+  std::printf("%.2f s in all", seconds);
+  if (frame_seconds) {
+    std::printf("; into the map: %.1f ms per %s (median)", 1e3 * *frame_seconds,
+                part_name(options));
+  }
+  std::printf("\n");
+  std::printf("%s: hash %s\n", options.out.c_str(), grid.content_hash().c_str());
+}
+
+// Flags of depth frames with clouds and the other way round say what cannot be had.
+void check_flags(const Options& options, const App& app) {
+  const auto refuse = [&app](std::initializer_list<const char*> flags, const char* why) {
+    for (const char* flag : flags) {
+      if (app.count(flag) > 0) {
+        throw Error(ErrorCode::invalid_argument, std::string(flag) + " " + why);
+      }
+    }
+  };
+  if (options.frames.folder.empty() == options.clouds.empty()) {
+    throw Error(ErrorCode::invalid_argument, "needs either FRAMES_DIR or --cloud");
+  }
+  if (options.clouds.empty()) {
+    refuse({"--origin", "--poses"}, "is for clouds (--cloud)");
+  } else {
+    refuse({"--depth-scale", "--mask", "--confidence", "--least-confidence", "--out-of-range",
+            "--carve", "--jump-edge-filter", "--jump-edge-two-sided", "--calibrate-hazard",
+            "--register", "--pose-sigma"},
+           "is for depth frames; clouds carve along lines");
+    if (!options.poses.empty()) refuse({"--origin"}, "and --poses exclude each other");
+  }
+}
+
+// A new map without a reading comes of a wrong scale, sensor or workspace.
+void refuse_empty(const Options& options, const ReadingSource& source, const Totals& totals) {
+  if (!options.map.empty() || totals.sum.readings_inside + totals.sum.plane_readings > 0) return;
+  throw Error(ErrorCode::invalid_argument,
+              (options.clouds.empty() ? options.frames.folder : options.clouds.front()) +
+                  ": none of " + with_commas(totals.sum.readings) +
+                  " readings lies in the workspace" + scale_text(source));
+}
+
+void integrate(const Options& options, const App& app) {
+  const Stopwatch watch;
+  check_flags(options, app);
+  check_map_name(options.out);
+  if (options.with_covariance == "on" && is_octomap(options.out)) {
+    throw Error(ErrorCode::invalid_argument,
+                "--with-covariance with " + options.out + ": a tree has no place for covariances");
+  }
+  if (options.calibrate_hazard == "on" && is_octomap(options.out)) {
+    throw Error(ErrorCode::invalid_argument, "--calibrate-hazard with " + options.out +
+                                                 ": a tree has no place for hazard counters");
+  }
+  const std::unique_ptr<ReadingSource> source = open_reading_source(options);
+  GrownMap map = options.map.empty() ? GrownMap{new_map(*source, options)}
+                                     : continued_map(source->sensor(), options);
+  BeliefGrid& grid = map.grid;
+  const Totals totals = integrate_all(*source, options, map);
+  refuse_empty(options, *source, totals);
+  VdbWriteConfig how = noting_frames(map.frames, {options.with_covariance == "on"});
+  if (totals.seconds.empty()) {  // its readings are what they were
+    if (map.sensor) how = noting_sensor(*map.sensor, std::move(how));
+  } else if (!map.is_of_two) {
+    how = noting_sensor(source->sensor(), std::move(how));
+  }
+  const LostInTree lost = save_map(grid, options.out, how);
+  warn_of_lost_frame(lost, options.out);
+  print_summary(options, *source, grid, totals, lost, watch.seconds());
+}
+
+}  // namespace
+
+Command add_integrate(App& program) {
+  auto options = std::make_shared<Options>();
+  App* app = program.add_subcommand(
+      "integrate",
+      "Depth frames or point clouds into a voxel map. FRAMES_DIR holds what simulate writes, or "
+      "recorded frames: "
+      "frame-NNNNNN.depth.png + frame-NNNNNN.pose.txt (4x4, camera to world, m) + "
+      "camera-intrinsics.txt (3x3, overrides the sensor's). Incidence comes from "
+      "frame-NNNNNN.amplitude.png (16 bit, cos/range^2 in 1e-3 m^-2) where there is one. Clouds "
+      "are .pcd or .ply files with x, y, z [m]; "
+      "each carves the lines from its sensor's origin to its points.");
+  app->add_option("FRAMES_DIR", options->frames.folder, "folder of frames");
+  app->add_option("--cloud", options->clouds, "a point cloud instead; may be repeated")
+      ->allow_extra_args(false);
+  app->add_option("--origin", options->origin,
+                  "x,y,z of the clouds' sensor [m], their points being in the world; or viewpoint: "
+                  "what each .pcd's VIEWPOINT says")
+      ->capture_default_str();
+  app->add_option("--poses", options->poses,
+                  "TUM file, line i for the i-th cloud, sensor to world; the clouds' points are "
+                  "then in the sensor's frame, a VIEWPOINT does not count");
+  app->add_option("--voxel", options->voxel, "voxel size [m]; needed unless --map is given");
+  app->add_option(
+      "--workspace", options->workspace,
+      "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: what frames or clouds see");
+  app->add_option("--sensor", options->frames.sensor,
+                  std::string(kSensorHelp) +
+                      "; default: FRAMES_DIR/sensor.toml; needed for clouds, of which noise and "
+                      "ranges hold");
+  add_frame_folder_options(*app, options->frames);
+  one_of(*app->add_option(
+                 "--out-of-range", options->frames.out_of_range,
+                 "what 65535 says: carve (nothing up to the maximal range) or invalid (no reading)")
+              ->capture_default_str(),
+         {"carve", "invalid"}, "meaning");
+  one_of(*app->add_option("--carve", options->carve,
+                          "voxels that a pixel crosses: those in its pyramid, or on its ray")
+              ->capture_default_str(),
+         {"cones", "lines"}, "way of carving");
+  one_of(
+      *app->add_option("--occupancy", options->occupancy, "log-odds, or the paper's literal rule")
+           ->capture_default_str(),
+      {"probabilistic", "literal"}, "rule");
+  app->add_option("--jump-edge-filter", options->jump_edge_filter,
+                  "ANGLE_DEG: a reading goes when the edge to a nearer neighbour is within 1..10 "
+                  "degrees of its ray (5 is a good value); or off")
+      ->capture_default_str();
+  on_or_off(*app->add_option("--jump-edge-two-sided", options->jump_edge_two_sided,
+                             "the filter looks at farther neighbours too")
+                 ->capture_default_str());
+  app->add_option("--support-plane", options->support_plane,
+                  "height z of the table [m]: its readings carve but do not hit; default: none");
+  app->add_option("--prior-sigma", options->prior_sigma,
+                  "sigma of an unknown voxel [m]; default: max(voxel/2, twice the sensor's axial "
+                  "sigma at its working distance)");
+  on_or_off(*app->add_option("--calibrate-hazard", options->calibrate_hazard,
+                             "count how often frames met the surface in unknown space, for the "
+                             "surface and combined gain of the map")
+                 ->capture_default_str());
+  add_registration_options(*app, options->registration);
+  on_or_off(*app->add_option("--with-covariance", options->with_covariance,
+                             "add covariances and positions to the file, for viewers")
+                 ->capture_default_str());
+  app->add_option("--out", options->out, "map to write (.vdb, or OctoMap's .ot)")->required();
+  app->add_option("--map", options->map,
+                  "map to continue (.vdb, .ot, .bt); its voxel size, workspace and prior hold, and "
+                  "frames that a .vdb has already, by name and content, are skipped");
+  add_common_options(*app, options->common);
+  add_help(*app, kMapGroup,
+           "integrate frames --voxel 0.005 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out map.vdb");
+  return {app, [options, app] { integrate(*options, *app); }};
+}
+
+}  // namespace viewgain::app

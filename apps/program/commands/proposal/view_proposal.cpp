@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/commands/proposal/view_proposal.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "program/cli/choices.hpp"
+#include "program/cli/flags/common_options.hpp"
+#include "program/cli/flags/hazard_source.hpp"
+#include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/values.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/planner/pose_sets.hpp"
+
+namespace viewgain::app {
+namespace {
+
+Eigen::Vector3d center_of(const ProposalOptions& options, const BeliefGrid& grid) {
+  if (!options.center.empty()) return parse_point("--center", options.center);
+  const Box box = grid.workspace();
+  return grid.T_world_grid() * Eigen::Vector3d(0.5 * (box.min[0] + box.max[0]),
+                                               0.5 * (box.min[1] + box.max[1]),
+                                               0.5 * (box.min[2] + box.max[2]));
+}
+
+double distance_of(const ProposalOptions& options, const Sensor& sensor, const BeliefGrid& grid) {
+  if (options.distance) return *options.distance;
+  const Box box = grid.workspace();
+  double longest = 0;
+  for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.max[a] - box.min[a]);
+  return filling_distance(sensor, 0.5 * longest * 0.35 / 0.4);  // the object in its workspace
+}
+
+// As in a room: all views so far were taken from inside of the workspace.
+bool is_seen_from_inside(const BeliefGrid& grid) {
+  return std::all_of(grid.views().begin(), grid.views().end(), [&grid](const Pose& view) {
+    return grid.index_of(view.translation()).has_value();
+  });
+}
+
+std::vector<HalfSpace> inside_of_workspace(const BeliefGrid& grid) {
+  const Box box = grid.workspace();
+  std::vector<HalfSpace> sides;
+  for (int a = 0; a < 3; ++a) {
+    const auto k = static_cast<std::size_t>(a);
+    const Eigen::Vector3d axis = grid.T_world_grid().rotation().col(a);
+    const double origin = axis.dot(grid.T_world_grid().translation());
+    sides.push_back({axis, origin + box.min[k]});
+    sides.push_back({-axis, -(origin + box.max[k])});
+  }
+  return sides;
+}
+
+}  // namespace
+
+void add_proposal_options(App& app, ProposalOptions& o) {
+  const EstimatorConfig usual = default_estimator(1.0);
+  app.add_option("--count", o.count,
+                 "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
+                 "(default 48)")
+      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
+  app.add_option("--distance", o.distance,
+                 "boundary: from the surface; else from the centre [m]; default: the sensor's "
+                 "working distance; the workspace fills the view");
+  app.add_option("--center", o.center,
+                 "x,y,z that poses look at, world [m]; default: the workspace's centre");
+  app.add_option(
+      "--reach", o.reach,
+      "TOML file: boxes, shells, half-spaces, poses in reach; default: all, or, for views at "
+      "boundaries, the workspace if all views so far are inside of it");
+  app.add_option("--body", o.body, kBodyHelp);
+  app.add_option("--support-plane", o.support_plane, "height z of a table [m]");
+  app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
+  app.add_option("--overlap", o.overlap,
+                 std::string(kOverlapHelp) + "; default: " + short_text(usual.overlap));
+  app.add_option("--region-depth", o.region_depth,
+                 std::string(kRegionDepthHelp) + "; default: " + short_text(usual.region_depth));
+  app.add_option("--object-size", o.object_size, kObjectSizeHelp);
+  app.add_option("--hazard", o.hazard, kHazardHelp);
+  add_seed_option(app, o.seed, "of the shell");
+}
+
+void check(const ProposalOptions& options) {
+  const bool boundary = options.generator == "boundary", sequence = options.generator == "sequence";
+  if (options.count && (boundary || sequence)) {
+    throw Error(ErrorCode::invalid_argument,
+                "--count goes with sets of poses, not with --generator " + options.generator);
+  }
+  if (boundary && !options.center.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "--center goes with sets of poses, not with --generator boundary");
+  }
+  if (!boundary && (options.overlap || options.region_depth)) {
+    throw Error(ErrorCode::invalid_argument,
+                "--overlap and --region-depth go with --generator boundary");
+  }
+  if (options.overlap) check_inside_0_1("--overlap", *options.overlap);
+  if (options.region_depth) check_positive("--region-depth", *options.region_depth);
+  if (options.distance) check_positive("--distance", *options.distance);
+  if (options.support_plane) check_finite("--support-plane", *options.support_plane);
+  const bool by_hazard =
+      !options.gain.empty() && parse_gain_model(options.gain) != GainModel::paper;
+  if (!by_hazard && (options.object_size || !options.hazard.empty())) {
+    throw Error(ErrorCode::invalid_argument,
+                "--object-size and --hazard go with --gain surface or combined");
+  }
+}
+
+Sensor with_body(Sensor sensor, const ProposalOptions& options) {
+  if (!options.body.empty()) sensor.body_size = parse_size("--body", options.body);
+  return sensor;
+}
+
+SurfaceModel model_of(BeliefGrid grid, const Sensor& sensor, const ProposalOptions& options,
+                      const ExecConfig& exec) {
+  SurfaceModelConfig config;
+  config.map.hazard = hazard_source(options.hazard, options.object_size, grid);
+  config.map.obstacles = obstacles_of(options.obstacles);
+  return {std::move(grid), sensor, config, exec};
+}
+
+GenerationConfig generation_config(const ProposalOptions& options, const Sensor& sensor,
+                                   const BeliefGrid& grid, const std::string& map) {
+  GenerationConfig config = default_generation(sensor, grid.voxel_size());
+  config.at_boundaries = options.generator == "boundary";
+  if (options.distance) config.boundary.working_distance = *options.distance;
+  if (options.overlap) config.boundary.estimator.overlap = *options.overlap;
+  if (options.region_depth) config.boundary.estimator.region_depth = *options.region_depth;
+  if (!options.reach.empty()) {
+    config.feasibility.reach = read_reach_toml(options.reach);
+  } else if (config.at_boundaries && is_seen_from_inside(grid)) {
+    // Outside of the workspace nothing is mapped, so nothing would be in the camera's way.
+    config.feasibility.reach.half_spaces = inside_of_workspace(grid);
+  }
+  config.feasibility.support_plane = options.support_plane;
+  if (config.at_boundaries && grid.views().empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                map + ": has no views, which boundary candidates need");
+  }
+  if (!config.at_boundaries) {
+    config.sets.push_back(make_pose_set(
+        options.generator, {center_of(options, grid), distance_of(options, sensor, grid),
+                            options.count, options.seed, std::nullopt}));
+  }
+  return config;
+}
+
+GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& model,
+                           const Sensor& sensor, const ExecConfig& exec) {
+  GainConfig config;
+  if (!options.gain.empty()) config.model = parse_gain_model(options.gain);
+  config.support_plane = options.support_plane;
+  return {model.scene(), sensor, config, exec};
+}
+
+NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal, std::size_t top) {
+  std::vector<Pose> poses;
+  for (const Candidate& candidate : proposal.candidates) poses.push_back(candidate.T_world_camera);
+  const GainModel model = evaluator.model();
+  const BestViews best = model == GainModel::paper ? evaluator.best(poses, top)
+                                                   : BestViews(evaluator.race(poses, top));
+  NextViews next{{}, poses.size(), proposal.dropped, model};
+  for (std::size_t k = 0; k < best.indices.size(); ++k) {
+    if (!(best.gains[k].gain > 0)) break;
+    const Candidate& candidate = proposal.candidates[best.indices[k]];
+    next.views.push_back({candidate.T_world_camera, best.indices[k], best.gains[k],
+                          candidate.generator, candidate.boundary_class});
+  }
+  return next;
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program/cli/app.hpp"
+#include "program/cli/flags/next_views.hpp"
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::app {
+
+/// How views for a map are proposed and ranked.
+struct ProposalOptions {
+  std::string generator = "boundary";
+  std::optional<std::size_t> count{};
+  std::optional<double> distance{};
+  std::string center;
+  std::string reach;
+  std::string body;
+  std::optional<double> support_plane{};
+  std::vector<std::string> obstacles;
+  std::optional<double> overlap{};
+  std::optional<double> region_depth{};
+  std::string gain;  ///< empty: they are not ranked
+  std::optional<double> object_size{};
+  std::string hazard;
+  std::uint64_t seed = 1;
+};
+
+/// The flags, but for --generator and --gain: what these do by default is not the same everywhere.
+void add_proposal_options(App& app, ProposalOptions& options);
+
+/// Throws Error(invalid_argument), naming the flag: also for what a generator or a gain has no use
+/// for, which would be ignored in silence.
+void check(const ProposalOptions& options);
+
+/// The sensor with --body.
+[[nodiscard]] Sensor with_body(Sensor sensor, const ProposalOptions& options);
+
+/// The model of a map with --obstacle, --hazard and --object-size.
+[[nodiscard]] SurfaceModel model_of(BeliefGrid grid, const Sensor& sensor,
+                                    const ProposalOptions& options, const ExecConfig& exec);
+
+/// Without --reach the views at boundaries stay inside of the workspace where all views so far
+/// were, as in a room. `map`: what errors call it. Throws Error(invalid_argument) where boundaries
+/// are asked for of a map without views, and as read_reach_toml().
+[[nodiscard]] GenerationConfig generation_config(const ProposalOptions& options,
+                                                 const Sensor& sensor, const BeliefGrid& grid,
+                                                 const std::string& map);
+
+/// Scores views on the model's scene by --gain, of nothing by the paper's.
+[[nodiscard]] GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& model,
+                                         const Sensor& sensor, const ExecConfig& exec);
+
+/// The candidates that gain most, at most `top` of them, by the paper's gain all scored in full, by
+/// the others in two stages (GainEvaluator::race()). Those that gain nothing are not among them.
+[[nodiscard]] NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
+                                   std::size_t top);
+
+}  // namespace viewgain::app

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "program/cli/config_file.hpp"
+#include "program/cli/interrupt.hpp"
+#include "program/cli/json.hpp"
+#include "program/cli/progress.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/frames/frame_map.hpp"
+#include "program/commands/reconstruct/recorded_run.hpp"
+#include "program/commands/reconstruct/run.hpp"
+#include "program/commands/reconstruct/run_report.hpp"
+#include "show/pictures/view_picture.hpp"
+#include "show/report/page.hpp"
+#include "show/report/run_page.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/run_folder.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/planner_mesh/surface_files.hpp"
+#include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/stopwatch.hpp"
+#include "viewgain/version.hpp"
+
+namespace viewgain::app {
+namespace {
+
+// By the gain that the policy ranks by, else the paper's.
+GainEvaluator step_evaluator(const SurfaceModel& model, const RunSetup& setup,
+                             const ExecConfig& exec) {
+  GainConfig gain;
+  gain.support_plane = setup.policy.support_plane;
+  gain.criterion = setup.policy.criterion;
+  if (setup.policy.policy == Policy::gain && !setup.policy.classic) gain.model = setup.policy.model;
+  return {model.scene(), setup.sensor, gain, exec};
+}
+
+// Without a proposal those that the generation holds are of a surface before.
+EstimatedViews estimated_views(const ViewRecord& record, const CandidateGeneration& generation) {
+  const bool proposed = !record.proposal.candidates.empty() || !record.proposal.dropped.empty();
+  return proposed ? generation.estimated() : EstimatedViews{};
+}
+
+std::optional<Pose> chosen_view(const ViewRecord& record) {
+  if (!record.decision) return std::nullopt;
+  return record.proposal.candidates[record.decision->candidate].T_world_camera;
+}
+
+RgbImage step_picture(const ViewRecord& record, const SurfaceModel& model,
+                      const EstimatedViews& estimated, const GainEvaluator& evaluator,
+                      const std::vector<VoxelContribution>& contributions, const Sensor& sensor,
+                      const ExecConfig& exec) {
+  const ViewPicture picture{model.surface(),
+                            estimated,
+                            record.proposal.candidates,
+                            record.T_world_camera,
+                            chosen_view(record),
+                            evaluator,
+                            sensor,
+                            &contributions};
+  return view_picture(picture, exec);
+}
+
+void add_to(StageSeconds& totals, const StageSeconds& seconds) {
+  for (const auto& [stage, value] : seconds) totals[stage] += value;
+}
+
+// What a run leaves beside what it wrote after each view. Returns what run.json holds.
+Json write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t seed,
+                   const SurfaceModel& model, const std::vector<Pose>& views, const Json& report) {
+  save_vdb(model.grid(), folder.file("map.vdb"), noting_sensor(setup.sensor));
+  write_surfaces(model, folder.file("surface.ply"), folder.file("points.ply"));
+  write_tum(folder.file("views.txt"), views);
+  Json run{{"settings", setup.settings},
+           {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}},
+           {"seed", seed},
+           {"map_hash", model.grid().content_hash()}};
+  run.update(report);
+  write_file_atomically(folder.file("run.json"), json_text(run));
+  return run;
+}
+
+std::string run_title(const ReconstructOptions& options, const RunSetup& setup) {
+  return std::filesystem::path(options.mesh).filename().string() + ", " + setup.sensor.name;
+}
+
+void reconstruct(const ReconstructOptions& options, const App& app) {
+  if (is_frame_folder(options.mesh)) return reconstruct_frames(options, app);
+  if (options.report == "on") check_report_page("--report");
+  StageSeconds seconds;
+  const ExecConfig exec{options.common.threads};
+  RunSetup setup = set_up(options, exec);
+  const InterruptGuard interrupt;
+  setup.planning.stop = interrupt.token();
+  const Stopwatch watch_of_set_up;
+  Run loop(setup, options.frames_per_view, exec);
+  seconds["quality"] = watch_of_set_up.seconds();
+  const SurfaceModel& model = loop.model();
+  const CandidateGeneration& generation = loop.generation();
+
+  RunFolder folder(options.out);
+  const PolicyConfig& policy = setup.policy;
+  RunReport report(policy);
+  const bool with_pictures = options.pictures == "on", with_report = options.report == "on";
+  RunPage page(run_title(options, setup), setup.sensor,
+               std::string(criterion_name(policy.criterion)), loop.truth());
+  std::vector<Pose> views;
+  Progress progress("view", options.common.quiet);
+  const PlanningResult result = loop.go([&](const ViewRecord& record) {
+    views.push_back(record.T_world_camera);
+    add_to(seconds, record.seconds);
+    if (options.save_maps == "on") {
+      save_vdb(model.grid(), folder.map(record.index), noting_sensor(setup.sensor));
+    }
+    if (with_pictures || with_report) {
+      const Stopwatch watch;
+      const GainEvaluator evaluator = step_evaluator(model, setup, exec);
+      const EstimatedViews estimated = estimated_views(record, generation);
+      const std::optional<Pose> chosen = chosen_view(record);
+      std::vector<VoxelContribution> contributions;
+      if (chosen && (with_report || evaluator.model() != GainModel::paper)) {
+        contributions = evaluator.contributions(*chosen);
+      }
+      const RgbImage picture =
+          step_picture(record, model, estimated, evaluator, contributions, setup.sensor, exec);
+      const DepthFrame& frame = loop.acquisition().last_frame();
+      if (with_pictures) write_png(folder.view(record.index, ".png"), picture);
+      if (with_pictures && !frame.amplitude.empty()) {
+        write_amplitude_picture(folder.view(record.index, ".amplitude.png"), frame);
+      }
+      seconds["pictures"] += watch.seconds();
+      if (with_report) {
+        const Stopwatch report_watch;
+        page.add_view(record, model, generation, estimated, evaluator, std::move(contributions),
+                      picture);
+        seconds["report"] += report_watch.seconds();
+      }
+    }
+    report.add_view(record, model.quality().back(), model.realised_area(), seconds);
+    progress.wipe();
+    if (!options.common.quiet) std::fprintf(stderr, "%s\n", report.progress_line().c_str());
+    progress.update(views.size(), options.max_views);
+  });
+
+  progress.wipe();
+  const std::vector<FrameRegistration> registrations = loop.registrations();
+  for (std::size_t i = 0; i < registrations.size(); ++i) {
+    views[i] = registrations[i].T_world_camera;
+  }
+  report.set_registrations(registrations);
+  const Json json = report.json(result.reason);
+  write_file_atomically(folder.file("config.toml"),
+                        config_text(app, {"out", "json", "quiet", "threads"}));
+  const Json run = write_results(folder, setup, options.sensing.seed, model, views, json);
+  if (with_report) {
+    write_report(folder.file("report.html"), page.json(run, setup.stage.scene.get()));
+  }
+  folder.commit();
+  if (options.common.json) {
+    print_json(json);
+  } else {
+    std::printf("%s", report.text(result.reason).c_str());
+    const Eigen::Vector3d& center = setup.stage.center;
+    std::printf("the object's box, %.3g m long, has its centre at %.3g, %.3g, %.3g m\n",
+                setup.stage.size, center.x(), center.y(), center.z());
+    std::printf(
+        "left in %s: run.json, config.toml, views.txt, map.vdb, surface.ply, points.ply%s%s%s\n",
+        options.out.c_str(), with_pictures ? ", views/" : "",
+        options.save_maps == "on" ? ", maps/" : "", with_report ? ", report.html" : "");
+  }
+}
+
+}  // namespace
+
+Command add_reconstruct(App& program) {
+  auto options = std::make_shared<ReconstructOptions>();
+  App* app = program.add_subcommand(
+      "reconstruct",
+      "The whole loop on a mesh: acquire with a simulated camera, update map and surface, propose "
+      "views, rank them, move, until little is left to gain. Or on a folder of recorded frames: "
+      "map, surface and the views to take next.");
+  add_options(*app, *options);
+  return {app, [options, app] { reconstruct(*options, *app); }};
+}
+
+}  // namespace viewgain::app

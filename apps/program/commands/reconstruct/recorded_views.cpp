@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/commands/reconstruct/recorded_views.hpp"
+
+#include <utility>
+
+#include "program/cli/json_text.hpp"
+#include "program/commands/reconstruct/registration_json.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/planner_mesh/mesh_area.hpp"
+#include "viewgain/support/stopwatch.hpp"
+
+namespace viewgain::app {
+namespace {
+
+double sum_of(const StageSeconds& seconds) {
+  double sum = 0;
+  for (const auto& [stage, value] : seconds) sum += value;
+  return sum;
+}
+
+Json seconds_json(const StageSeconds& seconds) {
+  Json json = Json::object();
+  for (const auto& [stage, value] : seconds) json[stage] = value;
+  json["total"] = sum_of(seconds);
+  return json;
+}
+
+}  // namespace
+
+RecordedViews::RecordedViews(FrameMap& map, std::vector<FrameRegistration> registrations)
+    : map_(map), registrations_(std::move(registrations)) {}
+
+bool RecordedViews::is_refused(std::size_t index) const {
+  return is_aligned() && registrations_[index].status == RegistrationStatus::refused;
+}
+
+void RecordedViews::add(std::size_t index) {
+  ViewRecord record;
+  record.index = index;
+  record.T_world_camera =
+      is_aligned() ? registrations_[index].T_world_camera : map_.folder().T_world_camera(index);
+  MapUpdate update;
+  if (!is_refused(index)) {
+    const Stopwatch watch;
+    update = map_.add(index, record.T_world_camera,
+                      is_aligned() ? registrations_[index].pose_sigma() : PoseSigma{});
+    readings_.readings += update.counts.readings;
+    readings_.readings_inside += update.counts.readings_inside;
+    flying_pixels_ += update.flying_pixels;
+    for (const auto& [stage, value] : update.seconds) add_seconds(stage, value);
+    add_seconds("read", watch.seconds() - sum_of(update.seconds));
+  }
+  record.progress = map_.model().progress();
+  record.realised_gain = record.progress.entropy_removed;
+  if (!records_.empty()) {
+    const ViewRecord& before = records_.back();
+    record.realised_gain -= before.progress.entropy_removed;
+    record.travelled =
+        before.travelled +
+        (record.T_world_camera.translation() - before.T_world_camera.translation()).norm();
+  }
+  new_areas_.push_back(update.new_area);
+  record.seconds = update.seconds;
+  records_.push_back(std::move(record));
+}
+
+std::set<std::string> RecordedViews::identities() const {
+  std::set<std::string> frames;
+  for (const ViewRecord& record : records_) {
+    if (is_refused(record.index)) continue;
+    frames.insert(frame_identity(map_.folder().frames(), record.index));
+  }
+  return frames;
+}
+
+Json RecordedViews::entry_json(std::size_t index) const {
+  const ViewRecord& record = records_[index];
+  const FrameFolder& folder = map_.folder();
+  Json json{{"index", record.index},
+            {"frame", folder.frames().images[record.index].filename().string()},
+            {"pose", app::to_json(folder.T_world_camera(record.index))},
+            {"generator", "recorded"},
+            {"realised_gain", record.realised_gain},
+            {"realised_area", new_areas_[index]},
+            {"entropy_removed", record.progress.entropy_removed},
+            {"unknown_voxels", record.progress.unknown_voxels},
+            {"travelled", record.travelled},
+            {"seconds", seconds_json(record.seconds)}};
+  if (is_aligned()) json["registration"] = app::to_json(registrations_[record.index]);
+  return json;
+}
+
+Json RecordedViews::json(const SurfaceModel& model, const NextViews& next) const {
+  const ViewRecord& last = records_.back();
+  const bool is_whole = records_.size() == map_.folder().size();
+  Json run{{"map_hash", model.grid().content_hash()},
+           {"stop_reason", is_whole ? "no_frames" : "interrupted"},
+           {"views", records_.size()},
+           {"readings", readings_.readings},
+           {"readings_inside", readings_.readings_inside},
+           {"masked_pixels", map_.masked_pixels()},
+           {"flying_pixels", flying_pixels_},
+           {"orthonormalized_poses", map_.folder().frames().orthonormalized},
+           {"entropy_removed", last.progress.entropy_removed},
+           {"unknown_voxels", last.progress.unknown_voxels},
+           {"points", model.points().size()},
+           {"triangles", model.surface().triangles.size()},
+           {"surface_area", mesh_area(model.surface())},
+           {"travelled", last.travelled}};
+  if (is_aligned()) run["registration"] = registration_counts(registrations_);
+  run.update(app::to_json(next));
+  run["seconds"] = seconds_json(seconds_);
+  run["per_view"] = Json::array();
+  for (std::size_t i = 0; i < records_.size(); ++i) run["per_view"].push_back(entry_json(i));
+  return run;
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "program/cli/flags/next_views.hpp"
+#include "program/cli/json.hpp"
+#include "program/commands/frames/frame_map.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/planner/register_frame.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
+
+namespace viewgain::app {
+
+/// Recorded frames as they go into a map, and what each brought.
+class RecordedViews {
+ public:
+  /// The map must outlive it. `registrations`: one a frame, or none where the poses are taken as
+  /// the folder says them.
+  explicit RecordedViews(FrameMap& map, std::vector<FrameRegistration> registrations = {});
+
+  /// Puts a frame into the map, in order; one that was refused stays out of it. Throws as
+  /// FrameMap::add().
+  void add(std::size_t index);
+  void add_seconds(const std::string& stage, double seconds) { seconds_[stage] += seconds; }
+
+  /// One a frame that was added.
+  [[nodiscard]] const std::vector<ViewRecord>& records() const noexcept { return records_; }
+  /// For what is chosen after it.
+  [[nodiscard]] ViewRecord& last() noexcept { return records_.back(); }
+  /// Those in the map, as its file notes them.
+  [[nodiscard]] std::set<std::string> identities() const;
+  /// What run.json holds, without settings and versions. `model` is of the map as it is now.
+  [[nodiscard]] Json json(const SurfaceModel& model, const NextViews& next) const;
+
+ private:
+  [[nodiscard]] bool is_aligned() const { return !registrations_.empty(); }
+  [[nodiscard]] bool is_refused(std::size_t index) const;
+  [[nodiscard]] Json entry_json(std::size_t index) const;
+
+  FrameMap& map_;
+  std::vector<FrameRegistration> registrations_;
+  std::vector<ViewRecord> records_;
+  std::vector<double> new_areas_;  ///< one a record [m²]
+  IntegrationReport readings_{};   ///< of all frames
+  std::size_t flying_pixels_ = 0;
+  StageSeconds seconds_;
+};
+
+}  // namespace viewgain::app

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "program/commands/reconstruct/run_setup.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/planner/pose_noise.hpp"
+#include "viewgain/planner/simulated_acquisition.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/planner_mesh/policies.hpp"
+#include "viewgain/planner_mesh/registered_model.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/planner_mesh/truth.hpp"
+
+namespace viewgain::app {
+
+/// The parts of a simulated run, wired up as its flags say. For one run.
+class Run {
+ public:
+  /// Finds which samples of the mesh are visible, which takes some tenths of a second. Throws
+  /// Error.
+  Run(RunSetup setup, std::size_t frames_per_view, const ExecConfig& exec);
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+
+  /// The loop, to its end; `observer` is called once a view, when its record is complete.
+  PlanningResult go(const std::function<void(const ViewRecord&)>& observer);
+
+  [[nodiscard]] const RunSetup& setup() const noexcept { return setup_; }
+  [[nodiscard]] const std::shared_ptr<const Truth>& truth() const noexcept { return truth_; }
+  [[nodiscard]] const SimulatedAcquisition& acquisition() const noexcept { return acquisition_; }
+  /// What registration did to each view; empty without it.
+  [[nodiscard]] std::vector<FrameRegistration> registrations() const {
+    return registered_ ? registered_->registrations() : std::vector<FrameRegistration>{};
+  }
+  [[nodiscard]] const SurfaceModel& model() const noexcept { return model_; }
+  [[nodiscard]] const CandidateGeneration& generation() const noexcept { return generation_; }
+  [[nodiscard]] CandidateGeneration& generation() noexcept { return generation_; }
+  [[nodiscard]] PolicyDecision& decision() noexcept { return decision_; }
+
+ private:
+  RunSetup setup_;
+  std::shared_ptr<const Truth> truth_;
+  SimulatedAcquisition acquisition_;
+  MisreportedAcquisition reported_;
+  SurfaceModel model_;
+  std::optional<RegisteredModel> registered_;
+  CandidateGeneration generation_;
+  PolicyDecision decision_;
+};
+
+}  // namespace viewgain::app

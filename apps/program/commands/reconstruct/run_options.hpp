@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program/cli/flags/common_options.hpp"
+#include "program/cli/flags/registration_options.hpp"
+#include "program/cli/flags/sensing.hpp"
+#include "program/cli/json.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/planner_mesh/boundary_generation.hpp"
+
+namespace viewgain::app {
+
+/// Flags of `viewgain reconstruct`.
+struct ReconstructOptions {
+  CommonOptions common;
+  std::string mesh;  ///< or a folder of frames
+  std::string sensor;
+  double voxel = 0;
+  std::optional<double> size;
+  std::string workspace;
+  std::string start;
+  std::optional<double> distance;
+  std::string policy = "gain";
+  std::string generator;
+  std::optional<std::size_t> count;
+  std::string gain;
+  std::string semantics;
+  double overlap = default_estimator(1.0).overlap;
+  double region_depth = default_estimator(1.0).region_depth;
+  std::optional<double> object_size;
+  std::string hazard;
+  std::string criterion = "log_diagonal";
+  std::size_t max_views = PlanningConfig{}.max_views;
+  std::optional<double> stop_gain;
+  std::optional<double> stop_area;
+  std::size_t stop_idle = PlanningConfig{}.idle_views;
+  std::optional<double> stop_coverage;
+  double travel_cost = 0;
+  std::optional<double> travel_speed;
+  std::string reach;
+  std::vector<std::string> obstacles;
+  std::string body;
+  std::string up = "z";
+  SensingOptions sensing;
+  RegistrationOptions registration;
+  std::size_t frames_per_view = 1;
+  std::string jump_edge_filter = "5";
+  std::string refine = "on";
+  std::string save_maps = "off";
+  std::string pictures = "on";
+  std::string report = "off";
+  std::string out;
+  // Of a folder of frames.
+  std::optional<double> depth_scale;
+  std::string mask, confidence;
+  int least_confidence = 1;
+  std::size_t top = 10;
+};
+
+/// Declares the flags, with o's values as defaults.
+void add_options(App& app, ReconstructOptions& o);
+
+/// What can change the answer, for run.json: each such flag under its key; `resolved` has what the
+/// run made of a flag, and what follows from several. Not in it: threads and where results go.
+[[nodiscard]] Json settings_json(const ReconstructOptions& options, const Json& resolved);
+
+/// Throws Error(invalid_argument), naming the flag, for numbers that no run on a mesh can have.
+void check(const ReconstructOptions& options);
+
+}  // namespace viewgain::app

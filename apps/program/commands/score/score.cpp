@@ -1,0 +1,381 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "program/cli/choices.hpp"
+#include "program/cli/flags/gain_names.hpp"
+#include "program/cli/flags/hazard_source.hpp"
+#include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/flags/pose_flags.hpp"
+#include "program/cli/flags/sensed_map.hpp"
+#include "program/cli/progress.hpp"
+#include "program/cli/values.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/score/score_classic.hpp"
+#include "program/commands/score/score_options.hpp"
+#include "program/commands/score/score_part.hpp"
+#include "program/commands/score/score_report.hpp"
+#include "show/pictures/score_picture.hpp"
+#include "show/report/page.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/planner/feasible_poses.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/stopwatch.hpp"
+
+namespace viewgain::app {
+namespace {
+
+using Options = ScoreOptions;
+
+void check_feasibility(const Options& options) {
+  if (!options.body.empty() && options.feasible == "off") {
+    throw Error(ErrorCode::invalid_argument, "--body goes with --feasible on");
+  }
+  if (options.support_plane) check_finite("--support-plane", *options.support_plane);
+}
+
+GainConfig gain_config(const Options& options) {
+  GainConfig config;
+  config.model = parse_gain_model(options.gain);
+  if (config.model == GainModel::paper && (options.object_size || !options.hazard.empty())) {
+    throw Error(ErrorCode::invalid_argument,
+                "--object-size and --hazard go with --gain surface or combined");
+  }
+  if (config.model == GainModel::paper && options.support_plane && options.feasible == "off") {
+    throw Error(ErrorCode::invalid_argument,
+                "--support-plane goes with --feasible on, and with --gain surface or combined");
+  }
+  if (config.model != GainModel::combined && options.refinement_weight) {
+    throw Error(ErrorCode::invalid_argument, "--refinement-weight goes with --gain combined");
+  }
+  if (options.refinement_weight)
+    check_at_least_0("--refinement-weight", *options.refinement_weight);
+  if (options.semantics != "paper") {
+    throw Error(ErrorCode::invalid_argument,
+                "--semantics " + options.semantics + " goes with classic gains");
+  }
+  config.refinement_weight = options.refinement_weight.value_or(config.refinement_weight);
+  config.support_plane = options.support_plane;
+  config.criterion = parse_criterion(options.criterion);
+  config.pixel_stride = options.stride;
+  config.posterior_entropy = true;  // a column of what is written
+  config.prior_sigma = options.prior_sigma;
+  config.min_range = options.min_range;
+  config.max_range = options.max_range;
+  for (const std::string& text : options.weights) {
+    const std::vector<double> numbers = parse_numbers("--weight", text, 7, 7);
+    config.weights.push_back({box_of("--weight", numbers), numbers[6]});
+  }
+  return config;
+}
+
+// The poses that are to be scored: all, those in reach, or those that are possible.
+FeasiblePoses candidates_of(const Options& options, const PoseSource& source, const Sensor& sensor,
+                            const BeliefGrid& grid, const std::shared_ptr<const VoxelScene>& scene,
+                            const ExecConfig& exec) {
+  ReachRegion reach;
+  if (!options.reach.empty()) reach = read_reach_toml(options.reach);
+  if (options.feasible == "off") return reachable_poses(reach, source.poses);
+  FeasibilityConfig config = feasibility_of(sensor);
+  if (!options.body.empty()) config.body.size = parse_size("--body", options.body);
+  config.reach = std::move(reach);
+  config.support_plane = options.support_plane;
+  return feasible_poses(FeasibilityChecker(scene, config, exec), source.poses, grid.views());
+}
+
+void check_left(const FeasiblePoses& candidates, const RowSelection& selection) {
+  if (!candidates.poses.empty() || !selection.is_all()) return;  // a part may be empty
+  throw Error(ErrorCode::invalid_argument,
+              "no pose is left to score; dropped: " + counts_text(candidates.dropped));
+}
+
+// Calls work(control), which shows how far it is. Returns how long it took [s].
+template <typename Work>
+double timed(const Options& options, const Work& work) {
+  Progress progress("pose", options.common.quiet);
+  BatchControl control;
+  control.progress = [&progress](std::size_t done, std::size_t total) {
+    progress.update(done, total);
+  };
+  const Stopwatch watch;
+  work(control);
+  return watch.seconds();
+}
+
+// Numbers of the candidates become rows of the poses that were given.
+void name_by_input(FeasiblePoses& candidates, const PoseSource& source) {
+  for (std::size_t& number : candidates.numbers) number += source.rows.begin;
+}
+void name_by_input(Scores& scores, const FeasiblePoses& candidates) {
+  const auto name = [&](std::vector<std::size_t>& indices) {
+    for (std::size_t& i : indices) i = candidates.numbers[i];
+  };
+  if (auto* ranking = std::get_if<Ranking>(&scores.found)) {
+    name(ranking->scored.indices);
+    name(ranking->best.indices);
+  } else if (auto* joint = std::get_if<JointViews>(&scores.found)) {
+    name(joint->views.indices);
+  } else {
+    std::get<Estimates>(scores.found).indices = candidates.numbers;
+  }
+  scores.candidates = candidates.poses.size();
+  scores.dropped = candidates.dropped;
+}
+
+// What is not known yet must not count as surer than what a reading would say.
+void warn_of_prior(const GainEvaluator& evaluator, const Sensor& sensor) {
+  const double axial = sensor.sigmas(sensor.working_distance).axial;
+  if (evaluator.prior_sigma() >= axial) return;
+  std::fprintf(
+      stderr,
+      "viewgain: warning: the prior sigma, %.3g m, is below the sensor's along the ray, %.3g "
+      "m at %g m: what is unknown counts as surer than a reading (--prior-sigma)\n",
+      evaluator.prior_sigma(), axial, sensor.working_distance);
+}
+
+Scores scored(const Options& options, const GainEvaluator& evaluator,
+              const std::vector<Pose>& poses, const BatchControl& control) {
+  Ranking ranking;
+  ranking.scored.gains.resize(poses.size());
+  evaluator.evaluate(poses, ranking.scored.gains, control);
+  ranking.scored.indices.resize(poses.size());
+  std::iota(ranking.scored.indices.begin(), ranking.scored.indices.end(), std::size_t{0});
+  ranking.best.indices = best_indices(ranking.scored.gains, options.top);
+  for (const std::size_t i : ranking.best.indices) {
+    ranking.best.gains.push_back(ranking.scored.gains[i]);
+  }
+  std::uint64_t rays = 0;
+  for (const ViewGain& gain : ranking.scored.gains) rays += gain.rays;
+  return {std::move(ranking), rays};
+}
+
+Scores raced(const Options& options, const GainEvaluator& evaluator, const std::vector<Pose>& poses,
+             const BatchControl& control) {
+  RacedViews views = evaluator.race(poses, options.top, {.seed = options.seed}, control);
+  return {Ranking{{std::move(views.scored_indices), std::move(views.scored_gains)},
+                  {std::move(views.indices), std::move(views.gains)}},
+          views.rays_traced};
+}
+
+Scores chosen_together(const Options& options, const GainEvaluator& evaluator,
+                       const std::vector<Pose>& poses, const BatchControl& control) {
+  ViewSet set = evaluator.best_set(poses, *options.set, control);
+  return {JointViews{{std::move(set.indices), std::move(set.marginal)}, set.gain},
+          set.evaluations * evaluator.rays_per_pose()};
+}
+
+Scores estimated(const Options& options, const GainEvaluator& evaluator,
+                 const std::vector<Pose>& poses, const BatchControl& control) {
+  const ApproximateConfig config{.share = *options.approximate, .seed = options.seed};
+  Estimates estimates;
+  estimates.gains.resize(poses.size());
+  evaluator.approximate(poses, estimates.gains, config, control);
+  std::vector<ViewGain> ranked(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) ranked[i].gain = estimates.gains[i].gain;
+  estimates.best = best_indices(ranked, options.top);
+  return {std::move(estimates),
+          static_cast<std::uint64_t>(
+              config.share * static_cast<double>(poses.size() * evaluator.rays_per_pose()))};
+}
+
+Scores make_scores(const Options& options, const GainEvaluator& evaluator,
+                   const std::vector<Pose>& poses, const BatchControl& control) {
+  if (options.race) return raced(options, evaluator, poses, control);
+  if (options.set) return chosen_together(options, evaluator, poses, control);
+  if (options.approximate) return estimated(options, evaluator, poses, control);
+  return scored(options, evaluator, poses, control);
+}
+
+void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gains) {
+  const ClassicConfig config = classic_config(options, std::move(gains));
+  const ExecConfig exec{options.common.threads};
+  const RowSelection selection = selection_of(options);
+  const PoseSource source = make_poses(options.poses, options.seed, selection);
+  const SensedMap map = load_sensed_map(options.map, options.sensor);
+  const auto& [grid, sensor] = map;
+  const auto scene = VoxelScene::build(grid, obstacles_of(options.obstacles), exec);
+  const bool hides = std::any_of(config.gains.begin(), config.gains.end(), needs_occlusion);
+  const auto acquisition = hides ? std::optional(Acquisition{sensor}) : std::nullopt;
+  const ClassicGainEvaluator evaluator(ClassicMap::build(scene, grid, acquisition, exec), sensor,
+                                       config, exec);
+  FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
+  check_left(candidates, selection);
+  name_by_input(candidates, source);
+
+  ClassicScores scores{grid, sensor, source, evaluator, candidates.numbers, candidates.dropped};
+  scores.gains.resize(candidates.poses.size() * evaluator.config().gains.size());
+  scores.statuses.resize(candidates.poses.size());
+  scores.seconds = timed(options, [&](const BatchControl& control) {
+    evaluator.evaluate(candidates.poses, scores.gains, scores.statuses, control);
+  });
+  if (!options.out.empty()) {
+    write_scores(options, scores.table(), grid, sensor, source, evaluator.map().scene().isa());
+  }
+  if (options.common.json) {
+    scores.print_json(options.top);
+  } else {
+    scores.print_table(options.top);
+  }
+}
+
+void score(const Options& options) {
+  check_feasibility(options);
+  if (auto gains = classic_gains_of(options.gain)) {
+    return score_by_classic_gains(options, std::move(*gains));
+  }
+  if (!options.report.empty()) check_report_page("--report");
+  const ExecConfig exec{options.common.threads};
+  const GainConfig config = gain_config(options);
+  const RowSelection selection = selection_of(options);
+  const PoseSource source = make_poses(options.poses, options.seed, selection);
+  const SensedMap map = load_sensed_map(options.map, options.sensor);
+  const BeliefGrid& grid = map.grid;
+  const Sensor& sensor = map.sensor;
+  const HazardConfig hazard = hazard_source(options.hazard, options.object_size, grid);
+  const auto scene = VoxelScene::build(grid, obstacles_of(options.obstacles), exec, hazard);
+  const GainEvaluator evaluator(scene, sensor, config, exec);
+  FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
+  check_left(candidates, selection);
+  name_by_input(candidates, source);
+
+  Scores scores;
+  const double seconds = timed(options, [&](const BatchControl& control) {
+    scores = make_scores(options, evaluator, candidates.poses, control);
+  });
+  name_by_input(scores, candidates);
+  warn_of_prior(evaluator, sensor);
+  RgbImage picture;
+  if (!options.picture.empty() || !options.report.empty()) {
+    const std::optional<std::size_t> winner = scores.winner();
+    const Pose& shown = winner ? source.at(*winner)
+                               : candidates.poses[evaluator.race(candidates.poses).indices.at(0)];
+    picture = score_picture(evaluator, sensor, shown, exec);
+  }
+  if (!options.picture.empty()) write_png(options.picture, picture);
+  if (!options.out.empty()) {
+    write_scores(options, table_of(scores, config.model), grid, sensor, source, scene->isa());
+  }
+  const ScoreReport report{config.model, options.criterion, grid,   sensor,
+                           source,       evaluator,         scores, seconds};
+  if (!options.report.empty()) {
+    write_report(options.report,
+                 report.page(std::filesystem::path(options.map).filename(), std::move(picture)));
+  }
+  if (options.common.json) {
+    report.print_json();
+  } else {
+    report.print_table();
+  }
+}
+
+}  // namespace
+
+Command add_score(App& program) {
+  auto options = std::make_shared<Options>();
+  App* app = program.add_subcommand(
+      "score",
+      "Candidate poses by expected information gain against a map: the best ones, and how "
+      "fast it went.");
+  app->add_option("MAP", options->map, kMapHelp)->required();
+  add_pose_options(*app, options->poses);
+  app->add_option("--sensor", options->sensor, kMapSensorHelp);
+  several_of(*app->add_option("--gain", options->gain,
+                              "paper (entropy removed) [nat], surface (new surface to be expected) "
+                              "[m^2] or combined (both) [nat]; or gains of the literature, several "
+                              "with commas, ranked by the first")
+                  ->capture_default_str(),
+             all_gain_names(), "gain");
+  one_of(*app->add_option("--semantics", options->semantics,
+                          "of the literature's gains: as the papers define them or as the code "
+                          "that was shipped with them computes them")
+              ->capture_default_str(),
+         gain_semantics_names(), "semantics");
+  app->add_option("--refinement-weight", options->refinement_weight,
+                  "combined: of refining known surface against finding new; default: 0.3");
+  app->add_option("--object-size", options->object_size, kObjectSizeHelp);
+  app->add_option("--hazard", options->hazard, kHazardHelp);
+  app->add_option("--support-plane", options->support_plane,
+                  "height z of a table [m], at which rays of surface and combined end and which "
+                  "--feasible on keeps the body above; default: none");
+  app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
+  app->add_option("--reach", options->reach,
+                  "TOML file: boxes, shells, half-spaces, poses in reach; other poses are dropped");
+  on_or_off(*app->add_option("--feasible", options->feasible,
+                             "drop poses where the sensor's body would touch the map, an obstacle "
+                             "or the table, much would be too near to be measured, or a view of "
+                             "the map was taken")
+                 ->capture_default_str());
+  app->add_option("--body", options->body, kBodyHelp);
+  one_of(*app->add_option("--criterion", options->criterion,
+                          "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] "
+                          "or trace [m^2]")
+              ->capture_default_str(),
+         criterion_names(), "criterion");
+  app->add_option("--stride", options->stride, "every s-th pixel of every s-th row")
+      ->range(1, std::numeric_limits<int>::max(), "stride")
+      ->capture_default_str();
+  app->add_option(
+         "--weight", options->weights,
+         "x0,y0,z0,x1,y1,z1,W: task weight W >= 0 of a box in the grid's frame [m]; may be "
+         "repeated, the last box that holds a voxel counts, 1 outside")
+      ->allow_extra_args(false);
+  app->add_option("--prior-sigma", options->prior_sigma,
+                  "sigma of an unknown voxel [m]; default: the map's");
+  app->add_option("--min-range", options->min_range, "along the ray [m]; default: the sensor's");
+  app->add_option("--max-range", options->max_range, "along the ray [m]; default: the sensor's");
+  app->add_option("--top", options->top, "how many of the best to print")
+      ->range(std::size_t{0}, std::size_t{1'000'000'000}, "count")
+      ->capture_default_str();
+  auto* selection = app->add_option_group("selection", "at most one of; default: score all poses");
+  selection->add_flag(
+      "--race", options->race,
+      "the best poses, very probably: all by about 400 of their rays, the best of these in full");
+  selection
+      ->add_option(
+          "--approximate", options->approximate,
+          "SHARE: estimates with standard errors from at most this share of each view's rays")
+      ->range(1e-6, 1.0, "share in (0, 1]");
+  selection
+      ->add_option(
+          "--set", options->set,
+          "K views that are good together on this map, with what each adds to those before")
+      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
+  selection->require_option(0, 1);
+  add_seed_option(*app, options->seed, "of --shell, --race (the paper's gain) and --approximate");
+  auto* part = app->add_option_group("part", "at most one of; needs --out; see merge");
+  part->add_option(
+      "--shard", options->shard,
+      "i/n: the i-th of n shards of the poses, i from 0, rows that follow one another");
+  part->add_option("--rows", options->rows, "a:b: the poses from row a to before row b, from 0");
+  part->require_option(0, 1);
+  app->add_option("--out", options->out,
+                  "CSV file, or .npy with the same columns, of all poses that were not dropped, in "
+                  "input order; with a selection, "
+                  "of those scored in full, "
+                  "of the estimates, or of the set in order");
+  app->add_option(
+      "--picture", options->picture,
+      "PNG file: the map, the best view's frustum and the voxels where its rays end; surface "
+      "and combined: may end, the stronger in colour the likelier");
+  app->add_option("--report", options->report,
+                  "HTML file: map, candidates by gain, ranking and what the best ones see, to look "
+                  "at in a browser");
+  add_common_options(*app, options->common);
+  add_help(*app, kViewsGroup,
+           "score map.vdb --sphere 500,0.6 --sensor sr4000 --gain surface --top 5");
+  return {app, [options] { score(*options); }};
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program/cli/flags/common_options.hpp"
+#include "program/cli/flags/pose_source.hpp"
+
+namespace viewgain::app {
+
+/// Flags of `viewgain score`.
+struct ScoreOptions {
+  CommonOptions common;
+  std::string map;
+  PoseOptions poses;
+  std::string sensor;
+  std::string gain = "paper";
+  std::string semantics = "paper";
+  std::optional<double> refinement_weight, object_size, support_plane;
+  std::string hazard, reach, body;
+  std::vector<std::string> obstacles;
+  std::string feasible = "off";
+  std::string criterion = "log_diagonal";
+  int stride = 1;
+  std::vector<std::string> weights;
+  std::optional<double> prior_sigma, min_range, max_range;
+  std::size_t top = 10;
+  bool race = false;
+  std::optional<double> approximate;  // share of the rays
+  std::optional<std::size_t> set;     // how many
+  std::uint64_t seed = 1;
+  std::string shard, rows;  // part of the poses
+  std::string out;
+  std::string picture;
+  std::string report;
+};
+
+}  // namespace viewgain::app

@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program/commands/score/score_report.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "program/cli/flags/gain_names.hpp"
+#include "program/cli/json_text.hpp"
+#include "program/cli/values.hpp"
+#include "show/report/score_page.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+
+namespace viewgain::app {
+namespace {
+
+Table table_of(const ScoredViews& views, GainModel model) {
+  const bool has_area = model != GainModel::paper;
+  Table table{{{"index", ColumnType::row},
+               {"gain", ColumnType::real},
+               {"exploration", ColumnType::real},
+               {"refinement", ColumnType::real},
+               {"posterior_entropy", ColumnType::real},
+               {"rays", ColumnType::count},
+               {"hits", ColumnType::count},
+               {"unknown_voxels", ColumnType::count},
+               {"occupied_voxels", ColumnType::count},
+               {"status", ColumnType::status}}};
+  if (has_area) {
+    table.columns.push_back({"area", ColumnType::real});
+    table.columns.push_back({"refinement_saturated", ColumnType::real});
+  }
+  table.bytes.reserve(views.gains.size() * row_bytes(table.columns));
+  for (std::size_t i = 0; i < views.gains.size(); ++i) {
+    const ViewGain& r = views.gains[i];
+    table.add(static_cast<std::int64_t>(views.indices[i]));
+    for (const double value : {r.gain, r.exploration, r.refinement, r.posterior_entropy}) {
+      table.add(value);
+    }
+    for (const std::uint32_t value : {r.rays, r.hits, r.unknown_voxels, r.occupied_voxels}) {
+      table.add(value);
+    }
+    table.add(r.status);
+    if (!has_area) continue;
+    table.add(r.area);
+    table.add(r.refinement_saturated);
+  }
+  return table;
+}
+
+Table table_of(const Estimates& estimates) {
+  Table table{{{"index", ColumnType::row},
+               {"gain", ColumnType::real},
+               {"standard_error", ColumnType::real}}};
+  for (std::size_t i = 0; i < estimates.gains.size(); ++i) {
+    table.add(static_cast<std::int64_t>(estimates.indices[i]));
+    table.add(estimates.gains[i].gain);
+    table.add(estimates.gains[i].standard_error);
+  }
+  return table;
+}
+
+Json entries(const ScoredViews& views, const PoseSource& poses) {
+  Json list = Json::array();
+  for (std::size_t rank = 0; rank < views.indices.size(); ++rank) {
+    const ViewGain& r = views.gains[rank];
+    list.push_back({{"index", views.indices[rank]},
+                    {"gain", r.gain},  // a NaN becomes null
+                    {"exploration", r.exploration},
+                    {"refinement", r.refinement},
+                    {"posterior_entropy", r.posterior_entropy},
+                    {"area", r.area},
+                    {"refinement_saturated", r.refinement_saturated},
+                    {"rays", r.rays},
+                    {"hits", r.hits},
+                    {"unknown_voxels", r.unknown_voxels},
+                    {"occupied_voxels", r.occupied_voxels},
+                    {"status", view_status_name(r.status)},
+                    {"T_world_camera", to_json(poses.at(views.indices[rank]))}});
+  }
+  return list;
+}
+
+Json entries(const Estimates& estimates, const PoseSource& poses) {
+  Json list = Json::array();
+  for (const std::size_t i : estimates.best) {
+    list.push_back({{"index", estimates.indices[i]},
+                    {"gain", estimates.gains[i].gain},
+                    {"standard_error", estimates.gains[i].standard_error},
+                    {"T_world_camera", to_json(poses.at(estimates.indices[i]))}});
+  }
+  return list;
+}
+
+// What a gain has not, the columns do not show.
+void print_rows(const ScoredViews& views, const PoseSource& poses, GainModel model) {
+  const bool by_paper = model == GainModel::paper, refines = model == GainModel::combined;
+  std::printf("%4s %8s %12s", "rank", "index", "gain");
+  if (by_paper) std::printf(" %12s %12s", "exploration", "refinement");
+  if (!by_paper) std::printf(" %12s", "area [m^2]");
+  if (refines) std::printf(" %12s", "refinement");
+  std::printf(" %8s", "hits");
+  if (by_paper) std::printf(" %9s %9s", "unknown", "occupied");
+  std::printf("  %-26s %s\n", "eye x y z [m]", "status");
+  for (std::size_t rank = 0; rank < views.indices.size(); ++rank) {
+    const std::size_t i = views.indices[rank];
+    const ViewGain& r = views.gains[rank];
+    const Eigen::Vector3d eye = poses.at(i).translation();
+    std::array<char, 80> position{};
+    std::snprintf(position.data(), position.size(), "%8.3f %8.3f %8.3f", eye.x(), eye.y(), eye.z());
+    std::printf("%4zu %8zu %12.6g", rank + 1, i, r.gain);
+    if (by_paper) std::printf(" %12.6g %12.6g", r.exploration, r.refinement);
+    if (!by_paper) std::printf(" %12.6g", r.area);
+    if (refines) std::printf(" %12.6g", r.refinement_saturated);
+    std::printf(" %8u", r.hits);
+    if (by_paper) std::printf(" %9u %9u", r.unknown_voxels, r.occupied_voxels);
+    std::printf("  %-26s %s\n", position.data(), std::string(view_status_name(r.status)).c_str());
+  }
+}
+
+void print_rows(const Estimates& estimates) {
+  std::printf("%4s %8s %12s %14s\n", "rank", "index", "gain", "standard error");
+  for (std::size_t rank = 0; rank < estimates.best.size(); ++rank) {
+    const ApproximateGain& r = estimates.gains[estimates.best[rank]];
+    std::printf("%4zu %8zu %12.6g %14.3g\n", rank + 1, estimates.indices[estimates.best[rank]],
+                r.gain, r.standard_error);
+  }
+}
+
+// The poses whose every ray was traced; for people and files, nothing of estimates.
+const ScoredViews& scored_in_full(const Scores& scores) {
+  static const ScoredViews none;
+  if (const auto* ranking = std::get_if<Ranking>(&scores.found)) return ranking->scored;
+  if (const auto* joint = std::get_if<JointViews>(&scores.found)) return joint->views;
+  return none;
+}
+
+}  // namespace
+
+std::optional<std::size_t> Scores::winner() const {
+  if (const auto* estimates = std::get_if<Estimates>(&found)) {
+    if (estimates->best.empty()) return std::nullopt;
+    return estimates->indices[estimates->best.front()];
+  }
+  const auto* ranking = std::get_if<Ranking>(&found);
+  const std::vector<std::size_t>& best =
+      ranking != nullptr ? ranking->best.indices : std::get<JointViews>(found).views.indices;
+  return best.empty() ? std::nullopt : std::optional(best.front());
+}
+
+Table table_of(const Scores& scores, GainModel model) {
+  const auto* estimates = std::get_if<Estimates>(&scores.found);
+  return estimates != nullptr ? table_of(*estimates) : table_of(scored_in_full(scores), model);
+}
+
+Json ScoreReport::summary() const {
+  Json dropped = Json::object();
+  for (const auto& [reason, count] : scores.dropped) dropped[reason] = count;
+  return {{"poses", source.poses.size()},
+          {"dropped", dropped},
+          {"poses_scored", scored_in_full(scores).gains.size()},
+          {"rays_traced", scores.rays_traced},
+          {"rays_per_pose", evaluator.rays_per_pose()},
+          {"threads", evaluator.num_threads()},
+          {"isa", evaluator.scene().isa()},
+          {"voxel_size", grid.voxel_size()},
+          {"voxels", grid.voxel_count()},
+          {"sensor", sensor.name},
+          {"gain_model", gain_model_name(model)},
+          {"gain_unit", gain_unit(model, criterion)},
+          {"criterion", criterion},
+          {"prior_sigma", evaluator.prior_sigma()},
+          {"orthonormalized_poses", source.orthonormalized},
+          {"seconds", seconds},
+          {"poses_per_second", static_cast<double>(scores.candidates) / seconds},
+          {"rays_per_second", static_cast<double>(scores.rays_traced) / seconds}};
+}
+
+void ScoreReport::print_json() const {
+  Json json = summary();
+  if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
+    json["best"] = entries(ranking->best, source);
+  } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
+    json["best"] = entries(joint->views, source);
+    json["set_gain"] = joint->gain;
+  } else {
+    json["best"] = entries(std::get<Estimates>(scores.found), source);
+  }
+  app::print_json(json);
+}
+
+void ScoreReport::print_table() const {
+  std::printf("%s gain, %s, sensor %s, prior sigma %.4g m, gains in %s\n",
+              std::string(gain_model_name(model)).c_str(), criterion.c_str(), sensor.name.c_str(),
+              evaluator.prior_sigma(), std::string(gain_unit(model, criterion)).c_str());
+  if (source.orthonormalized > 0) {
+    std::printf("rotations that were off and were orthonormalised: %zu of %zu\n",
+                source.orthonormalized, source.poses.size());
+  }
+  if (!scores.dropped.empty()) {
+    std::printf("%zu of %zu poses; dropped: %s\n", scores.candidates, source.poses.size(),
+                counts_text(scores.dropped).c_str());
+  }
+  if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
+    print_rows(ranking->best, source, model);
+  } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
+    print_rows(joint->views, source, model);
+    std::printf("together: %.6g\n", joint->gain);
+  } else {
+    print_rows(std::get<Estimates>(scores.found));
+  }
+  const std::size_t poses = scores.candidates, in_full = scored_in_full(scores).gains.size();
+  const int threads = evaluator.num_threads();
+  std::printf(
+      "%s poses in %.3f s: %.0f poses/s, %s rays/s, %s rays per pose, %s voxels, %d %s, %s\n",
+      with_commas(poses).c_str(), seconds, static_cast<double>(poses) / seconds,
+      with_unit(static_cast<double>(scores.rays_traced) / seconds).c_str(),
+      with_commas(evaluator.rays_per_pose()).c_str(), with_commas(grid.voxel_count()).c_str(),
+      threads, threads == 1 ? "thread" : "threads", std::string(evaluator.scene().isa()).c_str());
+  if (in_full < poses) {
+    std::printf("%s scored in full, %s rays traced\n", with_commas(in_full).c_str(),
+                with_commas(scores.rays_traced).c_str());
+  }
+}
+
+Json ScoreReport::page(const std::string& title, RgbImage picture) const {
+  constexpr std::size_t kRows = 1000, kShown = 10;
+  std::vector<ViewGain> ranked(source.poses.size());
+  for (ViewGain& gain : ranked) gain.gain = std::numeric_limits<double>::quiet_NaN();
+  const auto* estimates = std::get_if<Estimates>(&scores.found);
+  const ScoredViews& full = scored_in_full(scores);
+  for (std::size_t k = 0; k < full.indices.size(); ++k) ranked[full.indices[k]] = full.gains[k];
+  for (std::size_t k = 0; estimates != nullptr && k < estimates->gains.size(); ++k) {
+    ranked[estimates->indices[k]].gain = estimates->gains[k].gain;
+  }
+  const bool by_area = model != GainModel::paper && estimates == nullptr;
+  std::vector<double> gains, areas;
+  for (const ViewGain& gain : ranked) {
+    gains.push_back(gain.gain);
+    if (by_area) areas.push_back(gain.area);
+  }
+  Json columns{"pose", "gain"}, rows = Json::array();
+  if (by_area) columns.push_back("area");
+  if (estimates == nullptr)
+    for (const char* name : {"hits", "unknown", "occupied"}) columns.push_back(name);
+  std::vector<std::size_t> shown;
+  const std::vector<std::size_t> order =
+      std::holds_alternative<JointViews>(scores.found) ? full.indices : best_indices(ranked, kRows);
+  for (const std::size_t i : order) {
+    const ViewGain& r = ranked[i];
+    if (std::isnan(r.gain)) break;
+    Json row{i, r.gain};
+    if (by_area) row.push_back(r.area);
+    if (estimates == nullptr) {
+      for (const std::size_t n : {r.hits, r.unknown_voxels, r.occupied_voxels}) row.push_back(n);
+    }
+    rows.push_back(std::move(row));
+    if (shown.size() < kShown) shown.push_back(i);
+  }
+  const ScorePage page{title,
+                       criterion,
+                       evaluator,
+                       sensor,
+                       source.poses,
+                       std::move(gains),
+                       std::move(areas),
+                       full.indices,
+                       std::move(columns),
+                       std::move(rows),
+                       std::move(shown),
+                       {{"sensor", sensor_toml(sensor)}},
+                       summary(),
+                       std::move(picture)};
+  return page.json();
+}
+
+}  // namespace viewgain::app

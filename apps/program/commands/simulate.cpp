@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "program/cli/choices.hpp"
+#include "program/cli/flags/pose_flags.hpp"
+#include "program/cli/flags/pose_sigmas.hpp"
+#include "program/cli/flags/sensing.hpp"
+#include "program/cli/flags/sensing_flags.hpp"
+#include "program/cli/progress.hpp"
+#include "program/cli/values.hpp"
+#include "program/commands/commands.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/mesh/mesh_io.hpp"
+#include "viewgain/raycast/simulated_sensor.hpp"
+#include "viewgain/raycast/surface_scene.hpp"
+#include "viewgain/support/stopwatch.hpp"
+
+namespace viewgain::app {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string mesh;
+  PoseOptions poses;
+  std::string sensor;
+  std::optional<double> size;
+  std::string recenter = "off";
+  std::string up = "z";
+  SensingOptions sensing;
+  std::size_t frames_per_view = 1;
+  std::string amplitude;
+  std::string out;
+
+  [[nodiscard]] bool writes_amplitude(const Sensor& sensor_in_use) const {
+    return amplitude.empty() ? std::holds_alternative<ShotNoise>(sensor_in_use.noise)
+                             : amplitude == "on";
+  }
+};
+
+struct PixelCounts {
+  std::uint64_t readings = 0, out_of_range = 0, invalid = 0;
+
+  void add(const DepthFrame& frame) {
+    for (const float z : frame.depth) {
+      if (z == DepthFrame::kInvalid) {
+        ++invalid;
+      } else if (z == DepthFrame::kOutOfRange) {
+        ++out_of_range;
+      } else {
+        ++readings;
+      }
+    }
+  }
+};
+
+MeshPlacement placement_of(const Options& options) {
+  MeshPlacement placement;
+  placement.up = options.up == "x" ? UpAxis::x : options.up == "y" ? UpAxis::y : UpAxis::z;
+  placement.center = options.recenter == "on";
+  if (options.size) placement.longest_side = *options.size;
+  return placement;
+}
+
+// Whether a pixel looks at the mesh, and not all of them at the room alone.
+bool sees_mesh(const SurfaceScene& scene, const Sensor& sensor,
+               const std::vector<Eigen::Vector3d>& rays, const Pose& T_world_camera) {
+  const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
+  return std::any_of(rays.begin(), rays.end(), [&](const Eigen::Vector3d& ray) {
+    return ray.allFinite() && scene.intersect(T_world_camera.translation(),
+                                              (R_world_camera * ray).normalized(), sensor.max_range)
+                                      .range <= sensor.max_range;
+  });
+}
+
+void check_view(const Options& options, const SurfaceScene& scene, const Sensor& sensor,
+                const std::vector<Pose>& poses) {
+  const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
+  if (std::none_of(poses.begin(), poses.end(),
+                   [&](const Pose& pose) { return sees_mesh(scene, sensor, rays, pose); })) {
+    Box box{scene.mesh().vertices.front(), scene.mesh().vertices.front()};
+    for (const auto& v : scene.mesh().vertices) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        box.min[k] = std::min(box.min[k], v[k]);
+        box.max[k] = std::max(box.max[k], v[k]);
+      }
+    }
+    throw Error(ErrorCode::invalid_argument,
+                options.mesh + ": no pose has the mesh in view and in range, which lies in " +
+                    describe(box) + " m (--size, --recenter)");
+  }
+}
+
+// What the frames are to be read with: a table of the error only where they have one.
+Sensor sensor_of_frames(Sensor sensor, const SensingOptions& sensing) {
+  if (sensing.wiggling == 0 || sensing.calibrate == "on") sensor.range_calibration = {};
+  return sensor;
+}
+
+void simulate(const Options& options) {
+  const ExecConfig exec{options.common.threads};
+  const Sensor sensor = load_sensor(options.sensor);
+  sensor.validate();
+  if (options.size) check_positive("--size", *options.size);
+  const PoseSource source = make_poses(options.poses, options.sensing.seed);
+  TriangleMesh mesh = read_mesh(options.mesh, placement_of(options));
+  const std::size_t triangles = mesh.triangles.size();
+  const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
+  check_view(options, *scene, sensor, source.poses);
+  const SimulatedSensor camera(scene, sensor, simulation_config(options.sensing, sensor), exec);
+  const PoseNoise pose_noise =
+      parse_pose_noise("--pose-noise", options.sensing.pose_noise, options.sensing.seed);
+  std::vector<Pose> poses, reported;  // one a frame
+  for (std::size_t view = 0; view < source.poses.size(); ++view) {
+    const Pose& pose = source.poses[view];
+    poses.insert(poses.end(), options.frames_per_view, pose);
+    reported.insert(reported.end(), options.frames_per_view, reported_pose(pose, view, pose_noise));
+  }
+
+  const Stopwatch watch;
+  FramesWriter writer(options.out);
+  PixelCounts counts;
+  {
+    Progress progress("frame", options.common.quiet);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      DepthFrame frame = camera.acquire(poses[i], i);
+      counts.add(frame);
+      if (!options.writes_amplitude(sensor)) frame.amplitude.clear();
+      writer.write_frame(i, frame);
+      progress.update(i + 1, poses.size());
+    }
+  }
+  writer.commit(reported, sensor_of_frames(sensor, options.sensing));
+  const double seconds = watch.seconds();
+
+  if (options.common.json) {
+    const SensingOptions& sensing = options.sensing;
+    print_json({{"frames", poses.size()},
+                {"views", source.poses.size()},
+                {"frames_per_view", options.frames_per_view},
+                {"width", sensor.camera.width},
+                {"height", sensor.camera.height},
+                {"sensor", sensor.name},
+                {"triangles", triangles},
+                {"readings", counts.readings},
+                {"out_of_range", counts.out_of_range},
+                {"invalid", counts.invalid},
+                {"noise", sensing.noise == "on"},
+                {"flying_pixels", sensing.has_flying_pixels(sensor)},
+                {"wiggling", sensing.wiggling},
+                {"calibrated", sensing.calibrate == "on"},
+                {"support_plane", sensing.support_plane ? Json(*sensing.support_plane) : Json()},
+                {"pose_noise", pose_sigmas_json(pose_noise)},
+                {"amplitude", options.writes_amplitude(sensor)},
+                {"seed", sensing.seed},
+                {"orthonormalized_poses", source.orthonormalized},
+                {"out", options.out},
+                {"seconds", seconds}});
+    return;
+  }
+  std::printf("%zu frames of %dx%d px (%s) of %s triangles in %.2f s: %s\n", poses.size(),
+              sensor.camera.width, sensor.camera.height, sensor.name.c_str(),
+              with_commas(triangles).c_str(), seconds, options.out.c_str());
+  std::printf("pixels: %s readings, %s out of range, %s invalid\n",
+              with_commas(counts.readings).c_str(), with_commas(counts.out_of_range).c_str(),
+              with_commas(counts.invalid).c_str());
+  if (source.orthonormalized > 0) {
+    std::printf("rotations that were off and were orthonormalised: %zu\n", source.orthonormalized);
+  }
+}
+
+}  // namespace
+
+Command add_simulate(App& program) {
+  auto options = std::make_shared<Options>();
+  App* app = program.add_subcommand(
+      "simulate",
+      "Depth frames of a mesh: frame-NNNNNN.depth.png (16 bit, depth along z in 0.1 mm, 0 invalid, "
+      "65535 out of range), frame-NNNNNN.amplitude.png (16 bit, cos/range^2 in 1e-3 m^-2), "
+      "poses.txt "
+      "(TUM, line i is frame i, as reported), sensor.toml.");
+  app->add_option("MESH", options->mesh, "OFF, OBJ, STL or PLY file")->required();
+  add_pose_options(*app, options->poses);
+  app->add_option("--sensor", options->sensor, kSensorHelp)->required();
+  app->add_option("--size", options->size,
+                  "scale the mesh so that its bounding box's longest side is this [m]; default: "
+                  "the file's own size, in metres");
+  on_or_off(*app->add_option("--recenter", options->recenter,
+                             "move the bounding box's centre to the origin")
+                 ->capture_default_str());
+  one_of(*app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
+              ->capture_default_str(),
+         {"x", "y", "z"}, "axis");
+  add_sensing_options(*app, options->sensing);
+  app->add_option("--frames-per-view", options->frames_per_view,
+                  "frames from each pose, numbered on; poses.txt repeats the pose")
+      ->range(std::size_t{1}, std::size_t{1000}, "number")
+      ->capture_default_str();
+  on_or_off(*app->add_option("--amplitude", options->amplitude,
+                             "write amplitude images; default: on for sensors with shot noise"));
+  app->add_option(
+         "--out", options->out,
+         "folder to write; frames that simulate has left in it are replaced, others are refused")
+      ->required();
+  add_common_options(*app, options->common);
+  add_help(
+      *app, kMapGroup,
+      "simulate mesh.off --size 0.35 --recenter on --orbit 3,0.6,27 --sensor sr4000 --out frames");
+  return {app, [options] { simulate(*options); }};
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program/commands/study/results.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "program/commands/study/statistics.hpp"
+#include "viewgain/support/text.hpp"
+
+namespace viewgain::app {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// What is not finite is null in JSON.
+double number_of(const Json& value) { return value.is_number() ? value.get<double>() : kNone; }
+
+double mean_over_views(const Json& prediction, const char* key) {
+  std::vector<double> values;
+  for (const Json& view : prediction) values.push_back(number_of(view.at(key)));
+  return mean_of(values).mean;
+}
+
+Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+}  // namespace
+
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted.append(c == '"' ? "\"\"" : std::string(1, c));
+  return quoted + "\"";
+}
+
+double ResultRow::counted_views_to(std::size_t goal) const {
+  return static_cast<double>(views_to[goal].value_or(coverage_by_view.size() + 1));
+}
+
+ResultRow row_of(const StudySpec& spec, const StudyRun& run, const Json& json) {
+  ResultRow row;
+  row.run = &run;
+  row.views = json.at("views").get<std::size_t>();
+  row.stop_reason = json.at("stop_reason").get<std::string>();
+  (void)json.at("per_view").at(0);  // there is one
+  for (const Json& view : json.at("per_view")) {
+    const double coverage = number_of(view.at("coverage_visible"));
+    row.coverage_by_view.push_back(std::isnan(coverage) ? 0 : coverage);
+  }
+  row.coverage_by_view.resize(spec.max_views, row.coverage_by_view.back());
+  for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
+    for (std::size_t view = row.coverage_by_view.size(); view > 0; --view) {
+      if (row.coverage_by_view[view - 1] >= kGoals[goal]) row.views_to[goal] = view;
+    }
+  }
+  row.auc = mean_of(row.coverage_by_view).mean;
+  row.coverage_visible = row.coverage_by_view.back();
+  row.coverage = number_of(json.at("coverage"));
+  row.rms_error = number_of(json.at("rms_error"));
+  row.consistency = number_of(json.at("consistency"));
+  row.outliers = number_of(json.at("outliers"));
+  row.travelled = number_of(json.at("travelled"));
+  row.seconds = number_of(json.at("seconds").at("total"));
+  row.prediction = json.at("prediction");
+  row.isa = json.at("isa").get<std::string>();
+  return row;
+}
+
+std::string run_columns(const StudySpec& spec, const StudyRun& run) {
+  const StudyPolicy& policy = spec.policies[run.policy];
+  std::string columns = csv_text(spec.objects[run.object].name);
+  columns.append(",").append(policy.policy).append(",").append(policy.gain).append(",");
+  columns.append(policy.semantics).append(",").append(std::to_string(run.seed)).append(",");
+  columns.append(csv_text(run.sensor)).append(",").append(short_text(run.voxel)).append(",");
+  if (run.size) columns.append(short_text(*run.size));
+  return columns;
+}
+
+std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows) {
+  std::string csv =
+      std::string(kRunColumns) +
+      ",views,stop_reason,views_to_80,"
+      "views_to_90,views_to_95,auc,coverage_visible,coverage,rms_error,consistency,outliers,"
+      "travelled,spearman_area,spearman_entropy,top1_share,hash,isa,seconds\n";
+  for (const ResultRow& row : rows) {
+    const StudyRun& run = *row.run;
+    csv.append(run_columns(spec, run));
+    csv.append(",").append(std::to_string(row.views)).append(",").append(row.stop_reason);
+    for (const auto& views : row.views_to) {
+      csv.append(",").append(views ? std::to_string(*views) : "nan");
+    }
+    for (const double value :
+         {row.auc, row.coverage_visible, row.coverage, row.rms_error, row.consistency, row.outliers,
+          row.travelled, mean_over_views(row.prediction, "spearman_area"),
+          mean_over_views(row.prediction, "spearman_entropy"),
+          mean_over_views(row.prediction, "top1_share")}) {
+      csv.append(",").append(exact_text(value));
+    }
+    csv.append(",").append(run.hash).append(",").append(row.isa);
+    csv.append(",").append(exact_text(row.seconds)).append("\n");
+  }
+  return csv;
+}
+
+Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows) {
+  Json results = Json::array();
+  for (const ResultRow& row : rows) {
+    const StudyRun& run = *row.run;
+    const StudyPolicy& policy = spec.policies[run.policy];
+    Json json{{"object", spec.objects[run.object].name},
+              {"policy", policy.policy},
+              {"gain", or_null(policy.gain)},
+              {"semantics", or_null(policy.semantics)},
+              {"seed", run.seed},
+              {"sensor", run.sensor},
+              {"voxel", run.voxel},
+              {"size", run.size ? Json(*run.size) : Json()},
+              {"views", row.views},
+              {"stop_reason", row.stop_reason}};
+    const std::array<const char*, kGoals.size()> keys{"views_to_80", "views_to_90", "views_to_95"};
+    for (std::size_t goal = 0; goal < keys.size(); ++goal) {
+      json[keys[goal]] = row.views_to[goal] ? Json(*row.views_to[goal]) : Json();
+    }
+    json["auc"] = row.auc;
+    json["coverage_visible"] = row.coverage_visible;
+    json["coverage"] = row.coverage;
+    json["rms_error"] = row.rms_error;
+    json["consistency"] = row.consistency;
+    json["outliers"] = row.outliers;
+    json["travelled"] = row.travelled;
+    json["coverage_by_view"] = row.coverage_by_view;
+    json["prediction"] = row.prediction;
+    json["hash"] = run.hash;
+    json["isa"] = row.isa;
+    json["seconds"] = row.seconds;
+    results.push_back(std::move(json));
+  }
+  return results;
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program/cli/json.hpp"
+#include "program/commands/study/spec.hpp"
+
+namespace viewgain::app {
+
+/// Shares of the visible surface (5 mm) to which views are counted.
+inline constexpr std::array<double, 3> kGoals{0.80, 0.90, 0.95};
+
+/// What a study compares of a run.
+struct ResultRow {
+  const StudyRun* run = nullptr;
+  std::size_t views = 0;
+  std::string stop_reason;
+  std::vector<double> coverage_by_view;  ///< visible, by the surface; a run that ended early keeps
+                                         ///< its last over the rest of the budget
+  std::array<std::optional<std::size_t>, kGoals.size()> views_to{};  ///< none: never
+  double auc = 0;                                                    ///< mean of coverage_by_view
+  double coverage_visible = 0, coverage = 0;
+  double rms_error = 0;    ///< of the surface [m]
+  double consistency = 0;  ///< of the points
+  double outliers = 0;
+  double travelled = 0;  ///< [m]
+  std::string isa;       ///< instruction set that the run was made with
+  double seconds = 0;
+  Json prediction;  ///< as in results.json
+
+  /// Views to a goal as tables count them: one more than the budget where it was never reached.
+  [[nodiscard]] double counted_views_to(std::size_t goal) const;
+};
+
+/// From a run's run.json. Throws JsonError where something is missing in it.
+[[nodiscard]] ResultRow row_of(const StudySpec& spec, const StudyRun& run, const Json& json);
+
+/// A text as CSV has it: with a comma, a quote or a line's end in quotes (RFC 4180).
+[[nodiscard]] std::string csv_text(const std::string& text);
+
+/// What says in a line of CSV which run it is of: object, policy, gain, semantics, seed, sensor,
+/// voxel, size.
+inline constexpr const char* kRunColumns = "object,policy,gain,semantics,seed,sensor,voxel,size";
+[[nodiscard]] std::string run_columns(const StudySpec& spec, const StudyRun& run);
+
+/// The contents of results.csv and results.json, a row a run in the spec's order.
+[[nodiscard]] std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows);
+[[nodiscard]] Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows);
+
+}  // namespace viewgain::app

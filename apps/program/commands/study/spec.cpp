@@ -1,0 +1,343 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program/commands/study/spec.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "program/cli/flags/gain_names.hpp"
+#include "program/cli/flags/text_hash.hpp"
+#include "program/cli/values.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/raycast/classic_gains.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/toml_table.hpp"
+#include "viewgain/version.hpp"
+
+namespace viewgain::app {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kRunFormat = 2;  // of run.json and prediction.csv; grows when one changes
+constexpr std::size_t kMostRuns = 1'000'000;
+constexpr std::int64_t kMostViews = 1000, kMostCandidates = 100'000;
+
+// The elements of a list that must not be empty.
+const toml::array& list_of(TableReader& reader, const char* key) {
+  const toml::array* list = reader.require(key).as_array();
+  if (list == nullptr || list->empty()) reader.fail(key, "must be a list that is not empty");
+  return *list;
+}
+
+std::vector<std::string> texts(TableReader& reader, const char* key) {
+  std::vector<std::string> values;
+  for (const toml::node& node : list_of(reader, key)) {
+    const auto* text = node.as_string();
+    if (text == nullptr || text->get().empty()) reader.fail(key, "must be a list of texts");
+    if (std::find(values.begin(), values.end(), text->get()) != values.end()) {
+      reader.fail(key, "holds \"" + text->get() + "\" twice");
+    }
+    values.push_back(text->get());
+  }
+  return values;
+}
+
+std::vector<double> lengths(TableReader& reader, const char* key) {
+  std::vector<double> values;
+  for (const toml::node& node : list_of(reader, key)) {
+    const double value = reader.number_of(node, key);
+    if (!(value > 0)) reader.fail(key, "must be a list of positive numbers [m]");
+    if (std::find(values.begin(), values.end(), value) != values.end()) {
+      reader.fail(key, "holds a number twice");
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
+std::vector<std::int64_t> whole_numbers(TableReader& reader, const char* key, std::int64_t least,
+                                        std::int64_t most) {
+  std::vector<std::int64_t> values;
+  for (const toml::node& node : list_of(reader, key)) {
+    const auto* number = node.as_integer();
+    if (number == nullptr || number->get() < least || number->get() > most) {
+      reader.fail(key, "must be a list of whole numbers in " + std::to_string(least) + ".." +
+                           std::to_string(most));
+    }
+    if (std::find(values.begin(), values.end(), number->get()) != values.end()) {
+      reader.fail(key, "holds " + std::to_string(number->get()) + " twice");
+    }
+    values.push_back(number->get());
+  }
+  return values;
+}
+
+std::int64_t whole_number(TableReader& reader, const char* key, std::int64_t least,
+                          std::int64_t most) {
+  const auto* number = reader.require(key).as_integer();
+  if (number == nullptr || number->get() < least || number->get() > most) {
+    reader.fail(key,
+                "must be a whole number in " + std::to_string(least) + ".." + std::to_string(most));
+  }
+  return number->get();
+}
+
+// "gain:GAIN:SEMANTICS", "gain:GAIN" or another policy. `reconstruct` knows which names there are.
+StudyPolicy policy_of(TableReader& reader, const std::string& name) {
+  StudyPolicy policy{name, name, "", ""};
+  if (const std::size_t first = name.find(':'); first != std::string::npos) {
+    policy.policy = name.substr(0, first);
+    policy.gain = name.substr(first + 1);
+    if (const std::size_t second = policy.gain.find(':'); second != std::string::npos) {
+      policy.semantics = policy.gain.substr(second + 1);
+      policy.gain.resize(second);
+    }
+  }
+  const bool by_gain = policy.policy == "gain";
+  if (by_gain == policy.gain.empty() || name.ends_with(':')) {
+    reader.fail("policies", "holds \"" + name +
+                                "\"; a policy is \"gain:NAME\" (\"gain:combined\") or another one "
+                                "of reconstruct's (\"frontier\")");
+  }
+  if (by_gain) {
+    try {
+      check_one_of("--gain", policy.gain, all_gain_names(), "gain");
+    } catch (const Error& error) {
+      reader.fail("policies", "holds \"" + name + "\": " + error.what());
+    }
+  }
+  return policy;
+}
+
+// Where nothing is said it is the first.
+std::string semantics_of(const StudyPolicy& policy) {
+  return policy.semantics.empty() ? gain_semantics_names().front() : policy.semantics;
+}
+
+std::vector<StudyObject> objects_of(TableReader& reader, const fs::path& folder) {
+  std::vector<StudyObject> objects;
+  std::set<std::string> names;
+  for (const std::string& file : texts(reader, "objects")) {
+    StudyObject object{fs::path(file).stem().string(), (folder / file).lexically_normal()};
+    if (!fs::is_regular_file(object.mesh)) {
+      reader.fail("objects", "holds \"" + file + "\": no file at " + object.mesh.string());
+    }
+    if (!names.insert(object.name).second) {
+      reader.fail("objects", "holds two objects of the name \"" + object.name + "\"");
+    }
+    objects.push_back(std::move(object));
+  }
+  return objects;
+}
+
+// What a run is asked by the study itself.
+const std::set<std::string>& own_flags() {
+  static const std::set<std::string> flags{
+      "--sensor",    "--voxel", "--size",      "--seed",     "--policy",     "--gain",
+      "--semantics", "--out",   "--max-views", "--pictures", "--report",     "--save-maps",
+      "--threads",   "--json",  "--quiet",     "--config",   "--save-config"};
+  return flags;
+}
+
+std::vector<std::string> flags_of(TableReader& reader) {
+  if (reader.find("flags") == nullptr) return {};
+  std::vector<std::string> flags;
+  for (const toml::node& node : list_of(reader, "flags")) {
+    const auto* text = node.as_string();
+    if (text == nullptr || !text->get().starts_with("--") || text->get().size() < 3) {
+      reader.fail("flags", "must be a list of texts like \"--up=y\"");
+    }
+    const std::string flag = text->get().substr(0, text->get().find('='));
+    if (own_flags().contains(flag)) {
+      reader.fail("flags", "holds " + flag + ", which the study sets itself");
+    }
+    if (flag == "--help") reader.fail("flags", "holds --help, which is no setting of a run");
+    flags.push_back(text->get());
+  }
+  return flags;
+}
+
+std::string identity_of(const std::string& value);
+
+// The texts of a TOML file that name files beside it, each by its contents.
+void add_files_named_in(const toml::node& node, const fs::path& folder, std::string& identities) {
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, value] : *table) add_files_named_in(value, folder, identities);
+  } else if (const toml::array* list = node.as_array()) {
+    for (const toml::node& value : *list) add_files_named_in(value, folder, identities);
+  } else if (const auto* text = node.as_string()) {
+    std::error_code ignored;
+    const fs::path file = folder / text->get();
+    if (fs::is_regular_file(file, ignored)) identities += " " + identity_of(file.string());
+  }
+}
+
+// By its contents where it is a file, and by those of the files that a TOML file names.
+std::string identity_of(const std::string& value) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(value, ignored)) return value;
+  const fs::path file = value;
+  std::string identities = hash_of(file_bytes(file));
+  if (file.extension() == ".toml") {
+    add_files_named_in(read_toml(file), file.parent_path(), identities);
+  }
+  return "file " + identities;
+}
+
+std::vector<std::string> identities_of(const std::vector<std::string>& flags) {
+  std::vector<std::string> identities;
+  for (const std::string& flag : flags) {
+    const std::size_t at = flag.find('=');
+    identities.push_back(at == std::string::npos
+                             ? identity_of(flag)
+                             : flag.substr(0, at + 1) + identity_of(flag.substr(at + 1)));
+  }
+  return identities;
+}
+
+StudyPrediction prediction_of(TableReader& root, std::size_t max_views) {
+  StudyPrediction prediction;
+  if (root.find("prediction") == nullptr) return prediction;
+  TableReader reader = root.table("prediction");
+  const auto most = static_cast<std::int64_t>(max_views);
+  for (const std::int64_t view : whole_numbers(reader, "views", 1, most)) {
+    prediction.views.push_back(static_cast<std::size_t>(view));
+  }
+  std::sort(prediction.views.begin(), prediction.views.end());
+  if (reader.find("candidates") != nullptr) {
+    prediction.candidates =
+        static_cast<std::size_t>(whole_number(reader, "candidates", 3, kMostCandidates));
+  }
+  reader.refuse_unknown_keys();
+  return prediction;
+}
+
+}  // namespace
+
+StudySpec read_study_spec(const fs::path& path) {
+  const toml::table table = read_toml(path);
+  TableReader reader(table, path.string(), "");
+  const fs::path folder = path.parent_path();
+  StudySpec spec;
+  spec.objects = objects_of(reader, folder);
+  std::set<std::string> policies;
+  for (const std::string& name : texts(reader, "policies")) {
+    spec.policies.push_back(policy_of(reader, name));
+    const StudyPolicy& policy = spec.policies.back();
+    if (!policies.insert(policy.policy + ":" + policy.gain + ":" + semantics_of(policy)).second) {
+      reader.fail("policies", "holds \"" + name + "\" twice: paper is the semantics unless said");
+    }
+  }
+  const std::vector<std::int64_t> seeds = whole_numbers(reader, "seeds", 0, INT64_MAX);
+  std::vector<std::string> sensors = texts(reader, "sensors");
+  for (std::string& sensor : sensors) {
+    if (is_sensor_file(sensor)) sensor = (folder / sensor).lexically_normal().string();
+    try {
+      (void)load_sensor(sensor);  // refuses what is none, before the first run
+    } catch (const Error& error) {
+      reader.fail("sensors", error.what());
+    }
+  }
+  const std::vector<double> voxels = lengths(reader, "voxels");
+  std::vector<std::optional<double>> sizes;
+  if (reader.find("sizes") != nullptr) {
+    for (const double size : lengths(reader, "sizes")) sizes.emplace_back(size);
+  } else {
+    sizes.emplace_back();
+  }
+  spec.max_views = static_cast<std::size_t>(whole_number(reader, "max_views", 1, kMostViews));
+  spec.flags = flags_of(reader);
+  if (reader.find("against") != nullptr) {
+    const std::string name = reader.text("against");
+    const auto found = std::find_if(spec.policies.begin(), spec.policies.end(),
+                                    [&](const StudyPolicy& policy) { return policy.name == name; });
+    if (found == spec.policies.end()) reader.fail("against", "is none of the policies");
+    spec.against = static_cast<std::size_t>(found - spec.policies.begin());
+  }
+  spec.prediction = prediction_of(reader, spec.max_views);
+  reader.refuse_unknown_keys();
+
+  const std::size_t count = spec.objects.size() * spec.policies.size() * seeds.size() *
+                            sensors.size() * voxels.size() * sizes.size();
+  if (count > kMostRuns) {
+    reader.fail("seeds", "make " + with_commas(count) + " runs with the other lists; " +
+                             with_commas(kMostRuns) + " at most");
+  }
+  std::vector<std::string> meshes;
+  for (const StudyObject& object : spec.objects) meshes.push_back(identity_of(object.mesh));
+  const std::vector<std::string> flags = identities_of(spec.flags);
+  for (const std::string& sensor : sensors) {
+    for (const double voxel : voxels) {
+      for (const std::optional<double>& size : sizes) {
+        for (std::size_t object = 0; object < spec.objects.size(); ++object) {
+          for (const std::int64_t seed : seeds) {
+            for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
+              StudyRun run{object, policy, static_cast<std::uint64_t>(seed), sensor, voxel, size,
+                           {},     {}};
+              run.configuration = {
+                  {"version", VIEWGAIN_VERSION},
+                  {"format", kRunFormat},
+                  {"object", spec.objects[object].name},
+                  {"mesh", meshes[object]},
+                  {"policy", spec.policies[policy].name},
+                  {"seed", seed},
+                  {"sensor", is_sensor_file(sensor) ? identity_of(sensor) : sensor},
+                  {"voxel", voxel},
+                  {"size", size ? Json(*size) : Json()},
+                  {"max_views", spec.max_views},
+                  {"flags", flags},
+                  {"prediction_views", spec.prediction.views},
+                  {"prediction_candidates", spec.prediction.candidates}};
+              run.hash = hash_of(run.configuration.dump());
+              spec.runs.push_back(std::move(run));
+            }
+          }
+        }
+      }
+    }
+  }
+  return spec;
+}
+
+std::vector<std::string> reconstruct_words(const StudySpec& spec, const StudyRun& run) {
+  const StudyPolicy& policy = spec.policies[run.policy];
+  std::vector<std::string> words{"--sensor=" + run.sensor,
+                                 "--voxel=" + short_text(run.voxel),
+                                 "--seed=" + std::to_string(run.seed),
+                                 "--max-views=" + std::to_string(spec.max_views),
+                                 "--policy=" + policy.policy,
+                                 "--out=unused"};
+  if (!policy.gain.empty()) words.push_back("--gain=" + policy.gain);
+  if (!policy.semantics.empty()) words.push_back("--semantics=" + policy.semantics);
+  if (run.size) words.push_back("--size=" + short_text(*run.size));
+  // Every policy has the whole budget, unless the spec says otherwise.
+  for (const char* rule : {"--stop-gain", "--stop-area", "--stop-idle"}) {
+    const bool is_given = std::any_of(
+        spec.flags.begin(), spec.flags.end(),
+        [&](const std::string& flag) { return flag.substr(0, flag.find('=')) == rule; });
+    if (!is_given) words.push_back(std::string(rule).append("=0"));
+  }
+  words.insert(words.end(), spec.flags.begin(), spec.flags.end());
+  words.insert(words.end(), {"--", spec.objects[run.object].mesh.string()});
+  return words;
+}
+
+std::string name_of(const StudySpec& spec, const StudyRun& run) {
+  std::string name = spec.objects[run.object].name + ", " + spec.policies[run.policy].name +
+                     ", seed " + std::to_string(run.seed);
+  const auto differs = [&](auto member) {
+    return std::any_of(spec.runs.begin(), spec.runs.end(), [&](const StudyRun& other) {
+      return other.*member != spec.runs.front().*member;
+    });
+  };
+  if (differs(&StudyRun::sensor)) name.append(", ").append(run.sensor);
+  if (differs(&StudyRun::voxel)) name.append(", voxel ").append(short_text(run.voxel));
+  if (differs(&StudyRun::size)) name.append(", size ").append(short_text(run.size.value_or(0)));
+  return name;
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "program/cli/json.hpp"
+#include "program/commands/study/spec.hpp"
+
+namespace viewgain::app {
+
+/// What a run leaves in the study's folder.
+struct StudyResult {
+  Json run;                     ///< run.json: configuration, figures, those of each view, seconds
+  std::string prediction_rows;  ///< prediction.csv without its head: a row a candidate
+};
+
+/// The columns of prediction.csv.
+inline constexpr const char* kPredictionColumns =
+    "view,candidate,score,predicted_area,new_samples,new_area,entropy_removed,"
+    "generator,tx,ty,tz,qx,qy,qz,qw";
+
+/// Checks a run's flags and files without running it. Throws Error, naming the run.
+void check_run(const StudySpec& spec, const StudyRun& run);
+
+/// Makes one run, on `threads` threads. Nothing if a stop was requested before it was done. The
+/// same for any number of threads, but for what stands under `seconds`. Throws Error, naming the
+/// run.
+[[nodiscard]] std::optional<StudyResult> make_run(const StudySpec& spec, const StudyRun& run,
+                                                  int threads, const std::stop_token& stop);
+
+}  // namespace viewgain::app

@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viewgain/mesh/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program/cli/choices.hpp"
+#include "program/cli/values.hpp"
+#include "program/commands/commands.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/grid/fused_points.hpp"
+#include "viewgain/mesh/mesh_io.hpp"
+#include "viewgain/mesh/quality.hpp"
+#include "viewgain/planner/point_arrays.hpp"
+#include "viewgain/planner_mesh/mesh_area.hpp"
+#include "viewgain/planner_mesh/surface_files.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/planner_mesh/truth.hpp"
+#include "viewgain/support/stopwatch.hpp"
+
+namespace viewgain::app {
+namespace {
+
+constexpr double kSteepest = 80 * std::numbers::pi / 180;  // at which a sample counts as seen [rad]
+
+struct Options {
+  CommonOptions common;
+  std::string map;
+  std::string out, points;
+  std::string truth;
+  std::optional<double> size;
+  std::string recenter = "off", up = "z";
+};
+
+void check(const Options& options, const App& app) {
+  if (options.out.empty() && options.points.empty()) {
+    throw Error(ErrorCode::invalid_argument, "needs --out or --points");
+  }
+  for (const char* flag : {"--size", "--recenter", "--up"}) {
+    if (app.count(flag) > 0 && options.truth.empty()) {
+      throw Error(ErrorCode::invalid_argument, std::string(flag) + " goes with --truth");
+    }
+  }
+  if (options.size) check_positive("--size", *options.size);
+}
+
+std::shared_ptr<const SurfaceScene> truth_of(const Options& options, const ExecConfig& exec) {
+  if (options.truth.empty()) return nullptr;
+  MeshPlacement placement;
+  if (options.up != "z") placement.up = options.up == "x" ? UpAxis::x : UpAxis::y;
+  placement.center = options.recenter == "on";
+  if (options.size) placement.longest_side = *options.size;
+  return std::make_shared<const SurfaceScene>(read_mesh(options.truth, placement), exec);
+}
+
+struct Figures {
+  double coverage = 0, coverage_2_5mm = 0;
+  std::optional<double> coverage_seen{};  // of the samples that the map's views have in sight
+  ErrorStatistics surface_error{}, points_error{};
+  Consistency consistency{};
+};
+
+// Which samples any of the views has in sight.
+std::vector<std::uint8_t> seen_samples(const GroundTruth& truth, const SurfaceScene& mesh,
+                                       const std::vector<Pose>& views, const Sensor& sensor,
+                                       const ExecConfig& exec) {
+  const std::vector<SurfaceSample>& samples = truth.samples();
+  std::vector<std::uint8_t> seen(samples.size());
+  ThreadPool pool(exec.num_threads);
+  pool.for_each_chunk(samples.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      seen[i] = std::any_of(views.begin(), views.end(), [&](const Pose& view) {
+        return sees(mesh, nullptr, sensor, view, samples[i], std::cos(kSteepest));
+      });
+    }
+  });
+  return seen;
+}
+
+Figures figures_of(const SurfaceScene& mesh, const MapOfSensor& map, const SurfaceMesh& surface,
+                   const std::vector<FusedPoint>& points, const ExecConfig& exec) {
+  constexpr std::size_t kSamples = 10'000;
+  constexpr std::uint64_t kSeed = 1;
+  const GroundTruth truth(mesh.mesh(), kSamples, kSeed, exec);
+  const PointArrays arrays = arrays_of(points);
+  const std::vector<double> distances = truth.distances_to(surface.vertices);
+  Figures figures;
+  figures.coverage = coverage(distances, kCovered);
+  figures.coverage_2_5mm = coverage(distances, kCovered / 2);
+  if (map.sensor && !map.grid.views().empty()) {
+    const auto seen = seen_samples(truth, mesh, map.grid.views(), *map.sensor, exec);
+    if (std::find(seen.begin(), seen.end(), 1) != seen.end()) {
+      figures.coverage_seen = coverage(distances, kCovered, seen);
+    }
+  }
+  figures.surface_error = truth.error(surface.vertices);
+  figures.points_error = truth.error(arrays.positions);
+  figures.consistency = truth.consistency(arrays.positions, arrays.covariances);
+  return figures;
+}
+
+Json to_json(const Figures& figures) {
+  Json json{{"coverage", figures.coverage},
+            {"coverage_seen", nullptr},
+            {"coverage_2_5mm", figures.coverage_2_5mm},
+            {"rms_error", figures.surface_error.rms},
+            {"p95_error", figures.surface_error.p95},
+            {"rms_error_points", figures.points_error.rms},
+            {"p95_error_points", figures.points_error.p95},
+            {"consistency", figures.consistency.mean_clipped},
+            {"consistency_median", figures.consistency.median},
+            {"consistency_above_9", figures.consistency.above_9},
+            {"outliers", figures.consistency.outliers}};
+  if (figures.coverage_seen) json["coverage_seen"] = *figures.coverage_seen;
+  return json;
+}
+
+void print(const Figures& figures) {
+  std::printf("of the truth %.2f %% within 5 mm, %.2f %% within 2.5 mm", 100 * figures.coverage,
+              100 * figures.coverage_2_5mm);
+  if (figures.coverage_seen) {
+    std::printf("; of what the map's views have in sight %.2f %% within 5 mm",
+                100 * *figures.coverage_seen);
+  }
+  std::printf("\nsurface off by %.2f mm (RMS), %.2f mm (95 %%); points by %.2f mm, %.2f mm\n",
+              1e3 * figures.surface_error.rms, 1e3 * figures.surface_error.p95,
+              1e3 * figures.points_error.rms, 1e3 * figures.points_error.p95);
+  std::printf("consistency of the sigmas %.2f (1 if honest), %zu points more than 10 mm off\n",
+              figures.consistency.mean_clipped, figures.consistency.outliers);
+}
+
+void surface(const Options& options, const App& app) {
+  const Stopwatch watch;
+  check(options, app);
+  const ExecConfig exec{options.common.threads};
+  const std::shared_ptr<const SurfaceScene> truth = truth_of(options, exec);
+  const MapOfSensor map = load_map_of_sensor(options.map, nullptr);
+  const std::vector<FusedPoint> points = fused_points(map.grid, {}, exec);
+  if (points.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                options.map + ": no voxel has readings that make a surface");
+  }
+  const SurfaceMesh surface = surface_of(points, map.grid.voxel_size(), exec);
+  write_surfaces(surface, points, options.out, options.points);
+  std::vector<double> sigmas = surface_sigmas(surface, points);
+  std::optional<double> median;
+  if (!sigmas.empty()) {
+    const auto middle = sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2);
+    std::nth_element(sigmas.begin(), middle, sigmas.end());
+    median = *middle;
+  }
+  std::optional<Figures> figures;
+  if (truth) figures = figures_of(*truth, map, surface, points, exec);
+
+  if (options.common.json) {
+    Json json{{"points", points.size()},
+              {"vertices", surface.vertices.size()},
+              {"triangles", surface.triangles.size()},
+              {"area", mesh_area(surface)},
+              {"median_sigma", nullptr},
+              {"truth", nullptr},
+              {"out", nullptr},
+              {"points_out", nullptr},
+              {"seconds", watch.seconds()}};
+    if (median) json["median_sigma"] = *median;
+    if (figures) json["truth"] = to_json(*figures);
+    if (!options.out.empty()) json["out"] = options.out;
+    if (!options.points.empty()) json["points_out"] = options.points;
+    print_json(json);
+    return;
+  }
+  std::printf("%s points, %s vertices, %s triangles, %.4g m^2", with_commas(points.size()).c_str(),
+              with_commas(surface.vertices.size()).c_str(),
+              with_commas(surface.triangles.size()).c_str(), mesh_area(surface));
+  if (median) std::printf(", sigma %.2f mm (median)", 1e3 * *median);
+  std::printf("\n");
+  if (figures) print(*figures);
+  for (const std::string& file : {options.out, options.points}) {
+    if (!file.empty()) std::printf("%s\n", file.c_str());
+  }
+}
+
+}  // namespace
+
+Command add_surface(App& program) {
+  auto options = std::make_shared<Options>();
+  App* app = program.add_subcommand(
+      "surface",
+      "The surface in a map and the points that it goes through, as PLY: each vertex with normal "
+      "and sigma along it [m]. With --truth, how far they are from a mesh.");
+  app->add_option("MAP", options->map, kMapHelp)->required();
+  app->add_option("--out", options->out, "surface to write (.ply)");
+  app->add_option("--points", options->points, "points to write (.ply)");
+  app->add_option(
+      "--truth", options->truth,
+      "mesh (off, obj, stl, ply) that the surface is held against, in the world's frame");
+  app->add_option("--size", options->size,
+                  "longest side that the truth is scaled to [m]; default: as it is");
+  on_or_off(*app->add_option("--recenter", options->recenter,
+                             "the middle of the truth's bounding box becomes the origin")
+                 ->capture_default_str());
+  one_of(*app->add_option("--up", options->up, "axis of the truth that is turned to +z")
+              ->capture_default_str(),
+         {"x", "y", "z"}, "axis");
+  add_common_options(*app, options->common);
+  add_help(*app, kLookGroup, "surface map.vdb --out surface.ply --points points.ply");
+  return {app, [options, app] { surface(*options, *app); }};
+}
+
+}  // namespace viewgain::app

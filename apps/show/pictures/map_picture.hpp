@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "show/pictures/picture_parts.hpp"
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/grid/grid_snapshot.hpp"
+
+namespace viewgain::app {
+
+/// A map's occupied voxels as little grey cubes in the outline of its workspace. The same picture
+/// for any number of threads.
+[[nodiscard]] RgbImage map_picture(const GridSnapshot& snapshot, const Viewer& viewer,
+                                   const ExecConfig& exec);
+
+/// The least and the largest of those that are numbers; zeros without one.
+[[nodiscard]] std::array<double, 2> range_of(const std::vector<double>& values);
+
+/// The same with poses round it as small frusta, from dark to bright by their gain in `range`; one
+/// whose gain is NaN or that stands between viewer and workspace is left out.
+[[nodiscard]] RgbImage gain_picture(const GridSnapshot& snapshot, const Sensor& sensor,
+                                    const std::vector<Pose>& poses,
+                                    const std::vector<double>& gains,
+                                    const std::array<double, 2>& range, const Viewer& viewer,
+                                    const ExecConfig& exec);
+
+}  // namespace viewgain::app

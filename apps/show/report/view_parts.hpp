@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "program/cli/json.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain::app {
+
+// What the pages of runs and of scores both show; README.md, "Data", says each part's keys.
+
+/// The keys that every page has: what it is, the space, the camera.
+[[nodiscard]] Json page_head(const std::string& kind, const std::string& title,
+                             const GainEvaluator& evaluator, const Sensor& sensor,
+                             std::string_view criterion);
+
+/// Twelve numbers, the rows of T_world_camera.
+[[nodiscard]] Json pose_rows(const Pose& T_world_camera);
+
+/// Candidates as parallel lists. `gains` may be shorter: the rest have none.
+struct ShownCandidates {
+  std::vector<Pose> poses;
+  std::vector<double> gains, areas;
+  std::vector<std::size_t> exact;  ///< whose gain is by all rays; of the others it is estimated
+  std::vector<std::string> generators, classes, reasons;  ///< one a pose; an empty text is none
+};
+[[nodiscard]] Json to_json(const ShownCandidates& candidates);
+
+/// Where the rays of a view end: an even subset of those that end in a voxel.
+[[nodiscard]] Json bundle_json(const GainEvaluator& evaluator, const Sensor& sensor,
+                               const Pose& T_world_camera);
+
+/// What voxels bring to a view: centres, values and the value's unit.
+[[nodiscard]] Json contributions_json(const GridSnapshot& snapshot,
+                                      const std::vector<VoxelContribution>& voxels,
+                                      const Json& unit);
+
+/// A PNG of a third of the picture's width and height, in base64: enough where there is no WebGL.
+[[nodiscard]] std::string small_picture(const RgbImage& picture);
+
+}  // namespace viewgain::app

@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/support/scalar_type.hpp"
+#include "viewgain/support/text.hpp"
+
+// Inline throughout: the readers of clouds and of meshes stand in different libraries.
+namespace viewgain::detail {
+
+struct PlyProperty {
+  std::string_view name;
+  ScalarType type;
+  std::optional<ScalarType> count;  ///< of a list
+};
+
+struct PlyElement {
+  std::string_view name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+
+  /// The place of a property; nothing if there is none of that name and kind.
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view property, bool is_list) const {
+    const auto found = std::find_if(properties.begin(), properties.end(), [&](const auto& p) {
+      return p.name == property && p.count.has_value() == is_list;
+    });
+    if (found == properties.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - properties.begin());
+  }
+};
+
+/// The numbers of one line of an element.
+class PlyRow {
+ public:
+  void clear() {
+    numbers_.clear();
+    ends_.assign(1, 0);
+  }
+  void append(double value) { numbers_.push_back(value); }
+  void end_property() { ends_.push_back(numbers_.size()); }
+
+  [[nodiscard]] double scalar(std::size_t property) const { return numbers_[ends_[property]]; }
+  [[nodiscard]] std::span<const double> list(std::size_t property) const {
+    return std::span(numbers_).subspan(ends_[property], ends_[property + 1] - ends_[property]);
+  }
+
+ private:
+  std::vector<double> numbers_;
+  std::vector<std::size_t> ends_;
+};
+
+/// The numbers of an ASCII file one by one; each row stands on a line of its own.
+class PlyAsciiNumbers {
+ public:
+  explicit PlyAsciiNumbers(LineReader& line) : line_(line) {}
+
+  void begin_row() {
+    do {
+      if (!line_.next()) line_.fail("the file ends before its last element");
+    } while (line_.words().empty());
+    word_ = 0;
+  }
+  double next(ScalarType type) {
+    const double value = line_.number(word_);
+    if (type.kind != ScalarType::Kind::floating && value != std::floor(value)) {
+      line_.fail(quoted(line_.words()[word_]) + " is not a whole number");
+    }
+    ++word_;
+    return value;
+  }
+  void require(double count, ScalarType) const {
+    if (static_cast<double>(word_) + count > static_cast<double>(line_.words().size())) {
+      line_.fail("the header says that more numbers follow, here are " +
+                 std::to_string(line_.words().size()));
+    }
+  }
+  void end_row() const {
+    if (word_ == line_.words().size()) return;
+    line_.fail("the header says " + std::to_string(word_) + " numbers, here are " +
+               std::to_string(line_.words().size()));
+  }
+  [[noreturn]] void fail(const std::string& what) const { line_.fail(what); }
+
+ private:
+  LineReader& line_;
+  std::size_t word_ = 0;
+};
+
+class PlyBinaryNumbers {
+ public:
+  PlyBinaryNumbers(const LineReader& line, bool big_endian)
+      : name_(line.name()), rest_(line.rest()), big_endian_(big_endian) {}
+
+  void begin_row() {}
+  double next(ScalarType type) {
+    if (type.size > rest_.size()) fail_short();
+    const double value = decode(rest_.data(), type, big_endian_);
+    rest_.remove_prefix(type.size);
+    return value;
+  }
+  void require(double count, ScalarType type) const {
+    if (count * static_cast<double>(type.size) > static_cast<double>(rest_.size())) fail_short();
+  }
+  void end_row() const {}
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorCode::format, name_ + ": " + what);
+  }
+
+ private:
+  [[noreturn]] void fail_short() const { fail("the file ends before its last element"); }
+
+  const std::string& name_;
+  std::string_view rest_;
+  bool big_endian_;
+};
+
+/// A PLY file, ASCII or binary of either byte order: its header, then its elements row by row.
+/// Nothing is allocated for what a header or a list's count only promises. `bytes` must outlive it;
+/// `name` is the file's, for messages. Throws Error(format) that names the file and, in text, the
+/// line.
+class PlyFile {
+ public:
+  PlyFile(std::string_view bytes, std::string name) : line_(std::move(name), bytes) {
+    read_header();
+  }
+
+  [[nodiscard]] const std::vector<PlyElement>& elements() const { return elements_; }
+
+  /// For what the caller finds wrong with the header.
+  [[noreturn]] void fail(const std::string& what) const { line_.fail(what); }
+
+  /// Calls take(number of the element, PlyRow) for each row of the first `count` elements, in the
+  /// file's order; once.
+  template <typename Take>
+  void read(std::size_t count, Take&& take) {
+    if (format_ == Format::ascii) {
+      read_rows(count, PlyAsciiNumbers(line_), take);
+    } else {
+      read_rows(count, PlyBinaryNumbers(line_, format_ == Format::big_endian), take);
+    }
+  }
+
+ private:
+  enum class Format { none, ascii, little_endian, big_endian };
+
+  void read_header() {
+    if (!line_.next() || line_.words().empty() || line_.words()[0] != "ply") {
+      fail("is no PLY file: it does not begin with \"ply\"");
+    }
+    for (;;) {
+      if (!line_.next()) fail("the header is cut: it has no line end_header");
+      const auto& words = line_.words();
+      if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+      if (words[0] == "end_header") break;
+      if (words[0] == "format") {
+        format_ = read_format();
+      } else if (words[0] == "element") {
+        if (words.size() != 3) fail("an element needs a name and a count");
+        elements_.push_back(
+            {words[1], line_.count(2, std::numeric_limits<std::uint32_t>::max()), {}});
+      } else if (words[0] == "property") {
+        if (elements_.empty()) fail("a property stands before the first element");
+        elements_.back().properties.push_back(read_property());
+      } else {
+        fail("the header's word " + quoted(words[0]) + " is unknown");
+      }
+    }
+    if (format_ == Format::none) fail("the header has no line format");
+  }
+
+  [[nodiscard]] Format read_format() const {
+    const auto& words = line_.words();
+    const std::string_view name = words.size() > 1 ? words[1] : std::string_view();
+    if (name == "ascii") return Format::ascii;
+    if (name == "binary_little_endian") return Format::little_endian;
+    if (name == "binary_big_endian") return Format::big_endian;
+    fail("the format " + quoted(name) + " is unknown");
+  }
+
+  [[nodiscard]] PlyProperty read_property() const {
+    const auto& words = line_.words();
+    const bool is_list = words.size() > 1 && words[1] == "list";
+    PlyProperty property;
+    if (is_list) {
+      property.count = type_of(2);
+      if (property.count->kind == ScalarType::Kind::floating) {
+        fail("a list's count must be a whole number");
+      }
+    }
+    property.type = type_of(is_list ? 3 : 1);
+    if (words.size() != (is_list ? 5U : 3U)) fail("a property needs a type and a name");
+    property.name = words.back();
+    return property;
+  }
+
+  [[nodiscard]] ScalarType type_of(std::size_t word) const {
+    using Kind = ScalarType::Kind;
+    if (word >= line_.words().size()) fail("a property needs a type and a name");
+    const std::string_view name = line_.words()[word];
+    if (name == "char" || name == "int8") return {Kind::signed_integer, 1};
+    if (name == "uchar" || name == "uint8") return {Kind::unsigned_integer, 1};
+    if (name == "short" || name == "int16") return {Kind::signed_integer, 2};
+    if (name == "ushort" || name == "uint16") return {Kind::unsigned_integer, 2};
+    if (name == "int" || name == "int32") return {Kind::signed_integer, 4};
+    if (name == "uint" || name == "uint32") return {Kind::unsigned_integer, 4};
+    if (name == "float" || name == "float32") return {Kind::floating, 4};
+    if (name == "double" || name == "float64") return {Kind::floating, 8};
+    fail("the type " + quoted(name) + " is unknown");
+  }
+
+  template <typename Numbers, typename Take>
+  void read_rows(std::size_t elements, Numbers numbers, Take& take) const {
+    PlyRow row;
+    for (std::size_t e = 0; e < elements; ++e) {
+      const PlyElement& element = elements_[e];
+      // Without properties the count would be all that is checked.
+      if (element.properties.empty()) continue;
+      for (std::uint64_t i = 0; i < element.count; ++i) {
+        row.clear();
+        numbers.begin_row();
+        for (const PlyProperty& property : element.properties) {
+          double count = 1;
+          if (property.count) {
+            count = numbers.next(*property.count);
+            if (!(count >= 0)) numbers.fail("a list has a negative count");
+            numbers.require(count, property.type);
+          }
+          for (double k = 0; k < count; ++k) row.append(numbers.next(property.type));
+          row.end_property();
+        }
+        numbers.end_row();
+        take(e, row);
+      }
+    }
+  }
+
+  LineReader line_;
+  Format format_ = Format::none;
+  std::vector<PlyElement> elements_;
+};
+
+}  // namespace viewgain::detail

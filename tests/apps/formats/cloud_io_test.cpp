@@ -1,0 +1,383 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Clouds in files: each format as others write it, cut files and forged headers.
+
+#include "viewgain/formats/cloud_io.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "core/expect_error.hpp"
+#include "core/temporary_folder.hpp"
+#include "viewgain/grid/octomap_io.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace test;
+using namespace std::string_literals;
+
+template <typename T>
+std::string raw(T value, bool big_endian = false) {
+  std::string bytes(sizeof value, '\0');
+  std::memcpy(bytes.data(), &value, sizeof value);
+  if (big_endian) std::reverse(bytes.begin(), bytes.end());
+  return bytes;
+}
+
+/// LZF: literals, and references to whatever of the last 8 KB repeats.
+std::string compressed(const std::string& in) {
+  std::string out, literals;
+  const auto flush = [&] {
+    for (std::size_t i = 0; i < literals.size(); i += 32) {
+      const std::string run = literals.substr(i, 32);
+      out += static_cast<char>(run.size() - 1);
+      out += run;
+    }
+    literals.clear();
+  };
+  for (std::size_t i = 0; i < in.size();) {
+    std::size_t best = 0, back = 0;
+    for (std::size_t b = 1; b <= std::min<std::size_t>(i, 8192); ++b) {
+      std::size_t n = 0;
+      while (n < 264 && i + n < in.size() && in[i + n] == in[i + n - b]) ++n;
+      if (n > best) best = n, back = b;
+    }
+    if (best < 3) {
+      literals += in[i++];
+      continue;
+    }
+    flush();
+    const std::size_t length = best - 2, offset = back - 1;
+    out += static_cast<char>(std::min<std::size_t>(length, 7) << 5U | offset >> 8U);
+    if (length >= 7) out += static_cast<char>(length - 7);
+    out += static_cast<char>(offset & 255U);
+    i += best;
+  }
+  flush();
+  return out;
+}
+
+std::string pcd_header(const std::string& data, std::size_t points) {
+  const std::string n = std::to_string(points);
+  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS intensity x normal y z\n"
+         "SIZE 2 4 4 8 4\nTYPE U F F F I\nCOUNT 1 1 3 1 1\nWIDTH " +
+         n + "\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS " + n + "\nDATA " + data + "\n";
+}
+
+/// x single, y double, z a whole number: what the files can say exactly.
+std::vector<std::array<double, 3>> some_points() {
+  std::vector<std::array<double, 3>> points;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> value(-5, 5);
+  for (int i = 0; i < 50; ++i) {
+    points.push_back({static_cast<double>(static_cast<float>(value(random))), value(random),
+                      static_cast<double>(i % 3 - 1)});
+  }
+  points[7][0] = std::numeric_limits<double>::quiet_NaN();
+  points[9][1] = std::numeric_limits<double>::infinity();
+  return points;
+}
+
+std::string text(double value) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.17g", value);
+  return buffer;
+}
+
+std::string pcd_ascii() {
+  std::string file = pcd_header("ascii", 50);
+  for (const auto& p : some_points()) {
+    (file += "12 ") += text(p[0]) + " 0 0 1 " + text(p[1]) + " " + text(p[2]) + "\n";
+  }
+  return file;
+}
+
+std::string pcd_binary() {
+  std::string file = pcd_header("binary", 50);
+  for (const auto& p : some_points()) {
+    file += raw<std::uint16_t>(12) + raw(static_cast<float>(p[0])) + std::string(12, 'n') +
+            raw(p[1]) + raw(static_cast<std::int32_t>(p[2]));
+  }
+  return file;
+}
+
+std::string pcd_compressed() {
+  std::string columns[5];
+  for (const auto& p : some_points()) {
+    columns[0] += raw<std::uint16_t>(12);
+    columns[1] += raw(static_cast<float>(p[0]));
+    columns[2] += std::string(12, 'n');
+    columns[3] += raw(p[1]);
+    columns[4] += raw(static_cast<std::int32_t>(p[2]));
+  }
+  std::string all;
+  for (const std::string& column : columns) all += column;
+  const std::string packed = compressed(all);
+  return pcd_header("binary_compressed", 50) + raw(static_cast<std::uint32_t>(packed.size())) +
+         raw(static_cast<std::uint32_t>(all.size())) + packed;
+}
+
+std::string ply_header(const std::string& format) {
+  return "ply\nformat " + format +
+         " 1.0\ncomment made by a test\nelement camera 2\nproperty float fx\n"
+         "property list uchar short names\nelement vertex 50\nproperty uchar red\n"
+         "property float x\nproperty double y\nproperty list uint int more\n"
+         "property int z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+}
+
+std::string ply_ascii() {
+  std::string file = ply_header("ascii") + "1.5 2 7 8\n2.5 0\n";
+  for (const auto& p : some_points()) {
+    (file += "255 ") += text(p[0]) + " " + text(p[1]) + " 2 5 6 " + text(p[2]) + "\n";
+  }
+  return file + "3 0 1 2\n";
+}
+
+std::string ply_binary(bool big) {
+  std::string file = ply_header(big ? "binary_big_endian" : "binary_little_endian");
+  file +=
+      raw(1.5F, big) + raw<std::uint8_t>(2) + raw<std::int16_t>(7, big) + raw<std::int16_t>(8, big);
+  file += raw(2.5F, big) + raw<std::uint8_t>(0);
+  for (const auto& p : some_points()) {
+    file += raw<std::uint8_t>(255) + raw(static_cast<float>(p[0]), big) + raw(p[1], big) +
+            raw<std::uint32_t>(2, big) + raw<std::int32_t>(5, big) + raw<std::int32_t>(6, big) +
+            raw(static_cast<std::int32_t>(p[2]), big);
+  }
+  return file + raw<std::uint8_t>(3) + std::string(12, '\1');
+}
+
+class CloudFiles : public testing::Test {
+ protected:
+  void expect_points(const std::string& name, const std::string& contents) {
+    const PointCloud cloud = load_cloud(folder_.file(name, contents));
+    const auto points = some_points();
+    ASSERT_EQ(cloud.points.size(), points.size());
+    int differences = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double x = cloud.points[i][a], y = points[i][a];
+        if (!(x == y || (std::isnan(x) && std::isnan(y)))) ++differences;
+      }
+    }
+    EXPECT_EQ(differences, 0) << name;
+    EXPECT_EQ(cloud.viewpoint.has_value(), name.ends_with(".pcd"));
+    if (cloud.viewpoint) {
+      // Half a turn about x.
+      EXPECT_EQ(cloud.viewpoint->m, (std::array<double, 12>{1, 0, 0, 1, 0, -1, 0, 2, 0, 0, -1, 3}));
+    }
+    ++cases_;
+  }
+
+  void expect_refused(const std::string& name, const std::string& part,
+                      const std::string& contents) {
+    const auto path = folder_.file(name, contents);
+    expect_error(ErrorCode::format, part, [&] { (void)load_cloud(path); });
+    expect_error(ErrorCode::format, name, [&] { (void)load_cloud(path); });
+    ++cases_;
+  }
+
+  TemporaryFolder folder_;
+  int cases_ = 0;
+};
+
+TEST_F(CloudFiles, EveryFormatIsReadExactly) {
+  expect_points("ascii.pcd", pcd_ascii());
+  expect_points("binary.pcd", pcd_binary());
+  expect_points("compressed.pcd", pcd_compressed());
+  expect_points("ascii.ply", ply_ascii());
+  expect_points("little.ply", ply_binary(false));
+  expect_points("big.ply", ply_binary(true));
+  // Windows' ends of lines; no COUNT is one each; an organised cloud.
+  std::string crlf;
+  for (const char c : pcd_ascii()) crlf += c == '\n' ? "\r\n"s : std::string(1, c);
+  expect_points("crlf.pcd", crlf);
+  expect_points("organised.pcd",
+                with(with(pcd_binary(), "WIDTH 50", "WIDTH 10"), "HEIGHT 1", "HEIGHT 5"));
+  // A byte order mark; comments among the points.
+  for (const std::string& file : {pcd_ascii(), pcd_binary(), pcd_compressed()}) {
+    expect_points("marked.pcd", "\xEF\xBB\xBF" + file);
+  }
+  expect_points("comments.pcd", with(with(pcd_ascii(), "DATA ascii\n", "DATA ascii\n# one\n"),
+                                     "\n12 ", "\n  #two of them\n12 "));
+  const PointCloud small = load_cloud(folder_.file(
+      "small.pcd",
+      "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n1 2 3\n\nnan 0 +4\n"));
+  EXPECT_FALSE(small.viewpoint.has_value());
+  ASSERT_EQ(small.points.size(), 2U);
+  EXPECT_EQ(small.points[0], (std::array<double, 3>{1, 2, 3}));
+  EXPECT_EQ(small.points[1][2], 4);
+  EXPECT_TRUE(load_cloud(folder_.file("empty.ply",
+                                      "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\n"
+                                      "property float y\nproperty float z\nend_header\n"))
+                  .points.empty());
+}
+
+// Compressed by liblzf 3.6: 16 points of x y z, in columns.
+TEST_F(CloudFiles, WhatLiblzfCompressedIsRead) {
+  const std::string packed = std::string(
+      "\001\000\000\140\000\003\077\000\000\200\040\003\000\300\040\003\140\000\040\007\340\037\017"
+      "\000\240\040\053\340\063\003\001\000\300\340\061\003\001\000\300",
+      39);
+  const PointCloud cloud = load_cloud(folder_.file(
+      "lzf.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 16\nDATA binary_compressed\n" +
+                     raw(static_cast<std::uint32_t>(packed.size())) + raw<std::uint32_t>(192) +
+                     packed));
+  ASSERT_EQ(cloud.points.size(), 16U);
+  for (std::size_t i = 0; i < 16; ++i) {
+    EXPECT_EQ(cloud.points[i],
+              (std::array<double, 3>{0.5 * static_cast<double>(i % 4), 1.25, -2.0}));
+  }
+}
+
+TEST_F(CloudFiles, EveryCutIsRefused) {
+  const std::string files[]{pcd_ascii(), pcd_binary(),      pcd_compressed(),
+                            ply_ascii(), ply_binary(false), ply_binary(true)};
+  int expected = 0;
+  for (const std::string& file : files) {
+    const bool ply = file.starts_with("ply");
+    const std::string name = ply ? "cut.ply" : "cut.pcd";
+    // What stands behind a PLY's vertices is not looked at; the last digits of the last number of
+    // a text are as good as the whole.
+    const std::size_t tail = &file == &files[3] ? 9 : ply ? 13 : &file == &files[0] ? 1 : 0;
+    for (std::size_t length = 0; length + tail < file.size(); ++length, ++expected) {
+      expect_refused(name, "", file.substr(0, length));
+    }
+  }
+  EXPECT_EQ(cases_, expected);
+  EXPECT_GT(cases_, 5000);
+}
+
+TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
+  const std::string good = pcd_binary();
+  const auto change = [&](const std::string& part, const std::string& from, const std::string& to) {
+    expect_refused("bad.pcd", part, with(good, from, to));
+  };
+  change("bad.pcd:10: the count '99999999999'", "POINTS 50", "POINTS 99999999999");
+  change("is not WIDTH x HEIGHT", "POINTS 50", "POINTS 51");
+  change("bad.pcd:10: '-5' is not a whole number", "POINTS 50", "POINTS -5");
+  change("'5e1' is not", "POINTS 50", "POINTS 5e1");
+  change("a number is missing", "POINTS 50", "POINTS");
+  change("bad.pcd:7:", "WIDTH 50", "WIDTH -1");
+  change("WIDTH x HEIGHT is too large", "WIDTH 50\nHEIGHT 1",
+         "WIDTH 4294967295\nHEIGHT 4294967295");
+  change("are there", "WIDTH 50\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 50",
+         "WIDTH 4294967295\nHEIGHT 1\nPOINTS 4294967295");
+  change("only one of WIDTH and HEIGHT", "HEIGHT 1", "# none");
+  change("no count of points", "WIDTH 50\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 50", "# none");
+  change("no field 'z'", "y z\n", "y w\n");
+  change("'x' must have COUNT 1", "COUNT 1 1 3", "COUNT 1 2 3");
+  change("the count '100001' is too large", "COUNT 1 1 3", "COUNT 1 1 100001");
+  change("are there", "COUNT 1 1 3", "COUNT 1 1 100000");
+  change("needs a word for each of the 5 fields", "SIZE 2 4 4 8 4", "SIZE 2 4 4 8");
+  change("needs a word for each", "TYPE U F F F I", "TYPE U F F F I I");
+  change("bad.pcd:5: TYPE 'D'", "TYPE U F", "TYPE U D");
+  change("SIZE that its TYPE", "SIZE 2 4", "SIZE 2 2");
+  change("SIZE that its TYPE", "SIZE 2 4", "SIZE 3 4");
+  change("SIZE that its TYPE", "SIZE 2 4", "SIZE 0 4");
+  change("is too large", "SIZE 2 4", "SIZE 2 9");
+  change("no line SIZE", "SIZE 2 4 4 8 4", "# none");
+  change("FIELDS must come first", "FIELDS intensity x normal y z\n", "");
+  change("FIELDS stands there twice", "VERSION 0.7", "FIELDS x y z");
+  change("FIELDS needs", "FIELDS intensity x normal y z", "FIELDS");
+  change("VIEWPOINT needs 7", "VIEWPOINT 1 2 3 0 1 0 0", "VIEWPOINT 1 2 3");
+  change("bad.pcd:9: VIEWPOINT's quaternion", "0 1 0 0\n", "0 2 0 0\n");
+  change("the number 'nan' is not finite", "VIEWPOINT 1", "VIEWPOINT nan");
+  change("DATA 'bin'", "DATA binary", "DATA bin\n");
+  change("no line DATA", good.substr(good.find("DATA")), "");
+  change("the header's word 'ply' is unknown", "VERSION 0.7", "ply");
+
+  const std::string ascii = pcd_ascii();
+  expect_refused("bad.pcd", "bad.pcd:12: a point has 7 words, here are 6",
+                 with(ascii, "\n12 ", "\n"));
+  expect_refused("bad.pcd", "bad.pcd:12: 'zero", with(ascii, " 0 0 1 ", " 0 0 1 zero"));
+  const std::string packed = pcd_compressed();
+  const std::size_t at = packed.find("binary_compressed\n") + 18;
+  const auto lengths = [&](std::uint32_t in, std::uint32_t out) {
+    std::string bad = packed;
+    return bad.replace(at, 8, raw(in) + raw(out));
+  };
+  const auto in = static_cast<std::uint32_t>(packed.size() - at - 8);
+  expect_refused("bad.pcd", "compressed data", lengths(in + 1, 1500));
+  expect_refused("bad.pcd", "damaged", lengths(in - 1, 1500));
+  expect_refused("bad.pcd", "1501 bytes are said", lengths(in, 1501));
+  expect_refused("bad.pcd", "are there", lengths(in, 1499));
+  expect_refused("bad.pcd", "damaged", lengths(in, 4294967295U));
+  expect_refused("bad.pcd", "compressed data", lengths(4294967295U, 4294967295U));
+  // More than the header's points, in the file too: the fields would be taken from wrong places.
+  const std::string longer = compressed(std::string(1530, 'x'));
+  expect_refused("bad.pcd", "1530 bytes are said to be compressed",
+                 packed.substr(0, at) + raw(static_cast<std::uint32_t>(longer.size())) +
+                     raw<std::uint32_t>(1530) + longer);
+  std::string back = packed;
+  back[at + 8] = '\x3f';  // a reference to before the beginning
+  expect_refused("bad.pcd", "damaged", back);
+}
+
+TEST_F(CloudFiles, ForgedPlyHeadersAreNamedByLine) {
+  const std::string good = ply_binary(false);
+  const auto change = [&](const std::string& part, const std::string& from, const std::string& to) {
+    expect_refused("bad.ply", part, with(good, from, to));
+  };
+  change("bad.ply:7: the count '99999999999'", "vertex 50", "vertex 99999999999");
+  change("'-1' is not a whole number", "vertex 50", "vertex -1");
+  change("the file ends", "vertex 50", "vertex 4294967295");
+  change("the file ends", "camera 2", "camera 4294967295");
+  change("no element \"vertex\"", "element vertex", "element points");
+  change("no property 'x'", "float x", "float u");
+  change("no property 'z'", "int z", "list uchar int z");
+  change("bad.ply:2: the format 'binary'", "binary_little_endian", "binary");
+  change("no line format", "format binary_little_endian 1.0", "comment");
+  change("the type 'real'", "float x", "real x");
+  change("a property needs a type and a name", "float x", "float");
+  change("a property needs a type and a name", "float x", "float x y");
+  change("a list's count must be a whole number", "list uchar short", "list float short");
+  change("stands before the first element", "element camera 2\n", "");
+  change("an element needs", "element camera 2", "element camera");
+  change("the header's word 'property,'", "property float fx", "property, float fx");
+  change("no line end_header", good.substr(good.find("end_header")), "");
+  change("is no PLY file", "ply\n", "PLZ\n");
+  // A list of 2^32 - 1 numbers, one of a negative count.
+  std::string list = good;
+  list.replace(good.find("end_header\n") + 11 + 14 + 13, 4, raw<std::uint32_t>(4294967295U));
+  expect_refused("bad.ply", "the file ends", list);
+  expect_refused("bad.ply", "negative count",
+                 with(with(good, "list uint int more", "list int int more"),
+                      raw<std::uint32_t>(2) + raw<std::int32_t>(5),
+                      raw<std::int32_t>(-2) + raw<std::int32_t>(5)));
+  const std::string ascii = ply_ascii();
+  expect_refused("bad.ply", "bad.ply:16: the header says 4 numbers, here are 5",
+                 with(ascii, "1.5 2 7 8", "1.5 2 7 8 9"));
+  expect_refused("bad.ply", "bad.ply:16: the header says", with(ascii, "1.5 2 7 8", "1.5 9 7 8"));
+  expect_refused("bad.ply", "bad.ply:18: 'x' is not a number", with(ascii, "\n255 ", "\n255 x "));
+  expect_refused("bad.ply", "negative count", with(ascii, "1.5 2 7 8", "1.5 -2 7 8"));
+}
+
+TEST_F(CloudFiles, FilesThatCannotBeReadAreNamed) {
+  expect_error(ErrorCode::io, "none.pcd", [&] { (void)load_cloud(folder_.path() / "none.pcd"); });
+  expect_error(ErrorCode::format, ".pcd or .ply", [&] { (void)load_cloud("cloud.xyz"); });
+  // A file of which nothing can be read.
+  for (const char* name : {"mem.pcd", "mem.ply", "mem.ot", "mem.vdb"}) {
+    const auto path = folder_.path() / name;
+    std::filesystem::create_symlink("/proc/self/mem", path);
+    expect_error(ErrorCode::io, name, [&] {
+      if (path.extension() == ".vdb") {
+        (void)load_vdb(path);
+      } else if (path.extension() == ".ot") {
+        (void)load_octomap(path);
+      } else {
+        (void)load_cloud(path);
+      }
+    });
+  }
+}
+
+}  // namespace
+}  // namespace viewgain

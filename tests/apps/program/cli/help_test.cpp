@@ -1,0 +1,261 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The help's examples work; man pages and completion say what the help says.
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+
+namespace viewgain {
+namespace {
+
+// In an order in which the examples of their help find what they name.
+const Strings kSubcommands{"simulate", "import",     "calibrate",   "integrate", "next", "follow",
+                           "score",    "candidates", "reconstruct", "render",    "info", "convert",
+                           "sensors",  "study",      "surface",     "merge"};
+
+Strings words_of(const std::string& text) {
+  std::istringstream in(text);
+  Strings words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+class Help : public test::ProgramTest {
+ protected:
+  // The calls at the end of a help, without the program's name.
+  [[nodiscard]] std::vector<Strings> examples(const Strings& subcommand) const {
+    Strings arguments = subcommand;
+    arguments.emplace_back("--help");
+    std::istringstream lines(run_well(arguments));
+    std::vector<Strings> calls;
+    bool begun = false;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("Example")) begun = true;
+      if (!begun || !line.starts_with("  viewgain ")) continue;
+      calls.push_back(words_of(line.substr(11)));
+    }
+    return calls;
+  }
+  void run_example(const Strings& call) const {
+    const test::ProgramResult result = run(call);
+    EXPECT_EQ(result.exit_code, 0) << call[0] << ": " << result.err;
+    EXPECT_NE(result.out, "") << call[0];
+  }
+
+  // What a shell prints for a command; its exit code must be 0.
+  [[nodiscard]] std::string shell(const std::string& command) const {
+    const std::string all = "cd '" + dir.string() + "' && { " + command + "; } 2>&1";
+    FILE* pipe = ::popen(all.c_str(), "r");
+    std::string text;
+    std::array<char, 4096> buffer{};
+    for (std::size_t n = 0; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+      text.append(buffer.data(), n);
+    }
+    EXPECT_EQ(::pclose(pipe), 0) << command << "\n" << text;
+    return text;
+  }
+  [[nodiscard]] bool has(const std::string& program) const {
+    return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+  }
+
+  // What bash offers for the last of these words.
+  [[nodiscard]] std::set<std::string> completions(const Strings& words) const {
+    std::string line = "bash -c '. files/bash-completion/completions/viewgain; COMP_WORDS=(";
+    for (const std::string& word : words) line += " \"" + word + "\"";
+    line += "); COMP_CWORD=" + std::to_string(words.size() - 1) +
+            "; _viewgain; printf \"%s\\n\" \"${COMPREPLY[@]}\"'";
+    const Strings found = words_of(shell(line));
+    return {found.begin(), found.end()};
+  }
+
+  // The flags that the help of a subcommand names.
+  [[nodiscard]] std::set<std::string> flags_in_help(const std::string& subcommand) const {
+    const std::string help = run_well({subcommand, "--help"});
+    const std::regex option(R"(\n +(?:-\w,)?(--[a-z-]+))");
+    std::set<std::string> flags;
+    for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it) {
+      flags.insert((*it)[1]);
+    }
+    return flags;
+  }
+};
+
+TEST_F(Help, GroupsSubcommandsByTaskAndItsExamplesWork) {
+  write_cube();
+  std::filesystem::copy_file(dir / "cube.off", dir / "mesh.off");
+  const std::string help = run_well({"--help"});
+  std::size_t last = 0;
+  for (const char* line :
+       {"\nThe whole loop:\n  reconstruct ", "\nMake a map:\n  simulate ", "\n  import ",
+        "\n  calibrate ", "\n  integrate ", "\nChoose views:\n  score ", "\n  candidates ",
+        "\n  next ", "\n  follow ", "\nLook and convert:\n  info ", "\n  surface ", "\n  convert ",
+        "\n  render ", "\n  sensors ", "\nExamples:\n  viewgain "}) {
+    const std::size_t at = help.find(line);
+    ASSERT_NE(at, std::string::npos) << line;
+    EXPECT_GT(at + 1, last) << line;
+    last = at;
+  }
+  EXPECT_EQ(help.find("help-files"), std::string::npos);
+  const std::vector<Strings> calls = examples({});
+  ASSERT_EQ(calls.size(), 2U);
+  for (const Strings& call : calls) run_example(call);
+}
+
+TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
+  write_cube();
+  std::filesystem::copy_file(dir / "cube.off", dir / "mesh.off");
+  write("spec.toml",
+        "objects = [\"mesh.off\"]\npolicies = [\"frontier\"]\nseeds = [1]\nsensors = "
+        "[\"sr4000\"]\nvoxels = [0.02]\nsizes = [0.3]\nmax_views = 1\n");
+  std::filesystem::create_directories(dir / "scene/depth");
+  write_png(dir / "scene/depth/0.png", GrayImage{4, 3, std::vector<std::uint16_t>(12, 1000)});
+  write("scene/pose/0.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  write("scene/intrinsic/intrinsic_depth.txt", "4 0 2 0\n0 4 1 0\n0 0 1 0\n0 0 0 1\n");
+  std::filesystem::create_directories(dir / "wall");
+  for (const int metres : {1, 2}) {
+    const std::string name = "wall/frame-00000" + std::to_string(metres) + ".depth.png";
+    const auto millimetres = static_cast<std::uint16_t>(1000 * metres);
+    write_png(dir / name, GrayImage{176, 144, std::vector<std::uint16_t>(176 * 144, millimetres)});
+  }
+  write("distances.txt", "1\n2\n");
+  write("frames/done", "");
+  write("part.csv",
+        "# viewgain 1\n# map 1\n# sensor a 1\n# settings {}\n# isa avx2\n# poses 1 1\n# rows "
+        "0:1\n# scored 1\nindex,gain\n0,1\n");
+  for (const std::string& subcommand : kSubcommands) {
+    const std::vector<Strings> calls = examples({subcommand});
+    ASSERT_EQ(calls.size(), 1U) << subcommand;
+    ASSERT_EQ(calls[0].at(0), subcommand);
+    run_example(calls[0]);
+  }
+}
+
+TEST_F(Help, ManPagesHaveEveryFlag) {
+  run_well({"help-files", "files"});
+  std::size_t flags = 0;
+  for (const std::string& subcommand : kSubcommands) {
+    const std::string page = read("files/man1/viewgain-" + subcommand + ".1");
+    EXPECT_TRUE(page.starts_with(".TH VIEWGAIN\\-")) << subcommand;
+    for (const char* section : {"\n.SH NAME\n", "\n.SH SYNOPSIS\n", "\n.SH DESCRIPTION\n",
+                                "\n.SH OPTIONS\n", "\n.SH EXAMPLES\n", "\n.SH SEE ALSO\n"}) {
+      EXPECT_NE(page.find(section), std::string::npos) << subcommand << section;
+    }
+    for (const std::string& flag : flags_in_help(subcommand)) {
+      const std::string roff = std::regex_replace(flag, std::regex("-"), "\\-");
+      EXPECT_NE(page.find("\n\\fB" + roff + "\\fR"), std::string::npos) << subcommand << flag;
+      ++flags;
+    }
+  }
+  EXPECT_GT(flags, 150U);
+  const std::string top = read("files/man1/viewgain.1");
+  for (const std::string& subcommand : kSubcommands) {
+    EXPECT_NE(top.find("\\fBviewgain\\-" + subcommand + "\\fR(1)"), std::string::npos)
+        << subcommand;
+  }
+  EXPECT_EQ(list("files/man1").size(), kSubcommands.size() + 1);
+}
+
+TEST_F(Help, ManPagesAreShownWithoutAWarning) {
+  if (!has("groff")) GTEST_SKIP() << "no groff";
+  run_well({"help-files", "files"});
+  for (const std::string& page : list("files/man1")) {
+    EXPECT_EQ(shell("groff -man -Tutf8 -ww -z files/man1/" + page), "") << page;
+    const std::string shown = shell("groff -man -Tascii -P-cbou files/man1/" + page);
+    EXPECT_NE(shown.find("SEE ALSO"), std::string::npos) << page;
+  }
+}
+
+TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
+  run_well({"help-files", "files"});
+  using Set = std::set<std::string>;
+  Set subcommands(kSubcommands.begin(), kSubcommands.end());
+  subcommands.insert({"--help", "--version"});
+  EXPECT_EQ(completions({"viewgain", ""}), subcommands);
+  EXPECT_EQ(completions({"viewgain", "s"}),
+            (Set{"score", "sensors", "simulate", "study", "surface"}));
+  for (const std::string& subcommand : kSubcommands) {
+    EXPECT_EQ(completions({"viewgain", subcommand, "--"}), flags_in_help(subcommand)) << subcommand;
+  }
+  const std::vector<std::pair<Strings, Set>> values{
+      {{"score", "map.vdb", "--gain", "su"}, {"surface", "surface_frontier_count"}},
+      {{"score", "--gain", "=", "c"}, {"combined"}},
+      {{"score", "--feasible", ""}, {"on", "off"}},
+      {{"reconstruct", "--policy", "f"}, {"frontier", "fibonacci"}},
+      {{"import", "scene", "--format", ""}, {"tum", "bop", "scannet", "icl-nuim"}},
+      {{"simulate", "--sensor", "k"}, {"kinect_v1"}},
+      {{"sensors", "d"}, {"d435"}},
+      // A number or a file's name: bash looks for files.
+      {{"score", "--top", ""}, {}},
+      {{"score", "--poses", "--"}, {}},
+      {{"score", "m"}, {}}};
+  for (const auto& [words, expected] : values) {
+    EXPECT_EQ(completions(test::joined({"viewgain"}, words)), expected)
+        << words[0] << ' ' << words[1];
+  }
+}
+
+TEST_F(Help, ZshHasEveryFlag) {
+  run_well({"help-files", "files"});
+  const std::string script = read("files/zsh/site-functions/_viewgain");
+  EXPECT_TRUE(script.starts_with("#compdef viewgain\n"));
+  std::size_t flags = 0;
+  for (const std::string& subcommand : kSubcommands) {
+    const std::size_t begin = script.find("\n    " + subcommand + ")\n      _arguments");
+    ASSERT_NE(begin, std::string::npos) << subcommand;
+    const std::string part = script.substr(begin, script.find(";;", begin) - begin);
+    for (const std::string& flag : flags_in_help(subcommand)) {
+      EXPECT_TRUE(part.find("'" + flag + "[") != std::string::npos ||
+                  part.find("'*" + flag + "[") != std::string::npos)
+          << subcommand << flag;
+      ++flags;
+    }
+  }
+  EXPECT_GT(flags, 150U);
+  if (has("zsh")) {
+    EXPECT_EQ(shell("zsh -n files/zsh/site-functions/_viewgain"), "");
+  }
+}
+
+TEST_F(Help, SensorsAreListedWithTheirFigures) {
+  const json listed = json::parse(run_well({"sensors", "--json"}));
+  const std::string table = run_well({"sensors"});
+  std::size_t cases = 0;
+  for (const std::string& name : sensor_preset_names()) {
+    const Sensor sensor = sensor_preset(name);
+    const json& entry = listed.at(cases);
+    EXPECT_EQ(entry.at("name"), name);
+    EXPECT_EQ(entry.at("width"), sensor.camera.width);
+    EXPECT_EQ(entry.at("max_range"), sensor.max_range);
+    EXPECT_EQ(entry.at("working_distance"), sensor.working_distance);
+    EXPECT_EQ(entry.at("sigma_axial"), sensor.sigmas(sensor.working_distance).axial);
+    EXPECT_NE(table.find("\n" + name + " "), std::string::npos);
+    EXPECT_EQ(run_well({"sensors", name}), sensor_toml(sensor));
+    EXPECT_EQ(json::parse(run_well({"sensors", name, "--json"})), entry);
+    ++cases;
+  }
+  EXPECT_EQ(cases, listed.size());
+  EXPECT_EQ(cases, 5U);
+  EXPECT_EQ(listed[0]["noise_model"], "shot");
+  // 176 pixels at a focal length of 220 pixels.
+  EXPECT_NEAR(listed[0]["field_of_view"][0].get<double>(), 43.6, 0.05);
+  // An own sensor begins from one.
+  write("own.toml", run_well({"sensors", "d435"}));
+  EXPECT_EQ(run_well({"sensors", "own.toml"}), read("own.toml"));
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/support/nearest_name.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+namespace viewgain {
+namespace {
+
+// The same by its definition, from the words' ends.
+std::size_t slow_edits(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty()) return a.size() + b.size();
+  const std::string a1 = a.substr(0, a.size() - 1), b1 = b.substr(0, b.size() - 1);
+  std::size_t least = std::min({slow_edits(a1, b) + 1, slow_edits(a, b1) + 1,
+                                slow_edits(a1, b1) + (a.back() == b.back() ? 0 : 1)});
+  if (!a1.empty() && !b1.empty() && a.back() == b1.back() && a1.back() == b.back()) {
+    least =
+        std::min(least, slow_edits(a1.substr(0, a1.size() - 1), b1.substr(0, b1.size() - 1)) + 1);
+  }
+  return least;
+}
+
+TEST(NearestName, EditsAreThoseOfTheDefinition) {
+  std::mt19937 random(7);
+  int cases = 0;
+  for (; cases < 300; ++cases) {
+    std::string words[2];
+    for (std::string& word : words) {
+      for (auto length = random() % 6; length > 0; --length) {
+        word += static_cast<char>('a' + random() % 3);
+      }
+    }
+    EXPECT_EQ(edits_between(words[0], words[1]), slow_edits(words[0], words[1]))
+        << words[0] << ' ' << words[1];
+  }
+  EXPECT_EQ(cases, 300);
+}
+
+TEST(NearestName, IsWhatWasProbablyMeant) {
+  const std::vector<std::string> names{"--voxel", "--workspace", "--stop-gain", "--stop-area",
+                                       "--gain"};
+  EXPECT_EQ(nearest_name("--voxle", names), "--voxel");
+  EXPECT_EQ(nearest_name("--work", names), "--workspace");
+  EXPECT_EQ(nearest_name("--stop-aera", names), "--stop-area");
+  EXPECT_EQ(nearest_name("--gian", names), "--gain");
+  EXPECT_EQ(nearest_name("--picture", names), std::nullopt);
+  EXPECT_EQ(nearest_name("x", {"y", "zz"}), "y");
+  EXPECT_EQ(nearest_name("ab", {"cd"}), std::nullopt);
+  EXPECT_EQ(did_you_mean("--gian", names), "; did you mean --gain?");
+  EXPECT_EQ(did_you_mean("nothing", names), "");
+  EXPECT_EQ(listed({"a", "b", "c"}), "a, b, c");
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// `viewgain candidates` as a user would run it, on the map of a short run.
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+#include "viewgain/core/pose_io.hpp"
+
+namespace viewgain {
+namespace {
+
+class Candidates : public test::ProgramTest {
+ protected:
+  Candidates() { make_small_run(); }
+
+  [[nodiscard]] json candidates(const std::string& generator, const Strings& more = {}) const {
+    return json::parse(
+        run_well(test::joined({"candidates", "run/map.vdb", "--generator", generator, "--sensor",
+                               "tof.toml", "--out", "poses.txt", "--json"},
+                              more)));
+  }
+};
+
+TEST_F(Candidates, EveryGeneratorSaysWhatItMadeAndDropped) {
+  const std::map<std::string, std::size_t> sizes{
+      {"sphere", 500}, {"dome", 500}, {"rings", 48}, {"shell", 500}, {"sequence", 9}};
+  for (const auto& [generator, size] : sizes) {
+    const json result = candidates(generator);
+    std::size_t dropped = 0;
+    for (const auto& [reason, count] : result["dropped"].items())
+      dropped += count.get<std::size_t>();
+    EXPECT_EQ(result["candidates"].get<std::size_t>() + dropped, size) << generator;
+    EXPECT_EQ(result["per_candidate"].size(), result["candidates"].get<std::size_t>());
+    EXPECT_EQ(result["per_dropped"].size(), dropped);
+    for (const json& one : result["per_dropped"]) {
+      EXPECT_TRUE(result["dropped"].contains(one["reason"].get<std::string>())) << generator;
+    }
+    EXPECT_EQ(read_tum(dir / "poses.txt").poses.size(), result["per_candidate"].size());
+  }
+  EXPECT_EQ(candidates("rings", {"--count", "80"})["per_candidate"].size() +
+                candidates("rings", {"--count", "80"})["per_dropped"].size(),
+            80U);
+}
+
+TEST_F(Candidates, BoundaryOnesSayWhyTheyExistAndCanBeScored) {
+  const json result = candidates("boundary");
+  ASSERT_GT(result["candidates"].get<int>(), 10);
+  std::set<std::string> classes;
+  for (const json& one : result["per_candidate"]) {
+    classes.insert(one.at("class").get<std::string>());
+    const auto run = one.at("run").get<std::size_t>();
+    ASSERT_LT(run, result["runs"].size());
+    EXPECT_EQ(result["runs"][run]["class"], one["class"]);
+    EXPECT_GT(one.at("region_vertices").get<int>(), 0);
+  }
+  EXPECT_GE(classes.size(), 2U);
+  const json scores = json::parse(
+      run_well({"score", "run/map.vdb", "--poses", "poses.txt", "--sensor", "tof.toml", "--json"}));
+  EXPECT_EQ(scores["poses"], result["candidates"]);
+}
+
+TEST_F(Candidates, AreRankedByAGain) {
+  const json unranked = candidates("sphere");
+  EXPECT_TRUE(unranked["gain_model"].is_null());
+  EXPECT_TRUE(unranked["gain_unit"].is_null());
+  EXPECT_FALSE(unranked["per_candidate"][0].contains("gain"));
+  for (const auto& [model, unit] :
+       {std::pair{"paper", "nat"}, {"surface", "m^2"}, {"combined", "nat"}}) {
+    const json ranked = candidates("sphere", {"--gain", model});
+    EXPECT_EQ(ranked["gain_model"], model);
+    EXPECT_EQ(ranked["gain_unit"], unit);
+    EXPECT_EQ(ranked["candidates"], unranked["candidates"]);
+    // As score has them: same gains, in falling order.
+    const json scores =
+        json::parse(run_well({"score", "run/map.vdb", "--poses", "poses.txt", "--sensor",
+                              "tof.toml", "--gain", model, "--top", "1000", "--json"}));
+    const json& best = scores["best"];
+    ASSERT_EQ(best.size(), ranked["per_candidate"].size());
+    ASSERT_GT(best.size(), 100U);
+    for (std::size_t i = 0; i < best.size(); ++i) {  // the file's quaternions round
+      const auto gain = best[i]["gain"].get<double>();
+      EXPECT_NEAR(ranked["per_candidate"][i]["gain"].get<double>(), gain, 1e-3 * gain) << model;
+    }
+    EXPECT_EQ(ranked["per_candidate"][0]["area"].is_null(), std::string(model) == "paper");
+  }
+}
+
+TEST_F(Candidates, OverlapAndRegionsMoveBoundaryCandidates) {
+  const json usual = candidates("boundary");
+  EXPECT_EQ(candidates("boundary", {"--overlap", "0.25", "--region-depth", "0.08"}), usual);
+  EXPECT_NE(candidates("boundary", {"--overlap", "0.5"})["per_candidate"], usual["per_candidate"]);
+  EXPECT_NE(candidates("boundary", {"--region-depth", "0.02"})["per_candidate"],
+            usual["per_candidate"]);
+}
+
+TEST_F(Candidates, TheBodyIsTheSensorsOrTheUsers) {
+  const auto collisions = [&](const std::string& sensor, const Strings& more) {
+    // Where none is feasible the program ends with 2; its JSON says why all the same.
+    return json::parse(
+               run(test::joined({"candidates", "run/map.vdb", "--generator", "sphere", "--distance",
+                                 "0.15", "--sensor", sensor, "--out", "poses.txt", "--json"},
+                                more))
+                   .out)["dropped"]
+        .value("collision", 0);
+  };
+  write("wide.toml", "body = [0.4, 0.4, 0.2]\n" + read("tof.toml"));
+  const int of_default = collisions("tof.toml", {});
+  const int of_file = collisions("wide.toml", {});
+  EXPECT_GT(of_file, of_default);
+  EXPECT_EQ(collisions("tof.toml", {"--body", "0.4,0.4,0.2"}), of_file);
+  EXPECT_EQ(collisions("wide.toml", {"--body", "0.065,0.065,0.076"}), of_default);
+}
+
+TEST_F(Candidates, RefusesWhatCannotBe) {
+  const test::Refusals inputs{
+      {{"--generator", "rings", "--count", "50"}, "50"},
+      {{"--generator", "cone"}, "cone"},
+      {{"--generator", "sphere", "--body", "0.1,0,0.1"}, "--body"},
+      {{"--generator", "boundary", "--count", "50"}, "--count"},
+      {{"--generator", "sequence", "--count", "50"}, "--count"},
+      {{"--generator", "boundary", "--center", "0,0,0"}, "--center"},
+      {{"--generator", "dome", "--overlap", "0.3"}, "--overlap"},
+      {{"--generator", "boundary", "--overlap", "1"}, "--overlap 1"},
+      {{"--generator", "boundary", "--overlap", "1.5"}, "--overlap 1.5"},
+      {{"--generator", "boundary", "--region-depth", "-1"}, "--region-depth -1"},
+      {{"--generator", "dome", "--distance", "0"}, "--distance 0"},
+      {{"--generator", "sphere", "--body", "0.1,0.1"}, "--body"},
+      {{"--generator", "sphere", "--reach", "missing.toml"}, "missing.toml"},
+  };
+  expect_refused_with({"candidates", "run/map.vdb", "--sensor", "tof.toml", "--out", "none.txt"},
+                      inputs);
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Calls that end otherwise than well: by signals, on a full disk, with names that are not UTF-8.
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <thread>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+
+namespace viewgain {
+namespace {
+
+class EndedCalls : public test::ProgramTest {
+ protected:
+  EndedCalls() {
+    write_cube();
+    write_half_sensor();
+  }
+
+  static Strings simulate(const std::string& out, const std::string& frames = "1") {
+    return {
+        "simulate", "cube.off",   "--orbit", "1,0.6,27", "--sensor", "tof.toml",          "--size",
+        "0.2",      "--recenter", "on",      "--out",    out,        "--frames-per-view", frames};
+  }
+  static Strings reconstruct(const std::string& out, const std::string& views) {
+    return {"reconstruct", "cube.off",    "--sensor", "tof.toml",   "--voxel", "0.00625",
+            "--size",      "0.2",         "--out",    out,          "--json",  "--max-views",
+            views,         "--save-maps", "on",       "--pictures", "off",     "--stop-gain",
+            "0",           "--stop-idle", "0"};
+  }
+
+  // The hidden folder of a call that is writing; empty if there is none.
+  [[nodiscard]] fs::path hidden(const std::string& folder) const {
+    for (const std::string& name : list(folder)) {
+      if (name[0] == '.') return dir / folder / name;
+    }
+    return {};
+  }
+
+  // Starts a call and sends it a signal as soon as `is_time`; returns how it ended.
+  [[nodiscard]] int ended_by(const Strings& arguments, int signal,
+                             const std::function<bool()>& is_time) const {
+    const pid_t child = start(arguments);
+    int status = 0;
+    while (!is_time()) {
+      if (::waitpid(child, &status, WNOHANG) != 0) {
+        ADD_FAILURE() << "ended too early: " << status;
+        return status;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    EXPECT_EQ(::kill(child, signal), 0);
+    EXPECT_EQ(::waitpid(child, &status, 0), child);
+    return status;
+  }
+};
+
+TEST_F(EndedCalls, SimulateLeavesNothing) {
+  const auto before = contents();
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+    // Also the folders on the way are not there yet.
+    const int status = ended_by(simulate("new/frames", "1000"), signal,
+                                [&] { return fs::exists(dir / "new") && !hidden("new").empty(); });
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << signal << ": " << status;
+    EXPECT_TRUE(contents() == before) << signal;
+  }
+}
+
+TEST_F(EndedCalls, ASignalThatWasIgnoredStaysSo) {
+  int cases = 0;
+  for (const int signal : {SIGINT, SIGHUP, SIGTERM, SIGQUIT}) {
+    const auto old = ::signal(signal, SIG_IGN);  // which a child inherits
+    const int status = ended_by(simulate("frames", "20"), signal,
+                                [&] { return !hidden(cases == 0 ? "." : "frames").empty(); });
+    ::signal(signal, old);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << signal << ": " << status;
+    EXPECT_EQ(list("frames").size(), 43U) << signal;  // 20 of two images, poses, sensor, mark
+    ++cases;
+  }
+  EXPECT_EQ(cases, 4);
+}
+
+TEST_F(EndedCalls, AClosedTerminalEndsARunAfterTheViewAtHand) {
+  for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
+    const std::string run = "run" + std::to_string(signal);
+    const int status = ended_by(reconstruct(run, "60"), signal, [&] {
+      const fs::path folder = hidden(".");
+      return !folder.empty() && fs::exists(folder / "maps/00.vdb");
+    });
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << signal << ": " << status;
+    EXPECT_EQ(json::parse(read(run + "/run.json"))["stop_reason"], "interrupted") << signal;
+    EXPECT_TRUE(hidden(".").empty());
+  }
+}
+
+TEST_F(EndedCalls, AKilledRunLeavesTheOneBeforeWhole) {
+  ASSERT_EQ(run(reconstruct("run", "2")).exit_code, 0);
+  write("run/notes.txt", "mine");
+  const auto before = contents("run");
+  const auto is_writing = [&] {
+    const fs::path folder = hidden("run");
+    return !folder.empty() && fs::exists(folder / "maps/01.vdb");
+  };
+  (void)ended_by(reconstruct("run", "60"), SIGKILL, is_writing);
+  const fs::path left = hidden("run");
+  ASSERT_FALSE(left.empty());
+  auto after = contents("run");
+  std::erase_if(after, [](const auto& entry) { return entry.first[0] == '.'; });
+  EXPECT_TRUE(after == before);
+  // The next run clears that away, and puts itself in the place of the first: one map less.
+  ASSERT_EQ(run(reconstruct("run", "1")).exit_code, 0);
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_EQ(list("run"), (Strings{"config.toml", "map.vdb", "maps", "notes.txt", "points.ply",
+                                  "run.json", "surface.ply", "views.txt"}));
+  EXPECT_EQ(list("run/maps"), Strings{"00.vdb"});
+}
+
+TEST_F(EndedCalls, NamesThatAreNoUtf8) {
+  const std::string name = "lat\xe9";
+  fs::copy_file(dir / "cube.off", dir / (name + ".off"));
+  Strings arguments = reconstruct(name, "1");
+  arguments[1] = name + ".off";
+  test::ProgramResult result = run(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(json::parse(read(name + "/run.json"))["settings"]["mesh"], "lat\\xE9.off");
+
+  const std::string frames = name + "_frames", map = name + ".vdb", poses = name + ".txt";
+  Strings simulation = simulate(frames);
+  simulation.emplace_back("--json");
+  for (const auto& [call, out] :
+       {std::pair{simulation, frames},
+        std::pair{Strings{"integrate", frames, "--voxel", "0.02", "--out", map, "--json"}, map},
+        std::pair{Strings{"convert", map, name + ".ot", "--json"}, name + ".ot"},
+        std::pair{Strings{"candidates", map, "--generator", "sphere", "--sensor", "tof.toml",
+                          "--out", poses, "--json"},
+                  poses}}) {
+    result = run(call);
+    ASSERT_EQ(result.exit_code, 0) << call[0] << ": " << result.err;
+    EXPECT_EQ(json::parse(result.out)["out"], "lat\\xE9" + out.substr(name.size())) << call[0];
+    EXPECT_TRUE(fs::exists(dir / out)) << call[0];
+  }
+}
+
+TEST_F(EndedCalls, AFullDeviceIsAnError) {
+  for (const Strings& arguments : {Strings{"--help"}, Strings{"score", "--help"},
+                                   Strings{"--version"}, Strings{"simulate", "--help"}}) {
+    const test::ProgramResult result = run_into("/dev/full", arguments);
+    EXPECT_EQ(result.exit_code, 1) << arguments[0];
+    EXPECT_NE(result.err.find("standard output"), std::string::npos) << result.err;
+  }
+}
+
+TEST_F(EndedCalls, WithoutCandidatesJsonSaysWhy) {
+  run_well(simulate("frames"));
+  run_well({"integrate", "frames", "--voxel", "0.02", "--out", "m.vdb"});
+  write("far.toml", "[[shell]]\ncenter = [0, 0, 0]\nmin_radius = 50.0\nmax_radius = 60.0\n");
+  const test::ProgramResult result =
+      run({"candidates", "m.vdb", "--generator", "sphere", "--count", "7", "--sensor", "tof.toml",
+           "--reach", "far.toml", "--out", "none.txt", "--json"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("7 unreachable"), std::string::npos) << result.err;
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report["candidates"], 0);
+  EXPECT_EQ(report["dropped"]["unreachable"], 7);
+  EXPECT_FALSE(fs::exists(dir / "none.txt"));
+}
+
+}  // namespace
+}  // namespace viewgain

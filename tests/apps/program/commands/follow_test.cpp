@@ -1,0 +1,402 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// `follow` beside a program that writes frames, quickly, slowly and wrongly.
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <random>
+#include <set>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "apps/program/commands/pose_file_text.hpp"
+#include "apps/program_runner.hpp"
+#include "core/temporary_folder.hpp"
+#include "program/cli/json.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/planner/view_planner.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace std::chrono_literals;
+using test::matrix_text;
+
+constexpr std::size_t kGood = 30;
+constexpr double kVoxel = 0.025;  // [m]
+
+// Files that are replaced while they are read are whole at any time.
+class Reader {
+ public:
+  explicit Reader(fs::path folder) : folder_(std::move(folder)), thread_([this] { read(); }) {}
+  ~Reader() { stop(); }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  void stop() {
+    is_over_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  std::string fault{};
+  std::size_t reads = 0;  // of both files
+
+ private:
+  void read() {
+    while (!is_over_) {
+      const std::string poses = test::read_all(folder_ / "next.txt");
+      const std::string text = test::read_all(folder_ / "next.json");
+      std::this_thread::sleep_for(1ms);
+      if (poses.empty() || text.empty()) continue;  // not there yet
+      ++reads;
+      std::istringstream lines(poses);
+      std::size_t numbers = 0;
+      for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("#")) continue;
+        std::istringstream words(line);
+        for (double number = 0; words >> number;) ++numbers;
+      }
+      if (numbers % 8 != 0 || !poses.ends_with('\n')) fault = "next.txt: " + poses;
+      const json read = json::parse_or_null(text);
+      if (read.is_null() || !read.contains("next")) fault = "next.json: " + text;
+    }
+  }
+
+  fs::path folder_;
+  std::atomic<bool> is_over_{false};
+  std::thread thread_;
+};
+
+class Follow : public test::ProgramTest {
+ protected:
+  Follow() {
+    write_cube();
+    write_small_sensor();
+    // 30 views of a cube of 0.2 m; they come into "live" as a recorder writes them.
+    run_well({"simulate", "cube.off", "--orbit", "30,0.6,27", "--sensor", "small.toml", "--size",
+              "0.2", "--recenter", "on", "--out", "whole"});
+    const FrameSequence frames = open_frames(dir / "whole");
+    for (std::size_t i = 0; i < kGood; ++i) {
+      images.push_back(test::read_all(frames.images[i]));
+      poses.push_back(matrix_text(frames.poses[i]));
+    }
+    write("live/sensor.toml", read("small.toml"));
+    write("live/depth-scale.txt", "1e-4\n");
+  }
+
+  static std::string name(std::size_t number) {
+    std::string digits = std::to_string(number);
+    return "live/frame-" + std::string(6 - digits.size(), '0') + digits;
+  }
+
+  void put(std::size_t number) const {
+    write(name(number) + ".depth.png", images[number]);
+    write(name(number) + ".pose.txt", poses[number]);
+  }
+
+  static Strings follow(const Strings& more = {}) {
+    return test::joined(
+        {"follow", "live", "--voxel", "0.025", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+         "--jump-edge-filter", "off", "--out", "plan", "--quiet"},
+        more);
+  }
+
+  static int end_of(pid_t child) {
+    int status = 0;
+    EXPECT_EQ(::waitpid(child, &status, 0), child);
+    return status;
+  }
+
+  // When the state was written last.
+  [[nodiscard]] fs::file_time_type state_time() const {
+    std::error_code ignored;
+    return fs::last_write_time(dir / "plan/state.vdb", ignored);
+  }
+
+  // Until next.json says so many frames.
+  [[nodiscard]] bool wait_for(std::size_t frames) const {
+    for (int tries = 0; tries < 2000; ++tries) {
+      const json next = json::parse_or_null(read("plan/next.json"));
+      if (!next.is_null() && next["frames"] == frames) return true;
+      std::this_thread::sleep_for(5ms);
+    }
+    return false;
+  }
+
+  // The frames of the state, each once, in the order of its views, by another way: put into a
+  // planner of the test's own.
+  void expect_each_once(std::size_t count) const {
+    const MapOfSensor map = load_map_of_sensor(dir / "plan/state.vdb");
+    const FrameSequence frames = open_frames(dir / "whole");
+    ASSERT_EQ(map.grid.views().size(), count);
+    PlannerConfig config;
+    config.grid.voxel_size = kVoxel;
+    config.grid.workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
+    config.grid.prior_sigma = default_prior_sigma(kVoxel, frames.sensor);
+    config.jump_edges.reset();
+    ViewPlanner planner(frames.sensor, config, {1});
+    std::set<std::string> identities;
+    for (const Pose& view : map.grid.views()) {
+      const auto is_from_there = [&](const Pose& pose) {
+        return pose.translation() == view.translation();
+      };
+      const auto at = std::find_if(frames.poses.begin(), frames.poses.end(), is_from_there);
+      ASSERT_NE(at, frames.poses.end());
+      const auto i = static_cast<std::size_t>(at - frames.poses.begin());
+      (void)planner.add(load_frame(frames, i), *at);
+      EXPECT_TRUE(identities.insert(frame_identity(frames, i)).second) << i;
+    }
+    EXPECT_EQ(identities.size(), count);
+    EXPECT_EQ(map.frames, identities);
+    EXPECT_EQ(map.grid.content_hash(), planner.grid().content_hash());
+  }
+
+  Strings images, poses;  // the files' bytes
+};
+
+// Writes the files of all frames, in an order and at times of its own.
+class Recorder {
+ public:
+  Recorder(fs::path live, const Strings& images, const Strings& poses, std::uint64_t seed)
+      : live_(std::move(live)), random_(seed), thread_([=, this] { record(images, poses); }) {}
+  ~Recorder() { thread_.join(); }
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+  std::atomic<bool> is_done{false};
+
+ private:
+  int random(int most) { return static_cast<int>(random_() % static_cast<unsigned>(most + 1)); }
+
+  void record(const Strings& images, const Strings& poses) {
+    std::vector<std::size_t> order(images.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    // Neighbours change places: mostly, but not always, by number.
+    for (std::size_t i = 1; i < order.size(); ++i) {
+      if (random(2) == 0) std::swap(order[i - 1], order[i]);
+    }
+    for (const std::size_t i : order) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(random(80)));
+      std::string digits = std::to_string(i);
+      const std::string name = "frame-" + std::string(6 - digits.size(), '0') + digits;
+      std::array<std::pair<std::string, std::string>, 2> files{
+          {{name + ".depth.png", images[i]}, {name + ".pose.txt", poses[i]}}};
+      if (random(1) == 0) std::swap(files[0], files[1]);
+      for (const auto& [file, bytes] : files) i % 2 == 0 ? rename(file, bytes) : write(file, bytes);
+    }
+    is_done = true;
+  }
+
+  void rename(const std::string& file, const std::string& bytes) const {
+    std::ofstream(live_ / ("." + file), std::ios::binary) << bytes;
+    fs::rename(live_ / ("." + file), live_ / file);
+  }
+
+  // Part by part, with pauses.
+  void write(const std::string& file, const std::string& bytes) {
+    std::ofstream out(live_ / file, std::ios::binary);
+    const std::size_t parts = 1 + static_cast<std::size_t>(random(6));
+    for (std::size_t i = 0; i < parts; ++i) {
+      const std::size_t from = bytes.size() * i / parts, to = bytes.size() * (i + 1) / parts;
+      out << bytes.substr(from, to - from) << std::flush;
+      std::this_thread::sleep_for(std::chrono::milliseconds(random(12)));
+    }
+  }
+
+  fs::path live_;
+  std::mt19937_64 random_;
+  std::thread thread_;
+};
+
+// 30 good frames and three bad ones, the program killed 0 or 20 times meanwhile.
+TEST_F(Follow, TakesEachGoodFrameOnceThroughKills) {
+  std::string nan = poses[0];
+  nan.replace(0, nan.find(' '), "nan");
+  images.push_back(images[3].substr(0, images[3].size() - 20));
+  poses.push_back(poses[3]);
+  write_png(dir / "odd.png", GrayImage{10, 8, std::vector<std::uint16_t>(80, 6000)});
+  images.push_back(read("odd.png"));
+  poses.push_back(poses[4]);
+  images.push_back(images[5]);
+  poses.push_back(nan);
+  for (const int kills : {0, 20}) {
+    fs::remove_all(dir / "live");
+    fs::remove_all(dir / "plan");
+    write("live/sensor.toml", read("small.toml"));
+    write("live/depth-scale.txt", "1e-4\n");
+    std::mt19937_64 random(7);
+    Reader reader(dir / "plan");
+    int killed = 0;
+    {
+      const Recorder recorder(dir / "live", images, poses, 5);
+      while (killed < kills) {
+        const auto before = state_time();
+        const pid_t child = start(follow());
+        // At any moment, and every other time soon after something was written.
+        for (int i = 0; i < 200 && killed % 2 == 1 && state_time() == before; ++i) {
+          std::this_thread::sleep_for(5ms);
+        }
+        std::this_thread::sleep_for(
+            std::chrono::milliseconds(random() % (killed % 2 == 1 ? 20 : 140)));
+        ASSERT_EQ(::kill(child, SIGKILL), 0);
+        const int status = end_of(child);
+        ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << status;
+        ++killed;
+      }
+      const pid_t child = start(follow());
+      while (!recorder.is_done) std::this_thread::sleep_for(10ms);
+      write("live/done", "");
+      const int status = end_of(child);
+      EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+    }
+    reader.stop();
+    EXPECT_EQ(reader.fault, "");
+    EXPECT_GT(reader.reads, 10U);
+    const json next = json::parse(read("plan/next.json"));
+    EXPECT_EQ(next["frames"], kGood);
+    EXPECT_EQ(next["waiting"], 0);
+    EXPECT_EQ(next["bad"], (json{{"truncated", 1}, {"size", 1}, {"pose", 1}}));
+    EXPECT_EQ(next["stop_reason"], "max_views");
+    EXPECT_EQ(list("plan"), (Strings{"next.json", "next.txt", "state.vdb"}));
+    expect_each_once(kGood);
+  }
+}
+
+TEST_F(Follow, SaysWhereToLookNext) {
+  const pid_t child = start(follow({"--top", "5"}));
+  put(0);
+  EXPECT_TRUE(wait_for(1));
+  const json first = json::parse(read("plan/next.json"));
+  EXPECT_EQ(first["stop_reason"], nullptr);
+  EXPECT_EQ(first["gain_model"], "combined");
+  ASSERT_EQ(first["next"].size(), 5U);
+  EXPECT_GT(first["candidates"], 5);
+  double last = 1e300;
+  const PoseList listed = read_tum(dir / "plan/next.txt");
+  ASSERT_EQ(listed.poses.size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const json& view = first["next"][i];
+    EXPECT_EQ(view["generator"], "boundary");
+    EXPECT_TRUE(view["class"].is_string());
+    EXPECT_LE(view["gain"], last);
+    last = view["gain"];
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(view["T_world_camera"][k][3], listed.poses[i].m[4 * k + 3]);
+    }
+  }
+  put(7);
+  EXPECT_TRUE(wait_for(2));
+  EXPECT_EQ(::kill(child, SIGTERM), 0);
+  const int status = end_of(child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  expect_each_once(2);
+
+  // What is there is a map as any other, and it goes on.
+  EXPECT_EQ(json::parse(run_well({"info", "plan/state.vdb", "--json"}))["sensor"], "small");
+  const std::string before = read("plan/next.json");
+  fs::remove(dir / "plan/next.json");
+  write("live/done", "");
+  const json end = json::parse(run_well(follow({"--json", "--top", "5"})));
+  EXPECT_EQ(end["frames"], 2);
+  EXPECT_EQ(end["added"], 0);
+  EXPECT_EQ(end["ended_by"], "done");
+  EXPECT_EQ(end["hash"], load_map_of_sensor(dir / "plan/state.vdb").grid.content_hash());
+  EXPECT_EQ(read("plan/next.json"), before);
+}
+
+TEST_F(Follow, AWrongScaleIsOutside) {
+  write("live/depth-scale.txt", "1e-3\n");
+  put(0);
+  write("live/done", "");
+  const test::ProgramResult result = run(follow());
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("1 outside"), std::string::npos) << result.err;
+  EXPECT_FALSE(fs::exists(dir / "plan"));
+}
+
+TEST_F(Follow, WhatContradictsTheMapIsLeftOut) {
+  run_well({"simulate", "cube.off", "--orbit", "10,0.6,27", "--sensor", "sr4000", "--size", "0.2",
+            "--recenter", "on", "--out", "moved"});
+  PoseList poses_of_frames = read_tum(dir / "moved/poses.txt");
+  poses_of_frames.poses[7].m[3] += 0.1;
+  viewgain::write_tum(dir / "moved/poses.txt", poses_of_frames.poses);
+  write("moved/done", "");
+  const json result = json::parse(
+      run_well({"follow", "moved", "--voxel", "0.01", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+                "--register", "on", "--out", "plan", "--json", "--quiet"}));
+  EXPECT_EQ(result["bad"].size(), 1U);
+  EXPECT_EQ(result["bad"]["contradicts"], 1);
+  EXPECT_EQ(result["frames"], 9);
+}
+
+TEST_F(Follow, EachBadFrameIsALine) {
+  put(0);
+  put(1);
+  write(name(1) + ".depth.png", images[1].substr(0, 50));
+  write("live/done", "");
+  Strings call = follow();
+  std::erase(call, "--quiet");
+  const test::ProgramResult result = run(call);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  std::size_t lines = 0;
+  std::istringstream said(result.err);
+  for (std::string line; std::getline(said, line);) {
+    if (line.find("truncated") == std::string::npos) continue;
+    ++lines;
+    EXPECT_NE(line.find("live/frame-000001.depth.png"), std::string::npos) << line;
+  }
+  EXPECT_EQ(lines, 1U);
+  EXPECT_NE(result.out.find("left out: 1 truncated"), std::string::npos) << result.out;
+}
+
+TEST_F(Follow, RefusesWhatItCannotGoOnWith) {
+  put(0);
+  write("live/done", "");
+  write("mine/next.txt", "notes");
+  Strings call = follow();
+  *std::find(call.begin(), call.end(), "plan") = "mine";
+  expect_refused(call, "mine/next.txt");
+  *std::find(call.begin(), call.end(), "mine") = "live";
+  expect_refused(call, "FRAMES_DIR");
+  call = follow();
+  call[1] = "nowhere";
+  expect_refused(call, "nowhere");
+  write("reach.toml", "poses = \"plan/next.txt\"\n");
+  expect_refused(follow({"--reach", "reach.toml"}), "--reach");
+  expect_refused(follow({"--gain", "paper", "--object-size", "0.2"}), "--object-size");
+  run_well(follow());
+  call = follow();
+  *std::find(call.begin(), call.end(), "0.025") = "0.02";
+  expect_refused(call, "0.025");
+  write("other.toml", read("small.toml") + "\n");
+  std::string other = read("small.toml");
+  other.replace(other.find("60.0"), 4, "61.0");
+  write("other.toml", other);
+  expect_refused(follow({"--sensor", "other.toml"}), "plan/state.vdb: its frames are of small");
+  run_well({"integrate", "whole", "--voxel", "0.025", "--out", "map.vdb"});
+  fs::copy_file(dir / "map.vdb", dir / "plan/state.vdb", fs::copy_options::overwrite_existing);
+  expect_refused(follow(), "plan/state.vdb");
+  fs::remove_all(dir / "plan");
+  fs::remove(dir / "live/done");
+  const pid_t child = start(follow());
+  EXPECT_TRUE(wait_for(1));
+  expect_refused(follow(), "plan: another process");
+  EXPECT_EQ(::kill(child, SIGINT), 0);
+  const int status = end_of(child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+}
+
+}  // namespace
+}  // namespace viewgain

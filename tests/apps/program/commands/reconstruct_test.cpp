@@ -1,0 +1,374 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The whole loop as a user would run it, on small objects: what it leaves, that it ends well on
+// degenerate ones, that a run can be repeated, that bad input is refused.
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+#include "viewgain/core/pose_io.hpp"
+
+namespace viewgain {
+namespace {
+
+// A box [low, high] as OFF, its vertices and faces appended.
+struct Off {
+  std::ostringstream vertices, faces;
+  int vertex_count = 0, face_count = 0;
+
+  void add_box(const std::array<double, 3>& low, const std::array<double, 3>& high) {
+    for (int k = 0; k < 8; ++k) {
+      vertices << (k & 1 ? high[0] : low[0]) << ' ' << (k & 2 ? high[1] : low[1]) << ' '
+               << (k & 4 ? high[2] : low[2]) << '\n';
+    }
+    for (const char* face : {"0 2 3 1", "4 5 7 6", "0 1 5 4", "2 6 7 3", "0 4 6 2", "1 3 7 5"}) {
+      std::istringstream corners(face);
+      faces << 4;
+      for (int c = 0; corners >> c;) faces << ' ' << vertex_count + c;
+      faces << '\n';
+    }
+    vertex_count += 8, face_count += 6;
+  }
+  [[nodiscard]] std::string text() const {
+    return "OFF\n" + std::to_string(vertex_count) + ' ' + std::to_string(face_count) + " 0\n" +
+           vertices.str() + faces.str();
+  }
+};
+
+class Reconstruct : public test::ProgramTest {
+ protected:
+  Reconstruct() {
+    write_cube();
+    write_half_sensor();
+  }
+
+  // Coarse enough for a test: 88x72 px, 64³ voxels.
+  [[nodiscard]] static Strings arguments(const std::string& mesh, const Strings& more) {
+    Strings result{"reconstruct", mesh,    "--sensor", "tof.toml", "--voxel",
+                   "0.00625",     "--out", "run",      "--json"};
+    result.insert(result.end(), more.begin(), more.end());
+    if (std::find(more.begin(), more.end(), "--size") == more.end()) {
+      result.insert(result.end(), {"--size", "0.35"});  // the cube's own is 2 m
+    }
+    return result;
+  }
+  [[nodiscard]] json reconstruct(const std::string& mesh, const Strings& more = {}) const {
+    const test::ProgramResult result = run(arguments(mesh, more));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.exit_code == 0 ? json::parse(result.out) : json();
+  }
+};
+
+TEST_F(Reconstruct, LeavesAConsistentFolder) {
+  const json result =
+      reconstruct("cube.off", {"--max-views", "3", "--save-maps", "on", "--size", "0.2"});
+  EXPECT_EQ(result["stop_reason"], "max_views");
+  EXPECT_EQ(result["views"], 3);
+  ASSERT_EQ(result["per_view"].size(), 3U);
+  EXPECT_EQ(list("run"), (Strings{"config.toml", "map.vdb", "maps", "points.ply", "run.json",
+                                  "surface.ply", "views", "views.txt"}));
+  EXPECT_EQ(list("run/maps"), (Strings{"00.vdb", "01.vdb", "02.vdb"}));
+  EXPECT_EQ(list("run/views"), (Strings{"00.amplitude.png", "00.png", "01.amplitude.png", "01.png",
+                                        "02.amplitude.png", "02.png"}));
+  const json run_file = json::parse(read("run/run.json"));
+  for (const auto& [key, value] : result.items()) {
+    EXPECT_EQ(run_file.at(key), value) << key;
+  }
+  EXPECT_EQ(run_file["settings"]["policy"], "gain");
+  EXPECT_FALSE(run_file["settings"].contains("threads"));
+  // The map's hash, its views and views.txt are the run's.
+  EXPECT_EQ(run_well({"info", "run/map.vdb", "--hash"}),
+            run_file["map_hash"].get<std::string>() + "\n");
+  const PoseList views = read_tum(dir / "run/views.txt");
+  ASSERT_EQ(views.poses.size(), 3U);
+  double travelled = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const json& view = result["per_view"][i];
+    for (int r = 0; r < 3; ++r) {
+      EXPECT_NEAR(view["pose"][r][3].get<double>(), views.poses[i].translation()[r], 1e-9);
+    }
+    if (i > 0) {
+      travelled += (views.poses[i].translation() - views.poses[i - 1].translation()).norm();
+      EXPECT_EQ(view["generator"], "boundary");
+      EXPECT_GT(view["candidates"].get<int>(), 0);
+      EXPECT_GT(view["predicted_gain"].get<double>(), 0);
+      EXPECT_GT(view["predicted_area"].get<double>(), 0);
+      EXPECT_LT(view["predicted_area"].get<double>(), 6 * 0.2 * 0.2);
+    }
+    EXPECT_GT(view["realised_area"].get<double>(), 0);
+    EXPECT_NEAR(view["travelled"].get<double>(), travelled, 1e-9);
+  }
+  EXPECT_EQ(result["per_view"][0]["generator"], "start");
+  EXPECT_TRUE(result["per_view"][0]["predicted_area"].is_null());
+  EXPECT_EQ(result["gain_model"], "combined");
+  // New area adds up to what is covered, of which a cube of 0.2 m has 0.24 m².
+  double covered = 0;
+  for (const json& view : result["per_view"]) {
+    covered += view["true_new_area"].get<double>();
+    EXPECT_NEAR(covered, 0.24 * view["coverage_visible"].get<double>(), 1e-4);
+  }
+  EXPECT_GT(covered, 0.05);
+  // What a view adds to entropy_removed is its realised gain.
+  double entropy = 0;
+  for (const json& view : result["per_view"]) {
+    entropy += view["realised_gain"].get<double>();
+    EXPECT_NEAR(entropy, view["entropy_removed"].get<double>(), 1e-6 * entropy);
+  }
+}
+
+TEST_F(Reconstruct, RanksByAGainOfTheLiterature) {
+  const json result =
+      reconstruct("cube.off", {"--max-views", "3", "--pictures", "off", "--size", "0.2", "--gain",
+                               "unknown_count", "--semantics", "shipped", "--generator", "sphere",
+                               "--count", "60"});
+  EXPECT_EQ(result["gain_model"], "unknown_count");
+  ASSERT_EQ(result["per_view"].size(), 3U);
+  for (std::size_t i = 1; i < 3; ++i) {
+    const double gain = result["per_view"][i]["predicted_gain"].get<double>();
+    EXPECT_GT(gain, 100);
+    EXPECT_EQ(gain, std::floor(gain));
+    EXPECT_GT(result["per_view"][i]["predicted_area"].get<double>(), 0);
+  }
+  const json settings = json::parse(read("run/run.json"))["settings"];
+  EXPECT_EQ(settings["gain"], "unknown_count");
+  EXPECT_EQ(settings["semantics"], "shipped");
+  EXPECT_EQ(settings["stop_area"], 0.0);
+  expect_refused(arguments("cube.off", {"--policy", "random", "--gain", "unknown_count"}),
+                 "--policy gain");
+}
+
+TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
+  (void)reconstruct("cube.off", {"--max-views", "1", "--pictures", "off", "--size", "0.2"});
+  const json run_file = json::parse(read("run/run.json"));
+  const std::map<std::string, std::string> other_keys{
+      {"generator", "generators"}, {"calibrate", "calibrated"}, {"count", "sphere_poses"}};
+  // Where results go, how fast; the seed is beside the settings, the body in the sensor; obstacles
+  // are there where there are any; the last are of folders of frames.
+  const std::set<std::string> elsewhere{
+      "help",   "json",        "threads",  "out",        "save_maps",        "pictures",
+      "seed",   "body",        "obstacle", "quiet",      "config",           "save_config",
+      "report", "depth_scale", "mask",     "confidence", "least_confidence", "top"};
+  std::istringstream help(run_well({"reconstruct", "--help"}));
+  std::size_t flags = 0;
+  for (std::string line; std::getline(help, line);) {
+    const std::size_t begin = line.find_first_not_of(' ');
+    if (begin == std::string::npos || line[begin] != '-') continue;
+    const std::size_t dashes = line.find("--");
+    std::string name = line.substr(dashes + 2, line.find_first_of(" ,", dashes) - dashes - 2);
+    std::replace(name.begin(), name.end(), '-', '_');
+    if (elsewhere.contains(name)) continue;
+    if (other_keys.contains(name)) name = other_keys.at(name);
+    EXPECT_TRUE(run_file["settings"].contains(name)) << line;
+    ++flags;
+  }
+  // The mesh has no flag; two settings follow from others.
+  EXPECT_EQ(flags + 3, run_file["settings"].size());
+}
+
+TEST_F(Reconstruct, KnownObstaclesHideTheObjectAndAreNoPartOfIt) {
+  const Strings setting{"--max-views", "3", "--pictures", "off", "--size", "0.15"};
+  const json without = reconstruct("cube.off", setting);
+  Off wall;
+  wall.add_box({-0.084, -0.08, -0.08}, {-0.078, 0.08, 0.08});
+  write("wall.off", wall.text());
+  Strings with = setting;
+  const std::string box = "0.078,-0.08,-0.08,0.084,0.08,0.08";
+  for (const std::string& more :
+       {std::string("--obstacle"), box, std::string("--obstacle"), std::string("wall.off")}) {
+    with.push_back(more);
+  }
+  const json result = reconstruct("cube.off", with);
+  EXPECT_EQ(json::parse(read("run/run.json"))["settings"]["obstacles"], (Strings{box, "wall.off"}));
+  EXPECT_NE(result["per_view"][2]["pose"], without["per_view"][2]["pose"]);
+  // They stand 3 mm off two faces of the cube, which nobody can see then.
+  EXPECT_LT(result["coverage"].get<double>(), without["coverage"].get<double>());
+  for (const char* side :
+       {"-0.085,-0.08,-0.08,-0.0785,0.08,0.08", "0.0785,-0.08,-0.08,0.085,0.08,0.08"}) {
+    const json region =
+        json::parse(run_well({"info", "run/map.vdb", "--region", side, "--json"}))["region"];
+    EXPECT_LE(region["occupied"].get<int>(), 30) << side;
+  }
+  for (const char* wrong : {"1,2,3", "-1,-1,-1,1,1,1"}) {  // the second holds the start pose
+    expect_refused(arguments("cube.off", {std::string("--obstacle=") + wrong}), "--obstacle");
+  }
+}
+
+TEST_F(Reconstruct, EveryPolicyGoesItsOwnWay) {
+  std::map<std::string, std::string> views;
+  std::set<std::string> different;
+  for (const char* policy :
+       {"gain", "kriegel", "sequence", "random", "frontier", "fibonacci", "proximity", "oracle"}) {
+    const json result =
+        reconstruct("cube.off", {"--policy", policy, "--max-views", "4", "--pictures", "off",
+                                 "--size", "0.2", "--noise", "off"});
+    EXPECT_GE(result["views"].get<int>(), 2) << policy;
+    if (std::string(policy) == "gain") {
+      EXPECT_EQ(result["gain_model"], "combined");
+    } else {
+      EXPECT_TRUE(result["gain_model"].is_null()) << policy;
+    }
+    EXPECT_GT(result["per_view"][1]["predicted_area"].get<double>(), 0) << policy;
+    EXPECT_GT(result["coverage_visible"].get<double>(), 0.3) << policy;
+    EXPECT_LT(result["rms_error"].get<double>(), 0.005) << policy;
+    views[policy] = read("run/views.txt");
+    different.insert(views[policy]);
+  }
+  EXPECT_EQ(views.size(), 8U);
+  EXPECT_EQ(different.size(), 8U);
+}
+
+TEST_F(Reconstruct, KriegelTakesReachablePosesOnlyWhenNoBoundaryIsLeft) {
+  // No boundary candidate is within the reach of a list, whose poses are candidates themselves.
+  const std::vector<Pose> poses{look_at({0.5, 0, 0}, {0, 0, 0}), look_at({-0.5, 0, 0}, {0, 0, 0}),
+                                look_at({0, 0.1, 0.5}, {0, 0, 0})};
+  write_tum(dir / "poses.txt", poses);
+  write("list.toml", "poses = \"poses.txt\"\n");
+  const json result =
+      reconstruct("cube.off", {"--policy", "kriegel", "--reach", "list.toml", "--max-views", "5",
+                               "--pictures", "off", "--size", "0.2", "--noise", "off"});
+  EXPECT_GE(result["views"].get<int>(), 2);
+  EXPECT_EQ(result["per_view"][1]["generator"], "reach");
+  EXPECT_TRUE(result["per_view"][1]["class"].is_null());
+}
+
+TEST_F(Reconstruct, ClosedBoxSeenFromAllSidesEnds) {
+  const json result = reconstruct(
+      "cube.off", {"--max-views", "80", "--pictures", "off", "--size", "0.15", "--noise", "off"});
+  EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
+  EXPECT_GT(result["coverage_visible"].get<double>(), 0.8);
+}
+
+TEST_F(Reconstruct, StopAreaIsThatOfTheGainsThatExpectIt) {
+  const auto setting = [&](const Strings& more) {
+    (void)reconstruct(
+        "cube.off", test::joined({"--max-views", "1", "--pictures", "off", "--size", "0.2"}, more));
+    return json::parse(read("run/run.json"))["settings"]["stop_area"].get<double>();
+  };
+  EXPECT_EQ(setting({}), 0.0016);
+  EXPECT_EQ(setting({"--gain", "paper"}), 0);
+  EXPECT_EQ(setting({"--policy", "frontier"}), 0);
+  EXPECT_EQ(setting({"--gain", "surface"}), 0.0016);
+  EXPECT_EQ(setting({"--gain", "combined"}), 0.0016);
+  EXPECT_EQ(setting({"--gain", "combined", "--stop-area", "0"}), 0);
+}
+
+TEST_F(Reconstruct, FlatPlateEnds) {
+  Off plate;
+  plate.vertices << "-1 0 -1\n1 0 -1\n1 0 1\n-1 0 1\n";
+  plate.faces << "4 0 1 2 3\n";
+  plate.vertex_count = 4, plate.face_count = 1;
+  write("plate.off", plate.text());
+  const json result = reconstruct(
+      "plate.off", {"--max-views", "80", "--pictures", "off", "--size", "0.2", "--noise", "off"});
+  EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
+  EXPECT_GT(result["coverage_visible"].get<double>(), 0.9);
+}
+
+TEST_F(Reconstruct, ObjectLargerThanTheWorkspaceEnds) {
+  const json result =
+      reconstruct("cube.off", {"--max-views", "80", "--pictures", "off", "--size", "0.3",
+                               "--workspace", "-0.1,-0.1,0,0.1,0.1,0.17", "--distance", "0.6",
+                               "--noise", "off", "--gain", "paper", "--stop-gain", "1"});
+  EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
+  EXPECT_GT(result["coverage"].get<double>(), 0.02);
+  EXPECT_LT(result["coverage"].get<double>(), 0.6);
+}
+
+TEST_F(Reconstruct, BothPartsOfAnObjectAreModelled) {
+  Off two;
+  two.add_box({0, 0, 0}, {1, 1, 1});
+  two.add_box({2.5, 0, 0}, {3.5, 1, 1});
+  write("two.off", two.text());
+  const json result =
+      reconstruct("two.off", {"--max-views", "14", "--pictures", "off", "--size", "0.3"});
+  // Either box alone is half of the surface.
+  EXPECT_GT(result["coverage_visible"].get<double>(), 0.7);
+}
+
+TEST_F(Reconstruct, SupportPlaneWithTheUpperHalfInReach) {
+  write("upper.toml", "[[half_space]]\nnormal = [0.0, 0.0, 1.0]\noffset = 0.05\n");
+  const json result = reconstruct(
+      "cube.off", {"--max-views", "80", "--pictures", "off", "--size", "0.15", "--support-plane",
+                   "0", "--reach", "upper.toml", "--gain", "paper", "--stop-gain", "1.2"});
+  EXPECT_EQ(result["stop_reason"], "gain");
+  EXPECT_GT(result["final_dropped"].value("unreachable", 0), 0);
+  EXPECT_GT(result["coverage_visible"].get<double>(), 0.8);
+  // The underside stays a hole: a sixth of the surface cannot be seen.
+  EXPECT_LT(result["coverage"].get<double>(), 0.93);
+  for (const json& view : result["per_view"]) EXPECT_GT(view["pose"][2][3].get<double>(), 0.05);
+}
+
+TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
+  write("no_reach.toml", "[[shell]]\ncenter = [0, 0, 0]\nmin_radius = 5.0\nmax_radius = 6.0\n");
+  write("bad_reach.toml", "[[sphere]]\nradius = 1.0\n");
+  // An earlier run stays as it was.
+  (void)reconstruct("cube.off", {"--max-views", "1", "--pictures", "off", "--size", "0.2"});
+  const test::Refusals inputs{
+      {arguments("missing.off", {}), "missing.off"},
+      {arguments("cube.off", {"--voxel", "-1"}), "voxel"},
+      {arguments("cube.off", {"--size", "0"}), "size"},
+      {arguments("cube.off", {"--policy", "best"}), "best"},
+      {arguments("cube.off", {"--criterion", "entropy"}), "entropy"},
+      {arguments("cube.off", {"--gain", "entropy"}), "surface"},
+      {arguments("cube.off", {"--overlap", "1"}), "--overlap"},
+      {arguments("cube.off", {"--gain", "paper", "--stop-area", "0.01"}), "--stop-area"},
+      {arguments("cube.off", {"--stop-gain", "1"}), "--stop-gain"},
+      {arguments("cube.off", {"--criterion", "trace"}), "--criterion trace"},
+      {arguments("cube.off", {"--hazard", "-2"}), "--hazard -2"},
+      {arguments("cube.off", {"--gain", "surface", "--stop-area", "1"}), "--stop-area"},
+      {arguments("cube.off", {"--gain", "surface", "--stop-area", "-0.1"}), "--stop-area"},
+      {arguments("cube.off", {"--policy", "random", "--stop-area", "0.01"}), "--stop-area"},
+      {arguments("cube.off", {"--policy", "oracle", "--gain", "surface"}), "--policy gain"},
+      {arguments("cube.off", {"--size", "0.001"}), "no larger"},
+      {arguments("cube.off", {"--travel-cost", "-1"}), "--travel-cost -1"},
+      {arguments("cube.off", {"--region-depth", "0"}), "--region-depth"},
+      {arguments("cube.off", {"--max-views", "0"}), "max-views"},
+      {arguments("cube.off", {"--workspace", "0,0,0,-1,1,1"}), "--workspace"},
+      {arguments("cube.off", {"--start", "1,2,3"}), "--start"},
+      {arguments("cube.off", {"--start", "1,2,3,0,0,0,0"}), "--start"},
+      // Looks away from the object.
+      {arguments("cube.off", {"--start", "0,0,1,0,0,0,1", "--background", "0"}), "start pose"},
+      {arguments("cube.off", {"--reach", "missing.toml"}), "missing.toml"},
+      {arguments("cube.off", {"--body", "0.1,-0.1,0.1"}), "--body"},
+      {arguments("cube.off", {"--reach", "bad_reach.toml"}), "sphere"},
+      {arguments("cube.off", {"--reach", "no_reach.toml"}), "reach"},
+      {arguments("cube.off", {"--generator", "boundary,cone"}), "cone"},
+      {arguments("cube.off", {"--jump-edge-filter", "80"}), "angle"},
+      {arguments("cube.off", {"--frames-per-view", "0"}), "frames-per-view"},
+      {arguments("cube.off", {"--travel-cost", "nan"}), "travel"},
+      {arguments("cube.off", {"--stop-coverage", "2"}), "coverage"},
+      {arguments("cube.off", {"--support-plane", "nan"}), "--support-plane nan"},
+  };
+  expect_refused(inputs);
+}
+
+TEST_F(Reconstruct, MisreportedViewsAreRegisteredWhereThatIsAskedFor) {
+  const Strings noisy{"--max-views", "3",   "--pictures",   "off",
+                      "--size",      "0.2", "--pose-noise", "0.005,0.5"};
+  EXPECT_FALSE(reconstruct("cube.off", noisy).contains("registration"));
+  Strings with = noisy;
+  with.insert(with.end(), {"--register", "on"});
+  const json result = reconstruct("cube.off", with);
+  const json& counts = result["registration"];
+  EXPECT_EQ(counts["registered"].get<int>() + counts["too_little_overlap"].get<int>() +
+                counts["refused"].get<int>(),
+            3);
+  EXPECT_EQ(result["per_view"][0]["registration"]["translation"], 0.0);
+  EXPECT_GT(result["seconds"]["register"].get<double>(), 0);
+  const json settings = json::parse(read("run/run.json"))["settings"];
+  EXPECT_EQ(settings["register"], true);
+  EXPECT_EQ(settings["pose_sigma"], settings["pose_noise"]);
+
+  expect_refused(arguments("cube.off", {"--pose-sigma", "0.005,0.5"}), "--register on");
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// `viewgain reconstruct` and `next` on a folder of frames, as a user would run them.
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+#include "viewgain/core/pose_io.hpp"
+
+namespace viewgain {
+namespace {
+
+const Strings kMapFlags{"--voxel", "0.01", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2"};
+
+class RecordedFrames : public test::ProgramTest {
+ protected:
+  RecordedFrames() {
+    write_cube();
+    write_half_sensor();
+    run_well({"simulate", "cube.off", "--orbit", "3,0.6,27,0,46", "--sensor", "tof.toml", "--size",
+              "0.2", "--recenter", "on", "--noise", "on", "--out", "frames"});
+  }
+
+  json reconstruct(const std::string& out, const Strings& more = {}) const {
+    const Strings arguments = test::joined({"reconstruct", "frames", "--out", out, "--json"},
+                                           test::joined(kMapFlags, more));
+    return json::parse(run_well(arguments));
+  }
+
+  // What the folder of a run holds of its own.
+  [[nodiscard]] std::string hash_of(const std::string& map) const {
+    return json::parse(run_well({"info", map, "--json"})).at("hash").get<std::string>();
+  }
+};
+
+// Map, surface and next views are those that the other subcommands make of the same frames.
+TEST_F(RecordedFrames, ReconstructIsIntegrateSurfaceAndNextInOne) {
+  const json run = reconstruct("run", {"--pictures", "off"});
+  EXPECT_EQ(run["views"], 3);
+  EXPECT_EQ(run["stop_reason"], "no_frames");
+  EXPECT_EQ(list("run"), (Strings{"config.toml", "map.vdb", "next.txt", "points.ply", "run.json",
+                                  "surface.ply", "views.txt"}));
+  EXPECT_EQ(json::parse(read("run/run.json")), run);
+  run_well(test::joined({"integrate", "frames", "--jump-edge-filter", "5", "--calibrate-hazard",
+                         "on", "--out", "map.vdb"},
+                        kMapFlags));
+  EXPECT_EQ(hash_of("run/map.vdb"), hash_of("map.vdb"));
+  EXPECT_EQ(run["map_hash"], hash_of("map.vdb"));
+  run_well({"surface", "map.vdb", "--out", "s.ply", "--points", "p.ply"});
+  EXPECT_EQ(read("run/surface.ply"), read("s.ply"));
+  EXPECT_EQ(read("run/points.ply"), read("p.ply"));
+  const std::vector<Pose> views = read_tum(dir / "run/views.txt").poses;
+  const std::vector<Pose> poses = read_tum(dir / "frames/poses.txt").poses;
+  ASSERT_EQ(views.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LT((views[i].translation() - poses[i].translation()).norm(), 1e-12);
+    EXPECT_LT((views[i].rotation() - poses[i].rotation()).norm(), 1e-12);
+  }
+
+  const json next = json::parse(run_well({"next", "run/map.vdb", "--out", "n.txt", "--json"}));
+  EXPECT_EQ(read("n.txt"), read("run/next.txt"));
+  EXPECT_EQ(next["next"], run["next"]);
+  EXPECT_EQ(next["views"], 3);
+  // Frames that the map has are known as such.
+  const json again = json::parse(
+      run_well({"integrate", "frames", "--map", "run/map.vdb", "--out", "same.vdb", "--json"}));
+  EXPECT_EQ(again["skipped"], 3);
+}
+
+TEST_F(RecordedFrames, NextTakesFramesAsItTakesTheirMap) {
+  const json run = reconstruct("run", {"--pictures", "off", "--top", "4", "--support-plane", "-1"});
+  const json next = json::parse(run_well(test::joined(
+      {"next", "frames", "--top", "4", "--support-plane", "-1", "--json"}, kMapFlags)));
+  EXPECT_EQ(next["next"], run["next"]);
+  EXPECT_EQ(next["next"].size(), 4U);
+  EXPECT_EQ(next["candidates"], run["candidates"]);
+}
+
+// Where the workspace holds the cameras, and where it does not.
+TEST_F(RecordedFrames, NextStaysInTheRoomThatFramesWereTakenIn) {
+  run_well({"simulate", "cube.off", "--orbit", "16,0.6,10,0,46", "--sensor", "tof.toml", "--size",
+            "0.2", "--recenter", "on", "--noise", "on", "--out", "round"});
+  const auto views_within = [this](const std::string& half, const Strings& more) {
+    const std::string corner = half + "," + half + "," + half;
+    const std::string workspace = "-" + half + ",-" + half + ",-" + half + "," + corner;
+    const Strings arguments{"next",           "round",   "--distance", "0.56",  "--body",
+                            "0.01,0.01,0.01", "--voxel", "0.02",       "--top", "1000",
+                            "--workspace",    workspace, "--json"};
+    return json::parse(run_well(test::joined(arguments, more)));
+  };
+  const auto farthest = [](const json& next) {
+    double most = 0;
+    for (const json& view : next["next"]) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        most = std::max(most, std::abs(view["T_world_camera"][a][3].get<double>()));
+      }
+    }
+    return most;
+  };
+  const json room = views_within("0.62", {});
+  EXPECT_GT(room["next"].size(), 0U);
+  EXPECT_GT(room["dropped"]["unreachable"], 0);
+  EXPECT_LE(farthest(room), 0.62);
+  // Who says where the camera may be is believed.
+  write("all.toml", "[[half_space]]\nnormal = [0, 0, 1]\noffset = -9\n");
+  const json anywhere = views_within("0.62", {"--reach", "all.toml"});
+  EXPECT_FALSE(anywhere["dropped"].contains("unreachable"));
+  EXPECT_GT(anywhere["candidates"], room["candidates"]);
+  EXPECT_GT(farthest(anywhere), 0.62);
+  const json from_outside = views_within("0.4", {});
+  EXPECT_FALSE(from_outside["dropped"].contains("unreachable"));
+  EXPECT_GT(farthest(from_outside), 0.4);
+}
+
+TEST_F(RecordedFrames, NextSaysInWordsWhatItFound) {
+  reconstruct("run", {"--pictures", "off"});
+  const std::string text = run_well({"next", "run/map.vdb", "--top", "2"});
+  EXPECT_NE(text.find("3 views so far"), std::string::npos) << text;
+  EXPECT_NE(text.find("gain [nat]"), std::string::npos) << text;
+  EXPECT_NE(text.find("boundary "), std::string::npos) << text;
+  // Nothing can be reached: that is an answer.
+  write("nowhere.toml", "[[box]]\nmin = [90, 90, 90]\nmax = [91, 91, 91]\n");
+  const std::string none =
+      run_well({"next", "run/map.vdb", "--reach", "nowhere.toml", "--out", "none.txt"});
+  EXPECT_NE(none.find("no view is possible; dropped: "), std::string::npos) << none;
+  EXPECT_NE(none.find("unreachable"), std::string::npos) << none;
+  EXPECT_EQ(read("none.txt"), "# timestamp tx ty tz qx qy qz qw\n");
+}
+
+TEST_F(RecordedFrames, ReportAndPicturesShowTheFrames) {
+  const json run = reconstruct("run", {"--report", "on"});
+  EXPECT_EQ(list("run/views"), (Strings{"00.png", "01.png", "02.png"}));
+  const std::string page = read("run/report.html");
+  EXPECT_NE(page.find("\"truth\":null"), std::string::npos);
+  EXPECT_NE(page.find("frame-000002.depth.png"), std::string::npos);
+  EXPECT_EQ(run["per_view"].size(), 3U);
+  double area = 0;
+  for (const json& view : run["per_view"]) area += view["realised_area"].get<double>();
+  EXPECT_NEAR(area, run["surface_area"].get<double>(), 0.5 * run["surface_area"].get<double>());
+}
+
+// Reported poses are off by 5 mm and 0.5 degrees; the frames know better.
+TEST_F(RecordedFrames, RegisteredFramesComeNearerToWhereTheyWere) {
+  const Strings simulate{"simulate", "cube.off", "--orbit",    "8,0.6,27,0,0",
+                         "--sensor", "tof.toml", "--size",     "0.2",
+                         "--noise",  "on",       "--recenter", "on"};
+  run_well(test::joined(simulate, {"--out", "exact"}));
+  std::filesystem::remove_all(dir / "frames");
+  run_well(test::joined(simulate, {"--out", "frames", "--pose-noise", "0.005,0.5"}));
+  const json run = reconstruct("run", {"--pictures", "off", "--register", "on"});
+  const std::vector<Pose> exact = read_tum(dir / "exact/poses.txt").poses;
+  const std::vector<Pose> reported = read_tum(dir / "frames/poses.txt").poses;
+  ASSERT_EQ(run["per_view"].size(), 8U);
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const json& view = run["per_view"][i];
+    const json& pose = view["registration"]["pose"];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double t = exact[i].m[4 * axis + 3];
+      EXPECT_NEAR(view["pose"][axis][3].get<double>(), reported[i].m[4 * axis + 3], 1e-9);
+      before += std::pow(reported[i].m[4 * axis + 3] - t, 2);
+      after += std::pow(pose[axis][3].get<double>() - t, 2);
+    }
+  }
+  EXPECT_LT(after, 0.8 * before);
+  EXPECT_EQ(run["registration"]["registered"].get<int>() +
+                run["registration"]["too_little_overlap"].get<int>() +
+                run["registration"]["refused"].get<int>(),
+            8);
+  EXPECT_EQ(run["settings"]["register"], true);
+  // The map has what the corrected poses say.
+  const std::vector<Pose> views = read_tum(dir / "run/views.txt").poses;
+  EXPECT_EQ(views.size(), 8U - run["registration"]["refused"].get<std::size_t>());
+}
+
+TEST_F(RecordedFrames, WhatOnlyAMeshOrAMapHasIsRefused) {
+  reconstruct("run", {"--pictures", "off"});
+  std::filesystem::create_directories(dir / "empty");
+  const Strings frames = test::joined({"reconstruct", "frames", "--out", "new"}, kMapFlags);
+  expect_refused(
+      {{test::joined(frames, {"--size", "0.2"}), "--size"},
+       {test::joined(frames, {"--policy", "random"}), "--policy"},
+       {test::joined(frames, {"--max-views", "2"}), "--max-views"},
+       {test::joined(frames, {"--noise", "on"}), "--noise"},
+       {test::joined(frames, {"--pose-noise", "0.01,1"}), "--pose-noise"},
+       {test::joined(frames, {"--pose-sigma", "0.01,1"}), "--pose-sigma"},
+       {test::joined(frames, {"--pose-sigma", "0,1", "--register", "on"}), "--pose-sigma"},
+       {test::joined(frames, {"--gain", "frontier_count"}), "--gain"},
+       {test::joined(frames, {"--mask", "empty"}), "empty"},
+       {{"reconstruct", "empty", "--voxel", "0.01", "--out", "new"}, "empty"},
+       {{"reconstruct", "frames", "--voxel", "0.01", "--workspace", "5,5,5,6,6,6", "--out", "new"},
+        "none of"},
+       {{"reconstruct", "cube.off", "--voxel", "0.01", "--out", "new"}, "--sensor"},
+       {{"reconstruct", "cube.off", "--voxel", "0.01", "--sensor", "tof.toml", "--size", "0.2",
+         "--mask", "empty", "--out", "new"},
+        "--mask"},
+       {{"next", "run/map.vdb", "--voxel", "0.01"}, "--voxel"},
+       {{"next", "frames"}, "--voxel"},
+       {{"next", "run/map.vdb", "--generator", "dome", "--overlap", "0.5"}, "--overlap"},
+       {{"next", "run/map.vdb", "--gain", "paper", "--object-size", "0.5"}, "--object-size"},
+       {{"next", "run/map.vdb", "--out", "run/map.vdb"}, "map.vdb"},
+       {{"next", "none.vdb"}, "none.vdb"}});
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Which poses `score` scores, and among which obstacles: against the library's own answers.
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+#include "viewgain/core/generators.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/raycast/feasibility.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain {
+namespace {
+
+class ScoreCandidates : public test::ProgramTest {
+ protected:
+  ScoreCandidates() {
+    write_small_sensor();
+    BeliefGrid grid({0.02, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.02});
+    // The upper half is free but for a block in its middle.
+    for (int x = -10; x < 10; ++x) {
+      for (int y = -10; y < 10; ++y) {
+        for (int z = 0; z < 10; ++z) grid.set({x, y, z}, -0.4F);
+      }
+    }
+    for (int x = -3; x < 3; ++x) {
+      for (int y = -3; y < 3; ++y) grid.set({x, y, 4}, 0.85F, Belief{{1e5F, 1e5F, 1e5F}, {}, 7});
+    }
+    save_vdb(grid, dir / "map.vdb");
+    poses = sphere_poses(40, 0.45);
+  }
+
+  [[nodiscard]] json score(const Strings& more) const {
+    return json::parse(run_well(arguments(more)));
+  }
+  [[nodiscard]] static Strings arguments(const Strings& more) {
+    return test::joined({"score", "map.vdb", "--sensor", "small.toml", "--sphere", "40,0.45",
+                         "--top", "40", "--json"},
+                        more);
+  }
+
+  // Index -> gain.
+  static std::map<std::size_t, double> gains(const json& scores) {
+    std::map<std::size_t, double> result;
+    for (const json& view : scores.at("best")) {
+      result[view.at("index").get<std::size_t>()] = view.at("gain").get<double>();
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::vector<double> gains_among(const Obstacles& obstacles) const {
+    const auto scene = VoxelScene::build(load_vdb(dir / "map.vdb"), obstacles);
+    const GainEvaluator evaluator(scene, load_sensor((dir / "small.toml").string()));
+    std::vector<double> result;
+    for (const Pose& pose : poses) result.push_back(evaluator.evaluate(pose).gain);
+    return result;
+  }
+
+  std::vector<Pose> poses;
+};
+
+TEST_F(ScoreCandidates, ObstaclesBlockAsTheyDoInTheLibrary) {
+  const std::vector<double> expected = gains_among({{{{0.25, -1, -1}, {0.3, 1, 1}}}, {}});
+  const auto found = gains(score({"--obstacle", "0.25,-1,-1,0.3,1,1"}));
+  ASSERT_EQ(found.size(), poses.size());
+  for (const auto& [index, gain] : found) EXPECT_EQ(gain, expected[index]) << index;
+  EXPECT_NE(gains(score({})), found);
+}
+
+TEST_F(ScoreCandidates, PosesOutOfReachAreDroppedAndTheOthersKeepTheirNumbers) {
+  ReachRegion reach;
+  reach.half_spaces = {{Eigen::Vector3d::UnitZ(), 0.05}};
+  write_reach_toml(dir / "reach.toml", reach);
+  const std::vector<double> all = gains_among({});
+  const json scores = score({"--reach", "reach.toml", "--out", "scores.csv"});
+  std::size_t inside = 0;
+  for (const Pose& pose : poses) inside += reach.contains(pose) ? 1 : 0;
+  ASSERT_GT(inside, 5U);
+  ASSERT_LT(inside, 35U);
+  EXPECT_EQ(scores.at("poses"), 40);
+  EXPECT_EQ(scores.at("dropped"), (json{{"unreachable", 40 - inside}}));
+  const auto found = gains(scores);
+  EXPECT_EQ(found.size(), inside);
+  for (const auto& [index, gain] : found) {
+    EXPECT_TRUE(reach.contains(poses[index])) << index;
+    EXPECT_EQ(gain, all[index]) << index;
+  }
+  std::istringstream csv(read("scores.csv"));
+  std::size_t rows = 0;
+  std::string line;
+  std::getline(csv, line);
+  while (std::getline(csv, line)) {
+    EXPECT_TRUE(found.contains(std::stoul(line))) << line;
+    ++rows;
+  }
+  EXPECT_EQ(rows, inside);
+  // Whatever is chosen, it is among them and has its own number.
+  for (const Strings& selection :
+       {Strings{"--race"}, Strings{"--set", "3"}, Strings{"--approximate", "1"}}) {
+    const json chosen = score(test::joined(
+        {"--reach", "reach.toml", "--out", "scores.csv", "--picture", "best.png"}, selection));
+    ASSERT_GE(chosen.at("best").size(), 3U) << selection[0];
+    const json& best = chosen.at("best")[0];
+    const auto index = best.at("index").get<std::size_t>();
+    EXPECT_EQ(index, scores.at("best")[0].at("index")) << selection[0];
+    EXPECT_EQ(best.at("T_world_camera"), scores.at("best")[0].at("T_world_camera"));
+  }
+  EXPECT_EQ(score({}).at("dropped"), json::object());
+}
+
+TEST_F(ScoreCandidates, InfeasiblePosesAreDroppedByReason) {
+  const auto scene =
+      VoxelScene::build(load_vdb(dir / "map.vdb"), {{{{0.3, 0.1, -1}, {1, 1, 1}}}, {}});
+  FeasibilityConfig config;
+  config.body.size = {0.2, 0.2, 0.2};
+  config.support_plane = -0.3;
+  config.sensor = load_sensor((dir / "small.toml").string());
+  const FeasibilityChecker checker(scene, config);
+  std::map<std::string, std::size_t> dropped;
+  std::size_t possible = 0;
+  for (const Infeasibility reason : checker.check(poses)) {
+    if (reason == Infeasibility::none) ++possible;
+    if (reason != Infeasibility::none) ++dropped[std::string(infeasibility_name(reason))];
+  }
+  ASSERT_TRUE(dropped.contains("plane"));
+  ASSERT_TRUE(dropped.contains("obstacle"));
+  const Strings flags{"--feasible",      "on",         "--body",
+                      "0.2,0.2,0.2",     "--obstacle", "0.3,0.1,-1,1,1,1",
+                      "--support-plane", "-0.3"};
+  const json scores = score(flags);
+  EXPECT_EQ(scores.at("dropped"), json(dropped));
+  EXPECT_EQ(scores.at("best").size(), possible);
+  Strings text = arguments(flags);
+  std::erase(text, "--json");
+  EXPECT_NE(run_well(text).find(" of 40 poses; dropped: "), std::string::npos);
+}
+
+TEST_F(ScoreCandidates, RefusesWhatCannotBe) {
+  write("far.toml", "[[shell]]\ncenter = [0, 0, 0]\nmin_radius = 5.0\nmax_radius = 6.0\n");
+  write_cube();
+  const test::Refusals inputs{
+      {{"--reach", "far.toml"}, "40 unreachable"},
+      {{"--reach", "none.toml"}, "none.toml"},
+      {{"--obstacle", "none.off"}, "none.off"},
+      {{"--obstacle", "1,0,0,0,1,1"}, "--obstacle"},
+      {{"--obstacle", "0,0,0,1,1"}, "--obstacle"},
+      {{"--obstacle", "cube.off", "--out", "cube.off"}, "--obstacle cube.off"},
+      {{"--reach", "far.toml", "--out", "far.toml"}, "--reach far.toml"},
+      {{"--body", "0.1,0.1,0.1"}, "--feasible on"},
+      {{"--feasible", "on", "--body", "0.1,0.1,0"}, "--body"},
+      {{"--support-plane", "0"}, "--feasible on"},
+  };
+  expect_refused_with(arguments({}), inputs);
+}
+
+}  // namespace
+}  // namespace viewgain

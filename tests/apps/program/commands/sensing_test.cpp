@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What disturbs the simulated time-of-flight camera, and what integrate does about it.
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/frames.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr int kPixels = 48 * 36;
+
+class Sensing : public test::ProgramTest {
+ protected:
+  Sensing() {
+    write_cube();
+    write_small_sensor();
+    std::string tof = read("small.toml");
+    tof.replace(tof.find("model"), std::string::npos,
+                "model = \"shot\"\nreference_sigma = 0.004\nreference_range = 1.3\n"
+                "reference_integration_time = 0.0085\nintegration_time = 0.001\n");
+    write("tof.toml", tof);
+  }
+
+  json simulate(const std::string& out, const Strings& more = {},
+                const std::string& sensor = "tof.toml") const {
+    return json::parse(
+        run_well(test::joined({"simulate", "cube.off", "--orbit", "2,0.6,27,0,46", "--sensor",
+                               sensor, "--size", "0.3", "--recenter", "on", "--out", out, "--json"},
+                              more)));
+  }
+
+  json integrate(const std::string& frames, const Strings& more = {}) const {
+    return json::parse(
+        run_well(test::joined({"integrate", frames, "--voxel", "0.02", "--workspace",
+                               "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "map.vdb", "--json"},
+                              more)));
+  }
+
+  [[nodiscard]] std::vector<DepthFrame> load(const std::string& name) const {
+    const auto frames = open_frames(dir / name, "", std::nullopt);
+    std::vector<DepthFrame> result;
+    for (std::size_t i = 0; i < frames.images.size(); ++i) {
+      result.push_back(load_frame(frames, i, OutOfRangeMeaning::carve));
+    }
+    return result;
+  }
+
+  [[nodiscard]] bool has_amplitude(const std::string& name) const {
+    return std::filesystem::exists(dir / name / "frame-000000.amplitude.png");
+  }
+};
+
+TEST_F(Sensing, AmplitudeImagesAreWrittenAndUsed) {
+  EXPECT_EQ(simulate("frames").at("amplitude"), true);
+  EXPECT_TRUE(has_amplitude("frames"));
+  const json with = integrate("frames");
+  int readings = 0;
+  for (const DepthFrame& frame : load("frames")) {
+    ASSERT_EQ(frame.amplitude.size(), frame.depth.size());
+    for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+      const bool reading = frame.depth[i] > 0 && std::isfinite(frame.depth[i]);
+      EXPECT_EQ(frame.amplitude[i] > 0, reading);
+      readings += reading ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(readings, with.at("readings"));
+
+  EXPECT_EQ(simulate("frames", {"--amplitude", "off"}).at("amplitude"), false);
+  EXPECT_FALSE(has_amplitude("frames"));
+  const json without = integrate("frames");
+  EXPECT_EQ(without.at("readings"), with.at("readings"));
+  EXPECT_EQ(without.at("occupied"), with.at("occupied"));
+  EXPECT_NE(without.at("hash"), with.at("hash"));  // other covariances
+
+  EXPECT_EQ(simulate("other", {}, "small.toml").at("amplitude"), false);
+  EXPECT_FALSE(has_amplitude("other"));
+  simulate("other", {"--amplitude", "on"}, "small.toml");
+  EXPECT_TRUE(has_amplitude("other"));
+}
+
+TEST_F(Sensing, FramesPerViewRepeatThePoseWithNoiseOfTheirOwn) {
+  const json report = simulate("frames", {"--frames-per-view", "3", "--noise", "on"});
+  EXPECT_EQ(report.at("views"), 2);
+  EXPECT_EQ(report.at("frames"), 6);
+  EXPECT_EQ(report.at("frames_per_view"), 3);
+  EXPECT_EQ(report.at("readings").get<int>() + report.at("out_of_range").get<int>() +
+                report.at("invalid").get<int>(),
+            6 * kPixels);
+  const auto poses = read_tum(dir / "frames" / "poses.txt").poses;
+  ASSERT_EQ(poses.size(), 6U);
+  EXPECT_EQ(poses[0], poses[2]);
+  EXPECT_EQ(poses[3], poses[5]);
+  EXPECT_NE(poses[2], poses[3]);
+  const auto frames = load("frames");
+  ASSERT_EQ(frames.size(), 6U);
+  EXPECT_NE(frames[0], frames[1]);
+  EXPECT_EQ(integrate("frames").at("views"), 6);
+}
+
+TEST_F(Sensing, FlyingPixelsFollowTheNoiseUnlessAsked) {
+  EXPECT_EQ(simulate("off").at("flying_pixels"), false);
+  EXPECT_EQ(simulate("noisy", {"--noise", "on"}).at("flying_pixels"), true);
+  EXPECT_EQ(
+      simulate("noise_alone", {"--noise", "on", "--flying-pixels", "off"}).at("flying_pixels"),
+      false);
+  EXPECT_EQ(simulate("mixed", {"--flying-pixels", "on"}).at("flying_pixels"), true);
+  // They need a phase.
+  EXPECT_EQ(simulate("kinect", {"--flying-pixels", "on"}, "small.toml").at("flying_pixels"), false);
+
+  EXPECT_NE(load("off"), load("mixed"));
+  EXPECT_NE(load("noisy"), load("noise_alone"));
+}
+
+TEST_F(Sensing, ReadingsOfTheTableCarveButDoNotHit) {
+  // The cube stands on the table.
+  EXPECT_EQ(simulate("frames", {"--support-plane", "-0.15"}).at("support_plane"), -0.15);
+  EXPECT_TRUE(simulate("floating").at("support_plane").is_null());
+  const json taken = integrate("frames");
+  const json left = integrate("frames", {"--support-plane", "-0.15"});
+  EXPECT_EQ(taken.at("plane_readings"), 0);
+  EXPECT_GT(left.at("plane_readings"), 300);
+  EXPECT_EQ(left.at("plane_readings").get<int>() + left.at("readings").get<int>() +
+                left.at("out_of_range").get<int>() + left.at("invalid").get<int>(),
+            2 * kPixels);
+  EXPECT_LT(left.at("occupied"), taken.at("occupied"));
+  EXPECT_GT(left.at("occupied"), 100);
+  // The workspace by default is what the object fills, not the table.
+  const json own = json::parse(run_well({"integrate", "frames", "--voxel", "0.02",
+                                         "--support-plane", "-0.15", "--out", "o.vdb", "--json"}));
+  EXPECT_NEAR(own.at("workspace")[2].get<double>(), -0.15, 0.03);
+}
+
+TEST_F(Sensing, BadFlagsAndImagesAreRefused) {
+  simulate("frames");
+  write("frames/frame-000001.amplitude.png", "no image");
+  const auto refused = [&](const Strings& more, const std::string& word) {
+    expect_refused_with({"integrate", "frames", "--voxel", "0.02", "--out", "new.vdb"},
+                        {{more, word}});
+  };
+  refused({}, "frame-000001.amplitude.png");
+  refused({"--jump-edge-filter", "0.5"}, "1..10 degrees");
+  refused({"--jump-edge-filter", "11"}, "1..10 degrees");
+  refused({"--jump-edge-filter", "on"}, "--jump-edge-filter");
+  refused({"--support-plane", "nan", "--workspace", "-1,-1,-1,1,1,1"}, "support plane");
+  refused({"--support-plane", "inf"}, "support plane");
+}
+
+TEST_F(Sensing, ReportedPosesAreOffButForTheFirst) {
+  (void)simulate("exact");
+  const json said = simulate("off", {"--pose-noise", "0.01,1"});
+  EXPECT_EQ(said["pose_noise"][0], 0.01);
+  EXPECT_NEAR(said["pose_noise"][1].get<double>(), 1, 1e-12);
+  const std::vector<Pose> exact = read_tum(dir / "exact/poses.txt").poses;
+  const std::vector<Pose> off = read_tum(dir / "off/poses.txt").poses;
+  ASSERT_EQ(exact.size(), 2U);
+  ASSERT_EQ(off.size(), 2U);
+  EXPECT_EQ(off[0], exact[0]);
+  const double way = (off[1].translation() - exact[1].translation()).norm();
+  EXPECT_GT(way, 1e-4);
+  EXPECT_LT(way, 0.06);
+  EXPECT_EQ(load("off"), load("exact"));  // the camera was where it was sent
+  for (const char* noise : {"0.01", "-0.01,1", "0.01,x"}) {
+    expect_refused({"simulate", "cube.off", "--orbit", "2,0.6,27,0,46", "--sensor", "tof.toml",
+                    "--out", "refused", "--pose-noise", noise},
+                   "--pose-noise");
+  }
+}
+
+}  // namespace
+}  // namespace viewgain

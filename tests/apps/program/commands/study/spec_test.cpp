@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What a study's spec says, and how results are put together, held against sums by hand.
+#include "program/commands/study/spec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+#include "program/commands/study/markdown.hpp"
+#include "program/commands/study/results.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain {
+namespace {
+
+using ordered_json = viewgain::app::Json;
+
+constexpr const char* kSpec = R"(objects = ["cube.off", "more/ball.off"]
+policies = ["gain:combined", "frontier", "gain:rear_side_voxel:shipped"]
+against = "frontier"
+seeds = [3, 1]
+sensors = ["sr4000", "tof.toml"]
+voxels = [0.01, 0.005]
+max_views = 5
+flags = ["--up=y"]
+[prediction]
+views = [4, 1]
+candidates = 7
+)";
+
+class StudySpecTest : public test::ProgramTest {
+ protected:
+  StudySpecTest() {
+    write_cube();
+    write_half_sensor();
+    write("more/ball.off", read("cube.off"));
+  }
+
+  [[nodiscard]] app::StudySpec spec_of(const std::string& text) const {
+    write("spec.toml", text);
+    return app::read_study_spec(dir / "spec.toml");
+  }
+  [[nodiscard]] std::string error_of(const std::string& text) const {
+    try {
+      (void)spec_of(text);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+  static std::string with(const std::string& from, const std::string& to) {
+    std::string text = kSpec;
+    text.replace(text.find(from), from.size(), to);
+    return text;
+  }
+};
+
+TEST_F(StudySpecTest, ListsAreCrossed) {
+  const app::StudySpec spec = spec_of(kSpec);
+  EXPECT_EQ(spec.runs.size(), 2U * 3 * 2 * 2 * 2);
+  EXPECT_EQ(spec.against, 1U);
+  EXPECT_EQ(spec.objects[1].name, "ball");
+  EXPECT_EQ(spec.objects[1].mesh, dir / "more/ball.off");
+  EXPECT_EQ(spec.prediction.views, (std::vector<std::size_t>{1, 4}));
+  std::set<std::string> hashes;
+  for (const app::StudyRun& run : spec.runs) hashes.insert(run.hash);
+  EXPECT_EQ(hashes.size(), spec.runs.size());
+  EXPECT_EQ(app::name_of(spec, spec.runs[2]),
+            "cube, gain:rear_side_voxel:shipped, seed 3, sr4000, voxel 0.01");
+  EXPECT_EQ(
+      app::reconstruct_words(spec, spec.runs[2]),
+      (Strings{"--sensor=sr4000", "--voxel=0.01", "--seed=3", "--max-views=5", "--policy=gain",
+               "--out=unused", "--gain=rear_side_voxel", "--semantics=shipped", "--stop-gain=0",
+               "--stop-area=0", "--stop-idle=0", "--up=y", "--", (dir / "cube.off").string()}));
+}
+
+TEST_F(StudySpecTest, HashesFollowWhatCanChangeAResult) {
+  const std::string before = spec_of(kSpec).runs.back().hash;  // ball, tof.toml, 0.005, seed 1
+  std::size_t cases = 0;
+  for (const auto& [from, to] :
+       std::vector<std::pair<std::string, std::string>>{{"max_views = 5", "max_views = 6"},
+                                                        {"--up=y", "--up=x"},
+                                                        {"candidates = 7", "candidates = 8"},
+                                                        {"[4, 1]", "[1]"}}) {
+    EXPECT_NE(spec_of(with(from, to)).runs.back().hash, before) << to;
+    ++cases;
+  }
+  for (const char* file : {"more/ball.off", "tof.toml"}) {
+    const std::string bytes = read(file);
+    write(file, bytes + "# changed\n");
+    EXPECT_NE(spec_of(kSpec).runs.back().hash, before) << file;
+    write(file, bytes);
+    ++cases;
+  }
+  // A file that a file of the flags names.
+  write("reach.toml", "poses = \"poses.txt\"\n");
+  write("poses.txt", "1");
+  const std::string reach = (dir / "reach.toml").string();
+  const std::string with_reach = with("--up=y", "--reach=" + reach);
+  const std::string by_poses = spec_of(with_reach).runs.back().hash;
+  write("poses.txt", "2");
+  EXPECT_NE(spec_of(with_reach).runs.back().hash, by_poses);
+  ++cases;
+  EXPECT_EQ(cases, 7U);
+  // Neither what it stands beside nor where the files lie.
+  EXPECT_EQ(spec_of(with("seeds = [3, 1]", "seeds = [1]")).runs.back().hash, before);
+  EXPECT_EQ(spec_of(with("[\"cube.off\", ", "[")).runs.back().hash, before);
+}
+
+TEST_F(StudySpecTest, WhatIsWrongIsNamedWithItsLine) {
+  struct Case {
+    std::string from, to;
+    Strings words;
+  };
+  const std::vector<Case> wrong{
+      {"seeds = [3, 1]\n", "", {"\"seeds\" is missing"}},
+      {"seeds = [3, 1]", "seeds = []", {"line 4", "seeds", "not empty"}},
+      {"seeds = [3, 1]", "seeds = [1, 1]", {"line 4", "twice"}},
+      {"seeds = [3, 1]", "seeds = [-1]", {"line 4"}},
+      {"seeds = [3, 1]", "seeds = 3", {"line 4", "list"}},
+      {"more/ball.off", "ball.off", {"line 1", "ball.off"}},
+      {"more/ball.off", "./cube.off", {"line 1", "two objects", "cube"}},
+      {"\"frontier\", ", "\"gain\", ", {"line 2", "\"gain\"", "gain:NAME"}},
+      {"\"frontier\", ", "\"frontier:x\", ", {"line 2", "frontier:x"}},
+      {"against = \"frontier\"", "against = \"random\"", {"line 3", "none of the policies"}},
+      {"\"tof.toml\"", "\"no.toml\"", {"line 5", "no.toml"}},
+      {"\"tof.toml\"", "\"sr400\"", {"line 5", "sr400"}},
+      {"voxels = [0.01, 0.005]", "voxels = [0.0]", {"line 6", "positive"}},
+      {"max_views = 5", "max_views = 0", {"line 7"}},
+      {"max_views = 5", "max_views = 3", {"line 10", "views", "1..3"}},
+      {"--up=y", "--seed=4", {"line 8", "--seed"}},
+      {"--up=y", "y", {"line 8", "--up=y"}},
+      {"--up=y", "--help", {"line 8", "--help"}},
+      {"gain:combined", "gain:combine", {"line 2", "combined"}},
+      {"gain:combined", "gain:combined:", {"line 2", "gain:NAME"}},
+      {"\"frontier\", ",
+       "\"gain:unknown_count\", \"gain:unknown_count:paper\", ",
+       {"line 2", "unknown_count:paper", "twice"}},
+      {"candidates = 7", "candidates = 2", {"line 11", "candidates"}},
+      {"candidates = 7", "canddates = 7", {"line 11", "canddates", "candidates"}},
+      {"max_views", "max_view", {"max_view"}},
+  };
+  for (const Case& each : wrong) {
+    const std::string error = error_of(with(each.from, each.to));
+    for (const std::string& word : each.words) {
+      EXPECT_NE(error.find(word), std::string::npos) << each.to << ": " << error;
+    }
+  }
+}
+
+// A run of these coverages; the rest of its figures follow from the first.
+ordered_json run_json(const std::vector<double>& coverage) {
+  ordered_json json{{"stop_reason", "max_views"}, {"views", coverage.size()}};
+  json["per_view"] = ordered_json::array();
+  for (const double c : coverage) json["per_view"].push_back({{"coverage_visible", c}});
+  json["coverage"] = 0.5 * coverage.back();
+  json["rms_error"] = 1e-3 * coverage.front();
+  json["consistency"] = ordered_json();
+  json["outliers"] = 2;
+  json["travelled"] = 1.5;
+  json["isa"] = "AVX2";
+  json["seconds"] = {{"total", 4.0}};
+  json["prediction"] = ordered_json::array();
+  for (const int view : {1, 4}) {
+    json["prediction"].push_back({{"view", view},
+                                  {"candidates", 7},
+                                  {"spearman_area", 0.1 * view},
+                                  {"spearman_entropy", nullptr},
+                                  {"top1_share", 0.5}});
+  }
+  return json;
+}
+
+TEST_F(StudySpecTest, FiguresOfARun) {
+  const app::StudySpec spec = spec_of(kSpec);
+  // Falls under a goal again: the first time counts. Ends early: keeps its last.
+  const app::ResultRow row = app::row_of(spec, spec.runs[0], run_json({0.5, 0.85, 0.79, 0.9}));
+  EXPECT_EQ(row.coverage_by_view, (std::vector<double>{0.5, 0.85, 0.79, 0.9, 0.9}));
+  EXPECT_EQ(row.views_to[0], 2U);
+  EXPECT_EQ(row.views_to[1], 4U);
+  EXPECT_FALSE(row.views_to[2]);
+  EXPECT_EQ(row.counted_views_to(2), 6);
+  EXPECT_DOUBLE_EQ(row.auc, (0.5 + 0.85 + 0.79 + 0.9 + 0.9) / 5);
+  EXPECT_TRUE(std::isnan(row.consistency));
+
+  const ordered_json json = app::results_json(spec, {row});
+  ASSERT_EQ(json.size(), 1U);
+  EXPECT_EQ(json[0]["object"], "cube");
+  EXPECT_EQ(json[0]["policy"], "gain");
+  EXPECT_EQ(json[0]["gain"], "combined");
+  EXPECT_EQ(json[0]["views_to_90"], 4);
+  EXPECT_TRUE(json[0]["views_to_95"].is_null());
+  EXPECT_EQ(json[0]["prediction"].size(), 2U);
+  const std::string csv = app::results_csv(spec, {row});
+  EXPECT_NE(csv.find("\ncube,gain,combined,,3,sr4000,0.01,,4,max_views,2,4,nan,"),
+            std::string::npos)
+      << csv;
+}
+
+TEST_F(StudySpecTest, TheTableIsThatByHand) {
+  const app::StudySpec spec = spec_of(
+      "objects = [\"cube.off\"]\npolicies = [\"gain:combined\", \"frontier\"]\nagainst = "
+      "\"frontier\"\nseeds = [1, 2]\nsensors = [\"sr4000\"]\nvoxels = [0.01]\nmax_views = 2\n");
+  // Seed 1: combined 2 and 2 views to 80 and 90 %, frontier never; seed 2 the same for both.
+  const std::vector<app::ResultRow> rows{app::row_of(spec, spec.runs[0], run_json({0.6, 0.9})),
+                                         app::row_of(spec, spec.runs[1], run_json({0.4, 0.7})),
+                                         app::row_of(spec, spec.runs[2], run_json({0.8, 0.8})),
+                                         app::row_of(spec, spec.runs[3], run_json({0.8, 0.8}))};
+  const std::string table = app::results_markdown(spec, rows);
+  for (const char* line :
+       {"4 runs: cube; 2 seeds; 2 views.",
+        "| gain:combined | 1.50 | 2.50 | 3.00 | 1 of 2 | 0.775 | 85.0 % | 0.70 | - | 1.5 | 4.0 |",
+        "| frontier | 2.00 | 3.00 | 3.00 | 2 of 2 | 0.675 | 75.0 % | 0.60 | - | 1.5 | 4.0 |",
+        "| gain:combined | -0.50 ± 0.50 (1-1-0) | -0.50 ± 0.50 (1-1-0) | 0.00 ± 0.00 (0-2-0) | "
+        "0.100 ± 0.100 (1-1-0) | 0.10 ± 0.10 (0-1-1) |"}) {
+    EXPECT_NE(table.find(line), std::string::npos) << line << "\n" << table;
+  }
+}
+
+TEST(CsvText, IsQuotedWhereItMustBe) {
+  EXPECT_EQ(app::csv_text("a b"), "a b");
+  EXPECT_EQ(app::csv_text("a,b"), "\"a,b\"");
+  EXPECT_EQ(app::csv_text("a\"b\n"), "\"a\"\"b\n\"");
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// `viewgain study` as a user calls it.
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+#include "program/commands/study/statistics.hpp"
+
+namespace viewgain {
+namespace {
+
+class Study : public test::ProgramTest {
+ protected:
+  Study() {
+    write_cube();
+    write_half_sensor();
+    write("spec.toml", R"(objects = ["cube.off"]
+policies = ["gain:combined", "frontier", "random"]
+seeds = [1, 2]
+sensors = ["tof.toml"]
+voxels = [0.0125]
+sizes = [0.15]
+max_views = 3
+[prediction]
+views = [1, 3]
+candidates = 8
+)");
+  }
+
+  static Strings study(const std::string& out, const Strings& more = {}) {
+    return test::joined({"study", "spec.toml", "--out", out, "--quiet"}, more);
+  }
+
+  // The lines without their last column, seconds.
+  [[nodiscard]] std::string rows(const std::string& out) const {
+    std::istringstream lines(read(out + "/results.csv"));
+    std::string text;
+    for (std::string line; std::getline(lines, line);) text += line.substr(0, line.rfind(','));
+    return text;
+  }
+
+  [[nodiscard]] std::size_t runs_in(const std::string& out) const {
+    if (!fs::exists(dir / out / "runs")) return 0;
+    std::size_t count = 0;
+    for (const auto& entry : fs::directory_iterator(dir / out / "runs")) {
+      count += fs::exists(entry.path() / "run.json") ? 1 : 0;
+    }
+    return count;
+  }
+};
+
+TEST_F(Study, LeavesWhatItSays) {
+  const json printed = json::parse(run_well(study("out", {"--json", "--plots", "off"})));
+  EXPECT_EQ(printed, json::parse(read("out/results.json")));
+  EXPECT_EQ(list("out"), (Strings{"plots.py", "predictions.csv", "results.csv", "results.json",
+                                  "runs", "table.md"}));
+  EXPECT_EQ(list("out/runs").size(), 6U);
+  ASSERT_EQ(printed.size(), 6U);
+  for (const json& run : printed) {
+    EXPECT_EQ(run["object"], "cube");
+    EXPECT_EQ(run["gain"], run["policy"] == "gain" ? json("combined") : json());
+    EXPECT_EQ(run["views"], 3);  // the whole budget
+    EXPECT_EQ(run["coverage_by_view"].size(), 3U);
+    EXPECT_EQ(run["coverage_by_view"][2], run["coverage_visible"]);
+    EXPECT_EQ(run["prediction"].size(), run["policy"] == "random" ? 0U : 2U);
+  }
+  // A run by itself is the same run.
+  const json alone = json::parse(
+      run_well({"reconstruct", "cube.off", "--sensor",    "tof.toml", "--voxel",     "0.0125",
+                "--size",      "0.15",     "--max-views", "3",        "--seed",      "2",
+                "--policy",    "frontier", "--stop-gain", "0",        "--stop-area", "0",
+                "--stop-idle", "0",        "--pictures",  "off",      "--quiet",     "--json",
+                "--out",       "alone"}));
+  EXPECT_EQ(printed[4]["policy"], "frontier");
+  EXPECT_EQ(printed[4]["seed"], 2);
+  for (const char* key : {"coverage_visible", "rms_error", "consistency", "travelled"}) {
+    EXPECT_EQ(printed[4][key], alone[key]) << key;
+  }
+}
+
+TEST_F(Study, PredictionIsThatOfItsRows) {
+  const json results = json::parse(run_well(study("out", {"--json", "--plots", "off"})));
+  // By policy, seed and view: score, new samples, entropy.
+  std::map<std::string, std::vector<std::vector<double>>> columns;
+  std::istringstream lines(read("out/predictions.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line,
+            "object,policy,gain,semantics,seed,sensor,voxel,size,view,candidate,score,"
+            "predicted_area,new_samples,new_area,entropy_removed,generator,tx,ty,tz,qx,qy,qz,qw");
+  while (std::getline(lines, line)) {
+    std::istringstream in(line);
+    Strings cells;
+    for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+    ASSERT_EQ(cells.size(), 23U);
+    auto& column = columns[cells[1] + cells[4] + "/" + cells[8]];
+    column.resize(3);
+    column[0].push_back(std::stod(cells[10]));
+    column[1].push_back(std::stod(cells[12]));
+    column[2].push_back(std::stod(cells[14]));
+    EXPECT_EQ(cells[11] == "nan", cells[1] == "frontier");
+    EXPECT_GE(std::stod(cells[13]) * std::stod(cells[12]), 0);
+  }
+  std::size_t cases = 0;
+  for (const json& run : results) {
+    for (const json& entry : run["prediction"]) {
+      const auto& column =
+          columns.at(run["policy"].get<std::string>() + std::to_string(run["seed"].get<int>()) +
+                     "/" + std::to_string(entry["view"].get<int>()));
+      EXPECT_EQ(entry["candidates"], column[0].size());
+      EXPECT_GE(column[0].size(), 4U);
+      const std::vector<std::pair<const char*, double>> expected{
+          {"spearman_area", app::spearman(column[0], column[1])},
+          {"spearman_entropy", app::spearman(column[0], column[2])}};
+      for (const auto& [key, value] : expected) {
+        if (std::isnan(value)) {
+          EXPECT_TRUE(entry[key].is_null());
+        } else {
+          EXPECT_EQ(entry[key].get<double>(), value) << key;
+        }
+      }
+      const auto best = std::max_element(column[0].begin(), column[0].end()) - column[0].begin();
+      const double most = *std::max_element(column[1].begin(), column[1].end());
+      if (most > 0) {
+        EXPECT_EQ(entry["top1_share"].get<double>(),
+                  column[1][static_cast<std::size_t>(best)] / most);
+      }
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 8U);
+  // Early on the expected new surface says where there is some.
+  EXPECT_GT(results[0]["prediction"][0]["spearman_area"].get<double>(), 0.4);
+}
+
+TEST_F(Study, KilledItGoesOn) {
+  run_well(study("whole", {"--plots", "off", "--jobs", "1"}));
+  std::size_t kills = 0;
+  for (std::size_t wanted : {0U, 1U, 3U, 4U}) {
+    const pid_t child = start(study("killed", {"--plots", "off", "--jobs", "2"}));
+    int status = 0;
+    while (runs_in("killed") < wanted && ::waitpid(child, &status, WNOHANG) == 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    if (::kill(child, SIGKILL) == 0) ++kills;
+    ::waitpid(child, &status, 0);
+    EXPECT_FALSE(fs::exists(dir / "killed/results.json"));
+  }
+  EXPECT_EQ(kills, 4U);
+  const std::size_t there = runs_in("killed");
+  EXPECT_GE(there, 4U);
+  run_well(study("killed", {"--plots", "off"}));
+  EXPECT_EQ(rows("killed"), rows("whole"));
+  EXPECT_EQ(read("killed/predictions.csv"), read("whole/predictions.csv"));
+  EXPECT_EQ(list("killed/runs"), list("whole/runs"));  // no claim is left
+  // All there: nothing is made again.
+  const auto before = contents("killed/runs");
+  run_well(study("killed", {"--plots", "off"}));
+  EXPECT_TRUE(contents("killed/runs") == before);
+}
+
+TEST_F(Study, AWishToStopLeavesWhatIsWhole) {
+  const pid_t child = start(study("out", {"--plots", "off", "--jobs", "1"}));
+  int status = 0;
+  while (runs_in("out") < 1 && ::waitpid(child, &status, WNOHANG) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  ASSERT_EQ(::kill(child, SIGINT), 0);
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 130) << status;
+  EXPECT_EQ(list("out"), Strings{"runs"});
+  EXPECT_LT(runs_in("out"), 6U);
+  EXPECT_EQ(list("out/runs").size(), runs_in("out"));
+}
+
+TEST_F(Study, WrongNamesAreKnownBeforeTheFirstRun) {
+  const std::string spec = read("spec.toml");
+  for (const auto& [from, to, word] : std::vector<std::array<std::string, 3>>{
+           {"gain:combined", "gain:combine", "combined"},
+           {"\"random\"", "\"randm\"", "random"},
+           {"max_views", "flags = [\"--overlap=2\"]\nmax_views", "--overlap"},
+           {"max_views", "flags = [\"--no-such\"]\nmax_views", "--no-such"},
+           {"[0.0125]", "[0.0125, 0.2]", "--voxel"}}) {
+    std::string text = spec;
+    text.replace(text.find(from), from.size(), to);
+    write("wrong.toml", text);
+    const test::ProgramResult result = run({"study", "wrong.toml", "--out", "out"});
+    EXPECT_EQ(result.exit_code, 2) << to;
+    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("wrong.toml"), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(dir / "out")) << to;
+  }
+}
+
+TEST_F(Study, DamagedRunsAreNamedAndNothingIsLeft) {
+  run_well(study("out", {"--plots", "off"}));
+  const std::string hash = json::parse(read("out/results.json"))[0]["hash"];
+  const std::string folder = "out/runs/" + hash + "/";
+  for (const auto& [name, from] :
+       std::vector<std::pair<std::string, std::string>>{{"run.json", "\"per_view\""},
+                                                        {"run.json", "\"stop_reason\""},
+                                                        {"prediction.csv", "\n"}}) {
+    for (const char* of_before : {"results.csv", "results.json", "predictions.csv"}) {
+      fs::remove(dir / "out" / of_before);
+    }
+    const std::string whole = read(folder + name);
+    std::string text = whole;
+    text.replace(text.rfind(from), from.size(), name == "run.json" ? "\"other\"" : "");
+    write(folder + name, text);
+    const test::ProgramResult result = run(study("out", {"--plots", "off"}));
+    EXPECT_EQ(result.exit_code, 2) << from;
+    EXPECT_NE(result.err.find(hash + "/" + name), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(dir / "out/results.csv")) << from;
+    write(folder + name, whole);
+  }
+}
+
+TEST_F(Study, AFolderOfOtherThingsIsRefused) {
+  write("other/notes.txt", "mine");
+  const test::ProgramResult result = run(study("other"));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("other"), std::string::npos) << result.err;
+  EXPECT_EQ(list("other"), Strings{"notes.txt"});
+  // The spec may lie there, and stays as it is.
+  write("home/my.toml",
+        "objects = [\"../cube.off\"]\npolicies = [\"random\"]\nseeds = [1]\n"
+        "sensors = [\"../tof.toml\"]\nvoxels = [0.0125]\nsizes = [0.15]\nmax_views = 1\n");
+  const std::string spec = read("home/my.toml");
+  run_well({"study", "home/my.toml", "--out", "home", "--plots", "off", "--quiet"});
+  EXPECT_TRUE(fs::exists(dir / "home/results.csv"));
+  EXPECT_EQ(read("home/my.toml"), spec);
+}
+
+TEST_F(Study, PlotsAreDrawnByTheScriptItLeaves) {
+  if (std::system("(python3 -c 'import matplotlib' || /usr/bin/python3 -c 'import matplotlib') 2> "
+                  "/dev/null") != 0) {
+    GTEST_SKIP() << "no matplotlib";
+  }
+  run_well(study("out"));
+  for (const char* name : {"coverage.png", "prediction.png", "calibration.png"}) {
+    EXPECT_TRUE(read(std::string("out/") + name).starts_with("\x89PNG")) << name;
+  }
+}
+
+}  // namespace
+}  // namespace viewgain

@@ -1,0 +1,445 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+#include "viewgain/core/generators.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+
+namespace viewgain {
+namespace {
+
+std::vector<Strings> rows_of(const std::string& csv) {
+  std::vector<Strings> rows;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    Strings& row = rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
+  }
+  return rows;
+}
+
+// simulate -> integrate -> info -> score on a cube, each as a user would run it.
+class Workflow : public test::ProgramTest {
+ protected:
+  Workflow() {
+    write_cube();
+    write_small_sensor();
+  }
+
+  void simulate(const std::string& out, const Strings& more = {}) const {
+    run_well(test::joined({"simulate", "cube.off", "--orbit", "3,0.6,27,0,46", "--sensor",
+                           "small.toml", "--size", "0.3", "--recenter", "on", "--out", out},
+                          more));
+  }
+
+  void integrate(const std::string& frames, const std::string& map,
+                 const Strings& more = {}) const {
+    run_well(test::joined({"integrate", frames, "--voxel", "0.02", "--workspace",
+                           "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", map},
+                          more));
+  }
+
+  [[nodiscard]] std::string hash(const std::string& map) const {
+    return run_well({"info", map, "--hash"});
+  }
+};
+
+TEST_F(Workflow, JsonHasTheDocumentedKeys) {
+  const json simulated = json::parse(
+      run_well({"simulate", "cube.off", "--orbit", "3,0.6,27,0,46", "--sensor", "small.toml",
+                "--size", "0.3", "--recenter", "on", "--out", "frames", "--json"}));
+  EXPECT_EQ(simulated.at("frames"), 3);
+  EXPECT_EQ(simulated.at("readings").get<int>() + simulated.at("out_of_range").get<int>() +
+                simulated.at("invalid").get<int>(),
+            3 * 48 * 36);
+  EXPECT_EQ(list("frames"),
+            (Strings{"frame-000000.depth.png", "frame-000001.depth.png", "frame-000002.depth.png",
+                     "poses.txt", "sensor.toml", "simulated.txt"}));
+
+  const json integrated =
+      json::parse(run_well({"integrate", "frames", "--voxel", "0.02", "--workspace",
+                            "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "map.vdb", "--json"}));
+  EXPECT_EQ(integrated.at("frames"), 3);
+  EXPECT_EQ(integrated.at("dims"), json({20, 20, 20}));
+  EXPECT_EQ(integrated.at("depth_scale"), 1e-4);
+
+  const json info = json::parse(run_well({"info", "map.vdb", "--json"}));
+  EXPECT_EQ(info.at("voxel_size"), 0.02);
+  EXPECT_EQ(info.at("views"), 3);
+  EXPECT_EQ(info.at("workspace").size(), 6U);
+  EXPECT_GT(info.at("occupied"), 0);
+  EXPECT_GT(info.at("entropy_removed"), 0);
+  EXPECT_EQ(
+      info.at("unknown").get<int>() + info.at("free").get<int>() + info.at("occupied").get<int>(),
+      20 * 20 * 20);
+  EXPECT_EQ(info.at("hash"), integrated.at("hash"));
+  EXPECT_EQ(info.at("hash").get<std::string>() + "\n", hash("map.vdb"));
+
+  const json scored =
+      json::parse(run_well({"score", "map.vdb", "--sphere", "40,0.6", "--sensor", "small.toml",
+                            "--top", "7", "--stride", "2", "--json"}));
+  EXPECT_EQ(scored.at("poses"), 40);
+  EXPECT_EQ(scored.at("rays_per_pose"), 24 * 18);
+  EXPECT_EQ(scored.at("voxel_size"), 0.02);
+  EXPECT_EQ(scored.at("criterion"), "log_diagonal");
+  EXPECT_EQ(scored.at("gain_model"), "paper");
+  EXPECT_EQ(scored.at("gain_unit"), "nat");
+  EXPECT_EQ(scored.at("prior_sigma"), info.at("prior_sigma"));
+  EXPECT_GE(scored.at("threads"), 1);
+  for (const char* key : {"seconds", "poses_per_second", "rays_per_second"}) {
+    EXPECT_GT(scored.at(key).get<double>(), 0) << key;
+  }
+  ASSERT_EQ(scored.at("best").size(), 7U);
+  double last = std::numeric_limits<double>::infinity();
+  for (const json& entry : scored.at("best")) {
+    EXPECT_EQ(entry.at("status"), "ok");
+    EXPECT_LE(entry.at("gain"), last);
+    last = entry.at("gain");
+  }
+  EXPECT_GT(last, 0);
+}
+
+TEST_F(Workflow, CsvReadsBackTheSameDoubles) {
+  simulate("frames");
+  integrate("frames", "map.vdb");
+  run_well({"score", "map.vdb", "--sphere", "30,0.6", "--sensor", "small.toml", "--out", "s.csv"});
+  const auto rows = rows_of(read("s.csv"));
+  ASSERT_EQ(rows.size(), 31U);
+  EXPECT_EQ(rows[0], (Strings{"index", "gain", "exploration", "refinement", "posterior_entropy",
+                              "rays", "hits", "unknown_voxels", "occupied_voxels", "status"}));
+  const BeliefGrid grid = load_vdb(dir / "map.vdb");
+  const GainEvaluator evaluator(VoxelScene::build(grid),
+                                open_frames(dir / "frames", "", std::nullopt).sensor,
+                                {.posterior_entropy = true});
+  const auto expected = evaluator.evaluate(sphere_poses(30, 0.6));
+  std::size_t cases = 0;
+  for (; cases < expected.size(); ++cases) {
+    const Strings& row = rows[cases + 1];
+    const ViewGain& gain = expected[cases];
+    EXPECT_EQ(row[0], std::to_string(cases));
+    EXPECT_EQ(std::stod(row[1]), gain.gain);
+    EXPECT_EQ(std::stod(row[2]), gain.exploration);
+    EXPECT_EQ(std::stod(row[3]), gain.refinement);
+    EXPECT_EQ(std::stod(row[4]), gain.posterior_entropy);
+    EXPECT_EQ(row[5], std::to_string(gain.rays));
+    EXPECT_EQ(row[6], std::to_string(gain.hits));
+    EXPECT_EQ(row[7], std::to_string(gain.unknown_voxels));
+    EXPECT_EQ(row[8], std::to_string(gain.occupied_voxels));
+    EXPECT_EQ(row[9], "ok");
+  }
+  EXPECT_EQ(cases, 30U);
+}
+
+TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
+  simulate("frames");
+  integrate("frames", "own.vdb");
+
+  // The same frames as a recording: gaps in the numbers, matrices, intrinsics in a file, and a
+  // sensor whose own intrinsics are wrong.
+  const PoseList poses = read_tum(dir / "frames" / "poses.txt");
+  std::filesystem::create_directories(dir / "recorded");
+  for (std::size_t i = 0; i < poses.poses.size(); ++i) {
+    const std::string number = i == 0 ? "000000" : i == 1 ? "000050" : "001000";
+    std::filesystem::copy(dir / "frames" / ("frame-00000" + std::to_string(i) + ".depth.png"),
+                          dir / "recorded" / ("frame-" + number + ".depth.png"));
+    std::ostringstream text;
+    text.precision(17);
+    text << poses.poses[i].isometry().matrix() << "\n";
+    write("recorded/frame-" + number + ".pose.txt", text.str());
+  }
+  write("recorded/camera-intrinsics.txt",
+        "\xef\xbb\xbf"
+        "60 0 23.5\n0 60 17.5\n0 0 1\n");
+  std::string sensor = read("small.toml");
+  for (const std::string wrong : {"fx = 60", "fy = 60", "cx = 23", "cy = 17"}) {
+    sensor.replace(sensor.find(wrong) + 5, 2, "99");
+  }
+  write("wrong.toml", sensor);
+  integrate("recorded", "recorded.vdb", {"--sensor", "wrong.toml", "--depth-scale", "1e-4"});
+  EXPECT_EQ(hash("recorded.vdb"), hash("own.vdb"));
+
+  // Without the scale the depths are ten times too long: all readings lie out of range. A sensor
+  // file of the user's beside the recording changes nothing about that.
+  expect_refused({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
+                  "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "none.vdb"},
+                 "0.001 m per unit");
+  write("recorded/sensor.toml", read("wrong.toml"));
+  expect_refused({"integrate", "recorded", "--voxel", "0.02", "--workspace",
+                  "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "none.vdb"},
+                 "0.001 m per unit");
+  expect_refused({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
+                  "--depth-scale", "1e-6", "--out", "none.vdb"},
+                 "1e-06 m per unit");
+  EXPECT_NE(run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
+                      "--depth-scale", "1e-4", "--out", "own.vdb"})
+                .find("depth images: 1e-04 m per unit"),
+            std::string::npos);
+
+  // A rotation that is off by 1e-4 is mended and said; another map than with the exact one.
+  std::string pose = read("recorded/frame-000050.pose.txt");
+  std::istringstream numbers(pose);
+  double first = 0;
+  numbers >> first;
+  std::string rest;
+  std::getline(numbers, rest, '\0');
+  write("recorded/frame-000050.pose.txt", std::to_string(first * (1 + 1e-4)) + rest);
+  const json mended =
+      json::parse(run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
+                            "--depth-scale", "1e-4", "--out", "mended.vdb", "--json"}));
+  EXPECT_EQ(mended.at("orthonormalized_poses"), 1);
+}
+
+TEST_F(Workflow, OutOfRangePixelsCarveOrSayNothing) {
+  simulate("frames", {"--background", "0"});
+  integrate("frames", "carve.vdb");
+  integrate("frames", "invalid.vdb", {"--out-of-range", "invalid"});
+  const json carve = json::parse(run_well({"info", "carve.vdb", "--json"}));
+  const json invalid = json::parse(run_well({"info", "invalid.vdb", "--json"}));
+  EXPECT_EQ(carve.at("occupied"), invalid.at("occupied"));
+  EXPECT_GT(carve.at("free").get<double>(), 1.5 * invalid.at("free").get<double>());
+}
+
+TEST_F(Workflow, DefaultWorkspaceHoldsWhatTheFramesSee) {
+  simulate("frames", {"--background", "0"});
+  const json made = json::parse(
+      run_well({"integrate", "frames", "--voxel", "0.03", "--out", "map.vdb", "--json"}));
+  EXPECT_EQ(made.at("readings_inside"), made.at("readings"));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double low = made.at("workspace")[k], high = made.at("workspace")[k + 3];
+    EXPECT_NEAR(std::round(low / 0.03), low / 0.03, 1e-9);
+    EXPECT_LT(low, 0);
+    EXPECT_GE(low, -0.15 - 0.1);
+    EXPECT_LE(high, 0.15 + 0.1);
+  }
+  EXPECT_NE(
+      run_well({"integrate", "frames", "--voxel", "0.03", "--out", "map.vdb"}).find("workspace"),
+      std::string::npos);
+}
+
+TEST_F(Workflow, AMapIsContinued) {
+  simulate("frames");
+  simulate("more", {"--center", "0,0,0.01"});
+  integrate("frames", "once.vdb");
+  integrate("more", "twice.vdb", {"--map", "once.vdb"});
+  run_well({"integrate", "more", "--map", "once.vdb", "--out", "once.vdb"});
+  EXPECT_EQ(hash("once.vdb"), hash("twice.vdb"));
+  EXPECT_EQ(json::parse(run_well({"info", "once.vdb", "--json"})).at("views"), 6);
+  for (const Strings& conflict : std::vector<Strings>{
+           {"--voxel", "0.03"}, {"--workspace", "0,0,0,1,1,1"}, {"--prior-sigma", "0.5"}}) {
+    expect_refused_with({"integrate", "frames", "--map", "once.vdb", "--out", "new.vdb"},
+                        {{conflict, "conflicts"}});
+  }
+}
+
+// A folder that grows can be given again and again.
+TEST_F(Workflow, FramesThatAMapHasAreSkipped) {
+  simulate("frames", {"--frames-per-view", "2", "--noise", "on"});
+  const auto grow = [this](const Strings& more) {
+    return json::parse(run_well(test::joined({"integrate", "frames", "--json"}, more)));
+  };
+  integrate("frames", "all.vdb");
+  // As a camera's driver leaves them, half of them first.
+  const std::string poses = read("frames/poses.txt");
+  std::filesystem::rename(dir / "frames", dir / "later");
+  const auto move = [this](const std::string& file) {
+    std::filesystem::create_directories(dir / "frames");
+    std::filesystem::copy(dir / "later" / file, dir / "frames" / file);
+  };
+  const auto up_to = [&](std::size_t frames) {
+    std::size_t end = 0;
+    for (std::size_t line = 0; line <= frames; ++line) end = poses.find('\n', end) + 1;
+    write("frames/poses.txt", poses.substr(0, end));
+  };
+  const auto names = [](std::size_t i) { return "frame-00000" + std::to_string(i) + ".depth.png"; };
+  move("sensor.toml");
+  for (std::size_t i = 0; i < 3; ++i) move(names(i));
+  up_to(3);
+  integrate("frames", "map.vdb");
+  for (std::size_t i = 3; i < 6; ++i) move(names(i));
+  up_to(6);
+  json grown = grow({"--map", "map.vdb", "--out", "map.vdb"});
+  EXPECT_EQ(grown["frames"], 3);
+  EXPECT_EQ(grown["skipped"], 3);
+  EXPECT_EQ(grown["views"], 6);
+  EXPECT_EQ(hash("map.vdb"), hash("all.vdb"));
+  // All of them, another time: through convert, too, and the file says its sensor still.
+  run_well({"convert", "map.vdb", "again.vdb"});
+  grown = grow({"--map", "again.vdb", "--out", "again.vdb"});
+  EXPECT_EQ(grown["frames"], 0);
+  EXPECT_EQ(grown["skipped"], 6);
+  EXPECT_TRUE(grown["seconds_per_frame"].is_null());
+  EXPECT_EQ(read("again.vdb"), read("map.vdb"));
+  EXPECT_EQ(json::parse(run_well({"info", "again.vdb", "--json"})).at("sensor"), "small");
+  EXPECT_NE(run_well({"integrate", "frames", "--map", "map.vdb", "--out", "map.vdb"})
+                .find("skipped, since the map has them already: 6"),
+            std::string::npos);
+  // Another image of the same name is another frame, and so is one from another pose.
+  write("frames/" + names(1), read("frames/" + names(4)));
+  std::string moved = poses;
+  moved.replace(moved.rfind("\n", moved.size() - 2) + 1, std::string::npos, "5 0 0 -1 0 0 0 1\n");
+  write("frames/poses.txt", moved);
+  grown = grow({"--map", "map.vdb", "--out", "new.vdb"});
+  EXPECT_EQ(grown["frames"], 2);
+  EXPECT_EQ(grown["skipped"], 4);
+  // A tree does not remember.
+  run_well({"convert", "map.vdb", "tree.ot"});
+  EXPECT_EQ(grow({"--map", "tree.ot", "--out", "new.vdb"})["skipped"], 0);
+}
+
+// A pose that contradicts the map: the map is what it is without that frame.
+TEST_F(Workflow, FramesThatContradictTheMapAreLeftOut) {
+  run_well({"simulate", "cube.off", "--size", "0.2", "--recenter", "on", "--orbit", "12,0.6,27",
+            "--sensor", "sr4000", "--out", "whole"});
+  const auto integrated = [this](const std::string& folder, const Strings& more) {
+    return json::parse(
+        run_well(test::joined({"integrate", folder, "--voxel", "0.01", "--workspace",
+                               "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--json", "--out", "map.vdb"},
+                              more)));
+  };
+  const Strings registered{"--register", "on"};
+  const json good = integrated("whole", registered);
+  EXPECT_EQ(good["registration"]["refused"], 0);
+  EXPECT_GE(good["registration"]["registered"], 10);
+  EXPECT_TRUE(integrated("whole", {})["registration"].is_null());
+
+  // View 7 stands 10 cm beside where it says; the last ones look elsewhere.
+  FrameSequence frames = open_frames(dir / "whole");
+  FramesWriter bad(dir / "bad"), without(dir / "without");
+  std::vector<Pose> bad_poses, other_poses;
+  for (std::size_t i = 0; i < 12; ++i) {
+    const DepthFrame frame = load_frame(frames, i);
+    bad.write_frame(i, frame);
+    bad_poses.push_back(frames.poses[i]);
+    if (i == 7) {
+      bad_poses.back().m[3] += 0.1;
+      continue;
+    }
+    without.write_frame(other_poses.size(), frame);
+    other_poses.push_back(frames.poses[i]);
+  }
+  bad.commit(bad_poses, frames.sensor);
+  without.commit(other_poses, frames.sensor);
+  const json left_out = integrated("bad", registered);
+  EXPECT_EQ(left_out["registration"]["refused"], 1);
+  EXPECT_EQ(left_out["frames"], 11);
+  EXPECT_EQ(left_out["hash"], integrated("without", registered)["hash"]);
+  // Fed again it is tried again; the others are skipped.
+  (void)integrated("bad", registered);
+  const json again = json::parse(run_well(
+      {"integrate", "bad", "--map", "map.vdb", "--register", "on", "--json", "--out", "map.vdb"}));
+  EXPECT_EQ(again["skipped"], 11);
+  EXPECT_EQ(again["registration"]["refused"], 1);
+  EXPECT_EQ(again["hash"], left_out["hash"]);
+
+  expect_refused_with({"integrate", "whole", "--voxel", "0.01", "--out", "no.vdb"},
+                      {{{"--pose-sigma", "0.01,1"}, "goes with --register on"},
+                       {{"--register", "on", "--pose-sigma", "0,1"}, "--pose-sigma"},
+                       {{"--register", "on", "--pose-sigma", "x"}, "--pose-sigma"}});
+}
+
+TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
+  simulate("frames");
+  integrate("frames", "map.vdb");
+  const auto best = [this](const Strings& more) {
+    return json::parse(run_well(test::joined({"score", "map.vdb", "--poses", "frames/poses.txt",
+                                              "--sensor", "small.toml", "--json", "--top", "1"},
+                                             more)))
+        .at("best")
+        .at(0);
+  };
+  const double gain = best({}).at("gain");
+  EXPECT_EQ(best({}).at("rays"), 48 * 36);
+  EXPECT_EQ(best({"--weight", "-1,-1,-1,1,1,1,0"}).at("gain"), 0.0);
+  EXPECT_NEAR(best({"--weight", "-1,-1,-1,1,1,1,2"}).at("gain"), 2 * gain, 1e-9 * gain);
+  EXPECT_NEAR(best({"--weight", "-1,-1,-1,1,1,1,0", "--weight", "-1,-1,-1,1,1,1,1"}).at("gain"),
+              gain, 1e-9 * gain);
+  EXPECT_EQ(best({"--max-range", "0.3"}).at("hits"), 0);
+  EXPECT_EQ(best({"--min-range", "2"}).at("hits"), 0);
+  EXPECT_GT(best({"--prior-sigma", "0.5"}).at("gain"), gain);
+  EXPECT_NE(best({"--criterion", "trace"}).at("gain"), gain);
+  EXPECT_LT(best({"--stride", "3"}).at("gain"), gain);
+
+  EXPECT_EQ(best({"--gain", "paper"}), best({}));
+  EXPECT_TRUE(best({}).at("area").is_null());
+  const json surface = best({"--gain", "surface"});
+  EXPECT_GT(surface.at("area"), 0.0);
+  EXPECT_EQ(surface.at("gain"), surface.at("area"));
+  EXPECT_TRUE(surface.at("exploration").is_null());
+  EXPECT_TRUE(surface.at("refinement_saturated").is_null());
+  const json combined = best({"--gain", "combined"});
+  EXPECT_GT(combined.at("refinement_saturated"), 0.0);
+  EXPECT_GT(combined.at("gain"),
+            best({"--gain", "combined", "--refinement-weight", "0"}).at("gain"));
+  EXPECT_GT(best({"--gain", "surface", "--hazard", "20"}).at("area"),
+            best({"--gain", "surface", "--hazard", "1"}).at("area"));
+  EXPECT_EQ(best({"--gain", "surface", "--hazard", "0"}).at("area"), 0.0);
+  // From a file: as the same number everywhere, up to the size of the hazard's cells.
+  const BeliefGrid map = load_vdb(dir / "map.vdb");
+  save_hazard_vdb({VoxelBox{}, {}, 20.0F}, map, dir / "prior.vdb");
+  const json by_number = best({"--gain", "surface", "--hazard", "20"});
+  const json by_file = best({"--gain", "surface", "--hazard", "prior.vdb"});
+  EXPECT_NEAR(by_file.at("area").get<double>(), by_number.at("area").get<double>(),
+              0.02 * by_number.at("area").get<double>());
+  EXPECT_EQ(best({"--gain", "surface", "--support-plane", "9"}).at("rays"), 48 * 36);
+  EXPECT_NE(best({"--gain", "surface", "--object-size", "1"}).at("area"), surface.at("area"));
+
+  // A cube that stands off the origin is seen by the orbit only when it is moved there.
+  const auto readings = [this](const Strings& more) {
+    return json::parse(run_well(test::joined(
+                           {"simulate", "cube.off", "--orbit", "2,0.6,20", "--sensor", "small.toml",
+                            "--out", "other_frames", "--json", "--background", "0"},
+                           more)))
+        .at("readings")
+        .get<int>();
+  };
+  EXPECT_GT(readings({"--recenter", "on", "--size", "0.35"}),
+            readings({"--recenter", "on", "--size", "0.1"}));
+  EXPECT_NE(readings({"--recenter", "on", "--size", "0.35"}), readings({"--size", "0.35"}));
+}
+
+TEST_F(Workflow, FramesSayWhatTheHazardIs) {
+  simulate("frames");
+  integrate("frames", "plain.vdb");
+  integrate("frames", "one.vdb", {"--calibrate-hazard", "on"});
+  const auto factors = [this](const std::string& map) {
+    return json::parse(run_well({"info", map, "--json"})).at("hazard_factors");
+  };
+  EXPECT_TRUE(factors("plain.vdb").is_null());
+  BeliefGrid map = load_vdb(dir / "one.vdb");
+  ASSERT_EQ(factors("one.vdb").size(), HazardCounters::kClasses);
+  for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+    EXPECT_EQ(factors("one.vdb")[k], map.hazard_counters().factor(k));
+  }
+  EXPECT_EQ(run_well({"info", "plain.vdb"}).find("hazard factors"), std::string::npos);
+  EXPECT_NE(run_well({"info", "one.vdb"}).find("hazard factors"), std::string::npos);
+  // The rest of the map is the same.
+  map.set_hazard_counters({});
+  EXPECT_EQ(map.content_hash() + "\n", hash("plain.vdb"));
+}
+
+TEST_F(Workflow, ThePictureIsAPictureAndTheOnlyNewFile) {
+  simulate("frames");
+  integrate("frames", "map.vdb");
+  const Strings before = list();
+  run_well(
+      {"score", "map.vdb", "--sphere", "20,0.6", "--sensor", "small.toml", "--picture", "v.png"});
+  Strings after = list();
+  ASSERT_EQ(after.size(), before.size() + 1);
+  const std::string png = read("v.png");
+  ASSERT_GT(png.size(), 10000U);
+  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x05\0\0\0\x03\xc0", 8));  // 1280 x 960
+}
+
+}  // namespace
+}  // namespace viewgain
