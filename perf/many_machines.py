@@ -49,7 +49,7 @@ def camel(binaries, folder, voxels):
 def evaluator_of(path, threads, stride=STRIDE):
     grid = viewgain.BeliefGrid.load(path)
     sensor = viewgain.Sensor.load("sr4000")
-    return viewgain.GainEvaluator(viewgain.VoxelScene(grid, num_threads=threads), sensor, pixel_stride=stride,
+    return viewgain.GainEvaluator(viewgain.VoxelScene(grid, num_threads=threads), sensor, gain="paper", pixel_stride=stride,
                                   num_threads=threads, posterior_entropy=True)
 
 
@@ -71,7 +71,7 @@ def dask_run(path, poses, out, workers=2, progress=None):
     with distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None,
                                   memory_limit=0) as cluster, distributed.Client(cluster) as client:
         pids = list(client.run(os.getpid).values())
-        found = viewgain.distributed.score(client, path, poses, "sr4000", out=out, num_threads=1, pixel_stride=STRIDE,
+        found = viewgain.distributed.score(client, path, poses, "sr4000", out=out, num_threads=1, gain="paper", pixel_stride=STRIDE,
                                            progress=progress and (lambda done, total: progress(pids, done, total)))
     return found, np.concatenate([np.load(part) for part in found.parts])
 
@@ -109,24 +109,19 @@ def kill(binaries, folder, count=1_000_000):
 
 def merge(binaries, folder, count=10_000_000, ending="npy", parts=100, top=1000):
     """Parts of rows that nobody scored, with many ties."""
-    from viewgain import _parts
+    from viewgain import _rows, _viewgain
 
-    head = f"# viewgain 0\n# map 0\n# sensor 0 0\n# settings {{}}\n# isa avx2\n# poses {count} 0\n"
+    head = f"# viewgain 0\n# map 0\n# sensor 0 0\n# settings {{}}\n# isa avx2\n# poses {count} 0\n# rows 0:0\n# scored 0\n"
     random, names, gains = np.random.default_rng(1), [], []
     shutil.rmtree(folder / "parts", ignore_errors=True)
     (folder / "parts").mkdir()
     for i in range(parts):
         begin, end = count * i // parts, count * (i + 1) // parts
-        rows = np.zeros(end - begin, _parts.dtype_of({}))
+        rows = np.zeros(end - begin, _rows.dtype_of("paper"))
         rows["index"], rows["gain"] = np.arange(begin, end), random.integers(0, 1_000_000, end - begin)
         gains.append(rows["gain"].copy())
         names.append(folder / "parts" / f"{i:03d}.{ending}")
-        if ending == "npy":
-            _parts.write_part(names[-1], rows, head, begin)
-        else:
-            with open(names[-1], "w") as file:
-                file.write(f"{head}# rows {begin}:{end}\n# scored {len(rows)}\n{','.join(rows.dtype.names)}\n")
-                file.writelines(f"{i},{g:.0f},0,0,0,0,0,0,0,ok\n" for i, g in zip(rows["index"], rows["gain"]))
+        _viewgain._write_part(names[-1], head, "paper", rows.tobytes())
     said = {"rows": count, "parts": parts, "ending": ending}
     for flags in ((), ("--top", str(top))):
         start = time.perf_counter()
@@ -161,7 +156,7 @@ def cost(binaries, folder, count=60_000):
     for stride, some in ((STRIDE, 8000), (1, 1500)):
         for threads in (1, 2):
             poses = viewgain.shell_poses(some, 0.45, 0.8, seed=2)
-            evaluator = viewgain.GainEvaluator(scene, sensor, pixel_stride=stride, num_threads=threads)
+            evaluator = viewgain.GainEvaluator(scene, sensor, gain="paper", pixel_stride=stride, num_threads=threads)
             evaluator.evaluate(poses[:64])
             start = time.perf_counter()
             evaluator.evaluate(poses)

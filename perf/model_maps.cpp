@@ -19,7 +19,8 @@ constexpr int kNextViewStride = 4;
 Pose next_view(const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor,
                const std::vector<Pose>& poses, const std::vector<Pose>& views,
                const ExecConfig& exec) {
-  const GainEvaluator evaluator(scene, sensor, {.pixel_stride = kNextViewStride}, exec);
+  const GainEvaluator evaluator(scene, sensor,
+                                {.model = GainModel::paper, .pixel_stride = kNextViewStride}, exec);
   const std::vector<std::size_t> order = best_indices(evaluator.evaluate(poses), poses.size());
   const auto untaken = std::find_if(order.begin(), order.end(), [&](std::size_t i) {
     return std::find(views.begin(), views.end(), poses[i]) == views.end();

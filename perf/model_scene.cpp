@@ -38,8 +38,7 @@ BeliefGrid ModelScene::empty_grid(double voxel_size) const {
   GridConfig config;
   config.voxel_size = voxel_size;
   config.workspace = stage_.workspace;
-  config.prior_sigma = default_prior_sigma(voxel_size, sensor_);
-  return BeliefGrid(config);
+  return BeliefGrid(config, sensor_);
 }
 
 }  // namespace viewgain::bench

@@ -27,7 +27,7 @@ labels[(radius <= 24) & (j > 40)] = 0
 sensor = viewgain.sensor_preset("sr4000")
 grid = viewgain.BeliefGrid.from_labels(labels, voxel_size=0.005, origin=[-0.16] * 3, sensor=sensor)
 poses = viewgain.sphere_poses(count, 0.6)
-evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor)
+evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, gain="paper")
 nowhere = viewgain.GainEvaluator(
     viewgain.VoxelScene(viewgain.BeliefGrid.from_labels(
         np.ones((1, 1, 1), np.uint8), voxel_size=0.005, sensor=sensor)),

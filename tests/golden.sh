@@ -41,7 +41,7 @@ figures() {
   VIEWGAIN_ISA=$isa "$viewgain" reconstruct "$work/$object.off" --size 0.35 --sensor sr4000 --voxel 0.005 \
     --policy "$policy" --max-views 4 --seed 3 --threads "$threads" --pictures off --out "$out" >"$work/log" 2>&1 ||
     { cat "$work/log" >&2; return 1; }
-  VIEWGAIN_ISA=$isa "$viewgain" score "$out/map.vdb" --sphere 100,0.6 --sensor sr4000 --threads "$threads" \
+  VIEWGAIN_ISA=$isa "$viewgain" score "$out/map.vdb" --sphere 100,0.6 --sensor sr4000 --gain paper --threads "$threads" \
     --out "$out/scores.csv" >"$work/log" 2>&1 || { cat "$work/log" >&2; return 1; }
   printf '%s %s %s' "$("$viewgain" info "$out/map.vdb" --hash | cut -c1-16)" \
     "$(without_times "$out/run.json" | sha256sum | cut -c1-16)" "$(sha256sum <"$out/scores.csv" | cut -c1-16)"

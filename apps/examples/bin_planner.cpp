@@ -15,12 +15,12 @@ PlannerConfig bin_cell() {
   PlannerConfig config;
   config.grid.voxel_size = 0.005;
   config.grid.workspace = {{-0.20, -0.15, 0.0}, {0.20, 0.15, 0.20}};
-  config.support_plane = 0.0;  // the bin's floor
+  config.surroundings.support_plane = 0.0;  // the bin's floor
   // Its four walls, 2 cm thick and 20 cm high.
-  config.obstacles.boxes = {{{-0.22, -0.17, 0}, {-0.20, 0.17, 0.2}},
-                            {{0.20, -0.17, 0}, {0.22, 0.17, 0.2}},
-                            {{-0.22, -0.17, 0}, {0.22, -0.15, 0.2}},
-                            {{-0.22, 0.15, 0}, {0.22, 0.17, 0.2}}};
+  config.surroundings.obstacles.boxes = {{{-0.22, -0.17, 0}, {-0.20, 0.17, 0.2}},
+                                         {{0.20, -0.17, 0}, {0.22, 0.17, 0.2}},
+                                         {{-0.22, -0.17, 0}, {0.22, -0.15, 0.2}},
+                                         {{-0.22, 0.15, 0}, {0.22, 0.17, 0.2}}};
   config.reach.shells = {{{0.0, 0.0, 0.1}, 0.40, 0.75}};
   config.reach.half_spaces = {{{0, 0, 1}, 0.30}};  // nowhere under 0.3 m
   config.clearance = 0.01;

@@ -17,7 +17,7 @@
 #include <numeric>
 #include <string_view>
 #include <vector>
-#include <viewgain/grid/octomap_tree.hpp>
+#include <viewgain/formats/octomap_tree.hpp>
 #include <viewgain/viewgain.hpp>
 
 namespace {
@@ -81,7 +81,7 @@ viewgain::GainEvaluator evaluator_of(const octomap::OcTree& tree, const viewgain
       tree, {.workspace = kMapped, .prior_sigma = viewgain::default_prior_sigma(kVoxel, sensor)});
   return {viewgain::VoxelScene::build(grid, {}, {.num_threads = 1}),
           sensor,
-          {.min_range = 1e-4},
+          {.model = viewgain::GainModel::paper, .min_range = 1e-4},
           {.num_threads = 1}};
 }
 

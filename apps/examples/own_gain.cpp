@@ -26,7 +26,7 @@ int main(int argc, char** argv) try {
   const viewgain::GainEvaluator evaluator(scene, viewgain::sensor_preset("sr4000"));
   const std::vector<viewgain::Pose> poses = viewgain::sphere_poses(200, 0.6);
   std::vector<double> gains(poses.size());
-  evaluator.evaluate(poses, NearUnknown(), gains);  // measure() runs on all cores
+  evaluator.evaluate(poses, gains, NearUnknown());  // measure() runs on all cores
   const auto best = std::max_element(gains.begin(), gains.end());
   std::printf("pose %td: %.1f unknown voxels per m2\n", best - gains.begin(), *best);
 } catch (const std::exception& error) {

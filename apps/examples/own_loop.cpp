@@ -75,7 +75,6 @@ int main() try {
   MapModelConfig config;
   config.grid.voxel_size = 0.01;
   config.grid.workspace = {{-0.15, -0.15, -0.15}, {0.15, 0.15, 0.15}};
-  config.grid.prior_sigma = default_prior_sigma(config.grid.voxel_size, sensor);
   Map map(sensor, config);
   NearingRing ring;
   GainPerMetre choice(map);

@@ -42,18 +42,22 @@ int end_of_output() {
   return 0;
 }
 
-// What CLI11 is to parse: the command line, with what a --config stands for.
-std::vector<std::string> all_words(const viewgain::app::App& program,
-                                   std::vector<std::string> words) {
+// Parses the command line, with what a --config stands for. False where that printed a help.
+bool parse(viewgain::app::App& program, const std::vector<viewgain::app::Command>& commands,
+           const std::vector<std::string>& words) {
   const viewgain::app::App* subcommand = viewgain::app::subcommand_of(program, words);
   if (subcommand == nullptr) {
-    if (!words.empty()) (void)viewgain::app::sort_words(program, {words[0]});
-    return words;
+    if (!words.empty()) (void)viewgain::app::sort_words(program, program.options(), {words[0]});
+    return program.parse(words);
   }
-  std::vector<std::string> all =
-      viewgain::app::with_config(*subcommand, {words.begin() + 1, words.end()});
+  const std::vector<std::string> after(words.begin() + 1, words.end());
+  const viewgain::app::App& form = viewgain::app::form_of(*subcommand, after);
+  std::vector<std::string> all = viewgain::app::with_config(form, after);
+  for (const viewgain::app::Command& command : commands) {
+    if (command.app == &form && &form != subcommand) return command.app->parse(std::move(all));
+  }
   all.insert(all.begin(), words[0]);
-  return all;
+  return program.parse(std::move(all));
 }
 
 int run(int argc, char** argv) {
@@ -64,15 +68,18 @@ int run(int argc, char** argv) {
       "viewgain");
   program.set_version_flag("--version", std::string("viewgain ") + VIEWGAIN_VERSION);
   program.require_subcommand(1);
-  const std::vector<viewgain::app::Command> commands{
-      viewgain::app::add_reconstruct(program), viewgain::app::add_simulate(program),
-      viewgain::app::add_import(program),      viewgain::app::add_calibrate(program),
-      viewgain::app::add_integrate(program),   viewgain::app::add_score(program),
-      viewgain::app::add_candidates(program),  viewgain::app::add_next(program),
-      viewgain::app::add_info(program),        viewgain::app::add_surface(program),
-      viewgain::app::add_convert(program),     viewgain::app::add_render(program),
-      viewgain::app::add_sensors(program),     viewgain::app::add_study(program),
-      viewgain::app::add_follow(program),      viewgain::app::add_merge(program)};
+  std::vector<viewgain::app::Command> commands;
+  for (const auto add :
+       {viewgain::app::add_reconstruct, viewgain::app::add_simulate, viewgain::app::add_import,
+        viewgain::app::add_calibrate, viewgain::app::add_integrate, viewgain::app::add_score,
+        viewgain::app::add_candidates, viewgain::app::add_next, viewgain::app::add_info,
+        viewgain::app::add_surface, viewgain::app::add_convert, viewgain::app::add_render,
+        viewgain::app::add_sensors, viewgain::app::add_study, viewgain::app::add_follow,
+        viewgain::app::add_merge}) {
+    commands.push_back(add(program));
+    const viewgain::app::Command& first = commands.back();
+    if (first.add_form) commands.push_back(first.add_form(*first.app));
+  }
   // For the build alone.
   std::string help_folder;
   viewgain::app::App* help_files =
@@ -83,9 +90,8 @@ int run(int argc, char** argv) {
       "  viewgain reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 3 "
       "--out run\n"
       "  viewgain score run/map.vdb --sphere 2000,0.6 --race --top 3");
-  std::vector<std::string> words = all_words(program, {argv + 1, argv + argc});
   try {
-    if (!program.parse(std::move(words))) return end_of_output();
+    if (!parse(program, commands, {argv + 1, argv + argc})) return end_of_output();
   } catch (const viewgain::app::UsageError& error) {
     return report(std::string(error.what()) + " (see --help)", kBadInput);
   }

@@ -31,7 +31,8 @@ std::vector<Figure> decision_figures(const BarsOptions& options) {
   }
   const DepthFrame frame = model.acquire(views[kViews], kViews);
   const auto scene_before = VoxelScene::build(before, {}, exec);
-  const GainEvaluator evaluator_before(scene_before, model.sensor(), {}, exec);
+  const GainEvaluator evaluator_before(scene_before, model.sensor(), {.model = GainModel::paper},
+                                       exec);
 
   const auto decide = [&](BeliefGrid& grid, std::span<const Pose> poses) {
     integrator.integrate(grid, frame, views[kViews]);

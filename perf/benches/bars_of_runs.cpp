@@ -59,8 +59,9 @@ std::vector<Figure> scaling_figures(const BarsOptions& options) {
 std::vector<Figure> latency_figures(const BarsOptions& options) {
   const auto scene = VoxelScene::build(test::camel_grid(options.voxels, options.mesh));
   const Sensor sensor = sensor_preset("sr4000");
-  const GainEvaluator alone(scene, sensor, {}, {.num_threads = 1});
-  const GainEvaluator together(scene, sensor, {}, {.num_threads = options.num_threads});
+  const GainEvaluator alone(scene, sensor, {.model = GainModel::paper}, {.num_threads = 1});
+  const GainEvaluator together(scene, sensor, {.model = GainModel::paper},
+                               {.num_threads = options.num_threads});
   const std::vector<Pose> poses = sphere_poses(static_cast<std::size_t>(options.poses), 0.6);
   // Of each pose the median counts, so that a pose that was interrupted does not.
   double sum_alone = 0, sum_together = 0;

@@ -89,7 +89,7 @@ std::vector<Figure> search_figures(const BarsOptions& options) {
   Searches raced;
   bool is_odd = false;
   for_each_model_map(plan, exec, [&](const ModelMap& map) {
-    const GainEvaluator evaluator(map.scene, sensor, {}, exec);
+    const GainEvaluator evaluator(map.scene, sensor, {.model = GainModel::paper}, exec);
     search(evaluator, poses, is_odd, raced);
     is_odd = !is_odd;
   });

@@ -61,7 +61,7 @@ std::vector<Figure> stages_figures(const BarsOptions& options) {
   constexpr std::array kModels{GainModel::surface, GainModel::combined};
   std::array<Choices, kModels.size()> choices;
   for_each_model_map(plan, exec, [&](const ModelMap& map) {
-    const GainEvaluator paper(map.scene, sensor, {}, exec);
+    const GainEvaluator paper(map.scene, sensor, {.model = GainModel::paper}, exec);
     // What each thread keeps from pose to pose, and what the scene makes once, is there beforehand.
     (void)paper.evaluate(few);
     const double all_by_paper = seconds_of([&] { (void)paper.evaluate(poses); });

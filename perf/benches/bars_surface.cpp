@@ -117,7 +117,7 @@ std::vector<Figure> classic_figures(const BarsOptions& options) {
     config.gains.push_back(parse_classic_gain(name));
   }
   const ExecConfig exec{.num_threads = options.num_threads};
-  const GainEvaluator paper(scene, sensor, {}, exec);
+  const GainEvaluator paper(scene, sensor, {.model = GainModel::paper}, exec);
   const ClassicGainEvaluator classic(map, sensor, config, exec);
   std::vector<double> paper_seconds, classic_seconds, gains;
   for (int repetition = -1; repetition < options.repetitions; ++repetition) {

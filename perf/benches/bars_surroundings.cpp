@@ -83,12 +83,12 @@ std::vector<Figure> surroundings_figures(const BarsOptions& options) {
   // Larger images: fewer of them.
   const std::vector<Pose> far =
       sphere_poses(static_cast<std::size_t>(std::max(1, options.poses / 8)), 1.0);
-  return {speed_ratio("wall_over_free", {VoxelScene::build(grid, wall()), sr4000}, {free, sr4000},
+  return {speed_ratio("wall_over_free", {VoxelScene::build(grid, {wall()}), sr4000}, {free, sr4000},
                       near, options),
-          speed_ratio("mesh_over_free", {VoxelScene::build(grid, surrounding_mesh()), sr4000},
+          speed_ratio("mesh_over_free", {VoxelScene::build(grid, {surrounding_mesh()}), sr4000},
                       {free, sr4000}, near, options),
-          speed_ratio("table_over_free", {VoxelScene::build(grid, table()), kinect}, {free, kinect},
-                      far, options),
+          speed_ratio("table_over_free", {VoxelScene::build(grid, {table()}), kinect},
+                      {free, kinect}, far, options),
           speed_ratio("lens_over_pinhole", {free, with_lens}, {free, kinect}, far, options)};
 }
 

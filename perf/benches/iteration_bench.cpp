@@ -82,7 +82,7 @@ int run_iteration(const IterationOptions& options) {
     });
     poses = exactly(std::move(poses), static_cast<std::size_t>(options.candidates), distance);
     now["score"] = seconds_of([&] {
-      const GainEvaluator evaluator(voxels, scene.sensor(), {}, exec);
+      const GainEvaluator evaluator(voxels, scene.sensor(), {.model = GainModel::paper}, exec);
       (void)best_indices(evaluator.evaluate(poses), 1);
     });
     if (repetition < 0) continue;

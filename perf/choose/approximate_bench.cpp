@@ -100,9 +100,10 @@ int run_approximate(const ApproximateOptions& options) {
   std::vector<ApproximateGain> estimated(count);
 
   std::vector<GainEvaluator> evaluators;
-  evaluators.emplace_back(scene, sensor, GainConfig{}, exec);
+  evaluators.emplace_back(scene, sensor, GainConfig{.model = GainModel::paper}, exec);
   for (const int stride : kStrides) {
-    evaluators.emplace_back(scene, sensor, GainConfig{.pixel_stride = stride}, exec);
+    evaluators.emplace_back(scene, sensor,
+                            GainConfig{.model = GainModel::paper, .pixel_stride = stride}, exec);
   }
   std::vector<Way> ways;
   const auto add_exact = [&](const std::string& name, const char* kind, int stride,

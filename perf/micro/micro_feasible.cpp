@@ -22,7 +22,7 @@ std::shared_ptr<const VoxelScene> scene_with(int obstacles) {
   Obstacles walls;
   if (obstacles > 0) walls.boxes.push_back({{-1, -1, -0.52}, {1, 1, -0.5}});
   if (obstacles > 1) walls.boxes.push_back({{0.5, -1, -1}, {0.52, 1, 1}});
-  return VoxelScene::build(MicroScene::get().grid, walls, {.num_threads = 1});
+  return VoxelScene::build(MicroScene::get().grid, {walls}, {.num_threads = 1});
 }
 
 FeasibilityConfig config_of(bool with_sight) {

@@ -68,7 +68,7 @@ GridConfig turned_grid(const ModelScene& model, double voxel, const Pose& T_worl
 std::vector<double> gains_by(Criterion criterion, const std::shared_ptr<const VoxelScene>& scene,
                              double voxel, const Sensor& sensor, const std::vector<Pose>& poses,
                              const ExecConfig& exec) {
-  GainConfig config;
+  GainConfig config{.model = GainModel::paper};
   config.criterion = criterion;
   config.pixel_stride = kStride;
   config.prior_sigma = default_prior_sigma(voxel, sensor);

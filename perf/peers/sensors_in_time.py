@@ -3,13 +3,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """A laser line scanner against the SR4000 on one object in the same time, after the paper's Fig. 6.
 
-Runs `viewgain reconstruct` with sensor sr4000, with laser_line chosen line by line, and with a sweep, a
-frame of 480 such lines, and prints as a Markdown table what each has after so many seconds: visible
-surface covered (5 mm), all of it at 2.5 mm, RMS of the surface, entropy removed (each sensor from its
-own prior). The time is that of a robot, not of this program:
+Runs `viewgain reconstruct` with sensor sr4000 and with a sweep, a frame of 480 lines, and prints as a
+Markdown table what each has after so many seconds: visible surface covered (5 mm), all of it at 2.5 mm,
+RMS of the surface, entropy removed (each sensor from its own prior). The time is that of a robot, not of this program:
 
-    way / speed + views * (settle + frame)      SR4000, sweeps: frame 1 / 20 s, 480 lines / line rate
-    way / speed + lines / line rate             laser_line: lines are taken in motion
+    way / speed + views * (settle + frame)      frame: SR4000 1 / 20 s, sweeps 480 lines / line rate
 
     perf/peers/sensors_in_time.py [--viewgain build/release/bin/viewgain] [--mesh build/release/meshes/camel.off]
                                   [--out build/sensors_in_time] [--seconds 10,20,30,60] [--speed 0.25]
@@ -24,7 +22,7 @@ import statistics
 import subprocess
 
 LINES = 480  # of a sweep
-LEAST_WAY = {"SR4000": 0.5, "laser_line": 0.08, "sweeps": 0.5}  # between views, in the mean [m]
+LEAST_WAY = {"SR4000": 0.5, "sweeps": 0.5}  # between views, in the mean [m]
 SWEEP = f"""name = "sweep of {LINES} lines"
 min_range = 0.1
 max_range = 1.0
@@ -66,11 +64,9 @@ def ways(arguments, budget):
     sweep = os.path.join(arguments.out, "sweep.toml")
     with open(sweep, "w", encoding="utf-8") as file:
         file.write(SWEEP)
-    line = 1 / arguments.line_rate
-    each = {"SR4000": arguments.settle + 1 / 20, "laser_line": line, "sweeps": arguments.settle + LINES * line}
-    flags = {"SR4000": ["--sensor", "sr4000"], "sweeps": ["--sensor", sweep],
-             "laser_line": ["--sensor", "laser_line", "--generator", "shell", "--count", "500",
-                            "--travel-speed", str(arguments.speed)]}
+    each = {"SR4000": arguments.settle + 1 / 20, "sweeps": arguments.settle + LINES / arguments.line_rate}
+    flags = {"SR4000": ["--sensor", "sr4000"], "sweeps": ["--sensor", sweep]}
+
     def most(name):
         return str(math.ceil(budget / (each[name] + LEAST_WAY[name] / arguments.speed)))
 

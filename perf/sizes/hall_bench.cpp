@@ -69,9 +69,7 @@ int run_hall(const HallOptions& options) {
                                {.noise = true}, exec);
   reset_peak_memory();
   const std::uint64_t before = resident_bytes();
-  BeliefGrid grid({.voxel_size = options.voxel,
-                   .workspace = kWorkspace,
-                   .prior_sigma = default_prior_sigma(options.voxel, sensor)});
+  BeliefGrid grid({.voxel_size = options.voxel, .workspace = kWorkspace}, sensor);
   FrameIntegrator integrator(sensor, {}, exec);
   const auto integrate = [&](int i, const Pose& T_world_camera) {
     const DepthFrame frame = camera.acquire(T_world_camera, static_cast<std::uint64_t>(i));
@@ -91,7 +89,7 @@ int run_hall(const HallOptions& options) {
 
   Sensor scoring = sensor;
   scoring.max_range = std::min(sensor.max_range, kScoringRange);
-  const GainEvaluator evaluator(scene, scoring, {}, exec);
+  const GainEvaluator evaluator(scene, scoring, {.model = GainModel::paper}, exec);
   const std::vector<Pose> poses =
       test::poses_in(scene->snapshot(), static_cast<std::size_t>(options.poses), kSeed);
   std::vector<ViewGain> gains(poses.size());

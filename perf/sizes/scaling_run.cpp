@@ -72,7 +72,7 @@ void add_cases(const ScalingPlan& plan, int voxels, std::vector<Runner>& runners
 }  // namespace
 
 RayPattern ray_pattern(int rays_per_pose) {
-  RayPattern pattern{sensor_preset("sr4000"), {}};
+  RayPattern pattern{sensor_preset("sr4000"), {.model = GainModel::paper}};
   PinholeCamera& camera = pattern.sensor.camera;
   if (rays_per_pose == kHalfRays) pattern.config.pixel_stride = 2;
   if (rays_per_pose == kFewRays) {

@@ -149,8 +149,10 @@ case $kind in
     export PYTHONPATH=${package%/viewgain} PYTHONDONTWRITEBYTECODE=1
     # The frame of its map begins elsewhere than gain.cpp's: equal but for rounding.
     gain=$("$here/gain.py")
-    awk -v a="$gain" -v b="$("$expected")" 'BEGIN { exit !(a > 0 && (a / b - 1) ^ 2 < 1e-20) }' ||
-      fail "the gain is $gain, expected $("$expected")"
+    awk -v a="$gain" -v b="$("$expected" c)" 'BEGIN { exit !(a > 0 && (a / b - 1) ^ 2 < 1e-20) }' ||
+      fail "the gain is $gain, expected $("$expected" c)"
+    grep -q "def evaluate(self" "$package/_viewgain.pyi" && grep -q "^class Surface" "$package/mesh/_mesh.pyi" ||
+      fail "types are missing"
     /usr/bin/python3 -c "import viewgain.mesh; print(viewgain.mesh.__file__)" | grep -q "^$work/prefix/" ||
       fail "another viewgain.mesh was found"
     for extension in "$package"/_viewgain.*.so; do
@@ -181,7 +183,7 @@ target_link_libraries(tree PRIVATE viewgain::octomap)
 PROJECT
     cat >"$folder/tree.cpp" <<'PROGRAM'
 #include <cstdio>
-#include <viewgain/grid/octomap_tree.hpp>
+#include <viewgain/formats/octomap_tree.hpp>
 int main() {
   viewgain::BeliefGrid grid({0.1, {{0, 0, 0}, {1, 1, 1}}, {}, 0.05});
   grid.set({1, 2, 3}, 1.0F);

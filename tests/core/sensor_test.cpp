@@ -31,6 +31,8 @@ TEST(SensorPresets, AreAllValid) {
     ++cases;
   }
   EXPECT_EQ(cases, 5);
+  EXPECT_NO_THROW(Sensor{}.validate());
+  EXPECT_EQ(Sensor{}.name, "sr4000");
   expect_error(ErrorCode::invalid_argument,
                "unknown sensor 'sr3000', valid are sr4000, azure_kinect_nfov, kinect_v1, d435, "
                "laser_line",

@@ -23,6 +23,11 @@ constexpr bool kSlowBuild = true;
 constexpr bool kSlowBuild = false;
 #endif
 
+[[nodiscard]] inline GainConfig by_paper(Criterion criterion) {
+  return {.model = GainModel::paper, .criterion = criterion};
+}
+inline const GainConfig kPaper = by_paper(Criterion::log_diagonal);
+
 using Random = std::mt19937_64;
 
 [[nodiscard]] double uniform(Random& random, double low, double high);

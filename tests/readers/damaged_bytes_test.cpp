@@ -27,11 +27,11 @@
 #include "viewgain/formats/cloud_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/masks.hpp"
+#include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/recordings.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
-#include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/support/columns/mapped_poses.hpp"
 #include "viewgain/support/columns/npy_header.hpp"
@@ -145,11 +145,11 @@ std::string octomap_of_boxes() {
   return octomap_bytes(grid);
 }
 
-app::Table small_table() {
-  app::Table table{{{"index", app::ColumnType::row},
-                    {"gain", app::ColumnType::real},
-                    {"hits", app::ColumnType::count},
-                    {"status", app::ColumnType::status}}};
+Table small_table() {
+  Table table{{{"index", ColumnType::row},
+               {"gain", ColumnType::real},
+               {"hits", ColumnType::count},
+               {"status", ColumnType::status}}};
   for (std::int64_t row = 0; row < 5; ++row) {
     table.add(row);
     table.add(1.5 * static_cast<double>(row));
@@ -160,12 +160,12 @@ app::Table small_table() {
 }
 
 void write_part(const fs::path& path) {
-  app::PartHead head{"0.1.0", "map", "sensor", "{}", "avx2", 5, "hash", {0, 5}, 5};
-  app::write_table(path, small_table(), head);
+  PartHead head{"0.1.0", "map", "sensor", "{}", "avx2", 5, "hash", {0, 5}, 5};
+  write_table(path, small_table(), head);
 }
 
 void read_part(const fs::path& path) {
-  app::PartReader reader(path);
+  PartReader reader(path);
   while (reader.next() != nullptr) {
   }
 }
@@ -181,11 +181,11 @@ Reader file_reader(const std::string& name, const std::string& bytes,
 
 std::vector<Reader> pose_readers() {
   const auto cloud_of_poses = [](const TemporaryFolder& folder) {
-    std::vector<app::Column> columns;
+    std::vector<Column> columns;
     for (const char* name : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
-      columns.push_back({name, app::ColumnType::real});
+      columns.push_back({name, ColumnType::real});
     }
-    std::string bytes = app::npy_header(columns, 3);
+    std::string bytes = npy_header(columns, 3);
     for (int row = 0; row < 3; ++row) {
       for (const double x : {0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0}) append(bytes, x);
     }
@@ -199,7 +199,7 @@ std::vector<Reader> pose_readers() {
       file_reader("pose.txt", matrix_text(three_poses()[0]),
                   [](const fs::path& path) { (void)read_pose_matrix(path); }),
       {"poses.npy", cloud_of_poses, {"poses.npy"}, [](const fs::path& folder) {
-         const app::MappedPoses poses(folder / "poses.npy");
+         const MappedPoses poses(folder / "poses.npy");
          for (std::size_t row = 0; row < std::min<std::size_t>(poses.size(), 100); ++row) {
            bool mended = false;
            (void)poses.at(row, mended);

@@ -34,10 +34,8 @@ std::vector<CamelView> camel_views(std::size_t count, const std::filesystem::pat
 }
 
 BeliefGrid empty_camel_grid(int voxels_per_side) {
-  const double voxel_size = 0.4 / voxels_per_side;
-  return BeliefGrid({.voxel_size = voxel_size,
-                     .workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}},
-                     .prior_sigma = default_prior_sigma(voxel_size, sensor_preset("sr4000"))});
+  return BeliefGrid(
+      {.voxel_size = 0.4 / voxels_per_side, .workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}});
 }
 
 BeliefGrid camel_grid(int voxels_per_side, const std::vector<CamelView>& views,

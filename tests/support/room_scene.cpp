@@ -48,9 +48,7 @@ BeliefGrid room_grid(double voxel_size, const Sensor& sensor, int frames, const 
                                {.noise = true}, exec);
   Box workspace = kRoom;
   for (std::size_t k = 0; k < 3; ++k) workspace.min[k] -= kWall, workspace.max[k] += kWall;
-  BeliefGrid grid({.voxel_size = voxel_size,
-                   .workspace = workspace,
-                   .prior_sigma = default_prior_sigma(voxel_size, sensor)});
+  BeliefGrid grid({.voxel_size = voxel_size, .workspace = workspace}, sensor);
   FrameIntegrator integrator(sensor, {}, exec);
   for (int i = 0; i < frames; ++i) {
     const double turn = std::numbers::pi * i / frames;

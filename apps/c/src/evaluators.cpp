@@ -38,7 +38,6 @@ GainConfig settings_of(const vg_evaluator_config& config) {
                       .min_range = given(config.min_range),
                       .max_range = given(config.max_range),
                       .refinement_weight = config.refinement_weight,
-                      .support_plane = given(config.support_plane),
                       .posterior_entropy = config.posterior_entropy != 0};
   for (const vg_weight_region& region : std::span(config.weights, config.weight_count)) {
     settings.weights.push_back(
@@ -92,8 +91,9 @@ void hand_over(std::span<const std::size_t> chosen, std::span<const ViewGain> vi
 template <>
 vg_evaluator_config viewgain::c_api::defaults() noexcept {
   vg_evaluator_config config{};
+  config.gain = static_cast<std::int32_t>(kDefaultGain);
   config.pixel_stride = 1;
-  config.prior_sigma = config.min_range = config.max_range = config.support_plane = kNone;
+  config.prior_sigma = config.min_range = config.max_range = kNone;
   config.refinement_weight = GainConfig{}.refinement_weight;
   return config;
 }
@@ -182,7 +182,8 @@ vg_status vg_best(const vg_evaluator* evaluator, const double* poses, size_t cou
     require_choice(evaluator, k, indices, found);
     *found = 0;
     Watcher watcher(watch, count);
-    const BestViews best = evaluator->evaluator.best(poses_of(poses, count), k, watcher.control());
+    const BestViews best =
+        evaluator->evaluator.best(poses_of(poses, count), k, {}, watcher.control());
     hand_over(best.indices, best.gains, indices, gains, found);
     watcher.finish(best.complete);
   });

@@ -8,6 +8,7 @@
 #include "handles.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats.h"
+#include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 
 using namespace viewgain;
@@ -63,5 +64,22 @@ vg_status vg_poses_save(const char* path, const double* T_world_camera, const do
     } else {
       write_tum(path, poses, {timestamps, count});
     }
+  });
+}
+
+vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** grid) {
+  return make_handle(grid, "grid", [&] {
+    require(path, "path");
+    OctomapConfig config;
+    if (prior_sigma != 0) config.prior_sigma = prior_sigma;
+    return load_octomap(path, config);
+  });
+}
+
+vg_status vg_grid_save_octomap(const vg_grid* grid, const char* path) {
+  return guarded([&] {
+    require(grid, "grid");
+    require(path, "path");
+    save_octomap(grid->grid, path);
   });
 }

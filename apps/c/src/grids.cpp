@@ -9,7 +9,6 @@
 
 #include "convert.hpp"
 #include "handles.hpp"
-#include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 using namespace viewgain;
@@ -50,6 +49,7 @@ vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3], cons
     require(dims, "dims");
     require(origin, "origin");
     GridConfig config{.voxel_size = voxel_size,
+                      .workspace = {},
                       .T_world_grid = {Eigen::Matrix3d::Identity(), vector_of(origin)},
                       .prior_sigma = prior_sigma};
     // A grid checks its own size, too, but not before it has been given all of the array.
@@ -79,23 +79,6 @@ vg_status vg_grid_save(const vg_grid* grid, const char* path) {
     require(grid, "grid");
     require(path, "path");
     save_vdb(grid->grid, path);
-  });
-}
-
-vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** grid) {
-  return make_handle(grid, "grid", [&] {
-    require(path, "path");
-    OctomapConfig config;
-    if (prior_sigma != 0) config.prior_sigma = prior_sigma;
-    return load_octomap(path, config);
-  });
-}
-
-vg_status vg_grid_save_octomap(const vg_grid* grid, const char* path) {
-  return guarded([&] {
-    require(grid, "grid");
-    require(path, "path");
-    save_octomap(grid->grid, path);
   });
 }
 

@@ -82,9 +82,9 @@ PlannerConfig settings_of(const vg_planner_config& config) {
   settings.grid = {config.voxel_size,
                    {std::to_array(config.box_min), std::to_array(config.box_max)},
                    rigid_pose_of(config.T_world_grid),
-                   config.prior_sigma};
-  settings.support_plane = given(config.support_plane);
-  settings.obstacles = obstacles_of(config);
+                   {}};
+  if (config.prior_sigma != 0) settings.grid.prior_sigma = config.prior_sigma;
+  settings.surroundings = surroundings_of(config);
   settings.jump_edges.reset();
   if (config.jump_edge_angle != 0) {
     settings.jump_edges.emplace();
@@ -265,7 +265,7 @@ vg_status vg_planner_register(vg_planner* planner, const float* depth, const flo
     require_struct(found, "vg_registration");
     const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
     const FrameRegistration own_found =
-        own.register_frame(frame, {rigid_pose_of(T_reported), sigma_translation, sigma_rotation});
+        own.register_frame(frame, rigid_pose_of(T_reported), {sigma_translation, sigma_rotation});
     vg_registration result{};
     result.status = static_cast<int32_t>(own_found.status);
     result.free_directions = static_cast<int32_t>(own_found.free_directions.size());

@@ -49,7 +49,6 @@ FeasibilityConfig settings_of(const vg_feasibility_config& config) {
   }
   settings.clearance = config.clearance;
   settings.taken_tolerance = {config.taken_distance, config.taken_angle};
-  settings.support_plane = given(config.support_plane);
   if (config.sensor != nullptr) {
     settings.sensor = sensor_of(config.sensor);
     settings.sensor->validate();
@@ -64,7 +63,7 @@ FeasibilityConfig settings_of(const vg_feasibility_config& config) {
 template <>
 vg_scene_config viewgain::c_api::defaults() noexcept {
   vg_scene_config config{};
-  config.object_size = config.hazard_rate = kNone;
+  config.support_plane = config.object_size = config.hazard_rate = kNone;
   return config;
 }
 
@@ -75,7 +74,6 @@ vg_feasibility_config viewgain::c_api::defaults() noexcept {
   std::copy(own.body.size.begin(), own.body.size.end(), config.body_size);
   write_pose(Pose{}, config.T_flange_camera);
   config.clearance = own.clearance;
-  config.support_plane = kNone;
   config.taken_distance = own.taken_tolerance.distance;
   config.taken_angle = own.taken_tolerance.angle;
   config.max_near_share = own.max_near_share;
@@ -90,8 +88,8 @@ vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config, vg_
   return make_handle(scene, "scene", [&] {
     require(grid, "grid");
     const vg_scene_config chosen = read_config(config, "vg_scene_config");
-    return VoxelScene::build(grid->grid, obstacles_of(chosen), {.num_threads = chosen.num_threads},
-                             hazard_of(chosen, grid->grid));
+    return VoxelScene::build(grid->grid, surroundings_of(chosen),
+                             {.num_threads = chosen.num_threads}, hazard_of(chosen, grid->grid));
   });
 }
 

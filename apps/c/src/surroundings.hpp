@@ -16,18 +16,18 @@
 
 namespace viewgain::c_api {
 
-/// The obstacles of a struct with the fields of vg_scene_config.
+/// The surroundings of a struct with the fields of vg_scene_config.
 template <typename Config>
-[[nodiscard]] Obstacles obstacles_of(const Config& config) {
+[[nodiscard]] Surroundings surroundings_of(const Config& config) {
   require_array(config.boxes, config.box_count, "boxes");
   require_array(config.vertices, config.vertex_count, "vertices");
   require_array(config.triangles, config.triangle_count, "triangles");
-  Obstacles obstacles;
+  Surroundings surroundings{{}, given(config.support_plane)};
   for (std::size_t i = 0; i < config.box_count; ++i) {
     const double* box = config.boxes + 6 * i;
-    obstacles.boxes.push_back({{box[0], box[1], box[2]}, {box[3], box[4], box[5]}});
+    surroundings.obstacles.boxes.push_back({{box[0], box[1], box[2]}, {box[3], box[4], box[5]}});
   }
-  if (config.triangle_count == 0) return obstacles;
+  if (config.triangle_count == 0) return surroundings;
   TriangleMesh mesh;
   for (std::size_t i = 0; i < config.vertex_count; ++i) {
     const double* p = config.vertices + 3 * i;
@@ -37,8 +37,8 @@ template <typename Config>
     const std::uint32_t* corners = config.triangles + 3 * i;
     mesh.triangles.push_back({corners[0], corners[1], corners[2]});
   }
-  obstacles.meshes.push_back(std::move(mesh));
-  return obstacles;
+  surroundings.obstacles.meshes.push_back(std::move(mesh));
+  return surroundings;
 }
 
 /// Where a robot can put the camera, as the caller says; null: everywhere.

@@ -92,7 +92,7 @@ def main():
 
     sigmas = [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064]
     for criterion in viewgain.criterion_names():
-        values = [agreement(sigma=sigma, criterion=criterion) for sigma in sigmas]
+        values = [agreement(sigma=sigma, gain="paper", criterion=criterion) for sigma in sigmas]
         print("sigma_0", criterion, dict(zip(sigmas, np.round(values, 3))))
         of_prior.plot(1e3 * np.array(sigmas), values, "o-", label=criterion)
     default = viewgain.default_prior_sigma(0.005, SENSOR)

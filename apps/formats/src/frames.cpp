@@ -3,13 +3,8 @@
 #include "viewgain/formats/frames.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cinttypes>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <map>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -22,7 +17,7 @@
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/file_bytes.hpp"
-#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/hash64.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
@@ -201,20 +196,12 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRange
 
 std::string frame_identity(const FrameSequence& frames, std::size_t index) {
   check_index(index, frames.poses.size());
-  std::uint64_t hash = 0;
-  const auto add = [&hash](std::string_view bytes) {
-    hash = mix64(hash ^ bytes.size());
-    for (const char c : bytes) hash = mix64(hash ^ static_cast<unsigned char>(c));
-  };
+  Hash64 hash;
   const fs::path& image = frames.images[index];
-  add(file_bytes(image));
-  if (is_there(amplitude_path(image))) add(file_bytes(amplitude_path(image)));
-  for (const double value : frames.poses[index].m) {
-    hash = mix64(hash ^ std::bit_cast<std::uint64_t>(value));
-  }
-  std::array<char, 17> digits{};
-  std::snprintf(digits.data(), digits.size(), "%016" PRIx64, hash);
-  return std::string(digits.data()) + ' ' + image.filename().string();
+  hash.add_bytes(file_bytes(image));
+  if (is_there(amplitude_path(image))) hash.add_bytes(file_bytes(amplitude_path(image)));
+  for (const double value : frames.poses[index].m) hash.add_number(value);
+  return hash.hex() + ' ' + image.filename().string();
 }
 
 std::vector<fs::path> frame_files(const fs::path& dir) {

@@ -37,9 +37,12 @@ EstimatorConfig default_estimator(double spacing) {
 BoundaryViewsConfig default_boundary(const Sensor& sensor, double voxel_size) {
   BoundaryViewsConfig config;
   // As far apart as the points of the surface will be.
+  if (!(voxel_size > 0) || !std::isfinite(voxel_size)) {
+    throw Error(ErrorCode::invalid_argument,
+                "voxel size " + short_text(voxel_size) + " m must be positive and finite");
+  }
   const double footprint = sigmas(sensor.noise, sensor.working_distance, sensor.camera.fx).lateral;
-  config.estimator =
-      default_estimator(voxel_size > 0 ? std::max(voxel_size, footprint) : voxel_size);
+  config.estimator = default_estimator(std::max(voxel_size, footprint));
   config.working_distance = sensor.working_distance;
   return config;
 }
@@ -71,14 +74,20 @@ BoundaryGeneration::BoundaryGeneration(const MapModel& map, const BoundaryViewsC
                                        const ExecConfig& exec)
     : map_(map), config_(config), exec_(exec) {}
 
+BoundaryGeneration::BoundaryGeneration(const SurfaceModel& model, const BoundaryViewsConfig& config,
+                                       const ExecConfig& exec)
+    : map_(model.map()), model_(&model), config_(config), exec_(exec) {}
+
 Proposal BoundaryGeneration::generate(const Pose&) {
-  surface_ = {};
   estimated_ = {};
   if (map_.grid().views().empty()) return {};
-  const double spacing = pooling_of(map_.scene()->snapshot()).length;
-  surface_ = surface_of(fused_points(map_.grid(), {}, exec_), spacing, exec_);
-  estimated_ =
-      boundary_views(surface_, map_.scene(), map_.grid().views(), map_.sensor(), config_, exec_);
+  SurfaceMesh made;
+  if (model_ == nullptr) {
+    const double spacing = pooling_of(map_.scene()->snapshot()).length;
+    made = surface_of(fused_points(map_.grid(), {}, exec_), spacing, exec_);
+  }
+  estimated_ = boundary_views(model_ != nullptr ? model_->surface() : made, map_.scene(),
+                              map_.grid().views(), map_.sensor(), config_, exec_);
   return {candidates_of(estimated_), {}};
 }
 

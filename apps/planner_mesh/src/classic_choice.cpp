@@ -12,13 +12,8 @@
 namespace viewgain {
 
 ClassicChoice::ClassicChoice(const SurfaceModel& model, const Sensor& sensor,
-                             const ClassicRanking& ranking, std::optional<double> support_plane,
-                             const ExecConfig& exec)
-    : model_(model),
-      sensor_(sensor),
-      ranking_(ranking),
-      support_plane_(support_plane),
-      exec_(exec) {}
+                             const ClassicRanking& ranking, const ExecConfig& exec)
+    : model_(model), sensor_(sensor), ranking_(ranking), exec_(exec) {}
 
 std::vector<double> ClassicChoice::gains(std::span<const Pose> T_world_camera, bool all) {
   const auto acquisition =
@@ -33,7 +28,6 @@ std::vector<double> ClassicChoice::gains(std::span<const Pose> T_world_camera, b
     config.gains = {ranking_.gain};
     config.semantics = ranking_.semantics;
     config.pixel_stride = stride;
-    config.support_plane = support_plane_;
     evaluator.emplace(map, sensor_, config, exec_);
   };
   follow(full_, 1);

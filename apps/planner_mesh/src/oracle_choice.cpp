@@ -27,8 +27,6 @@ const KnownObject& checked(const KnownObject& object) {
 SimulationConfig without_noise(SimulationConfig config) {
   config.noise = config.lateral_noise = false;
   config.sub_rays = 1;
-  config.wiggling = 0;
-  config.calibration = {};
   return config;
 }
 

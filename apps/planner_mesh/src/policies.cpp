@@ -9,20 +9,11 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/planner/proximity_measure.hpp"
+#include "viewgain/planner/rank_views.hpp"
 #include "viewgain/planner/stop_settings.hpp"
 #include "viewgain/support/mix64.hpp"
 
 namespace viewgain {
-namespace {
-
-// What a gain is worth after the way to it.
-double utility(const TravelCost& cost, double gain, double distance) {
-  if (cost.speed) return gain / (cost.seconds_per_view + distance / *cost.speed);
-  return gain - cost.per_metre * distance;
-}
-
-}  // namespace
-
 const std::vector<std::string>& policy_names() {
   static const std::vector<std::string> names{"gain",     "kriegel",   "sequence",  "random",
                                               "frontier", "fibonacci", "proximity", "oracle"};
@@ -45,11 +36,10 @@ void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
   const bool by_gain = policy.policy == Policy::gain && !policy.classic;
   if (!by_gain && stop_area.value_or(0) > 0) {
     throw Error(ErrorCode::invalid_argument,
-                "stop_area (--stop-area) goes with policy gain by the gains surface and combined");
+                "stop_area goes with policy gain by the gains surface and combined");
   }
   if (!by_gain && stop_gain.value_or(0) > 0) {
-    throw Error(ErrorCode::invalid_argument,
-                "stop_gain (--stop-gain) goes with policy gain by the gain paper");
+    throw Error(ErrorCode::invalid_argument, "stop_gain goes with policy gain by the gain paper");
   }
   // A policy without a gain per voxel never asks for the rule of the paper's.
   set_stop_rules(planning, by_gain ? policy.model : GainModel::paper, policy.criterion, stop_gain,
@@ -67,7 +57,7 @@ PolicyDecision::PolicyDecision(const SurfaceModel& model, const CandidateGenerat
       order_(0.5 * generation.config().boundary.estimator.patch_length) {
   if (config.policy == Policy::oracle) oracle_.emplace(model, sensor, config.object, exec);
   if (config.policy == Policy::gain && config.classic) {
-    classic_.emplace(model, sensor, *config.classic, config.support_plane, exec);
+    classic_.emplace(model, sensor, *config.classic, exec);
   }
 }
 
@@ -107,8 +97,8 @@ const GainEvaluator& PolicyDecision::evaluator() {
   } else {
     GainConfig gain;
     gain.criterion = config_.criterion;
-    gain.support_plane = config_.support_plane;
-    if (config_.policy == Policy::gain && !classic_) gain.model = config_.model;
+    // Other policies count unknown voxels, as the paper's gain does.
+    gain.model = config_.policy == Policy::gain && !classic_ ? config_.model : GainModel::paper;
     evaluator_.emplace(model_.scene(), sensor_, gain, exec_);
   }
   return *evaluator_;
@@ -142,28 +132,21 @@ std::vector<ViewGain> PolicyDecision::score(const Pose& T_world_camera,
   none.gain = none.area = std::numeric_limits<double>::quiet_NaN();
   std::vector<ViewGain> gains(poses.size(), none);
   const bool in_two_stages = config_.policy == Policy::gain && config_.model != GainModel::paper;
-  if (!in_two_stages || config_.travel.speed) {
+  if (!in_two_stages) {
     evaluator_->evaluate(poses, gains);
     return gains;
   }
-  std::vector<double> costs;
-  if (config_.travel.per_metre > 0) {
-    for (const Pose& pose : poses) {
-      const double distance = (pose.translation() - T_world_camera.translation()).norm();
-      costs.push_back(config_.travel.per_metre * distance);
-    }
-  }
-  RaceConfig config;
-  config.costs = costs;
-  const RacedViews raced = evaluator_->race(poses, 1, config);
-  for (std::size_t j = 0; j < raced.scored_indices.size(); ++j) {
-    gains[raced.scored_indices[j]] = raced.scored_gains[j];
+  RankConfig rank;
+  rank.cost_per_metre = config_.travel_cost;
+  const Ranking ranking = rank_views(*evaluator_, poses, 1, rank, T_world_camera.translation());
+  for (std::size_t j = 0; j < ranking.scored_indices.size(); ++j) {
+    gains[ranking.scored_indices[j]] = ranking.scored_gains[j];
   }
   return gains;
 }
 
 std::vector<ViewGain> PolicyDecision::score_classic(std::span<const Candidate> candidates) {
-  const bool way_counts = config_.travel.per_metre > 0 || config_.travel.speed;
+  const bool way_counts = config_.travel_cost > 0;
   const std::vector<double> values = classic_->gains(poses_of(candidates), way_counts);
   std::vector<ViewGain> gains(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) gains[i].gain = values[i];
@@ -176,11 +159,10 @@ std::vector<double> PolicyDecision::proximities(std::span<const Candidate> candi
   } else {
     GainConfig config;
     config.pixel_stride = coarse_stride(sensor_.camera);
-    config.support_plane = config_.support_plane;
     coarse_.emplace(model_.scene(), sensor_, config, exec_);
   }
   std::vector<double> values(candidates.size());
-  coarse_->evaluate(poses_of(candidates), ProximityMeasure(model_.scene()->hazard()), values);
+  coarse_->evaluate(poses_of(candidates), values, ProximityMeasure(model_.scene()->hazard()));
   return values;
 }
 
@@ -190,7 +172,6 @@ double PolicyDecision::expected_area(const Pose& T_world_camera) {
   } else {
     GainConfig config;
     config.model = GainModel::surface;
-    config.support_plane = config_.support_plane;
     area_evaluator_.emplace(model_.scene(), sensor_, config, ExecConfig{1});
   }
   return area_evaluator_->evaluate(T_world_camera).area;
@@ -213,7 +194,7 @@ std::optional<std::size_t> PolicyDecision::choose(const Pose& T_world_camera,
       return best_by([&](std::size_t i) {
         const double distance =
             (candidates[i].T_world_camera.translation() - T_world_camera.translation()).norm();
-        return utility(config_.travel, gains[i].gain, distance);
+        return gains[i].gain - config_.travel_cost * distance;
       });
     case Policy::frontier:
       return best_by([&](std::size_t i) { return static_cast<double>(gains[i].unknown_voxels); });

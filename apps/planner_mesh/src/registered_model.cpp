@@ -8,15 +8,15 @@
 namespace viewgain {
 
 RegisteredModel::RegisteredModel(SurfaceModel& model, const MapModelConfig& map,
-                                 const PosePrior& sigmas, const ExecConfig& exec)
-    : model_(model), alignment_(model.map().sensor(), model.grid(), map, sigmas, exec) {}
+                                 const PoseSigma& sigma, const ExecConfig& exec)
+    : model_(model), sigma_(sigma), alignment_(model.map().sensor(), map, exec) {}
 
 ModelProgress RegisteredModel::update(const Measurements& measurements) {
   if (measurements.frames.empty()) {
     throw Error(ErrorCode::invalid_argument, "a view without a frame cannot be registered");
   }
   const Stopwatch watch;
-  alignment_.add(measurements.frames.front(), measurements.T_world_camera);
+  alignment_.add(measurements.frames.front(), measurements.T_world_camera, sigma_);
   views_.push_back(measurements);
   std::vector<Measurements> kept;
   for (std::size_t i = 0; i < views_.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <iostream>
 #include <optional>
 #include <utility>
 
@@ -88,6 +89,20 @@ App* App::add_option_group(const std::string& name, const std::string& descripti
   return children_.emplace_back(new App(*added, this)).get();
 }
 
+App* App::add_form(const std::string& description, std::function<bool(const std::string&)> takes) {
+  App* form = more_forms_.emplace_back(new App(description, "viewgain " + name())).get();
+  form->parent_ = parent_;
+  form->first_form_ = this;
+  form->takes_ = std::move(takes);
+  return form;
+}
+
+std::vector<const App*> App::forms() const {
+  std::vector<const App*> found{first_form_};
+  for (const auto& form : first_form_->more_forms_) found.push_back(form.get());
+  return found;
+}
+
 template <typename Value>
 Option* App::add_option(const std::string& name, Value& value, const std::string& description) {
   return wrapped(app_->add_option(name, value, description));
@@ -143,6 +158,11 @@ bool App::parse(std::vector<std::string> words) {
       throw UsageError(ErrorCode::invalid_argument, error.what());
     }
     app_->exit(error);
+    for (const auto& child : children_) {
+      for (const auto& form : child->more_forms_) {
+        if (child->parsed()) std::cout << "\n" << form->app_->help();
+      }
+    }
     return false;
   }
 }
@@ -151,7 +171,7 @@ bool App::parsed() const { return app_->parsed(); }
 
 std::size_t App::count(const std::string& name) const { return app_->count(name); }
 
-std::string App::name() const { return app_->get_name(); }
+std::string App::name() const { return first_form_->app_->get_name(); }
 std::string App::description() const { return app_->get_description(); }
 std::string App::group_name() const { return app_->get_group(); }
 std::string App::footer_text() const { return app_->get_footer(); }

@@ -80,6 +80,9 @@ class App {
 
   App* add_subcommand(const std::string& name, const std::string& description);
   App* add_option_group(const std::string& name, const std::string& description);
+  /// Another form of this subcommand, with flags of its own, for the sources that `takes` says yes
+  /// to: what stands as the first positional. It is parsed by itself.
+  App* add_form(const std::string& description, std::function<bool(const std::string&)> takes);
   /// A flag "--x", or the positional "X", and the variable that it sets; what it holds is the
   /// default. For texts, paths, bool, int, std::size_t, double, and optional or vectors of them.
   template <typename Value>
@@ -94,7 +97,8 @@ class App {
   App* require_option(std::size_t least, std::size_t most);
   App* require_subcommand(std::size_t count);
 
-  /// False where it has printed --help or --version. Throws UsageError.
+  /// False where it has printed --help, of all forms for the first, or --version. Throws
+  /// UsageError.
   [[nodiscard]] bool parse(std::vector<std::string> words);
   /// Whether it was named.
   [[nodiscard]] bool parsed() const;
@@ -112,6 +116,10 @@ class App {
   [[nodiscard]] std::vector<const App*> subcommands() const;
   /// Its own, in the order of their declaration; --help, where it has one, is the first.
   [[nodiscard]] std::vector<const Option*> options() const;
+  /// Of the subcommand that this is a form of, the first one first; itself where it has no other.
+  [[nodiscard]] std::vector<const App*> forms() const;
+  /// Whether this, a form, is for such a source.
+  [[nodiscard]] bool takes(const std::string& source) const { return takes_ && takes_(source); }
   /// Null where it has none, as groups may.
   [[nodiscard]] const Option* help_option() const noexcept { return help_; }
   /// Null where there is none; of its groups, too.
@@ -122,10 +130,13 @@ class App {
   void wrap_help();
   Option* wrapped(CLI::Option* option);
 
-  std::unique_ptr<CLI::App> own_;  // of the program
+  std::unique_ptr<CLI::App> own_;  // of the program and of forms
   CLI::App* app_;
   App* parent_ = nullptr;
   std::vector<std::unique_ptr<App>> children_;
+  App* first_form_ = this;
+  std::vector<std::unique_ptr<App>> more_forms_;  // of the first one
+  std::function<bool(const std::string&)> takes_;
   std::vector<std::unique_ptr<Option>> options_;
   const Option* help_ = nullptr;
 };

@@ -48,8 +48,8 @@ struct FileOption {
   Kind kind;
 };
 constexpr std::array kFileOptions{
-    FileOption{"--config", Kind::input},    FileOption{"MESH", Kind::frames},
-    FileOption{"MAP", Kind::frames},        FileOption{"IN", Kind::input},
+    FileOption{"--config", Kind::input},    FileOption{"MESH", Kind::input},
+    FileOption{"MAP", Kind::input},         FileOption{"IN", Kind::input},
     FileOption{"--map", Kind::input},       FileOption{"--cloud", Kind::input},
     FileOption{"--poses", Kind::input},     FileOption{"--sensor", Kind::input},
     FileOption{"--reach", Kind::reach},     FileOption{"--hazard", Kind::input},

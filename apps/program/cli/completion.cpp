@@ -60,7 +60,7 @@ std::string bash_completion(const App& program) {
     names += subcommand->name() + " ";
     std::vector<std::string> flags;
     std::string values;
-    for (const Option* option : all_options(*subcommand)) {
+    for (const Option* option : options_of_forms(*subcommand)) {
       if (!option->nonpositional()) continue;
       flags.push_back(option->name());
       if (option->is_bare()) continue;
@@ -103,7 +103,7 @@ std::string zsh_completion(const App& program) {
   for (const App* subcommand : shown_subcommands(program)) {
     names += "    '" + subcommand->name() + ":" + quoted(subcommand->description()) + "'\n";
     cases += "    " + subcommand->name() + ")\n      _arguments \\\n";
-    for (const Option* option : all_options(*subcommand)) {
+    for (const Option* option : options_of_forms(*subcommand)) {
       if (!option->nonpositional()) continue;
       const std::string repeated = option->is_repeated() ? "*" : "";
       cases +=

@@ -39,6 +39,12 @@ Options settable_options(const App& subcommand) {
   return options;
 }
 
+std::vector<std::string> keys_of(const Options& options) {
+  std::vector<std::string> keys;
+  for (const Option* option : options) keys.push_back(key_of(*option));
+  return keys;
+}
+
 bool is_switch(const Option& option) {
   return choices_of(option) == std::vector<std::string>{"on", "off"};
 }
@@ -164,21 +170,42 @@ SettingValue default_of(const Option& option) {
 
 }  // namespace
 
+const App& form_of(const App& subcommand, const std::vector<std::string>& words) {
+  const std::vector<const App*> forms = subcommand.forms();
+  if (forms.size() == 1) return subcommand;
+  const Options options = options_of_forms(subcommand);
+  const GivenWords given = sort_words(subcommand, options, words);
+  if (!given.positionals.empty()) {
+    const auto form = std::find_if(forms.begin(), forms.end(), [&](const App* of_forms) {
+      return of_forms->takes(given.positionals.front());
+    });
+    return form == forms.end() ? subcommand : **form;
+  }
+  const std::string path = config_of(words);
+  if (path.empty()) return subcommand;
+  for (const Setting& setting : read_settings_toml(path, keys_of(options))) {
+    for (const App* form : forms) {
+      for (const Option* option : form->options()) {
+        if (!option->nonpositional() && key_of(*option) == setting.key) return *form;
+      }
+    }
+  }
+  return subcommand;
+}
+
 std::vector<std::string> with_config(const App& subcommand, const std::vector<std::string>& words) {
-  const GivenWords given = sort_words(subcommand, words);
+  const GivenWords given = sort_words(subcommand, all_options(subcommand), words);
   const std::string path = config_of(words);
   if (path.empty()) return words;
   const Options options = settable_options(subcommand);
-  std::vector<std::string> keys;
-  for (const Option* option : options) keys.push_back(key_of(*option));
-  const std::vector<Setting> settings = read_settings_toml(path, keys);
+  const std::vector<Setting> settings = read_settings_toml(path, keys_of(options));
 
   std::vector<std::string> all, positionals;
   std::size_t position = 0;
   for (const Option* option : options) {
     const std::string key = key_of(*option);
     const bool is_on_the_line = option->nonpositional() ? is_given(subcommand, *option, given)
-                                                        : position++ < given.positionals;
+                                                        : position++ < given.positionals.size();
     const auto setting = std::find_if(settings.begin(), settings.end(),
                                       [&](const Setting& s) { return s.key == key; });
     if (setting == settings.end()) continue;

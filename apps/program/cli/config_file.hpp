@@ -15,6 +15,10 @@ namespace viewgain::app {
 // lists; numbers and names with commas may be lists, too. Paths are as on the command line,
 // relative to where the program runs.
 
+/// The form of the subcommand that is for the source among the words after it, or for that in the
+/// file of --config; else the first. Throws Error as with_config().
+[[nodiscard]] const App& form_of(const App& subcommand, const std::vector<std::string>& words);
+
 /// The words after the subcommand with those that its --config stands for. What the command line
 /// says holds: an option, all repetitions of one, or one of a group of which only one may be given.
 /// Throws Error: as sort_words() and read_settings_toml(), and Error(format), naming file and line,

@@ -63,11 +63,7 @@ class OptionRecord {
   static Json given(const Value& value) {
     return value;
   }
-  template <typename Value>
-  static Json given(const std::optional<Value>& value) {
-    return value ? Json(*value) : Json();
-  }
-  static Json given(const std::string& text) { return text.empty() ? Json() : Json(text); }
+  static Json given(const std::string& text) { return Json::or_null(text); }
   template <typename Value>
   void put(const char* key, const Value& value) {
     if (key != nullptr) json_[key] = resolved_.contains(key) ? resolved_[key] : given(value);

@@ -11,6 +11,7 @@
 #include <initializer_list>
 #include <iosfwd>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -63,6 +64,11 @@ class Json {
   Json(const std::map<std::string, Element>& members) : Json(object()) {
     for (const auto& [key, member] : members) (*this)[key] = Json(member);
   }
+  /// Null where there is none.
+  template <typename Value>
+  Json(const std::optional<Value>& value) {
+    if (value) *this = Json(*value);
+  }
   /// An object where each element is a pair of a text and a value, else an array.
   Json(std::initializer_list<Json> elements);
 
@@ -72,6 +78,10 @@ class Json {
   Json& operator=(Json&& other) noexcept;
   ~Json();
 
+  /// A text, or null for an empty one.
+  [[nodiscard]] static Json or_null(std::string_view text) {
+    return text.empty() ? Json() : Json(text);
+  }
   [[nodiscard]] static Json array();
   [[nodiscard]] static Json object();
   /// Throws JsonError.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdio>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -23,6 +24,15 @@ namespace viewgain::app {
           {m[4], m[5], m[6], m[7]},
           {m[8], m[9], m[10], m[11]},
           {0.0, 0.0, 0.0, 1.0}};
+}
+
+/// The key `seconds`: each stage's, and their sum.
+[[nodiscard]] inline Json seconds_json(const std::map<std::string, double>& seconds) {
+  Json json = seconds;
+  double total = 0;
+  for (const auto& [stage, value] : seconds) total += value;
+  json["total"] = total;
+  return json;
 }
 
 /// With every text made UTF-8: a file name may be any bytes.

@@ -110,6 +110,16 @@ std::string options_text(const App& subcommand) {
   return roff;
 }
 
+std::string positionals_text(const App& form) {
+  std::string roff;
+  for (const Option* option : form.options()) {
+    if (option->nonpositional()) continue;
+    const std::string shown = italic(option->name());
+    roff += option->is_required() ? " " + shown : " [" + shown + "]";
+  }
+  return roff;
+}
+
 }  // namespace
 
 std::string man_page(const App& program) {
@@ -133,18 +143,23 @@ std::string man_page(const App& program) {
 }
 
 std::string subcommand_man_page(const App& subcommand) {
-  const std::string& name = subcommand.name();
-  std::string roff = heading("viewgain-" + name) + ".SH NAME\n" + escaped("viewgain-" + name) +
-                     " \\- " + escaped(brief(subcommand.description())) + "\n.SH SYNOPSIS\n" +
-                     bold("viewgain " + name) + " [" + italic("OPTIONS") + "]";
-  for (const Option* option : subcommand.options()) {
-    if (option->nonpositional()) continue;
-    const std::string shown = italic(option->name());
-    roff += option->is_required() ? " " + shown : " [" + shown + "]";
+  const std::string name = subcommand.name();
+  std::string synopsis, description, options, footers;
+  const std::vector<const App*> forms = subcommand.forms();
+  for (const App* form : forms) {
+    const std::string call =
+        bold("viewgain " + name) + " [" + italic("OPTIONS") + "]" + positionals_text(*form) + "\n";
+    const char* const paragraph = form == &subcommand ? "" : ".PP\n";
+    synopsis += paragraph + call;
+    description += paragraph + escaped(form->description()) + "\n";
+    if (forms.size() > 1) options += ".SS " + call;
+    options += options_text(*form);
+    footers += form->footer_text() + "\n";
   }
-  return roff + "\n.SH DESCRIPTION\n" + escaped(subcommand.description()) + "\n.SH OPTIONS\n" +
-         options_text(subcommand) + examples(subcommand.footer_text()) + exit_status() +
-         ".SH SEE ALSO\n" + bold("viewgain") + "(1)\n";
+  return heading("viewgain-" + name) + ".SH NAME\n" + escaped("viewgain-" + name) + " \\- " +
+         escaped(brief(subcommand.description())) + "\n.SH SYNOPSIS\n" + synopsis +
+         ".SH DESCRIPTION\n" + description + ".SH OPTIONS\n" + options + examples(footers) +
+         exit_status() + ".SH SEE ALSO\n" + bold("viewgain") + "(1)\n";
 }
 
 }  // namespace viewgain::app

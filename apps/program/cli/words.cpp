@@ -19,7 +19,19 @@ namespace {
   throw Error(ErrorCode::invalid_argument, flag + ": " + what);
 }
 
+// What the first positional of a form is called.
+std::string source_of(const App& form) {
+  for (const Option* option : form.options()) {
+    if (!option->nonpositional()) return option->name();
+  }
+  return {};
+}
+
 [[noreturn]] void refuse_unknown(const App& subcommand, const std::string& flag) {
+  for (const App* form : subcommand.forms()) {
+    if (form == &subcommand || form->find_option(flag) == nullptr) continue;
+    refuse(subcommand, flag, "goes with " + source_of(*form) + ", not " + source_of(subcommand));
+  }
   std::vector<std::string> flags;
   for (const Option* option : all_options(subcommand)) {
     if (option->nonpositional()) flags.push_back(option->name());
@@ -57,6 +69,17 @@ std::vector<const Option*> all_options(const App& subcommand) {
   return options;
 }
 
+std::vector<const Option*> options_of_forms(const App& subcommand) {
+  std::vector<const Option*> options;
+  std::set<std::string> names;
+  for (const App* form : subcommand.forms()) {
+    for (const Option* option : all_options(*form)) {
+      if (names.insert(option->name()).second) options.push_back(option);
+    }
+  }
+  return options;
+}
+
 const App* subcommand_of(const App& program, const std::vector<std::string>& words) {
   if (words.empty() || words[0].starts_with("-")) return nullptr;
   std::vector<std::string> names;
@@ -70,13 +93,13 @@ const App* subcommand_of(const App& program, const std::vector<std::string>& wor
                   (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names));
 }
 
-GivenWords sort_words(const App& subcommand, const std::vector<std::string>& words) {
-  const std::vector<const Option*> options = all_options(subcommand);
+GivenWords sort_words(const App& subcommand, const std::vector<const Option*>& options,
+                      const std::vector<std::string>& words) {
   GivenWords given;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (given.has_mark || !words[i].starts_with("--")) {
       if (!given.has_mark && is_short_flag(words[i])) refuse_unknown(subcommand, words[i]);
-      if (given.has_mark || words[i] != "-h") ++given.positionals;
+      if (given.has_mark || words[i] != "-h") given.positionals.push_back(words[i]);
       continue;
     }
     if (words[i] == "--") {

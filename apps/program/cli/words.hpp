@@ -14,7 +14,7 @@ namespace viewgain::app {
 /// What is given on the command line of a subcommand itself.
 struct GivenWords {
   std::set<const Option*> options;
-  std::size_t positionals = 0;
+  std::vector<std::string> positionals;
   bool has_mark = false;  ///< a bare --, after which all words are positionals
 };
 
@@ -25,8 +25,14 @@ struct GivenWords {
 /// Error(invalid_argument) for another word, naming the nearest subcommand.
 [[nodiscard]] const App* subcommand_of(const App& program, const std::vector<std::string>& words);
 
-/// Sorts the words after the subcommand. Throws Error(invalid_argument) for a flag that is not
-/// there, naming the nearest, and for one whose value is missing.
-[[nodiscard]] GivenWords sort_words(const App& subcommand, const std::vector<std::string>& words);
+/// The options of all its forms, each name once.
+[[nodiscard]] std::vector<const Option*> options_of_forms(const App& subcommand);
+
+/// Sorts the words after the subcommand, which may name these options. Throws
+/// Error(invalid_argument) for another flag, naming the form of the subcommand that it goes with or
+/// the nearest, and for one whose value is missing.
+[[nodiscard]] GivenWords sort_words(const App& subcommand,
+                                    const std::vector<const Option*>& options,
+                                    const std::vector<std::string>& words);
 
 }  // namespace viewgain::app

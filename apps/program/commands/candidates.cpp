@@ -21,6 +21,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/planner/pose_sets.hpp"
+#include "viewgain/planner/rank_views.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
@@ -40,26 +41,25 @@ struct Options {
 struct Order {
   std::vector<std::size_t> order;  // of the candidates
   std::vector<ViewGain> gains;     // by candidate; empty where not asked for
-  GainModel model = GainModel::paper;
+  GainModel model = kDefaultGain;
 };
 
-Order rank(const ProposalOptions& options, const GainEvaluator& evaluator,
-           const std::vector<Candidate>& candidates) {
+Order rank(const ProposalOptions& options, const SurfaceModel& model, const Sensor& sensor,
+           const ExecConfig& exec, const std::vector<Candidate>& candidates) {
   Order ranking;
   ranking.order.resize(candidates.size());
   std::iota(ranking.order.begin(), ranking.order.end(), std::size_t{0});
   if (options.gain.empty()) return ranking;
-  ranking.model = parse_gain_model(options.gain);
-  std::vector<Pose> poses;
-  for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
-  ranking.gains = evaluator.evaluate(poses);
-  // NaN last, ties as proposed.
-  const auto worth = [&](std::size_t i) {
-    const double gain = ranking.gains[i].gain;
-    return std::isnan(gain) ? -std::numeric_limits<double>::infinity() : gain;
-  };
-  std::stable_sort(ranking.order.begin(), ranking.order.end(),
-                   [&](std::size_t a, std::size_t b) { return worth(a) > worth(b); });
+  const GainEvaluator evaluator = evaluator_of(options, model, sensor, exec);
+  ranking.model = evaluator.model();
+  ranking.gains.resize(candidates.size());
+  ranking.order.clear();
+  const std::vector<Pose> poses = poses_of(candidates);
+  for (const RankedView& view :
+       rank_views(evaluator, poses, poses.size(), {.exact = true}, std::nullopt).views) {
+    ranking.order.push_back(view.index);
+    ranking.gains[view.index] = view.gain;
+  }
   return ranking;
 }
 
@@ -97,10 +97,9 @@ void candidates(const Options& options) {
   const GenerationConfig config =
       generation_config(options.proposal, sensor, map.grid, options.map);
   const SurfaceModel model = model_of(std::move(map.grid), sensor, options.proposal, exec);
-  CandidateGeneration generation(model, sensor, config, exec);
+  CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate({});
-  const Order ranking = rank(options.proposal, evaluator_of(options.proposal, model, sensor, exec),
-                             proposal.candidates);
+  const Order ranking = rank(options.proposal, model, sensor, exec, proposal.candidates);
   std::vector<Pose> poses;
   for (const std::size_t i : ranking.order) {
     poses.push_back(proposal.candidates[i].T_world_camera);

@@ -16,6 +16,7 @@ namespace viewgain::app {
 struct Command {
   App* app = nullptr;
   std::function<void()> run;
+  Command (*add_form)(App& first) = nullptr;  ///< where there is another form of it
 };
 
 /// Thrown by a command that a signal stopped before it was done: one line, exit code 130.
@@ -30,6 +31,7 @@ struct Stopped {
 [[nodiscard]] Command add_score(App& program);
 [[nodiscard]] Command add_merge(App& program);
 [[nodiscard]] Command add_reconstruct(App& program);
+[[nodiscard]] Command add_reconstruct_frames(App& reconstruct);  // its form
 [[nodiscard]] Command add_candidates(App& program);
 [[nodiscard]] Command add_next(App& program);
 [[nodiscard]] Command add_info(App& program);

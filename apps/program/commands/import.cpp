@@ -91,12 +91,10 @@ void print_summary(const Options& options, const Recording& recording, const Imp
               {"masks", report.masks},
               {"masked_pixels", report.masked_pixels},
               {"amplitudes", report.amplitudes},
-              {"sensor", nullptr},
+              {"sensor", sensor ? Json(sensor->name) : Json()},
               {"out", options.out},
               {"seconds", seconds}};
-    if (sensor) json["sensor"] = sensor->name;
-    print_json(json);
-    return;
+    return print_json(json);
   }
   std::printf("%zu frames of %dx%d px, %s m per unit, %s readings: %s\n", frames, camera.width,
               camera.height, short_text(recording.depth_scale).c_str(),
@@ -150,7 +148,7 @@ Command add_import(App& program) {
   one_of(*app->add_option("--format", options->format, "how it is laid out")->required(),
          recording_format_names(), "format");
   app->add_option("--sensor", options->sensor,
-                  std::string(kSensorHelp) +
+                  kSensorHelp +
                       ", whose noise and ranges the folder is to say; of tum its intrinsics, too, "
                       "without --intrinsics");
   app->add_option("--intrinsics", options->intrinsics,
@@ -159,12 +157,8 @@ Command add_import(App& program) {
   app->add_option("--max-time-gap", options->max_time_gap,
                   "between an image and its pose, for tum [s]; nothing is interpolated")
       ->capture_default_str();
-  app->add_option("--mask", options->mask,
-                  "folder of grayscale PNGs with the names of the recording's images: where they "
-                  "are not 0, an image says nothing");
-  app->add_option("--confidence", options->confidence,
-                  "folder of grayscale PNGs with the names of the recording's images: where they "
-                  "are under --least-confidence, an image says nothing");
+  app->add_option("--mask", options->mask, kMaskHelp);
+  app->add_option("--confidence", options->confidence, kConfidenceHelp);
   app->add_option("--least-confidence", options->least_confidence, kLeastConfidenceHelp)
       ->capture_default_str()
       ->range(1, 255, "confidence");

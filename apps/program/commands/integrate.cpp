@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "program/cli/choices.hpp"
+#include "program/cli/flags/obstacle_source.hpp"
 #include "program/cli/flags/sensed_map.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
@@ -61,18 +62,17 @@ BeliefGrid new_map(ReadingSource& source, const Options& options) {
   check_positive("--voxel", *options.voxel);
   GridConfig config;
   config.voxel_size = *options.voxel;
-  config.prior_sigma =
-      options.prior_sigma.value_or(default_prior_sigma(config.voxel_size, source.sensor()));
+  config.prior_sigma = options.prior_sigma;
   config.workspace = options.workspace.empty() ? seen_workspace(source, options, config.voxel_size)
                                                : parse_box("--workspace", options.workspace);
-  return BeliefGrid(config);
+  return BeliefGrid(config, source.sensor());
 }
 
 // The map that grows, the sensor of its readings so far and the frames that it has, as far as its
 // file says, and whether its readings were of another sensor, or of nobody knows which: then its
 // file does not say which they come from.
 struct GrownMap {
-  BeliefGrid grid;
+  BeliefGrid grid;  // before the readings, which go into the source's
   bool is_of_two = false;
   std::optional<Sensor> sensor{};
   std::set<std::string> frames{};
@@ -126,30 +126,30 @@ struct Totals {
   std::vector<double> seconds;  // of each frame's integration, reading the image not counted
 };
 
-Totals integrate_all(ReadingSource& source, const Options& options, GrownMap& map) {
+Totals integrate_all(ReadingSource& source, const Options& options, std::set<std::string>& frames) {
   Totals totals;
   Progress progress(part_name(options), options.common.quiet);
   for (std::size_t i = 0; i < source.size(); ++i) {
     const std::string identity = source.identity(i);
-    if (!identity.empty() && !map.frames.insert(identity).second) {
+    if (!identity.empty() && !frames.insert(identity).second) {
       ++totals.skipped;
       progress.update(i + 1, source.size());
       continue;
     }
     source.load(i);
     totals.masked_pixels += source.masked_pixels();
-    totals.jump_edge_removed += source.jump_edge_removed();
-    if (std::optional<FrameRegistration> registration = source.register_in(map.grid)) {
+    if (std::optional<FrameRegistration> registration = source.register_loaded()) {
       totals.registrations.push_back(std::move(*registration));
       if (totals.registrations.back().status == RegistrationStatus::refused) {
-        map.frames.erase(identity);  // a map that has more may take it
+        frames.erase(identity);  // a map that has more may take it
         progress.update(i + 1, source.size());
         continue;
       }
     }
     const Stopwatch watch;
-    const IntegrationReport report = source.integrate(map.grid);
+    const IntegrationReport report = source.integrate();
     totals.seconds.push_back(watch.seconds());
+    totals.jump_edge_removed += source.jump_edge_removed();
     totals.sum.readings += report.readings;
     totals.sum.readings_inside += report.readings_inside;
     totals.sum.plane_readings += report.plane_readings;
@@ -181,7 +181,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
                  {"orthonormalized_poses", source.orthonormalized()},
                  {"registration", nullptr},
                  {"sensor", source.sensor().name},
-                 {"depth_scale", scale ? Json(*scale) : nullptr}};
+                 {"depth_scale", scale}};
     if (options.registration.is_on == "on") {
       json["registration"] = registration_counts(totals.registrations);
     }
@@ -190,7 +190,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
                  {"hash", grid.content_hash()},
                  {"out", options.out},
                  {"seconds", seconds},
-                 {"seconds_per_frame", frame_seconds ? Json(*frame_seconds) : nullptr}});
+                 {"seconds_per_frame", frame_seconds}});
     print_json(json);
     return;
   }
@@ -255,8 +255,8 @@ void check_flags(const Options& options, const App& app) {
     refuse({"--origin", "--poses"}, "is for clouds (--cloud)");
   } else {
     refuse({"--depth-scale", "--mask", "--confidence", "--least-confidence", "--out-of-range",
-            "--carve", "--jump-edge-filter", "--jump-edge-two-sided", "--calibrate-hazard",
-            "--register", "--pose-sigma"},
+            "--carve", "--jump-edge-filter", "--calibrate-hazard", "--obstacle", "--register",
+            "--pose-sigma"},
            "is for depth frames; clouds carve along lines");
     if (!options.poses.empty()) refuse({"--origin"}, "and --poses exclude each other");
   }
@@ -279,15 +279,16 @@ void integrate(const Options& options, const App& app) {
     throw Error(ErrorCode::invalid_argument,
                 "--with-covariance with " + options.out + ": a tree has no place for covariances");
   }
-  if (options.calibrate_hazard == "on" && is_octomap(options.out)) {
+  if (is_octomap(options.out) && app.count("--calibrate-hazard") > 0) {
     throw Error(ErrorCode::invalid_argument, "--calibrate-hazard with " + options.out +
                                                  ": a tree has no place for hazard counters");
   }
   const std::unique_ptr<ReadingSource> source = open_reading_source(options);
   GrownMap map = options.map.empty() ? GrownMap{new_map(*source, options)}
                                      : continued_map(source->sensor(), options);
-  BeliefGrid& grid = map.grid;
-  const Totals totals = integrate_all(*source, options, map);
+  source->start(std::move(map.grid));
+  const BeliefGrid& grid = source->grid();
+  const Totals totals = integrate_all(*source, options, map.frames);
   refuse_empty(options, *source, totals);
   VdbWriteConfig how = noting_frames(map.frames, {options.with_covariance == "on"});
   if (totals.seconds.empty()) {  // its readings are what they were
@@ -328,15 +329,10 @@ Command add_integrate(App& program) {
       "--workspace", options->workspace,
       "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: what frames or clouds see");
   app->add_option("--sensor", options->frames.sensor,
-                  std::string(kSensorHelp) +
+                  kSensorHelp +
                       "; default: FRAMES_DIR/sensor.toml; needed for clouds, of which noise and "
                       "ranges hold");
   add_frame_folder_options(*app, options->frames);
-  one_of(*app->add_option(
-                 "--out-of-range", options->frames.out_of_range,
-                 "what 65535 says: carve (nothing up to the maximal range) or invalid (no reading)")
-              ->capture_default_str(),
-         {"carve", "invalid"}, "meaning");
   one_of(*app->add_option("--carve", options->carve,
                           "voxels that a pixel crosses: those in its pyramid, or on its ray")
               ->capture_default_str(),
@@ -347,16 +343,14 @@ Command add_integrate(App& program) {
       {"probabilistic", "literal"}, "rule");
   app->add_option("--jump-edge-filter", options->jump_edge_filter,
                   "ANGLE_DEG: a reading goes when the edge to a nearer neighbour is within 1..10 "
-                  "degrees of its ray (5 is a good value); or off")
+                  "degrees of its ray; or off")
       ->capture_default_str();
-  on_or_off(*app->add_option("--jump-edge-two-sided", options->jump_edge_two_sided,
-                             "the filter looks at farther neighbours too")
-                 ->capture_default_str());
   app->add_option("--support-plane", options->support_plane,
                   "height z of the table [m]: its readings carve but do not hit; default: none");
   app->add_option("--prior-sigma", options->prior_sigma,
                   "sigma of an unknown voxel [m]; default: max(voxel/2, twice the sensor's axial "
                   "sigma at its working distance)");
+  app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
   on_or_off(*app->add_option("--calibrate-hazard", options->calibrate_hazard,
                              "count how often frames met the surface in unknown space, for the "
                              "surface and combined gain of the map")

@@ -80,10 +80,9 @@ Command add_merge(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "merge",
-      "Puts parts that score --shard or --rows have left together, or takes the best of them; "
+      "Puts parts that score --shard has left together, or takes the best of them; "
       "refuses parts of different jobs and names what is missing.");
-  app->add_option("PART", options->parts, "files of score --shard or --rows, CSV or .npy")
-      ->required();
+  app->add_option("PART", options->parts, "files of score --shard, CSV or .npy")->required();
   app->add_option("--out", options->out, "CSV file, or .npy, of all rows in order, or of the best")
       ->required();
   app->add_option(

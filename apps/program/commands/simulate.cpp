@@ -12,7 +12,7 @@
 
 #include "program/cli/choices.hpp"
 #include "program/cli/flags/pose_flags.hpp"
-#include "program/cli/flags/pose_sigmas.hpp"
+#include "program/cli/flags/pose_sigma_json.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/flags/sensing_flags.hpp"
 #include "program/cli/progress.hpp"
@@ -22,6 +22,7 @@
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
+#include "viewgain/planner/pose_noise.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -101,16 +102,11 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
   }
 }
 
-// What the frames are to be read with: a table of the error only where they have one.
-Sensor sensor_of_frames(Sensor sensor, const SensingOptions& sensing) {
-  if (sensing.wiggling == 0 || sensing.calibrate == "on") sensor.range_calibration = {};
-  return sensor;
-}
-
 void simulate(const Options& options) {
   const ExecConfig exec{options.common.threads};
-  const Sensor sensor = load_sensor(options.sensor);
+  Sensor sensor = load_sensor(options.sensor);
   sensor.validate();
+  sensor.range_calibration = {};  // the frames have no such error
   if (options.size) check_positive("--size", *options.size);
   const PoseSource source = make_poses(options.poses, options.sensing.seed);
   TriangleMesh mesh = read_mesh(options.mesh, placement_of(options));
@@ -118,13 +114,13 @@ void simulate(const Options& options) {
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
   check_view(options, *scene, sensor, source.poses);
   const SimulatedSensor camera(scene, sensor, simulation_config(options.sensing, sensor), exec);
-  const PoseNoise pose_noise =
-      parse_pose_noise("--pose-noise", options.sensing.pose_noise, options.sensing.seed);
+  const PoseSigma pose_noise = parse_pose_sigma("--pose-noise", options.sensing.pose_noise);
   std::vector<Pose> poses, reported;  // one a frame
   for (std::size_t view = 0; view < source.poses.size(); ++view) {
     const Pose& pose = source.poses[view];
     poses.insert(poses.end(), options.frames_per_view, pose);
-    reported.insert(reported.end(), options.frames_per_view, reported_pose(pose, view, pose_noise));
+    reported.insert(reported.end(), options.frames_per_view,
+                    reported_pose(pose, view, pose_noise, options.sensing.seed));
   }
 
   const Stopwatch watch;
@@ -140,7 +136,7 @@ void simulate(const Options& options) {
       progress.update(i + 1, poses.size());
     }
   }
-  writer.commit(reported, sensor_of_frames(sensor, options.sensing));
+  writer.commit(reported, sensor);
   const double seconds = watch.seconds();
 
   if (options.common.json) {
@@ -157,10 +153,8 @@ void simulate(const Options& options) {
                 {"invalid", counts.invalid},
                 {"noise", sensing.noise == "on"},
                 {"flying_pixels", sensing.has_flying_pixels(sensor)},
-                {"wiggling", sensing.wiggling},
-                {"calibrated", sensing.calibrate == "on"},
-                {"support_plane", sensing.support_plane ? Json(*sensing.support_plane) : Json()},
-                {"pose_noise", pose_sigmas_json(pose_noise)},
+                {"support_plane", sensing.support_plane},
+                {"pose_noise", pose_sigma_json(pose_noise)},
                 {"amplitude", options.writes_amplitude(sensor)},
                 {"seed", sensing.seed},
                 {"orthonormalized_poses", source.orthonormalized},

@@ -109,19 +109,17 @@ Figures figures_of(const SurfaceScene& mesh, const MapOfSensor& map, const Surfa
 }
 
 Json to_json(const Figures& figures) {
-  Json json{{"coverage", figures.coverage},
-            {"coverage_seen", nullptr},
-            {"coverage_2_5mm", figures.coverage_2_5mm},
-            {"rms_error", figures.surface_error.rms},
-            {"p95_error", figures.surface_error.p95},
-            {"rms_error_points", figures.points_error.rms},
-            {"p95_error_points", figures.points_error.p95},
-            {"consistency", figures.consistency.mean_clipped},
-            {"consistency_median", figures.consistency.median},
-            {"consistency_above_9", figures.consistency.above_9},
-            {"outliers", figures.consistency.outliers}};
-  if (figures.coverage_seen) json["coverage_seen"] = *figures.coverage_seen;
-  return json;
+  return {{"coverage", figures.coverage},
+          {"coverage_seen", figures.coverage_seen},
+          {"coverage_2_5mm", figures.coverage_2_5mm},
+          {"rms_error", figures.surface_error.rms},
+          {"p95_error", figures.surface_error.p95},
+          {"rms_error_points", figures.points_error.rms},
+          {"p95_error_points", figures.points_error.p95},
+          {"consistency", figures.consistency.mean_clipped},
+          {"consistency_median", figures.consistency.median},
+          {"consistency_above_9", figures.consistency.above_9},
+          {"outliers", figures.consistency.outliers}};
 }
 
 void print(const Figures& figures) {
@@ -162,21 +160,15 @@ void surface(const Options& options, const App& app) {
   if (truth) figures = figures_of(*truth, map, surface, points, exec);
 
   if (options.common.json) {
-    Json json{{"points", points.size()},
-              {"vertices", surface.vertices.size()},
-              {"triangles", surface.triangles.size()},
-              {"area", mesh_area(surface)},
-              {"median_sigma", nullptr},
-              {"truth", nullptr},
-              {"out", nullptr},
-              {"points_out", nullptr},
-              {"seconds", watch.seconds()}};
-    if (median) json["median_sigma"] = *median;
-    if (figures) json["truth"] = to_json(*figures);
-    if (!options.out.empty()) json["out"] = options.out;
-    if (!options.points.empty()) json["points_out"] = options.points;
-    print_json(json);
-    return;
+    return print_json({{"points", points.size()},
+                       {"vertices", surface.vertices.size()},
+                       {"triangles", surface.triangles.size()},
+                       {"area", mesh_area(surface)},
+                       {"median_sigma", median},
+                       {"truth", figures ? to_json(*figures) : Json()},
+                       {"out", Json::or_null(options.out)},
+                       {"points_out", Json::or_null(options.points)},
+                       {"seconds", watch.seconds()}});
   }
   std::printf("%s points, %s vertices, %s triangles, %.4g m^2", with_commas(points.size()).c_str(),
               with_commas(surface.vertices.size()).c_str(),

@@ -41,24 +41,18 @@ std::unique_ptr<Evaluator> held(const Scene& scene, const Sensor& sensor,
                     pixel_stride, std::move(evaluator)});
 }
 
-std::unique_ptr<Evaluator> make_evaluator(
-    const Given<Scene>& given, const Given<Sensor>& of, const std::string& gain,
-    const std::string& criterion, int pixel_stride, std::optional<double> prior_sigma,
-    std::optional<double> min_range, std::optional<double> max_range, const py::iterable& weights,
-    std::optional<double> refinement_weight, std::optional<double> support_plane,
-    bool posterior_entropy, int num_threads) {
-  const Scene& scene = *given;
-  const Sensor& sensor = *of;
+}  // namespace
+
+GainConfig gain_config(const std::string& gain, const std::string& criterion, int pixel_stride,
+                       std::optional<double> prior_sigma, std::optional<double> min_range,
+                       std::optional<double> max_range, const py::iterable& weights,
+                       std::optional<double> refinement_weight, bool posterior_entropy) {
   GainConfig config;
   config.model = parse_gain_model(gain);
-  if (config.model == GainModel::paper && support_plane) {
-    throw py::value_error("support_plane goes with gain \"surface\" or \"combined\"");
-  }
   if (config.model != GainModel::combined && refinement_weight) {
     throw py::value_error("refinement_weight goes with gain \"combined\"");
   }
   config.refinement_weight = refinement_weight.value_or(config.refinement_weight);
-  config.support_plane = support_plane;
   config.posterior_entropy = posterior_entropy;
   config.criterion = parse_criterion(criterion);
   config.pixel_stride = pixel_stride;
@@ -73,6 +67,20 @@ std::unique_ptr<Evaluator> make_evaluator(
     const py::object region = pair[0], weight = pair[1];
     config.weights.push_back({box(region, "weights' box"), number(weight, "weights' weight")});
   }
+  return config;
+}
+
+namespace {
+
+std::unique_ptr<Evaluator> make_evaluator(
+    const Given<Scene>& given, const Given<Sensor>& of, const std::string& gain,
+    const std::string& criterion, int pixel_stride, std::optional<double> prior_sigma,
+    std::optional<double> min_range, std::optional<double> max_range, const py::iterable& weights,
+    std::optional<double> refinement_weight, bool posterior_entropy, int num_threads) {
+  const Scene& scene = *given;
+  const Sensor& sensor = *of;
+  const GainConfig config = gain_config(gain, criterion, pixel_stride, prior_sigma, min_range,
+                                        max_range, weights, refinement_weight, posterior_entropy);
   return held(scene, sensor, criterion, pixel_stride,
               GainEvaluator(scene.scene, sensor, config, ExecConfig{num_threads}));
 }
@@ -134,7 +142,7 @@ py::object best(const Evaluator& self, const py::object& T_world_camera, std::si
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
   BestViews result;
   run_batch(control, [&](const BatchControl& watched) {
-    result = self.evaluator.best(batch.poses, k, watched);
+    result = self.evaluator.best(batch.poses, k, {}, watched);
   });
   return chosen(result, return_gains);
 }
@@ -177,7 +185,7 @@ py::object approximate(const Evaluator& self, const py::object& T_world_camera, 
 void bind_rows() {
   PYBIND11_NUMPY_DTYPE(ViewGain, gain, exploration, refinement, posterior_entropy, rays, hits,
                        unknown_voxels, occupied_voxels, status, area, refinement_saturated);
-  PYBIND11_NUMPY_DTYPE(ApproximateGain, gain, standard_error);
+  PYBIND11_NUMPY_DTYPE(ApproximateGain, gain, standard_error, rays);
 }
 
 }  // namespace
@@ -190,6 +198,7 @@ void bind_evaluator(py::module_& module) {
   module.def(
       "gain_model_names", [] { return gain_model_names(); },
       "The names that ``gain`` takes.\n\nReturns\n-------\nlist of str");
+  module.attr("DEFAULT_GAIN") = gain_model_name(kDefaultGain);
   py::list statuses;
   for (const ViewStatus status :
        {ViewStatus::ok, ViewStatus::bad_pose, ViewStatus::camera_in_occupied}) {
@@ -203,12 +212,11 @@ void bind_evaluator(py::module_& module) {
   refuse_pickling(evaluator);
   evaluator
       .def(py::init(&make_evaluator), py::arg("scene"), py::arg("sensor"), py::kw_only(),
-           py::arg("gain") = "paper", py::arg("criterion") = "log_diagonal",
+           py::arg("gain") = gain_model_name(kDefaultGain), py::arg("criterion") = "log_diagonal",
            py::arg("pixel_stride") = 1, py::arg("prior_sigma") = py::none(),
            py::arg("min_range") = py::none(), py::arg("max_range") = py::none(),
            py::arg("weights") = py::tuple(), py::arg("refinement_weight") = py::none(),
-           py::arg("support_plane") = py::none(), py::arg("posterior_entropy") = false,
-           py::arg("num_threads") = 0)
+           py::arg("posterior_entropy") = false, py::arg("num_threads") = 0)
       .def("with_scene", &with_scene, py::arg("scene"), kWithSceneDoc)
       .def("evaluate", &evaluate, py::arg("T_world_camera"), py::kw_only(),
            py::arg("strict") = false, py::arg("control") = py::none(), kEvaluateDoc)

@@ -52,7 +52,7 @@ void bind_feasibility(py::module_& module) {
   auto type = bound_class<FeasibilityChecker>(module, "FeasibilityChecker",
                                               R"(Says which camera poses are possible in a scene.
 
-The sensor's housing, a box, must not overlap voxels that are not free, obstacles or the support plane;
+The sensor's housing, a box, must not overlap voxels that are not free, obstacles or the scene's support plane;
 the pose must be reachable and not taken already. Outside the workspace nothing is known to block.
 
 Parameters
@@ -66,8 +66,6 @@ T_flange_camera : array_like, (4, 4), optional
 clearance : float
     The body is grown by this on each side [m].
 reach : ReachRegion, optional
-support_plane : float, optional
-    Height z [m].
 sensor : Sensor, optional
     Views much of whose image would show what is nearer than the sensor's min_range are too near.
 max_near_share : float
@@ -89,24 +87,22 @@ Methods may run in many threads at once and leave the GIL while they work. Cost:
   refuse_pickling(type);
   type.def(py::init([](const Given<Scene>& scene, const py::object& body_size,
                        const py::object& T_flange_camera, double clearance,
-                       const GivenOrNone<ReachRegion>& reach, std::optional<double> support_plane,
-                       const GivenOrNone<Sensor>& sensor, double max_near_share, int num_threads) {
+                       const GivenOrNone<ReachRegion>& reach, const GivenOrNone<Sensor>& sensor,
+                       double max_near_share, int num_threads) {
              FeasibilityConfig config;
              const Eigen::Vector3d size = vector3(body_size, "body_size");
              config.body.size = {size.x(), size.y(), size.z()};
              config.body.T_flange_camera = optional_pose(T_flange_camera, "T_flange_camera");
              config.clearance = clearance;
              if (reach.value != nullptr) config.reach = *reach.value;
-             config.support_plane = support_plane;
              if (sensor.value != nullptr) config.sensor = *sensor.value;
              config.max_near_share = max_near_share;
              return FeasibilityChecker(scene->scene, config, ExecConfig{num_threads});
            }),
            py::arg("scene"), py::kw_only(), py::arg("body_size") = defaults.body.size,
            py::arg("T_flange_camera") = py::none(), py::arg("clearance") = defaults.clearance,
-           py::arg("reach") = py::none(), py::arg("support_plane") = py::none(),
-           py::arg("sensor") = py::none(), py::arg("max_near_share") = defaults.max_near_share,
-           py::arg("num_threads") = 0)
+           py::arg("reach") = py::none(), py::arg("sensor") = py::none(),
+           py::arg("max_near_share") = defaults.max_near_share, py::arg("num_threads") = 0)
       .def(
           "with_scene",
           [](const FeasibilityChecker& self, const Given<Scene>& scene) {

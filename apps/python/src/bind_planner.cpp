@@ -45,12 +45,8 @@ std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
   config.grid.voxel_size = voxel_size;
   config.grid.workspace = box(workspace, "workspace");
   config.grid.T_world_grid = optional_pose(T_world_grid, "T_world_grid").value_or(Pose());
-  config.grid.prior_sigma = prior_sigma.value_or(0);
-  if (prior_sigma && !(*prior_sigma > 0)) {
-    throw py::value_error("prior_sigma must be positive");
-  }
-  config.support_plane = support_plane;
-  config.obstacles = obstacles_of(boxes, meshes);
+  config.grid.prior_sigma = prior_sigma;
+  config.surroundings = {obstacles_of(boxes, meshes), support_plane};
   if (!jump_edges) config.jump_edges.reset();
   config.hazard.object_size = object_size;
   config.gain.model = parse_gain_model(gain);
@@ -98,10 +94,10 @@ py::object register_frame(Planner& self, const py::object& depth, const py::obje
                           double sigma_translation, double sigma_rotation,
                           const py::object& amplitude) {
   const DepthFrame frame = depth_frame(self.sensor(), depth, amplitude);
-  const PosePrior prior{one_pose(T_world_camera, "T_world_camera"), sigma_translation,
-                        sigma_rotation};
-  const FrameRegistration found =
-      self.run([&](ViewPlanner& planner) { return planner.register_frame(frame, prior); });
+  const Pose T_reported = one_pose(T_world_camera, "T_world_camera");
+  const FrameRegistration found = self.run([&](ViewPlanner& planner) {
+    return planner.register_frame(frame, T_reported, {sigma_translation, sigma_rotation});
+  });
   py::array_t<double> covariance(Shape{6, 6}, found.covariance.data());
   return named("FrameRegistration", std::string(registration_status_name(found.status)),
                found.reason, to_array(found.T_world_camera), covariance, found.translation,
@@ -214,9 +210,9 @@ void bind_planner(py::module_& module) {
            py::arg("pose_sigma") = std::array<double, 2>{0, 0}, py::arg("amplitude") = py::none(),
            kAddDoc)
       .def("register_frame", &register_frame, py::arg("depth"), py::arg("T_world_camera"),
-           py::kw_only(), py::arg("sigma_translation") = PosePrior{}.sigma_translation,
-           py::arg("sigma_rotation") = PosePrior{}.sigma_rotation,
-           py::arg("amplitude") = py::none(), kRegisterFrameDoc)
+           py::kw_only(), py::arg("sigma_translation") = kUsualPoseSigma.translation,
+           py::arg("sigma_rotation") = kUsualPoseSigma.rotation, py::arg("amplitude") = py::none(),
+           kRegisterFrameDoc)
       .def("propose", &propose, kProposeDoc)
       .def("rank", &rank, py::arg("k") = 1, py::kw_only(), py::arg("poses") = py::none(),
            py::arg("costs") = py::none(), py::arg("cost_per_metre") = 0.0, py::arg("exact") = false,

@@ -82,6 +82,8 @@ boxes : array_like, (n, 2, 3), optional
     Known obstacles, which block rays and gain nothing: lowest and highest corners, world frame [m].
 meshes : iterable of (vertices, triangles), optional
     The same as triangles: (n, 3), world frame [m], and (m, 3) indices.
+support_plane : float, optional
+    Height z of a table without end [m]. Bodies stay above it; rays of the gains "surface" and "combined" end there.
 object_size : float, optional
     Longest side of the object [m], for the surface gain; that of what is seen unless given.
 hazard : float, path or array_like, the grid's shape, optional
@@ -107,17 +109,19 @@ The GIL is left while a scene is made. Cost: linear in the blocks of voxels that
 ``update`` is several times faster where little has changed; properties take constant time.)");
   refuse_pickling(type);
   type.def(py::init([](const Given<SharedGrid>& grid, const py::object& boxes,
-                       const py::iterable& meshes, std::optional<double> object_size,
-                       const py::object& hazard, int num_threads) {
-             const Obstacles obstacles = obstacles_of(boxes, meshes);
+                       const py::iterable& meshes, std::optional<double> support_plane,
+                       std::optional<double> object_size, const py::object& hazard,
+                       int num_threads) {
+             const Surroundings surroundings{obstacles_of(boxes, meshes), support_plane};
              const HazardConfig rates = hazard_of(*grid, object_size, hazard);
              return grid->read([&](const BeliefGrid& g) {
-               return Scene{VoxelScene::build(g, obstacles, ExecConfig{num_threads}, rates)};
+               return Scene{VoxelScene::build(g, surroundings, ExecConfig{num_threads}, rates)};
              });
            }),
            py::arg("grid"), py::kw_only(), py::arg("boxes") = py::none(),
-           py::arg("meshes") = py::tuple(), py::arg("object_size") = py::none(),
-           py::arg("hazard") = py::none(), py::arg("num_threads") = 0)
+           py::arg("meshes") = py::tuple(), py::arg("support_plane") = py::none(),
+           py::arg("object_size") = py::none(), py::arg("hazard") = py::none(),
+           py::arg("num_threads") = 0)
       .def(
           "update",
           [](const Scene& self, const Given<SharedGrid>& grid, int num_threads) {
@@ -126,7 +130,7 @@ The GIL is left while a scene is made. Cost: linear in the blocks of voxels that
             });
           },
           py::arg("grid"), py::kw_only(), py::arg("num_threads") = 0,
-          R"(The scene of what the grid is now, with the same obstacles; this one stays as it is.
+          R"(The scene of what the grid is now, with the same surroundings; this one stays as it is.
 
 What has not changed since is taken over: regions of 32**3 voxels.
 

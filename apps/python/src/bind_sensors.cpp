@@ -63,12 +63,12 @@ name : str, optional
     For reports.
 T_flange_camera : array_like, (4, 4), optional
     Mounting on the robot's flange: from the camera's frame to the flange's.
-body_size : array_like, (3,), optional
+body_size : sequence of float, (3,), optional
     Width, height, depth of the housing, flange frame [m].
 range_calibration : array_like, (n, 2), optional
     Rows of measured range and measured minus true range [m], measured ranges rising: the systematic
     error, as the program's ``calibrate`` measures it. ``read_frames`` takes it away.
-pose_sigma : array_like, (2,), optional
+pose_sigma : sequence of float, (2,), optional
     How far the poses that frames come with may be off, standard deviations about the camera's
     centre: of its position in each axis [m], of each component of the rotation vector [rad]. Maps
     and gains count it into each reading.
@@ -116,7 +116,8 @@ range_calibration.)");
       .def_readonly("max_range", &Sensor::max_range, "float: along the ray [m]")
       .def_readonly("working_distance", &Sensor::working_distance, "float: [m]")
       .def_property_readonly(
-          "noise", [](const Sensor& sensor) { return sensor.noise; }, "The noise model.")
+          "noise", [](const Sensor& sensor) { return sensor.noise; },
+          "ShotNoise or StructuredLightNoise or StereoNoise or QuadraticNoise or ConstantNoise")
       .def_property_readonly(
           "T_flange_camera",
           [](const Sensor& sensor) -> py::object {

@@ -132,7 +132,7 @@ py::object evaluate_own(const Evaluator& self, const py::object& T_world_camera,
   py::array_t<double> gains(batch.shape);
   const std::span<double> out(gains.mutable_data(), batch.poses.size());
   run_batch(control, [&](const BatchControl& watched) {
-    self.evaluator.evaluate(batch.poses, own, out, watched);
+    self.evaluator.evaluate(batch.poses, out, own, watched);
   });
   return scalar_or_array(gains);
 }

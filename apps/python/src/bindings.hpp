@@ -23,6 +23,7 @@ void bind_feasibility(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
 void bind_evaluator(pybind11::module_& module);
 void bind_files(pybind11::module_& module);
+void bind_parts(pybind11::module_& module);
 void bind_planner(pybind11::module_& module);
 
 }  // namespace viewgain::python

@@ -4,6 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <optional>
 #include <string>
 
 #include "viewgain/core/sensor.hpp"
@@ -22,6 +23,15 @@ struct Evaluator {
   [[nodiscard]] int width() const { return (sensor.camera.width - 1) / pixel_stride + 1; }
   [[nodiscard]] int height() const { return (sensor.camera.height - 1) / pixel_stride + 1; }
 };
+
+/// What a GainEvaluator's keywords say. Throws ValueError for those that do not go together.
+[[nodiscard]] GainConfig gain_config(const std::string& gain, const std::string& criterion,
+                                     int pixel_stride, std::optional<double> prior_sigma,
+                                     std::optional<double> min_range,
+                                     std::optional<double> max_range,
+                                     const pybind11::iterable& weights,
+                                     std::optional<double> refinement_weight,
+                                     bool posterior_entropy);
 
 /// Adds what looks into single views: trace, depth, contributions, gains of the user's own.
 void bind_views(pybind11::module_& module, pybind11::class_<Evaluator>& evaluator);

@@ -17,9 +17,9 @@ Parameters
 ----------
 scene : VoxelScene
 sensor : Sensor
-gain : {"paper", "surface", "combined"}
-    What a view's gain counts: the entropy that it removes [nat], the new surface that it is expected to
-    show [m**2], or that and refining known surface [nat].
+gain : {"combined", "surface", "paper"}
+    What a view's gain counts: the new surface that it is expected to show and refining known surface
+    [nat], new surface alone [m**2], or the entropy that it removes [nat].
 criterion : {"log_diagonal", "log_determinant", "trace"}
     How the paper's gain measures uncertainty; gains are in nats, for trace in m**2. The combined gain
     always goes by log_diagonal and refuses trace.
@@ -34,8 +34,6 @@ weights : iterable of (box, weight), optional
     holds a voxel's centre counts, 1 outside all.
 refinement_weight : float, optional
     Weight of refining against finding new surface, with "combined" alone. Default: 0.3.
-support_plane : float, optional
-    Height z of a table at which rays end [m], with "surface" and "combined" alone.
 posterior_entropy : bool
     Let ``evaluate_detailed`` have it, too: with "paper" alone, some 4 % slower.
 num_threads : int
@@ -106,15 +104,18 @@ ValueError
 inline constexpr const char* kEvaluateDetailedDoc =
     R"(The expected gains of poses and what they are made of.
 
-Parameters are those of ``evaluate``.
+Parameters
+----------
+T_world_camera, strict, control
+    As ``evaluate``.
 
 Returns
 -------
 ndarray, (...), structured
     By the paper's gain: gain = exploration (unknown voxels) + refinement (occupied ones),
-    posterior_entropy if asked for, unknown_voxels and occupied_voxels (distinct). By the others: area (new surface
+    posterior_entropy if asked for, unknown_voxels and occupied_voxels (distinct; occupied_voxels by the combined gain, too). By the others: area (new surface
     to be expected [m**2]; gain, by the surface gain), refinement_saturated (combined [nat]). By all:
-    rays, hits, status (index into ``VIEW_STATUS_NAMES``). What a gain has not is NaN, a count 0. A
+    rays, hits, status (index into ``VIEW_STATUS_NAMES``). Of the others a part is NaN, a count 0. A
     single pose gives a scalar.)";
 
 inline constexpr const char* kBestDoc =
@@ -197,7 +198,7 @@ control : BatchControl, optional
 Returns
 -------
 ndarray, (...), structured
-    gain, standard_error, in the unit of ``evaluate``. A single pose gives a scalar.
+    gain, standard_error, in the unit of ``evaluate``, rays that were traced. A single pose gives a scalar.
 
 Raises
 ------

@@ -69,6 +69,7 @@ PYBIND11_MODULE(_viewgain, module) {
   bind_simulation(module);
   bind_evaluator(module);
   bind_files(module);
+  bind_parts(module);
   bind_planner(module);
   module.attr("__name__") = name;
 }

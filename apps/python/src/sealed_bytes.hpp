@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -13,7 +12,7 @@
 #include <vector>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/hash64.hpp"
 
 namespace viewgain::python {
 
@@ -21,13 +20,9 @@ namespace viewgain::python {
 // hash of all that. Numbers are in the machine's byte order; in another one's the hash differs.
 
 [[nodiscard]] inline std::uint64_t hash_of_bytes(std::string_view bytes) {
-  std::uint64_t hash = mix64(bytes.size());
-  for (std::size_t i = 0; i < bytes.size(); i += sizeof hash) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + i, std::min(sizeof word, bytes.size() - i));
-    hash = mix64(hash ^ word);
-  }
-  return hash;
+  Hash64 hash;
+  hash.add_bytes(bytes);
+  return hash.value();
 }
 
 class SealedWriter {

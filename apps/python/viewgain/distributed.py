@@ -35,7 +35,8 @@ except ImportError as error:
 
 import viewgain
 
-from . import _parts
+from . import _rows
+from ._viewgain import _part_head, _pose_matrices, _write_part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -55,16 +56,25 @@ class _Job:
 
     map_hash: str
     sensor: viewgain.Sensor
-    sensor_hash: str
     settings: dict[str, Any]
     isa: str
     num_threads: int
+    head: str
+    """What its parts say of themselves."""
     version: str = viewgain.__version__
 
     @property
     def key(self) -> str:
         """Of the evaluator that it needs."""
-        return f"{self.map_hash} {self.isa} {self.num_threads} {_parts.settings_text(self.settings)} {self.sensor_hash}"
+        return f"{self.head.partition('# poses')[0]} {self.num_threads}"
+
+    @property
+    def gain(self) -> str:
+        return self.settings.get("gain", viewgain.DEFAULT_GAIN)
+
+    @property
+    def dtype(self) -> np.dtype:
+        return _rows.dtype_of(self.gain)
 
 
 _lock = threading.Lock()
@@ -111,11 +121,11 @@ def _build(job: _Job) -> viewgain.GainEvaluator:
         grid = viewgain.BeliefGrid.from_bytes(_maps[job.map_hash])
         if grid.content_hash() != job.map_hash:
             raise RuntimeError(f"the map is no longer {job.map_hash}: its file was changed meanwhile")
-        scene = viewgain.VoxelScene(grid, num_threads=job.num_threads)
+        settings = {**job.settings, "posterior_entropy": True}  # a column of what is written
+        scene = viewgain.VoxelScene(grid, support_plane=settings.pop("support_plane", None), num_threads=job.num_threads)
         if scene.isa != job.isa:
             raise RuntimeError(f"this worker's CPU lacks {job.isa}, it has {scene.isa} at best")
         _built += 1
-        settings = {**job.settings, "posterior_entropy": True}  # a column of what is written
         return viewgain.GainEvaluator(scene, job.sensor, num_threads=job.num_threads, **settings)
     finally:
         if before is None:
@@ -139,9 +149,9 @@ def _score_chunk(job: _Job, begin: int, poses: NDArray) -> tuple[int, NDArray, f
     """First row, rows, and how long scoring took [s]."""
     evaluator = _evaluator(job)
     start = time.perf_counter()
-    gains = evaluator.evaluate_detailed(_parts.matrices(poses))
+    gains = evaluator.evaluate_detailed(_pose_matrices(poses) if poses.dtype.names else poses)
     seconds = time.perf_counter() - start
-    rows = np.empty(len(poses), _parts.dtype_of(job.settings))
+    rows = np.empty(len(poses), job.dtype)
     rows["index"] = np.arange(begin, begin + len(poses))
     for name in rows.dtype.names[1:]:
         rows[name] = gains[name]
@@ -246,7 +256,8 @@ def score(client: Any, map: Any, poses: Any, sensor: Any, *, out: Any, top: int 
     progress : callable, optional
         Gets the number of poses done and of all, after each chunk.
     **settings
-        Of GainEvaluator: gain, criterion, pixel_stride, prior_sigma, ...; ``posterior_entropy`` is always there.
+        Of GainEvaluator: gain, criterion, pixel_stride, prior_sigma, ...; ``posterior_entropy`` is always there. Of
+        VoxelScene, with the gains surface and combined: support_plane.
 
     Returns
     -------
@@ -266,40 +277,41 @@ def score(client: Any, map: Any, poses: Any, sensor: Any, *, out: Any, top: int 
     start = time.perf_counter()
     # Here, and not in workers: one that has the evaluator already would not look at what it does not know.
     for name in settings:
-        if name not in _parts.SETTINGS:
-            raise TypeError(f"there is no setting {name!r}, but {', '.join(_parts.SETTINGS)}")
+        if name not in _rows.SETTINGS:
+            raise TypeError(f"there is no setting {name!r}, but {', '.join(_rows.SETTINGS)}")
     grid = map if isinstance(map, viewgain.BeliefGrid) else viewgain.BeliefGrid.load(map)
     sensor = sensor if isinstance(sensor, viewgain.Sensor) else viewgain.Sensor.load(sensor)
-    poses = _parts.poses_of(poses)
+    poses = _rows.poses_of(poses)
     if isa is None:
         client.wait_for_workers(1)
         isa = min(client.run(_best_isa).values(), key=_ISAS.index)
     elif isa not in _ISAS:
         raise ValueError(f"there is no ISA {isa!r}, but {', '.join(_ISAS)}")
-    job = _Job(grid.content_hash(), sensor, _parts.hash_of_text(_parts.sensor_text(sensor)), settings, isa, num_threads)
-    head, folder, dtype = _parts.head_of(job, poses), pathlib.Path(out), _parts.dtype_of(settings)
+    map_hash = grid.content_hash()
+    job = _Job(map_hash, sensor, settings, isa, num_threads, _part_head(map_hash, sensor, settings, isa, poses))
+    folder = pathlib.Path(out)
     folder.mkdir(parents=True, exist_ok=True)
-    best, found = _parts.Best(top, dtype), []
+    best, found = np.empty(0, job.dtype), []
     for path in sorted(folder.glob("rows-*.npy")):
-        begin, rows = _parts.read_part(path, head, dtype)
-        found.append((begin, begin + len(rows), path))
-        best.add(rows)
+        rows = _rows.rows_of(path, job.head, job.gain)
+        found.append((int(rows["index"][0]), int(rows["index"][-1]) + 1, path))
+        best = _rows.best_of(np.concatenate([best, rows]), top)
     found.sort()
     for (begin, end, path), (other_begin, other_end, other) in zip(found, found[1:]):
         if other_begin < end:
             raise ValueError(f"{other}: rows {other_begin}:{other_end} overlap rows {begin}:{end} of {path}; delete one")
     there = {begin: (end, path) for begin, end, path in found}
-    gaps = _parts.gaps([(begin, end) for begin, end, _ in found], len(poses))
+    gaps = _rows.gaps([(begin, end) for begin, end, _ in found], len(poses))
     done = resumed = len(poses) - sum(end - begin for begin, end in gaps)
 
     def keep(begin: int, rows: NDArray) -> None:
-        nonlocal done
+        nonlocal best, done
         path = folder / f"rows-{begin:012d}-{begin + len(rows):012d}.npy"
         if begin in there:
             raise RuntimeError(f"{path}: was scored twice")
-        _parts.write_part(path, rows, head, begin)
+        _write_part(path, job.head, job.gain, rows.tobytes())
         there[begin] = (begin + len(rows), path)
-        best.add(rows)
+        best = _rows.best_of(np.concatenate([best, rows]), top)
         done += len(rows)
         if progress is not None:
             progress(done, len(poses))
@@ -314,7 +326,7 @@ def score(client: Any, map: Any, poses: Any, sensor: Any, *, out: Any, top: int 
         finally:
             client.unregister_worker_plugin(plugin.name)
     parts = [path for _, (_, path) in sorted(there.items())]
-    return Scores(best.rows, parts, isa, len(poses), resumed, time.perf_counter() - start)
+    return Scores(best, parts, isa, len(poses), resumed, time.perf_counter() - start)
 
 
 def _join_study(command: list[str]) -> None:

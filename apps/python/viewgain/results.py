@@ -123,7 +123,7 @@ class FrameRegistration(NamedTuple):
     readings: Annotated[int, "That were looked at."]
     pairs: Annotated[int, "Readings that belong to a point of the map."]
     overlap: Annotated[float, "Share: pairs / readings."]
-    contradiction: Annotated[float, "Share of readings in space that is known to be free, or behind surface."]
+    contradiction: Annotated[float, "The larger share: of readings in space known to be free, of the map's surface that the frame looks past."]
     smallest_information: Annotated[float, "Of the frame along any motion, as a factor of the prior's."]
     free_directions: Annotated[int, "Motions that the frame does not hold, which stay as reported."]
     pose_sigma: Annotated[tuple, "(2,): what the covariance leaves in each axis [m], [rad], for ``ViewPlanner.add``."]

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "program/cli/flags/gain_names.hpp"
-#include "show/pictures/image_grid.hpp"
 #include "show/pictures/picture_parts.hpp"
 #include "show/report/blocks.hpp"
 #include "viewgain/version.hpp"
@@ -39,6 +38,20 @@ Json column_of(const std::vector<double>& values, std::size_t rows) {
   std::vector<float> column(rows, std::numeric_limits<float>::quiet_NaN());
   std::copy_n(values.begin(), std::min(rows, values.size()), column.begin());
   return float_block(column, 1);
+}
+
+// The means of 2 x 2 pixels; an odd row or column at the end goes.
+RgbImage halved(const RgbImage& image) {
+  RgbImage half{image.width / 2, image.height / 2, {}};
+  const std::size_t row = 3 * static_cast<std::size_t>(image.width);
+  for (std::size_t v = 0; v < static_cast<std::size_t>(half.height); ++v) {
+    for (std::size_t u = 0; u < 3 * static_cast<std::size_t>(half.width); ++u) {
+      const std::uint8_t* const upper = &image.pixels[2 * v * row + u / 3 * 6 + u % 3];
+      const int sum = upper[0] + upper[3] + upper[row] + upper[row + 3];
+      half.pixels.push_back(static_cast<std::uint8_t>((sum + 2) / 4));
+    }
+  }
+  return half;
 }
 
 }  // namespace
@@ -113,6 +126,6 @@ Json contributions_json(const GridSnapshot& snapshot, const std::vector<VoxelCon
           {"size", snapshot.voxel_size}};
 }
 
-std::string small_picture(const RgbImage& picture) { return base64(png_bytes(shrunk(picture, 2))); }
+std::string small_picture(const RgbImage& picture) { return base64(png_bytes(halved(picture))); }
 
 }  // namespace viewgain::app

@@ -101,6 +101,10 @@ void ReachRegion::validate() const {
   }
 }
 
+bool ReachRegion::is_everywhere() const {
+  return boxes.empty() && shells.empty() && half_spaces.empty() && poses.empty() && !predicate;
+}
+
 bool ReachRegion::contains(const Pose& T_world_camera) const {
   const Eigen::Vector3d center = T_world_camera.translation();
   return in_any(boxes, center) && in_any(shells, center) &&

@@ -84,8 +84,7 @@ PinholeCamera make_camera(int width, int height, double fx, double fy, double cx
 /// But for the laser's, the models' default parameters are those of the presets that use them.
 const std::vector<Sensor>& presets() {
   static const std::vector<Sensor> sensors{
-      make_sensor("sr4000", make_camera(176, 144, 220.0, 231.2, 87.5, 71.5), 0.2, 5.0, 0.4,
-                  ShotNoise{}),
+      Sensor{},  // sr4000
       with_body(make_sensor("azure_kinect_nfov", make_camera(640, 576, 417.0, 452.1, 319.5, 287.5),
                             0.5, 3.86, 1.0, QuadraticNoise{}),
                 {0.103, 0.039, 0.126}),

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "map/hash64.hpp"
+#include "viewgain/support/hash64.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -12,28 +12,13 @@ namespace {
 constexpr std::string_view kMark = "VGSEAL01";
 constexpr std::size_t kSealSize = 24;
 
-std::uint64_t word_at(std::string_view bytes, std::size_t at, std::size_t count) {
-  std::uint64_t word = 0;  // little-endian on every machine
-  for (std::size_t i = 0; i < count; ++i) {
-    word |= std::uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
-  }
-  return word;
-}
-
-std::uint64_t hash_bytes(std::string_view bytes) {
-  Hash64 hash;
-  std::size_t i = 0;
-  for (; i + 8 <= bytes.size(); i += 8) hash.add(word_at(bytes, i, 8));
-  hash.add(word_at(bytes, i, bytes.size() - i));
-  hash.add(bytes.size());
-  return hash.value();
-}
-
 }  // namespace
 
 std::string make_seal(std::string_view bytes) {
   std::string seal(kMark);
-  for (const std::uint64_t word : {std::uint64_t{bytes.size()}, hash_bytes(bytes)}) {
+  Hash64 hash;
+  hash.add_bytes(bytes);
+  for (const std::uint64_t word : {std::uint64_t{bytes.size()}, hash.value()}) {
     for (unsigned i = 0; i < 8; ++i) seal.push_back(static_cast<char>(word >> (8U * i) & 255U));
   }
   return seal;

@@ -15,12 +15,12 @@
 
 #include "map/belief_check.hpp"
 #include "pose_text.hpp"
-#include "solid_voxels.hpp"
 #include "vdb_contents.hpp"
 #include "vdb_layout.hpp"
 #include "vdb_rates.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/solid_voxels.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "belief_blocks.hpp"
 
-#include "block_lattice.hpp"
+#include "viewgain/support/block_lattice.hpp"
 
 namespace viewgain::detail {
 

@@ -14,11 +14,11 @@
 #include "belief_blocks.hpp"
 #include "belief_check.hpp"
 #include "code_mask.hpp"
-#include "grid_blocks.hpp"
 #include "grid_layout.hpp"
 #include "grid_storage.hpp"
 #include "rigid_view.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/grid_blocks.hpp"
 #include "voxels_in.hpp"
 
 namespace viewgain {
@@ -26,10 +26,10 @@ namespace {
 
 using namespace detail;
 
-std::unique_ptr<GridStorage> make_storage(const GridConfig& config) {
-  const auto [min_index, dims] = layout_of(config);
-  return std::make_unique<GridStorage>(config.voxel_size, config.T_world_grid, config.prior_sigma,
-                                       min_index, dims);
+std::unique_ptr<GridStorage> make_storage(const GridConfig& config, const Sensor& sensor) {
+  const auto [low, dims] = layout_of(config);
+  const double prior = config.prior_sigma.value_or(default_prior_sigma(config.voxel_size, sensor));
+  return std::make_unique<GridStorage>(config.voxel_size, config.T_world_grid, prior, low, dims);
 }
 
 std::uint64_t tree_bytes(const CodeTree& tree) {
@@ -171,7 +171,7 @@ std::uint64_t detail::GridStorage::bytes() const {
 }
 
 BeliefGrid::BeliefGrid(std::unique_ptr<GridStorage> storage) : storage_(std::move(storage)) {}
-BeliefGrid::BeliefGrid(const GridConfig& config) : storage_(make_storage(config)) {}
+BeliefGrid::BeliefGrid(const GridConfig& c, const Sensor& s) : storage_(make_storage(c, s)) {}
 BeliefGrid::~BeliefGrid() = default;
 BeliefGrid::BeliefGrid(BeliefGrid&&) noexcept = default;
 BeliefGrid& BeliefGrid::operator=(BeliefGrid&&) noexcept = default;
@@ -350,8 +350,6 @@ std::vector<BeliefBlockAt> BeliefGrid::belief_blocks() const {
   return blocks;
 }
 
-namespace detail {
-
 void put_block(BeliefGrid& grid, Index3 origin, const std::uint8_t* codes) {
   GridAccess::storage(grid).put_block(origin, codes);
 }
@@ -387,6 +385,8 @@ void visit_grid(const BeliefGrid& grid,
       [&](const CodeLeaf& leaf, Index3 origin) { block(origin, leaf.buffer().data()); },
       [&](Index3 origin, int size, std::uint8_t code) { cube(origin, size, code); });
 }
+
+namespace detail {
 
 const BeliefBlock* find_beliefs(const BeliefGrid& grid, Index3 voxel) {
   const GridStorage& s = GridAccess::storage(grid);

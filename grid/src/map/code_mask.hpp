@@ -5,8 +5,8 @@
 #include <bit>
 #include <cstring>
 
-#include "log_odds_code.hpp"
 #include "viewgain/grid/belief.hpp"
+#include "viewgain/support/log_odds_code.hpp"
 
 namespace viewgain::detail {
 

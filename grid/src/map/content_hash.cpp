@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "grid_storage.hpp"
-#include "hash64.hpp"
+#include "viewgain/support/hash64.hpp"
 
 namespace viewgain {
 namespace {

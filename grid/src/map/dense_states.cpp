@@ -7,9 +7,9 @@
 #include <array>
 #include <string>
 
-#include "grid_blocks.hpp"
-#include "log_odds_code.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/grid_blocks.hpp"
+#include "viewgain/support/log_odds_code.hpp"
 
 namespace viewgain {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include "code_mask.hpp"
-#include "grid_blocks.hpp"
+#include "viewgain/support/grid_blocks.hpp"
 
 namespace viewgain {
 

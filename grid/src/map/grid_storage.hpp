@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "belief_blocks.hpp"
-#include "block_lattice.hpp"
-#include "log_odds_code.hpp"
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/support/block_lattice.hpp"
+#include "viewgain/support/log_odds_code.hpp"
 
 namespace viewgain::detail {
 

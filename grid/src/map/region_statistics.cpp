@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "block_lattice.hpp"
+#include "viewgain/support/block_lattice.hpp"
 #include "voxels_in.hpp"
 
 namespace viewgain {

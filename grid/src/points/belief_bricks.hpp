@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "map/block_lattice.hpp"
-#include "map/log_odds_code.hpp"
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/support/block_lattice.hpp"
+#include "viewgain/support/log_odds_code.hpp"
 
 namespace viewgain::detail {
 

@@ -9,10 +9,10 @@
 
 #include "hit.hpp"
 #include "map/belief_blocks.hpp"
-#include "map/block_lattice.hpp"
-#include "map/log_odds_code.hpp"
 #include "readings.hpp"
 #include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/block_lattice.hpp"
+#include "viewgain/support/log_odds_code.hpp"
 
 namespace viewgain::detail {
 

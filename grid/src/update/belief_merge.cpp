@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "map/belief_blocks.hpp"
-#include "map/block_lattice.hpp"
+#include "viewgain/support/block_lattice.hpp"
 
 namespace viewgain::detail {
 namespace {

@@ -13,7 +13,7 @@
 #include <cstring>
 
 #include "block_kernels.hpp"
-#include "map/log_odds_code.hpp"
+#include "viewgain/support/log_odds_code.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {

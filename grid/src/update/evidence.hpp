@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "map/block_lattice.hpp"
+#include "viewgain/support/block_lattice.hpp"
 
 namespace viewgain::detail {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <optional>
 
-#include "map/log_odds_code.hpp"
+#include "viewgain/support/log_odds_code.hpp"
 
 namespace viewgain::detail {
 namespace {

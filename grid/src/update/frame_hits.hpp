@@ -8,9 +8,9 @@
 
 #include "association.hpp"
 #include "hit.hpp"
-#include "map/block_lattice.hpp"
 #include "readings.hpp"
 #include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/block_lattice.hpp"
 
 namespace viewgain::detail {
 

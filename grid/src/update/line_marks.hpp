@@ -8,8 +8,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "map/block_lattice.hpp"
-#include "map/log_odds_code.hpp"
+#include "viewgain/support/block_lattice.hpp"
+#include "viewgain/support/log_odds_code.hpp"
 
 namespace viewgain::detail {
 

@@ -31,7 +31,6 @@
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/integrate_cloud.hpp"
 #include "viewgain/grid/occupancy_codes.hpp"
-#include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/grid/region_statistics.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/grid/voxel.hpp"

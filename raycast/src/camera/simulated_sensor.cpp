@@ -41,17 +41,6 @@ void check(const Sensor& sensor, const SimulationConfig& config) {
   if (config.support_plane && !std::isfinite(*config.support_plane)) {
     fail("support plane " + short_text(*config.support_plane) + " m is not finite");
   }
-  config.calibration.validate();
-  if (config.wiggling == 0) return;
-  const double unambiguous = unambiguous_range(sensor.noise);
-  if (!std::isfinite(unambiguous)) {
-    fail("wiggling " + short_text(config.wiggling) + " m, but " + sensor.name +
-         " has no modulation frequency");
-  }
-  const double bound = unambiguous / (8.0 * std::numbers::pi);
-  if (!(std::abs(config.wiggling) < bound)) {
-    fail("wiggling " + short_text(config.wiggling) + " m is not under " + short_text(bound) + " m");
-  }
 }
 
 void check_pose(const Pose& T_world_camera) {

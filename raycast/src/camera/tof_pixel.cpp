@@ -61,9 +61,6 @@ PixelReading TofPixel::mixed(std::span<const RayReturn> hits) const {
 
 PixelReading TofPixel::disturbed(PixelReading reading, const PixelRandom& random) const {
   const double true_range = reading.range;
-  if (config_.wiggling != 0) {
-    reading.range += config_.wiggling * std::sin(4.0 * kTwoPi * true_range / unambiguous_range_);
-  }
   if (config_.noise) {
     const double sigma = sensor_.noise_sigmas(true_range, reading.cos_incidence).axial;
     reading.range += sigma * random.normal(RandomStream::axial);
@@ -72,7 +69,7 @@ PixelReading TofPixel::disturbed(PixelReading reading, const PixelRandom& random
     reading.amplitude *= std::max(
         0.0, 1.0 + kTwoPi * sigma / unambiguous_range_ * random.normal(RandomStream::amplitude));
   }
-  reading.range = config_.calibration.corrected(folded(reading.range));
+  reading.range = folded(reading.range);
   return reading;
 }
 

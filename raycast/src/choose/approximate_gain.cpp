@@ -37,10 +37,12 @@ std::size_t GainEvaluator::approximate(std::span<const Pose> T_world_camera,
       driver, results.size(), control, [&](std::size_t i, detail::ViewDriver::Lease& lease) {
         if (sample) {
           results[i] = sample->estimate(T_world_camera[i], lease);
+          results[i].rays = sample->rays();
           return;
         }
         const ViewGain whole = driver.evaluate(T_world_camera[i], lease);
-        results[i] = {whole.gain, whole.status == ViewStatus::bad_pose ? whole.gain : 0.0};
+        results[i] = {whole.gain, whole.status == ViewStatus::bad_pose ? whole.gain : 0.0,
+                      whole.rays};
       });
 }
 

@@ -28,9 +28,9 @@ Scores scores_of(const GainEvaluator& evaluator, std::span<const Pose> T_world_c
   Scores scores;
   scores.worth.resize(T_world_camera.size());
   if (config.measure != nullptr) {
-    scores.scored = evaluator.evaluate(T_world_camera, *config.measure, scores.worth, control);
+    scores.scored = evaluator.evaluate(T_world_camera, scores.worth, *config.measure, control);
   } else if (config.run_measure != nullptr) {
-    scores.scored = evaluator.evaluate(T_world_camera, *config.run_measure, scores.worth, control);
+    scores.scored = evaluator.evaluate(T_world_camera, scores.worth, *config.run_measure, control);
   } else {
     scores.gains.resize(T_world_camera.size());
     scores.scored = evaluator.evaluate(T_world_camera, scores.gains, control);
@@ -83,7 +83,7 @@ std::vector<std::size_t> best_indices(std::span<const ViewGain> results, std::si
 }
 
 BestViews GainEvaluator::best(std::span<const Pose> T_world_camera, std::size_t k,
-                              const BatchControl& control, const BestConfig& config) const {
+                              const BestConfig& config, const BatchControl& control) const {
   detail::check_costs(config.costs, T_world_camera.size());
   if (config.measure != nullptr && config.run_measure != nullptr) {
     throw Error(ErrorCode::invalid_argument, "views are chosen by one measure, not by two");

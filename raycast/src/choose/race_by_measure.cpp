@@ -61,8 +61,8 @@ std::size_t measure(const GainEvaluator& evaluator, std::span<const Pose> poses,
                     const RaceConfig& config, std::span<double> values,
                     const BatchControl& control) {
   return config.measure != nullptr
-             ? evaluator.evaluate(poses, *config.measure, values, control)
-             : evaluator.evaluate(poses, *config.run_measure, values, control);
+             ? evaluator.evaluate(poses, values, *config.measure, control)
+             : evaluator.evaluate(poses, values, *config.run_measure, control);
 }
 
 RacedViews race_by_measure(const GainEvaluator& full, const GainEvaluator* coarse,

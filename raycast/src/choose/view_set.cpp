@@ -73,7 +73,7 @@ ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_
                                 const BatchControl& control) const {
   if (impl_->driver.surface() != nullptr) {
     throw Error(ErrorCode::invalid_argument,
-                "sets of views are chosen by the paper's gain, not by " +
+                "sets of views are chosen by the gain paper, not by " +
                     std::string(gain_model_name(impl_->driver.core()->config.model)));
   }
   const std::size_t count = T_world_camera.size();

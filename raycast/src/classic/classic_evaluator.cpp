@@ -50,9 +50,6 @@ const ClassicConfig& checked(const ClassicConfig& config, const Sensor& sensor) 
     reject("ranges are " + short_text(near) + " to " + short_text(far) +
            " m; they must be >= 0, finite and the first below the second");
   }
-  if (config.support_plane && !std::isfinite(*config.support_plane)) {
-    reject("the support plane's height must be finite");
-  }
   const double prior = config.unknown_prior;
   if (!(prior >= 0 && prior <= 1)) {
     reject("the unknown voxels' prior is " + short_text(prior) + "; it must be in 0..1");
@@ -111,13 +108,15 @@ class ClassicDriver {
     if (!map_) reject("the classic gains have no map");
     for (const ClassicGain gain : core_->config.gains) check(gain);
     const VoxelScene& scene = map_->scene();
-    if (!core_->config.support_plane) return;
+    const std::optional<double>& plane = scene.surroundings().support_plane;
+    has_plane_ = plane.has_value();
+    if (!plane) return;
     const Pose T_grid_world = scene.snapshot().T_world_grid.inverse();
     normal_ = T_grid_world.rotation() * Eigen::Vector3d::UnitZ();
     const Index3& base = data().table.base;
-    height_ = normal_.dot(T_grid_world * Eigen::Vector3d(0, 0, *core_->config.support_plane) /
-                              scene.snapshot().voxel_size -
-                          Eigen::Vector3d(base.x, base.y, base.z));
+    height_ =
+        normal_.dot(T_grid_world * Eigen::Vector3d(0, 0, *plane) / scene.snapshot().voxel_size -
+                    Eigen::Vector3d(base.x, base.y, base.z));
   }
 
   class Lease {
@@ -194,7 +193,7 @@ class ClassicDriver {
     ClassicTile tile;
     for (std::size_t number = 0; number < core_->rays.tiles().tile_count; ++number) {
       core_->rays.place(scene, data().table, frame, number, core_->max_range / V, tile);
-      if (core_->config.support_plane) cut_at_plane(frame, tile);
+      if (has_plane_) cut_at_plane(frame, tile);
       add_tile(view, tile, sums, distinct);
     }
   }
@@ -246,6 +245,7 @@ class ClassicDriver {
 
   std::shared_ptr<const ClassicMap> map_;
   std::shared_ptr<ClassicCore> core_;
+  bool has_plane_ = false;
   Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // of the support plane, grid frame
   double height_ = 0;                                 // of it along the normal [voxels]
 };

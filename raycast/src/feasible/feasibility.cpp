@@ -50,9 +50,6 @@ void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConf
         taken.angle >= 0)) {
     fail("the tolerance of views taken must be finite and not negative");
   }
-  if (config.support_plane && !std::isfinite(*config.support_plane)) {
-    fail("the support plane's height is not finite");
-  }
   config.reach.validate();
   if (config.sensor) config.sensor->validate();
   if (!(config.max_near_share >= 0 && config.max_near_share <= 1)) {
@@ -126,7 +123,7 @@ struct FeasibilityChecker::Impl {
         T_grid_world(scene->snapshot().T_world_grid.inverse()) {}
 
   [[nodiscard]] bool meets_plane(const Pose& T_world_body, const Eigen::Vector3d& camera) const {
-    const std::optional<double>& plane = settings->config.support_plane;
+    const std::optional<double>& plane = scene->surroundings().support_plane;
     if (!plane) return false;
     const double below = T_world_body.rotation().row(2).cwiseAbs().dot(settings->half);
     return std::min(T_world_body.translation().z() - below, camera.z()) <= *plane + kTouch;
@@ -178,7 +175,7 @@ struct FeasibilityChecker::Impl {
 FeasibilityChecker::FeasibilityChecker(std::shared_ptr<const VoxelScene> scene,
                                        const FeasibilityConfig& config, const ExecConfig& exec) {
   ::viewgain::check(scene, config);
-  auto obstacles = std::make_shared<const detail::ObstacleCheck>(scene->obstacles());
+  auto obstacles = std::make_shared<const detail::ObstacleCheck>(scene->surroundings().obstacles);
   impl_ = std::make_unique<Impl>(
       std::move(scene), std::make_shared<const Impl::Settings>(config, exec), std::move(obstacles));
 }
@@ -191,8 +188,8 @@ FeasibilityChecker& FeasibilityChecker::operator=(FeasibilityChecker&&) noexcept
 FeasibilityChecker FeasibilityChecker::with_scene(std::shared_ptr<const VoxelScene> scene) const {
   if (scene == nullptr) fail("there is no scene");
   auto obstacles = impl_->obstacles;
-  if (&scene->obstacles() != &impl_->scene->obstacles()) {
-    obstacles = std::make_shared<const detail::ObstacleCheck>(scene->obstacles());
+  if (&scene->surroundings() != &impl_->scene->surroundings()) {
+    obstacles = std::make_shared<const detail::ObstacleCheck>(scene->surroundings().obstacles);
   }
   return FeasibilityChecker(
       std::make_unique<Impl>(std::move(scene), impl_->settings, std::move(obstacles)));

@@ -42,14 +42,11 @@ void check(const GainConfig& config, const Sensor& sensor) {
            short_text(max_range) + " m");
   }
   if (config.model == GainModel::combined && config.criterion == Criterion::trace) {
-    reject("the combined gain is in nats: it goes with a logarithmic criterion, not with trace");
+    reject("the combined gain is in nats and does not go with trace; the gain paper does");
   }
   if (!std::isfinite(config.refinement_weight) || config.refinement_weight < 0) {
     reject("refinement weight is " + short_text(config.refinement_weight) +
            "; it must be >= 0 and finite");
-  }
-  if (config.support_plane && !std::isfinite(*config.support_plane)) {
-    reject("the support plane's height must be finite");
   }
   for (const double t : {min_range, sensor.working_distance, max_range}) {
     const MeasurementSigmas sigma = sensor.sigmas(t);

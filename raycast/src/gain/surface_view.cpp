@@ -70,13 +70,13 @@ WalkLimits SurfaceView::limits_of() const {
   WalkLimits limits;
   limits.workspace = {static_cast<float>(snapshot.dims.x), static_cast<float>(snapshot.dims.y),
                       static_cast<float>(snapshot.dims.z)};
-  if (!core_.config.support_plane) return limits;
+  const std::optional<double>& plane = scene_.surroundings->support_plane;
+  if (!plane) return limits;
   const Pose T_grid_world = snapshot.T_world_grid.inverse();
   const Eigen::Vector3d normal = T_grid_world.rotation() * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d base(snapshot.min_index.x, snapshot.min_index.y, snapshot.min_index.z);
   const Eigen::Vector3d on_plane =
-      T_grid_world * Eigen::Vector3d(0, 0, *core_.config.support_plane) / snapshot.voxel_size -
-      base;
+      T_grid_world * Eigen::Vector3d(0, 0, *plane) / snapshot.voxel_size - base;
   limits.has_plane = true;
   for (Eigen::Index a = 0; a < 3; ++a) {
     limits.normal[static_cast<std::size_t>(a)] = static_cast<float>(normal[a]);

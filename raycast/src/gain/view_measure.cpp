@@ -87,9 +87,8 @@ void list_runs(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
 ViewMeasure::~ViewMeasure() = default;
 RunMeasure::~RunMeasure() = default;
 
-std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera,
-                                    const ViewMeasure& measure, std::span<double> results,
-                                    const BatchControl& control) const {
+std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
+                                    const ViewMeasure& measure, const BatchControl& control) const {
   detail::check_room(T_world_camera.size(), results.size());
   std::fill(results.begin(), results.end(), std::numeric_limits<double>::quiet_NaN());
   const detail::ViewDriver& driver = impl_->driver;
@@ -102,8 +101,8 @@ std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera,
                                });
 }
 
-std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera, const RunMeasure& measure,
-                                    std::span<double> results, const BatchControl& control) const {
+std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
+                                    const RunMeasure& measure, const BatchControl& control) const {
   detail::check_room(T_world_camera.size(), results.size());
   std::fill(results.begin(), results.end(), std::numeric_limits<double>::quiet_NaN());
   const detail::ViewDriver& driver = impl_->driver;

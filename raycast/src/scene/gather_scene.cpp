@@ -40,15 +40,23 @@ void check_obstacles(const Obstacles& obstacles) {
   }
 }
 
+void check_surroundings(const Surroundings& surroundings) {
+  check_obstacles(surroundings.obstacles);
+  if (surroundings.support_plane && !std::isfinite(*surroundings.support_plane)) {
+    throw Error(ErrorCode::invalid_argument, "the support plane's height is not finite");
+  }
+}
+
 std::unique_ptr<SceneData> gather_scene(GridSnapshot snapshot,
-                                        std::shared_ptr<const Obstacles> obstacles,
+                                        std::shared_ptr<const Surroundings> surroundings,
                                         std::shared_ptr<const HazardConfig> hazard,
                                         const SceneData* before) {
   auto data = std::make_unique<SceneData>();
   data->snapshot = std::move(snapshot);
   gather_primitives(*data, before);
-  data->has_obstacles = !obstacles->boxes.empty() || !obstacles->meshes.empty();
-  data->obstacles = std::move(obstacles);
+  const Obstacles& obstacles = surroundings->obstacles;
+  data->has_obstacles = !obstacles.boxes.empty() || !obstacles.meshes.empty();
+  data->surroundings = std::move(surroundings);
   data->hazard = std::move(hazard);
   return data;
 }

@@ -11,13 +11,14 @@ namespace viewgain::detail {
 /// Throws Error(invalid_argument) for a vertex that is not finite, an index out of range or a box
 /// inside out.
 void check_obstacles(const Obstacles& obstacles);
+/// The same, and for a support plane that is not finite.
+void check_surroundings(const Surroundings& surroundings);
 
 /// What is to be traced, but not how: boxes and tracing are still to be filled. Regions that the
 /// snapshot shares with `before` (null: none), the scene that it was made from, are copied from
 /// there. Throws Error(capacity).
-[[nodiscard]] std::unique_ptr<SceneData> gather_scene(GridSnapshot snapshot,
-                                                      std::shared_ptr<const Obstacles> obstacles,
-                                                      std::shared_ptr<const HazardConfig> hazard,
-                                                      const SceneData* before);
+[[nodiscard]] std::unique_ptr<SceneData> gather_scene(
+    GridSnapshot snapshot, std::shared_ptr<const Surroundings> surroundings,
+    std::shared_ptr<const HazardConfig> hazard, const SceneData* before);
 
 }  // namespace viewgain::detail

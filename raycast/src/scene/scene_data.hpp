@@ -62,7 +62,7 @@ struct SceneData {
   std::size_t block_count = 0;
   /// Where the primitives of each of the snapshot's regions begin, and behind the last.
   std::vector<SceneRegion> regions;
-  std::shared_ptr<const Obstacles> obstacles;  ///< never null; shared by the scenes of a map
+  std::shared_ptr<const Surroundings> surroundings;  ///< never null; shared by the scenes of a map
   bool has_obstacles = false;
   std::shared_ptr<const HazardConfig> hazard;  ///< never null; shared by the scenes of a map
   std::optional<SceneCells> cells;             ///< for sweeping views

@@ -20,7 +20,7 @@ VoxelScene::VoxelScene(std::unique_ptr<const detail::SceneData> data) : data_(st
 VoxelScene::~VoxelScene() = default;
 
 const GridSnapshot& VoxelScene::snapshot() const noexcept { return data_->snapshot; }
-const Obstacles& VoxelScene::obstacles() const noexcept { return *data_->obstacles; }
+const Surroundings& VoxelScene::surroundings() const noexcept { return *data_->surroundings; }
 std::size_t VoxelScene::primitive_count() const noexcept { return data_->boxes.size(); }
 
 std::uint64_t VoxelScene::bytes() const noexcept {
@@ -29,8 +29,8 @@ std::uint64_t VoxelScene::bytes() const noexcept {
                       data_->block_keys.size() * sizeof(std::uint64_t) +
                       data_->leaf_source.size() * (sizeof(std::uint32_t) + sizeof(std::uint8_t)) +
                       data_->regions.size() * sizeof(detail::SceneRegion) + data_->cells->bytes() +
-                      data_->obstacles->boxes.size() * sizeof(Box);
-  for (const TriangleMesh& mesh : data_->obstacles->meshes) bytes += bytes_of(mesh);
+                      data_->surroundings->obstacles.boxes.size() * sizeof(Box);
+  for (const TriangleMesh& mesh : data_->surroundings->obstacles.meshes) bytes += bytes_of(mesh);
   return bytes;
 }
 

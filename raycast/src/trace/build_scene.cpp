@@ -26,21 +26,21 @@ std::shared_ptr<const VoxelScene> make_traceable(std::unique_ptr<detail::SceneDa
 }  // namespace
 
 std::shared_ptr<const VoxelScene> VoxelScene::build(const BeliefGrid& grid,
-                                                    const Obstacles& obstacles,
+                                                    const Surroundings& surroundings,
                                                     const ExecConfig& exec,
                                                     const HazardConfig& hazard) {
-  return build(grid.snapshot(), obstacles, exec, hazard);
+  return build(grid.snapshot(), surroundings, exec, hazard);
 }
 
 std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
-                                                    const Obstacles& obstacles,
+                                                    const Surroundings& surroundings,
                                                     const ExecConfig& exec,
                                                     const HazardConfig& hazard) {
   (void)thread_count(exec.num_threads);
-  detail::check_obstacles(obstacles);
+  detail::check_surroundings(surroundings);
   hazard.validate();
   return make_traceable(
-      detail::gather_scene(std::move(snapshot), std::make_shared<const Obstacles>(obstacles),
+      detail::gather_scene(std::move(snapshot), std::make_shared<const Surroundings>(surroundings),
                            std::make_shared<const HazardConfig>(hazard), nullptr),
       nullptr);
 }
@@ -52,7 +52,7 @@ std::shared_ptr<const VoxelScene> VoxelScene::update(
   (void)thread_count(exec.num_threads);
   const detail::SceneData& data = SceneAccess::data(*before);
   return make_traceable(
-      detail::gather_scene(grid.snapshot(data.snapshot), data.obstacles, data.hazard, &data),
+      detail::gather_scene(grid.snapshot(data.snapshot), data.surroundings, data.hazard, &data),
       &data);
 }
 

@@ -39,7 +39,7 @@ struct Soup {
     const Pose T_grid_world = data.snapshot.T_world_grid.inverse();
     const Eigen::Vector3d base(data.snapshot.min_index.x, data.snapshot.min_index.y,
                                data.snapshot.min_index.z);
-    const TriangleMesh mesh = join_obstacles(*data.obstacles);
+    const TriangleMesh mesh = join_obstacles(data.surroundings->obstacles);
     for (const auto& v : mesh.vertices) {
       const Eigen::Vector3d p_world(v[0], v[1], v[2]);
       const Eigen::Vector3d p = (T_grid_world * p_world) / data.snapshot.voxel_size - base;
@@ -195,7 +195,7 @@ ObstacleScene::ObstacleScene(const SceneData& data, Isa isa)
 std::shared_ptr<const ObstacleScene> ObstacleScene::of(const SceneData& data, Isa isa,
                                                        const SceneData* before) {
   if (!data.has_obstacles) return nullptr;
-  if (before != nullptr && before->obstacles == data.obstacles) {
+  if (before != nullptr && before->surroundings == data.surroundings) {
     const auto& kept = before->tracing->obstacles;
     const GridSnapshot &a = before->snapshot, &b = data.snapshot;
     const bool same_place = a.voxel_size == b.voxel_size && a.min_index == b.min_index &&

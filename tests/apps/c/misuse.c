@@ -89,9 +89,6 @@ static void of_grids(const char* folder) {
     fclose(file);
   }
   CHECK_FAILS(vg_grid_load(path, &grid), VG_FORMAT, "text.vdb");
-  CHECK_FAILS(vg_grid_load_octomap(path, 0, &grid), VG_FORMAT, "text.vdb");
-  CHECK_FAILS(vg_grid_load_octomap(NULL, 0, &grid), VG_INVALID_ARGUMENT, "path is null");
-  CHECK_FAILS(vg_grid_save_octomap(NULL, path), VG_INVALID_ARGUMENT, "grid is null");
   CHECK_FAILS(vg_grid_save(NULL, path), VG_INVALID_ARGUMENT, "grid is null");
   CHECK_FAILS(vg_grid_save(map, "/nonexistent/map.vdb"), VG_IO, "/nonexistent/map.vdb");
   CHECK_FAILS(vg_grid_clone(NULL, &grid), VG_INVALID_ARGUMENT, "grid is null");

@@ -86,14 +86,6 @@ static void sensors_and_grids(const char* folder) {
   CHECK_OK(vg_grid_hash(loaded, loaded_hash));
   CHECK(strcmp(hash, loaded_hash) == 0);
 
-  sprintf(path, "%.1000s/map.ot", folder);
-  CHECK_OK(vg_grid_save_octomap(loaded, path));
-  CHECK_OK(vg_grid_load_octomap(path, 0, &copy));
-  CHECK_OK(vg_grid_get_info(copy, &info));
-  CHECK(info.voxel_size == 0.025 && info.prior_sigma == 0.0125);
-  CHECK(info.free + info.occupied == MAP_VOXELS - 4 * MAP_EDGE * MAP_EDGE);
-  vg_grid_release(copy);
-
   vg_grid_config_init(&config, sizeof config);
   CHECK(config.T_world_grid[0] == 1 && config.T_world_grid[1] == 0);
   config.voxel_size = 0.1;
@@ -259,9 +251,11 @@ static int32_t is_reachable(const double T_world_camera[16], void* user) {
   return T_world_camera[7] >= 0;
 }
 
-static void feasibility(const vg_scene* scene) {
+static void feasibility(const vg_grid* grid, const vg_scene* scene) {
   vg_feasibility_config config;
-  vg_feasibility* checker = NULL;
+  vg_feasibility *checker = NULL, *under = NULL;
+  vg_scene_config table;
+  vg_scene* on_table = NULL;
   vg_sensor sensor;
   int32_t reasons[POSES];
   int calls = 0, i, possible = 0, unreachable = 0;
@@ -271,6 +265,14 @@ static void feasibility(const vg_scene* scene) {
   CHECK(reasons[0] == VG_FEASIBLE && reasons[7] == VG_INFEASIBLE_BAD_POSE);
   CHECK_OK(vg_feasibility_check(checker, poses, 1, poses, 1, reasons));
   CHECK(reasons[0] == VG_INFEASIBLE_TAKEN);
+  vg_scene_config_init(&table, sizeof table);
+  table.support_plane = 1;
+  CHECK_OK(vg_scene_build(grid, &table, &on_table));
+  CHECK_OK(vg_feasibility_with_scene(checker, on_table, &under));
+  CHECK_OK(vg_feasibility_check(under, poses, 1, NULL, 0, reasons));
+  CHECK(reasons[0] == VG_INFEASIBLE_PLANE);
+  vg_feasibility_release(under);
+  vg_scene_release(on_table);
   vg_feasibility_release(checker);
 
   vg_sensor_init(&sensor, sizeof sensor);
@@ -278,7 +280,6 @@ static void feasibility(const vg_scene* scene) {
   vg_feasibility_config_init(&config, sizeof config);
   CHECK(config.body_size[2] == 0.076 && config.taken_distance == 0.01);
   config.sensor = &sensor;
-  config.support_plane = 0;
   config.reachable = is_reachable;
   config.user = &calls;
   CHECK_OK(vg_feasibility_create(scene, &config, &checker));
@@ -314,12 +315,14 @@ void use_everything(const char* folder) {
   vg_sensor_init(&sensor, sizeof sensor);
   CHECK_OK(vg_sensor_preset("sr4000", &sensor));
   vg_evaluator_config_init(&config, sizeof config);
+  CHECK(config.gain == VG_GAIN_COMBINED);
+  config.gain = VG_GAIN_PAPER;
   config.pixel_stride = 2;
   config.num_threads = 2;
   CHECK_OK(vg_evaluator_create(scene, &sensor, &config, &evaluator));
   choices(evaluator);
   looks(evaluator);
-  feasibility(scene);
+  feasibility(grid, scene);
 
   vg_scene_config_init(&around, sizeof around);
   around.boxes = wall;

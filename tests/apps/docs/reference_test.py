@@ -18,7 +18,7 @@ CALLS = {
     "convert": "convert map.vdb map.ot",
     "info": "info map.vdb --region=-0.1,-0.1,-0.1,0.1,0.1,0.1",
     "score": "score map.vdb --sphere 20,0.6 --top 2",
-    "score --set": "score map.vdb --sphere 20,0.6 --set 2",
+    "score --set": "score map.vdb --sphere 20,0.6 --set 2 --gain paper",
     "score --approximate": "score map.vdb --sphere 20,0.6 --approximate 0.2",
     "score --gain": "score map.vdb --sphere 20,0.6 --gain unknown_count",
     "score --shard": "score map.vdb --sphere 20,0.6 --shard 0/1 --out part.csv",

@@ -98,6 +98,31 @@ TEST(CFormats, FramesAreCorrectedByTheFilesTable) {
   EXPECT_EQ(vg_range_calibration_load(path.c_str(), nullptr), VG_INVALID_ARGUMENT);
 }
 
+TEST(CFormats, OctomapsTreesComeBackAsTheyWere) {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "map.ot").string();
+  const std::uint8_t labels[2] = {2, 1};
+  const std::int32_t dims[3] = {2, 1, 1};
+  const double origin[3] = {0, 0, 0};
+  vg_grid *grid = nullptr, *read = nullptr;
+  ASSERT_EQ(vg_grid_from_labels(labels, dims, origin, 0.025, 0.05, &grid), VG_OK);
+  ASSERT_EQ(vg_grid_save_octomap(grid, path.c_str()), VG_OK) << vg_last_error();
+  ASSERT_EQ(vg_grid_load_octomap(path.c_str(), 0, &read), VG_OK) << vg_last_error();
+  vg_grid_info info;
+  vg_grid_info_init(&info, sizeof info);
+  ASSERT_EQ(vg_grid_get_info(read, &info), VG_OK);
+  EXPECT_EQ(info.voxel_size, 0.025);
+  EXPECT_EQ(info.prior_sigma, 0.0125);
+  EXPECT_EQ(info.occupied, 1U);
+  EXPECT_EQ(info.free, 1U);
+  vg_grid_release(read);
+  EXPECT_EQ(vg_grid_load_octomap(folder.file("text.ot", "no map").c_str(), 0, &read), VG_FORMAT);
+  EXPECT_EQ(read, nullptr);
+  EXPECT_EQ(vg_grid_load_octomap(nullptr, 0, &read), VG_INVALID_ARGUMENT);
+  EXPECT_EQ(vg_grid_save_octomap(nullptr, path.c_str()), VG_INVALID_ARGUMENT);
+  vg_grid_release(grid);
+}
+
 TEST(CFormats, PosesComeBackAsTheyWere) {
   const test::TemporaryFolder folder;
   const std::string path = (folder.path() / "poses.txt").string();

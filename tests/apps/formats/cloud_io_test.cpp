@@ -15,7 +15,7 @@
 
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
-#include "viewgain/grid/octomap_io.hpp"
+#include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {

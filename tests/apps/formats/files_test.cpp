@@ -18,9 +18,9 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
-#include "viewgain/grid/octomap_io.hpp"
 
 namespace viewgain {
 namespace {

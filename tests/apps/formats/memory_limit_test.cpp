@@ -18,8 +18,8 @@
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/formats/cloud_io.hpp"
+#include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace {

@@ -22,6 +22,7 @@ namespace {
 using test::kDegree;
 
 constexpr double kShift = 0.01, kTurn = kDegree;
+constexpr PoseSigma kSigma{kShift, kTurn};
 
 std::vector<Pose> ring(int count) {
   std::vector<Pose> views;
@@ -36,10 +37,6 @@ Pose reported(const Pose& pose, std::size_t view) {
   return view == 0 ? pose : test::disturbed(pose, kShift, kTurn, view);
 }
 
-FrameAlignment alignment(const test::RegistrationScene& scene, int threads = 1) {
-  return FrameAlignment(scene.sensor, scene.grid, {}, {threads});
-}
-
 std::vector<Pose> poses_of(const FrameAlignment& frames) {
   std::vector<Pose> poses;
   for (const FrameRegistration& one : frames.registrations()) poses.push_back(one.T_world_camera);
@@ -49,11 +46,11 @@ std::vector<Pose> poses_of(const FrameAlignment& frames) {
 TEST(AlignFrames, ARingClosesOnTheTruth) {
   for (const bool noise : {false, true}) {
     const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), noise, {});
-    FrameAlignment frames = alignment(scene);
+    FrameAlignment frames = scene.alignment();
     const std::vector<Pose> truth = ring(8);
     for (std::size_t i = 0; i < truth.size(); ++i) {
       const FrameRegistration result =
-          frames.add(scene.see(truth[i], i), {reported(truth[i], i), kShift, kTurn});
+          frames.add(scene.see(truth[i], i), reported(truth[i], i), kSigma);
       ASSERT_EQ(result.status, RegistrationStatus::registered) << i << " " << result.reason;
       EXPECT_TRUE(result.reason.empty());
     }
@@ -92,12 +89,12 @@ TEST(AlignFrames, ARingClosesOnTheTruth) {
 
 TEST(AlignFrames, WhatSlidesStaysAsReported) {
   const test::RegistrationScene scene(test::wall(1.2), false, {});
-  FrameAlignment frames = alignment(scene);
+  FrameAlignment frames = scene.alignment();
   const Pose first = test::camera_at(0, 5, test::RegistrationScene::kDistance);
-  (void)frames.add(scene.see(first, 0), {first, kShift, kTurn});
+  (void)frames.add(scene.see(first, 0), first, kSigma);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Pose pose = test::disturbed(first, kShift, kTurn, seed);
-    const FrameRegistration result = frames.add(scene.see(first, seed), {pose, kShift, kTurn});
+    const FrameRegistration result = frames.add(scene.see(first, seed), pose, kSigma);
     ASSERT_EQ(result.status, RegistrationStatus::registered) << result.reason;
     EXPECT_EQ(result.free_directions.size(), 3U);  // along the wall, about its normal
     const Eigen::Vector3d way = result.T_world_camera.translation() - pose.translation();
@@ -106,22 +103,70 @@ TEST(AlignFrames, WhatSlidesStaysAsReported) {
   }
 }
 
+// What frames hold says nothing of what they do not: poses that fit exactly are no surer along it.
+TEST(AlignFrames, ExactPosesAreNotSureOfWhatSlides) {
+  const test::RegistrationScene scene(test::wall(1.2), false, {});
+  FrameAlignment frames = scene.alignment();
+  const Pose pose = test::camera_at(0, 5, test::RegistrationScene::kDistance);
+  for (std::size_t i = 0; i < 4; ++i) (void)frames.add(scene.see(pose, i), pose);
+  for (std::size_t i = 1; i < 4; ++i) {
+    const FrameRegistration& result = frames.registrations()[i];
+    ASSERT_EQ(result.status, RegistrationStatus::registered) << result.reason;
+    ASSERT_EQ(result.free_directions.size(), 3U);
+    for (const FreeDirection& free : result.free_directions) {
+      Eigen::Matrix<double, 6, 1> v;
+      v << free.translation / std::pow(kUsualPoseSigma.translation, 2),
+          free.rotation / std::pow(kUsualPoseSigma.rotation, 2);
+      EXPECT_NEAR(v.dot(test::covariance_of(result) * v), 1, 1e-6);
+    }
+    EXPECT_LT(test::covariance_of(result)(0, 0), 1e-6);  // to the wall [m²]
+  }
+}
+
+// Along a wall with bumps, each frame overlaps with the next ones alone. Two that are wrong alike
+// hold each other, until the first of them is found out.
+TEST(AlignFrames, WhatLosesItsHoldGoesBackToWhereItWasReported) {
+  const TriangleMesh wall = test::sheet(400, 120, [](double s, double t) {
+    const double y = 1.6 * s - 0.3, z = 0.5 * (t - 0.5);
+    const double bumps = std::sin(40 * y) * std::sin(50 * z) + std::sin(65 * y + 1);
+    return Eigen::Vector3d(0.008 * bumps, y, z);
+  });
+  const test::RegistrationScene scene(wall, false, {});
+  MapModelConfig map;
+  map.grid = scene.layout();
+  map.grid.workspace = {{-0.3, -0.4, -0.3}, {0.3, 1.4, 0.3}};
+  FrameAlignment frames(scene.sensor, map, {1});
+  const auto view = [](double y, double x) { return look_at({x, y, 0}, {0, y, 0}); };
+  const auto add = [&](double y, double off) {
+    return frames.add(scene.see(view(y, 0.5), 1), view(y, 0.5 + off), kSigma);
+  };
+  (void)add(0, 0);
+  EXPECT_EQ(add(0.45, 0.1).status, RegistrationStatus::too_little_overlap);
+  EXPECT_EQ(add(0.68, 0.112).status, RegistrationStatus::registered);
+  EXPECT_GT(frames.registrations()[2].translation, 0.003);
+  EXPECT_EQ(add(0.26, 0).status, RegistrationStatus::registered);
+  EXPECT_EQ(frames.registrations()[1].status, RegistrationStatus::refused);
+  const FrameRegistration& lost = frames.registrations()[2];
+  EXPECT_EQ(lost.status, RegistrationStatus::too_little_overlap) << lost.reason;
+  EXPECT_EQ(lost.T_world_camera, orthonormalized(view(0.68, 0.612)));
+  EXPECT_NEAR(lost.pose_sigma().translation, kShift, 1e-12);
+}
+
 // What is not in reach of the prior moves nothing and is kept out, unless it lies where it might be
 // new surface.
 TEST(AlignFrames, FarOffIsRefused) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
-  FrameAlignment frames = alignment(scene);
+  FrameAlignment frames = scene.alignment();
   const std::vector<Pose> truth = ring(8);
   for (std::size_t i = 0; i < 4; ++i) {
-    (void)frames.add(scene.see(truth[i], i), {reported(truth[i], i), kShift, kTurn});
+    (void)frames.add(scene.see(truth[i], i), reported(truth[i], i), kSigma);
   }
   const std::vector<Pose> before = poses_of(frames);
   std::size_t cases = 0, refused = 0;
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     for (const Pose& pose : {test::disturbed(truth[1], 0.1, 0, seed),
                              test::disturbed(truth[1], 0, 30 * kDegree, seed)}) {
-      const FrameRegistration result =
-          frames.add(scene.see(truth[1], 100 + seed), {pose, kShift, kTurn});
+      const FrameRegistration result = frames.add(scene.see(truth[1], 100 + seed), pose, kSigma);
       EXPECT_NE(result.status, RegistrationStatus::registered) << seed;
       refused += result.status == RegistrationStatus::refused ? 1 : 0;
       EXPECT_FALSE(result.reason.empty());
@@ -143,12 +188,12 @@ TEST(AlignFrames, WhoIsWrongIsToldByThoseThatAgree) {
   const std::vector<Pose> truth = ring(8);
   for (const Pose& wrong :
        {test::disturbed(truth[4], 0.1, 0, 5), test::disturbed(truth[4], 0, 30 * kDegree, 6)}) {
-    FrameAlignment frames = alignment(scene);
+    FrameAlignment frames = scene.alignment();
     // Far from the first, so that the first says nothing of it.
-    (void)frames.add(scene.see(truth[0], 0), {truth[0], kShift, kTurn});
-    (void)frames.add(scene.see(truth[4], 4), {wrong, kShift, kTurn});
+    (void)frames.add(scene.see(truth[0], 0), truth[0], kSigma);
+    (void)frames.add(scene.see(truth[4], 4), wrong, kSigma);
     for (const std::size_t i : {1U, 2U, 3U, 5U, 6U, 7U}) {
-      (void)frames.add(scene.see(truth[i], i), {reported(truth[i], i), kShift, kTurn});
+      (void)frames.add(scene.see(truth[i], i), reported(truth[i], i), kSigma);
     }
     EXPECT_EQ(frames.registrations()[1].status, RegistrationStatus::refused);
     EXPECT_EQ(frames.registrations()[1].T_world_camera, orthonormalized(wrong));
@@ -162,11 +207,11 @@ TEST(AlignFrames, WhoIsWrongIsToldByThoseThatAgree) {
 // Poses that are better than their sigmas say are not made worse.
 TEST(AlignFrames, ExactPosesStay) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
-  FrameAlignment frames = alignment(scene);
+  FrameAlignment frames = scene.alignment();
   const std::vector<Pose> truth = ring(8);
   int cases = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    (void)frames.add(scene.see(truth[i], i), {truth[i], kShift, kTurn});
+    (void)frames.add(scene.see(truth[i], i), truth[i], kSigma);
   }
   for (std::size_t i = 0; i < truth.size(); ++i, ++cases) {
     const Pose& pose = frames.registrations()[i].T_world_camera;
@@ -178,16 +223,16 @@ TEST(AlignFrames, ExactPosesStay) {
 
 TEST(AlignFrames, WithoutOverlapAPoseWaitsForWhatShowsMore) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), false, {});
-  FrameAlignment frames = alignment(scene);
+  FrameAlignment frames = scene.alignment();
   const std::vector<Pose> truth = ring(8);
-  (void)frames.add(scene.see(truth[0], 0), {truth[0], kShift, kTurn});
+  (void)frames.add(scene.see(truth[0], 0), truth[0], kSigma);
   const Pose pose = reported(truth[4], 4);  // behind the object
-  const FrameRegistration alone = frames.add(scene.see(truth[4], 4), {pose, kShift, kTurn});
+  const FrameRegistration alone = frames.add(scene.see(truth[4], 4), pose, kSigma);
   EXPECT_EQ(alone.status, RegistrationStatus::too_little_overlap);
   EXPECT_NE(alone.reason.find("another frame"), std::string::npos) << alone.reason;
   EXPECT_EQ(alone.T_world_camera, orthonormalized(pose));
   for (const std::size_t i : {1U, 2U, 3U}) {
-    (void)frames.add(scene.see(truth[i], i), {reported(truth[i], i), kShift, kTurn});
+    (void)frames.add(scene.see(truth[i], i), reported(truth[i], i), kSigma);
   }
   const FrameRegistration later = frames.registrations()[1];
   EXPECT_EQ(later.status, RegistrationStatus::registered) << later.reason;
@@ -196,18 +241,16 @@ TEST(AlignFrames, WithoutOverlapAPoseWaitsForWhatShowsMore) {
 
   DepthFrame nothing = scene.see(truth[0]);
   nothing.depth.assign(nothing.depth.size(), DepthFrame::kInvalid);
-  EXPECT_EQ(frames.add(nothing, {truth[0], kShift, kTurn}).status,
-            RegistrationStatus::too_little_overlap);
+  EXPECT_EQ(frames.add(nothing, truth[0], kSigma).status, RegistrationStatus::too_little_overlap);
 }
 
 TEST(AlignFrames, TheSameBitsForAnyNumberOfThreads) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
-  FrameAlignment one = alignment(scene, 1), three = alignment(scene, 3);
+  FrameAlignment one = scene.alignment(1), three = scene.alignment(3);
   const std::vector<Pose> truth = ring(8);
   for (std::size_t i = 0; i < 4; ++i) {
-    const PosePrior prior{reported(truth[i], i), kShift, kTurn};
-    (void)one.add(scene.see(truth[i], i), prior);
-    (void)three.add(scene.see(truth[i], i), prior);
+    (void)one.add(scene.see(truth[i], i), reported(truth[i], i), kSigma);
+    (void)three.add(scene.see(truth[i], i), reported(truth[i], i), kSigma);
     EXPECT_EQ(poses_of(one), poses_of(three)) << i;
   }
   EXPECT_EQ(one.registrations().size(), 4U);
@@ -215,25 +258,21 @@ TEST(AlignFrames, TheSameBitsForAnyNumberOfThreads) {
 
 TEST(AlignFrames, BadInputIsRefusedByNameAndChangesNothing) {
   const test::RegistrationScene scene(test::wall(1.2), false, {});
-  FrameAlignment frames = alignment(scene);
+  FrameAlignment frames = scene.alignment();
   const Pose pose = test::camera_at(0, 5, test::RegistrationScene::kDistance);
   const DepthFrame frame = scene.see(pose);
   const ErrorCode code = ErrorCode::invalid_argument;
-  test::expect_error(code, "sigma_translation", [&] { (void)frames.add(frame, {pose, 0, kTurn}); });
+  test::expect_error(code, "sigma_translation", [&] { (void)frames.add(frame, pose, {0, kTurn}); });
   test::expect_error(code, "sigma_rotation", [&] {
-    (void)frames.add(frame, {pose, kShift, std::numeric_limits<double>::infinity()});
+    (void)frames.add(frame, pose, {kShift, std::numeric_limits<double>::infinity()});
   });
   Pose squeezed = pose;
   squeezed.m[0] += 0.1;
-  test::expect_error(code, "rigid", [&] { (void)frames.add(frame, {squeezed, kShift, kTurn}); });
+  test::expect_error(code, "rigid", [&] { (void)frames.add(frame, squeezed, kSigma); });
   DepthFrame small = frame;
   small.width -= 1;
-  test::expect_error(code, "", [&] { (void)frames.add(small, {pose, kShift, kTurn}); });
+  test::expect_error(code, "", [&] { (void)frames.add(small, pose, kSigma); });
   EXPECT_TRUE(frames.registrations().empty());
-  RegistrationConfig config;
-  config.min_overlap = -1;
-  test::expect_error(code, "min_overlap",
-                     [&] { (void)FrameAlignment(scene.sensor, scene.grid, config); });
 }
 
 }  // namespace

@@ -46,8 +46,7 @@ struct BinScene {
     PlannerConfig config;
     config.grid.voxel_size = 0.006;
     config.grid.workspace = {{-0.15, -0.12, 0.0}, {0.15, 0.12, 0.12}};
-    config.support_plane = 0.0;
-    config.obstacles = walls;
+    config.surroundings = {walls, 0.0};
     config.jump_edges.reset();
     config.gain.model = model;
     return config;

@@ -56,9 +56,9 @@ struct CScene {
       config.box_min[a] = own.grid.workspace.min[a];
       config.box_max[a] = own.grid.workspace.max[a];
     }
-    config.support_plane = *own.support_plane;
+    config.support_plane = *own.surroundings.support_plane;
     config.jump_edge_angle = 0;
-    for (const Box& box : own.obstacles.boxes) {
+    for (const Box& box : own.surroundings.obstacles.boxes) {
       boxes.insert(boxes.end(), box.min.begin(), box.min.end());
       boxes.insert(boxes.end(), box.max.begin(), box.max.end());
     }
@@ -87,15 +87,13 @@ TEST(CPlanner, SaysWhatTheOtherSays) {
     for (std::size_t view = 0; view < 3; ++view) {
       const Pose& pose = scene.views[5 * view];
       const DepthFrame frame = scene.see(pose, view);
-      const PosePrior prior{
-          {pose.rotation(), pose.translation() + Eigen::Vector3d(0.003, 0, 0)}, 0.005, 0.01};
-      const FrameRegistration registered = own.register_frame(frame, prior);
+      const Pose reported{pose.rotation(), pose.translation() + Eigen::Vector3d(0.003, 0, 0)};
+      const FrameRegistration registered = own.register_frame(frame, reported, {0.005, 0.01});
       vg_registration found_pose;
       vg_registration_init(&found_pose, sizeof found_pose);
-      ASSERT_EQ(
-          vg_planner_register(planner, frame.depth.data(), frame.amplitude.data(),
-                              numbers_of({prior.T_world_camera}).data(), 0.005, 0.01, &found_pose),
-          VG_OK)
+      ASSERT_EQ(vg_planner_register(planner, frame.depth.data(), frame.amplitude.data(),
+                                    numbers_of({reported}).data(), 0.005, 0.01, &found_pose),
+                VG_OK)
           << vg_last_error();
       EXPECT_EQ(found_pose.status, static_cast<int>(registered.status));
       EXPECT_EQ(found_pose.status == VG_TOO_LITTLE_OVERLAP, view == 0);

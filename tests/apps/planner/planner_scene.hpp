@@ -56,10 +56,8 @@ inline SurfaceModelConfig model_config(const Sensor& sensor, double half_workspa
   SurfaceModelConfig model;
   GridConfig& grid = model.map.grid;
   grid.voxel_size = voxel;
-  for (std::size_t a = 0; a < 3; ++a) {
-    grid.workspace.min[a] = -half_workspace;
-    grid.workspace.max[a] = half_workspace;
-  }
+  grid.workspace.min.fill(-half_workspace);
+  grid.workspace.max.fill(half_workspace);
   grid.prior_sigma = default_prior_sigma(voxel, sensor);
   return model;
 }

@@ -98,7 +98,7 @@ struct SeenBox {
                                                int num_threads = 1) const {
     const ExecConfig own{num_threads};
     config.object = {mesh, truth, {}};
-    CandidateGeneration generation(model, sensor, default_generation(sensor, 0.005), own);
+    CandidateGeneration generation(model, default_generation(sensor, 0.005), own);
     PolicyDecision decision(model, generation, sensor, config, own);
     return decision.decide(start, candidates);
   }
@@ -131,7 +131,7 @@ TEST(Classic, OfManyThirtyTwoAreScoredInFull) {
   const SeenBox box;
   const auto model = box.model_after({box.start});
   const std::vector<Pose> poses = sphere_poses(100, 0.4);
-  ClassicChoice choice(*model, box.sensor, {}, {}, box.exec);
+  ClassicChoice choice(*model, box.sensor, {}, box.exec);
   const std::vector<double> all = choice.gains(poses, true), some = choice.gains(poses, false);
   std::size_t scored = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -222,8 +222,7 @@ TEST(Oracle, CountsUncoveredSamplesInView) {
 TEST(Oracle, NeedsTheObject) {
   const SeenBox box;
   const auto model = box.model_after({box.start});
-  CandidateGeneration generation(*model, box.sensor, default_generation(box.sensor, 0.005),
-                                 box.exec);
+  CandidateGeneration generation(*model, default_generation(box.sensor, 0.005), box.exec);
   PolicyConfig config;
   config.policy = Policy::oracle;
   test::expect_error(ErrorCode::invalid_argument, "mesh", [&] {
@@ -270,7 +269,7 @@ TEST(Proximity, TakesWhatPassesMostUnknownSpaceNearKnownSurface) {
   std::vector<Pose> poses;
   for (const Candidate& candidate : box.candidates) poses.push_back(candidate.T_world_camera);
   std::vector<double> values(poses.size());
-  evaluator.evaluate(poses, ProximityMeasure(model->scene()->hazard()), values);
+  evaluator.evaluate(poses, values, ProximityMeasure(model->scene()->hazard()));
   std::size_t cases = 0, others = 0;
   double sum = 0, expected_sum = 0;
   for (std::size_t i = 0; i < poses.size(); ++i, ++cases) {
@@ -298,7 +297,7 @@ TEST(Proximity, IsNothingWhileNoSurfaceIsKnown) {
   const auto scene = VoxelScene::build(empty->grid());
   const GainEvaluator evaluator(scene, box.sensor, {.pixel_stride = 8});
   std::vector<double> value(1, 7);
-  evaluator.evaluate(std::span(&box.start, 1), ProximityMeasure(scene->hazard()), value);
+  evaluator.evaluate(std::span(&box.start, 1), value, ProximityMeasure(scene->hazard()));
   EXPECT_EQ(value[0], 0);
   PinholeCamera line = sensor_preset("laser_line").camera;
   EXPECT_EQ(coarse_stride(line), 1);

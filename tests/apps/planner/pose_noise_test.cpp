@@ -19,8 +19,8 @@ namespace {
 const Pose kPose = look_at({0.3, -0.4, 0.2}, {0, 0, 0});
 
 TEST(PoseNoise, TheFirstViewIsExact) {
-  EXPECT_EQ(reported_pose(kPose, 0, {0.01, 0.1, 3}), kPose);
-  EXPECT_EQ(reported_pose(kPose, 5, {0, 0, 3}), kPose);
+  EXPECT_EQ(reported_pose(kPose, 0, {0.01, 0.1}, 3), kPose);
+  EXPECT_EQ(reported_pose(kPose, 5, {0, 0}, 3), kPose);
 }
 
 TEST(PoseNoise, TheOthersAreOffByTheSigmasInEachPart) {
@@ -29,7 +29,7 @@ TEST(PoseNoise, TheOthersAreOffByTheSigmasInEachPart) {
   Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 6> squares = Eigen::Matrix<double, 6, 6>::Zero();
   for (std::size_t view = 1; view <= kViews; ++view) {
-    const Pose pose = reported_pose(kPose, view, {kShift, kTurn, 7});
+    const Pose pose = reported_pose(kPose, view, {kShift, kTurn}, 7);
     EXPECT_LT(orthonormality_error(pose), 1e-12);
     const Eigen::AngleAxisd turn(Eigen::Matrix3d(pose.rotation() * kPose.rotation().transpose()));
     Eigen::Matrix<double, 6, 1> d;
@@ -45,19 +45,19 @@ TEST(PoseNoise, TheOthersAreOffByTheSigmasInEachPart) {
 }
 
 TEST(PoseNoise, SeedAndViewFixIt) {
-  const PoseNoise noise{0.01, 0.02, 1};
-  EXPECT_EQ(reported_pose(kPose, 3, noise), reported_pose(kPose, 3, noise));
-  EXPECT_NE(reported_pose(kPose, 3, noise), reported_pose(kPose, 4, noise));
-  EXPECT_NE(reported_pose(kPose, 3, noise), reported_pose(kPose, 3, {0.01, 0.02, 2}));
+  const PoseSigma sigma{0.01, 0.02};
+  EXPECT_EQ(reported_pose(kPose, 3, sigma, 1), reported_pose(kPose, 3, sigma, 1));
+  EXPECT_NE(reported_pose(kPose, 3, sigma, 1), reported_pose(kPose, 4, sigma, 1));
+  EXPECT_NE(reported_pose(kPose, 3, sigma, 1), reported_pose(kPose, 3, sigma, 2));
 }
 
 TEST(PoseNoise, BadSigmasAreRefusedByName) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   test::expect_error(ErrorCode::invalid_argument, "sigma_translation", [] {
-    (void)reported_pose(kPose, 1, {-1, 0, 1});
+    (void)reported_pose(kPose, 1, {-1, 0}, 1);
   });
   test::expect_error(ErrorCode::invalid_argument, "sigma_rotation", [&] {
-    (void)reported_pose(kPose, 0, {0, nan, 1});
+    (void)reported_pose(kPose, 0, {0, nan}, 1);
   });
 }
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Frames of known shapes from known poses, reported a little off.
-#include "viewgain/planner/register_frame.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -15,7 +13,7 @@
 
 #include "apps/planner/registration_scene.hpp"
 #include "core/expect_error.hpp"
-#include "viewgain/planner/map_registration.hpp"
+#include "viewgain/planner/align_frames.hpp"
 #include "viewgain/planner/view_planner.hpp"
 
 namespace viewgain {
@@ -27,12 +25,11 @@ constexpr double kShift = 0.01, kTurn = kDegree;
 constexpr double kDistance = test::RegistrationScene::kDistance;
 
 Pose true_pose() { return test::camera_at(0, 5, kDistance); }
-PosePrior prior_of(const Pose& pose) { return {pose, kShift, kTurn}; }
+constexpr PoseSigma kSigma{kShift, kTurn};
 
 FrameRegistration registered(const test::RegistrationScene& scene, const DepthFrame& frame,
                              const Pose& reported, int threads = 1) {
-  return FrameRegistrar(scene.sensor, {}, {threads})
-      .register_frame(scene.grid, scene.points, frame, prior_of(reported));
+  return scene.alignment(threads).register_frame(scene.grid, frame, reported, kSigma);
 }
 
 double median(std::vector<double> values) {
@@ -61,38 +58,6 @@ TEST(RegisterFrame, WithoutNoiseThePoseIsRecovered) {
   }
 }
 
-TEST(RegisterFrame, AMapsPointsThatTheFrameMayShowAreEnough) {
-  const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, test::views_round());
-  const MapRegistration registration(scene.sensor, {}, {2});
-  for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    const DepthFrame frame = scene.see(true_pose(), 1000 + seed);
-    const Pose reported = test::disturbed(true_pose(), kShift, kTurn, seed);
-    const FrameRegistration whole = registered(scene, frame, reported);
-    const FrameRegistration part =
-        registration.register_frame(scene.grid, frame, prior_of(reported));
-    ASSERT_EQ(part.status, RegistrationStatus::registered) << part.reason;
-    EXPECT_NEAR(static_cast<double>(part.pairs), static_cast<double>(whole.pairs),
-                0.01 * static_cast<double>(whole.pairs));
-    const test::PoseError error = test::error_of(part.T_world_camera, whole.T_world_camera);
-    EXPECT_LT(error.translation, 2e-4);
-    EXPECT_LT(error.rotation, 0.02 * kDegree);
-  }
-
-  DepthFrame nothing = scene.see(true_pose());
-  std::fill(nothing.depth.begin(), nothing.depth.end(), DepthFrame::kInvalid);
-  EXPECT_EQ(registration.register_frame(scene.grid, nothing, prior_of(true_pose())).status,
-            RegistrationStatus::too_little_overlap);
-  PosePrior unknown = prior_of(true_pose());
-  unknown.sigma_rotation = std::numeric_limits<double>::quiet_NaN();
-  test::expect_error(ErrorCode::invalid_argument, "sigma_rotation", [&] {
-    static_cast<void>(registration.register_frame(scene.grid, scene.see(true_pose()), unknown));
-  });
-  nothing.depth.pop_back();
-  test::expect_error(ErrorCode::invalid_argument, "", [&] {
-    static_cast<void>(registration.register_frame(scene.grid, nothing, prior_of(true_pose())));
-  });
-}
-
 TEST(RegisterFrame, APlannerSaysWhatItsPartsSayAndStaysAsItWas) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
   PlannerConfig config;
@@ -100,18 +65,20 @@ TEST(RegisterFrame, APlannerSaysWhatItsPartsSayAndStaysAsItWas) {
   config.grid.workspace = scene.grid.workspace();
   ViewPlanner planner(scene.sensor, config, {1});
   const DepthFrame frame = scene.see(true_pose());
-  const PosePrior prior = prior_of(test::disturbed(true_pose(), kShift, kTurn, 1));
-  EXPECT_EQ(planner.register_frame(frame, prior).status, RegistrationStatus::too_little_overlap);
+  const Pose reported = test::disturbed(true_pose(), kShift, kTurn, 1);
+  EXPECT_EQ(planner.register_frame(frame, reported, kSigma).status,
+            RegistrationStatus::too_little_overlap);
   for (const Pose& view : test::views_round()) planner.add(scene.see(view), view);
   const std::string before = planner.grid().content_hash();
-  const FrameRegistration found = planner.register_frame(frame, prior);
+  const FrameRegistration found = planner.register_frame(frame, reported, kSigma);
   ASSERT_EQ(found.status, RegistrationStatus::registered) << found.reason;
   EXPECT_LT(test::error_of(found.T_world_camera, true_pose()).translation, 0.6 * kShift);
   EXPECT_EQ(planner.grid().content_hash(), before);
   MapModelConfig map;
   map.jump_edges = config.jump_edges;
-  const MapRegistration part(scene.sensor, map, {2});
-  EXPECT_EQ(part.register_frame(planner.grid(), frame, prior).T_world_camera, found.T_world_camera);
+  const FrameAlignment part(scene.sensor, map, {2});
+  EXPECT_EQ(part.register_frame(planner.grid(), frame, reported, kSigma).T_world_camera,
+            found.T_world_camera);
 }
 
 TEST(RegisterFrame, WithNoiseItIsRecoveredToMillimetresAndKnowsHowWell) {
@@ -234,7 +201,7 @@ TEST(RegisterFrame, TheSameBitsForAnyNumberOfThreads) {
 
 TEST(RegisterFrame, TooLittleOverlapLeavesThePose) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), false, test::views_round());
-  const FrameRegistrar registrar(scene.sensor, {}, {1});
+  const FrameAlignment alignment = scene.alignment();
   const Pose reported = test::disturbed(true_pose(), kShift, kTurn, 1);
   const auto expect_as_reported = [&](const FrameRegistration& result, const std::string& part) {
     EXPECT_EQ(result.status, RegistrationStatus::too_little_overlap);
@@ -247,29 +214,24 @@ TEST(RegisterFrame, TooLittleOverlapLeavesThePose) {
     EXPECT_NEAR(result.pose_sigma().translation, kShift, 1e-12);
     EXPECT_NEAR(result.pose_sigma().rotation, kTurn, 1e-12);
   };
-  GridConfig layout;
-  layout.voxel_size = 0.005, layout.prior_sigma = 0.01;
-  layout.workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
-  const FrameRegistration in_empty =
-      registrar.register_frame(BeliefGrid(layout), {}, scene.see(true_pose()), prior_of(reported));
+  const FrameRegistration in_empty = alignment.register_frame(
+      BeliefGrid(scene.layout()), scene.see(true_pose()), reported, kSigma);
   expect_as_reported(in_empty, "no surface yet");
   EXPECT_EQ(in_empty.pose_sigma(), PoseSigma{});  // the frame says where the map is
   EXPECT_EQ(in_empty.T_world_camera, orthonormalized(reported));
 
   DepthFrame nothing = scene.see(true_pose());
   std::fill(nothing.depth.begin(), nothing.depth.end(), DepthFrame::kInvalid);
-  expect_as_reported(
-      registrar.register_frame(scene.grid, scene.points, nothing, prior_of(reported)),
-      "no surface in the workspace");
+  expect_as_reported(alignment.register_frame(scene.grid, nothing, reported, kSigma),
+                     "no surface in the workspace");
   std::fill(nothing.depth.begin(), nothing.depth.end(), DepthFrame::kOutOfRange);
-  expect_as_reported(
-      registrar.register_frame(scene.grid, scene.points, nothing, prior_of(reported)),
-      "no surface in the workspace");
+  expect_as_reported(alignment.register_frame(scene.grid, nothing, reported, kSigma),
+                     "no surface in the workspace");
 
   // From behind the map shows nothing.
   const Pose behind = test::camera_at(180, 0, kDistance);
   const FrameRegistration from_behind =
-      registrar.register_frame(scene.grid, scene.points, scene.see(behind), prior_of(behind));
+      alignment.register_frame(scene.grid, scene.see(behind), behind, kSigma);
   expect_as_reported(from_behind, "readings show surface that the map has");
   expect_the_prior(from_behind);
   EXPECT_EQ(from_behind.T_world_camera, behind);
@@ -278,44 +240,41 @@ TEST(RegisterFrame, TooLittleOverlapLeavesThePose) {
 
 TEST(RegisterFrame, ReadingsOfTheTableAndOfWhatIsKnownAreLeftOut) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), false, test::views_round());
-  DepthFrame frame = scene.see(true_pose());
+  const DepthFrame frame = scene.see(true_pose());
   const std::size_t all = registered(scene, frame, true_pose()).readings;
-  RegistrationConfig config;
-  config.support_plane = 0.0;
+  MapModelConfig map;
+  map.surroundings.support_plane = 0.0;
   const FrameRegistration above =
-      FrameRegistrar(scene.sensor, config, {1})
-          .register_frame(scene.grid, scene.points, frame, prior_of(true_pose()));
+      FrameAlignment(scene.sensor, map, {1}).register_frame(scene.grid, frame, true_pose(), kSigma);
   EXPECT_LT(above.readings, 0.7 * static_cast<double>(all));
   EXPECT_GT(above.readings, 0.3 * static_cast<double>(all));
-  frame.known_depth.assign(frame.depth.size(), 0.0F);
-  EXPECT_EQ(registered(scene, frame, true_pose()).readings, 0U);
+  map.surroundings.obstacles.boxes.push_back({{-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}});
+  EXPECT_EQ(FrameAlignment(scene.sensor, map, {1})
+                .register_frame(scene.grid, frame, true_pose(), kSigma)
+                .readings,
+            0U);
 }
 
 TEST(RegisterFrame, BadInputIsRefusedByName) {
   const test::RegistrationScene scene(test::wall(1.2), false, {true_pose()});
   const DepthFrame frame = scene.see(true_pose());
-  const FrameRegistrar registrar(scene.sensor, {}, {1});
-  const auto call = [&](const DepthFrame& f, const PosePrior& prior) {
-    return [&registrar, &scene, &f, prior] {
-      (void)registrar.register_frame(scene.grid, scene.points, f, prior);
+  const FrameAlignment alignment = scene.alignment();
+  const auto call = [&](const DepthFrame& f, const Pose& pose, const PoseSigma& sigma) {
+    return [&alignment, &scene, &f, pose, sigma] {
+      (void)alignment.register_frame(scene.grid, f, pose, sigma);
     };
   };
   const ErrorCode code = ErrorCode::invalid_argument;
-  test::expect_error(code, "sigma_translation", call(frame, {true_pose(), 0, kTurn}));
-  test::expect_error(code, "sigma_rotation",
-                     call(frame, {true_pose(), kShift, std::numeric_limits<double>::infinity()}));
+  test::expect_error(code, "sigma_translation", call(frame, true_pose(), {0, kTurn}));
+  for (const double bad : {std::numeric_limits<double>::infinity(), std::nan("")}) {
+    test::expect_error(code, "sigma_rotation", call(frame, true_pose(), {kShift, bad}));
+  }
   Pose squeezed = true_pose();
   squeezed.m[0] += 0.1;
-  test::expect_error(code, "rigid", call(frame, prior_of(squeezed)));
+  test::expect_error(code, "rigid", call(frame, squeezed, kSigma));
   DepthFrame small = frame;
   small.width -= 1;
-  test::expect_error(code, "", call(small, prior_of(true_pose())));
-  RegistrationConfig config;
-  config.min_overlap = 1.5;
-  test::expect_error(code, "min_overlap", [&] { FrameRegistrar(scene.sensor, config); });
-  config = {};
-  config.max_readings = 3;
-  test::expect_error(code, "max_readings", [&] { FrameRegistrar(scene.sensor, config); });
+  test::expect_error(code, "", call(small, true_pose(), kSigma));
 }
 
 }  // namespace

@@ -16,9 +16,8 @@
 
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
-#include "viewgain/grid/fused_points.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/planner/register_frame.hpp"
+#include "viewgain/planner/align_frames.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 
@@ -122,7 +121,6 @@ class RegistrationScene {
     for (std::size_t i = 0; i < views.size(); ++i) {
       integrator.integrate(grid, camera_.acquire(views[i], i), views[i]);
     }
-    points = fused_points(grid, {}, {1});
   }
 
   [[nodiscard]] DepthFrame see(const Pose& pose, std::uint64_t frame = 1000) const {
@@ -136,15 +134,21 @@ class RegistrationScene {
     config.seed = seed;
     return config;
   }
+
+ public:
   [[nodiscard]] GridConfig layout() const {
     GridConfig config;
     config.voxel_size = kVoxel;
     config.workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
-    config.prior_sigma = default_prior_sigma(kVoxel, sensor);
     return config;
   }
+  [[nodiscard]] FrameAlignment alignment(int threads = 1) const {
+    MapModelConfig map;
+    map.jump_edges.reset();  // the camera makes no flying pixels
+    map.grid = layout();
+    return FrameAlignment(sensor, map, {threads});
+  }
 
- public:
   Sensor sensor = sensor_preset("sr4000");
 
  private:
@@ -152,7 +156,6 @@ class RegistrationScene {
 
  public:
   BeliefGrid grid;
-  std::vector<FusedPoint> points;
 };
 
 /// Views side by side round what a frame from azimuth 0 sees.

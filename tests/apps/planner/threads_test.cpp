@@ -56,7 +56,7 @@ int threads_begun(int num_threads) {
   (void)model.update(measurements);
   GenerationConfig config = default_generation(sensor, 0.005);
   config.boundary.classes_by_sight = true;
-  CandidateGeneration generation(model, sensor, config, exec);
+  CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate(view);
   EXPECT_FALSE(proposal.candidates.empty());
   PolicyDecision decision(model, generation, sensor, {}, exec);

@@ -16,7 +16,7 @@
 
 #include "apps/planner/bin_scene.hpp"
 #include "core/expect_error.hpp"
-#include "viewgain/planner/feasible_poses.hpp"
+#include "viewgain/planner/view_proposer.hpp"
 
 namespace viewgain {
 namespace {
@@ -38,32 +38,26 @@ class Parts {
   Parts(const BinScene& scene, const PlannerConfig& config)
       : scene_(scene),
         config_(config),
-        grid_({config.grid.voxel_size,
-               config.grid.workspace,
-               {},
-               default_prior_sigma(config.grid.voxel_size, scene.sensor)}),
-        integrator_(scene.sensor, {.support_plane = config.support_plane}, {1}) {}
+        grid_(config.grid, scene.sensor),
+        integrator_(scene.sensor, {.support_plane = config.surroundings.support_plane}, {1}) {}
 
   void add(DepthFrame frame, const Pose& pose) {
-    ObstacleView(config_.obstacles, scene_.sensor).mark(frame, pose);
+    ObstacleView(config_.surroundings.obstacles, scene_.sensor).mark(frame, pose);
     if (config_.gain.model != GainModel::paper) {
-      const HazardCalibration calibration(scene_.sensor, config_.support_plane);
+      const HazardCalibration calibration(scene_.sensor, config_.surroundings.support_plane);
       calibration.count(grid_, HazardField(grid_.snapshot()), frame, pose);
     }
     integrator_.integrate(grid_, frame, pose);
   }
   [[nodiscard]] std::shared_ptr<const VoxelScene> scene() const {
-    return VoxelScene::build(grid_, config_.obstacles, {1});
+    return VoxelScene::build(grid_, config_.surroundings, {1});
   }
   [[nodiscard]] std::vector<Pose> possible(const std::vector<Pose>& poses) const {
-    FeasibilityConfig feasibility = feasibility_of(scene_.sensor);
-    feasibility.support_plane = config_.support_plane;
-    return feasible_poses(FeasibilityChecker(scene(), feasibility), poses, grid_.views()).poses;
+    const FeasibilityChecker checker(scene(), feasibility_of(scene_.sensor));
+    return feasible_poses(checker, poses, grid_.views()).poses;
   }
   [[nodiscard]] std::vector<ViewGain> gains(const std::vector<Pose>& poses) const {
-    GainConfig gain = config_.gain;
-    gain.support_plane = config_.support_plane;
-    return GainEvaluator(scene(), scene_.sensor, gain, {1}).evaluate(poses);
+    return GainEvaluator(scene(), scene_.sensor, config_.gain, {1}).evaluate(poses);
   }
   [[nodiscard]] const BeliefGrid& grid() const { return grid_; }
 
@@ -367,9 +361,10 @@ TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
   refuses_config("clearance", [](PlannerConfig& c) { c.clearance = -1; });
   refuses_config("stride", [](PlannerConfig& c) { c.gain.pixel_stride = 0; });
   refuses_config("inside out", [](PlannerConfig& c) {
-    std::swap(c.obstacles.boxes[0].min, c.obstacles.boxes[0].max);
+    Box& box = c.surroundings.obstacles.boxes[0];
+    std::swap(box.min, box.max);
   });
-  refuses_config("plane", [](PlannerConfig& c) { c.support_plane = kNan; });
+  refuses_config("plane", [](PlannerConfig& c) { c.surroundings.support_plane = kNan; });
   EXPECT_EQ(cases, 26);
 }
 

@@ -7,10 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "apps/planner/planner_scene.hpp"
+#include "core/expect_error.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 
 namespace viewgain {
@@ -49,7 +51,7 @@ class HiddenPlate : public testing::Test {
   [[nodiscard]] std::array<int, 2> views_of_plate_runs(bool by_sight) const {
     GenerationConfig config = default_generation(sensor, kVoxel);
     config.boundary.classes_by_sight = by_sight;
-    CandidateGeneration generation(model, sensor, config, {});
+    CandidateGeneration generation(model, config, {});
     (void)generation.generate(views.back());
     std::array<int, 2> count{};
     for (const BoundaryRun& run : generation.estimated().runs) {
@@ -95,6 +97,13 @@ TEST_F(HiddenPlate, ItsBoundariesAreClassedByTheViewThatSeesThem) {
   EXPECT_GT(by_image[1], 0);
   EXPECT_GT(by_sight[0], 0);
   EXPECT_EQ(by_sight[1], 0);
+}
+
+TEST(BoundaryGeneration, RefusesVoxelsWithoutASize) {
+  for (const double spacing : {0.0, -0.01, std::numeric_limits<double>::quiet_NaN()}) {
+    test::expect_error(ErrorCode::invalid_argument, "voxel size",
+                       [&] { (void)default_boundary(test::half_sr4000(), spacing); });
+  }
 }
 
 }  // namespace

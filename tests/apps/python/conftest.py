@@ -39,7 +39,7 @@ def grid(labels, sensor):
 
 @pytest.fixture(scope="session")
 def evaluator(grid, sensor):
-    return viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, pixel_stride=4, num_threads=2)
+    return viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, gain="paper", pixel_stride=4, num_threads=2)
 
 
 @pytest.fixture(scope="session")

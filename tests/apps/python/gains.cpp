@@ -15,7 +15,7 @@ int main(int count, char** arguments) {
   if (count < 4) return 2;
   const viewgain::GainEvaluator evaluator(
       viewgain::VoxelScene::build(viewgain::load_vdb(arguments[1])),
-      viewgain::sensor_preset("sr4000"));
+      viewgain::sensor_preset("sr4000"), {.model = viewgain::GainModel::paper});
   std::ifstream in(arguments[2], std::ios::binary);
   std::vector<viewgain::Pose> poses;
   for (viewgain::Pose pose; in.read(reinterpret_cast<char*>(pose.m.data()), sizeof(pose.m));) {

@@ -16,7 +16,7 @@ import viewgain
 def slow(grid):
     """An evaluator and poses that take it some seconds."""
     sensor = viewgain.sensor_preset("kinect_v1")
-    evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, num_threads=2)
+    evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, gain="paper", num_threads=2)
     return evaluator, viewgain.sphere_poses(20_000, 1.0)
 
 
@@ -44,7 +44,7 @@ def test_a_pool_that_lived_before_a_fork_works_after_it(evaluator, grid, sensor,
 
     def from_nothing():
         scene = viewgain.VoxelScene(grid, boxes=[[[5, 5, 5], [6, 6, 6]]])
-        made = viewgain.GainEvaluator(scene, sensor, pixel_stride=4, num_threads=2)
+        made = viewgain.GainEvaluator(scene, sensor, gain="paper", pixel_stride=4, num_threads=2)
         return np.array_equal(made.evaluate(poses), gains)
 
     assert in_child(from_nothing)

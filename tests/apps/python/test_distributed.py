@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
 """viewgain.distributed: the same bits as one process, also when a worker is killed; what it says without Dask."""
-import importlib
 import os
 import signal
 import subprocess
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 
 import viewgain
+from viewgain import _rows as parts, _viewgain as native
 
 WITHOUT_DASK = """
 import importlib.abc, sys
@@ -33,44 +33,61 @@ def test_without_dask_it_says_what_to_install_and_the_rest_works():
     assert "apt-get install python3-distributed" in said
 
 
-def test_files_of_parts_need_no_dask(tmp_path):
-    parts = importlib.import_module("viewgain._parts")
-    rows = np.zeros(4, parts.dtype_of({}))
+def part_of(sensor, rows, path, poses=viewgain.sphere_poses(12, 1.0)):
+    head = native._part_head("map", sensor, {}, "sse4", poses)
+    native._write_part(path, head, "paper", rows.tobytes())
+    return head
+
+
+def four_rows():
+    rows = np.zeros(4, parts.dtype_of("paper"))
     rows["index"] = np.arange(3, 7)
-    parts.write_part(tmp_path / "part.npy", rows, "# head\n", 3)
-    begin, read = parts.read_part(tmp_path / "part.npy", "# head\n", rows.dtype)
-    assert begin == 3 and np.array_equal(read, rows)
-    assert os.listdir(tmp_path) == ["part.npy"]
-    with pytest.raises(ValueError, match="another job"):
-        parts.read_part(tmp_path / "part.npy", "# other\n", rows.dtype)
+    return rows
+
+
+def test_files_of_parts_need_no_dask(sensor, tmp_path):
+    rows, path = four_rows(), tmp_path / "part.npy"
+    head = part_of(sensor, rows, path)
+    assert np.array_equal(parts.rows_of(path, head, "paper"), rows) and os.listdir(tmp_path) == ["part.npy"]
+    assert np.array_equal(np.load(path), rows) and b"# rows 3:7\n# scored 4\n" in path.read_bytes()
+    for other in ({"pixel_stride": 2}, {"prior_sigma": 0.5}, {"weights": [([[0, 0, 0], [1, 1, 1]], 2)]}):
+        with pytest.raises(ValueError, match="another job .settings"):
+            parts.rows_of(path, native._part_head("map", sensor, other, "sse4", viewgain.sphere_poses(12, 1.0)), "paper")
     assert parts.gaps([(3, 7), (9, 10)], 12) == [(0, 3), (7, 9), (10, 12)]
     assert parts.gaps([(0, 12)], 12) == []
 
 
-def test_damaged_parts_are_named(tmp_path):
-    parts = importlib.import_module("viewgain._parts")
-    path = tmp_path / "rows-3-7.npy"
-    rows = np.zeros(4, parts.dtype_of({}))
-    rows["index"] = np.arange(3, 7)
-    parts.write_part(path, rows, "# head\n", 3)
+def test_every_pose_counts_for_the_job(sensor):
+    poses = viewgain.sphere_poses(9001, 1.0)
+    columns = np.zeros(len(poses), [(name, "<f8") for name in ("tx", "ty", "tz", "qx", "qy", "qz", "qw")])
+    for some in (poses, columns):
+        whole = native._part_head("map", sensor, {}, "sse4", some)
+        for row in (0, 1, 4500, 8999, 9000):
+            changed = some.copy()
+            changed.view("<f8").reshape(len(some), -1)[row, 3] += 1e-9
+            assert native._part_head("map", sensor, {}, "sse4", changed) != whole, row
+
+
+def test_damaged_parts_are_named(sensor, tmp_path):
+    path, rows = tmp_path / "rows-3-7.npy", four_rows()
+    head = part_of(sensor, rows, path)
     whole = path.read_bytes()
-    contents = [whole[:length] for length in (0, 5, 60, 200, whole.index(b"# head"), len(whole) - 30, len(whole) - 1)]
+    contents = [whole[:length] for length in (0, 5, 60, 200, whole.index(b"# viewgain"), len(whole) - 30, len(whole) - 1)]
     contents += [whole + b"#", b"PK\3\4" + whole]
     for column, row, value in (("index", 1, 9), ("index", 3, 3), ("status", 2, 3), ("status", 3, 77)):
         changed = rows.copy()
         changed[column][row] = value
-        parts.write_part(path, changed, "# head\n", 3)
+        part_of(sensor, changed, path)
         contents.append(path.read_bytes())
-    parts.write_part(path, rows[:0], "# head\n", 3)
+    part_of(sensor, rows[:0], path)
     contents.append(path.read_bytes())
     for content in contents:
         path.write_bytes(content)
         with pytest.raises(ValueError, match=r"rows-3-7\.npy: .*; delete it"):
-            parts.read_part(path, "# head\n", rows.dtype)
+            parts.rows_of(path, head, "paper")
 
 
 def test_poses_in_columns_are_matrices():
-    parts = importlib.import_module("viewgain._parts")
     random = np.random.default_rng(2)
     q = random.normal(size=(100, 4))
     q /= np.linalg.norm(q, axis=1, keepdims=True)
@@ -80,12 +97,14 @@ def test_poses_in_columns_are_matrices():
         rows[name] = t[:, i]
     for i, name in enumerate(("qx", "qy", "qz", "qw")):
         rows[name] = q[:, i]
-    matrices = parts.matrices(rows)
+    matrices = native._pose_matrices(rows)
     x, y, z, w = q.T
     for column, p in enumerate(np.eye(3)):  # p + 2 w (v x p) + 2 v x (v x p)
         v = np.stack([x, y, z], axis=1)
         turned = p + 2 * w[:, None] * np.cross(v, p) + 2 * np.cross(v, np.cross(v, p))
         assert np.allclose(matrices[:, :3, column], turned, atol=1e-14)
+    rows["qw"][:5] = 3  # no rotations any more
+    assert np.isnan(native._pose_matrices(rows)[:5]).any(axis=(1, 2)).all()
     assert np.array_equal(matrices[:, :3, 3], t) and np.array_equal(matrices[:, 3], np.tile([0, 0, 0, 1.0], (100, 1)))
     with pytest.raises(ValueError, match="qw"):
         parts.poses_of(np.zeros(3, [(name, "<f8") for name in ("tx", "ty", "tz", "qx", "qy", "qz")]))
@@ -116,7 +135,7 @@ def test_scores_are_those_of_one_process(client, grid, sensor, tmp_path):
 
     poses = np.concatenate([viewgain.sphere_poses(3000, 0.6), np.full((1, 4, 4), np.nan)])
     np.save(tmp_path / "poses.npy", poses)
-    for number, settings in enumerate(({"pixel_stride": 4}, {"pixel_stride": 8, "gain": "combined"})):
+    for number, settings in enumerate(({"pixel_stride": 4}, {"pixel_stride": 8, "gain": "paper"})):
         seen = []
         found = viewgain.distributed.score(
             client, grid, tmp_path / "poses.npy", sensor, out=tmp_path / str(number), top=7, chunk_seconds=0.05, num_threads=1,
@@ -179,11 +198,6 @@ def test_parts_are_those_of_the_program(client, grid, sensor, tmp_path):
     run(*score, "--shard", "0/1", "--out", "whole.npy")
     run("merge", *found.parts, "--out", "merged.npy")
     assert (tmp_path / "merged.npy").read_bytes() == (tmp_path / "whole.npy").read_bytes()
-    # Parts of both go together.
-    begin = len(np.load(found.parts[0]))
-    run(*score, "--rows", f"0:{begin}", "--out", "first.npy")
-    run("merge", "first.npy", *found.parts[1:], "--out", "mixed.npy")
-    assert (tmp_path / "mixed.npy").read_bytes() == (tmp_path / "whole.npy").read_bytes()
 
 
 def test_isa_is_pinned_and_wrong_calls_are_named(client, grid, sensor, poses, tmp_path):
@@ -192,7 +206,7 @@ def test_isa_is_pinned_and_wrong_calls_are_named(client, grid, sensor, poses, tm
     if viewgain.distributed._best_isa() in ("avx2", "avx512"):
         found = viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "low", isa="sse4", pixel_stride=4)
         assert found.isa == "sse4" and b"\n# isa sse4\n" in found.parts[0].read_bytes()
-        with pytest.raises(ValueError, match="ISA"):  # the default is another
+        with pytest.raises(ValueError, match="isa sse4, not"):  # the default is another
             viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "low", pixel_stride=4)
     if viewgain.distributed._best_isa() != "avx512":
         with pytest.raises(RuntimeError, match="avx512"):
@@ -216,7 +230,6 @@ def test_settings_that_are_none_are_refused_by_the_client(client, grid, sensor, 
         assert score().poses == len(poses)
         for path in (tmp_path / "out").iterdir():
             path.unlink()
-    parts = importlib.import_module("viewgain._parts")
     given = {"gain": "combined", "criterion": "log_determinant", "refinement_weight": 0.5, "support_plane": -0.1,
              "prior_sigma": 0.1, "min_range": 0.3, "max_range": 2.0, "weights": [([[0, 0, 0], [1, 1, 1]], 2)],
              "posterior_entropy": True}
@@ -227,20 +240,19 @@ def test_settings_that_are_none_are_refused_by_the_client(client, grid, sensor, 
 def test_parts_with_the_same_rows_are_named(client, grid, sensor, poses, tmp_path):
     import viewgain.distributed
 
-    parts = importlib.import_module("viewgain._parts")
     score = lambda: viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path, pixel_stride=8)
     rows = rows_of(score())
     for path in tmp_path.iterdir():
         head = path.read_bytes()[-2000:].decode(errors="replace")
         path.unlink()
-    head = head[head.index("# viewgain"):head.index("# rows")]
+    head = head[head.index("# viewgain"):]
     for first, second in (((0, 9), (0, 9)), ((0, 9), (0, 20)), ((0, 20), (5, 9)), ((3, 9), (8, 20))):
         for name, (begin, end) in (("rows-a.npy", first), ("rows-b.npy", second)):
-            parts.write_part(tmp_path / name, rows[begin:end], head, begin)
+            native._write_part(tmp_path / name, head, viewgain.DEFAULT_GAIN, rows[begin:end].tobytes())
         with pytest.raises(ValueError, match=r"rows-b\.npy: rows .* overlap rows .*rows-a\.npy"):
             score()
-    parts.write_part(tmp_path / "rows-b.npy", rows[9:20], head, 9)
-    assert score().resumed == 17 and np.array_equal(rows_of(score()), rows)
+    native._write_part(tmp_path / "rows-b.npy", head, viewgain.DEFAULT_GAIN, rows[9:20].tobytes())
+    assert score().resumed == 17 and rows_of(score()).tobytes() == rows.tobytes()
 
 
 SPEC = """objects = ["cube.off"]

@@ -282,11 +282,13 @@ def test_reach_and_collisions(grid, sensor):
         half_spaces=[[0, 0, 1, -0.5]], predicate=predicate)
     assert np.array_equal(reach.contains(poses), [True, False, True, False])
     assert len(asked) == 3 and asked[0].shape == (4, 4)
-    checker = viewgain.FeasibilityChecker(scene, reach=reach, sensor=sensor, support_plane=-0.5)
+    checker = viewgain.FeasibilityChecker(scene, reach=reach, sensor=sensor)
     assert names[checker.reasons(poses)].tolist() == [
         "none", "unreachable", "collision", "unreachable"]
     assert "predicate" in repr(reach) and "primitives" in repr(checker)
     assert np.array_equal(checker.with_scene(viewgain.VoxelScene(grid)).reasons(poses), checker.reasons(poses))
+    table = checker.with_scene(viewgain.VoxelScene(grid, support_plane=0.1))
+    assert names[table.reasons(poses)].tolist() == ["plane", "unreachable", "plane", "unreachable"]
 
     def broken(T_world_camera):
         raise KeyError("robot")

@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The planner step by step against the parts that it is made of, and what it refuses."""
 import gc
+import json
+import os
+import subprocess
 import threading
 
 import numpy as np
@@ -227,3 +230,39 @@ def test_refused(sensor, camera, poses):
     control.stop()
     stopped = planner.rank(poses=np.tile(poses, (20, 1, 1)), control=control)
     assert not stopped["complete"]
+
+
+def test_the_program_says_the_same(tmp_path):
+    program = os.environ.get("VIEWGAIN_PROGRAM")
+    if not program:
+        pytest.skip("the program is not built")
+
+    def run(*words):
+        return json.loads(subprocess.run([program, *map(str, words), "--json"], cwd=tmp_path, check=True, capture_output=True).stdout)
+
+    corners = "0 0 0\n0 1 0\n1 1 0\n1 0 0\n0 0 1\n0 1 1\n1 1 1\n1 0 1\n"
+    faces = "".join(f"4 {f}\n" for f in ("0 1 2 3", "4 7 6 5", "0 4 5 1", "3 2 6 7", "0 3 7 4", "1 5 6 2"))
+    (tmp_path / "cube.off").write_text("OFF\n8 6 0\n" + corners + faces)
+    run("simulate", "cube.off", "--orbit", "5,0.5,30", "--sensor", "kinect_v1", "--size", 0.2, "--recenter", "on",
+        "--support-plane", -0.1, "--out", "frames")
+    poses = viewgain.sphere_poses(60, 0.9)
+    viewgain.write_poses(tmp_path / "poses.txt", poses)
+    (tmp_path / "reach.toml").write_text('poses = "poses.txt"\n')
+    wall = ["--support-plane", -0.1, "--obstacle", "0.12,-0.3,-0.1,0.14,0.3,0"]
+    layout = ["--voxel", 0.01, "--workspace", "-0.2,-0.2,-0.1,0.2,0.2,0.2"]
+    said = run("integrate", "frames", *layout, *wall, "--out", "map.vdb")
+    following = run("next", "map.vdb", *wall, "--reach", "reach.toml", "--top", 3)
+
+    frames = viewgain.read_frames(tmp_path / "frames")
+    planner = viewgain.ViewPlanner(frames.sensor, voxel_size=0.01, workspace=[[-0.2, -0.2, -0.1], [0.2, 0.2, 0.2]],
+                                   support_plane=-0.1, boxes=[[[0.12, -0.3, -0.1], [0.14, 0.3, 0]]],
+                                   reach=viewgain.ReachRegion.load(tmp_path / "reach.toml"))
+    for i in range(len(frames)):
+        frame = frames[i]
+        planner.add(frame.depth, frame.T_world_camera, amplitude=frame.amplitude)
+    assert planner.grid.content_hash() == said["hash"]
+    planner.propose()
+    best = planner.rank(3)
+    assert len(best.index) == len(following["next"]) > 0
+    assert best.gain.tolist() == [view["gain"] for view in following["next"]]
+    assert best.T_world_camera.tolist() == [view["T_world_camera"] for view in following["next"]]

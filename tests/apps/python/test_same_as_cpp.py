@@ -16,7 +16,7 @@ def test_bits_are_those_of_cpp(tmp_path, grid, sensor):
     subprocess.run([os.environ["VIEWGAIN_GAINS"], tmp_path / "map.vdb", tmp_path / "poses",
                     tmp_path / "gains"], check=True, stdout=subprocess.DEVNULL)
     cpp = np.fromfile(tmp_path / "gains")
-    python = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor).evaluate(poses)
+    python = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, gain="paper").evaluate(poses)
     assert cpp.shape == python.shape == (400,)
     assert np.isnan(cpp[7]) and np.count_nonzero(cpp > 0) > 300
     assert np.delete(cpp, 7).tobytes() == np.delete(python, 7).tobytes()

@@ -183,29 +183,6 @@ TEST(TofCamera, SensorsWithoutPhaseSeeTheCentreRay) {
             SimulatedSensor(scene, sensor, sub_rays).acquire(Pose{}));
 }
 
-TEST(TofCamera, WigglingIsTheFourthHarmonicAndIsCalibratedAway) {
-  const Sensor sensor = one_pixel();
-  for (const int sub_rays : {1, 3}) {
-    SimulationConfig config{.sub_rays = sub_rays, .wiggling = 0.012};
-    const SimulatedSensor wrong(plane_at(0), sensor, config);
-    config.calibration = measure_calibration(sensor, config, 0.2, 4.8, 200);
-    ASSERT_EQ(config.calibration.table.size(), 200U);
-    const SimulatedSensor corrected(plane_at(0), sensor, config);
-    double worst = 0;
-    for (double t = 0.25; t < 4.8; t += 0.0171) {
-      const double error = 0.012 * std::sin(4 * 2 * std::numbers::pi * t / kPeriod);
-      EXPECT_NEAR(wrong.acquire(back_by(t)).depth[0], t + error, 2e-6);
-      worst = std::max(worst, std::abs(corrected.acquire(back_by(t)).depth[0] - t));
-    }
-    EXPECT_LT(worst, 5e-5);
-  }
-  // Without an error the table says so.
-  for (const auto& [measured, error] :
-       measure_calibration(sensor_preset("d435"), {}, 0.3, 2.9, 20).table) {
-    EXPECT_NEAR(error, 0, 1e-6) << measured;
-  }
-}
-
 TEST(TofCamera, RefusesBadConfigurations) {
   const auto scene = plane_at(1);
   const Sensor sensor = sensor_preset("sr4000");
@@ -215,20 +192,7 @@ TEST(TofCamera, RefusesBadConfigurations) {
   };
   refused(sensor, {.sub_rays = 0}, "0");
   refused(sensor, {.sub_rays = 17}, "17");
-  refused(sensor, {.wiggling = 0.2}, "0.2");  // readings would not rise with the range
-  refused(sensor, {.wiggling = std::nan("")}, "nan");
-  refused(sensor_preset("d435"), {.wiggling = 0.01}, "modulation frequency");
-  refused(sensor, {.calibration = {{{2, 0}, {1, 0}}}}, "rise");
   refused(sensor, {.support_plane = std::nan("")}, "nan");
-  EXPECT_THROW((void)measure_calibration(sensor, {}, 0.5, 1.0, 1), Error);
-  {
-    const test::CommaLocale locale;
-    test::expect_error(ErrorCode::invalid_argument, " at 1234 ranges from 1.5 to 0.5 m",
-                       [&] { (void)measure_calibration(sensor, {}, 1.5, 0.5, 1234); });
-  }
-  EXPECT_THROW((void)measure_calibration(sensor, {}, 1.0, 0.5, 9), Error);
-  EXPECT_THROW((void)measure_calibration(sensor, {}, 0.1, 1.0, 9), Error);
-  EXPECT_THROW((void)measure_calibration(sensor, {}, 0.5, 4.999, 9), Error);
 }
 
 }  // namespace

@@ -216,7 +216,6 @@ TEST(TofNoise, TheSameForAnyNumberOfThreadsAndReproducible) {
                           .seed = 11,
                           .sub_rays = 2,
                           .lateral_noise = true,
-                          .wiggling = 0.01,
                           .support_plane = -0.1};
   const auto ball = std::make_shared<const SurfaceScene>(test::sphere(0.1, 24));
   const Pose pose = look_at({0.5, 0.1, 0.2}, {0, 0, 0});

@@ -27,7 +27,7 @@ std::shared_ptr<const VoxelScene> room() {
 }
 
 TEST(ChoosingInARoom, RaceFindsTheBest) {
-  const GainEvaluator evaluator(room(), small_kinect());
+  const GainEvaluator evaluator(room(), small_kinect(), {.model = GainModel::paper});
   std::size_t right = 0, cases = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed, ++cases) {
     const std::vector<Pose> poses = test::poses_in(room()->snapshot(), 100, seed);

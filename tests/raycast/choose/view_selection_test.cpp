@@ -78,26 +78,26 @@ TEST(BestViews, AreThoseOfTheLargestGainsTheFirstOfEqualOnes) {
   std::vector<Pose> poses = sphere_poses(60, 0.5);
   for (const Pose& pose : sphere_poses(60, 0.5)) poses.push_back(pose);
   poses[5].m[7] = std::nan("");
-  const GainEvaluator evaluator(VoxelScene::build(lump(9)), small_sensor());
+  const GainEvaluator evaluator(VoxelScene::build(lump(9)), small_sensor(), test::kPaper);
   for (const std::size_t k : {1U, 7U, 118U, 123U}) expect_exact(evaluator, poses, k);
 }
 
 TEST(BestViews, TakeOddRequestsAndStops) {
   const auto scene = VoxelScene::build(lump(5));
   const std::vector<Pose> poses = sphere_poses(200, 0.6);
-  const GainEvaluator one(scene, small_sensor(), {}, {.num_threads = 1});
+  const GainEvaluator one(scene, small_sensor(), test::kPaper, {.num_threads = 1});
   EXPECT_TRUE(one.best(poses, 0).indices.empty());
   EXPECT_TRUE(one.best({}, 3).indices.empty());
   std::stop_source source;
   source.request_stop();
-  const BestViews stopped = one.best(poses, 1, {.stop = source.get_token()});
+  const BestViews stopped = one.best(poses, 1, {}, {.stop = source.get_token()});
   EXPECT_FALSE(stopped.complete);
   EXPECT_TRUE(stopped.indices.empty());
   // After seven poses, the first of them bad.
   std::vector<Pose> some = poses;
   some[0].m[0] = std::nan("");
   int asked = 0;
-  const BestViews partly = one.best(some, 9, {.is_cancelled = [&] { return ++asked > 7; }});
+  const BestViews partly = one.best(some, 9, {}, {.is_cancelled = [&] { return ++asked > 7; }});
   EXPECT_FALSE(partly.complete);
   std::vector<std::size_t> order = best_indices(one.evaluate(std::span(some).first(7)), 7);
   ASSERT_EQ(order.back(), 0U);
@@ -131,7 +131,7 @@ TEST(BestViews, CostsAreSubtracted) {
     const std::vector<double> costs = random_costs(all, 3);
     std::vector<double> worth;
     for (std::size_t i = 0; i < all.size(); ++i) worth.push_back(all[i].gain - costs[i]);
-    const BestViews best = evaluator.best(poses, 6, {}, {.costs = costs});
+    const BestViews best = evaluator.best(poses, 6, {.costs = costs});
     ASSERT_EQ(best.indices, largest(worth, 6));
     for (std::size_t j = 0; j < 6; ++j, ++cases) {
       EXPECT_EQ(best.worth[j], worth[best.indices[j]]);
@@ -158,31 +158,32 @@ class Height : public ViewMeasure, public RunMeasure {
 };
 
 TEST(BestViews, AMeasureTakesTheGainsPlace) {
-  const GainEvaluator evaluator(VoxelScene::build(lump(8)), small_sensor(), {}, {.num_threads = 2});
+  const GainEvaluator evaluator(VoxelScene::build(lump(8)), small_sensor(), test::kPaper,
+                                {.num_threads = 2});
   const std::vector<Pose> poses = sphere_poses(100, 0.6);
   const Height own;
   std::vector<double> by_hits(poses.size()), by_runs(poses.size()), costs(poses.size(), 0.0);
-  evaluator.evaluate(poses, static_cast<const ViewMeasure&>(own), by_hits);
-  evaluator.evaluate(poses, static_cast<const RunMeasure&>(own), by_runs);
-  const BestViews hits = evaluator.best(poses, 5, {}, {.measure = &own});
-  const BestViews runs = evaluator.best(poses, 5, {}, {.run_measure = &own});
+  evaluator.evaluate(poses, by_hits, static_cast<const ViewMeasure&>(own));
+  evaluator.evaluate(poses, by_runs, static_cast<const RunMeasure&>(own));
+  const BestViews hits = evaluator.best(poses, 5, {.measure = &own});
+  const BestViews runs = evaluator.best(poses, 5, {.run_measure = &own});
   EXPECT_EQ(hits.indices, largest(by_hits, 5));
   EXPECT_EQ(runs.indices, largest(by_runs, 5));
   EXPECT_EQ(hits.worth[0], by_hits[hits.indices[0]]);
   EXPECT_NE(hits.indices[0], runs.indices[0]);
   EXPECT_TRUE(hits.gains.empty());
   costs[hits.indices[0]] = 1e9;
-  const BestViews other = evaluator.best(poses, 4, {}, {.costs = costs, .measure = &own});
+  const BestViews other = evaluator.best(poses, 4, {.costs = costs, .measure = &own});
   EXPECT_TRUE(std::equal(other.indices.begin(), other.indices.end(), hits.indices.begin() + 1));
   test::expect_error(ErrorCode::invalid_argument, "two", [&] {
-    (void)evaluator.best(poses, 1, {}, {.measure = &own, .run_measure = &own});
+    (void)evaluator.best(poses, 1, {.measure = &own, .run_measure = &own});
   });
   costs[7] = INFINITY;
   test::expect_error(ErrorCode::invalid_argument, "finite",
-                     [&] { (void)evaluator.best(poses, 1, {}, {.costs = costs}); });
+                     [&] { (void)evaluator.best(poses, 1, {.costs = costs}); });
   costs.pop_back();
   test::expect_error(ErrorCode::invalid_argument, "99 costs for 100 poses",
-                     [&] { (void)evaluator.best(poses, 1, {}, {.costs = costs}); });
+                     [&] { (void)evaluator.best(poses, 1, {.costs = costs}); });
   test::expect_error(ErrorCode::invalid_argument, "99 costs for 100 poses",
                      [&] { (void)evaluator.race(poses, 1, {.costs = costs}); });
 }
@@ -203,7 +204,7 @@ TEST(Race, CostsAreSubtracted) {
     const RacedViews race = evaluator.race(poses, 1, config);
     ASSERT_EQ(race.indices.size(), 1U);
     EXPECT_EQ(race.worth[0], all[race.indices[0]].gain - costs[race.indices[0]]);
-    right += race.indices == evaluator.best(poses, 1, {}, {.costs = costs}).indices ? 1 : 0;
+    right += race.indices == evaluator.best(poses, 1, {.costs = costs}).indices ? 1 : 0;
   }
   EXPECT_GE(right, kMaps - 1);
   EXPECT_GE(others, kMaps - 2);
@@ -227,13 +228,13 @@ TEST(Race, FindsTheBestByAMeasureToo) {
   int right = 0, cases = 0;
   for (std::uint64_t map = 0; map < 2; ++map) {
     const auto scene = VoxelScene::build(lump(80 + map));
-    const GainEvaluator evaluator(scene, larger_sensor(), {}, {.num_threads = 2});
-    const GainEvaluator alone(scene, larger_sensor(), {}, {.num_threads = 1});
+    const GainEvaluator evaluator(scene, larger_sensor(), test::kPaper, {.num_threads = 2});
+    const GainEvaluator alone(scene, larger_sensor(), test::kPaper, {.num_threads = 1});
     const std::vector<Pose> poses = sphere_poses(300, 0.6);
     for (const bool averages : {false, true}) {
       const Promise own(averages);
       std::vector<double> all(poses.size());
-      evaluator.evaluate(poses, own, all);
+      evaluator.evaluate(poses, all, own);
       std::vector<double> costs;
       for (std::size_t i = 0; i < all.size(); ++i) costs.push_back(0.3 * all[(7 * i) % all.size()]);
       for (const bool with_costs : {false, true}) {
@@ -241,7 +242,7 @@ TEST(Race, FindsTheBestByAMeasureToo) {
         BestConfig exact{.run_measure = &own};
         if (with_costs) config.costs = exact.costs = costs;
         const RacedViews race = evaluator.race(poses, 2, config);
-        const BestViews best = evaluator.best(poses, 2, {}, exact);
+        const BestViews best = evaluator.best(poses, 2, exact);
         ASSERT_EQ(race.indices.size(), 2U);
         for (std::size_t j = 0; j < 2; ++j) {
           const std::size_t i = race.indices[j];
@@ -265,8 +266,8 @@ TEST(Race, FindsTheBestByAMeasureToo) {
 }
 
 TEST(Race, ByAMeasureTakesOddRequestsAndStops) {
-  const GainEvaluator evaluator(VoxelScene::build(lump(3)), larger_sensor());
-  const GainEvaluator small(VoxelScene::build(lump(3)), small_sensor());
+  const GainEvaluator evaluator(VoxelScene::build(lump(3)), larger_sensor(), test::kPaper);
+  const GainEvaluator small(VoxelScene::build(lump(3)), small_sensor(), test::kPaper);
   std::vector<Pose> poses = sphere_poses(200, 0.6);
   const Promise own(false);
   const Height hits;
@@ -274,13 +275,13 @@ TEST(Race, ByAMeasureTakesOddRequestsAndStops) {
   EXPECT_TRUE(evaluator.race(poses, 0, config).indices.empty());
   EXPECT_TRUE(evaluator.race({}, 2, config).indices.empty());
   EXPECT_EQ(evaluator.race(poses, 1000, config).indices,
-            evaluator.best(poses, 1000, {}, {.run_measure = &own}).indices);
+            evaluator.best(poses, 1000, {.run_measure = &own}).indices);
   // Images of few rays are measured in full.
   EXPECT_EQ(small.race(poses, 3, {.measure = &hits}).indices,
-            small.best(poses, 3, {}, {.measure = &hits}).indices);
+            small.best(poses, 3, {.measure = &hits}).indices);
   for (std::size_t i = 0; i < 190; ++i) poses[i].m[0] = std::nan("");
   EXPECT_EQ(evaluator.race(poses, 3, config).indices,
-            evaluator.best(poses, 3, {}, {.run_measure = &own}).indices);
+            evaluator.best(poses, 3, {.run_measure = &own}).indices);
   test::expect_error(ErrorCode::invalid_argument, "two", [&] {
     (void)evaluator.race(poses, 1, {.measure = &hits, .run_measure = &own});
   });
@@ -297,7 +298,8 @@ TEST(Race, ByAMeasureTakesOddRequestsAndStops) {
       EXPECT_EQ(total, 224U);
       last = done;
     };
-    const GainEvaluator one(VoxelScene::build(lump(3)), larger_sensor(), {}, {.num_threads = 1});
+    const GainEvaluator one(VoxelScene::build(lump(3)), larger_sensor(), test::kPaper,
+                            {.num_threads = 1});
     const RacedViews race = one.race(poses, 5, config, control);
     EXPECT_FALSE(race.complete) << limit;
     EXPECT_EQ(race.indices.empty(), limit < 200) << limit;
@@ -343,7 +345,7 @@ TEST(BestSet, IsTheGreedySetOfTheOracle) {
     sensor.camera = {.width = 16, .height = 12, .fx = 18.3, .fy = 18.7, .cx = 7.6, .cy = 5.4};
     const std::vector<Pose> poses = sphere_poses(14, 0.55);
     for (const Criterion criterion : kCriteria) {
-      const GainEvaluator evaluator(VoxelScene::build(grid), sensor, {.criterion = criterion});
+      const GainEvaluator evaluator(VoxelScene::build(grid), sensor, test::by_paper(criterion));
       const ViewSet set = evaluator.best_set(poses, 4);
       ASSERT_EQ(set.indices.size(), 4U);
       std::vector<Pose> chosen;
@@ -376,23 +378,23 @@ TEST(BestSet, IsTheGreedySetOfTheOracle) {
 TEST(BestSet, LazyEvaluationChangesNothingButTheWork) {
   const auto scene = VoxelScene::build(lump(80));
   const std::vector<Pose> poses = sphere_poses(80, 0.6);
-  const GainEvaluator lazy(scene, small_sensor(), {.criterion = Criterion::log_determinant});
+  const GainEvaluator lazy(scene, small_sensor(), test::by_paper(Criterion::log_determinant));
   const ViewSet set = lazy.best_set(poses, 6);
   EXPECT_LT(set.evaluations, 80U * 4);
-  const GainEvaluator threads(scene, small_sensor(), {.criterion = Criterion::log_determinant},
+  const GainEvaluator threads(scene, small_sensor(), test::by_paper(Criterion::log_determinant),
                               {.num_threads = 3});
   EXPECT_EQ(threads.best_set(poses, 6).indices, set.indices);
   EXPECT_EQ(set.indices[0], best_indices(lazy.evaluate(poses), 1)[0]);
   for (std::size_t j = 1; j < set.indices.size(); ++j) {
     EXPECT_LE(set.marginal[j].gain, set.marginal[j - 1].gain * (1 + 1e-9));
   }
-  const GainEvaluator plain(scene, small_sensor());
+  const GainEvaluator plain(scene, small_sensor(), test::kPaper);
   EXPECT_EQ(plain.best_set(poses, 3).evaluations, 80U + 79U + 78U);
 }
 
 TEST(BestSet, TakesOddRequestsAndSecondLooksGainLess) {
   const auto scene = VoxelScene::build(lump(81));
-  const GainEvaluator evaluator(scene, small_sensor());
+  const GainEvaluator evaluator(scene, small_sensor(), test::kPaper);
   const std::vector<Pose> same(3, sphere_poses(5, 0.6)[1]);
   const ViewSet set = evaluator.best_set(same, 10);
   EXPECT_EQ(set.indices, (std::vector<std::size_t>{0, 1, 2}));

@@ -41,10 +41,10 @@ TEST_P(ClassicOracle, AllGainsAgreeUnderEachInstructionSet) {
     test::vary_log_odds(made.grid, random);
     const Sensor sensor = test::random_sensor(made.grid, random);
     for (const Pose& view : test::random_poses(made, 3, random)) made.grid.append_view(view);
-    const Obstacles obstacles = i % 4 == 3 ? test::random_boxes(made.grid, random) : Obstacles{};
+    Surroundings around;
+    if (i % 4 == 3) around.obstacles = test::random_boxes(made.grid, random);
     Acquisition acquisition{sensor, 12.3 * made.grid.voxel_size()};
     acquisition.sensor.min_range = 0;
-    const test::OctomapOracle oracle(made.grid, obstacles, acquisition);
     ClassicConfig config;
     config.gains = test::all_classic_gains();
     config.pixel_stride = 1 + i % 3;
@@ -53,10 +53,11 @@ TEST_P(ClassicOracle, AllGainsAgreeUnderEachInstructionSet) {
     if (i % 4 == 2) {
       // Between planes of the lattice, which would be ties.
       const Index3 low = made.grid.min_index();
-      config.support_plane =
+      around.support_plane =
           (made.grid.T_world_grid() * voxel_center(low, made.grid.voxel_size())).z() +
           1.7 * made.grid.voxel_size();
     }
+    const test::OctomapOracle oracle(made.grid, around, acquisition);
     const std::vector<Pose> poses = test::random_poses(made, kPosesPerMap, random);
     for (const GainSemantics semantics : {GainSemantics::paper, GainSemantics::shipped}) {
       config.semantics = semantics;
@@ -64,7 +65,7 @@ TEST_P(ClassicOracle, AllGainsAgreeUnderEachInstructionSet) {
       for (const Pose& pose : poses) expected.push_back(oracle.gains(sensor, config, pose));
       for (const std::string& isa : isas) {
         const test::ScopedIsa scoped(isa);
-        const auto scene = VoxelScene::build(made.grid, obstacles, {.num_threads = 1});
+        const auto scene = VoxelScene::build(made.grid, around, {.num_threads = 1});
         const auto map = ClassicMap::build(scene, made.grid, acquisition, {.num_threads = 1});
         const std::vector<double> actual =
             ClassicGainEvaluator(map, sensor, config, {.num_threads = 1}).evaluate(poses);
@@ -72,7 +73,8 @@ TEST_P(ClassicOracle, AllGainsAgreeUnderEachInstructionSet) {
           for (std::size_t g = 0; g < 10; ++g) {
             const double want = expected[pose][g], have = actual[pose * 10 + g];
             const double tolerance =
-                (obstacles.boxes.empty() ? kTolerance : kObstacleTolerance) * std::abs(want) +
+                (around.obstacles.boxes.empty() ? kTolerance : kObstacleTolerance) *
+                    std::abs(want) +
                 kRounding;
             EXPECT_NEAR(have, want, tolerance)
                 << "map " << i << ", pose " << pose << ", " << isa << ", "

@@ -33,9 +33,9 @@ double area_function(double x, double a) {
 
 }  // namespace
 
-OctomapOracle::OctomapOracle(const BeliefGrid& grid, const Obstacles& obstacles,
+OctomapOracle::OctomapOracle(const BeliefGrid& grid, const Surroundings& surroundings,
                              const std::optional<Acquisition>& acquisition)
-    : map_(grid), obstacles_(obstacles), tree_(1.0) {
+    : map_(grid), surroundings_(surroundings), tree_(1.0) {
   const Index3 low = map_.min_index, dims = map_.dims;
   for (int x = low.x; x < low.x + dims.x; ++x) {
     for (int y = low.y; y < low.y + dims.y; ++y) {
@@ -72,8 +72,8 @@ void OctomapOracle::mark_occlusion(const std::vector<Pose>& views, const Acquisi
   occlusion_depth_ = acquisition.occlusion_depth / V;
   for (const Pose& view : views) {
     for (const oracle::Ray& ray : oracle::view_rays(map_.T_world_grid, V, sensor.camera, 1, view)) {
-      const double far =
-          std::min(sensor.max_range / V, oracle::obstacle_range(map_, obstacles_, ray));
+      const double far = std::min(sensor.max_range / V,
+                                  oracle::obstacle_range(map_, surroundings_.obstacles, ray));
       const auto seen = visits(ray, sensor.min_range / V, far, true);
       if (seen.empty() || seen.back().node == nullptr || !(seen.back().node->getLogOdds() > 0)) {
         continue;
@@ -136,9 +136,9 @@ std::array<double, 10> OctomapOracle::gains(const Sensor& sensor, const ClassicC
     ++number;
     if (!ray.direction.allFinite()) continue;
     double far = std::min(config.max_range.value_or(sensor.max_range) / V,
-                          oracle::obstacle_range(map_, obstacles_, ray));
-    if (config.support_plane) {
-      const double above = T_world_camera.translation().z() - *config.support_plane;  // [m]
+                          oracle::obstacle_range(map_, surroundings_.obstacles, ray));
+    if (surroundings_.support_plane) {
+      const double above = T_world_camera.translation().z() - *surroundings_.support_plane;  // [m]
       const double rate = (map_.T_world_grid.rotation() * ray.direction).z() * V;
       if (above >= 0 && rate < 0) far = std::min(far, -above / rate);
     }

@@ -21,7 +21,7 @@ namespace viewgain::test {
 /// with raycast/.
 class OctomapOracle {
  public:
-  OctomapOracle(const BeliefGrid& grid, const Obstacles& obstacles,
+  OctomapOracle(const BeliefGrid& grid, const Surroundings& surroundings,
                 const std::optional<Acquisition>& acquisition);
 
   /// By ClassicGain, all ten (area_factor and proximity_count need the acquisition). `gains` of the
@@ -53,7 +53,7 @@ class OctomapOracle {
   void mark_occlusion(const std::vector<Pose>& views, const Acquisition& acquisition);
 
   oracle::DenseMap map_;
-  Obstacles obstacles_;
+  Surroundings surroundings_;
   octomap::OcTree tree_;
   std::map<std::tuple<int, int, int>, int> occlusion_;
   double occlusion_depth_ = 0;  // [voxels]

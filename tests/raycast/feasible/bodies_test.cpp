@@ -129,7 +129,7 @@ TEST(Bodies, InsideAClosedMeshAreInTheWay) {
   const BeliefGrid grid = test::sparse_map({8, 8, 8}, {});
   FeasibilityConfig config;
   config.body.size = {1e-3, 1e-3, 1e-3};
-  const FeasibilityChecker checker(VoxelScene::build(grid, {{}, {ball}}), config);
+  const FeasibilityChecker checker(VoxelScene::build(grid, {{{}, {ball}}}), config);
   test::Random random(44);
   std::size_t inside = 0, outside = 0;
   const auto ask = [&](const Eigen::Vector3d& p) {

@@ -47,8 +47,8 @@ BeliefGrid free_map() {
 }
 
 FeasibilityChecker checker_of(const BeliefGrid& grid, const FeasibilityConfig& config = {},
-                              const Obstacles& obstacles = {}) {
-  return {VoxelScene::build(grid, obstacles), config};
+                              const Surroundings& surroundings = {}) {
+  return {VoxelScene::build(grid, surroundings), config};
 }
 
 // The camera looks along -z from `eye`, its x axis along the world's.
@@ -157,7 +157,7 @@ TEST(Feasibility, BodiesAgainstObstacles) {
     FeasibilityConfig config;
     config.body.size = {uniform(random, 0.02, 0.1), uniform(random, 0.02, 0.1),
                         uniform(random, 0.02, 0.1)};
-    const FeasibilityChecker checker = checker_of(grid, config, obstacles);
+    const FeasibilityChecker checker = checker_of(grid, config, {obstacles});
     for (int i = 0; i < 200; ++i) {
       const Pose pose(random_rigid(random, 1).rotation(), anywhere());
       const Solid body = body_of(config, pose);
@@ -190,14 +190,14 @@ TEST(Feasibility, ClosedMeshesAreSolidOpenOnesAreSheets) {
   for (auto& triangle : inward.triangles) std::swap(triangle[0], triangle[1]);
   open.triangles.pop_back();
   for (const TriangleMesh& mesh : {cube, separate, inward}) {
-    const FeasibilityChecker checker = checker_of(grid, {}, {{}, {mesh}});
+    const FeasibilityChecker checker = checker_of(grid, {}, {{{}, {mesh}}});
     EXPECT_EQ(checker.check(inside), Infeasibility::obstacle);
     EXPECT_EQ(checker.check(outside), Infeasibility::none);
   }
-  const FeasibilityChecker bucket = checker_of(grid, {}, {{}, {open}});
+  const FeasibilityChecker bucket = checker_of(grid, {}, {{{}, {open}}});
   EXPECT_EQ(bucket.check(inside), Infeasibility::none);
   EXPECT_EQ(bucket.check(looking_down({0, 0, 0.08})), Infeasibility::obstacle);
-  const FeasibilityChecker box = checker_of(grid, {}, {{{{-1, -1, -1}, {1, 1, 1}}}, {}});
+  const FeasibilityChecker box = checker_of(grid, {}, {{{{{-1, -1, -1}, {1, 1, 1}}}, {}}});
   EXPECT_EQ(box.check(inside), Infeasibility::obstacle);
 }
 
@@ -222,7 +222,8 @@ TEST(Feasibility, TouchingFacesDoNotOverlap) {
     }
   }
 
-  const FeasibilityChecker on_box = checker_of(free_map(), {}, {{{{-1, -1, -1}, {1, 1, 0.1}}}, {}});
+  const FeasibilityChecker on_box =
+      checker_of(free_map(), {}, {{{{{-1, -1, -1}, {1, 1, 0.1}}}, {}}});
   EXPECT_EQ(on_box.check({Eigen::Vector3d(1, -1, -1).asDiagonal(), {0, 0, 0.1}}),
             Infeasibility::none);
   EXPECT_EQ(on_box.check({Eigen::Vector3d(1, -1, -1).asDiagonal(), {0, 0, 0.0999}}),
@@ -266,20 +267,20 @@ TEST(Feasibility, ReasonsInOrder) {
   bent.m[0] += 6e-4;  // RᵀR is off by 1.2e-3
   FeasibilityConfig config;
   config.reach.boxes = {{{1, 1, 1}, {2, 2, 2}}};
-  config.support_plane = 0.02;
-  Obstacles obstacles{{{{0, 0, 0}, {0.1, 0.1, 0.1}}}, {}};
+  Surroundings around{{{{{0, 0, 0}, {0.1, 0.1, 0.1}}}, {}}, 0.02};
   std::vector<Pose> taken{looking_down({0.025, 0.02, 0.02})};
 
-  EXPECT_EQ(checker_of(grid, config, obstacles).check(bent, taken), Infeasibility::bad_pose);
-  EXPECT_EQ(checker_of(grid, config, obstacles).check(pose, taken), Infeasibility::unreachable);
+  EXPECT_EQ(checker_of(grid, config, around).check(bent, taken), Infeasibility::bad_pose);
+  EXPECT_EQ(checker_of(grid, config, around).check(pose, taken), Infeasibility::unreachable);
   config.reach = {};
-  EXPECT_EQ(checker_of(grid, config, obstacles).check(pose, taken), Infeasibility::taken);
+  EXPECT_EQ(checker_of(grid, config, around).check(pose, taken), Infeasibility::taken);
   config.taken_tolerance.distance = 0.004;
-  EXPECT_EQ(checker_of(grid, config, obstacles).check(pose, taken), Infeasibility::plane);
-  config.support_plane = 0.0199;
-  EXPECT_EQ(checker_of(grid, config, obstacles).check(pose, taken), Infeasibility::obstacle);
-  EXPECT_EQ(checker_of(grid, config).check(pose, taken), Infeasibility::collision);
-  EXPECT_EQ(checker_of(free_map(), config).check(pose, taken), Infeasibility::none);
+  EXPECT_EQ(checker_of(grid, config, around).check(pose, taken), Infeasibility::plane);
+  around.support_plane = 0.0199;
+  EXPECT_EQ(checker_of(grid, config, around).check(pose, taken), Infeasibility::obstacle);
+  around.obstacles = {};
+  EXPECT_EQ(checker_of(grid, config, around).check(pose, taken), Infeasibility::collision);
+  EXPECT_EQ(checker_of(free_map(), config, around).check(pose, taken), Infeasibility::none);
 
   Pose nan = pose;
   nan.m[3] = std::numeric_limits<double>::quiet_NaN();
@@ -298,8 +299,7 @@ TEST(Feasibility, ReasonsInOrder) {
 
 TEST(Feasibility, TheLowestCornerDecidesAboutThePlane) {
   FeasibilityConfig config;
-  config.support_plane = 0.5;
-  const FeasibilityChecker checker = checker_of(free_map(), config);
+  const FeasibilityChecker checker = checker_of(free_map(), config, {{}, 0.5});
   Random random(3);
   for (int i = 0; i < 200; ++i) {
     const Eigen::Matrix3d R = random_rigid(random, 1).rotation();
@@ -357,7 +357,6 @@ TEST(Feasibility, RefusesWhatMakesNoSense) {
   EXPECT_TRUE(refuses([&](FeasibilityConfig& c) { c.body.size[2] = nan; }));
   EXPECT_TRUE(refuses([](FeasibilityConfig& c) { c.clearance = -1e-9; }));
   EXPECT_TRUE(refuses([](FeasibilityConfig& c) { c.taken_tolerance.angle = -1; }));
-  EXPECT_TRUE(refuses([&](FeasibilityConfig& c) { c.support_plane = nan; }));
   EXPECT_TRUE(refuses([](FeasibilityConfig& c) { c.reach.shells = {{{0, 0, 0}, 2, 1}}; }));
   EXPECT_TRUE(refuses([](FeasibilityConfig& c) {
     c.body.T_flange_camera = Pose(2 * Eigen::Matrix3d::Identity(), {0, 0, 0});

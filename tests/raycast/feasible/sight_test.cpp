@@ -90,7 +90,7 @@ TEST(Sight, IsWhatTheOraclesRaysSay) {
       const Sensor sensor = sensor_for(made.grid, random);
       const Obstacles obstacles = i % 2 == 0 ? Obstacles{} : random_obstacles(made.grid, random);
       const double share = i % 5 == 0 ? 0.0 : test::uniform(random, 0.02, 0.9);
-      const FeasibilityChecker checker(VoxelScene::build(made.grid, obstacles),
+      const FeasibilityChecker checker(VoxelScene::build(made.grid, {obstacles}),
                                        config_for(sensor, share));
       const GainConfig from_the_lens{.pixel_stride = 8, .min_range = 0.0};
       for (const Pose& pose : test::random_poses(made, kPoses, random)) {
@@ -129,7 +129,7 @@ TEST(Sight, IsWhatTheOraclesRaysSay) {
 TEST(Sight, ABatchIsItsPosesOnAnyNumberOfThreads) {
   test::Random random(42);
   const test::RandomMap made = test::random_map(MapFamily::tiles_8, random);
-  const auto scene = VoxelScene::build(made.grid, random_obstacles(made.grid, random));
+  const auto scene = VoxelScene::build(made.grid, {random_obstacles(made.grid, random)});
   const FeasibilityConfig config = config_for(sensor_for(made.grid, random), 0.2);
   std::vector<Pose> poses = test::random_poses(made, 500, random);
   poses[7].m[3] = std::numeric_limits<double>::quiet_NaN();
@@ -158,7 +158,7 @@ TEST(Sight, ACheckerFollowsAMap) {
   test::RandomMap made = test::random_map(MapFamily::salt_and_pepper_1, random);
   const Obstacles obstacles = random_obstacles(made.grid, random);
   const FeasibilityConfig config = config_for(sensor_for(made.grid, random), 0.1);
-  auto scene = VoxelScene::build(made.grid, obstacles);
+  auto scene = VoxelScene::build(made.grid, {obstacles});
   FeasibilityChecker checker(scene, config);
   const FeasibilityChecker first = checker.with_scene(scene);
   const std::vector<Pose> poses = test::random_poses(made, 200, random);
@@ -173,11 +173,11 @@ TEST(Sight, ACheckerFollowsAMap) {
                     k % 2 == 0 ? 0.85F : -1.0F);
     }
     scene = VoxelScene::update(scene, made.grid);
-    EXPECT_EQ(&scene->obstacles(), &first.scene().obstacles());
+    EXPECT_EQ(&scene->surroundings(), &first.scene().surroundings());
     checker = checker.with_scene(scene);
     const std::vector<Infeasibility> now = checker.check(poses);
     EXPECT_EQ(now,
-              FeasibilityChecker(VoxelScene::build(made.grid, obstacles), config).check(poses));
+              FeasibilityChecker(VoxelScene::build(made.grid, {obstacles}), config).check(poses));
     changed += now != before ? 1U : 0U;
     ++steps;
   }
@@ -187,7 +187,7 @@ TEST(Sight, ACheckerFollowsAMap) {
 
   // Other obstacles are looked at anew.
   const FeasibilityChecker walled = checker.with_scene(
-      VoxelScene::build(made.grid, {{{{-1e3, -1e3, -1e3}, {1e3, 1e3, 1e3}}}, {}}));
+      VoxelScene::build(made.grid, {{{{{-1e3, -1e3, -1e3}, {1e3, 1e3, 1e3}}}, {}}}));
   for (const Infeasibility reason : walled.check(poses)) {
     EXPECT_EQ(reason, Infeasibility::obstacle);
   }

@@ -38,7 +38,7 @@ TEST(Allocation, NonePerPoseInTheSteadyState) {
   for (const Criterion criterion :
        {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
     for (const int threads : {1, 2}) {
-      const GainEvaluator evaluator(VoxelScene::build(map.grid), sensor, {.criterion = criterion},
+      const GainEvaluator evaluator(VoxelScene::build(map.grid), sensor, test::by_paper(criterion),
                                     {.num_threads = threads});
       const auto allocations_of_a_batch = [&] {
         const std::size_t before = allocations;

@@ -30,7 +30,7 @@ class Batch : public testing::Test {
   }
 
   [[nodiscard]] GainEvaluator evaluator(int threads = 2) const {
-    return {scene_, sensor_, {}, {.num_threads = threads}};
+    return {scene_, sensor_, test::kPaper, {.num_threads = threads}};
   }
 
   Sensor sensor_;
@@ -42,10 +42,10 @@ TEST_F(Batch, PosteriorEntropyIsThereIfAskedForAndChangesNothingElse) {
   for (const Criterion criterion :
        {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
     const std::vector<ViewGain> without =
-        GainEvaluator(scene_, sensor_, {.criterion = criterion}).evaluate(poses_);
-    std::vector<ViewGain> with =
-        GainEvaluator(scene_, sensor_, {.criterion = criterion, .posterior_entropy = true})
-            .evaluate(poses_);
+        GainEvaluator(scene_, sensor_, test::by_paper(criterion)).evaluate(poses_);
+    GainConfig config = test::by_paper(criterion);
+    config.posterior_entropy = true;
+    std::vector<ViewGain> with = GainEvaluator(scene_, sensor_, config).evaluate(poses_);
     std::size_t changed = 0;
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       ASSERT_EQ(with[i].status, without[i].status);
@@ -103,7 +103,8 @@ TEST_F(Batch, EveryCallReportsProgressOneAtATimeUpToItsTotal) {
     EXPECT_EQ(own.evaluate(poses_, results, c), n);
     EXPECT_TRUE(test::same_bits(results, own.evaluate(poses_)));
   });
-  expect_reports(n, [&](const BatchControl& c) { EXPECT_TRUE(own.best(poses_, 2, c).complete); });
+  expect_reports(n,
+                 [&](const BatchControl& c) { EXPECT_TRUE(own.best(poses_, 2, {}, c).complete); });
   expect_reports(n,
                  [&](const BatchControl& c) { EXPECT_TRUE(own.race(poses_, 2, {}, c).complete); });
   expect_reports(3, [&](const BatchControl& c) { (void)own.best_set(poses_, 3, c); });
@@ -147,7 +148,7 @@ TEST_F(Batch, CancellingIsAskedBetweenPosesOfEveryCall) {
     EXPECT_EQ(own.evaluate(poses_, results, control), 20U);
     EXPECT_EQ(asked, 21U);  // and not again
     asked = 0;
-    EXPECT_FALSE(own.best(poses_, 1, control).complete);
+    EXPECT_FALSE(own.best(poses_, 1, {}, control).complete);
     asked = 0;
     EXPECT_FALSE(own.race(poses_, 1, {}, control).complete);
     asked = 0;
@@ -182,7 +183,7 @@ TEST_F(Batch, AllThreadsTakePartInASmallOne) {
   for (const std::size_t count : {8U, 16U, 31U}) {
     const std::vector<Pose> same(count, poses_[0]);
     std::vector<double> results(count);
-    EXPECT_EQ(own.evaluate(same, Meeting(8), results), count);
+    EXPECT_EQ(own.evaluate(same, results, Meeting(8)), count);
     EXPECT_EQ(results, std::vector<double>(count, 1.0));
   }
 }

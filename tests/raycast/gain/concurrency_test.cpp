@@ -52,7 +52,7 @@ class Concurrency : public testing::Test {
   }
 
   [[nodiscard]] std::vector<ViewGain> gains(const std::shared_ptr<const VoxelScene>& scene) const {
-    return GainEvaluator(scene, sensor_, {}, {.num_threads = 1}).evaluate(poses_);
+    return GainEvaluator(scene, sensor_, test::kPaper, {.num_threads = 1}).evaluate(poses_);
   }
 
   Sensor sensor_;
@@ -66,7 +66,7 @@ TEST_F(Concurrency, AMapIsWrittenWhileItsSnapshotIsEvaluated) {
   for (int round = 0; round < kRounds; ++round) {
     const auto scene = VoxelScene::build(grid_);
     const std::vector<ViewGain> expected = gains(scene);
-    const GainEvaluator evaluator(scene, sensor_, {}, {.num_threads = 2});
+    const GainEvaluator evaluator(scene, sensor_, test::kPaper, {.num_threads = 2});
     at_once(3, [&](std::size_t number) {
       if (number == 0) {
         see(2 + round);
@@ -113,13 +113,14 @@ TEST_F(Concurrency, ASceneIsUpdatedWhileTheOneBeforeIsEvaluated) {
 
 TEST_F(Concurrency, TheFirstToNeedTheBvhMakesItForAll) {
   const auto expected =
-      GainEvaluator(VoxelScene::build(grid_), sensor_, {}, {.num_threads = 1}).evaluate(poses_);
+      GainEvaluator(VoxelScene::build(grid_), sensor_, test::kPaper, {.num_threads = 1})
+          .evaluate(poses_);
   const test::ScopedTrace scoped("bvh");
   int same = 0;
   for (int round = 0; round < kRounds; ++round) {
     const auto scene = VoxelScene::build(grid_, {}, {.num_threads = 1});
     at_once(4, [&](std::size_t) {
-      const GainEvaluator evaluator(scene, sensor_, {}, {.num_threads = 1});
+      const GainEvaluator evaluator(scene, sensor_, test::kPaper, {.num_threads = 1});
       if (test::same_bits(evaluator.evaluate(poses_), expected)) ++std::atomic_ref(same);
     });
   }
@@ -127,7 +128,8 @@ TEST_F(Concurrency, TheFirstToNeedTheBvhMakesItForAll) {
 }
 
 TEST_F(Concurrency, OneEvaluatorAnswersAllKindsOfQuestions) {
-  const GainEvaluator evaluator(VoxelScene::build(grid_), sensor_, {}, {.num_threads = 3});
+  const GainEvaluator evaluator(VoxelScene::build(grid_), sensor_, test::kPaper,
+                                {.num_threads = 3});
   const std::vector<ViewGain> expected = evaluator.evaluate(poses_);
   const std::vector<std::size_t> best = best_indices(expected, 3);
   const ViewSet set = evaluator.best_set(poses_, 2);
@@ -181,7 +183,7 @@ TEST_F(Concurrency, ACheckerIsAskedWhileItsMapGrows) {
   FeasibilityConfig config;
   config.body.size = {0.01, 0.01, 0.01};
   config.sensor = sensor_;
-  auto scene = VoxelScene::build(grid_, {{{{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}}}, {}});
+  auto scene = VoxelScene::build(grid_, {{{{{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}}}, {}}});
   std::vector<Pose> poses;
   for (const Pose& pose : poses_) {
     for (const double share : {0.25, 0.5, 0.9}) {

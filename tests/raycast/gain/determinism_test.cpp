@@ -33,10 +33,10 @@ TEST(Determinism, SameBitsForAnyNumberOfThreadsAndRunAfterRun) {
     const Made made = make(11, family);
     const auto scene = VoxelScene::build(made.map.grid);
     const std::vector<ViewGain> expected =
-        GainEvaluator(scene, made.sensor, {}, {.num_threads = 1}).evaluate(made.poses);
+        GainEvaluator(scene, made.sensor, test::kPaper, {.num_threads = 1}).evaluate(made.poses);
     for (const int threads : {1, 2, 3, 8}) {
       const auto own_scene = VoxelScene::build(made.map.grid, {}, {.num_threads = threads});
-      const GainEvaluator evaluator(own_scene, made.sensor, {}, {.num_threads = threads});
+      const GainEvaluator evaluator(own_scene, made.sensor, test::kPaper, {.num_threads = threads});
       EXPECT_EQ(evaluator.num_threads(), threads);
       for (int run = 0; run < 3; ++run) {
         const std::vector<ViewGain> actual = evaluator.evaluate(made.poses);
@@ -47,7 +47,7 @@ TEST(Determinism, SameBitsForAnyNumberOfThreadsAndRunAfterRun) {
     }
     // One by one as in a batch: the threads share each view.
     for (const int threads : {1, 2, 5}) {
-      const GainEvaluator evaluator(scene, made.sensor, {}, {.num_threads = threads});
+      const GainEvaluator evaluator(scene, made.sensor, test::kPaper, {.num_threads = threads});
       for (std::size_t i = 0; i < made.poses.size(); ++i) {
         EXPECT_TRUE(test::same_bits(expected[i], evaluator.evaluate(made.poses[i])));
       }
@@ -74,7 +74,7 @@ TEST(Determinism, OnePoseOnSeveralThreadsUnderEveryCriterionAndWeight) {
     for (const Criterion criterion :
          {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
       for (const bool is_weighted : {false, true}) {
-        GainConfig config{.criterion = criterion};
+        GainConfig config = test::by_paper(criterion);
         if (is_weighted) config.weights = {{half, 2.5}};
         const GainEvaluator alone(scene, made.sensor, config, {.num_threads = 1});
         const std::vector<ViewGain> expected = alone.evaluate(made.poses);
@@ -101,7 +101,7 @@ TEST(Determinism, SameBitsAcrossInstructionSets) {
     std::vector<std::vector<ViewGain>> by_isa;
     for (const std::string& isa : available_isas()) {
       const test::ScopedIsa scoped(isa);
-      const GainEvaluator evaluator(VoxelScene::build(made.map.grid), made.sensor);
+      const GainEvaluator evaluator(VoxelScene::build(made.map.grid), made.sensor, test::kPaper);
       EXPECT_EQ(evaluator.scene().isa(), isa);
       by_isa.push_back(evaluator.evaluate(made.poses));
       EXPECT_TRUE(test::same_bits(by_isa.front(), by_isa.back())) << isa;
@@ -112,7 +112,7 @@ TEST(Determinism, SameBitsAcrossInstructionSets) {
 
 TEST(Determinism, SceneOutlivesTheGridAndIgnoresItsChanges) {
   Made made = make(14, test::MapFamily::salt_and_pepper_1);
-  const GainEvaluator evaluator(VoxelScene::build(made.map.grid), made.sensor);
+  const GainEvaluator evaluator(VoxelScene::build(made.map.grid), made.sensor, test::kPaper);
   const std::vector<ViewGain> expected = evaluator.evaluate(made.poses);
   const Index3 min = made.map.grid.min_index();
   const Index3 dims = made.map.grid.dims();
@@ -122,7 +122,7 @@ TEST(Determinism, SceneOutlivesTheGridAndIgnoresItsChanges) {
     }
   }
   EXPECT_TRUE(test::same_bits(expected, evaluator.evaluate(made.poses)));
-  const GainEvaluator changed(VoxelScene::build(made.map.grid), made.sensor);
+  const GainEvaluator changed(VoxelScene::build(made.map.grid), made.sensor, test::kPaper);
   EXPECT_FALSE(test::same_bits(expected, changed.evaluate(made.poses)));
   made.map.grid = test::sparse_map({4, 4, 4}, {});
   EXPECT_TRUE(test::same_bits(expected, evaluator.evaluate(made.poses)));

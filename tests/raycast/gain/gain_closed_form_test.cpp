@@ -35,7 +35,9 @@ Sensor anisotropic(int width = 1, int height = 1) {
 
 ViewGain score(const BeliefGrid& grid, const Sensor& sensor, const Pose& pose,
                Criterion criterion) {
-  const GainConfig config{.criterion = criterion, .prior_sigma = kPrior, .posterior_entropy = true};
+  GainConfig config = test::by_paper(criterion);
+  config.prior_sigma = kPrior;
+  config.posterior_entropy = true;
   return GainEvaluator(VoxelScene::build(grid), sensor, config, {.num_threads = 1}).evaluate(pose);
 }
 
@@ -138,8 +140,8 @@ TEST(GainClosedForm, IsotropicNoiseMakesDiagonalAndDeterminantEqual) {
     Sensor sensor = test::random_sensor(bare, random);
     sensor.noise = ConstantNoise{.sigma_axial = 0.01, .sigma_lateral = 0.01};
     const auto scene = VoxelScene::build(bare);
-    const GainEvaluator diagonal(scene, sensor, {.criterion = Criterion::log_diagonal});
-    const GainEvaluator determinant(scene, sensor, {.criterion = Criterion::log_determinant});
+    const GainEvaluator diagonal(scene, sensor, test::by_paper(Criterion::log_diagonal));
+    const GainEvaluator determinant(scene, sensor, test::by_paper(Criterion::log_determinant));
     for (const Pose& pose : test::random_poses(made, 5, random)) {
       const double expected = determinant.evaluate(pose).gain;
       EXPECT_NEAR(diagonal.evaluate(pose).gain, expected, 1e-9 * expected);

@@ -72,7 +72,7 @@ TEST(RunMeasure, PassesASlabToTheWallBehindIt) {
     const GainEvaluator evaluator(scene, sensor, {.model = model});
     const Keeping own;
     std::vector<double> result(1);
-    EXPECT_EQ(evaluator.evaluate(std::span(&pose, 1), own, result), 1U);
+    EXPECT_EQ(evaluator.evaluate(std::span(&pose, 1), result, own), 1U);
     EXPECT_EQ(result[0], 13);
     const std::vector<ViewRun>& runs = own.of(pose);
     ASSERT_EQ(runs.size(), 13U);
@@ -131,7 +131,7 @@ TEST_P(Runs, AreTheVoxelsOfTheOraclesWalk) {
     const std::vector<Pose> poses = test::random_poses(made, 4, random);
     const Keeping own;
     std::vector<double> results(poses.size());
-    EXPECT_EQ(evaluator.evaluate(poses, own, results), poses.size());
+    EXPECT_EQ(evaluator.evaluate(poses, results, own), poses.size());
     const Eigen::Matrix3d R_world_grid = made.grid.T_world_grid().rotation();
     for (std::size_t p = 0; p < poses.size(); ++p) {
       if (evaluator.evaluate(poses[p]).status == ViewStatus::camera_in_occupied) {
@@ -207,16 +207,16 @@ TEST(RunMeasure, SameForAnyNumberOfThreadsAndErrorsReachTheCaller) {
   const auto scene = VoxelScene::build(made.grid);
   std::vector<std::vector<double>> results;
   for (const int threads : {1, 3}) {
-    const GainEvaluator evaluator(scene, sensor, {}, {.num_threads = threads});
+    const GainEvaluator evaluator(scene, sensor, test::kPaper, {.num_threads = threads});
     const Keeping own;
     results.emplace_back(poses.size());
-    EXPECT_EQ(evaluator.evaluate(poses, own, results.back()), poses.size());
+    EXPECT_EQ(evaluator.evaluate(poses, results.back(), own), poses.size());
     EXPECT_LT(own.size(), poses.size());
-    EXPECT_THROW(evaluator.evaluate(poses, Failing(), results.back()), std::out_of_range);
-    EXPECT_EQ(evaluator.evaluate(poses, own, results.back()), poses.size());
+    EXPECT_THROW(evaluator.evaluate(poses, results.back(), Failing()), std::out_of_range);
+    EXPECT_EQ(evaluator.evaluate(poses, results.back(), own), poses.size());
     results.back().pop_back();
     test::expect_error(ErrorCode::invalid_argument, "30 poses but room for 29",
-                       [&] { evaluator.evaluate(poses, own, results.back()); });
+                       [&] { evaluator.evaluate(poses, results.back(), own); });
     EXPECT_TRUE(std::isnan(results.back()[3]));
     results.back().erase(results.back().begin() + 3);
   }

@@ -52,7 +52,7 @@ TEST_P(SurfaceCalls, ContributionsAddUpToTheGain) {
 
 TEST_P(SurfaceCalls, SetsAreThePapers) {
   const GainEvaluator evaluator(scene_, sensor_, {.model = GetParam()});
-  test::expect_error(ErrorCode::invalid_argument, "by the paper's gain, not by",
+  test::expect_error(ErrorCode::invalid_argument, "by the gain paper, not by",
                      [&] { (void)evaluator.best_set(poses_, 2); });
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 
 #include "core/expect_error.hpp"
 #include "raycast/scene_makers.hpp"
@@ -59,9 +60,10 @@ HazardConfig constant(int shift, double rate = kRate) {
 
 ViewGain gain_of(const BeliefGrid& grid, const Sensor& sensor, const HazardConfig& hazard,
                  GainConfig config = {},
-                 const Pose& pose = test::axis_pose({-30, 8.5, 8.5}, 0, true)) {
+                 const Pose& pose = test::axis_pose({-30, 8.5, 8.5}, 0, true),
+                 const std::optional<double>& support_plane = {}) {
   config.model = GainModel::surface;
-  const auto scene = VoxelScene::build(grid, {}, {}, hazard);
+  const auto scene = VoxelScene::build(grid, {{}, support_plane}, {}, hazard);
   return GainEvaluator(scene, sensor, config).evaluate(pose);
 }
 
@@ -181,11 +183,11 @@ TEST(SurfaceGain, RangeLimitsWeightsAndThePlaneCutTheRay) {
   // Down along z, onto a plane in the middle of the slab.
   const BeliefGrid all = planes([](int) { return VoxelState::unknown; });
   const Pose down = test::axis_pose({30.5, 8.5, 40}, 2, false);
-  EXPECT_NEAR(gain_of(all, sensor, constant(1), {.support_plane = 6.5 * kExactVoxel}, down).gain,
-              ends(9.5), 1e-5 * kCap);
+  EXPECT_NEAR(gain_of(all, sensor, constant(1), {}, down, 6.5 * kExactVoxel).gain, ends(9.5),
+              1e-5 * kCap);
   const Pose up = test::axis_pose({30.5, 8.5, -40}, 2, true);
-  EXPECT_NEAR(gain_of(all, sensor, constant(1), {.support_plane = 6.5 * kExactVoxel}, up).gain,
-              ends(16), 1e-5 * kCap);
+  EXPECT_NEAR(gain_of(all, sensor, constant(1), {}, up, 6.5 * kExactVoxel).gain, ends(16),
+              1e-5 * kCap);
 }
 
 TEST(SurfaceGain, SurfaceNextToWhatIsSeenIsNotNew) {
@@ -210,9 +212,11 @@ TEST(SurfaceGain, RefusesWhatCannotBeMeant) {
     test::expect_error(ErrorCode::invalid_argument, what,
                        [&] { (void)GainEvaluator(scene, one_ray(1.0), config); });
   };
-  refuses("not with trace", {.model = GainModel::combined, .criterion = Criterion::trace});
+  refuses("not go with trace", {.model = GainModel::combined, .criterion = Criterion::trace});
   refuses("refinement weight is -1", {.model = GainModel::combined, .refinement_weight = -1});
-  refuses("support plane", {.model = GainModel::surface, .support_plane = HUGE_VAL});
+  test::expect_error(ErrorCode::invalid_argument, "support plane", [] {
+    (void)VoxelScene::build(slab(1, 2), {{}, HUGE_VAL});
+  });
   test::expect_error(ErrorCode::invalid_argument, "valid are paper surface combined",
                      [] { (void)parse_gain_model("papers"); });
 }

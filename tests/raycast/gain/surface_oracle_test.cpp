@@ -93,7 +93,7 @@ TEST_P(SurfaceOracle, AgreesUnderEachInstructionSet) {
         SCOPED_TRACE("map " + std::to_string(i) + ", " + isa);
         const test::ScopedIsa scoped(isa);
         const auto scene =
-            VoxelScene::build(made.grid, obstacles, {.num_threads = 1}, hazard_config);
+            VoxelScene::build(made.grid, {obstacles}, {.num_threads = 1}, hazard_config);
         const ViewGain actual =
             GainEvaluator(scene, sensor, config, {.num_threads = 1}).evaluate(pose);
         ++checks;

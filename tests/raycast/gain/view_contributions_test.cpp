@@ -46,7 +46,7 @@ TEST(ViewContributions, AreTheOraclesGainsOfSingleVoxelsAndAddUp) {
       const auto scene = VoxelScene::build(map.grid);
       for (const Criterion criterion :
            {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
-        GainConfig config{.criterion = criterion};
+        GainConfig config = test::by_paper(criterion);
         if (criterion == Criterion::log_determinant) config.weights = {{half, 2.5}};
         const GainEvaluator evaluator(scene, sensor, config, {.num_threads = 1});
         for (const Pose& pose : test::random_poses(map, 4, random)) {
@@ -89,7 +89,7 @@ TEST(ViewContributions, AreTheOraclesGainsOfSingleVoxelsAndAddUp) {
 
 TEST(ViewContributions, NoneForABadPoseOrACameraInAnOccupiedVoxel) {
   const BeliefGrid grid = test::sparse_map({16, 16, 16}, {{4, 4, 4}, {4, 4, 9}});
-  const GainEvaluator evaluator(VoxelScene::build(grid), test::lattice_sensor(3, 3));
+  const GainEvaluator evaluator(VoxelScene::build(grid), test::lattice_sensor(3, 3), test::kPaper);
   Pose pose = test::axis_pose({4.5, 4.5, 6.5}, 2, true);
   EXPECT_EQ(evaluator.contributions(pose).size(), 1U);
   EXPECT_TRUE(evaluator.contributions(test::axis_pose({4.5, 4.5, 4.5}, 2, true)).empty());

@@ -76,14 +76,14 @@ TEST_F(Own, SeesTheHitsOfTheViews) {
   int hits = 0, in_occupied = 0, bad = 0, beliefs = 0;
   for (const int stride : {1, 3}) {
     for (const int threads : {1, 3}) {
-      const GainEvaluator evaluator(scene_, sensor_, {.pixel_stride = stride},
-                                    {.num_threads = threads});
+      const GainConfig config{.model = GainModel::paper, .pixel_stride = stride};
+      const GainEvaluator evaluator(scene_, sensor_, config, {.num_threads = threads});
       const Checking own(evaluator, map_.grid, sensor_);
       const std::vector<ViewGain> gains = evaluator.evaluate(poses_);
       std::vector<double> results(poses_.size());
       std::size_t last = 0;
       const BatchControl control{.progress = [&](std::size_t done, std::size_t) { last = done; }};
-      EXPECT_EQ(evaluator.evaluate(poses_, own, results, control), poses_.size());
+      EXPECT_EQ(evaluator.evaluate(poses_, results, own, control), poses_.size());
       EXPECT_EQ(last, poses_.size());
       for (std::size_t i = 0; i < poses_.size(); ++i) {
         if (gains[i].status == ViewStatus::bad_pose) {
@@ -116,18 +116,18 @@ class Counting : public ViewMeasure {
 
 TEST_F(Own, ItsExceptionReachesTheCallerAndTheEvaluatorGoesOn) {
   for (const int threads : {1, 3}) {
-    const GainEvaluator evaluator(scene_, sensor_, {}, {.num_threads = threads});
+    const GainEvaluator evaluator(scene_, sensor_, test::kPaper, {.num_threads = threads});
     std::vector<double> results(poses_.size());
     Counting own;
     own.throw_at = 5;
-    EXPECT_THROW(evaluator.evaluate(poses_, own, results), std::out_of_range);
+    EXPECT_THROW(evaluator.evaluate(poses_, results, own), std::out_of_range);
     own.calls = 100;
-    EXPECT_EQ(evaluator.evaluate(poses_, own, results), poses_.size());
+    EXPECT_EQ(evaluator.evaluate(poses_, results, own), poses_.size());
   }
 }
 
 TEST_F(Own, StopsEarlyAndSizesMustAgree) {
-  const GainEvaluator evaluator(scene_, sensor_, {}, {.num_threads = 2});
+  const GainEvaluator evaluator(scene_, sensor_, test::kPaper, {.num_threads = 2});
   const Counting own;
   std::stop_source source;
   BatchControl control{.stop = source.get_token()};
@@ -135,13 +135,13 @@ TEST_F(Own, StopsEarlyAndSizesMustAgree) {
     if (done >= 10) source.request_stop();
   };
   std::vector<double> results(poses_.size(), 7);
-  const std::size_t done = evaluator.evaluate(poses_, own, results, control);
+  const std::size_t done = evaluator.evaluate(poses_, results, own, control);
   EXPECT_GE(done, 10U);
   EXPECT_LT(done, poses_.size());
   EXPECT_TRUE(std::isnan(results.back()));
   results.pop_back();
   test::expect_error(ErrorCode::invalid_argument, "60 poses but room for 59",
-                     [&] { evaluator.evaluate(poses_, own, results); });
+                     [&] { evaluator.evaluate(poses_, results, own); });
 }
 
 TEST_F(Own, DepthImageIsWhereRaysEndAlongTheOpticalAxis) {

@@ -50,7 +50,7 @@ TEST(WithScene, HasTheBitsOfAFreshEvaluatorWhateverTheScenes) {
     for (const int variant : {0, 1, 2, 3}) {  // plain, weights, distortion, several threads
       test::Random random(10 * static_cast<std::uint64_t>(criterion) +
                           static_cast<std::uint64_t>(variant));
-      GainConfig config{.criterion = criterion};
+      GainConfig config = test::by_paper(criterion);
       if (variant == 1) config.weights = {{{{-9, -9, -9}, {0.1, 9, 9}}, 3.0}};
       const ExecConfig exec{.num_threads = variant == 3 ? 3 : 1};
       std::optional<Sensor> sensor;
@@ -69,7 +69,7 @@ TEST(WithScene, HasTheBitsOfAFreshEvaluatorWhateverTheScenes) {
         }
         Obstacles obstacles;
         if (family == test::MapFamily::salt_and_pepper_30) obstacles.boxes.push_back(map.room);
-        const auto scene = VoxelScene::build(map.grid, obstacles);
+        const auto scene = VoxelScene::build(map.grid, {obstacles});
         const std::vector<Pose> poses = test::random_poses(map, 12, random);
         if (evaluator) {
           evaluator = evaluator->with_scene(scene);

@@ -77,7 +77,7 @@ class OutOfMemory : public testing::Test {
   }
 
   [[nodiscard]] std::vector<ViewGain> gains(const std::shared_ptr<const VoxelScene>& scene) const {
-    return GainEvaluator(scene, sensor_, {}, {.num_threads = 2}).evaluate(poses_);
+    return GainEvaluator(scene, sensor_, test::kPaper, {.num_threads = 2}).evaluate(poses_);
   }
 
   test::Random random_;
@@ -90,12 +90,12 @@ class OutOfMemory : public testing::Test {
 TEST_F(OutOfMemory, AScene) {
   for (const bool has_obstacles : {false, true}) {
     const Obstacles obstacles = has_obstacles ? obstacles_ : Obstacles{};
-    const std::vector<ViewGain> expected = gains(VoxelScene::build(map_.grid, obstacles));
+    const std::vector<ViewGain> expected = gains(VoxelScene::build(map_.grid, {obstacles}));
     std::shared_ptr<const VoxelScene> scene;
     const int threw = runs_that_threw(
         [&] {
           scene = nullptr;
-          scene = VoxelScene::build(map_.grid, obstacles, {.num_threads = 1});
+          scene = VoxelScene::build(map_.grid, {obstacles}, {.num_threads = 1});
         },
         [&] { EXPECT_TRUE(scene == nullptr || test::same_bits(gains(scene), expected)); });
     EXPECT_GT(threw, 20) << has_obstacles;
@@ -137,7 +137,7 @@ TEST_F(OutOfMemory, AnEvaluatorAndTheBvhThatItWants) {
           scene = VoxelScene::build(map_.grid, {}, {.num_threads = 1});
           allocations_left = left;
         }
-        evaluator.emplace(scene, sensor_, GainConfig{}, ExecConfig{2});
+        evaluator.emplace(scene, sensor_, test::kPaper, ExecConfig{2});
       },
       [&] {
         EXPECT_TRUE(test::same_bits(gains(scene), expected));
@@ -155,7 +155,7 @@ TEST_F(OutOfMemory, Views) {
     std::optional<GainEvaluator> evaluator;
     const auto make = [&] {
       const long left = allocations_left.exchange(-1);
-      evaluator.emplace(scene, sensor_, GainConfig{}, ExecConfig{threads});
+      evaluator.emplace(scene, sensor_, test::kPaper, ExecConfig{threads});
       allocations_left = left;
     };
     std::vector<ViewGain> batch(poses_.size());

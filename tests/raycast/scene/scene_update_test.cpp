@@ -201,13 +201,14 @@ TEST_P(SceneUpdate, AChainOfUpdatesIsWhatBuildsAre) {
   std::vector<std::shared_ptr<const VoxelScene>> scenes;
   for (const std::string& isa : isas) {
     const test::ScopedIsa scoped(isa);
-    scenes.push_back(VoxelScene::build(map.grid(), obstacles, {.num_threads = 1}));
+    scenes.push_back(VoxelScene::build(map.grid(), {obstacles}, {.num_threads = 1}));
   }
   std::vector<test::OracleTally> tallies(isas.size());
   const auto kept = scenes.front();
   const std::vector<Pose> first_poses =
       test::random_poses({map.grid().clone(), map.grid().workspace()}, kPoses, random);
-  const std::vector<ViewGain> first_gains = GainEvaluator(kept, sensor).evaluate(first_poses);
+  const std::vector<ViewGain> first_gains =
+      GainEvaluator(kept, sensor, test::kPaper).evaluate(first_poses);
 
   Changes changes;
   changes.note(map.grid().snapshot());
@@ -229,12 +230,12 @@ TEST_P(SceneUpdate, AChainOfUpdatesIsWhatBuildsAre) {
       SCOPED_TRACE(isas[k]);
       const test::ScopedIsa scoped(isas[k]);
       scenes[k] = VoxelScene::update(scenes[k], map.grid(), {.num_threads = 1});
-      const auto anew = VoxelScene::build(map.grid(), obstacles, {.num_threads = 1});
+      const auto anew = VoxelScene::build(map.grid(), {obstacles}, {.num_threads = 1});
       ASSERT_EQ(scenes[k]->isa(), isas[k]);
       ASSERT_EQ(scenes[k]->primitive_count(), anew->primitive_count());
       in_cells += anew->primitive_count() > kManyPrimitives ? 1U : 0U;
-      const GainEvaluator updated(scenes[k], sensor, {}, {.num_threads = 1});
-      const GainEvaluator built(anew, sensor, {}, {.num_threads = 1});
+      const GainEvaluator updated(scenes[k], sensor, test::kPaper, {.num_threads = 1});
+      const GainEvaluator built(anew, sensor, test::kPaper, {.num_threads = 1});
       const std::vector<ViewGain> gains = updated.evaluate(poses);
       ASSERT_TRUE(test::same_bits(gains, built.evaluate(poses)));
       for (std::size_t p = 0; p < poses.size(); ++p) {
@@ -265,7 +266,8 @@ TEST_P(SceneUpdate, AChainOfUpdatesIsWhatBuildsAre) {
     }
   }
   // What a scene was made of stays as it was.
-  EXPECT_TRUE(test::same_bits(first_gains, GainEvaluator(kept, sensor).evaluate(first_poses)));
+  EXPECT_TRUE(test::same_bits(first_gains,
+                              GainEvaluator(kept, sensor, test::kPaper).evaluate(first_poses)));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -26,7 +26,7 @@ TEST(Camel, RaysOfCamel64AgreeWithTheOracleUnderEachInstructionSet) {
     SCOPED_TRACE(isa);
     const test::ScopedIsa scoped(isa);
     const auto scene = VoxelScene::build(grid);
-    const GainEvaluator tracer(scene, sensor);
+    const GainEvaluator tracer(scene, sensor, test::kPaper);
     std::size_t rays = 0;
     std::size_t same = 0;
     std::size_t ties = 0;
@@ -44,7 +44,8 @@ TEST(Camel, RaysOfCamel64AgreeWithTheOracleUnderEachInstructionSet) {
       }
       for (const Criterion criterion :
            {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
-        const GainConfig config{.criterion = criterion, .posterior_entropy = true};
+        const GainConfig config{
+            .model = GainModel::paper, .criterion = criterion, .posterior_entropy = true};
         const ViewGain actual = GainEvaluator(scene, sensor, config).evaluate(poses[i]);
         const ViewGain by_oracle = oracle::gain_of_hits(grid, sensor, config, poses[i], own);
         EXPECT_NEAR(actual.gain, by_oracle.gain, 1e-6 * by_oracle.gain);

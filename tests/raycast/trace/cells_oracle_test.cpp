@@ -162,7 +162,7 @@ TEST_P(CellsOracle, AgreesUnderEachInstructionSet) {
       const auto scene = VoxelScene::build(snapshot, {}, {.num_threads = 1});
       ASSERT_EQ(scene->isa(), isas[i]);
       ASSERT_GT(scene->primitive_count(), kManyCubes);
-      const GainEvaluator evaluator(scene, sensor, {}, {.num_threads = 1});
+      const GainEvaluator evaluator(scene, sensor, test::kPaper, {.num_threads = 1});
       const std::vector<RayHit> own = evaluator.trace(pose);
       tallies[i].add(map, sensor, pose, expected, own, tolerance);
       const ViewGain gain = evaluator.evaluate(pose);

@@ -34,7 +34,8 @@ class DegenerateRays : public testing::TestWithParam<std::string> {
     return hits.at(0);
   }
 
-  ViewGain score(const BeliefGrid& grid, const Pose& pose, const GainConfig& config = {}) {
+  ViewGain score(const BeliefGrid& grid, const Pose& pose, GainConfig config = {}) {
+    config.model = GainModel::paper;
     const test::ScopedIsa scoped(GetParam());
     const auto scene = VoxelScene::build(grid, {}, {.num_threads = 1});
     return GainEvaluator(scene, lattice_sensor(1, 1), config, {.num_threads = 1}).evaluate(pose);
@@ -114,7 +115,7 @@ TEST_P(DegenerateRays, ThroughCornersTouchOnlyTheDiagonalsVoxels) {
   const test::ScopedIsa scoped(GetParam());
   const auto corner_ray = [&](const BeliefGrid& grid) {
     const auto scene = VoxelScene::build(grid, {}, {.num_threads = 1});
-    const GainEvaluator evaluator(scene, sensor, {}, {.num_threads = 1});
+    const GainEvaluator evaluator(scene, sensor, test::kPaper, {.num_threads = 1});
     return evaluator.trace(axis_pose({-2, -2, -2}, 2, true)).at(8);  // direction (1, 1, 1)
   };
   EXPECT_EQ(corner_ray(sparse_map({16, 16, 16}, beside)).kind, RayHit::Kind::none);
@@ -136,7 +137,7 @@ TEST_P(DegenerateRays, OverAnEdgeIntoABoxTouchTheVoxelAheadOnly) {
          .T_world_grid = {},
          .prior_sigma = 0.1});
     const GainEvaluator evaluator(VoxelScene::build(grid, {}, {.num_threads = 1}),
-                                  lattice_sensor(3, 3), {}, {.num_threads = 1});
+                                  lattice_sensor(3, 3), test::kPaper, {.num_threads = 1});
     const std::vector<RayHit> hits = evaluator.trace(axis_pose({-2, 10, 4.5}, 0, true));
     EXPECT_EQ(hits.at(3).voxel, (Index3{0, 7, 4}));   // direction (1, -1, 0)
     EXPECT_EQ(hits.at(5).voxel, (Index3{0, 12, 4}));  // direction (1, 1, 0)
@@ -159,7 +160,7 @@ TEST_P(DegenerateRays, OnTheHalfVoxelLatticeEqualTheOracleExactly) {
     const BeliefGrid grid = sparse_map({20, 20, 20}, non_free);
     const oracle::DenseMap map(grid);
     const auto scene = VoxelScene::build(grid, {}, {.num_threads = 1});
-    const GainEvaluator evaluator(scene, sensor, {}, {.num_threads = 1});
+    const GainEvaluator evaluator(scene, sensor, test::kPaper, {.num_threads = 1});
     for (int i = 0; i < 300; ++i) {
       const auto half = [&] { return 0.5 * test::uniform_int(random, -6, 46); };
       const Pose pose = axis_pose({half(), half(), half()}, i % 3, i % 2 == 0);
@@ -202,7 +203,7 @@ TEST_P(DegenerateRays, ObliqueViewsFromTheLatticeMeetTheOracle) {
     sensor.camera.fx = sensor.camera.fy = 12;
     for (const double min_range : {0.0, 1.5 * kExactVoxel}) {
       sensor.min_range = min_range;
-      const GainEvaluator evaluator(scene, sensor, {}, {.num_threads = 1});
+      const GainEvaluator evaluator(scene, sensor, test::kPaper, {.num_threads = 1});
       for (const double step : {0.0, 0.5, 0.25, 1.0 / 4096}) {
         for (int i = 0; i < 16; ++i) {
           Eigen::Vector3d at;

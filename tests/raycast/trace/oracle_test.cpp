@@ -128,7 +128,8 @@ TEST(Oracle, GainOfOneReadingByHand) {
   Sensor sensor = test::lattice_sensor(1, 1);
   sensor.noise = ConstantNoise{.sigma_axial = 0.02, .sigma_lateral = 0.005};
   const Pose pose = test::axis_pose({4.5, 4.5, 0.5}, 2, true);
-  const GainConfig config{.criterion = Criterion::trace, .prior_sigma = 0.1};
+  const GainConfig config{
+      .model = GainModel::paper, .criterion = Criterion::trace, .prior_sigma = 0.1};
   const std::vector<RayHit> hits = oracle::trace(DenseMap(grid), sensor, config, pose);
   const ViewGain gain = oracle::gain_of_hits(grid, sensor, config, pose, hits);
   const double after = 2 / (1 / 0.01 + 1 / 0.000025) + 1 / (1 / 0.01 + 1 / 0.0004);

@@ -20,10 +20,10 @@ std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vec
   for (const std::string& isa : available_isas()) {
     SCOPED_TRACE(isa);
     const test::ScopedIsa scoped(isa);
-    const auto scene = VoxelScene::build(grid, obstacles);
+    const auto scene = VoxelScene::build(grid, {obstacles});
     const auto evaluator = [&](const char* way) {
       const test::ScopedTrace scoped_way(way);
-      return GainEvaluator(scene, sensor, {}, {.num_threads = 1});
+      return GainEvaluator(scene, sensor, test::kPaper, {.num_threads = 1});
     };
     const GainEvaluator sweep = evaluator("sweep"), bvh = evaluator("bvh");
     EXPECT_TRUE(test::same_bits(sweep.evaluate(poses), bvh.evaluate(poses)));

@@ -34,7 +34,8 @@ class TraceOracle : public testing::TestWithParam<MapFamily> {
                      const std::vector<RayHit>& own, std::size_t different) {
     for (const Criterion criterion : kCriteria) {
       SCOPED_TRACE(criterion_name(criterion));
-      const GainConfig config{.criterion = criterion, .posterior_entropy = true};
+      const GainConfig config{
+          .model = GainModel::paper, .criterion = criterion, .posterior_entropy = true};
       const GainEvaluator evaluator(scene, sensor, config, {.num_threads = 1});
       const ViewGain actual = evaluator.evaluate(pose);
       const ViewGain by_own = oracle::gain_of_hits(grid, sensor, config, pose, own);
@@ -83,7 +84,7 @@ TEST_P(TraceOracle, AgreesUnderEachInstructionSet) {
       const test::ScopedIsa scoped(isa);
       const auto scene = VoxelScene::build(made.grid, {}, {.num_threads = 1});
       ASSERT_EQ(scene->isa(), isa);
-      const GainEvaluator evaluator(scene, sensor, {}, {.num_threads = 1});
+      const GainEvaluator evaluator(scene, sensor, test::kPaper, {.num_threads = 1});
       for (std::size_t k = 0; k < poses.size(); ++k) {
         const std::vector<RayHit> own = evaluator.trace(poses[k]);
         const std::size_t different = tallies[isa].add(map, sensor, poses[k], expected[k], own);

@@ -23,7 +23,7 @@ GainEvaluator evaluator_by(const std::string& way, const std::shared_ptr<const V
 // Compares gains and hits of the two ways; returns the number of rays that hit something.
 std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vector<Pose>& poses,
                     const Obstacles& obstacles = {}) {
-  const auto scene = VoxelScene::build(grid, obstacles);
+  const auto scene = VoxelScene::build(grid, {obstacles});
   const GainEvaluator free_choice = evaluator_by("sweep", scene, sensor);
   const GainEvaluator bvh = evaluator_by("bvh", scene, sensor);
   EXPECT_TRUE(test::same_bits(free_choice.evaluate(poses), bvh.evaluate(poses)));
@@ -108,7 +108,7 @@ TEST(TracePaths, ObstaclesEndTheSameRaysEitherWay) {
     }
     const std::vector<Pose> poses = test::random_poses(map, 6, random);
     hits += compare(map.grid, sensor, poses, obstacles);
-    const auto scene = VoxelScene::build(map.grid, obstacles);
+    const auto scene = VoxelScene::build(map.grid, {obstacles});
     const GainEvaluator swept = evaluator_by("sweep", scene, sensor, GainModel::combined);
     const GainEvaluator bvh = evaluator_by("bvh", scene, sensor, GainModel::combined);
     const std::vector<ViewGain> gains = swept.evaluate(poses);
@@ -160,7 +160,7 @@ TEST(TracePaths, ObstaclesAtTheEndsOfRangesAreTheSameEitherWay) {
       const Obstacles obstacles{{Box{{x * v, -v, -v}, {(x + 1) * v, 17 * v, 17 * v}}}, {}};
       hits += compare(grid, sensor, poses, obstacles);
       const GainEvaluator evaluator =
-          evaluator_by("sweep", VoxelScene::build(grid, obstacles), sensor);
+          evaluator_by("sweep", VoxelScene::build(grid, {obstacles}), sensor);
       for (const Pose& pose : poses) {
         std::uint32_t in_voxels = 0;
         for (const RayHit& hit : evaluator.trace(pose)) {
@@ -190,8 +190,8 @@ TEST(TracePaths, ObstaclesBeyondSinglePrecisionHideNothing) {
     const Obstacles both{{wall, Box{{-huge, -huge, -huge}, {huge, huge, -1e9}}}, {}};
     (void)compare(grid, sensor, poses, both);
     const std::vector<RayHit>
-        a = evaluator_by("sweep", VoxelScene::build(grid, alone), sensor).trace(poses[0]),
-        b = evaluator_by("sweep", VoxelScene::build(grid, both), sensor).trace(poses[0]);
+        a = evaluator_by("sweep", VoxelScene::build(grid, {alone}), sensor).trace(poses[0]),
+        b = evaluator_by("sweep", VoxelScene::build(grid, {both}), sensor).trace(poses[0]);
     for (std::size_t i = 0; i < a.size(); ++i) {
       EXPECT_EQ(a[i].kind, b[i].kind) << huge << " " << i;
       blocked += b[i].kind == RayHit::Kind::obstacle ? 1U : 0U;

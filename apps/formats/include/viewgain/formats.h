@@ -3,8 +3,9 @@
 #ifndef VIEWGAIN_FORMATS_H
 #define VIEWGAIN_FORMATS_H
 
-/* Files of sensors and poses, for C. Its functions are in the library viewgain_formats (pkg-config
-   viewgain-formats); viewgain/viewgain.h says what holds for all functions. */
+/* Files of sensors and poses, and OctoMap's, for C. Its functions are in the library
+   viewgain_formats (pkg-config viewgain-formats); viewgain/viewgain.h says what holds for all
+   functions. */
 
 #include "viewgain/viewgain.h"
 
@@ -39,6 +40,13 @@ VG_API vg_status vg_poses_load(const char* path, double* T_world_camera, double*
    null: 0, 1, 2, ... */
 VG_API vg_status vg_poses_save(const char* path, const double* T_world_camera,
                                const double* timestamps, size_t count);
+
+/* OctoMap's .ot and .bt: the states, and a .ot's log-odds; the workspace is the box of the known
+   voxels. prior_sigma [m], 0: half a voxel. Saving writes a .ot, in the world's frame where
+   T_world_grid is a shift by whole voxels, else in the grid's own. */
+VG_API vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** grid);
+/* Writes states and log-odds as OctoMap's .ot. */
+VG_API vg_status vg_grid_save_octomap(const vg_grid* grid, const char* path);
 
 #ifdef __cplusplus
 }

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <bit>
 #include <cerrno>
 #include <cmath>
 #include <system_error>
@@ -16,16 +15,25 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/columns/npy_header.hpp"
 #include "viewgain/support/file_bytes.hpp"
-#include "viewgain/support/mix64.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {
 
 constexpr double kMendable = 1e-2, kUnnoticed = 1e-9, kLastRow = 1e-6;  // as core's pose_io
-constexpr std::array kColumns{"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
+
+Eigen::Quaterniond quaternion_of(const double* numbers) {
+  return {numbers[6], numbers[3], numbers[4], numbers[5]};
+}
 
 }  // namespace
+
+std::optional<Pose> pose_of_row(const std::array<double, kPoseColumns.size()>& numbers) {
+  Eigen::Quaterniond q = quaternion_of(numbers.data());
+  if (!(std::abs(q.norm() - 1.0) <= kMendable)) return std::nullopt;
+  q.normalize();
+  return Pose(q.toRotationMatrix(), Eigen::Vector3d(numbers[0], numbers[1], numbers[2]));
+}
 
 MappedPoses::MappedPoses(const std::filesystem::path& path) : name_(path.string()) {
   const std::size_t head_bytes = npy_header_bytes(name_, file_head(path, 12));
@@ -50,7 +58,7 @@ MappedPoses::MappedPoses(const std::filesystem::path& path) : name_(path.string(
     for (std::size_t i = 0; i < numbers_; ++i) offsets_[i] = i * sizeof(double);
   } else {
     if (header.shape.size() != 1) refuse("is no array of rows");
-    for (const std::string name : kColumns) {
+    for (const std::string name : kPoseColumns) {
       const auto field = std::find_if(header.fields.begin(), header.fields.end(),
                                       [&](const auto& f) { return f.name == name; });
       if (field == header.fields.end() || field->type != "<f8" || field->items != 1) {
@@ -87,12 +95,9 @@ double MappedPoses::number(std::size_t row, std::size_t column) const {
   return value_at<double>(data_ + row * row_bytes_ + offsets_.at(column));
 }
 
-std::uint64_t MappedPoses::hash(std::size_t row) const {
-  std::uint64_t hash = 0;
-  for (std::size_t i = 0; i < numbers_; ++i) {
-    hash = mix64(hash ^ std::bit_cast<std::uint64_t>(number(row, i)));
-  }
-  return hash;
+std::string MappedPoses::hash() const {
+  return hash_of_poses(rows_, numbers_,
+                       [this](std::size_t row, std::size_t i) { return number(row, i); });
 }
 
 Pose MappedPoses::at(std::size_t row, bool& orthonormalized) const {
@@ -101,15 +106,12 @@ Pose MappedPoses::at(std::size_t row, bool& orthonormalized) const {
     n.at(i) = number(row, i);
     if (!std::isfinite(n.at(i))) fail(row, "holds a number that is not finite");
   }
-  if (numbers_ == kColumns.size()) {
-    Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);
-    const double norm = q.norm();
-    if (!(std::abs(norm - 1.0) <= kMendable)) {
-      fail(row, "the quaternion's norm is " + short_text(norm) + ", not 1");
-    }
+  if (numbers_ == kPoseColumns.size()) {
+    const double norm = quaternion_of(n.data()).norm();
+    const auto pose = pose_of_row({n[0], n[1], n[2], n[3], n[4], n[5], n[6]});
+    if (!pose) fail(row, "the quaternion's norm is " + short_text(norm) + ", not 1");
     orthonormalized = std::abs(norm - 1.0) > kUnnoticed;
-    q.normalize();
-    return {q.toRotationMatrix(), Eigen::Vector3d(n[0], n[1], n[2])};
+    return *pose;
   }
   for (std::size_t i = 0; i < 4; ++i) {
     if (std::abs(n.at(12 + i) - (i == 3 ? 1.0 : 0.0)) > kLastRow) {

@@ -81,7 +81,7 @@ Job job_of(const std::vector<fs::path>& paths) {
     const PartReader reader(path);
     const PartHead& head = reader.head();
     const std::string name = path.string(), first = paths.front().string();
-    if (head.is_best) refuse(name + ": holds the best only, as merge --top leaves them; no part");
+    if (head.is_best) refuse(name + ": holds the best only and is no part");
     if (job.parts.empty()) {
       job.head = head;
       job.head.scored = 0;
@@ -127,8 +127,7 @@ void check_complete(const Job& job) {
     text += (i == 0 ? "" : ", ") + text_of(missing[i]);
   }
   if (missing.size() > kNamed) text += " and " + std::to_string(missing.size() - kNamed) + " more";
-  refuse("rows " + text + " of " + std::to_string(job.head.poses) +
-         " are in no part; score --rows a:b makes them");
+  refuse("rows " + text + " of " + std::to_string(job.head.poses) + " are in no part");
 }
 
 }  // namespace

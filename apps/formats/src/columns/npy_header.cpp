@@ -91,7 +91,8 @@ std::size_t bytes_of(const HeaderText& text, const std::string& type) {
       bytes == 0 || bytes > 1U << 16U) {
     text.fail("the type " + type + " is not read here");
   }
-  return bytes;
+  constexpr std::size_t kCharacter = 4;  // numpy counts a text's characters, UCS4
+  return type[1] == 'U' ? kCharacter * bytes : bytes;
 }
 
 void add_field(HeaderText& text, NpyHeader& header, std::string name, std::string type,

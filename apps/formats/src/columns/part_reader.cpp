@@ -93,10 +93,7 @@ void PartReader::open_npy() {
   const auto size = static_cast<std::uint64_t>(in_.tellg());
   const std::uint64_t data_end = header.data_offset + rows * header.row_bytes;
   if (size == data_end) {
-    fail(
-        "does not say which rows it has (lines of # behind its rows); score --shard or --rows "
-        "makes "
-        "parts");
+    fail("does not say which rows it has (lines of # behind its rows)");
   }
   if (size < data_end) {
     fail("is cut off: " + std::to_string(size) + " bytes, its rows alone need " +
@@ -124,7 +121,7 @@ void PartReader::open_csv() {
     if (text.size() > kBlock) fail("too many lines of #");
   }
   if (text.empty()) {
-    fail("does not say which rows it has (lines of #); score --shard or --rows makes parts");
+    fail("does not say which rows it has (lines of #)");
   }
   const std::string names(line);
   for (std::size_t begin = 0; begin <= names.size();) {

@@ -7,16 +7,13 @@
 #include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/view_planner.hpp"
 #include "viewgain/raycast/feasibility.hpp"
-#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::detail {
 
 // What a planner's settings come to for its parts.
 
-[[nodiscard]] MapModelConfig map_config(const PlannerConfig& config, const Sensor& sensor);
-[[nodiscard]] GainConfig gain_config(const PlannerConfig& config);
-[[nodiscard]] FeasibilityConfig feasibility_config(const PlannerConfig& config,
-                                                   const Sensor& sensor);
+[[nodiscard]] MapModelConfig map_config(const PlannerConfig& config);
+[[nodiscard]] ProposerConfig proposer_config(const PlannerConfig& config, const Sensor& sensor);
 /// Throws as set_stop_rules().
 [[nodiscard]] PlanningConfig planning_config(const PlannerConfig& config);
 

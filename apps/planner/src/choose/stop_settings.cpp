@@ -20,24 +20,20 @@ namespace {
 void set_stop_rules(PlanningConfig& planning, GainModel model, Criterion criterion,
                     std::optional<double> stop_gain, std::optional<double> stop_area) {
   if (stop_gain && !(*stop_gain >= 0 && std::isfinite(*stop_gain))) {
-    refuse("stop_gain (--stop-gain) " + short_text(*stop_gain) + " must be at least 0 and finite");
+    refuse("stop_gain " + short_text(*stop_gain) + " must be at least 0 and finite");
   }
   if (stop_area && !(*stop_area >= 0 && *stop_area < 1)) {
-    refuse("stop_area (--stop-area) " + short_text(*stop_area) +
-           " must be at least 0 and less than 1");
+    refuse("stop_area " + short_text(*stop_area) + " must be at least 0 and less than 1");
   }
   const bool by_paper = model == GainModel::paper;
   if (by_paper && stop_area.value_or(0) > 0) {
-    refuse("stop_area (--stop-area) goes with the gains surface and combined");
+    refuse("stop_area goes with the gains surface and combined");
   }
   if (!by_paper && stop_gain.value_or(0) > 0) {
-    refuse("stop_gain (--stop-gain) goes with the gain paper");
+    refuse("stop_gain goes with the gain paper");
   }
   if (model == GainModel::combined && criterion == Criterion::trace) {
-    refuse(
-        "criterion (--criterion trace) goes with the gains paper and surface: the combined gain is "
-        "in "
-        "nats");
+    refuse("criterion trace goes with the gain paper: the combined gain is in nats");
   }
   planning.stop_gain_is_relative = criterion == Criterion::trace && !stop_gain;
   planning.stop_gain =

@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <iterator>
+#include <mutex>
 #include <utility>
 
 #include "choose/planner_settings.hpp"
 #include "choose/planner_state.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/stop_rules.hpp"
-#include "viewgain/planner/map_registration.hpp"
+#include "viewgain/planner/align_frames.hpp"
 #include "viewgain/support/stopwatch.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -40,7 +39,7 @@ std::string layout_text(const BeliefGrid& grid) {
 }
 
 // What the stopping rules want to know of a ranking.
-Decision decision_of(const Ranking& ranking, std::span<const ViewGain> looked_at, GainModel model) {
+Decision decision_of(const Ranking& ranking, GainModel model) {
   Decision decision;
   const ViewGain& best = ranking.views.front().gain;
   decision.candidate = ranking.views.front().index;
@@ -52,14 +51,13 @@ Decision decision_of(const Ranking& ranking, std::span<const ViewGain> looked_at
     decision.gain_per_voxel = touched > 0 ? best.gain / touched : 0.0;
   } else {
     decision.best_area = 0;
-    for (const ViewGain& gain : looked_at) {
+    for (const ViewGain& gain : ranking.scored_gains) {
       decision.best_area = std::fmax(decision.best_area, gain.area);
     }
   }
   return decision;
 }
 
-// As StopRules::after_view() would have it of the last view; there is no coverage here.
 std::optional<StopReason> limit_reached(const PlanningConfig& limits, const StopMemory& memory) {
   if (memory.views == 0) return std::nullopt;
   if (memory.views >= limits.max_views) return StopReason::max_views;
@@ -75,94 +73,29 @@ struct ViewPlanner::Impl {
   PlanningConfig planning;
   MapModel map;
   detail::PlannerState state;
-  FeasibilityChecker checker;
+  ViewProposer proposer;
   std::optional<GainEvaluator> evaluator;
-  std::vector<PoseSet> sets;
-  std::vector<std::shared_ptr<ViewpointGeneration>> generations;
   std::optional<Proposal> proposal;
-  std::vector<DroppedCandidate> dropped;
   StageSeconds seconds;
-  std::optional<MapRegistration> registration;  // once it is asked for
+  std::once_flag is_registering;
+  std::optional<FrameAlignment> registration;  // once it is asked for
 
   Impl(const PlannerConfig& config_in, const ExecConfig& exec_in, MapModel map_in)
       : config(config_in),
         exec(exec_in),
         planning(detail::planning_config(config_in)),
         map(std::move(map_in)),
-        checker(map.scene(), detail::feasibility_config(config, map.sensor()), exec) {
+        proposer(map.scene(), detail::proposer_config(config, map.sensor()), exec) {
     (void)StopRules(planning);  // refuses what no run can have
-    if (!config.reach.poses.empty()) sets.push_back({"reach", config.reach.poses});
-  }
-
-  [[nodiscard]] Pose last_pose() const {
-    return map.grid().views().empty() ? Pose() : map.grid().views().back();
   }
 
   GainEvaluator& current_evaluator() {
     if (!evaluator) {
-      evaluator.emplace(map.scene(), map.sensor(), detail::gain_config(config), exec);
+      evaluator.emplace(map.scene(), map.sensor(), config.gain, exec);
     } else if (&evaluator->scene() != map.scene().get()) {
       evaluator = evaluator->with_scene(map.scene());
     }
     return *evaluator;
-  }
-
-  [[nodiscard]] std::vector<Candidate> all_candidates(Proposal& of_generations) {
-    std::vector<Candidate> all;
-    for (const PoseSet& set : sets) {
-      for (std::size_t i = 0; i < set.poses.size(); ++i) {
-        all.push_back({set.poses[i], set.generator, std::nullopt, i});
-      }
-    }
-    for (const auto& generation : generations) {
-      Proposal made = generation->generate(last_pose());
-      std::move(made.candidates.begin(), made.candidates.end(), std::back_inserter(all));
-      for (const auto& [reason, count] : made.dropped) of_generations.dropped[reason] += count;
-    }
-    return all;
-  }
-
-  // Why each candidate is not possible; empty: it is.
-  [[nodiscard]] std::vector<std::string> reasons_against(
-      const std::vector<Candidate>& candidates) const {
-    const std::vector<Pose> poses = poses_of(candidates);
-    std::vector<Pose> taken = map.grid().views();
-    taken.insert(taken.end(), state.reached.begin(), state.reached.end());
-    std::vector<std::string> reasons(poses.size());
-    std::vector<Infeasibility> found(poses.size(), Infeasibility::none);
-    if (config.check_feasibility) found = checker.check(poses, taken);
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      if (!config.check_feasibility && is_among(poses[i], taken, config.taken_tolerance)) {
-        found[i] = Infeasibility::taken;
-      }
-      if (found[i] != Infeasibility::none) {
-        reasons[i] = infeasibility_name(found[i]);
-      } else if (is_among(poses[i], state.missed, config.taken_tolerance)) {
-        reasons[i] = kMissed;
-      }
-    }
-    return reasons;
-  }
-
-  void forget_proposal() {
-    proposal.reset();
-    dropped.clear();
-  }
-
-  // Takes what is the same as a pose that was tried out of the proposal.
-  void drop_from_proposal(const Pose& tried, const std::string& reason) {
-    if (!proposal) return;
-    const auto is_tried = [&](const Candidate& candidate) {
-      return is_among(candidate.T_world_camera, std::span(&tried, 1), config.taken_tolerance);
-    };
-    std::vector<Candidate>& candidates = proposal->candidates;
-    const auto gone =
-        std::stable_partition(candidates.begin(), candidates.end(), std::not_fn(is_tried));
-    for (auto it = gone; it != candidates.end(); ++it) {
-      ++proposal->dropped[reason];
-      dropped.push_back({std::move(*it), reason});
-    }
-    candidates.erase(gone, candidates.end());
   }
 
   // After a choice, which takes the place of an earlier one of the same view.
@@ -172,59 +105,22 @@ struct ViewPlanner::Impl {
     state.after_choice = rules.memory();
   }
 
-  [[nodiscard]] std::vector<double> costs(std::span<const Pose> poses,
-                                          const RankConfig& rank) const {
-    if (!std::isfinite(rank.cost_per_metre) || rank.cost_per_metre < 0) {
-      fail("cost_per_metre " + short_text(rank.cost_per_metre) + " must be at least 0 and finite");
-    }
-    std::vector<double> costs(rank.costs.begin(), rank.costs.end());
-    if (rank.cost_per_metre == 0 || map.grid().views().empty()) return costs;
-    if (costs.empty()) costs.resize(poses.size());
-    if (costs.size() != poses.size()) return costs;  // best() refuses them
-    const Eigen::Vector3d here = last_pose().translation();
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const double way = (poses[i].translation() - here).norm();
-      // A bad pose is last whatever the way to it.
-      if (std::isfinite(way)) costs[i] += rank.cost_per_metre * way;
-    }
-    return costs;
-  }
-
   Ranking rank(std::span<const Pose> poses, std::size_t k, const RankConfig& rank_config,
                const BatchControl& control, const Proposal* from) {
     const Stopwatch watch;
-    const std::vector<double> all_costs = costs(poses, rank_config);
+    const std::vector<Pose>& views = map.grid().views();
+    std::optional<Eigen::Vector3d> here;
+    if (!views.empty()) here = views.back().translation();
     const GainEvaluator& by = current_evaluator();
-    RacedViews best;
-    if (rank_config.exact || by.model() == GainModel::paper) {
-      const BestConfig best_config{all_costs, rank_config.measure, rank_config.run_measure};
-      // All of them, since the rule of area asks for the most that any promises.
-      static_cast<BestViews&>(best) = by.best(poses, poses.size(), control, best_config);
-      best.scored_gains = best.gains;
-    } else {
-      RaceConfig race;
-      race.costs = all_costs;
-      race.measure = rank_config.measure;
-      race.run_measure = rank_config.run_measure;
-      best = by.race(poses, std::max<std::size_t>(k, 1), race, control);
-    }
-    Ranking ranking;
-    ranking.complete = best.complete;
-    ViewGain none;
     // The first one says why to end, whatever k.
-    const std::size_t wanted = std::min(best.indices.size(), std::max<std::size_t>(k, 1));
-    for (std::size_t i = 0; i < wanted; ++i) {
-      const std::size_t at = best.indices[i];
-      ranking.views.push_back(
-          {at, poses[at], best.gains.empty() ? none : best.gains[i], best.worth[i]});
-    }
-    if (ranking.complete && from != nullptr) {
+    Ranking ranking =
+        rank_views(by, poses, std::max<std::size_t>(k, 1), rank_config, here, control);
+    if (from != nullptr && ranking.complete) {
       std::optional<Decision> decision;
-      if (!ranking.views.empty()) {
-        decision = decision_of(ranking, best.scored_gains, by.model());
-      }
+      if (!ranking.views.empty()) decision = decision_of(ranking, by.model());
       remember(decision, *from);
     }
+    if (from != nullptr) leave_out_gainless(ranking, rank_config);
     ranking.views.resize(std::min(ranking.views.size(), k));
     seconds["score"] += watch.seconds();
     return ranking;
@@ -233,7 +129,7 @@ struct ViewPlanner::Impl {
 
 ViewPlanner::ViewPlanner(const Sensor& sensor, const PlannerConfig& config, const ExecConfig& exec)
     : impl_(std::make_unique<Impl>(config, exec,
-                                   MapModel(sensor, detail::map_config(config, sensor), exec))) {
+                                   MapModel(sensor, detail::map_config(config), exec))) {
   // The configuration of the gain is refused here, not at the first ranking.
   (void)impl_->current_evaluator();
 }
@@ -247,23 +143,23 @@ void ViewPlanner::add_poses(PoseSet set) {
     check_rigid(set.poses[i],
                 ("pose " + std::to_string(i) + " of the set \"" + set.generator + "\"").c_str());
   }
-  impl_->sets.push_back(std::move(set));
-  impl_->forget_proposal();
+  impl_->proposer.add_poses(std::move(set));
+  impl_->proposal.reset();
 }
 
 void ViewPlanner::add_generation(std::shared_ptr<ViewpointGeneration> generation) {
   if (!generation) fail("the generation is null");
-  impl_->generations.push_back(std::move(generation));
-  impl_->forget_proposal();
+  impl_->proposer.add_generation(std::move(generation));
+  impl_->proposal.reset();
 }
 
-FrameRegistration ViewPlanner::register_frame(const DepthFrame& frame,
-                                              const PosePrior& prior) const {
+FrameRegistration ViewPlanner::register_frame(const DepthFrame& frame, const Pose& T_reported,
+                                              const PoseSigma& sigma) const {
   Impl& m = *impl_;
-  if (!m.registration) {
-    m.registration.emplace(m.map.sensor(), detail::map_config(m.config, m.map.sensor()), m.exec);
-  }
-  return m.registration->register_frame(m.map.grid(), frame, prior);
+  std::call_once(m.is_registering, [&] {
+    m.registration.emplace(m.map.sensor(), detail::map_config(m.config), m.exec);
+  });
+  return m.registration->register_frame(m.map.grid(), frame, T_reported, sigma);
 }
 
 AddedView ViewPlanner::add(const DepthFrame& frame, const Pose& T_world_camera,
@@ -285,8 +181,7 @@ AddedView ViewPlanner::add(std::span<const DepthFrame> frames, const Pose& T_wor
   added.progress.surface_area = m.state.seen_area;
   added.entropy_removed = added.progress.entropy_removed - before;
   m.seconds = added.update.seconds;
-  m.forget_proposal();
-  m.checker = m.checker.with_scene(m.map.scene());
+  m.proposal.reset();
   StopRules rules(m.planning, m.state.after_choice);
   m.state.of_view = rules.after_view(added.progress);
   m.state.of_choice.reset();
@@ -297,11 +192,8 @@ AddedView ViewPlanner::add(std::span<const DepthFrame> frames, const Pose& T_wor
 const Proposal& ViewPlanner::propose() {
   Impl& m = *impl_;
   const Stopwatch watch;
-  Proposal proposal;
-  std::vector<Candidate> all = m.all_candidates(proposal);
-  const std::vector<std::string> reasons = m.reasons_against(all);
-  m.dropped.clear();
-  sort_candidates(std::move(all), reasons, proposal, m.dropped);
+  Proposal proposal =
+      m.proposer.propose(m.map.grid(), m.map.scene(), m.state.reached, m.state.missed);
   m.state.of_choice.reset();
   m.state.after_choice = m.state.before_choice;
   if (proposal.candidates.empty()) m.state.of_choice = nowhere_to_go(proposal);
@@ -310,7 +202,8 @@ const Proposal& ViewPlanner::propose() {
 }
 
 const std::vector<DroppedCandidate>& ViewPlanner::dropped() const noexcept {
-  return impl_->dropped;
+  static const std::vector<DroppedCandidate> none;
+  return impl_->proposal ? impl_->proposer.dropped() : none;
 }
 
 std::size_t ViewPlanner::candidate_count() const noexcept {
@@ -332,8 +225,9 @@ Ranking ViewPlanner::rank(std::span<const Pose> T_world_camera, std::size_t k,
 void ViewPlanner::tried(const Pose& T_world_camera, bool reached) {
   check_rigid(T_world_camera, "the pose that was tried");
   (reached ? impl_->state.reached : impl_->state.missed).push_back(T_world_camera);
-  impl_->drop_from_proposal(
-      T_world_camera, std::string(reached ? infeasibility_name(Infeasibility::taken) : kMissed));
+  if (!impl_->proposal) return;
+  impl_->proposer.drop(T_world_camera, reached ? infeasibility_name(Infeasibility::taken) : kMissed,
+                       *impl_->proposal);
 }
 
 std::optional<StopReason> ViewPlanner::should_stop() const noexcept {
@@ -351,13 +245,13 @@ void ViewPlanner::save(const std::filesystem::path& path, VdbWriteConfig config)
 
 ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& sensor,
                               const PlannerConfig& config, const ExecConfig& exec) {
-  const MapModelConfig map = detail::map_config(config, sensor);
+  const MapModelConfig map = detail::map_config(config);
   VdbMap saved = load_vdb_map(path);
   const auto note = saved.notes.find(kNote);
   if (note == saved.notes.end()) {
     throw Error(ErrorCode::format, path.string() + ": is a map without the state of a planner");
   }
-  const BeliefGrid expected(map.grid);
+  const BeliefGrid expected(map.grid, sensor);
   const BeliefGrid& grid = saved.grid;
   if (grid.voxel_size() != expected.voxel_size() || grid.dims() != expected.dims() ||
       grid.min_index() != expected.min_index() || grid.prior_sigma() != expected.prior_sigma() ||

@@ -23,22 +23,28 @@ void add(IntegrationReport& sum, const IntegrationReport& frame) {
   sum.voxels_crossed += frame.voxels_crossed;
 }
 
+MapModelConfig with_plane(MapModelConfig config) {
+  config.integration.support_plane = config.surroundings.support_plane;
+  return config;
+}
+
 }  // namespace
 
 MapModel::MapModel(const Sensor& sensor, const MapModelConfig& config, const ExecConfig& exec)
-    : MapModel(BeliefGrid(config.grid), sensor, config, exec) {}
+    : MapModel(BeliefGrid(config.grid, sensor), sensor, config, exec) {}
 
 MapModel::MapModel(BeliefGrid grid, const Sensor& sensor, const MapModelConfig& config,
                    const ExecConfig& exec)
     : sensor_(sensor),
-      config_(config),
+      config_(with_plane(config)),
       exec_(exec),
       grid_(std::move(grid)),
-      obstacles_(config.obstacles, sensor, exec),
-      integrator_(sensor, config.integration, exec),
-      new_surface_(sensor, config.integration.support_plane),
-      calibration_(sensor, config.integration.support_plane),
-      scene_(VoxelScene::build(grid_, config.obstacles, exec, config.hazard)) {
+      obstacles_(config.surroundings.obstacles, sensor, exec),
+      integrator_(sensor, config_.integration, exec),
+      new_surface_(sensor, config.surroundings.support_plane),
+      calibration_(sensor, config.surroundings.support_plane),
+      scene_(config.keep_scene ? VoxelScene::build(grid_, config.surroundings, exec, config.hazard)
+                               : nullptr) {
   if (config.jump_edges) filter_.emplace(sensor.camera, *config.jump_edges);
 }
 
@@ -89,7 +95,9 @@ MapUpdate MapModel::update(const Measurements& measurements) {
     update.new_area = 0;
     if (!frames.empty()) {
       const DepthFrame& first = frames.front();
-      const HazardField& hazard = scene_->hazard();
+      std::optional<HazardField> own;
+      if (!scene_) own.emplace(grid_.snapshot(), config_.hazard);
+      const HazardField& hazard = scene_ ? scene_->hazard() : *own;
       update.new_area = new_surface_.of(first, T_world_camera, grid_, &hazard);
       calibration_.count(grid_, hazard, first, T_world_camera);
     }
@@ -100,7 +108,7 @@ MapUpdate MapModel::update(const Measurements& measurements) {
   }
   update.seconds["integrate"] = watch.seconds();
   const Stopwatch scene_watch;
-  scene_ = VoxelScene::update(scene_, grid_, exec_);
+  if (scene_) scene_ = VoxelScene::update(scene_, grid_, exec_);
   update.seconds["snapshot"] = scene_watch.seconds();
   return update;
 }

@@ -3,13 +3,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <cstddef>
 #include <span>
 
-#include "registration/registration_pairs.hpp"
+#include "registration/registration_view.hpp"
 #include "viewgain/core/pose.hpp"
-#include "viewgain/planner/register_frame.hpp"
 
 namespace viewgain::detail {
 
@@ -37,10 +34,10 @@ struct Overdispersion {
   int motions = 0;
   [[nodiscard]] double mean() const { return motions > 0 ? sum / motions : 0.0; }
 };
-/// Of one pose, whose parts' gradients and whole information these are; `held` are held_axes().
-[[nodiscard]] Overdispersion overdispersion_of(std::span<const Vector6> gradients,
-                                               const Matrix6& information, const Matrix6& held,
-                                               const Vector6& sigmas);
+/// Adds that of one pose, whose parts' gradients and whole information these are; `held` are
+/// held_axes().
+void add_overdispersion(Overdispersion& sum, std::span<const Vector6> gradients,
+                        const Matrix6& information, const Matrix6& held, const Vector6& sigmas);
 
 /// By how much the variance of what was reported differs from the prior's, at most 1 and at least
 /// 1e-4: the share s under which the motions that the data ask for are the likeliest, which
@@ -50,35 +47,5 @@ struct Overdispersion {
 /// where the poses are now, and how far these are from what was reported.
 [[nodiscard]] double likeliest_scale(const Eigen::MatrixXd& information,
                                      const Eigen::VectorXd& gradient, const Eigen::VectorXd& away);
-
-/// Throws Error(invalid_argument), naming the value, unless all of it is in its range.
-void check(const RegistrationConfig& config);
-/// The same for the sigmas, and for a pose that is not rigid (1e-3).
-void check(const PosePrior& prior);
-
-/// Prior's sigmas of the six parts of a difference.
-[[nodiscard]] Vector6 sigmas_of(const PosePrior& prior);
-
-/// The covariance as FrameRegistration holds it.
-[[nodiscard]] std::array<double, 36> by_rows(const Matrix6& covariance);
-
-/// Of readings: how many show what the other side has, how many contradict it.
-struct Agreement {
-  std::size_t with = 0;
-  std::size_t against = 0;
-  [[nodiscard]] double contradiction() const {
-    const std::size_t all = with + against;
-    return all == 0 ? 0 : static_cast<double>(against) / static_cast<double>(all);
-  }
-};
-
-/// Do so many go against a frame of `readings` that it is no chance?
-[[nodiscard]] bool contradicts(const Agreement& agreement, std::size_t readings,
-                               const RegistrationConfig& config);
-
-/// Sets contradiction, status and reason by the figures of the result. `readings` are the frame's,
-/// held against `what`; `surface` are those of `what`, held against the frame.
-void judge(FrameRegistration& result, const Agreement& readings, const Agreement& surface,
-           const RegistrationConfig& config, const Vector6& sigmas, const char* what);
 
 }  // namespace viewgain::detail

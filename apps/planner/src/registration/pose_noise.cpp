@@ -19,12 +19,12 @@ namespace {
 // Sets these numbers apart from those of the readings' noise, which may have the same seed.
 constexpr std::uint64_t kStream = 0x706F7365;
 
-void check(const PoseNoise& noise) {
-  for (const auto& [name, sigma] : {std::pair("sigma_translation", noise.sigma_translation),
-                                    std::pair("sigma_rotation", noise.sigma_rotation)}) {
-    if (!(sigma >= 0) || !std::isfinite(sigma)) {
+void check_noise(const PoseSigma& sigma) {
+  for (const auto& [name, value] : {std::pair("sigma_translation", sigma.translation),
+                                    std::pair("sigma_rotation", sigma.rotation)}) {
+    if (!(value >= 0) || !std::isfinite(value)) {
       throw Error(ErrorCode::invalid_argument, "pose noise: " + std::string(name) + " " +
-                                                   short_text(sigma) +
+                                                   short_text(value) +
                                                    " must be at least 0 and finite");
     }
   }
@@ -32,10 +32,11 @@ void check(const PoseNoise& noise) {
 
 }  // namespace
 
-Pose reported_pose(const Pose& T_world_camera, std::size_t view, const PoseNoise& noise) {
-  check(noise);
+Pose reported_pose(const Pose& T_world_camera, std::size_t view, const PoseSigma& sigma,
+                   std::uint64_t seed) {
+  check_noise(sigma);
   if (view == 0) return T_world_camera;
-  const std::uint64_t of_view = mix64(mix64(noise.seed ^ mix64(kStream)) ^ view);
+  const std::uint64_t of_view = mix64(mix64(seed ^ mix64(kStream)) ^ view);
   std::uint64_t drawn = 0;
   // Box and Muller.
   const auto normal = [&] {
@@ -44,8 +45,8 @@ Pose reported_pose(const Pose& T_world_camera, std::size_t view, const PoseNoise
     return std::sqrt(-2 * std::log(u)) * std::cos(turn);
   };
   Eigen::Vector3d shift, turn;
-  for (int k = 0; k < 3; ++k) shift[k] = noise.sigma_translation * normal();
-  for (int k = 0; k < 3; ++k) turn[k] = noise.sigma_rotation * normal();
+  for (int k = 0; k < 3; ++k) shift[k] = sigma.translation * normal();
+  for (int k = 0; k < 3; ++k) turn[k] = sigma.rotation * normal();
   Eigen::Matrix3d R = T_world_camera.rotation();
   if (turn.norm() > 0) {
     R = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() * R;
@@ -55,7 +56,7 @@ Pose reported_pose(const Pose& T_world_camera, std::size_t view, const PoseNoise
 
 Measurements MisreportedAcquisition::acquire(const Pose& T_world_camera, std::size_t view) {
   Measurements measurements = camera_.acquire(T_world_camera, view);
-  measurements.T_world_camera = reported_pose(T_world_camera, view, noise_);
+  measurements.T_world_camera = reported_pose(T_world_camera, view, sigma_, seed_);
   return measurements;
 }
 

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <optional>
 
+#include "viewgain/core/noise.hpp"
+
 namespace viewgain::detail {
 namespace {
 
 constexpr int kMaxHalfWindow = 20;  // [px]
 constexpr int kWindow = 25;         // pixels of 5x5
-constexpr int kLeastForNormal = 15;
+constexpr int kLeastForPlane = 15;
 // Smoothed readings may have fewer: those at rims hold poses sideways.
 constexpr int kLeastSmoothed = 12;
 // A window that lacks readings on one side extrapolates: measured variances grow by the third power
@@ -43,25 +45,25 @@ class Surroundings {
     const std::optional<Plane> plane = plane_at(u, v, half_window(radius_ / z, sensor_.camera.fx),
                                                 half_window(radius_ / z, sensor_.camera.fy));
     if (!plane) return std::nullopt;
+    // Of the nearest pixels alone: a wide plane cuts what is curved.
+    const std::optional<Plane> near =
+        are_smoothed_ ? plane_at(u, v, 2, 2) : Plane{z, plane->normal, kWindow, 0};
+    if (!near) return std::nullopt;
     Reading reading;
-    reading.point = z * rays_[i];
+    reading.point = near->depth * rays_[i];
     reading.normal = plane->normal;
-    int count = kWindow, beyond = 0;
-    if (are_smoothed_) {
-      // Of the nearest pixels alone: a wide plane cuts what is curved.
-      const std::optional<Plane> near = plane_at(u, v, 2, 2);
-      if (!near) return std::nullopt;
-      reading.point = near->depth * rays_[i];
-      count = near->count, beyond = near->beyond;
-    }
     const double range = reading.point.norm();
+    const double frontal = -reading.normal.dot(reading.point) / range;
     const double cosine =
         frame_.amplitude.empty()
-            ? -reading.normal.dot(reading.point) / range
+            ? frontal
             : std::min(1.0, static_cast<double>(frame_.amplitude[i]) * range * range);
-    reading.sigmas = sensor_.noise_sigmas(range, cosine);
-    reading.rim = beyond * reading.sigmas.lateral;
-    reading.extrapolation = std::pow(static_cast<double>(kWindow) / count, kRimPower);
+    const MeasurementSigmas sigmas = sensor_.noise_sigmas(range, cosine);
+    const double sigma = sigma_along_normal(sigmas, std::abs(frontal));
+    reading.variance =
+        std::pow(static_cast<double>(kWindow) / near->count, kRimPower) * sigma * sigma;
+    reading.axial = sigmas.axial;
+    reading.rim = near->beyond * sigmas.lateral;
     reading.u = u, reading.v = v;
     return reading;
   }
@@ -114,7 +116,7 @@ class Surroundings {
         ++count;
       }
     }
-    if (count < (are_smoothed_ ? kLeastSmoothed : kLeastForNormal)) return std::nullopt;
+    if (count < (are_smoothed_ ? kLeastSmoothed : kLeastForPlane)) return std::nullopt;
     const Eigen::Vector3d plane = normal_matrix.inverse() * right;
     Eigen::Vector3d toward(plane.x(), plane.y(),
                            plane.z() - plane.x() * ray.x() - plane.y() * ray.y());
@@ -138,9 +140,9 @@ int level_of(int column, int row) {
 
 }  // namespace
 
-std::vector<Reading> readings_of(const DepthFrame& frame, const Sensor& sensor,
-                                 std::span<const Eigen::Vector3d> rays, double radius,
-                                 bool are_smoothed, std::size_t max_readings, ThreadPool& pool) {
+FrameReadings readings_of(const DepthFrame& frame, const Sensor& sensor,
+                          std::span<const Eigen::Vector3d> rays, double radius, bool are_smoothed,
+                          std::size_t max_readings, ThreadPool& pool) {
   const Surroundings surroundings(frame, sensor, rays, radius, are_smoothed);
   const auto height = static_cast<std::size_t>(frame.height);
   std::vector<std::size_t> of_row(height);
@@ -170,9 +172,9 @@ std::vector<Reading> readings_of(const DepthFrame& frame, const Sensor& sensor,
       }
     }
   });
-  std::vector<Reading> readings;
+  FrameReadings readings{{}, stride};
   for (const std::vector<Reading>& row : rows) {
-    readings.insert(readings.end(), row.begin(), row.end());
+    readings.all.insert(readings.all.end(), row.begin(), row.end());
   }
   return readings;
 }

@@ -7,6 +7,8 @@
 
 #include "program/cli/app.hpp"
 #include "program/cli/choices.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/support/nearest_name.hpp"
 
 namespace viewgain::app {
 
@@ -43,12 +45,11 @@ inline void add_help(App& app, const char* group, const char* example) {
 
 inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt)";
 
-inline constexpr const char* kSensorHelp =
-    "preset (sr4000, azure_kinect_nfov, kinect_v1, d435, laser_line) or a .toml file";
+inline const std::string kSensorHelp =
+    "preset (" + listed(sensor_preset_names()) + ") or a .toml file";
 
 inline const std::string kMapSensorHelp =
-    std::string(kSensorHelp) +
-    "; default: the one that the map's readings come from, where it says so";
+    kSensorHelp + "; default: the one that the map's readings come from, where it says so";
 
 inline constexpr const char* kBodyHelp =
     "x,y,z: width, height, depth of the sensor's housing [m]; default: the sensor's own, else the "

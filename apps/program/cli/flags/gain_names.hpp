@@ -11,6 +11,11 @@
 
 namespace viewgain::app {
 
+/// What --gain is unless given.
+[[nodiscard]] inline std::string default_gain() {
+  return std::string(gain_model_name(kDefaultGain));
+}
+
 /// What --gain takes: the models, then the gains of the literature.
 [[nodiscard]] inline std::vector<std::string> all_gain_names() {
   std::vector<std::string> names = gain_model_names();

@@ -24,21 +24,29 @@ std::string why(const NextView& view) {
 
 }  // namespace
 
+NextViews next_views(const Ranking& ranking, const Proposal& proposal, GainModel model) {
+  NextViews next{{}, proposal.candidates.size(), proposal.dropped, model};
+  for (const RankedView& view : ranking.views) {
+    const Candidate& candidate = proposal.candidates[view.index];
+    next.views.push_back({view.T_world_camera, view.index, view.gain, candidate.generator,
+                          candidate.boundary_class});
+  }
+  return next;
+}
+
 Json to_json(const NextViews& next) {
   Json json{{"gain_model", gain_model_name(next.model)},
             {"gain_unit", gain_unit(next.model, kCriterion)},
             {"candidates", next.candidates},
-            {"dropped", Json::object()},
+            {"dropped", next.dropped},
             {"next", Json::array()}};
-  for (const auto& [reason, count] : next.dropped) json["dropped"][reason] = count;
   for (const NextView& view : next.views) {
-    Json one{{"gain", view.gain.gain},  // a NaN becomes null
-             {"area", view.gain.area},
-             {"generator", view.generator},
-             {"class", nullptr},
-             {"T_world_camera", to_json(view.T_world_camera)}};
-    if (view.boundary_class) one["class"] = boundary_class_name(*view.boundary_class);
-    json["next"].push_back(std::move(one));
+    const auto& of = view.boundary_class;
+    json["next"].push_back({{"gain", view.gain.gain},  // a NaN becomes null
+                            {"area", view.gain.area},
+                            {"generator", view.generator},
+                            {"class", of ? Json(boundary_class_name(*of)) : Json()},
+                            {"T_world_camera", to_json(view.T_world_camera)}});
   }
   return json;
 }

@@ -10,7 +10,9 @@
 
 #include "program/cli/json.hpp"
 #include "viewgain/core/boundary_class.hpp"
+#include "viewgain/core/planning.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/planner/rank_views.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
@@ -29,8 +31,12 @@ struct NextViews {
   std::vector<NextView> views;                 ///< best first
   std::size_t candidates = 0;                  ///< that were possible; `views` are the best of them
   std::map<std::string, std::size_t> dropped;  ///< the impossible ones: reason -> count
-  GainModel model = GainModel::combined;       ///< of the gains
+  GainModel model = kDefaultGain;              ///< of the gains
 };
+
+/// Of a ranking of a proposal's candidates.
+[[nodiscard]] NextViews next_views(const Ranking& ranking, const Proposal& proposal,
+                                   GainModel model);
 
 /// gain_model, gain_unit, candidates, dropped, next; apps/docs/reference/json.md names the keys of
 /// a view.

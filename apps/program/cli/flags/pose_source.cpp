@@ -4,13 +4,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <charconv>
-#include <cstdio>
 #include <numbers>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "program/cli/values.hpp"
@@ -19,7 +15,6 @@
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/support/columns/mapped_poses.hpp"
 #include "viewgain/support/columns/part_reader.hpp"
-#include "viewgain/support/mix64.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -69,32 +64,12 @@ std::vector<Pose> shell(const std::string& text, const Eigen::Vector3d& center,
                          [&] { return shell_poses(count, n[1], n[2], seed, center); });
 }
 
-std::uint64_t hash_of(const Pose& pose) {
-  std::uint64_t hash = 0;
-  for (const double number : pose.m) hash = mix64(hash ^ std::bit_cast<std::uint64_t>(number));
-  return hash;
-}
-
-// hash(i): of row i.
-template <typename Hash>
-std::string hash_of_rows(std::size_t rows, const Hash& hash) {
-  constexpr std::size_t kMost = 4096;
-  const std::size_t count = std::min(rows, kMost);
-  std::uint64_t all = mix64(rows);
-  for (std::size_t i = 0; i < count; ++i) {
-    all = mix64(all ^ hash(count == 1 ? 0 : i * (rows - 1) / (count - 1)));
-  }
-  std::array<char, 17> digits{};
-  std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(all));
-  return digits.data();
-}
-
-PoseSource mapped_poses(const std::string& file, const RowSelection& selection) {
+PoseSource mapped_poses(const std::string& file, const Shard& shard) {
   const MappedPoses mapped(file);
   PoseSource source;
   source.total = mapped.size();
-  source.rows = selection.of(mapped.size());
-  source.hash = hash_of_rows(mapped.size(), [&](std::size_t row) { return mapped.hash(row); });
+  source.rows = shard.of(mapped.size());
+  source.hash = mapped.hash();
   source.poses.reserve(source.rows.end - source.rows.begin);
   for (std::size_t row = source.rows.begin; row < source.rows.end; ++row) {
     bool mended = false;
@@ -117,55 +92,30 @@ std::vector<Pose> set_of_poses(const PoseOptions& options, std::uint64_t seed) {
   return round_center("--dome", options.dome, center, dome_poses);
 }
 
-// "3/8" or "30:80".
-std::pair<std::uint64_t, std::uint64_t> two_counts(const std::string& flag,
-                                                   const std::string& value, char separator) {
-  std::pair<std::uint64_t, std::uint64_t> found;
-  const char* const end = value.data() + value.size();
-  const auto first = std::from_chars(value.data(), end, found.first);
-  if (first.ec == std::errc() && first.ptr != end && *first.ptr == separator) {
-    const auto second = std::from_chars(first.ptr + 1, end, found.second);
-    if (second.ec == std::errc() && second.ptr == end) return found;
-  }
-  refuse(flag, value, separator == '/' ? "must be i/n, i from 0" : "must be a:b, rows from 0");
-}
-
 }  // namespace
 
-RowSelection RowSelection::parse(const std::string& shard, const std::string& rows) {
-  RowSelection selection;
-  if (!shard.empty()) {
-    std::tie(selection.first_, selection.second_) = two_counts("--shard", shard, '/');
-    constexpr std::uint64_t kMost = 10'000'000;
-    if (selection.first_ >= selection.second_ || selection.second_ > kMost) {
-      refuse("--shard", shard, "i must be below n, from 0, and n at most 10,000,000");
-    }
-    selection.text_ = "--shard " + shard;
-    selection.is_shard_ = true;
-  } else if (!rows.empty()) {
-    std::tie(selection.first_, selection.second_) = two_counts("--rows", rows, ':');
-    if (selection.first_ >= selection.second_) refuse("--rows", rows, "a must be below b");
-    selection.text_ = "--rows " + rows;
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  if (text.empty()) return shard;
+  const char* const end = text.data() + text.size();
+  const auto index = std::from_chars(text.data(), end, shard.index);
+  const bool is_slash = index.ec == std::errc() && index.ptr != end && *index.ptr == '/';
+  const auto count = std::from_chars(is_slash ? index.ptr + 1 : end, end, shard.count);
+  if (count.ec != std::errc() || count.ptr != end) {
+    refuse("--shard", text, "must be i/n, i from 0");
   }
-  return selection;
+  constexpr std::uint64_t kMost = 10'000'000;
+  if (shard.index >= shard.count || shard.count > kMost) {
+    refuse("--shard", text, "i must be below n, from 0, and n at most 10,000,000");
+  }
+  return shard;
 }
 
-RowRange RowSelection::of(std::uint64_t poses) const {
-  if (is_all()) return {0, poses};
-  if (is_shard_) return {poses * first_ / second_, poses * (first_ + 1) / second_};
-  if (second_ > poses) {
-    throw Error(ErrorCode::invalid_argument,
-                text_ + ": there are " + std::to_string(poses) + " poses");
-  }
-  return {first_, second_};
-}
-
-PoseSource make_poses(const PoseOptions& options, std::uint64_t seed,
-                      const RowSelection& selection) {
+PoseSource make_poses(const PoseOptions& options, std::uint64_t seed, const Shard& shard) {
   if (!options.file.empty() && !options.center.empty()) {
     refuse("--center", options.center, "goes with sets of poses, not with --poses");
   }
-  if (is_npy(options.file)) return mapped_poses(options.file, selection);
+  if (is_npy(options.file)) return mapped_poses(options.file, shard);
   PoseSource source;
   source.poses = options.file.empty() ? set_of_poses(options, seed) : std::vector<Pose>();
   if (!options.file.empty()) {
@@ -174,10 +124,11 @@ PoseSource make_poses(const PoseOptions& options, std::uint64_t seed,
     source.orthonormalized = list.orthonormalized;
   }
   source.total = source.poses.size();
-  source.rows = selection.of(source.total);
-  source.hash =
-      hash_of_rows(source.total, [&](std::size_t row) { return hash_of(source.poses[row]); });
-  if (!selection.is_all()) {
+  source.rows = shard.of(source.total);
+  source.hash = hash_of_poses(source.total, Pose().m.size(), [&](std::size_t row, std::size_t i) {
+    return source.poses[row].m[i];
+  });
+  if (shard.count > 1) {
     const auto begin = source.poses.begin();
     source.poses = std::vector<Pose>(begin + static_cast<std::ptrdiff_t>(source.rows.begin),
                                      begin + static_cast<std::ptrdiff_t>(source.rows.end));

@@ -12,22 +12,16 @@
 
 namespace viewgain::app {
 
-/// Which of the poses: all, one of n shards of nearly equal length, or rows [begin, end).
-class RowSelection {
- public:
-  /// Of --shard i/n and --rows a:b, of which one may be given; empty: not given. Throws
-  /// Error(invalid_argument), naming the flag.
-  static RowSelection parse(const std::string& shard, const std::string& rows);
+/// One of n shards of the poses, of nearly equal length; of 1: all.
+struct Shard {
+  std::uint64_t index = 0, count = 1;
 
-  [[nodiscard]] bool is_all() const { return text_.empty(); }
-  /// Of so many poses. Throws Error(invalid_argument) if there are not as many.
-  [[nodiscard]] RowRange of(std::uint64_t poses) const;
-
- private:
-  std::string text_;  // the flag and its value
-  bool is_shard_ = false;
-  std::uint64_t first_ = 0, second_ = 0;
+  [[nodiscard]] RowRange of(std::uint64_t poses) const {
+    return {poses * index / count, poses * (index + 1) / count};
+  }
 };
+/// --shard i/n; empty: all. Throws Error(invalid_argument), naming the flag.
+[[nodiscard]] Shard parse_shard(const std::string& text);
 
 /// Poses that the command line asked for.
 struct PoseSource {
@@ -35,8 +29,7 @@ struct PoseSource {
   std::size_t orthonormalized = 0;  ///< of a file: how many rotations were mended
   RowRange rows;                    ///< of these among all
   std::uint64_t total = 0;          ///< poses in all
-  /// Of their number and of the numbers of at most 4,096 of all poses, evenly spread: tells sets of
-  /// poses apart without reading the whole of a large file.
+  /// Of their number and the numbers of all, by which parts of different lists are told apart.
   std::string hash;
 
   /// The pose of a row among all.
@@ -60,10 +53,10 @@ struct PoseOptions {
   }
 };
 
-/// `seed`: of the shell. Of a .npy only the rows asked for are read; sets and TUM files are made
-/// whole, and rows taken from them. Throws Error(invalid_argument), naming the flag, or what
-/// read_tum and MappedPoses throw.
+/// `seed`: of the shell. A .npy is read once for the hash, and the rows asked for are kept; sets
+/// and TUM files are made whole, and rows taken from them. Throws Error(invalid_argument), naming
+/// the flag, or what read_tum and MappedPoses throw.
 [[nodiscard]] PoseSource make_poses(const PoseOptions& options, std::uint64_t seed,
-                                    const RowSelection& selection = {});
+                                    const Shard& shard = {});
 
 }  // namespace viewgain::app

@@ -8,6 +8,7 @@
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/planner/register_frame.hpp"
 
 namespace viewgain::app {
 
@@ -21,24 +22,22 @@ void add_registration_options(App& app, RegistrationOptions& options) {
                  "0.005,0.5");
 }
 
-std::optional<PosePrior> registration_prior(const RegistrationOptions& options,
-                                            const PoseNoise& noise) {
+std::optional<PoseSigma> registration_sigma(const RegistrationOptions& options,
+                                            const PoseSigma& noise) {
   if (options.is_on != "on") {
     if (options.pose_sigma.empty()) return std::nullopt;
     throw Error(ErrorCode::invalid_argument,
                 "--pose-sigma " + options.pose_sigma + " goes with --register on");
   }
-  PosePrior prior;
   if (!options.pose_sigma.empty()) {
-    const PoseNoise stated = parse_pose_noise("--pose-sigma", options.pose_sigma, 0);
-    check_positive("--pose-sigma", std::min(stated.sigma_translation, stated.sigma_rotation));
-    prior.sigma_translation = stated.sigma_translation;
-    prior.sigma_rotation = stated.sigma_rotation;
-    return prior;
+    const PoseSigma stated = parse_pose_sigma("--pose-sigma", options.pose_sigma);
+    check_positive("--pose-sigma", std::min(stated.translation, stated.rotation));
+    return stated;
   }
-  if (noise.sigma_translation > 0) prior.sigma_translation = noise.sigma_translation;
-  if (noise.sigma_rotation > 0) prior.sigma_rotation = noise.sigma_rotation;
-  return prior;
+  PoseSigma sigma = kUsualPoseSigma;
+  if (noise.translation > 0) sigma.translation = noise.translation;
+  if (noise.rotation > 0) sigma.rotation = noise.rotation;
+  return sigma;
 }
 
 }  // namespace viewgain::app

@@ -6,8 +6,7 @@
 #include <string>
 
 #include "program/cli/app.hpp"
-#include "viewgain/planner/pose_noise.hpp"
-#include "viewgain/planner/register_frame.hpp"
+#include "viewgain/core/sensor.hpp"
 
 namespace viewgain::app {
 
@@ -23,7 +22,7 @@ void add_registration_options(App& app, RegistrationOptions& options);
 /// By how much reported poses may be off: what --pose-sigma says, else `noise` (--pose-noise) where
 /// it is not 0; nothing without --register on. Throws Error(invalid_argument), naming the flag,
 /// also for --pose-sigma without --register on.
-[[nodiscard]] std::optional<PosePrior> registration_prior(const RegistrationOptions& options,
-                                                          const PoseNoise& noise = {});
+[[nodiscard]] std::optional<PoseSigma> registration_sigma(const RegistrationOptions& options,
+                                                          const PoseSigma& noise = {});
 
 }  // namespace viewgain::app

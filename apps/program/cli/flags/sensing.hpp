@@ -9,7 +9,6 @@
 
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/planner/pose_noise.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain::app {
@@ -20,8 +19,6 @@ struct SensingOptions {
   std::string noise = "off";              ///< --noise on|off: axial and lateral
   std::string flying_pixels;              ///< --flying-pixels on|off; empty: as --noise
   std::uint64_t seed = 1;                 ///< --seed
-  double wiggling = 0;                    ///< --wiggling [m]
-  std::string calibrate = "off";          ///< --calibrate on|off
   std::optional<double> support_plane{};  ///< --support-plane, world z [m]
   std::string pose_noise;                 ///< --pose-noise SIGMA_M,SIGMA_DEG; empty: none
 
@@ -29,17 +26,14 @@ struct SensingOptions {
   [[nodiscard]] bool has_flying_pixels(const Sensor& sensor) const;
 };
 
-/// With the sensor's calibration measured if that is asked for. Throws Error.
 [[nodiscard]] SimulationConfig simulation_config(const SensingOptions& options,
                                                  const Sensor& sensor);
 
 /// SIGMA_M,SIGMA_DEG of a flag; empty: both 0. Throws Error(invalid_argument) for other text.
-[[nodiscard]] PoseNoise parse_pose_noise(std::string_view flag, const std::string& text,
-                                         std::uint64_t seed);
+[[nodiscard]] PoseSigma parse_pose_sigma(std::string_view flag, const std::string& text);
 
 /// --jump-edge-filter ANGLE_DEG|off. Throws Error(invalid_argument) for other text; the filter
 /// itself refuses angles out of its bounds.
-[[nodiscard]] std::optional<JumpEdgeConfig> parse_jump_edge_filter(const std::string& text,
-                                                                   bool two_sided);
+[[nodiscard]] std::optional<JumpEdgeConfig> parse_jump_edge_filter(const std::string& text);
 
 }  // namespace viewgain::app

@@ -24,10 +24,6 @@ void describe_sensing(Options& o, Visitor& visit) {
   visit.option("background", "--background", o.background,
                "radius of a sphere round the origin that stands for the room [m]; 0: none",
                shows_default);
-  visit.option("wiggling", "--wiggling", o.wiggling,
-               "amplitude A of the systematic error A sin(4 phase) [m]", shows_default);
-  visit.option("calibrated", "--calibrate", o.calibrate,
-               "measure the systematic error on a plane beforehand and subtract it", switched);
   visit.option("pose_noise", "--pose-noise", o.pose_noise,
                "SIGMA_M,SIGMA_DEG: reported poses are off by this, in each axis [m] and each "
                "component of the rotation vector [deg]; the first view's is exact and defines the "

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "calibration/wall_calibration.hpp"
+#include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/calibrate/wall_distances.hpp"
@@ -249,16 +250,14 @@ Command add_calibrate(App& program) {
   app->add_option(
       "--wall", options->wall,
       "nx,ny,nz,d: the wall in the world is normal . p = d [m]; the frames' poses hold");
-  app->add_option("--sensor", options->sensor,
-                  std::string(kSensorHelp) +
-                      "; default: FRAMES_DIR/sensor.toml. A table that it has is replaced");
+  app->add_option(
+      "--sensor", options->sensor,
+      kSensorHelp + "; default: FRAMES_DIR/sensor.toml. A table that it has is replaced");
   app->add_option(
       "--depth-scale", options->depth_scale,
       "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
       "sensor.toml), else 1e-3");
-  app->add_option("--mask", options->mask,
-                  "folder of grayscale PNGs with the depth images' names: where they are not 0, an "
-                  "image says nothing");
+  app->add_option("--mask", options->mask, kMaskHelp);
   app->add_option("--out", options->out, "sensor file to write (.toml)")->required();
   add_common_options(*app, options->common);
   add_help(*app, kMapGroup,

@@ -15,6 +15,7 @@
 
 #include "program/cli/choices.hpp"
 #include "program/cli/flags/frame_folder.hpp"
+#include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/hazard_source.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/obstacle_source.hpp"
@@ -49,8 +50,7 @@ struct Options {
   double voxel = 0;
   std::string workspace;
   std::string jump_edge_filter = "5";
-  std::string jump_edge_two_sided = "off";
-  std::string gain = "combined";
+  std::string gain = default_gain();
   std::optional<double> object_size;
   std::string hazard;
   std::string reach;
@@ -70,10 +70,8 @@ PlannerConfig planner_config(const Options& options) {
   config.grid.voxel_size = options.voxel;
   config.grid.workspace = parse_box("--workspace", options.workspace);
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
-  config.support_plane = options.support_plane;
-  config.obstacles = obstacles_of(options.obstacles);
-  config.jump_edges =
-      parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided == "on");
+  config.surroundings = {obstacles_of(options.obstacles), options.support_plane};
+  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
   config.gain.model = parse_gain_model(options.gain);
   if (config.gain.model == GainModel::paper && (options.object_size || !options.hazard.empty())) {
     throw Error(ErrorCode::invalid_argument,
@@ -129,7 +127,7 @@ class Following {
   explicit Following(const Options& options)
       : options_(options),
         config_(planner_config(options)),
-        sigmas_(registration_prior(options.registration)),
+        sigma_(registration_sigma(options.registration)),
         frames_(options.frames.folder),
         out_(options.out) {
     if (!options.frames.sensor.empty()) (void)load_sensor(options.frames.sensor);
@@ -221,7 +219,7 @@ class Following {
     const Sensor& sensor = watch_->folder()->sensor;
     config_.grid.prior_sigma = default_prior_sigma(options_.voxel, sensor);
     config_.hazard = hazard_source(options_.hazard, options_.object_size, BeliefGrid(config_.grid));
-    map_.emplace(sensor, body_, config_, out_ / "state.vdb", saved_, sigmas_,
+    map_.emplace(sensor, body_, config_, out_ / "state.vdb", saved_, sigma_,
                  ExecConfig{options_.common.threads});
     // What was next may be missing or older than the state.
     has_news_ = saved_.has_value();
@@ -269,9 +267,8 @@ class Following {
   [[nodiscard]] Json counts() const {
     Json json{{"frames", count()},
               {"waiting", watch_->waiting()},
-              {"bad", Json::object()},
+              {"bad", watch_->bad()},
               {"stop_reason", nullptr}};
-    for (const auto& [reason, number] : watch_->bad()) json["bad"][reason] = number;
     if (map_ && map_->should_stop()) json["stop_reason"] = stop_reason_name(*map_->should_stop());
     return json;
   }
@@ -290,7 +287,7 @@ class Following {
 
   const Options& options_;
   PlannerConfig config_;
-  std::optional<PosePrior> sigmas_;  // of the poses, if frames are registered
+  std::optional<PoseSigma> sigma_;  // of the poses, if frames are registered
   std::optional<std::array<double, 3>> body_;
   fs::path frames_, out_;
   std::optional<FolderLock> lock_;
@@ -338,21 +335,12 @@ Command add_follow(App& program) {
   app->add_option("--voxel", o.voxel, "voxel size [m]")->required();
   app->add_option("--workspace", o.workspace, "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels")
       ->required();
-  app->add_option("--sensor", o.frames.sensor,
-                  std::string(kSensorHelp) + "; default: FRAMES_DIR/sensor.toml");
+  app->add_option("--sensor", o.frames.sensor, kSensorHelp + "; default: FRAMES_DIR/sensor.toml");
   add_frame_folder_options(*app, o.frames);
-  one_of(*app->add_option(
-                 "--out-of-range", o.frames.out_of_range,
-                 "what 65535 says: carve (nothing up to the maximal range) or invalid (no reading)")
-              ->capture_default_str(),
-         {"carve", "invalid"}, "meaning");
   app->add_option("--jump-edge-filter", o.jump_edge_filter,
                   "ANGLE_DEG: a reading goes when the edge to a nearer neighbour is within 1..10 "
-                  "degrees of its ray (5 is a good value); or off")
+                  "degrees of its ray; or off")
       ->capture_default_str();
-  on_or_off(*app->add_option("--jump-edge-two-sided", o.jump_edge_two_sided,
-                             "the filter looks at farther neighbours too")
-                 ->capture_default_str());
   one_of(*app->add_option("--gain", o.gain,
                           "that views are ranked by: paper, surface or combined, as in score")
               ->capture_default_str(),

@@ -47,13 +47,13 @@ std::optional<SavedFrames> saved_frames(const fs::path& state) {
 FollowedMap::FollowedMap(const Sensor& sensor, std::optional<std::array<double, 3>> body,
                          const PlannerConfig& config, fs::path state,
                          const std::optional<SavedFrames>& saved,
-                         const std::optional<PosePrior>& sigmas, const ExecConfig& exec)
+                         const std::optional<PoseSigma>& sigma, const ExecConfig& exec)
     : sensor_(sensor),
       model_(config.gain.model),
       state_(std::move(state)),
       rays_(sensor.camera.ray_table()),
       planner_(planner_of(sensor, body, config, state_, saved, exec)),
-      prior_(sigmas) {
+      sigma_(sigma) {
   const BoundaryViewsConfig boundary = default_boundary(sensor, planner_.grid().voxel_size());
   planner_.add_generation(std::make_shared<BoundaryGeneration>(planner_.map(), boundary, exec));
 }
@@ -77,10 +77,8 @@ bool FollowedMap::shows_workspace(const WatchedFrame& frame) const {
 }
 
 std::optional<FrameRegistration> FollowedMap::register_in(const WatchedFrame& frame) const {
-  if (!prior_) return std::nullopt;
-  PosePrior prior = *prior_;
-  prior.T_world_camera = frame.T_world_camera;
-  return planner_.register_frame(frame.frame, prior);
+  if (!sigma_) return std::nullopt;
+  return planner_.register_frame(frame.frame, frame.T_world_camera, *sigma_);
 }
 
 AddedView FollowedMap::add(const WatchedFrame& frame,
@@ -91,16 +89,7 @@ AddedView FollowedMap::add(const WatchedFrame& frame,
 
 NextViews FollowedMap::next(std::size_t top) {
   const Proposal& proposal = planner_.propose();
-  NextViews next{{}, proposal.candidates.size(), proposal.dropped, model_};
-  for (const RankedView& view : planner_.rank(top).views) {
-    const Candidate& candidate = proposal.candidates[view.index];
-    next.views.push_back({.T_world_camera = view.T_world_camera,
-                          .index = view.index,
-                          .gain = view.gain,
-                          .generator = candidate.generator,
-                          .boundary_class = candidate.boundary_class});
-  }
-  return next;
+  return next_views(planner_.rank(top), proposal, model_);
 }
 
 void FollowedMap::save(const std::set<std::string>& frames) const {

@@ -40,7 +40,7 @@ class FollowedMap {
   /// With `sigmas` of the poses frames are registered.
   FollowedMap(const Sensor& sensor, std::optional<std::array<double, 3>> body,
               const PlannerConfig& config, std::filesystem::path state,
-              const std::optional<SavedFrames>& saved, const std::optional<PosePrior>& sigmas,
+              const std::optional<SavedFrames>& saved, const std::optional<PoseSigma>& sigma,
               const ExecConfig& exec);
 
   /// Does any reading of the frame lie in the workspace?
@@ -69,7 +69,7 @@ class FollowedMap {
   std::filesystem::path state_;
   std::vector<Eigen::Vector3d> rays_;  // of the pixels, (x, y, 1)
   ViewPlanner planner_;
-  std::optional<PosePrior> prior_;  // its sigmas
+  std::optional<PoseSigma> sigma_;  // of the poses, if frames are registered
 };
 
 }  // namespace viewgain::app

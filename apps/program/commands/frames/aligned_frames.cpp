@@ -5,17 +5,17 @@
 #include <cstddef>
 
 #include "program/cli/progress.hpp"
-#include "viewgain/planner/map_alignment.hpp"
+#include "viewgain/planner/align_frames.hpp"
 
 namespace viewgain::app {
 
-std::vector<FrameRegistration> align_folder(const FrameMap& map, const PosePrior& sigmas,
-                                            bool quiet, const ExecConfig& exec) {
-  MapAlignment alignment(map.model().sensor(), map.model().grid(), map.config(), sigmas, exec);
+std::vector<FrameRegistration> align_folder(const FrameMap& map, const PoseSigma& sigma, bool quiet,
+                                            const ExecConfig& exec) {
+  FrameAlignment alignment(map.model().sensor(), map.config(), exec);
   Progress progress("alignment of frame", quiet);
   const FrameFolder& folder = map.folder();
   for (std::size_t i = 0; i < folder.size(); ++i) {
-    alignment.add(folder.load(i).frame, folder.T_world_camera(i));
+    alignment.add(folder.load(i).frame, folder.T_world_camera(i), sigma);
     progress.update(i + 1, folder.size());
   }
   return alignment.registrations();

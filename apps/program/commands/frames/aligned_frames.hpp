@@ -10,11 +10,11 @@
 
 namespace viewgain::app {
 
-/// Aligns all frames of the folder with one another (MapAlignment), for a map into which none has
-/// gone yet. `sigmas`: by how much each reported pose may be off. One result a frame, in the
-/// folder's order, each as known in the end. Throws as FrameFolder::load() and MapAlignment.
+/// Aligns all frames of the folder with one another (FrameAlignment), for a map into which none has
+/// gone yet. `sigma`: by how much each reported pose may be off. One result a frame, in the
+/// folder's order, each as known in the end. Throws as FrameFolder::load() and FrameAlignment.
 [[nodiscard]] std::vector<FrameRegistration> align_folder(const FrameMap& map,
-                                                          const PosePrior& sigmas, bool quiet,
+                                                          const PoseSigma& sigma, bool quiet,
                                                           const ExecConfig& exec);
 
 }  // namespace viewgain::app

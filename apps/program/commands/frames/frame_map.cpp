@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/commands/frames/frame_map.hpp"
 
-#include <array>
 #include <system_error>
 #include <utility>
 
+#include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/hazard_source.hpp"
 #include "program/cli/flags/obstacle_source.hpp"
 #include "program/cli/flags/sensing.hpp"
@@ -17,9 +17,6 @@
 
 namespace viewgain::app {
 namespace {
-
-constexpr std::array kFlags{"--voxel", "--workspace",  "--jump-edge-filter", "--depth-scale",
-                            "--mask",  "--confidence", "--least-confidence"};
 
 // What a wrong scale would explain.
 std::string scale_text(const FrameFolder& folder) {
@@ -37,7 +34,7 @@ Box seen_workspace(const FrameFolder& folder, const Sensor& sensor, const MapMod
     if (filter) filter->apply(frame);
     progress.update(i + 1, folder.size());
     return reading_bounds(sensor, frame, folder.T_world_camera(i), {},
-                          config.integration.support_plane);
+                          config.surroundings.support_plane);
   };
   const std::optional<Box> seen = workspace_around(folder.size(), config.grid.voxel_size, bounds);
   if (seen) return *seen;
@@ -47,17 +44,12 @@ Box seen_workspace(const FrameFolder& folder, const Sensor& sensor, const MapMod
 
 MapModelConfig config_of(const FrameFolder& folder, const FrameMapOptions& options,
                          const ProposalOptions& proposal, const Sensor& sensor, bool quiet) {
-  if (!options.voxel) {
-    throw Error(ErrorCode::invalid_argument, "--voxel is needed with a folder of frames");
-  }
-  check_positive("--voxel", *options.voxel);
+  check_positive("--voxel", options.voxel);
   MapModelConfig config;
-  config.integration.support_plane = proposal.support_plane;
-  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter, false);
-  config.obstacles = obstacles_of(proposal.obstacles);
+  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
+  config.surroundings = {obstacles_of(proposal.obstacles), proposal.support_plane};
   config.refine = options.refine;
-  config.grid.voxel_size = *options.voxel;
-  config.grid.prior_sigma = default_prior_sigma(*options.voxel, sensor);
+  config.grid.voxel_size = options.voxel;
   config.grid.workspace = options.workspace.empty() ? seen_workspace(folder, sensor, config, quiet)
                                                     : parse_box("--workspace", options.workspace);
   config.hazard = hazard_source(proposal.hazard, proposal.object_size, BeliefGrid(config.grid));
@@ -72,22 +64,16 @@ bool is_frame_folder(const std::filesystem::path& path) {
 }
 
 void add_frame_map_options(App& app, FrameMapOptions& options) {
-  app.add_option("--voxel", options.voxel, "of a folder of frames: voxel size [m], needed");
+  app.add_option("FRAMES_DIR", options.folder.folder, "frames and poses, as integrate takes them")
+      ->required();
+  app.add_option("--sensor", options.folder.sensor, kSensorHelp + "; default: that of the folder");
+  app.add_option("--voxel", options.voxel, "voxel size [m]")->required();
   app.add_option("--workspace", options.workspace,
-                 "of a folder of frames: x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: "
-                 "what they see");
-  app.add_option(
-         "--jump-edge-filter", options.jump_edge_filter,
-         "of a folder of frames: angle of the filter that takes flying pixels [deg], or off")
+                 "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: what the frames see");
+  app.add_option("--jump-edge-filter", options.jump_edge_filter,
+                 "angle of the filter that takes flying pixels [deg], or off")
       ->capture_default_str();
   add_frame_folder_options(app, options.folder);
-}
-
-void refuse_frame_map_options(const App& app, std::string_view why) {
-  for (const char* flag : kFlags) {
-    if (app.count(flag) == 0) continue;
-    throw Error(ErrorCode::invalid_argument, std::string(flag).append(" ").append(why));
-  }
 }
 
 FrameMap::FrameMap(const FrameMapOptions& options, const ProposalOptions& proposal, bool quiet,

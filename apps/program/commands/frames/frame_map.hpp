@@ -5,9 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <string_view>
 
 #include "program/cli/app.hpp"
 #include "program/cli/flags/frame_folder.hpp"
@@ -20,7 +18,7 @@ namespace viewgain::app {
 /// How a folder of frames becomes a map on the way to something else.
 struct FrameMapOptions {
   FrameFolderOptions folder;
-  std::optional<double> voxel{};
+  double voxel = 0;
   std::string workspace;
   std::string jump_edge_filter = "5";
   bool refine = true;
@@ -29,17 +27,14 @@ struct FrameMapOptions {
 /// Is this a folder, and so no map and no mesh?
 [[nodiscard]] bool is_frame_folder(const std::filesystem::path& path);
 
-/// --voxel, --workspace, --jump-edge-filter and those of a folder, for a subcommand that takes
-/// maps, too.
+/// FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter and those of a folder.
 void add_frame_map_options(App& app, FrameMapOptions& options);
-/// Throws Error(invalid_argument) if any of them is given.
-void refuse_frame_map_options(const App& app, std::string_view why);
 
 /// The map as frames of a folder go into it, in the folder's order.
 class FrameMap {
  public:
-  /// Throws Error, naming the flag or the file: without --voxel, and as FrameFolder, parse_box(),
-  /// hazard_source(), obstacles_of() and MapModel. Without --workspace all frames are read for
+  /// Throws Error, naming the flag or the file, as FrameFolder, parse_box(), hazard_source(),
+  /// obstacles_of() and MapModel. Without --workspace all frames are read for
   /// their bounds; throws if none has a reading.
   FrameMap(const FrameMapOptions& options, const ProposalOptions& proposal, bool quiet,
            const ExecConfig& exec);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "program/cli/flags/obstacle_source.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
@@ -12,9 +13,8 @@
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/cloud_io.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
-#include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate_cloud.hpp"
-#include "viewgain/planner/map_registration.hpp"
+#include "viewgain/planner/align_frames.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -23,26 +23,27 @@ IntegrationConfig config_of(const IntegrateOptions& options) {
   IntegrationConfig config;
   config.carve = options.carve == "cones" ? Carve::cones : Carve::lines;
   config.occupancy = options.occupancy_rule();
-  config.support_plane = options.support_plane;
+  return config;
+}
+
+// What frames do to a map, as MapModel puts them in.
+MapModelConfig map_config(const IntegrateOptions& options) {
+  MapModelConfig config;
+  config.integration = config_of(options);
+  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
+  config.surroundings = {obstacles_of(options.obstacles), options.support_plane};
+  config.follow_surface = options.calibrates_hazard();
+  config.keep_scene = false;
   return config;
 }
 
 class FrameSource : public ReadingSource {
  public:
   explicit FrameSource(const IntegrateOptions& options)
-      : folder_(options.frames),
-        support_plane_(options.support_plane),
-        integrator_(folder_.sensor(), config_of(options), {options.common.threads}) {
-    const auto config =
-        parse_jump_edge_filter(options.jump_edge_filter, options.jump_edge_two_sided == "on");
-    if (config) filter_.emplace(folder_.sensor().camera, *config);
-    if (options.calibrate_hazard == "on") calibration_.emplace(folder_.sensor(), support_plane_);
-    prior_ = registration_prior(options.registration);
-    if (prior_) {
-      MapModelConfig map;  // flying pixels are taken out when the frame is loaded
-      map.integration = config_of(options);
-      registration_.emplace(folder_.sensor(), map, ExecConfig{options.common.threads});
-    }
+      : folder_(options.frames), config_(map_config(options)), exec_{options.common.threads} {
+    if (config_.jump_edges) filter_.emplace(folder_.sensor().camera, *config_.jump_edges);
+    reported_sigma_ = registration_sigma(options.registration);
+    if (reported_sigma_) registration_.emplace(folder_.sensor(), config_, exec_);
   }
 
   [[nodiscard]] const Sensor& sensor() const override { return folder_.sensor(); }
@@ -57,26 +58,31 @@ class FrameSource : public ReadingSource {
 
   void load(std::size_t index) override {
     loaded_ = folder_.load(index);
-    removed_ = filter_ ? filter_->apply(loaded_.frame) : 0;
     T_world_camera_ = folder_.T_world_camera(index);
     pose_sigma_ = {};
   }
   [[nodiscard]] std::optional<Box> bounds() const override {
-    return reading_bounds(folder_.sensor(), loaded_.frame, T_world_camera_, {}, support_plane_);
+    DepthFrame frame = loaded_.frame;
+    if (filter_) filter_->apply(frame);
+    return reading_bounds(folder_.sensor(), frame, T_world_camera_, {},
+                          config_.surroundings.support_plane);
   }
-  std::optional<FrameRegistration> register_in(const BeliefGrid& grid) override {
+  void start(BeliefGrid grid) override {
+    map_.emplace(std::move(grid), folder_.sensor(), config_, exec_);
+  }
+  [[nodiscard]] const BeliefGrid& grid() const override { return map_->grid(); }
+  std::optional<FrameRegistration> register_loaded() override {
     if (!registration_) return std::nullopt;
-    prior_->T_world_camera = T_world_camera_;
-    FrameRegistration result = registration_->register_frame(grid, loaded_.frame, *prior_);
+    FrameRegistration result =
+        registration_->register_frame(grid(), loaded_.frame, T_world_camera_, *reported_sigma_);
     T_world_camera_ = result.T_world_camera;
     pose_sigma_ = result.pose_sigma();
     return result;
   }
-  IntegrationReport integrate(BeliefGrid& grid) override {
-    if (calibration_) {
-      calibration_->count(grid, HazardField(grid.snapshot()), loaded_.frame, T_world_camera_);
-    }
-    return integrator_.integrate(grid, loaded_.frame, T_world_camera_, pose_sigma_);
+  IntegrationReport integrate() override {
+    const MapUpdate update = map_->update({T_world_camera_, {loaded_.frame}, pose_sigma_});
+    removed_ = update.flying_pixels;
+    return update.counts;
   }
   [[nodiscard]] std::uint64_t masked_pixels() const override { return loaded_.masked_pixels; }
   [[nodiscard]] std::uint64_t jump_edge_removed() const override { return removed_; }
@@ -86,12 +92,12 @@ class FrameSource : public ReadingSource {
 
  private:
   FrameFolder folder_;
-  std::optional<double> support_plane_;
+  MapModelConfig config_;
+  ExecConfig exec_;
   std::optional<JumpEdgeFilter> filter_;
-  std::optional<HazardCalibration> calibration_;
-  std::optional<PosePrior> prior_;  // its sigmas; of the frame that was registered last
-  std::optional<MapRegistration> registration_;
-  FrameIntegrator integrator_;
+  std::optional<PoseSigma> reported_sigma_;  // if frames are registered
+  std::optional<FrameAlignment> registration_;
+  std::optional<MapModel> map_;  // once it has started
   FrameFolder::MaskedFrame loaded_;
   Pose T_world_camera_;
   PoseSigma pose_sigma_;  // by which it may be off
@@ -151,8 +157,10 @@ class CloudSource : public ReadingSource {
   [[nodiscard]] std::optional<Box> bounds() const override {
     return reading_bounds(sensor_, cloud_.points, T_world_sensor_, {}, support_plane_);
   }
-  IntegrationReport integrate(BeliefGrid& grid) override {
-    return integrator_.integrate(grid, cloud_.points, T_world_sensor_);
+  void start(BeliefGrid grid) override { grid_.emplace(std::move(grid)); }
+  [[nodiscard]] const BeliefGrid& grid() const override { return *grid_; }
+  IntegrationReport integrate() override {
+    return integrator_.integrate(*grid_, cloud_.points, T_world_sensor_);
   }
 
  private:
@@ -173,6 +181,7 @@ class CloudSource : public ReadingSource {
   Sensor sensor_;
   std::optional<double> support_plane_;
   CloudIntegrator integrator_;
+  std::optional<BeliefGrid> grid_;         // once it has started
   PoseList poses_;                         // empty: the points are in the world
   std::optional<Eigen::Vector3d> origin_;  // of all clouds; nothing: each has its own
   PointCloud cloud_;                       // in the world

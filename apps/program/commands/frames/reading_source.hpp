@@ -12,6 +12,7 @@
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/registration_options.hpp"
+#include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/planner/register_frame.hpp"
@@ -29,16 +30,20 @@ struct IntegrateOptions {
   std::string workspace;
   std::string carve = "cones";
   std::string occupancy = "probabilistic";
-  std::string jump_edge_filter = "off";
-  std::string jump_edge_two_sided = "off";
+  std::string jump_edge_filter = "5";
   std::optional<double> support_plane;
-  std::string calibrate_hazard = "off";
+  std::vector<std::string> obstacles;
+  std::string calibrate_hazard = "on";
   std::optional<double> prior_sigma;
   std::string with_covariance = "off";
   RegistrationOptions registration;
   std::string out;
   std::string map;
 
+  /// A tree has no place for what is counted.
+  [[nodiscard]] bool calibrates_hazard() const {
+    return calibrate_hazard == "on" && !is_octomap(out);
+  }
   [[nodiscard]] Occupancy occupancy_rule() const {
     return occupancy == "probabilistic" ? Occupancy::probabilistic : Occupancy::literal;
   }
@@ -61,13 +66,17 @@ class ReadingSource {
   virtual void load(std::size_t index) = 0;
   /// Of the part's readings, world frame [m].
   [[nodiscard]] virtual std::optional<Box> bounds() const = 0;
+  /// The map that the readings go into.
+  virtual void start(BeliefGrid grid) = 0;
+  /// After start().
+  [[nodiscard]] virtual const BeliefGrid& grid() const = 0;
   /// What registering the loaded part against the map came to, from whose pose it is then
   /// integrated; nothing without --register on.
-  virtual std::optional<FrameRegistration> register_in(const BeliefGrid& /*grid*/) { return {}; }
-  virtual IntegrationReport integrate(BeliefGrid& grid) = 0;
+  virtual std::optional<FrameRegistration> register_loaded() { return {}; }
+  virtual IntegrationReport integrate() = 0;
   /// Pixels of the loaded part with a depth that its mask took.
   [[nodiscard]] virtual std::uint64_t masked_pixels() const { return 0; }
-  /// Readings of the loaded part that the jump-edge filter took.
+  /// Readings of the part integrated last that the jump-edge filter took.
   [[nodiscard]] virtual std::uint64_t jump_edge_removed() const { return 0; }
   /// Metres per unit of depth images; nothing for clouds.
   [[nodiscard]] virtual std::optional<double> depth_scale() const { return std::nullopt; }

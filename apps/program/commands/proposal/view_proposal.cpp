@@ -8,12 +8,14 @@
 
 #include "program/cli/choices.hpp"
 #include "program/cli/flags/common_options.hpp"
+#include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/hazard_source.hpp"
 #include "program/cli/flags/obstacle_source.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/planner/pose_sets.hpp"
+#include "viewgain/planner/rank_views.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -35,25 +37,6 @@ double distance_of(const ProposalOptions& options, const Sensor& sensor, const B
 }
 
 // As in a room: all views so far were taken from inside of the workspace.
-bool is_seen_from_inside(const BeliefGrid& grid) {
-  return std::all_of(grid.views().begin(), grid.views().end(), [&grid](const Pose& view) {
-    return grid.index_of(view.translation()).has_value();
-  });
-}
-
-std::vector<HalfSpace> inside_of_workspace(const BeliefGrid& grid) {
-  const Box box = grid.workspace();
-  std::vector<HalfSpace> sides;
-  for (int a = 0; a < 3; ++a) {
-    const auto k = static_cast<std::size_t>(a);
-    const Eigen::Vector3d axis = grid.T_world_grid().rotation().col(a);
-    const double origin = axis.dot(grid.T_world_grid().translation());
-    sides.push_back({axis, origin + box.min[k]});
-    sides.push_back({-axis, -(origin + box.max[k])});
-  }
-  return sides;
-}
-
 }  // namespace
 
 void add_proposal_options(App& app, ProposalOptions& o) {
@@ -81,6 +64,22 @@ void add_proposal_options(App& app, ProposalOptions& o) {
   app.add_option("--object-size", o.object_size, kObjectSizeHelp);
   app.add_option("--hazard", o.hazard, kHazardHelp);
   add_seed_option(app, o.seed, "of the shell");
+}
+
+void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
+  o.gain = default_gain();
+  one_of(*app.add_option("--generator", o.generator,
+                         "where views come from: boundary (open boundaries of the surface in the "
+                         "map), sphere, dome, rings, shell or sequence")
+              ->capture_default_str(),
+         generator_names(), "generator");
+  add_proposal_options(app, o);
+  one_of(*app.add_option("--gain", o.gain, "paper, surface or combined, as in score")
+              ->capture_default_str(),
+         gain_model_names(), "gain");
+  app.add_option("--top", top, "views to name at most")
+      ->capture_default_str()
+      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
 }
 
 void check(const ProposalOptions& options) {
@@ -118,7 +117,7 @@ SurfaceModel model_of(BeliefGrid grid, const Sensor& sensor, const ProposalOptio
                       const ExecConfig& exec) {
   SurfaceModelConfig config;
   config.map.hazard = hazard_source(options.hazard, options.object_size, grid);
-  config.map.obstacles = obstacles_of(options.obstacles);
+  config.map.surroundings = {obstacles_of(options.obstacles), options.support_plane};
   return {std::move(grid), sensor, config, exec};
 }
 
@@ -129,13 +128,7 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
   if (options.distance) config.boundary.working_distance = *options.distance;
   if (options.overlap) config.boundary.estimator.overlap = *options.overlap;
   if (options.region_depth) config.boundary.estimator.region_depth = *options.region_depth;
-  if (!options.reach.empty()) {
-    config.feasibility.reach = read_reach_toml(options.reach);
-  } else if (config.at_boundaries && is_seen_from_inside(grid)) {
-    // Outside of the workspace nothing is mapped, so nothing would be in the camera's way.
-    config.feasibility.reach.half_spaces = inside_of_workspace(grid);
-  }
-  config.feasibility.support_plane = options.support_plane;
+  if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
   if (config.at_boundaries && grid.views().empty()) {
     throw Error(ErrorCode::invalid_argument,
                 map + ": has no views, which boundary candidates need");
@@ -151,25 +144,15 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
 GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& model,
                            const Sensor& sensor, const ExecConfig& exec) {
   GainConfig config;
-  if (!options.gain.empty()) config.model = parse_gain_model(options.gain);
-  config.support_plane = options.support_plane;
+  config.model = parse_gain_model(options.gain);
   return {model.scene(), sensor, config, exec};
 }
 
 NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal, std::size_t top) {
-  std::vector<Pose> poses;
-  for (const Candidate& candidate : proposal.candidates) poses.push_back(candidate.T_world_camera);
-  const GainModel model = evaluator.model();
-  const BestViews best = model == GainModel::paper ? evaluator.best(poses, top)
-                                                   : BestViews(evaluator.race(poses, top));
-  NextViews next{{}, poses.size(), proposal.dropped, model};
-  for (std::size_t k = 0; k < best.indices.size(); ++k) {
-    if (!(best.gains[k].gain > 0)) break;
-    const Candidate& candidate = proposal.candidates[best.indices[k]];
-    next.views.push_back({candidate.T_world_camera, best.indices[k], best.gains[k],
-                          candidate.generator, candidate.boundary_class});
-  }
-  return next;
+  const RankConfig config;
+  Ranking ranking = rank_views(evaluator, poses_of(proposal.candidates), top, config, std::nullopt);
+  leave_out_gainless(ranking, config);
+  return next_views(ranking, proposal, evaluator.model());
 }
 
 }  // namespace viewgain::app

@@ -40,6 +40,9 @@ struct ProposalOptions {
 /// The flags, but for --generator and --gain: what these do by default is not the same everywhere.
 void add_proposal_options(App& app, ProposalOptions& options);
 
+/// With --generator and --gain of the best views, which --top limits.
+void add_next_view_options(App& app, ProposalOptions& options, std::size_t& top);
+
 /// Throws Error(invalid_argument), naming the flag: also for what a generator or a gain has no use
 /// for, which would be ignored in silence.
 void check(const ProposalOptions& options);
@@ -58,7 +61,7 @@ void check(const ProposalOptions& options);
                                                  const Sensor& sensor, const BeliefGrid& grid,
                                                  const std::string& map);
 
-/// Scores views on the model's scene by --gain, of nothing by the paper's.
+/// Scores views on the model's scene by --gain, which must be given.
 [[nodiscard]] GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& model,
                                          const Sensor& sensor, const ExecConfig& exec);
 

@@ -12,9 +12,8 @@
 #include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/frames/frame_map.hpp"
-#include "program/commands/reconstruct/recorded_run.hpp"
 #include "program/commands/reconstruct/run.hpp"
+#include "program/commands/reconstruct/run_outputs.hpp"
 #include "program/commands/reconstruct/run_report.hpp"
 #include "show/pictures/view_picture.hpp"
 #include "show/report/page.hpp"
@@ -35,36 +34,10 @@ namespace {
 GainEvaluator step_evaluator(const SurfaceModel& model, const RunSetup& setup,
                              const ExecConfig& exec) {
   GainConfig gain;
-  gain.support_plane = setup.policy.support_plane;
   gain.criterion = setup.policy.criterion;
-  if (setup.policy.policy == Policy::gain && !setup.policy.classic) gain.model = setup.policy.model;
+  const bool by_model = setup.policy.policy == Policy::gain && !setup.policy.classic;
+  gain.model = by_model ? setup.policy.model : GainModel::paper;
   return {model.scene(), setup.sensor, gain, exec};
-}
-
-// Without a proposal those that the generation holds are of a surface before.
-EstimatedViews estimated_views(const ViewRecord& record, const CandidateGeneration& generation) {
-  const bool proposed = !record.proposal.candidates.empty() || !record.proposal.dropped.empty();
-  return proposed ? generation.estimated() : EstimatedViews{};
-}
-
-std::optional<Pose> chosen_view(const ViewRecord& record) {
-  if (!record.decision) return std::nullopt;
-  return record.proposal.candidates[record.decision->candidate].T_world_camera;
-}
-
-RgbImage step_picture(const ViewRecord& record, const SurfaceModel& model,
-                      const EstimatedViews& estimated, const GainEvaluator& evaluator,
-                      const std::vector<VoxelContribution>& contributions, const Sensor& sensor,
-                      const ExecConfig& exec) {
-  const ViewPicture picture{model.surface(),
-                            estimated,
-                            record.proposal.candidates,
-                            record.T_world_camera,
-                            chosen_view(record),
-                            evaluator,
-                            sensor,
-                            &contributions};
-  return view_picture(picture, exec);
 }
 
 void add_to(StageSeconds& totals, const StageSeconds& seconds) {
@@ -91,8 +64,8 @@ std::string run_title(const ReconstructOptions& options, const RunSetup& setup) 
 }
 
 void reconstruct(const ReconstructOptions& options, const App& app) {
-  if (is_frame_folder(options.mesh)) return reconstruct_frames(options, app);
-  if (options.report == "on") check_report_page("--report");
+  const RunOutputs& outputs = options.outputs;
+  if (outputs.with_report()) check_report_page("--report");
   StageSeconds seconds;
   const ExecConfig exec{options.common.threads};
   RunSetup setup = set_up(options, exec);
@@ -104,10 +77,9 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   const SurfaceModel& model = loop.model();
   const CandidateGeneration& generation = loop.generation();
 
-  RunFolder folder(options.out);
+  RunFolder folder(outputs.out);
   const PolicyConfig& policy = setup.policy;
   RunReport report(policy);
-  const bool with_pictures = options.pictures == "on", with_report = options.report == "on";
   RunPage page(run_title(options, setup), setup.sensor,
                std::string(criterion_name(policy.criterion)), loop.truth());
   std::vector<Pose> views;
@@ -115,32 +87,17 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   const PlanningResult result = loop.go([&](const ViewRecord& record) {
     views.push_back(record.T_world_camera);
     add_to(seconds, record.seconds);
-    if (options.save_maps == "on") {
+    if (outputs.saves_maps()) {
       save_vdb(model.grid(), folder.map(record.index), noting_sensor(setup.sensor));
     }
-    if (with_pictures || with_report) {
-      const Stopwatch watch;
+    if (outputs.draws()) {
       const GainEvaluator evaluator = step_evaluator(model, setup, exec);
-      const EstimatedViews estimated = estimated_views(record, generation);
-      const std::optional<Pose> chosen = chosen_view(record);
-      std::vector<VoxelContribution> contributions;
-      if (chosen && (with_report || evaluator.model() != GainModel::paper)) {
-        contributions = evaluator.contributions(*chosen);
-      }
-      const RgbImage picture =
-          step_picture(record, model, estimated, evaluator, contributions, setup.sensor, exec);
-      const DepthFrame& frame = loop.acquisition().last_frame();
-      if (with_pictures) write_png(folder.view(record.index, ".png"), picture);
-      if (with_pictures && !frame.amplitude.empty()) {
-        write_amplitude_picture(folder.view(record.index, ".amplitude.png"), frame);
-      }
-      seconds["pictures"] += watch.seconds();
-      if (with_report) {
-        const Stopwatch report_watch;
-        page.add_view(record, model, generation, estimated, evaluator, std::move(contributions),
-                      picture);
-        seconds["report"] += report_watch.seconds();
-      }
+      add_to(seconds, show_step(outputs, folder, page,
+                                {record, model, generation, evaluator, setup.sensor}, exec));
+    }
+    const DepthFrame& frame = loop.acquisition().last_frame();
+    if (outputs.with_pictures() && !frame.amplitude.empty()) {
+      write_amplitude_picture(folder.view(record.index, ".amplitude.png"), frame);
     }
     report.add_view(record, model.quality().back(), model.realised_area(), seconds);
     progress.wipe();
@@ -158,7 +115,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   write_file_atomically(folder.file("config.toml"),
                         config_text(app, {"out", "json", "quiet", "threads"}));
   const Json run = write_results(folder, setup, options.sensing.seed, model, views, json);
-  if (with_report) {
+  if (outputs.with_report()) {
     write_report(folder.file("report.html"), page.json(run, setup.stage.scene.get()));
   }
   folder.commit();
@@ -169,10 +126,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
     const Eigen::Vector3d& center = setup.stage.center;
     std::printf("the object's box, %.3g m long, has its centre at %.3g, %.3g, %.3g m\n",
                 setup.stage.size, center.x(), center.y(), center.z());
-    std::printf(
-        "left in %s: run.json, config.toml, views.txt, map.vdb, surface.ply, points.ply%s%s%s\n",
-        options.out.c_str(), with_pictures ? ", views/" : "",
-        options.save_maps == "on" ? ", maps/" : "", with_report ? ", report.html" : "");
+    print_left(outputs, "run.json, config.toml, views.txt, map.vdb, surface.ply, points.ply");
   }
 }
 
@@ -183,10 +137,9 @@ Command add_reconstruct(App& program) {
   App* app = program.add_subcommand(
       "reconstruct",
       "The whole loop on a mesh: acquire with a simulated camera, update map and surface, propose "
-      "views, rank them, move, until little is left to gain. Or on a folder of recorded frames: "
-      "map, surface and the views to take next.");
+      "views, rank them, move, until little is left to gain. Or of a folder of recorded frames.");
   add_options(*app, *options);
-  return {app, [options, app] { reconstruct(*options, *app); }};
+  return {app, [options, app] { reconstruct(*options, *app); }, add_reconstruct_frames};
 }
 
 }  // namespace viewgain::app

@@ -19,13 +19,6 @@ double sum_of(const StageSeconds& seconds) {
   return sum;
 }
 
-Json seconds_json(const StageSeconds& seconds) {
-  Json json = Json::object();
-  for (const auto& [stage, value] : seconds) json[stage] = value;
-  json["total"] = sum_of(seconds);
-  return json;
-}
-
 }  // namespace
 
 RecordedViews::RecordedViews(FrameMap& map, std::vector<FrameRegistration> registrations)

@@ -28,8 +28,6 @@ class RecordedViews {
   void add(std::size_t index);
   void add_seconds(const std::string& stage, double seconds) { seconds_[stage] += seconds; }
 
-  /// One a frame that was added.
-  [[nodiscard]] const std::vector<ViewRecord>& records() const noexcept { return records_; }
   /// For what is chosen after it.
   [[nodiscard]] ViewRecord& last() noexcept { return records_.back(); }
   /// Those in the map, as its file notes them.

@@ -21,9 +21,9 @@ Run::Run(RunSetup setup, std::size_t frames_per_view, const ExecConfig& exec)
                                            exec)),
       acquisition_(SimulatedSensor(setup_.stage.scene, setup_.sensor, setup_.simulation, exec),
                    frames_per_view, setup_.planning.stop),
-      reported_(acquisition_, setup_.pose_noise),
+      reported_(acquisition_, setup_.pose_noise, setup_.simulation.seed),
       model_(setup_.sensor, setup_.model, truth_, exec),
-      generation_(model_, setup_.sensor, setup_.generation, exec),
+      generation_(model_, setup_.generation, exec),
       decision_(model_, generation_, setup_.sensor, with_object(setup_.policy, setup_, truth_),
                 exec) {
   if (!setup_.registration) return;

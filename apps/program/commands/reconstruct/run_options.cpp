@@ -20,9 +20,6 @@ namespace {
 
 constexpr std::size_t kMaxCount = 1'000'000;
 
-const std::string kSensorOfRunHelp =
-    std::string(kSensorHelp) + "; needed with a mesh; default: that of the folder of frames";
-
 auto counted(std::size_t least, std::size_t most) {
   return [=](Option& option) { option.range(least, most, "count"); };
 }
@@ -44,10 +41,8 @@ auto named(const std::vector<std::string>& names, const char* what) {
 // Each option once, in the order of run.json's settings. `Options` is ReconstructOptions or const.
 template <typename Options, typename Visitor>
 void describe(Options& o, Visitor& visit) {
-  visit.option("mesh", "MESH", o.mesh,
-               "OFF, OBJ, STL or PLY, centred; or a folder of frames as integrate takes it",
-               needed);
-  visit.option("sensor", "--sensor", o.sensor, kSensorOfRunHelp.c_str(), as_it_is);
+  visit.option("mesh", "MESH", o.mesh, "OFF, OBJ, STL or PLY, centred", needed);
+  visit.option("sensor", "--sensor", o.sensor, kSensorHelp.c_str(), needed);
   visit.option("voxel", "--voxel", o.voxel, "voxel size [m]", needed);
   visit.option("size", "--size", o.size,
                "scale the object so that its longest side is this [m]; default: the file's own "
@@ -122,8 +117,6 @@ void describe(Options& o, Visitor& visit) {
                "stop at this coverage of the visible surface, 0..1", as_it_is);
   visit.option("travel_cost", "--travel-cost", o.travel_cost,
                "rank by gain - L * distance [nat/m, surface: m^2/m]", shows_default);
-  visit.option("travel_speed", "--travel-speed", o.travel_speed,
-               "rank by gain / (1 s + distance / speed) instead [m/s]", as_it_is);
   visit.option("reach", "--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach",
                as_it_is);
   // Recorded where there are any.
@@ -146,41 +139,25 @@ void describe(Options& o, Visitor& visit) {
                "angle of the filter [deg], or off", shows_default);
   visit.option("refine", "--refine", o.refine,
                "readings of a voxel refine it; off: the first one wins", switched);
-  visit.option(nullptr, "--save-maps", o.save_maps, "keep maps/NN.vdb after each view", switched);
-  visit.option(nullptr, "--pictures", o.pictures, "draw views/NN.png", switched);
-  visit.option(nullptr, "--report", o.report,
-               "write report.html: the run to look at in a browser, in one file", switched);
-  visit.option(nullptr, "--out", o.out, "folder to write", needed);
-  visit.option(nullptr, "--depth-scale", o.depth_scale,
-               "of a folder of frames: metres per unit of the images; default: 1e-4 for what "
-               "simulate writes (poses.txt and sensor.toml), else 1e-3",
-               as_it_is);
-  visit.option(
-      nullptr, "--mask", o.mask,
-      "of a folder of frames: folder of grayscale PNGs with the depth images' names: where "
-      "they are not 0, an image says nothing",
-      as_it_is);
-  visit.option(
-      nullptr, "--confidence", o.confidence,
-      "of a folder of frames: folder of grayscale PNGs with the depth images' names: where "
-      "they are under --least-confidence, an image says nothing",
-      as_it_is);
-  visit.option(nullptr, "--least-confidence", o.least_confidence,
-               "of a folder of frames: least value of --confidence that counts, 1..255",
-               [](Option& option) {
-                 option.range(1, 255, "confidence");
-                 shows_default(option);
-               });
-  visit.option(nullptr, "--top", o.top, "of a folder of frames: next views to name at most",
-               counted_with_default(1, kMaxCount));
 }
 
 }  // namespace
+
+void add_output_options(App& app, RunOutputs& outputs) {
+  const OptionDeclaration declaration(app);
+  declaration.option(nullptr, "--save-maps", outputs.save_maps, "keep maps/NN.vdb after each view",
+                     switched);
+  declaration.option(nullptr, "--pictures", outputs.pictures, "draw views/NN.png", switched);
+  declaration.option(nullptr, "--report", outputs.report,
+                     "write report.html: the run to look at in a browser, in one file", switched);
+  declaration.option(nullptr, "--out", outputs.out, "folder to write", needed);
+}
 
 void add_options(App& app, ReconstructOptions& o) {
   o.sensing.noise = "on";
   const OptionDeclaration declaration(app);
   describe(o, declaration);
+  add_output_options(app, o.outputs);
   add_common_options(app, o.common);
   add_help(app, kLoopGroup,
            "reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 4 "
@@ -194,14 +171,6 @@ Json settings_json(const ReconstructOptions& options, const Json& resolved) {
 }
 
 void check(const ReconstructOptions& options) {
-  if (options.sensor.empty()) {
-    throw Error(ErrorCode::invalid_argument, "--sensor is needed with a mesh");
-  }
-  if (options.depth_scale || !options.mask.empty() || !options.confidence.empty()) {
-    throw Error(
-        ErrorCode::invalid_argument,
-        "--depth-scale, --mask and --confidence are for a folder of frames, not for a mesh");
-  }
   check_positive("--voxel", options.voxel);
   if (options.size) check_positive("--size", *options.size);
   if (!options.gain.empty() && parse_policy(options.policy) != Policy::gain) {
@@ -215,12 +184,7 @@ void check(const ReconstructOptions& options) {
                                                  " goes with a gain of the literature (--gain " +
                                                  classic.front() + ", ...)");
   }
-  if (options.travel_cost > 0 && options.travel_speed) {
-    throw Error(ErrorCode::invalid_argument,
-                "--travel-cost and --travel-speed are two rankings; give one");
-  }
   check_at_least_0("--travel-cost", options.travel_cost);
-  if (options.travel_speed) check_positive("--travel-speed", *options.travel_speed);
   if (options.distance) check_positive("--distance", *options.distance);
   if (options.sensing.support_plane) {
     check_finite("--support-plane", *options.sensing.support_plane);

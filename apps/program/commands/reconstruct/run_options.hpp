@@ -16,10 +16,24 @@
 
 namespace viewgain::app {
 
-/// Flags of `viewgain reconstruct`.
+/// What a run leaves, of a mesh or of frames.
+struct RunOutputs {
+  std::string save_maps = "off";
+  std::string pictures = "on";
+  std::string report = "off";
+  std::string out;
+
+  [[nodiscard]] bool saves_maps() const { return save_maps == "on"; }
+  [[nodiscard]] bool with_pictures() const { return pictures == "on"; }
+  [[nodiscard]] bool with_report() const { return report == "on"; }
+  [[nodiscard]] bool draws() const { return with_pictures() || with_report(); }
+};
+void add_output_options(App& app, RunOutputs& outputs);
+
+/// Flags of `viewgain reconstruct MESH`.
 struct ReconstructOptions {
   CommonOptions common;
-  std::string mesh;  ///< or a folder of frames
+  std::string mesh;
   std::string sensor;
   double voxel = 0;
   std::optional<double> size;
@@ -42,7 +56,6 @@ struct ReconstructOptions {
   std::size_t stop_idle = PlanningConfig{}.idle_views;
   std::optional<double> stop_coverage;
   double travel_cost = 0;
-  std::optional<double> travel_speed;
   std::string reach;
   std::vector<std::string> obstacles;
   std::string body;
@@ -52,15 +65,7 @@ struct ReconstructOptions {
   std::size_t frames_per_view = 1;
   std::string jump_edge_filter = "5";
   std::string refine = "on";
-  std::string save_maps = "off";
-  std::string pictures = "on";
-  std::string report = "off";
-  std::string out;
-  // Of a folder of frames.
-  std::optional<double> depth_scale;
-  std::string mask, confidence;
-  int least_confidence = 1;
-  std::size_t top = 10;
+  RunOutputs outputs;
 };
 
 /// Declares the flags, with o's values as defaults.

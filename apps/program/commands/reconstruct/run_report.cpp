@@ -16,23 +16,6 @@
 namespace viewgain::app {
 namespace {
 
-Json to_json(const StageSeconds& seconds) {
-  Json json = Json::object();
-  double total = 0;
-  for (const auto& [stage, value] : seconds) {
-    json[stage] = value;
-    total += value;
-  }
-  json["total"] = total;
-  return json;
-}
-
-Json to_json(const std::map<std::string, std::size_t>& counts) {
-  Json json = Json::object();
-  for (const auto& [reason, count] : counts) json[reason] = count;
-  return json;
-}
-
 // The figures that both a view and the whole run have.
 void put_figures(Json& json, const QualityFigures& quality, const ModelProgress& progress) {
   json["coverage"] = quality.coverage;
@@ -121,7 +104,7 @@ std::string RunReport::progress_line() const {
 
 Json RunReport::entry_json(std::size_t index) const {
   const Entry& e = views_[index];
-  Json json{{"index", e.record.index}, {"pose", app::to_json(e.record.T_world_camera)}};
+  Json json{{"index", e.record.index}, {"pose", to_json(e.record.T_world_camera)}};
   const bool chosen = e.record.chosen_as.has_value();
   const bool of_boundary = chosen && e.record.chosen_as->boundary_class;
   json["class"] =
@@ -131,7 +114,7 @@ Json RunReport::entry_json(std::size_t index) const {
   const Proposal empty;
   const Proposal& from = index > 0 ? views_[index - 1].record.proposal : empty;
   json["candidates"] = from.candidates.size();
-  json["dropped"] = to_json(from.dropped);
+  json["dropped"] = from.dropped;
   json["predicted_gain"] = e.record.predicted_gain;
   json["realised_gain"] = e.record.realised_gain;
   json["predicted_area"] = e.record.predicted_area;
@@ -145,9 +128,9 @@ Json RunReport::entry_json(std::size_t index) const {
   put_figures(json, e.quality, e.record.progress);
   json["travelled"] = e.record.travelled;
   if (index < registrations_.size()) {
-    json["registration"] = app::to_json(registrations_[index]);
+    json["registration"] = to_json(registrations_[index]);
   }
-  json["seconds"] = to_json(e.seconds);
+  json["seconds"] = seconds_json(e.seconds);
   return json;
 }
 
@@ -162,14 +145,14 @@ const Proposal& RunReport::last_proposal() const {
 Json RunReport::json(StopReason reason) const {
   const Entry& last = views_.back();
   Json json{{"stop_reason", stop_reason_name(reason)}, {"views", views_.size()}};
-  json["gain_model"] = ranked_by_.empty() ? Json() : Json(ranked_by_);
+  json["gain_model"] = Json::or_null(ranked_by_);
   put_figures(json, last.quality, last.record.progress);
   json["travelled"] = last.record.travelled;
   const Proposal& proposal = last_proposal();
   json["final_candidates"] = proposal.candidates.size();
-  json["final_dropped"] = to_json(proposal.dropped);
+  json["final_dropped"] = proposal.dropped;
   if (!registrations_.empty()) json["registration"] = registration_counts(registrations_);
-  json["seconds"] = to_json(totals_);
+  json["seconds"] = seconds_json(totals_);
   json["per_view"] = Json::array();
   for (std::size_t i = 0; i < views_.size(); ++i) json["per_view"].push_back(entry_json(i));
   return json;

@@ -12,7 +12,7 @@
 
 #include "program/cli/flags/hazard_source.hpp"
 #include "program/cli/flags/obstacle_source.hpp"
-#include "program/cli/flags/pose_sigmas.hpp"
+#include "program/cli/flags/pose_sigma_json.hpp"
 #include "program/cli/json_text.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
@@ -67,8 +67,10 @@ void check_size(const RunSetup& setup) {
 void check_start(const ReconstructOptions& options, const RunSetup& setup, const ExecConfig& exec) {
   if (options.obstacles.empty()) return;
   const BeliefGrid grid(setup.model.map.grid);
-  const FeasibilityChecker checker(VoxelScene::build(grid, setup.model.map.obstacles, exec),
-                                   feasibility_of(setup.sensor));
+  // The obstacles alone: at the table the camera may start.
+  const FeasibilityChecker checker(
+      VoxelScene::build(grid, {setup.model.map.surroundings.obstacles}, exec),
+      feasibility_of(setup.sensor));
   if (checker.check(setup.start) != Infeasibility::obstacle) return;
   const std::string which = options.start.empty() ? "the start pose, which --start would give"
                                                   : "--start " + options.start;
@@ -76,16 +78,13 @@ void check_start(const ReconstructOptions& options, const RunSetup& setup, const
               which + ": the sensor's body would overlap an --obstacle there");
 }
 
-SurfaceModelConfig model_config(const ReconstructOptions& options, const Sensor& sensor,
-                                const Stage& stage) {
+SurfaceModelConfig model_config(const ReconstructOptions& options, const Stage& stage) {
   SurfaceModelConfig model;
   MapModelConfig& config = model.map;
   config.grid.voxel_size = options.voxel;
   config.grid.workspace = stage.workspace;
-  config.grid.prior_sigma = default_prior_sigma(options.voxel, sensor);
-  config.integration.support_plane = options.sensing.support_plane;
-  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter, false);
-  config.obstacles = obstacles_of(options.obstacles);
+  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
+  config.surroundings = {obstacles_of(options.obstacles), options.sensing.support_plane};
   config.criterion = parse_criterion(options.criterion);
   config.refine = options.refine == "on";
   config.hazard = hazard_source(options.hazard, options.object_size, BeliefGrid(config.grid));
@@ -134,10 +133,7 @@ GenerationConfig generation_config(const ReconstructOptions& options, const RunS
       config.sets.push_back(make_pose_set(name, request));
     }
   }
-  // A list of poses is all that the robot can do: they are candidates themselves.
-  if (!setup.reach.poses.empty()) config.sets.push_back({"reach", setup.reach.poses});
   config.feasibility.reach = setup.reach;
-  config.feasibility.support_plane = options.sensing.support_plane;
   return config;
 }
 
@@ -173,27 +169,24 @@ Json resolved_settings(const ReconstructOptions& options, const RunSetup& setup)
   Json generators = Json::array();
   if (setup.generation.at_boundaries) generators.push_back("boundary");
   for (const PoseSet& set : setup.generation.sets) generators.push_back(set.generator);
-  return {
-      {"sensor", sensor_toml(setup.sensor)},
-      {"size", setup.stage.size},
-      {"workspace", to_json(setup.stage.workspace)},
-      {"prior_sigma", setup.model.map.grid.prior_sigma},
-      {"start", to_json(setup.start)},
-      {"distance", setup.distance},
-      {"generators", generators},
-      {"gain", setup.policy.classic ? classic_gain_name(setup.policy.classic->gain)
-                                    : gain_model_name(setup.policy.model)},
-      {"stop_gain", setup.planning.stop_gain},
-      {"stop_gain_is_relative", setup.planning.stop_gain_is_relative},
-      {"stop_area", setup.planning.stop_area},
-      {"flying_pixels", options.sensing.has_flying_pixels(setup.sensor)},
-      {"calibrated", options.sensing.calibrate == "on"},
-      {"pose_noise", pose_sigmas_json(setup.pose_noise)},
-      {"register", setup.registration.has_value()},
-      {"pose_sigma", setup.registration ? pose_sigmas_json({setup.registration->sigma_translation,
-                                                            setup.registration->sigma_rotation})
-                                        : Json()},
-      {"refine", options.refine == "on"}};
+  if (!setup.reach.poses.empty()) generators.push_back("reach");
+  return {{"sensor", sensor_toml(setup.sensor)},
+          {"size", setup.stage.size},
+          {"workspace", to_json(setup.stage.workspace)},
+          {"prior_sigma", default_prior_sigma(options.voxel, setup.sensor)},
+          {"start", to_json(setup.start)},
+          {"distance", setup.distance},
+          {"generators", generators},
+          {"gain", setup.policy.classic ? classic_gain_name(setup.policy.classic->gain)
+                                        : gain_model_name(setup.policy.model)},
+          {"stop_gain", setup.planning.stop_gain},
+          {"stop_gain_is_relative", setup.planning.stop_gain_is_relative},
+          {"stop_area", setup.planning.stop_area},
+          {"flying_pixels", options.sensing.has_flying_pixels(setup.sensor)},
+          {"pose_noise", pose_sigma_json(setup.pose_noise)},
+          {"register", setup.registration.has_value()},
+          {"pose_sigma", setup.registration ? pose_sigma_json(*setup.registration) : Json()},
+          {"refine", options.refine == "on"}};
 }
 
 }  // namespace
@@ -205,7 +198,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   if (!options.body.empty()) setup.sensor.body_size = parse_size("--body", options.body);
   setup.sensor.validate();
   setup.policy.policy = parse_policy(options.policy);
-  setup.policy.travel = {options.travel_cost, options.travel_speed, 1.0};
+  setup.policy.travel_cost = options.travel_cost;
   setup.policy.seed = options.sensing.seed;
   if (!options.reach.empty()) setup.reach = read_reach_toml(options.reach);
   setup.stage = set_stage(stage_config(options), exec);
@@ -221,16 +214,14 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
                       options.sensing.support_plane,
                       nullptr};
   setup.simulation = simulation_config(options.sensing, setup.sensor);
-  setup.pose_noise =
-      parse_pose_noise("--pose-noise", options.sensing.pose_noise, options.sensing.seed);
-  setup.registration = registration_prior(options.registration, setup.pose_noise);
-  setup.model = model_config(options, setup.sensor, setup.stage);
+  setup.pose_noise = parse_pose_sigma("--pose-noise", options.sensing.pose_noise);
+  setup.registration = registration_sigma(options.registration, setup.pose_noise);
+  setup.model = model_config(options, setup.stage);
   check_start(options, setup, exec);
   setup.visibility.surroundings = setup.simulation.surroundings =
-      surroundings_of(setup.model.map.obstacles, exec);
+      surroundings_of(setup.model.map.surroundings.obstacles, exec);
   setup.policy.criterion = setup.model.map.criterion;
   set_gain(options, setup.policy);
-  setup.policy.support_plane = options.sensing.support_plane;
   setup.generation = generation_config(options, setup);
   setup.planning = planning_config(options, setup.policy);
   setup.settings = settings_json(options, resolved_settings(options, setup));

@@ -9,7 +9,6 @@
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/reach.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/planner/pose_noise.hpp"
 #include "viewgain/planner/register_frame.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
@@ -29,9 +28,9 @@ struct RunSetup {
   Pose start;
   VisibilityConfig visibility{};
   SimulationConfig simulation{};
-  PoseNoise pose_noise{};  ///< of what the camera reports
+  PoseSigma pose_noise{};  ///< of what the camera reports
   /// Of reported poses, by which frames are registered; its pose says nothing. None: they are not.
-  std::optional<PosePrior> registration{};
+  std::optional<PoseSigma> registration{};
   SurfaceModelConfig model{};
   GenerationConfig generation{};
   PolicyConfig policy{};

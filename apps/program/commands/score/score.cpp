@@ -30,7 +30,7 @@
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
-#include "viewgain/planner/feasible_poses.hpp"
+#include "viewgain/planner/view_proposer.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
@@ -62,12 +62,18 @@ GainConfig gain_config(const Options& options) {
   }
   if (options.refinement_weight)
     check_at_least_0("--refinement-weight", *options.refinement_weight);
+  if (config.model != GainModel::paper && options.criterion != "log_diagonal") {
+    throw Error(ErrorCode::invalid_argument, "--criterion " + options.criterion +
+                                                 " goes with --gain paper, not " + options.gain);
+  }
+  if (config.model != GainModel::paper && options.set) {
+    throw Error(ErrorCode::invalid_argument, "--set goes with --gain paper, not " + options.gain);
+  }
   if (options.semantics != "paper") {
     throw Error(ErrorCode::invalid_argument,
                 "--semantics " + options.semantics + " goes with classic gains");
   }
   config.refinement_weight = options.refinement_weight.value_or(config.refinement_weight);
-  config.support_plane = options.support_plane;
   config.criterion = parse_criterion(options.criterion);
   config.pixel_stride = options.stride;
   config.posterior_entropy = true;  // a column of what is written
@@ -91,12 +97,11 @@ FeasiblePoses candidates_of(const Options& options, const PoseSource& source, co
   FeasibilityConfig config = feasibility_of(sensor);
   if (!options.body.empty()) config.body.size = parse_size("--body", options.body);
   config.reach = std::move(reach);
-  config.support_plane = options.support_plane;
   return feasible_poses(FeasibilityChecker(scene, config, exec), source.poses, grid.views());
 }
 
-void check_left(const FeasiblePoses& candidates, const RowSelection& selection) {
-  if (!candidates.poses.empty() || !selection.is_all()) return;  // a part may be empty
+void check_left(const FeasiblePoses& candidates, const Options& options) {
+  if (!candidates.poses.empty() || !options.shard.empty()) return;  // a part may be empty
   throw Error(ErrorCode::invalid_argument,
               "no pose is left to score; dropped: " + counts_text(candidates.dropped));
 }
@@ -183,11 +188,13 @@ Scores estimated(const Options& options, const GainEvaluator& evaluator,
   estimates.gains.resize(poses.size());
   evaluator.approximate(poses, estimates.gains, config, control);
   std::vector<ViewGain> ranked(poses.size());
-  for (std::size_t i = 0; i < poses.size(); ++i) ranked[i].gain = estimates.gains[i].gain;
+  std::uint64_t rays = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    ranked[i].gain = estimates.gains[i].gain;
+    rays += estimates.gains[i].rays;
+  }
   estimates.best = best_indices(ranked, options.top);
-  return {std::move(estimates),
-          static_cast<std::uint64_t>(
-              config.share * static_cast<double>(poses.size() * evaluator.rays_per_pose()))};
+  return {std::move(estimates), rays};
 }
 
 Scores make_scores(const Options& options, const GainEvaluator& evaluator,
@@ -201,17 +208,18 @@ Scores make_scores(const Options& options, const GainEvaluator& evaluator,
 void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gains) {
   const ClassicConfig config = classic_config(options, std::move(gains));
   const ExecConfig exec{options.common.threads};
-  const RowSelection selection = selection_of(options);
-  const PoseSource source = make_poses(options.poses, options.seed, selection);
+  const Shard shard = shard_of(options);
+  const PoseSource source = make_poses(options.poses, options.seed, shard);
   const SensedMap map = load_sensed_map(options.map, options.sensor);
   const auto& [grid, sensor] = map;
-  const auto scene = VoxelScene::build(grid, obstacles_of(options.obstacles), exec);
+  const auto scene =
+      VoxelScene::build(grid, {obstacles_of(options.obstacles), options.support_plane}, exec);
   const bool hides = std::any_of(config.gains.begin(), config.gains.end(), needs_occlusion);
   const auto acquisition = hides ? std::optional(Acquisition{sensor}) : std::nullopt;
   const ClassicGainEvaluator evaluator(ClassicMap::build(scene, grid, acquisition, exec), sensor,
                                        config, exec);
   FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
-  check_left(candidates, selection);
+  check_left(candidates, options);
   name_by_input(candidates, source);
 
   ClassicScores scores{grid, sensor, source, evaluator, candidates.numbers, candidates.dropped};
@@ -221,7 +229,11 @@ void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gai
     evaluator.evaluate(candidates.poses, scores.gains, scores.statuses, control);
   });
   if (!options.out.empty()) {
-    write_scores(options, scores.table(), grid, sensor, source, evaluator.map().scene().isa());
+    const GainConfig said{.pixel_stride = config.pixel_stride,
+                          .min_range = config.min_range,
+                          .max_range = config.max_range};
+    write_scores(options, said, scores.table(), grid, sensor, source,
+                 evaluator.map().scene().isa());
   }
   if (options.common.json) {
     scores.print_json(options.top);
@@ -238,16 +250,17 @@ void score(const Options& options) {
   if (!options.report.empty()) check_report_page("--report");
   const ExecConfig exec{options.common.threads};
   const GainConfig config = gain_config(options);
-  const RowSelection selection = selection_of(options);
-  const PoseSource source = make_poses(options.poses, options.seed, selection);
+  const Shard shard = shard_of(options);
+  const PoseSource source = make_poses(options.poses, options.seed, shard);
   const SensedMap map = load_sensed_map(options.map, options.sensor);
   const BeliefGrid& grid = map.grid;
   const Sensor& sensor = map.sensor;
   const HazardConfig hazard = hazard_source(options.hazard, options.object_size, grid);
-  const auto scene = VoxelScene::build(grid, obstacles_of(options.obstacles), exec, hazard);
+  const auto scene = VoxelScene::build(
+      grid, {obstacles_of(options.obstacles), options.support_plane}, exec, hazard);
   const GainEvaluator evaluator(scene, sensor, config, exec);
   FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
-  check_left(candidates, selection);
+  check_left(candidates, options);
   name_by_input(candidates, source);
 
   Scores scores;
@@ -265,7 +278,8 @@ void score(const Options& options) {
   }
   if (!options.picture.empty()) write_png(options.picture, picture);
   if (!options.out.empty()) {
-    write_scores(options, table_of(scores, config.model), grid, sensor, source, scene->isa());
+    write_scores(options, config, table_of(scores, config.model), grid, sensor, source,
+                 scene->isa());
   }
   const ScoreReport report{config.model, options.criterion, grid,   sensor,
                            source,       evaluator,         scores, seconds};
@@ -348,18 +362,16 @@ Command add_score(App& program) {
           "SHARE: estimates with standard errors from at most this share of each view's rays")
       ->range(1e-6, 1.0, "share in (0, 1]");
   selection
-      ->add_option(
-          "--set", options->set,
-          "K views that are good together on this map, with what each adds to those before")
+      ->add_option("--set", options->set,
+                   "K views that are good together on this map, by --gain paper, with what each "
+                   "adds to those "
+                   "before")
       ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
   selection->require_option(0, 1);
   add_seed_option(*app, options->seed, "of --shell, --race (the paper's gain) and --approximate");
-  auto* part = app->add_option_group("part", "at most one of; needs --out; see merge");
-  part->add_option(
-      "--shard", options->shard,
-      "i/n: the i-th of n shards of the poses, i from 0, rows that follow one another");
-  part->add_option("--rows", options->rows, "a:b: the poses from row a to before row b, from 0");
-  part->require_option(0, 1);
+  app->add_option("--shard", options->shard,
+                  "i/n: the i-th of n shards of the poses, i from 0, rows that follow one another; "
+                  "needs --out; see merge");
   app->add_option("--out", options->out,
                   "CSV file, or .npy with the same columns, of all poses that were not dropped, in "
                   "input order; with a selection, "

@@ -68,7 +68,6 @@ ClassicConfig classic_config(const ScoreOptions& options, std::vector<ClassicGai
   config.pixel_stride = options.stride;
   config.min_range = options.min_range;
   config.max_range = options.max_range;
-  config.support_plane = options.support_plane;
   return config;
 }
 
@@ -101,9 +100,7 @@ Table ClassicScores::table() const {
 
 void ClassicScores::print_json(std::size_t top) const {
   const std::vector<ClassicGain>& asked = evaluator.config().gains;
-  Json counts = Json::object(), names = Json::array(), units = Json::array(),
-       best_views = Json::array();
-  for (const auto& [reason, count] : dropped) counts[reason] = count;
+  Json names = Json::array(), units = Json::array(), best_views = Json::array();
   for (const ClassicGain gain : asked) {
     names.push_back(name_of(gain));
     units.push_back(classic_gain_unit(gain));
@@ -120,7 +117,7 @@ void ClassicScores::print_json(std::size_t top) const {
   const auto poses = static_cast<double>(numbers.size());
   app::print_json(
       {{"poses", source.poses.size()},
-       {"dropped", counts},
+       {"dropped", dropped},
        {"poses_scored", numbers.size()},
        {"rays_per_pose", evaluator.rays_per_pose()},
        {"threads", evaluator.num_threads()},

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "program/cli/flags/common_options.hpp"
+#include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/pose_source.hpp"
 
 namespace viewgain::app {
@@ -19,7 +20,7 @@ struct ScoreOptions {
   std::string map;
   PoseOptions poses;
   std::string sensor;
-  std::string gain = "paper";
+  std::string gain = default_gain();
   std::string semantics = "paper";
   std::optional<double> refinement_weight, object_size, support_plane;
   std::string hazard, reach, body;
@@ -34,7 +35,7 @@ struct ScoreOptions {
   std::optional<double> approximate;  // share of the rays
   std::optional<std::size_t> set;     // how many
   std::uint64_t seed = 1;
-  std::string shard, rows;  // part of the poses
+  std::string shard;  // part of the poses
   std::string out;
   std::string picture;
   std::string report;

@@ -12,26 +12,22 @@
 #include "program/cli/values.hpp"
 #include "show/report/score_page.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/columns/score_job.hpp"
 
 namespace viewgain::app {
 namespace {
 
+// Null where the model counts no such voxels.
+Json unknown_voxels(const ViewGain& view, GainModel model) {
+  return model == GainModel::paper ? Json(view.unknown_voxels) : Json();
+}
+Json occupied_voxels(const ViewGain& view, GainModel model) {
+  return model != GainModel::surface ? Json(view.occupied_voxels) : Json();
+}
+
 Table table_of(const ScoredViews& views, GainModel model) {
   const bool has_area = model != GainModel::paper;
-  Table table{{{"index", ColumnType::row},
-               {"gain", ColumnType::real},
-               {"exploration", ColumnType::real},
-               {"refinement", ColumnType::real},
-               {"posterior_entropy", ColumnType::real},
-               {"rays", ColumnType::count},
-               {"hits", ColumnType::count},
-               {"unknown_voxels", ColumnType::count},
-               {"occupied_voxels", ColumnType::count},
-               {"status", ColumnType::status}}};
-  if (has_area) {
-    table.columns.push_back({"area", ColumnType::real});
-    table.columns.push_back({"refinement_saturated", ColumnType::real});
-  }
+  Table table{gain_columns(model)};
   table.bytes.reserve(views.gains.size() * row_bytes(table.columns));
   for (std::size_t i = 0; i < views.gains.size(); ++i) {
     const ViewGain& r = views.gains[i];
@@ -62,7 +58,7 @@ Table table_of(const Estimates& estimates) {
   return table;
 }
 
-Json entries(const ScoredViews& views, const PoseSource& poses) {
+Json entries(const ScoredViews& views, const PoseSource& poses, GainModel model) {
   Json list = Json::array();
   for (std::size_t rank = 0; rank < views.indices.size(); ++rank) {
     const ViewGain& r = views.gains[rank];
@@ -75,8 +71,8 @@ Json entries(const ScoredViews& views, const PoseSource& poses) {
                     {"refinement_saturated", r.refinement_saturated},
                     {"rays", r.rays},
                     {"hits", r.hits},
-                    {"unknown_voxels", r.unknown_voxels},
-                    {"occupied_voxels", r.occupied_voxels},
+                    {"unknown_voxels", unknown_voxels(r, model)},
+                    {"occupied_voxels", occupied_voxels(r, model)},
                     {"status", view_status_name(r.status)},
                     {"T_world_camera", to_json(poses.at(views.indices[rank]))}});
   }
@@ -156,10 +152,8 @@ Table table_of(const Scores& scores, GainModel model) {
 }
 
 Json ScoreReport::summary() const {
-  Json dropped = Json::object();
-  for (const auto& [reason, count] : scores.dropped) dropped[reason] = count;
   return {{"poses", source.poses.size()},
-          {"dropped", dropped},
+          {"dropped", scores.dropped},
           {"poses_scored", scored_in_full(scores).gains.size()},
           {"rays_traced", scores.rays_traced},
           {"rays_per_pose", evaluator.rays_per_pose()},
@@ -181,9 +175,9 @@ Json ScoreReport::summary() const {
 void ScoreReport::print_json() const {
   Json json = summary();
   if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
-    json["best"] = entries(ranking->best, source);
+    json["best"] = entries(ranking->best, source, model);
   } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
-    json["best"] = entries(joint->views, source);
+    json["best"] = entries(joint->views, source, model);
     json["set_gain"] = joint->gain;
   } else {
     json["best"] = entries(std::get<Estimates>(scores.found), source);
@@ -236,6 +230,7 @@ Json ScoreReport::page(const std::string& title, RgbImage picture) const {
     ranked[estimates->indices[k]].gain = estimates->gains[k].gain;
   }
   const bool by_area = model != GainModel::paper && estimates == nullptr;
+  const bool by_paper = model == GainModel::paper && estimates == nullptr;
   std::vector<double> gains, areas;
   for (const ViewGain& gain : ranked) {
     gains.push_back(gain.gain);
@@ -243,8 +238,9 @@ Json ScoreReport::page(const std::string& title, RgbImage picture) const {
   }
   Json columns{"pose", "gain"}, rows = Json::array();
   if (by_area) columns.push_back("area");
-  if (estimates == nullptr)
-    for (const char* name : {"hits", "unknown", "occupied"}) columns.push_back(name);
+  if (estimates == nullptr) columns.push_back("hits");
+  if (by_paper) columns.push_back("unknown");
+  if (by_paper) columns.push_back("occupied");
   std::vector<std::size_t> shown;
   const std::vector<std::size_t> order =
       std::holds_alternative<JointViews>(scores.found) ? full.indices : best_indices(ranked, kRows);
@@ -253,9 +249,9 @@ Json ScoreReport::page(const std::string& title, RgbImage picture) const {
     if (std::isnan(r.gain)) break;
     Json row{i, r.gain};
     if (by_area) row.push_back(r.area);
-    if (estimates == nullptr) {
-      for (const std::size_t n : {r.hits, r.unknown_voxels, r.occupied_voxels}) row.push_back(n);
-    }
+    if (estimates == nullptr) row.push_back(r.hits);
+    if (by_paper) row.push_back(r.unknown_voxels);
+    if (by_paper) row.push_back(r.occupied_voxels);
     rows.push_back(std::move(row));
     if (shown.size() < kShown) shown.push_back(i);
   }

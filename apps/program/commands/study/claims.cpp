@@ -96,6 +96,10 @@ bool Claims::is_abandoned(const fs::path& file) const {
     if (process > 0 && ::kill(process, 0) != 0 && errno == ESRCH) return true;
     // It may be another process by now.
   }
+  return is_old(file);
+}
+
+bool Claims::is_old(const fs::path& file) const {
   std::error_code failed;
   const fs::file_time_type touched = fs::last_write_time(file, failed);
   return !failed && now_at(folder_, owner_) - touched > kAbandoned;
@@ -119,15 +123,25 @@ bool Claims::take(const std::string& piece) {
     if (errno != EEXIST) {
       throw Error(ErrorCode::io, file.string() + ": cannot be made: " + std::strerror(errno));
     }
-    if (!is_abandoned(file)) return false;
-    // Of several who find it so one alone can move it away.
-    std::error_code failed;
-    const fs::path aside = file.string() + ".abandoned-" + std::to_string(::getpid());
-    fs::rename(file, aside, failed);
-    if (failed) return false;
-    fs::remove(aside, failed);
+    if (!remove_abandoned(file)) return false;
   }
   return false;
+}
+
+// Of several who find a claim abandoned one alone may remove it: what another finds there later
+// may be a new one.
+bool Claims::remove_abandoned(const fs::path& claim) const {
+  if (!is_abandoned(claim)) return false;
+  const fs::path lock = claim.string() + ".abandoned";
+  const int descriptor = ::open(lock.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) {
+    if (is_old(lock)) ::unlink(lock.c_str());  // who held it is gone; next time
+    return false;
+  }
+  ::close(descriptor);
+  const bool is_removed = is_abandoned(claim) && ::unlink(claim.c_str()) == 0;
+  ::unlink(lock.c_str());
+  return is_removed;
 }
 
 void Claims::clear_abandoned(const std::string& piece) {

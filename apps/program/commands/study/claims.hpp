@@ -36,6 +36,8 @@ class Claims {
  private:
   [[nodiscard]] std::filesystem::path file_of(const std::string& piece) const;
   [[nodiscard]] bool is_abandoned(const std::filesystem::path& file) const;
+  [[nodiscard]] bool is_old(const std::filesystem::path& file) const;
+  [[nodiscard]] bool remove_abandoned(const std::filesystem::path& claim) const;
   void touch_all();
 
   std::filesystem::path folder_;

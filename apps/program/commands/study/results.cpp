@@ -22,8 +22,6 @@ double mean_over_views(const Json& prediction, const char* key) {
   return mean_of(values).mean;
 }
 
-Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
-
 }  // namespace
 
 std::string csv_text(const std::string& text) {
@@ -109,18 +107,16 @@ Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows) {
     const StudyPolicy& policy = spec.policies[run.policy];
     Json json{{"object", spec.objects[run.object].name},
               {"policy", policy.policy},
-              {"gain", or_null(policy.gain)},
-              {"semantics", or_null(policy.semantics)},
+              {"gain", Json::or_null(policy.gain)},
+              {"semantics", Json::or_null(policy.semantics)},
               {"seed", run.seed},
               {"sensor", run.sensor},
               {"voxel", run.voxel},
-              {"size", run.size ? Json(*run.size) : Json()},
+              {"size", run.size},
               {"views", row.views},
               {"stop_reason", row.stop_reason}};
     const std::array<const char*, kGoals.size()> keys{"views_to_80", "views_to_90", "views_to_95"};
-    for (std::size_t goal = 0; goal < keys.size(); ++goal) {
-      json[keys[goal]] = row.views_to[goal] ? Json(*row.views_to[goal]) : Json();
-    }
+    for (std::size_t goal = 0; goal < keys.size(); ++goal) json[keys[goal]] = row.views_to[goal];
     json["auc"] = row.auc;
     json["coverage_visible"] = row.coverage_visible;
     json["coverage"] = row.coverage;

@@ -9,12 +9,15 @@
 #include <utility>
 
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/flags/text_hash.hpp"
+#include "program/cli/flags/hazard_source.hpp"
+#include "program/cli/flags/obstacle_source.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/raycast/classic_gains.hpp"
 #include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/hash64.hpp"
 #include "viewgain/support/toml_table.hpp"
 #include "viewgain/version.hpp"
 
@@ -161,42 +164,20 @@ std::vector<std::string> flags_of(TableReader& reader) {
   return flags;
 }
 
-std::string identity_of(const std::string& value);
+// By its contents.
+std::string identity_of(const fs::path& file) { return "file " + hash_of(file_bytes(file)); }
 
-// The texts of a TOML file that name files beside it, each by its contents.
-void add_files_named_in(const toml::node& node, const fs::path& folder, std::string& identities) {
-  if (const toml::table* table = node.as_table()) {
-    for (const auto& [key, value] : *table) add_files_named_in(value, folder, identities);
-  } else if (const toml::array* list = node.as_array()) {
-    for (const toml::node& value : *list) add_files_named_in(value, folder, identities);
-  } else if (const auto* text = node.as_string()) {
-    std::error_code ignored;
-    const fs::path file = folder / text->get();
-    if (fs::is_regular_file(file, ignored)) identities += " " + identity_of(file.string());
+// Files that flags name, each by its contents.
+std::string identity_of_flag(const std::string& flag) {
+  const std::string name = flag.substr(0, flag.find('='));
+  const std::string value = flag.substr(std::min(flag.size(), name.size() + 1));
+  if (name == "--reach") {
+    const auto poses = reach_poses_file(value);
+    return name + "=" + identity_of(value) + (poses ? " " + identity_of(*poses) : "");
   }
-}
-
-// By its contents where it is a file, and by those of the files that a TOML file names.
-std::string identity_of(const std::string& value) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(value, ignored)) return value;
-  const fs::path file = value;
-  std::string identities = hash_of(file_bytes(file));
-  if (file.extension() == ".toml") {
-    add_files_named_in(read_toml(file), file.parent_path(), identities);
-  }
-  return "file " + identities;
-}
-
-std::vector<std::string> identities_of(const std::vector<std::string>& flags) {
-  std::vector<std::string> identities;
-  for (const std::string& flag : flags) {
-    const std::size_t at = flag.find('=');
-    identities.push_back(at == std::string::npos
-                             ? identity_of(flag)
-                             : flag.substr(0, at + 1) + identity_of(flag.substr(at + 1)));
-  }
-  return identities;
+  const bool is_file = (name == "--hazard" && is_hazard_file(value)) ||
+                       (name == "--obstacle" && is_obstacle_file(value));
+  return is_file ? name + "=" + identity_of(value) : flag;
 }
 
 StudyPrediction prediction_of(TableReader& root, std::size_t max_views) {
@@ -269,7 +250,8 @@ StudySpec read_study_spec(const fs::path& path) {
   }
   std::vector<std::string> meshes;
   for (const StudyObject& object : spec.objects) meshes.push_back(identity_of(object.mesh));
-  const std::vector<std::string> flags = identities_of(spec.flags);
+  std::vector<std::string> flags;
+  for (const std::string& flag : spec.flags) flags.push_back(identity_of_flag(flag));
   for (const std::string& sensor : sensors) {
     for (const double voxel : voxels) {
       for (const std::optional<double>& size : sizes) {
@@ -287,7 +269,7 @@ StudySpec read_study_spec(const fs::path& path) {
                   {"seed", seed},
                   {"sensor", is_sensor_file(sensor) ? identity_of(sensor) : sensor},
                   {"voxel", voxel},
-                  {"size", size ? Json(*size) : Json()},
+                  {"size", size},
                   {"max_views", spec.max_views},
                   {"flags", flags},
                   {"prediction_views", spec.prediction.views},

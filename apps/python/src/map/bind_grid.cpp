@@ -89,6 +89,7 @@ std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_s
                             ? Pose(Eigen::Matrix3d::Identity(), vector3(origin, "origin"))
                             : one_pose(T_world_grid, "T_world_grid");
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    config.workspace.min[axis] = 0;
     config.workspace.max[axis] =
         static_cast<double>(any.shape(static_cast<py::ssize_t>(axis))) * voxel_size;
   }

@@ -17,7 +17,7 @@
 #include "prior.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/grid/octomap_io.hpp"
+#include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/file_bytes.hpp"
 

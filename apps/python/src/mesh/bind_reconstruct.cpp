@@ -92,7 +92,7 @@ bool is_of_boundaries(Policy policy) {
 
 GenerationConfig generation_config(const Sensor& sensor, double voxel_size, bool boundary,
                                    const py::object& candidates, const ReachRegion* reach,
-                                   std::optional<double> support_plane, Policy policy) {
+                                   Policy policy) {
   GenerationConfig config = default_generation(sensor, voxel_size);
   config.at_boundaries = boundary;
   config.boundary.classes_by_sight = policy == Policy::kriegel;
@@ -100,7 +100,6 @@ GenerationConfig generation_config(const Sensor& sensor, double voxel_size, bool
     config.sets.push_back({"candidates", pose_list(candidates, "candidates")});
   }
   if (reach != nullptr) config.feasibility.reach = *reach;
-  config.feasibility.support_plane = support_plane;
   return config;
 }
 
@@ -125,9 +124,8 @@ Reconstruction reconstruct(const py::object& acquire, const Given<Sensor>& of,
   MapModelConfig& map_config = model_config.map;
   map_config.grid.voxel_size = voxel_size;
   map_config.grid.workspace = box(workspace, "workspace");
-  map_config.grid.prior_sigma = default_prior_sigma(voxel_size, sensor);
-  map_config.integration.support_plane = support_plane;
-  if (jump_edges) map_config.jump_edges.emplace();
+  map_config.surroundings.support_plane = support_plane;
+  if (!jump_edges) map_config.jump_edges.reset();
   map_config.criterion = parse_criterion(criterion);
   PolicyConfig policy_config;
   policy_config.policy = parse_policy(policy);
@@ -137,14 +135,13 @@ Reconstruction reconstruct(const py::object& acquire, const Given<Sensor>& of,
   }
   const GenerationConfig generation_settings = generation_config(
       sensor, voxel_size, boundary.value_or(is_of_boundaries(policy_config.policy)), candidates,
-      reach, support_plane, policy_config.policy);
+      reach, policy_config.policy);
   if (!generation_settings.at_boundaries && candidates.is_none()) {
     throw py::value_error("give candidates: without boundary, policy \"" + policy +
                           "\" has nothing to choose from");
   }
   policy_config.criterion = map_config.criterion;
   policy_config.model = parse_gain_model(gain);
-  policy_config.support_plane = support_plane;
   PlanningConfig planning;
   planning.max_views = max_views;
   set_stop_rules(planning, policy_config, stop_gain, stop_area);
@@ -153,7 +150,7 @@ Reconstruction reconstruct(const py::object& acquire, const Given<Sensor>& of,
 
   PythonAcquisition acquisition(acquire, sensor);
   SurfaceModel model(sensor, model_config, nullptr, exec);
-  CandidateGeneration generation(model, sensor, generation_settings, exec);
+  CandidateGeneration generation(model, generation_settings, exec);
   PolicyDecision decision(model, generation, sensor, policy_config, exec);
   Reconstruction result;
   const auto watch = [&](const ViewRecord& record) {
@@ -202,7 +199,7 @@ Cost: properties take constant time; surface and map are not copied.)");
   module.def("reconstruct", &reconstruct, py::arg("acquire"), py::arg("sensor"), py::arg("start"),
              py::kw_only(), py::arg("voxel_size"), py::arg("workspace"),
              py::arg("criterion") = "log_diagonal", py::arg("policy") = "gain",
-             py::arg("gain") = "combined", py::arg("boundary") = py::none(),
+             py::arg("gain") = gain_model_name(kDefaultGain), py::arg("boundary") = py::none(),
              py::arg("candidates") = py::none(), py::arg("reach") = py::none(),
              py::arg("support_plane") = py::none(), py::arg("jump_edges") = true,
              py::arg("max_views") = defaults.max_views, py::arg("stop_gain") = py::none(),

@@ -20,7 +20,7 @@ struct VIEWGAIN_EXPORT JumpEdgeConfig {
 };
 
 /// Removes flying pixels, the mixtures of two surfaces at a jump of depth (after May et al.,
-/// "Three- dimensional mapping with time-of-flight cameras", J. Field Robotics 26, 2009). A reading
+/// "Three-dimensional mapping with time-of-flight cameras", J. Field Robotics 26, 2009). A reading
 /// p goes when, for one of its 8 neighbours q that is a reading nearer to the camera, the angle
 /// between p's viewing ray and the edge from p to q is under the threshold. All pixels are judged
 /// by the frame as it came. Thread safety: const members may run from many threads.

@@ -54,6 +54,9 @@ struct VIEWGAIN_EXPORT ReachRegion {
   /// shells inside out, a zero normal.
   void validate() const;
 
+  /// Is there no limit at all?
+  [[nodiscard]] bool is_everywhere() const;
+
   /// May the camera be there? Calls the predicate, if there is one; what it throws passes through.
   /// Checks nothing. Costs O(parts).
   [[nodiscard]] bool contains(const Pose& T_world_camera) const;

@@ -25,14 +25,14 @@ struct VIEWGAIN_EXPORT PoseSigma {
   bool operator==(const PoseSigma&) const = default;
 };
 
-/// A depth camera: intrinsics, range limits along the ray, noise. A value type; unless they say
-/// otherwise members check nothing.
+/// A depth camera: intrinsics, range limits along the ray, noise; by default the preset sr4000. A
+/// value type; unless they say otherwise members check nothing.
 struct VIEWGAIN_EXPORT Sensor {
-  std::string name;                     ///< preset's or file's name, for reports
-  PinholeCamera camera;                 ///< intrinsics, lens
-  double min_range = 0;                 ///< along the ray [m]
-  double max_range = 0;                 ///< along the ray [m]
-  double working_distance = 0;          ///< where it is meant to be used [m]
+  std::string name = "sr4000";  ///< preset's or file's name, for reports
+  PinholeCamera camera{176, 144, 220.0, 231.2, 87.5, 71.5, {}};  ///< intrinsics, lens
+  double min_range = 0.2;                                        ///< along the ray [m]
+  double max_range = 5.0;                                        ///< along the ray [m]
+  double working_distance = 0.4;        ///< where it is meant to be used [m]
   NoiseModel noise;                     ///< how readings scatter
   std::optional<Pose> T_flange_camera;  ///< mounting on the robot's flange, if known
   /// Width, height, depth of the housing along x, y, z of the flange's frame [m], if known; see

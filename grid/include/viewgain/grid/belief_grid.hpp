@@ -16,6 +16,7 @@
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
 #include "viewgain/grid/hazard_counters.hpp"
@@ -28,13 +29,14 @@ struct GridAccess;
 struct GridStorage;
 }  // namespace detail
 
-/// How a map is laid out. A value type.
+/// How a map is laid out; by default for an object at the origin. A value type.
 struct VIEWGAIN_EXPORT GridConfig {
-  double voxel_size = 0;  ///< V [m]
-  Box workspace{};      ///< in the grid's frame [m]; grown outward to whole voxels, see BeliefGrid
+  double voxel_size = 0.005;  ///< V [m]
+  /// In the grid's frame [m]; grown outward to whole voxels, see BeliefGrid.
+  Box workspace{{-0.25, -0.25, -0.25}, {0.25, 0.25, 0.25}};
   Pose T_world_grid{};  ///< places the grid's frame
-  double prior_sigma =
-      0;  ///< sigma_0 [m] of an unknown voxel; default_prior_sigma() in core suggests one
+  /// sigma_0 [m] of an unknown voxel; default_prior_sigma() of the map's sensor unless given.
+  std::optional<double> prior_sigma{};
 };
 
 /// Voxel counts and the paper's measure of progress.
@@ -74,12 +76,13 @@ struct VIEWGAIN_EXPORT OccupiedVoxel {
 /// say so; the others take any. Members that look at one voxel cost constant time.
 class VIEWGAIN_EXPORT BeliefGrid {
  public:
-  /// Throws Error(invalid_argument) naming the value unless voxel_size is at least 2e-5 m (smaller
-  /// ones have no OpenVDB transform), it and prior_sigma are positive and finite, the workspace is
+  /// `sensor`: that the map is for, which is asked where there is no prior_sigma. Throws
+  /// Error(invalid_argument) naming the value unless voxel_size is at least 2e-5 m (smaller ones
+  /// have no OpenVDB transform), it and prior_sigma are positive and finite, the workspace is
   /// finite and not inside out, T_world_grid is a rigid transform (1e-9), and Error(capacity) if
   /// the workspace has more than 65,536 voxels along an axis, more than 2^40 in all, or indices
   /// beyond +-2^30.
-  explicit BeliefGrid(const GridConfig& config);
+  explicit BeliefGrid(const GridConfig& config, const Sensor& sensor = {});
   ~BeliefGrid();
   BeliefGrid(BeliefGrid&&) noexcept;
   BeliefGrid& operator=(BeliefGrid&&) noexcept;

@@ -75,9 +75,7 @@ struct VIEWGAIN_EXPORT ClassicConfig {
   int pixel_stride = 1;               ///< every s-th pixel of every s-th row, from pixel (0,0)
   std::optional<double> min_range{};  ///< along the ray [m]; the sensor's unless given
   std::optional<double> max_range{};  ///< along the ray [m]; the sensor's unless given
-  /// Height z of a support plane in the world [m]: rays that go down end there.
-  std::optional<double> support_plane{};
-  double unknown_prior = 0.5;   ///< probability p of a voxel that no reading told of
+  double unknown_prior = 0.5;         ///< probability p of a voxel that no reading told of
   double free_below = 0.2;      ///< shipped: a voxel is free if its probability p is below this,
   double occupied_above = 0.8;  ///< occupied if it is above this probability, else unknown
 };
@@ -128,7 +126,7 @@ class VIEWGAIN_EXPORT ClassicMap {
 
 /// Scores camera poses by any number of classic gains at once. A ray visits, for a positive length
 /// and in order, the voxels of the workspace from min_range on to the first occupied one (log-odds
-/// above 0), which it ends in, or to max_range, a known obstacle, the support plane or the
+/// above 0), which it ends in, or to max_range, a known obstacle, the scene's support plane or the
 /// workspace's edge. Nothing outside the workspace counts, and no ray twice; but a voxel that
 /// several rays pass counts with each of them, unless its gain says distinct.
 ///

@@ -44,11 +44,10 @@ enum class Infeasibility : std::uint8_t {
 
 /// What must have room, and where the robot gets.
 struct VIEWGAIN_EXPORT FeasibilityConfig {
-  SensorBody body{};                      ///< what must have room
-  double clearance = 0;                   ///< the body is grown by this on each side [m]
-  ReachRegion reach{};                    ///< where the camera may be
-  PoseTolerance taken_tolerance{};        ///< when two poses are the same
-  std::optional<double> support_plane{};  ///< its height, world z [m]
+  SensorBody body{};                ///< what must have room
+  double clearance = 0;             ///< the body is grown by this on each side [m]
+  ReachRegion reach{};              ///< where the camera may be
+  PoseTolerance taken_tolerance{};  ///< when two poses are the same
   /// Where given: a view is too near if more than max_near_share of its rays that end in the map
   /// end within the sensor's min_range. The expected gain lets such rays pass, so a camera in front
   /// of a wall would seem to see what is behind it.
@@ -56,10 +55,10 @@ struct VIEWGAIN_EXPORT FeasibilityConfig {
   double max_near_share = 0.2;  ///< of the rays that end in the map
 };
 
-/// Says which camera poses are possible in a scene: body against its voxels that are not free, its
-/// obstacles and the support plane; reach; views taken. Outside the workspace nothing is known to
-/// block. Obstacle boxes and closed meshes are solid, an open mesh is a sheet; overlaps of less
-/// than a nanometre are touching.
+/// Says which camera poses are possible in a scene: body against its voxels that are not free and
+/// its surroundings; reach; views taken. Outside the workspace nothing is known to block. Obstacle
+/// boxes and closed meshes are solid, an open mesh is a sheet; overlaps of less than a nanometre
+/// are touching.
 ///
 /// Costs 0.5-1 µs per pose and thread, with two obstacles as well. With a sensor it stays under 1
 /// µs where no voxel is within min_range; else rays are traced until the answer is clear, which
@@ -71,8 +70,8 @@ class VIEWGAIN_EXPORT FeasibilityChecker {
   /// Undoes the lens distortion of config.sensor and sorts the obstacles once. exec.num_threads is
   /// for batches; their threads start with the first one. Throws Error(invalid_argument) for a null
   /// scene, a body without extent or with a mounting that is no rigid transform, a negative
-  /// clearance, a tolerance or plane that is not finite, a reach region that is not valid, or a
-  /// number of threads that thread_count() refuses.
+  /// clearance, a tolerance that is not finite, a reach region that is not valid, or a number of
+  /// threads that thread_count() refuses.
   FeasibilityChecker(std::shared_ptr<const VoxelScene> scene, const FeasibilityConfig& config,
                      const ExecConfig& exec = {});
   ~FeasibilityChecker();

@@ -36,6 +36,9 @@ enum class GainModel : std::uint8_t {
   surface,   ///< new surface to be expected, where rays go on through unknown voxels [m²]
   combined,  ///< that in nats, and what refining known surface brings [nat]
 };
+/// What views are ranked by unless another model is named, here, in the planner, in every program
+/// and binding: of the models it finds the surface in the fewest views.
+inline constexpr GainModel kDefaultGain = GainModel::combined;
 /// Names of the models, in their order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& gain_model_names();
 /// The model's name, as parse_gain_model() reads it. It must be one of them: unchecked.
@@ -45,7 +48,7 @@ enum class GainModel : std::uint8_t {
 
 /// What changes the answer.
 struct VIEWGAIN_EXPORT GainConfig {
-  GainModel model = GainModel::paper;  ///< what is counted
+  GainModel model = kDefaultGain;  ///< what is counted
   /// Of the paper's gain. The combined gain's refinement is by log_diagonal whatever it says, but
   /// not trace.
   Criterion criterion = Criterion::log_diagonal;
@@ -55,9 +58,7 @@ struct VIEWGAIN_EXPORT GainConfig {
   std::optional<double> max_range{};    ///< along the ray [m]; the sensor's unless given
   std::vector<WeightRegion> weights{};  ///< task weights; in their order later ones count
   double refinement_weight = 0.3;       ///< combined: w, of refining against finding new surface
-  /// Height z of a support plane in the world [m]: rays that go down end there (surface, combined).
-  std::optional<double> support_plane{};
-  bool posterior_entropy = false;  ///< paper: ViewGain::posterior_entropy too; some 4 % slower
+  bool posterior_entropy = false;       ///< paper: ViewGain::posterior_entropy too; some 4 % slower
 };
 
 /// Whether a view could be scored.
@@ -70,7 +71,8 @@ enum class ViewStatus : std::uint8_t {
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view view_status_name(ViewStatus status);
 
 /// What a view is expected to bring. Gains in nats, in m² for the criterion trace and for the
-/// surface gain. Where a model has no such figure it is NaN, a count 0.
+/// surface gain. Each part says which models have it; of the others it is NaN, a count 0, and null
+/// in JSON.
 struct VIEWGAIN_EXPORT ViewGain {
   /// By GainConfig::model: exploration + refinement; area; or area · ΔH_new / voxel² + w ·
   /// refinement_saturated. NaN: a bad pose, or sensor sigmas beyond what double precision can
@@ -158,16 +160,16 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// the call above; the results not reached are NaN. What `measure` throws ends the batch and is
   /// thrown again here, and the results are then unspecified. Costs 1.4 times as much as evaluate()
   /// without it, and what `measure` takes. Throws Error(invalid_argument) if the sizes differ.
-  std::size_t evaluate(std::span<const Pose> T_world_camera, const ViewMeasure& measure,
-                       std::span<double> results, const BatchControl& control = {}) const;
+  std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
+                       const ViewMeasure& measure, const BatchControl& control = {}) const;
 
   /// The same for a measure, `results` in its unit, that sees what rays pass on their way through
   /// unknown voxels, whatever the evaluator's model. Lists take 80 bytes for each voxel that a ray
   /// of the view passes and each thread, at full resolution up to 200 MB; a pixel stride makes them
   /// smaller. Costs some times evaluate()'s surface gain. Throws Error(capacity) and
   /// Error(backend), too.
-  std::size_t evaluate(std::span<const Pose> T_world_camera, const RunMeasure& measure,
-                       std::span<double> results, const BatchControl& control = {}) const;
+  std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
+                       const RunMeasure& measure, const BatchControl& control = {}) const;
 
   /// Why a view is good: one entry for each voxel in which rays of the pose end, the largest gain
   /// first, ties by the voxel's x, y, z. The gains add up to evaluate()'s gain to rounding (1e-9 of
@@ -188,8 +190,8 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// not NaN, and not `complete`. Throws Error(invalid_argument) if there are costs but not one a
   /// pose, for one that is not finite and for two measures; and as evaluate() with the measure.
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
-                               const BatchControl& control = {},
-                               const BestConfig& config = {}) const;
+                               const BestConfig& config = {},
+                               const BatchControl& control = {}) const;
 
   /// The k best poses, very probably, in two stages: all poses are scored by about 400 of their
   /// rays, every so manieth pixel and row, as approximate() does, and the best max(24, 4 k, 5 %) of

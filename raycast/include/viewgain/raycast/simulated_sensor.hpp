@@ -35,11 +35,6 @@ struct VIEWGAIN_EXPORT SimulationConfig {
   /// Ranges fold back to [0, c / (2 modulation_frequency)). Always so where returns mix, as their
   /// sum knows only the phase; this makes single rays do so too.
   bool ambiguity = false;
-  /// Amplitude a [m] of the error a sin(4 phi) of sampling a light that is no sine at four phases,
-  /// added to the range whose phase is phi. |a| under c / (16 pi modulation_frequency), so that
-  /// readings rise with the range; 0 for sensors without a modulation frequency.
-  double wiggling = 0;
-  RangeCalibration calibration{};         ///< subtracted from the reading at the end
   std::optional<double> support_plane{};  ///< height z of a diffuse table without end [m], world
   /// What else stands there, say known obstacles, diffuse; null: nothing.
   std::shared_ptr<const SurfaceScene> surroundings{};
@@ -81,15 +76,5 @@ class VIEWGAIN_EXPORT SimulatedSensor {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// The table that takes the systematic error of this sensor under this configuration away: `count`
-/// >= 2 distances to a frontal plane, evenly from min_range to max_range [m], read on the optical
-/// axis with the error on and noise off. Throws Error(invalid_argument) for bounds that are no
-/// range of the sensor or not unambiguous.
-[[nodiscard]] VIEWGAIN_EXPORT RangeCalibration measure_calibration(const Sensor& sensor,
-                                                                   const SimulationConfig& config,
-                                                                   double min_range,
-                                                                   double max_range,
-                                                                   std::size_t count);
 
 }  // namespace viewgain

@@ -67,6 +67,7 @@ struct VIEWGAIN_EXPORT ApproximateConfig {
 struct VIEWGAIN_EXPORT ApproximateGain {
   double gain = std::numeric_limits<double>::quiet_NaN();            ///< the estimate
   double standard_error = std::numeric_limits<double>::quiet_NaN();  ///< of it, in the same unit
+  std::uint32_t rays = 0;                                            ///< that it is made of
 };
 
 }  // namespace viewgain

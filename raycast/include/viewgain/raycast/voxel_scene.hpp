@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,14 @@ struct VIEWGAIN_EXPORT Obstacles {
   std::vector<TriangleMesh> meshes;  ///< closed ones are solid, open ones sheets; in any order
 };
 
+/// What stands there beside what is mapped, world frame.
+struct VIEWGAIN_EXPORT Surroundings {
+  Obstacles obstacles{};  ///< known ones
+  /// Height z of a table without end [m]. Bodies stay above it. Rays of the surface, the combined
+  /// and the classic gains that go down end there.
+  std::optional<double> support_plane{};
+};
+
 /// An immutable scene to trace: the voxels of a grid that are not free, by cells, to be swept from
 /// near to far, and obstacles in Embree's BVH. Owns all that it reads; the grid may
 /// change or go. Copying a shared_ptr of it is how to share it. Thread safety: all members are
@@ -38,23 +47,22 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// Takes a snapshot of the grid and sorts it (about 0.2 ms per 1,000 leaves), and builds a BVH of
   /// the obstacles, which update() keeps. Throws Error(backend) if Embree fails, Error(capacity)
   /// beyond 2^23 leaves and tiles, Error(invalid_argument) if an obstacle has a vertex that is not
-  /// finite, an index out of range or a box inside out, or for a number of threads out of range.
-  /// Runs on the calling thread, and with obstacles on those that the process's TBB has: exec does
-  /// not limit it. Throws as HazardConfig::validate(), too. The hazard of unknown voxels is found
-  /// when an evaluator of the surface or combined gain first wants it (some milliseconds).
-  [[nodiscard]] static std::shared_ptr<const VoxelScene> build(const BeliefGrid& grid,
-                                                               const Obstacles& obstacles = {},
-                                                               const ExecConfig& exec = {},
-                                                               const HazardConfig& hazard = {});
+  /// finite, an index out of range or a box inside out, for a support plane that is not finite, or
+  /// for a number of threads out of range. Runs on the calling thread, and with obstacles on those
+  /// that the process's TBB has: exec does not limit it. Throws as HazardConfig::validate(), too.
+  /// The hazard of unknown voxels is found when an evaluator of the surface or combined gain first
+  /// wants it (some milliseconds).
+  [[nodiscard]] static std::shared_ptr<const VoxelScene> build(
+      const BeliefGrid& grid, const Surroundings& surroundings = {}, const ExecConfig& exec = {},
+      const HazardConfig& hazard = {});
   /// The same of a snapshot as BeliefGrid::snapshot() made it; its lists are not checked.
-  [[nodiscard]] static std::shared_ptr<const VoxelScene> build(GridSnapshot snapshot,
-                                                               const Obstacles& obstacles = {},
-                                                               const ExecConfig& exec = {},
-                                                               const HazardConfig& hazard = {});
-  /// The scene of what `grid` is now, with obstacles and hazard config of `before`, which stays as
-  /// it is: as build(), but regions that have not changed since a scene of the same grid are copied
-  /// from it. Throws Error(invalid_argument) for a null scene, and as build(). Costs 0.2 times
-  /// build() where a frame has changed an eighth of a map of 512³ voxels (perf/README.md).
+  [[nodiscard]] static std::shared_ptr<const VoxelScene> build(
+      GridSnapshot snapshot, const Surroundings& surroundings = {}, const ExecConfig& exec = {},
+      const HazardConfig& hazard = {});
+  /// The scene of what `grid` is now, with surroundings and hazard config of `before`, which stays
+  /// as it is: as build(), but regions that have not changed since a scene of the same grid are
+  /// copied from it. Throws Error(invalid_argument) for a null scene, and as build(). Costs 0.2
+  /// times build() where a frame has changed an eighth of a map of 512³ voxels (perf/README.md).
   [[nodiscard]] static std::shared_ptr<const VoxelScene> update(
       const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
       const ExecConfig& exec = {});
@@ -65,7 +73,7 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// What the scene was built from.
   [[nodiscard]] const GridSnapshot& snapshot() const noexcept;
   /// The same object in all scenes that update() has made from one.
-  [[nodiscard]] const Obstacles& obstacles() const noexcept;
+  [[nodiscard]] const Surroundings& surroundings() const noexcept;
 
   /// The hazard of unknown voxels and how far they are from known surface; found when first asked
   /// for, in some milliseconds. Lives with the scene.

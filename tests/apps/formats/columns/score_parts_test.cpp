@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// `score --shard`, `--rows`, poses and gains in columns: parts put together are the whole.
+// `score --shard`, poses and gains in columns: parts put together are the whole.
 #include <bit>
 #include <cstdint>
 #include <sstream>
@@ -64,6 +64,14 @@ class ScoreParts : public test::ProgramTest {
     }
     write(name, bytes);
   }
+  void write_matrices(const std::string& name, const std::vector<Pose>& poses) const {
+    std::vector<double> numbers;
+    for (const Pose& pose : poses) {
+      numbers.insert(numbers.end(), pose.m.begin(), pose.m.end());
+      numbers.insert(numbers.end(), {0, 0, 0, 1});
+    }
+    write_npy(name, "'<f8'", "(" + std::to_string(poses.size()) + ", 4, 4)", numbers);
+  }
 };
 
 TEST_F(ScoreParts, TogetherAreTheWholeForEveryGain) {
@@ -76,7 +84,7 @@ TEST_F(ScoreParts, TogetherAreTheWholeForEveryGain) {
                                                    {"--reach", "reach.toml"}}) {
     score(test::joined(flags, {"--out", "plain.csv"}));
     for (const std::string ending : {".csv", ".npy"}) {
-      score(test::joined(flags, {"--rows", "0:40", "--out", "whole" + ending}));
+      score(test::joined(flags, {"--shard", "0/1", "--out", "whole" + ending}));
       // Of 50 shards some have no pose.
       const std::vector<int> counts = flags.empty() ? std::vector{1, 3, 50} : std::vector{3};
       for (const int shards : counts) {
@@ -102,49 +110,45 @@ TEST_F(ScoreParts, TogetherAreTheWholeForEveryGain) {
   EXPECT_EQ(cases, 16U);
 }
 
-TEST_F(ScoreParts, RowsCoverAllPosesOnce) {
-  Strings merge{"merge", "--out", "merged.csv"};
-  for (const std::string rows : {"13:14", "0:13", "14:40"}) {
-    score({"--rows", rows, "--out", rows + ".csv"});
-    EXPECT_NE(read(rows + ".csv").find("\n# rows " + rows + "\n# scored "), std::string::npos);
-    merge.push_back(rows + ".csv");
-  }
-  score({"--out", "plain.csv"});
-  (void)run_well(merge);
-  EXPECT_EQ(rows_of("merged.csv"), read("plain.csv"));
-}
-
 TEST_F(ScoreParts, PosesInColumnsAreThoseOfText) {
   const std::vector<Pose> poses = sphere_poses(40, 0.45);
   write_tum(dir / "poses.txt", poses);
-  std::vector<double> matrices, columns;
+  std::vector<double> columns;
   std::istringstream tum(read("poses.txt"));
   std::string line;
   std::getline(tum, line);
-  for (const Pose& pose : poses) {
-    matrices.insert(matrices.end(), pose.m.begin(), pose.m.end());
-    matrices.insert(matrices.end(), {0, 0, 0, 1});
-    for (int i = 0; i < 8; ++i) {
-      double value = 0;
-      tum >> value;
-      columns.push_back(value);
-    }
-  }
-  write_npy("matrices.npy", "'<f8'", "(40, 4, 4)", matrices);
+  for (double value = 0; tum >> value;) columns.push_back(value);
+  write_matrices("matrices.npy", poses);
   write_npy("columns.npy",
-            "[('time', '<f8'), ('tx', '<f8'), ('ty', '<f8'), ('tz', '<f8'), ('qx', '<f8'), "
+            "[('name', '<U2'), ('tx', '<f8'), ('ty', '<f8'), ('tz', '<f8'), ('qx', '<f8'), "
             "('qy', '<f8'), ('qz', '<f8'), ('qw', '<f8')]",
             "(40,)", columns);
   const Strings head{"score", "map.vdb", "--sensor", "small.toml"};
   const auto rows = [&](const Strings& more) {
-    (void)run_well(test::joined(test::joined(head, more), {"--rows", "5:31", "--out", "part.csv"}));
+    (void)run_well(test::joined(test::joined(head, more), {"--shard", "1/3", "--out", "part.csv"}));
     return rows_of("part.csv");
   };
   const std::string sphere = rows({"--sphere", "40,0.45"});
   EXPECT_EQ(rows({"--poses", "matrices.npy"}), sphere);
   const std::string text = rows({"--poses", "poses.txt"});
   EXPECT_EQ(rows({"--poses", "columns.npy"}), text);
-  EXPECT_EQ(text.size() > 26U * 50U, true);
+  EXPECT_EQ(text.size() > 13U * 50U, true);
+}
+
+TEST_F(ScoreParts, OneOtherPoseMakesAnotherJob) {
+  std::vector<Pose> poses = sphere_poses(9001, 0.45);
+  for (const std::string shard : {"0/2", "1/2"}) {
+    write_tum(dir / "poses.txt", poses);
+    write_matrices("poses.npy", poses);
+    for (const std::string name : {"poses.txt", "poses.npy"}) {
+      (void)run_well({"score", "map.vdb", "--sensor", "small.toml", "--stride", "100", "--poses",
+                      name, "--shard", shard, "--out", name + shard.substr(0, 1) + ".csv"});
+    }
+    poses[4321].m[3] += 1e-6;
+  }
+  for (const std::string name : {"poses.txt", "poses.npy"}) {
+    expect_refused({"merge", name + "0.csv", name + "1.csv", "--out", "all.csv"}, "poses 9001");
+  }
 }
 
 TEST_F(ScoreParts, BadColumnsOfPosesAreNamed) {
@@ -196,11 +200,7 @@ TEST_F(ScoreParts, FlagsThatDoNotGoTogetherAreRefused) {
                        {{"--shard", "-1/3"}, "i/n"},
                        {{"--shard", "1"}, "i/n"},
                        {{"--shard", "1/3x"}, "i/n"},
-                       {{"--rows", "5:5"}, "below b"},
-                       {{"--rows", "5:41"}, "there are 40 poses"},
-                       {{"--rows", "5"}, "a:b"},
-                       {{"--rows", "0:5", "--shard", "0/2"}, "at most 1"},
-                       {{"--rows", "0:5", "--race"}, "--race"},
+                       {{"--shard", "0/2", "--race"}, "--race"},
                        {{"--shard", "0/2", "--set", "2"}, "--set"},
                        {{"--shard", "0/2", "--picture", "p.png"}, "--picture"},
                        {{"--shard", "0/2", "--report", "p.html"}, "--report"}});

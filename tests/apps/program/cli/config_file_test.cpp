@@ -142,7 +142,7 @@ TEST_F(ConfigFile, TheCommandLineHolds) {
   // All repetitions of an option, and what may be given once of a group.
   EXPECT_GT(scored({"--weight", "0,0,0,1,1,1,2"})["best"][0]["gain"], 0.0);
   EXPECT_EQ(scored({"--dome", "40,0.6"})["poses"], 40);
-  EXPECT_TRUE(scored({"--set", "2"}).contains("set_gain"));
+  EXPECT_TRUE(scored({"--set", "2", "--gain", "paper"}).contains("set_gain"));
   // A positional: IN from here, OUT from there.
   write("convert.toml", "in = \"none.vdb\"\nout = \"tree.ot\"\n");
   run_well({"convert", "--config", "convert.toml", "map.vdb"});

@@ -138,9 +138,12 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
         "0:1\n# scored 1\nindex,gain\n0,1\n");
   for (const std::string& subcommand : kSubcommands) {
     const std::vector<Strings> calls = examples({subcommand});
-    ASSERT_EQ(calls.size(), 1U) << subcommand;
-    ASSERT_EQ(calls[0].at(0), subcommand);
-    run_example(calls[0]);
+    ASSERT_EQ(calls.size(), subcommand == "reconstruct" || subcommand == "next" ? 2U : 1U)
+        << subcommand;
+    for (const Strings& call : calls) {
+      ASSERT_EQ(call.at(0), subcommand);
+      run_example(call);
+    }
   }
 }
 

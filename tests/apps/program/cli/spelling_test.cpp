@@ -48,7 +48,6 @@ TEST_F(Spelling, TheNearestIsNamed) {
 TEST_F(Spelling, SwitchesNeedTheirValue) {
   expect_refused({{{"reconstruct", "cube.off", "--save-maps", "--out", "run"}, "there are on, off"},
                   {{"score", "map.vdb", "--feasible", "--body", "1,1,1"}, "there are on, off"},
-                  {{"integrate", "frames", "--jump-edge-two-sided"}, "there are on, off"},
                   {{"integrate", "frames", "--calibrate-hazard"}, "there are on, off"},
                   {{"convert", "map.vdb", "b.vdb", "--with-covariance"}, "there are on, off"}});
 }

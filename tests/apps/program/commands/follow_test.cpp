@@ -145,7 +145,6 @@ class Follow : public test::ProgramTest {
     PlannerConfig config;
     config.grid.voxel_size = kVoxel;
     config.grid.workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
-    config.grid.prior_sigma = default_prior_sigma(kVoxel, frames.sensor);
     config.jump_edges.reset();
     ViewPlanner planner(frames.sensor, config, {1});
     std::set<std::string> identities;

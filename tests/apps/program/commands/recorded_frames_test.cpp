@@ -47,10 +47,11 @@ TEST_F(RecordedFrames, ReconstructIsIntegrateSurfaceAndNextInOne) {
   EXPECT_EQ(list("run"), (Strings{"config.toml", "map.vdb", "next.txt", "points.ply", "run.json",
                                   "surface.ply", "views.txt"}));
   EXPECT_EQ(json::parse(read("run/run.json")), run);
-  run_well(test::joined({"integrate", "frames", "--jump-edge-filter", "5", "--calibrate-hazard",
-                         "on", "--out", "map.vdb"},
-                        kMapFlags));
-  EXPECT_EQ(hash_of("run/map.vdb"), hash_of("map.vdb"));
+  const json repeated = json::parse(run_well({"reconstruct", "--config", "run/config.toml", "--out",
+                                              "again", "--pictures", "off", "--json", "--quiet"}));
+  EXPECT_EQ(repeated["next"], run["next"]);
+  EXPECT_EQ(repeated["settings"], run["settings"]);
+  run_well(test::joined({"integrate", "frames", "--out", "map.vdb"}, kMapFlags));
   EXPECT_EQ(run["map_hash"], hash_of("map.vdb"));
   run_well({"surface", "map.vdb", "--out", "s.ply", "--points", "p.ply"});
   EXPECT_EQ(read("run/surface.ply"), read("s.ply"));
@@ -63,23 +64,12 @@ TEST_F(RecordedFrames, ReconstructIsIntegrateSurfaceAndNextInOne) {
     EXPECT_LT((views[i].rotation() - poses[i].rotation()).norm(), 1e-12);
   }
 
-  const json next = json::parse(run_well({"next", "run/map.vdb", "--out", "n.txt", "--json"}));
+  run_well({"next", "run/map.vdb", "--out", "n.txt"});
   EXPECT_EQ(read("n.txt"), read("run/next.txt"));
-  EXPECT_EQ(next["next"], run["next"]);
-  EXPECT_EQ(next["views"], 3);
   // Frames that the map has are known as such.
   const json again = json::parse(
       run_well({"integrate", "frames", "--map", "run/map.vdb", "--out", "same.vdb", "--json"}));
   EXPECT_EQ(again["skipped"], 3);
-}
-
-TEST_F(RecordedFrames, NextTakesFramesAsItTakesTheirMap) {
-  const json run = reconstruct("run", {"--pictures", "off", "--top", "4", "--support-plane", "-1"});
-  const json next = json::parse(run_well(test::joined(
-      {"next", "frames", "--top", "4", "--support-plane", "-1", "--json"}, kMapFlags)));
-  EXPECT_EQ(next["next"], run["next"]);
-  EXPECT_EQ(next["next"].size(), 4U);
-  EXPECT_EQ(next["candidates"], run["candidates"]);
 }
 
 // Where the workspace holds the cameras, and where it does not.
@@ -184,7 +174,7 @@ TEST_F(RecordedFrames, WhatOnlyAMeshOrAMapHasIsRefused) {
   std::filesystem::create_directories(dir / "empty");
   const Strings frames = test::joined({"reconstruct", "frames", "--out", "new"}, kMapFlags);
   expect_refused(
-      {{test::joined(frames, {"--size", "0.2"}), "--size"},
+      {{test::joined(frames, {"--size", "0.2"}), "--size: goes with MESH, not FRAMES_DIR (see"},
        {test::joined(frames, {"--policy", "random"}), "--policy"},
        {test::joined(frames, {"--max-views", "2"}), "--max-views"},
        {test::joined(frames, {"--noise", "on"}), "--noise"},
@@ -199,7 +189,8 @@ TEST_F(RecordedFrames, WhatOnlyAMeshOrAMapHasIsRefused) {
        {{"reconstruct", "cube.off", "--voxel", "0.01", "--out", "new"}, "--sensor"},
        {{"reconstruct", "cube.off", "--voxel", "0.01", "--sensor", "tof.toml", "--size", "0.2",
          "--mask", "empty", "--out", "new"},
-        "--mask"},
+        "--mask: goes with FRAMES_DIR, not MESH"},
+       {{"reconstruct", "frames", "--vxel", "0.01"}, "did you mean --voxel?"},
        {{"next", "run/map.vdb", "--voxel", "0.01"}, "--voxel"},
        {{"next", "frames"}, "--voxel"},
        {{"next", "run/map.vdb", "--generator", "dome", "--overlap", "0.5"}, "--overlap"},

@@ -6,7 +6,6 @@
 
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
-#include "show/pictures/image_grid.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/png.hpp"
 
@@ -66,28 +65,12 @@ TEST_F(Render, EachKindIsAPictureOfTheSizeThatWasAsked) {
   EXPECT_EQ(pictures.size(), 6U);
 }
 
-TEST_F(Render, StepsAndSheetsPutPicturesTogether) {
-  make_run("run");
-  const RgbImage both = rendered({"run", "--what", "step", "--width", "320"});
-  EXPECT_EQ(both.width, 2 * 320 + 3);
-  EXPECT_EQ(both.height, 240);
-  const RgbImage second = rendered({"run", "--what", "step", "--views", "1", "--width", "320"});
-  EXPECT_EQ(second.pixels, app::shrunk(read_rgb_png(dir / "run" / "views" / "01.png"), 2).pixels);
-  const RgbImage sheet = rendered({"run", "run", "--what", "sheet", "--width", "160"});
-  EXPECT_EQ(sheet.width, 3 * 160 + 2 * 2);
-  EXPECT_EQ(sheet.height, 2 * 120 + 2);
-}
-
 TEST_F(Render, SaysWhatItCannotDraw) {
   make_run("run", {"--pictures", "off"});
   const test::Refusals cases{
-      {{"run", "--what", "step"}, "views/00.png"},
-      {{"run", "run", "--what", "map"}, "sheet"},
       {{"run", "--what", "gain"}, "--sphere"},
-      {{"run", "--what", "map", "--views", "0"}, "--views goes with --what step"},
       {{"run", "--what", "map", "--ellipsoids", "2"}, "--ellipsoids goes with --what sigma"},
       {{"run", "--what", "sigma", "--ellipsoids", "0"}, "--ellipsoids"},
-      {{"run", "--what", "step", "--azimuth", "3"}, "--azimuth"},
       {{"no-such-run", "--what", "map"}, "no-such-run"},
       {{"cube.off", "--what", "map"}, "cube.off"}};
   expect_refused_with({"render", "--out", "picture.png"}, cases);
@@ -112,9 +95,8 @@ TEST_F(Render, WhatCannotBeShownOrReadIsNamed) {
   // What is read is not written, and odd names are bad input.
   const std::string before = read("run/views/00.png");
   for (const std::vector<std::string>& call :
-       {std::vector<std::string>{"run", "--what", "step", "--out", "run/views/00.png"},
-        {std::string(300, 'n'), "--what", "map", "--out", "odd.png"},
-        {std::string(300, 'n'), "--what", "step", "--out", "odd.png"}}) {
+       {std::vector<std::string>{"run", "--what", "map", "--out", "run/views/00.png"},
+        {std::string(300, 'n'), "--what", "map", "--out", "odd.png"}}) {
     std::vector<std::string> all = call;
     all.insert(all.begin(), "render");
     const test::ProgramResult result = run(all);
@@ -122,7 +104,7 @@ TEST_F(Render, WhatCannotBeShownOrReadIsNamed) {
     ++refused;
   }
   EXPECT_EQ(read("run/views/00.png"), before);
-  EXPECT_EQ(refused, 11);
+  EXPECT_EQ(refused, 10);
 }
 
 TEST_F(Render, PicturesOfOtherKindsAreRefused) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What the program puts into a report; tests/apps/report tries the page in a browser.
+// What the program puts into a report; tests/apps/show/report tries the page in a browser.
 #include <string>
 
 #include "apps/program_runner.hpp"

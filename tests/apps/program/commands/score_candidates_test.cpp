@@ -42,7 +42,7 @@ class ScoreCandidates : public test::ProgramTest {
   }
   [[nodiscard]] static Strings arguments(const Strings& more) {
     return test::joined({"score", "map.vdb", "--sensor", "small.toml", "--sphere", "40,0.45",
-                         "--top", "40", "--json"},
+                         "--top", "40", "--json", "--gain", "paper"},
                         more);
   }
 
@@ -56,8 +56,9 @@ class ScoreCandidates : public test::ProgramTest {
   }
 
   [[nodiscard]] std::vector<double> gains_among(const Obstacles& obstacles) const {
-    const auto scene = VoxelScene::build(load_vdb(dir / "map.vdb"), obstacles);
-    const GainEvaluator evaluator(scene, load_sensor((dir / "small.toml").string()));
+    const auto scene = VoxelScene::build(load_vdb(dir / "map.vdb"), {obstacles});
+    const GainEvaluator evaluator(scene, load_sensor((dir / "small.toml").string()),
+                                  {.model = GainModel::paper});
     std::vector<double> result;
     for (const Pose& pose : poses) result.push_back(evaluator.evaluate(pose).gain);
     return result;
@@ -117,10 +118,9 @@ TEST_F(ScoreCandidates, PosesOutOfReachAreDroppedAndTheOthersKeepTheirNumbers) {
 
 TEST_F(ScoreCandidates, InfeasiblePosesAreDroppedByReason) {
   const auto scene =
-      VoxelScene::build(load_vdb(dir / "map.vdb"), {{{{0.3, 0.1, -1}, {1, 1, 1}}}, {}});
+      VoxelScene::build(load_vdb(dir / "map.vdb"), {{{{{0.3, 0.1, -1}, {1, 1, 1}}}, {}}, -0.3});
   FeasibilityConfig config;
   config.body.size = {0.2, 0.2, 0.2};
-  config.support_plane = -0.3;
   config.sensor = load_sensor((dir / "small.toml").string());
   const FeasibilityChecker checker(scene, config);
   std::map<std::string, std::size_t> dropped;

@@ -126,7 +126,8 @@ class ViewPictureTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     const BeliefGrid grid = test::camel_grid(48);
-    evaluator_ = std::make_unique<GainEvaluator>(VoxelScene::build(grid, {}), sensor_);
+    evaluator_ = std::make_unique<GainEvaluator>(VoxelScene::build(grid, {}), sensor_,
+                                                 GainConfig{.model = GainModel::paper});
   }
   static void TearDownTestSuite() { evaluator_.reset(); }
 

@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { gzipSync } from "node:zlib";
 import test from "node:test";
-import { decodeBlock } from "../../../apps/show/report/viewer/src/data/blocks.js";
+import { decodeBlock } from "../../../../apps/show/report/viewer/src/data/blocks.js";
 
 const block = (type, columns, rows, bytes) =>
   ({ type, columns, rows, data: gzipSync(Uint8Array.from(bytes)).toString("base64") });

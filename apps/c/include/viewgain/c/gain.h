@@ -13,7 +13,7 @@ extern "C" {
 
 /* ---- Scenes ---- */
 
-/* An immutable snapshot of a grid, made for tracing, and known obstacles. */
+/* An immutable snapshot of a grid, made for tracing, and what stands there beside. */
 typedef struct vg_scene vg_scene;
 
 /* What a scene is built with. */
@@ -26,6 +26,9 @@ typedef struct vg_scene_config {
   size_t vertex_count;       /* how many vertices */
   const uint32_t* triangles; /* 3 vertex indices each */
   size_t triangle_count;     /* how many triangles */
+  /* Height z of a table without end, world [m]; NaN (the default): none. Bodies stay above it; rays
+     of the surface and the combined gain end there. */
+  double support_plane;
   /* For the surface and the combined gain: longest side of the object [m], NaN (the default): that
      of what is seen of it. */
   double object_size;
@@ -41,12 +44,11 @@ typedef struct vg_scene_config {
 /* The defaults. */
 VG_API void vg_scene_config_init(vg_scene_config* config, size_t struct_size);
 
-/* config null: no obstacles. */
+/* config null: nothing stands there. */
 VG_API vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config,
                                 vg_scene** scene);
 
-/* The scene of what `grid` is now, with the obstacles of `before`; takes over what has not changed.
- */
+/* The scene of what `grid` is now, in the surroundings of `before`; copies what has not changed. */
 VG_API vg_status vg_scene_update(const vg_scene* before, const vg_grid* grid, int32_t num_threads,
                                  vg_scene** scene);
 /* Null does nothing. */
@@ -89,11 +91,10 @@ typedef struct vg_evaluator_config {
   double min_range, max_range;     /* along the ray [m]; NaN (the default): the sensor's */
   const vg_weight_region* weights; /* task weights of parts of the workspace; null: none */
   size_t weight_count;             /* how many weights */
-  double refinement_weight; /* VG_GAIN_COMBINED: of refining against finding new surface (0.3) */
-  double support_plane; /* height z of a table at which rays end [m]; NaN (the default): none; not
-                           for VG_GAIN_PAPER */
-  int32_t gain;         /* VG_GAIN_PAPER */
-  int32_t posterior_entropy; /* 1: vg_view_gain.posterior_entropy too; 0 (the default) */
+  double refinement_weight;  /* VG_GAIN_COMBINED: of refining against finding new surface (0.3) */
+  int32_t gain;              /* VG_GAIN_COMBINED */
+  int32_t posterior_entropy; /* 1: vg_view_gain.posterior_entropy too, by VG_GAIN_PAPER; 0 (the
+                                default) */
 } vg_evaluator_config;
 /* The defaults. */
 VG_API void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_size);
@@ -127,18 +128,18 @@ VG_API vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluat
    voxel, gain 0. */
 enum { VG_VIEW_OK = 0, VG_VIEW_BAD_POSE = 1, VG_VIEW_CAMERA_IN_OCCUPIED = 2 };
 
-/* What a view is expected to bring; gains in nats, in m^2 for VG_TRACE and VG_GAIN_SURFACE. What a
-   gain has not is NaN, a count 0. */
+/* What a view is expected to bring; gains in nats, in m^2 for VG_TRACE and VG_GAIN_SURFACE. Each
+   part says which gains have it; of the others it is NaN, a count 0. */
 typedef struct vg_view_gain {
   double gain;                    /* paper: exploration + refinement; surface: area; combined: both,
                                      area and refinement_saturated; NaN: a bad pose */
   double exploration, refinement; /* paper: share of unknown and of occupied voxels */
   double posterior_entropy;       /* paper, if asked for: its eq. (6), lengths in metres */
   uint32_t rays, hits;            /* of the view; that end in a voxel */
-  uint32_t unknown_voxels, occupied_voxels; /* distinct */
+  uint32_t unknown_voxels, occupied_voxels; /* distinct; paper, occupied_voxels combined too */
   int32_t status;                           /* VG_VIEW_ */
-  double area;                 /* surface, combined: new surface to be expected [m^2]; else NaN */
-  double refinement_saturated; /* combined: of known surface [nat]; else NaN */
+  double area;                 /* surface, combined: new surface to be expected [m^2] */
+  double refinement_saturated; /* combined: of known surface [nat] */
 } vg_view_gain;
 
 /* The expected gain of every pose, on all threads of the evaluator: poses are count times 16
@@ -232,7 +233,6 @@ typedef struct vg_feasibility_config {
   int32_t has_flange;         /* nonzero: T_flange_camera counts; else the camera is in the */
   double T_flange_camera[16]; /* middle of the body's front face */
   double clearance;           /* the body is grown by this on each side [m]; 0 */
-  double support_plane;       /* its height, world z [m]; NaN (the default): none */
   double taken_distance;      /* views this near ... [m]; 0.010 */
   double taken_angle;         /* ... and this much alike are the same [rad]; 2 degrees */
   const vg_sensor* sensor;    /* null (the default): nothing is too near; read during create */

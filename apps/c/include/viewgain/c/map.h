@@ -41,8 +41,8 @@ typedef struct vg_sensor {
 } vg_sensor;
 VG_API void vg_sensor_init(vg_sensor* sensor, size_t struct_size); /* all 0: nothing is valid yet */
 
-/* Fills a sensor that vg_sensor_init has seen: "sr4000", "azure_kinect_nfov", "kinect_v1", "d435"
-   or "laser_line". */
+/* Fills a sensor that vg_sensor_init has seen: the preset of a name, say "sr4000"; the message of
+   a wrong one lists them. */
 VG_API vg_status vg_sensor_preset(const char* name, vg_sensor* sensor);
 
 /* *sigma: the prior sigma [m] that suits a voxel size and a sensor: max(voxel / 2, 2 sigma_ax at
@@ -101,12 +101,6 @@ VG_API vg_status vg_grid_load(const char* path, vg_grid** grid); /* a .vdb file 
 /* Writes the map as .vdb, whole or not at all. */
 VG_API vg_status vg_grid_save(const vg_grid* grid, const char* path);
 
-/* OctoMap's .ot and .bt: the states, and a .ot's log-odds; the workspace is the box of the known
-   voxels. prior_sigma [m], 0: half a voxel. Saving writes a .ot, in the world's frame where
-   T_world_grid is a shift by whole voxels, else in the grid's own. */
-VG_API vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** grid);
-/* Writes states and log-odds as OctoMap's .ot. */
-VG_API vg_status vg_grid_save_octomap(const vg_grid* grid, const char* path);
 /* A deep copy. */
 VG_API vg_status vg_grid_clone(const vg_grid* grid, vg_grid** copy);
 /* Null does nothing. */

@@ -10,8 +10,8 @@
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/grid/belief_grid.hpp"
-#include "viewgain/grid/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 /// @file

@@ -24,17 +24,20 @@ namespace viewgain {
 
 /// What changes the map.
 struct VIEWGAIN_EXPORT MapModelConfig {
-  GridConfig grid{};                           ///< how the map is laid out
-  IntegrationConfig integration{};             ///< how frames change it
-  std::optional<JumpEdgeConfig> jump_edges{};  ///< takes flying pixels out of the frames
-  /// Known ones: they block rays and bodies, and readings of them carve but do not hit.
-  Obstacles obstacles{};
+  GridConfig grid{};  ///< how the map is laid out
+  IntegrationConfig
+      integration{};  ///< how frames change it; support_plane is ignored: surroundings has it
+  /// Takes flying pixels out of the frames; nothing: they are taken as they are.
+  std::optional<JumpEdgeConfig> jump_edges = JumpEdgeConfig{};
+  /// They block rays and bodies, and readings of them carve but do not hit.
+  Surroundings surroundings{};
   HazardConfig hazard{};  ///< of unknown space, for the surface and the combined gain
   Criterion criterion = Criterion::log_diagonal;  ///< of MapModel::progress()
   bool refine = true;  ///< false: the first reading of a voxel wins, later ones are ignored
   /// Each view is held against what was expected of unknown space: its new surface is measured, and
   /// the hazard learns from it. What the surface and the combined gain need; some milliseconds.
   bool follow_surface = true;
+  bool keep_scene = true;  ///< false: scene() is null; what only grows a map saves its time
 };
 
 /// What a view brought.
@@ -76,7 +79,7 @@ class VIEWGAIN_EXPORT MapModel {
 
   /// The map.
   [[nodiscard]] const BeliefGrid& grid() const noexcept { return grid_; }
-  /// The scene of the map as it is.
+  /// The scene of the map as it is; null without keep_scene.
   [[nodiscard]] const std::shared_ptr<const VoxelScene>& scene() const noexcept { return scene_; }
   /// The camera that frames come from.
   [[nodiscard]] const Sensor& sensor() const noexcept { return sensor_; }

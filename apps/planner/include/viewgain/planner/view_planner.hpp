@@ -20,10 +20,11 @@
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/hazard.hpp"
 #include "viewgain/grid/vdb_io.hpp"
-#include "viewgain/planner/feasible_poses.hpp"
 #include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/pose_sets.hpp"
+#include "viewgain/planner/rank_views.hpp"
 #include "viewgain/planner/register_frame.hpp"
+#include "viewgain/planner/view_proposer.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
@@ -33,15 +34,13 @@ namespace viewgain {
 /// What a planner is set up with, each setting in one place. The body that must have room is the
 /// sensor's (Sensor::body_size, T_flange_camera; without a size SensorBody's).
 struct VIEWGAIN_EXPORT PlannerConfig {
-  /// prior_sigma 0: default_prior_sigma(). A workspace that begins at the table has no voxels under
-  /// it that stay unknown, which the paper's gain would count.
+  /// A workspace that begins at the table has no voxels under it that stay unknown, which the
+  /// paper's gain would count.
   GridConfig grid{};
-  std::optional<double> support_plane{};  ///< height z of the table [m], world
-  Obstacles obstacles{};                  ///< known ones, world
+  Surroundings surroundings{};                                  ///< the table, known obstacles
   std::optional<JumpEdgeConfig> jump_edges = JumpEdgeConfig{};  ///< nothing: frames are taken as is
   HazardConfig hazard{};                                        ///< of unknown space
-  /// What ranks views. Its support plane is the one above.
-  GainConfig gain{.model = GainModel::combined};
+  GainConfig gain{};                                            ///< what ranks views
   ReachRegion reach{};              ///< its list of poses, if it has one, is among the candidates
   double clearance = 0;             ///< round the body [m]
   PoseTolerance taken_tolerance{};  ///< when two poses are the same
@@ -64,34 +63,6 @@ struct VIEWGAIN_EXPORT AddedView {
   double entropy_removed = 0;  ///< by this view [nat, or m² for trace]
 };
 
-/// By what ViewPlanner::rank() ranks.
-struct VIEWGAIN_EXPORT RankConfig {
-  /// One a pose, subtracted from its gain, in the gain's unit. Empty: none.
-  std::span<const double> costs{};
-  /// Of the way from the last view, likewise. The combined gain of a square metre of new surface
-  /// goes with 1 / voxel², so a cost per metre does, too.
-  double cost_per_metre = 0;
-  const ViewMeasure* measure = nullptr;     ///< instead of the gain, as in BestConfig
-  const RunMeasure* run_measure = nullptr;  ///< likewise
-  /// All poses are scored in full. Else, but by the paper's gain, where it is always so, by two
-  /// stages: see GainEvaluator::race().
-  bool exact = false;
-};
-
-/// One of the best.
-struct VIEWGAIN_EXPORT RankedView {
-  std::size_t index = 0;  ///< of the candidate in the proposal, or of the pose that was given
-  Pose T_world_camera;    ///< where the camera would be
-  ViewGain gain;          ///< all NaN with a measure
-  double worth = 0;       ///< gain or measure, less the cost, in the gain's unit
-};
-
-/// What rank() found.
-struct VIEWGAIN_EXPORT Ranking {
-  std::vector<RankedView> views;  ///< best first
-  bool complete = true;           ///< false: a stop was requested
-};
-
 /// Next best views for a robot's program that calls step by step: frames in, views out. The steps
 /// of Algorithm 1 without its loop.
 ///
@@ -105,7 +76,7 @@ struct VIEWGAIN_EXPORT Ranking {
 /// from can only be assigned to or destroyed. Cost of a step: that of its parts, add()
 /// MapModel::update(), propose() FeasibilityChecker::check() of the candidates and what generations
 /// take, rank() GainEvaluator::race() or best(), register_frame() fused_points() and
-/// FrameRegistrar, save() and load() save_vdb() and load_vdb().
+/// FrameAlignment, save() and load() save_vdb() and load_vdb().
 class VIEWGAIN_EXPORT ViewPlanner {
  public:
   /// Throws Error(invalid_argument), naming the value, for settings out of their range.
@@ -121,12 +92,12 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// (BoundaryGeneration of viewgain::planner_mesh). Not part of what save() keeps.
   void add_generation(std::shared_ptr<ViewpointGeneration> generation);
 
-  /// Where the camera was, by what the frame shows of the map so far: see FrameRegistrar. Changes
+  /// Where the camera was, by what the frame shows of the map so far: see FrameAlignment. Changes
   /// nothing. A frame that is registered is best put in at the pose that was found, one that is
   /// refused not at all, one of which the map shows too little as reported. Throws
-  /// Error(invalid_argument) as FrameRegistrar::register_frame().
-  [[nodiscard]] FrameRegistration register_frame(const DepthFrame& frame,
-                                                 const PosePrior& prior) const;
+  /// Error(invalid_argument) as FrameAlignment::register_frame().
+  [[nodiscard]] FrameRegistration register_frame(const DepthFrame& frame, const Pose& T_reported,
+                                                 const PoseSigma& sigma = kUsualPoseSigma) const;
 
   /// Puts a frame into the map and brings the scene up to date; the last proposal is void. Throws
   /// Error(invalid_argument) for a frame of another size than the sensor's images and a pose that
@@ -141,16 +112,18 @@ class VIEWGAIN_EXPORT ViewPlanner {
                 const PoseSigma& pose_sigma = {});
 
   /// The candidates of the reach region's poses, the sets and the generations, in this order, that
-  /// are possible now, and how many are not and why. Valid until the next add() or propose(). An
-  /// earlier ranking since the last view is void.
+  /// are possible now by the rules of ViewProposer, and how many are not and why. Valid until the
+  /// next add() or propose(). An earlier ranking since the last view is void.
   const Proposal& propose();
   /// Behind the last proposal, in the order of the candidates, and valid as long.
   [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept;
   /// Of the last proposal; 0 without one since the last view.
   [[nodiscard]] std::size_t candidate_count() const noexcept;
 
-  /// The k best of the proposal, fewer if there are fewer. Ties go to the earlier candidate. Throws
-  /// Error(invalid_argument) without a proposal since the last view, and as GainEvaluator::best().
+  /// The k best of the proposal, fewer if there are fewer; without a measure of the user's own
+  /// those that gain nothing are left out, so none is an answer, too. Ties go to the earlier
+  /// candidate. Throws Error(invalid_argument) without a proposal since the last view, and as
+  /// GainEvaluator::best().
   [[nodiscard]] Ranking rank(std::size_t k = 1, const RankConfig& config = {},
                              const BatchControl& control = {});
   /// The same of any poses, `T_world_camera` in any order; nobody looks whether they are possible.

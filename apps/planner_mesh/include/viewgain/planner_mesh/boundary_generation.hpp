@@ -13,6 +13,7 @@
 #include "viewgain/mesh/surface.hpp"
 #include "viewgain/mesh/viewpoint_estimator.hpp"
 #include "viewgain/planner/map_model.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
 
 namespace viewgain {
 
@@ -53,23 +54,25 @@ boundary_views(const SurfaceMesh& surface, const std::shared_ptr<const VoxelScen
 /// surface is made anew, fused_points() and reconstruct_surface(), and estimate_views().
 class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
  public:
-  /// The map, say ViewPlanner::map(), must outlive it.
+  /// Of the surface in a map, say ViewPlanner::map(), which must outlive it; it is made anew for
+  /// each proposal.
   BoundaryGeneration(const MapModel& map, const BoundaryViewsConfig& config,
+                     const ExecConfig& exec = {});
+  /// Of a model's surface as it is; the model must outlive it.
+  BoundaryGeneration(const SurfaceModel& model, const BoundaryViewsConfig& config,
                      const ExecConfig& exec = {});
 
   /// Views at the open boundaries of the surface as it is. Throws as boundary_views().
   Proposal generate(const Pose& T_world_camera) override;
 
   /// Behind the last proposal.
-  [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
-  /// Behind the last proposal.
   [[nodiscard]] const EstimatedViews& estimated() const noexcept { return estimated_; }
 
  private:
   const MapModel& map_;
+  const SurfaceModel* model_ = nullptr;  // null: the surface is made of the map
   BoundaryViewsConfig config_;
   ExecConfig exec_;
-  SurfaceMesh surface_;
   EstimatedViews estimated_;
 };
 

@@ -9,8 +9,8 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/mesh/viewpoint_estimator.hpp"
-#include "viewgain/planner/feasible_poses.hpp"
 #include "viewgain/planner/pose_sets.hpp"
+#include "viewgain/planner/view_proposer.hpp"
 #include "viewgain/planner_mesh/boundary_generation.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/raycast/feasibility.hpp"
@@ -31,17 +31,17 @@ struct VIEWGAIN_EXPORT GenerationConfig {
 [[nodiscard]] VIEWGAIN_EXPORT GenerationConfig default_generation(const Sensor& sensor,
                                                                   double voxel_size);
 
-/// VIEWPOINTSGENERATION of Algorithm 1: views at the open boundaries of the model's surface, and
-/// fixed sets; the infeasible ones are dropped and counted by reason. Thread safety: one call at a
+/// VIEWPOINTSGENERATION of Algorithm 1: a ViewProposer with fixed sets and views at the open
+/// boundaries of the model's surface. Thread safety: one call at a
 /// time. Cost: boundary_views(), and FeasibilityChecker::check() of all candidates.
 class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
  public:
-  /// The model must outlive it.
-  CandidateGeneration(const SurfaceModel& model, const Sensor& sensor,
-                      const GenerationConfig& config, const ExecConfig& exec);
+  /// The model must outlive it. Throws as FeasibilityChecker.
+  CandidateGeneration(const SurfaceModel& model, const GenerationConfig& config,
+                      const ExecConfig& exec);
 
-  /// Boundary views and the sets, those that are possible. Throws as boundary_views() and the first
-  /// time as FeasibilityChecker.
+  /// The sets' poses and boundary views that are possible by the rules of ViewProposer. Throws as
+  /// boundary_views().
   Proposal generate(const Pose& T_world_camera) override;
 
   /// What it was made with.
@@ -49,20 +49,19 @@ class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
 
   /// Behind the last proposal: why its boundary candidates exist. The `number` of a candidate with
   /// a class is its index in estimated().candidates, that of one of a set its index in the set.
-  [[nodiscard]] const EstimatedViews& estimated() const noexcept { return estimated_; }
+  [[nodiscard]] const EstimatedViews& estimated() const noexcept {
+    return boundaries_->estimated();
+  }
   /// Of the last proposal: the dropped candidates, in their order, each with its reason.
-  [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept { return dropped_; }
+  [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept {
+    return proposer_.dropped();
+  }
 
  private:
-  [[nodiscard]] std::vector<Candidate> all_candidates() const;
-
   const SurfaceModel& model_;
-  Sensor sensor_;
   GenerationConfig config_;
-  ExecConfig exec_;
-  std::optional<FeasibilityChecker> checker_;  ///< of the last proposal's scene
-  EstimatedViews estimated_;
-  std::vector<DroppedCandidate> dropped_;
+  std::shared_ptr<BoundaryGeneration> boundaries_;
+  ViewProposer proposer_;
 };
 
 }  // namespace viewgain

@@ -28,9 +28,9 @@ class VIEWGAIN_EXPORT ClassicChoice {
   /// Candidates that are scored with all rays.
   static constexpr std::size_t kInFull = 32;
 
-  /// The model must outlive it. `support_plane` [m]: the height z at which rays end.
+  /// The model must outlive it.
   ClassicChoice(const SurfaceModel& model, const Sensor& sensor, const ClassicRanking& ranking,
-                std::optional<double> support_plane, const ExecConfig& exec);
+                const ExecConfig& exec);
 
   /// The gain of each pose, in the gain's unit, in their order. Unless `all` are asked for, those
   /// that about 400 rays each do not rank among the first 32, ties to the lower index, have NaN.
@@ -41,7 +41,6 @@ class VIEWGAIN_EXPORT ClassicChoice {
   const SurfaceModel& model_;
   Sensor sensor_;
   ClassicRanking ranking_;
-  std::optional<double> support_plane_;
   ExecConfig exec_;
   std::optional<ClassicGainEvaluator> full_, coarse_;  ///< of the last call's map
 };

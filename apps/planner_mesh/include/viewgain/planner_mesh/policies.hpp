@@ -36,22 +36,13 @@ enum class Policy : std::uint8_t {
 /// Throws Error(invalid_argument) that lists the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT Policy parse_policy(std::string_view name);
 
-/// What moving costs; at most one of the two.
-struct VIEWGAIN_EXPORT TravelCost {
-  double per_metre = 0;  ///< gain - per_metre · distance [the gain's unit per m]
-  /// gain / (seconds_per_view + distance / speed), where a speed is given [m/s].
-  std::optional<double> speed{};
-  double seconds_per_view = 1.0;  ///< [s]
-};
-
 /// How the next view is chosen.
 struct VIEWGAIN_EXPORT PolicyConfig {
   Policy policy = Policy::gain;                   ///< which one
-  GainModel model = GainModel::combined;          ///< of Policy::gain
+  GainModel model = kDefaultGain;                 ///< of Policy::gain
   std::optional<ClassicRanking> classic{};        ///< of Policy::gain, instead of `model`
   Criterion criterion = Criterion::log_diagonal;  ///< of the paper's gain
-  std::optional<double> support_plane{};          ///< height [m], at which rays end
-  TravelCost travel{};                            ///< what moving costs
+  double travel_cost = 0;                         ///< gain - this * way [the gain's unit per m]
   KnownObject object{};                           ///< of Policy::oracle
   std::uint64_t seed = 1;                         ///< of random choices
 };

@@ -7,7 +7,7 @@
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/planning.hpp"
-#include "viewgain/planner/map_alignment.hpp"
+#include "viewgain/planner/align_frames.hpp"
 #include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/register_frame.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
@@ -23,12 +23,12 @@ namespace viewgain {
 /// and an update for every view so far.
 class VIEWGAIN_EXPORT RegisteredModel : public RepresentationUpdate {
  public:
-  /// `model` must be empty, made by `map`, and is kept by reference. `sigmas` are those of each
-  /// reported pose. Throws Error(invalid_argument) as MapAlignment.
-  RegisteredModel(SurfaceModel& model, const MapModelConfig& map, const PosePrior& sigmas,
+  /// `model` must be empty, made by `map`, and is kept by reference. `sigma`: by how
+  /// much each reported pose may be off. Throws Error(invalid_argument) as FrameAlignment.
+  RegisteredModel(SurfaceModel& model, const MapModelConfig& map, const PoseSigma& sigma,
                   const ExecConfig& exec = {});
 
-  /// Stages as SurfaceModel::update() and register. Throws as MapAlignment::add() and
+  /// Stages as SurfaceModel::update() and register. Throws as FrameAlignment::add() and
   /// SurfaceModel::rebuild().
   ModelProgress update(const Measurements& measurements) override;
 
@@ -39,7 +39,8 @@ class VIEWGAIN_EXPORT RegisteredModel : public RepresentationUpdate {
 
  private:
   SurfaceModel& model_;
-  MapAlignment alignment_;
+  PoseSigma sigma_;
+  FrameAlignment alignment_;
   std::vector<Measurements> views_;  ///< as reported
 };
 

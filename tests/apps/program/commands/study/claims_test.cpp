@@ -50,16 +50,22 @@ TEST_F(ClaimsTest, OneOwnerAPiece) {
   EXPECT_EQ(files(), 0U);  // given back
 }
 
+// All pieces are of an owner who is gone.
 TEST_F(ClaimsTest, ManyThreadsTakeEachPieceOnce) {
   constexpr int kPieces = 200;
+  for (int i = 0; i < kPieces; ++i) {
+    const fs::path claim = folder / (std::to_string(i) + ".claim");
+    std::ofstream(claim) << "elsewhere 0-0 1";
+    fs::last_write_time(claim, fs::last_write_time(claim) - std::chrono::seconds(61));
+  }
   app::Claims one(folder), two(folder);
   std::atomic<int> taken{0};
   {
     std::vector<std::jthread> threads;
     for (int t = 0; t < 4; ++t) {
       threads.emplace_back([&, t] {
-        for (int i = 0; i < kPieces; ++i) {
-          if ((t % 2 == 0 ? one : two).take(std::to_string(i))) ++taken;
+        for (int i = 0; i < 5 * kPieces; ++i) {
+          if ((t % 2 == 0 ? one : two).take(std::to_string(i % kPieces))) ++taken;
         }
       });
     }

@@ -109,6 +109,10 @@ TEST_F(StudySpecTest, HashesFollowWhatCanChangeAResult) {
   EXPECT_NE(spec_of(with_reach).runs.back().hash, by_poses);
   ++cases;
   EXPECT_EQ(cases, 7U);
+  // A value that is none is not looked for on the disk.
+  const std::string box = with("--up=y", "--body=" + reach), box_before = spec_of(box).runs[0].hash;
+  write("reach.toml", "# changed\n");
+  EXPECT_EQ(spec_of(box).runs[0].hash, box_before);
   // Neither what it stands beside nor where the files lie.
   EXPECT_EQ(spec_of(with("seeds = [3, 1]", "seeds = [1]")).runs.back().hash, before);
   EXPECT_EQ(spec_of(with("[\"cube.off\", ", "[")).runs.back().hash, before);

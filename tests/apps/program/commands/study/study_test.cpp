@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <sstream>
@@ -238,9 +239,17 @@ TEST_F(Study, AFolderOfOtherThingsIsRefused) {
         "objects = [\"../cube.off\"]\npolicies = [\"random\"]\nseeds = [1]\n"
         "sensors = [\"../tof.toml\"]\nvoxels = [0.0125]\nsizes = [0.15]\nmax_views = 1\n");
   const std::string spec = read("home/my.toml");
-  run_well({"study", "home/my.toml", "--out", "home", "--plots", "off", "--quiet"});
+  // What draws the plots can be stopped: it does not inherit the signals that the program blocks.
+  write("bin/python3",
+        "#!/bin/sh\nexec grep SigBlk /proc/self/status > '" + dir.string() + "/blocked'\n");
+  fs::permissions(dir / "bin/python3", fs::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", (dir.string() + "/bin:" + path).c_str(), 1);
+  run_well({"study", "home/my.toml", "--out", "home", "--quiet"});
+  ::setenv("PATH", path.c_str(), 1);
   EXPECT_TRUE(fs::exists(dir / "home/results.csv"));
   EXPECT_EQ(read("home/my.toml"), spec);
+  EXPECT_EQ(read("blocked"), "SigBlk:\t0000000000000000\n");
 }
 
 TEST_F(Study, PlotsAreDrawnByTheScriptItLeaves) {

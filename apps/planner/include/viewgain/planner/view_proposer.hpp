@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/reach.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/planner/pose_sets.hpp"
+#include "viewgain/raycast/feasibility.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+/// @file
+/// Which views are possible, by one set of rules for all that propose: the program's candidates,
+/// next, follow, reconstruct and score --feasible, studies, ViewPlanner, C and Python. Poses are
+/// T_world_camera. Functions keep the order of the poses.
+
+namespace viewgain {
+
+/// What is asked of a sensor's poses: its body on its flange must have room, and what it sees must
+/// not be nearer than it can measure. No limits of reach.
+[[nodiscard]] VIEWGAIN_EXPORT FeasibilityConfig feasibility_of(const Sensor& sensor);
+
+/// Why a candidate is dropped that was commanded and not reached.
+inline constexpr std::string_view kMissed = "missed";
+
+/// A candidate that was not proposed.
+struct VIEWGAIN_EXPORT DroppedCandidate {
+  Candidate candidate;  ///< who was dropped
+  std::string reason;   ///< infeasibility_name() or kMissed
+};
+
+/// Their poses, in the same order.
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> poses_of(std::span<const Candidate> candidates);
+
+/// The poses that are possible, and why the others are not.
+struct VIEWGAIN_EXPORT FeasiblePoses {
+  std::vector<Pose> poses;                     ///< that are possible, in their order
+  std::vector<std::size_t> numbers;            ///< of each among those that were asked about
+  std::map<std::string, std::size_t> dropped;  ///< reason -> count
+};
+
+/// Costs as FeasibilityChecker::check(), whose `taken` are in any order.
+[[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses feasible_poses(const FeasibilityChecker& checker,
+                                                           std::span<const Pose> poses,
+                                                           std::span<const Pose> taken);
+
+/// The poses in reach, in their order, whatever the body meets there. What the region's predicate
+/// throws passes through.
+[[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses reachable_poses(const ReachRegion& reach,
+                                                            std::span<const Pose> poses);
+
+/// What a ViewProposer lets through.
+struct VIEWGAIN_EXPORT ProposerConfig {
+  FeasibilityConfig feasibility{};  ///< what is possible, and what is taken
+  /// False: every candidate is possible but those that were taken or tried.
+  bool check_feasibility = true;
+};
+
+/// Candidates of sets and generations, and which of them are possible. Where the map's views were
+/// all taken inside its workspace, as in a room, and the region of reach is empty, generations'
+/// candidates stay inside it: nothing outside is mapped, so nothing there would be in the camera's
+/// way. Not thread safe.
+class VIEWGAIN_EXPORT ViewProposer {
+ public:
+  /// The poses of the region of reach, if it has a list, are the set "reach". Throws as
+  /// FeasibilityChecker.
+  ViewProposer(std::shared_ptr<const VoxelScene> scene, ProposerConfig config,
+               const ExecConfig& exec = {});
+
+  /// A fixed set of candidates.
+  void add_poses(PoseSet set);
+  /// Candidates that are made anew for each proposal.
+  void add_generation(std::shared_ptr<ViewpointGeneration> generation);
+
+  /// The candidates of the sets and then of the generations, each in their order, that are possible
+  /// in `scene`, which is the map's, now that `reached` and `missed` were tried; how many are not,
+  /// and why. Costs as the generations and FeasibilityChecker::check().
+  [[nodiscard]] Proposal propose(const BeliefGrid& grid, std::shared_ptr<const VoxelScene> scene,
+                                 std::span<const Pose> reached = {},
+                                 std::span<const Pose> missed = {});
+
+  /// Behind the last proposal, in the order of the candidates.
+  [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept { return dropped_; }
+
+  /// The pose was tried: what is the same view goes from `proposal` to the dropped, by `reason`.
+  void drop(const Pose& tried, std::string_view reason, Proposal& proposal);
+
+ private:
+  [[nodiscard]] bool stays_inside(const BeliefGrid& grid) const;
+
+  ProposerConfig config_;
+  FeasibilityChecker checker_;
+  std::vector<PoseSet> sets_;
+  std::vector<std::shared_ptr<ViewpointGeneration>> generations_;
+  std::vector<DroppedCandidate> dropped_;
+};
+
+}  // namespace viewgain

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/planner/view_proposer.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+namespace viewgain {
+namespace {
+
+FeasiblePoses sorted(std::span<const Pose> poses, std::span<const Infeasibility> reasons) {
+  FeasiblePoses result;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (reasons[i] == Infeasibility::none) {
+      result.poses.push_back(poses[i]);
+      result.numbers.push_back(i);
+    } else {
+      ++result.dropped[std::string(infeasibility_name(reasons[i]))];
+    }
+  }
+  return result;
+}
+
+// Faces included, since a camera may stand on a limit.
+bool is_in_workspace(const BeliefGrid& grid, const Pose& pose) {
+  const Box box = grid.workspace();
+  const Eigen::Vector3d p = grid.T_world_grid().inverse() * pose.translation();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double x = p[static_cast<Eigen::Index>(a)];
+    if (!(x >= box.min[a] && x <= box.max[a])) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<Pose> poses_of(std::span<const Candidate> candidates) {
+  std::vector<Pose> poses;
+  poses.reserve(candidates.size());
+  for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
+  return poses;
+}
+
+FeasibilityConfig feasibility_of(const Sensor& sensor) {
+  FeasibilityConfig config;
+  config.body.T_flange_camera = sensor.T_flange_camera;
+  if (sensor.body_size) config.body.size = *sensor.body_size;
+  config.sensor = sensor;
+  return config;
+}
+
+FeasiblePoses feasible_poses(const FeasibilityChecker& checker, std::span<const Pose> poses,
+                             std::span<const Pose> taken) {
+  return sorted(poses, checker.check(poses, taken));
+}
+
+FeasiblePoses reachable_poses(const ReachRegion& reach, std::span<const Pose> poses) {
+  std::vector<Infeasibility> reasons;
+  reasons.reserve(poses.size());
+  for (const Pose& pose : poses) {
+    reasons.push_back(reach.contains(pose) ? Infeasibility::none : Infeasibility::unreachable);
+  }
+  return sorted(poses, reasons);
+}
+
+ViewProposer::ViewProposer(std::shared_ptr<const VoxelScene> scene, ProposerConfig config,
+                           const ExecConfig& exec)
+    : config_(std::move(config)), checker_(std::move(scene), config_.feasibility, exec) {
+  const std::vector<Pose>& reach = config_.feasibility.reach.poses;
+  if (!reach.empty()) sets_.push_back({"reach", reach});
+}
+
+void ViewProposer::add_poses(PoseSet set) { sets_.push_back(std::move(set)); }
+
+void ViewProposer::add_generation(std::shared_ptr<ViewpointGeneration> generation) {
+  generations_.push_back(std::move(generation));
+}
+
+bool ViewProposer::stays_inside(const BeliefGrid& grid) const {
+  const std::vector<Pose>& views = grid.views();
+  return config_.check_feasibility && config_.feasibility.reach.is_everywhere() && !views.empty() &&
+         std::all_of(views.begin(), views.end(),
+                     [&grid](const Pose& view) { return is_in_workspace(grid, view); });
+}
+
+Proposal ViewProposer::propose(const BeliefGrid& grid, std::shared_ptr<const VoxelScene> scene,
+                               std::span<const Pose> reached, std::span<const Pose> missed) {
+  checker_ = checker_.with_scene(std::move(scene));
+  Proposal proposal;
+  std::vector<Candidate> candidates;
+  for (const PoseSet& set : sets_) {
+    for (std::size_t i = 0; i < set.poses.size(); ++i) {
+      candidates.push_back({set.poses[i], set.generator, std::nullopt, i});
+    }
+  }
+  const std::size_t of_sets = candidates.size();
+  const Pose here = grid.views().empty() ? Pose() : grid.views().back();
+  for (const auto& generation : generations_) {
+    Proposal made = generation->generate(here);
+    std::move(made.candidates.begin(), made.candidates.end(), std::back_inserter(candidates));
+    for (const auto& [reason, count] : made.dropped) proposal.dropped[reason] += count;
+  }
+
+  std::vector<Infeasibility> found(candidates.size(), Infeasibility::none);
+  if (stays_inside(grid)) {
+    for (std::size_t i = of_sets; i < candidates.size(); ++i) {
+      if (!is_in_workspace(grid, candidates[i].T_world_camera)) {
+        found[i] = Infeasibility::unreachable;
+      }
+    }
+  }
+  std::vector<Pose> taken = grid.views();
+  taken.insert(taken.end(), reached.begin(), reached.end());
+  const PoseTolerance& tolerance = config_.feasibility.taken_tolerance;
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (found[i] == Infeasibility::none) poses.push_back(candidates[i].T_world_camera);
+  }
+  std::vector<Infeasibility> checked;
+  if (config_.check_feasibility) {
+    checked = checker_.check(poses, taken);
+  } else {
+    for (const Pose& pose : poses) {
+      checked.push_back(is_among(pose, taken, tolerance) ? Infeasibility::taken
+                                                         : Infeasibility::none);
+    }
+  }
+  dropped_.clear();
+  std::size_t next = 0;  // of those that were checked
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (found[i] == Infeasibility::none) found[i] = checked[next++];
+    std::string_view reason;
+    if (found[i] != Infeasibility::none) {
+      reason = infeasibility_name(found[i]);
+    } else if (is_among(candidates[i].T_world_camera, missed, tolerance)) {
+      reason = kMissed;
+    }
+    if (reason.empty()) {
+      proposal.candidates.push_back(std::move(candidates[i]));
+    } else {
+      ++proposal.dropped[std::string(reason)];
+      dropped_.push_back({std::move(candidates[i]), std::string(reason)});
+    }
+  }
+  return proposal;
+}
+
+void ViewProposer::drop(const Pose& tried, std::string_view reason, Proposal& proposal) {
+  const auto is_tried = [&](const Candidate& candidate) {
+    return is_among(candidate.T_world_camera, std::span(&tried, 1),
+                    config_.feasibility.taken_tolerance);
+  };
+  std::vector<Candidate>& candidates = proposal.candidates;
+  const auto gone =
+      std::stable_partition(candidates.begin(), candidates.end(), std::not_fn(is_tried));
+  for (auto it = gone; it != candidates.end(); ++it) {
+    ++proposal.dropped[std::string(reason)];
+    dropped_.push_back({std::move(*it), std::string(reason)});
+  }
+  candidates.erase(gone, candidates.end());
+}
+
+}  // namespace viewgain

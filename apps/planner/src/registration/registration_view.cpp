@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "registration/registration_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace viewgain::detail {
+namespace {
+
+// How many sigmas apart the two of a pair may be, and from where on they count less: 95 % efficient
+// for Gaussian errors.
+constexpr double kGateSigmas = 4;
+constexpr double kCauchy = 2.385;
+constexpr double kMinCosine = 0.6216;  // between the normals of a pair: 0.9 rad
+
+bool is_free(const RegistrationView& map, const Eigen::Vector3d& point) {
+  const auto voxel = map.grid->index_of(map.T_world_view * point);
+  return voxel && map.grid->state(*voxel) == VoxelState::free;
+}
+
+}  // namespace
+
+void RegistrationView::clear_lattice() {
+  at.assign(static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()), -1);
+}
+
+std::int32_t RegistrationView::reading_at(double u, double v) const {
+  const double column = std::floor(u / stride + 0.5), row = std::floor(v / stride + 0.5);
+  if (!(column >= 0 && row >= 0 && column < columns() && row < rows())) return -1;
+  return at[node(static_cast<int>(column), static_cast<int>(row))];
+}
+
+bool RegistrationView::looks_past(const Eigen::Vector3d& point, double margin, double reach) const {
+  if (!(point.z() > 0)) return false;
+  if (grid != nullptr) {
+    const Eigen::Vector3d along = margin * point.normalized();
+    return is_free(*this, point) && is_free(*this, point - along) && is_free(*this, point + along);
+  }
+  const Eigen::Vector2d pixel = camera.project(point);
+  const double round = std::max(1.0, std::floor(reach * camera.fx / point.z()));
+  const Eigen::Vector2d size(camera.width, camera.height);
+  if (!((pixel.array() >= round).all() && (pixel.array() + round < size.array() - 1).all())) {
+    return false;
+  }
+  const auto depth_at = [&](int u, int v) {
+    return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
+                 static_cast<std::size_t>(u)];
+  };
+  const int u = static_cast<int>(pixel.x() + 0.5), v = static_cast<int>(pixel.y() + 0.5);
+  const int half = static_cast<int>(round);
+  for (int y = v - half; y <= v + half; ++y) {
+    for (int x = u - half; x <= u + half; ++x) {
+      const float z = depth_at(x, y);
+      if (z != DepthFrame::kInvalid && static_cast<double>(z) < point.z() + margin) return false;
+    }
+  }
+  return depth_at(u, v) != DepthFrame::kInvalid;
+}
+
+RegistrationView view_of(const DepthFrame& frame, const PinholeCamera& camera,
+                         FrameReadings readings) {
+  RegistrationView view{camera, std::move(readings.all), readings.stride, {}, frame.depth};
+  view.clear_lattice();
+  for (std::size_t i = 0; i < view.readings.size(); ++i) {
+    const Reading& r = view.readings[i];
+    view.at[view.node(r.u / view.stride, r.v / view.stride)] = static_cast<std::int32_t>(i);
+  }
+  return view;
+}
+
+PairSums pair_sums(const PosedView& source, const PosedView& target, double along, double rim_width,
+                   int level, std::vector<std::uint8_t>* is_paired) {
+  const Pose T_target_source = target.T_world_view.inverse() * source.T_world_view;
+  const Eigen::Matrix3d R = T_target_source.rotation();
+  const Eigen::Vector3d t = T_target_source.translation();
+  const bool of_map = target.view.grid != nullptr;
+  PairSums sums;  // the target's axes
+  sums.of_parts.assign(target.view.parts, Vector6::Zero());
+  for (std::size_t i = 0; i < source.view.readings.size(); ++i) {
+    const Reading& s = source.view.readings[i];
+    if (s.level > level) continue;
+    const Eigen::Vector3d arm = R * (s.point - rim_width * s.rim * s.normal);
+    const Eigen::Vector3d p = arm + t;
+    if (!(p.z() > 0)) continue;
+    double u = 0, v = 0;
+    target.view.camera.project(p, u, v);
+    const Eigen::Vector3d source_normal = R * s.normal;
+    const double own_slack = source.slack_variance(s.point.norm());
+    const Reading* best = nullptr;
+    Eigen::Vector3d normal;
+    double e = 0, square = 0, variance = 0, nearest = std::numeric_limits<double>::infinity();
+    // Points of a map lie anywhere in their nodes.
+    for (int k = of_map ? 0 : 4; k < (of_map ? 9 : 5); ++k) {
+      const int stride = target.view.stride;
+      const std::int32_t at =
+          target.view.reading_at(u + stride * (k % 3 - 1), v + stride * (k / 3 - 1));
+      if (at < 0) continue;
+      const Reading& m = target.view.readings[static_cast<std::size_t>(at)];
+      if (source_normal.dot(m.normal) < kMinCosine) continue;
+      const Eigen::Vector3d d = p - (m.point - rim_width * m.rim * m.normal);
+      const double distance = d.squaredNorm();
+      if (distance >= nearest) continue;
+      // Along the mean of both: of one alone the noise pulls more, and on what is curved a point
+      // beside the other lies off its plane. That it turns with the frames is left out of J, as is
+      // usual: d is short. A map's are of so many readings that they do better alone.
+      const Eigen::Vector3d n = of_map ? m.normal : (source_normal + m.normal).normalized();
+      const double off = n.dot(d);
+      const double slack = own_slack + target.slack_variance(m.point.norm());
+      const double squared = off * off / (s.variance + m.variance + slack);
+      if (squared > kGateSigmas * kGateSigmas) continue;
+      if (distance - off * off > along * along + slack) continue;
+      best = &m, normal = n, e = off, square = squared, nearest = distance;
+      variance = s.variance + m.variance;
+    }
+    if (best == nullptr) continue;
+    const Reading& m = *best;
+    const double weight = 1 / (1 + square / (kCauchy * kCauchy)) / variance;
+    const auto derivative_along = [&arm](const Eigen::Vector3d& n) {
+      Vector6 derivative;
+      derivative << n, arm.cross(n);
+      return derivative;
+    };
+    const Vector6 derivative = derivative_along(normal);
+    const Vector6 weighted = weight * derivative;
+    sums.information += weighted * derivative.transpose();
+    // Of these two the noise is independent.
+    sums.agreed +=
+        weight * derivative_along(m.normal) * derivative_along(source_normal).transpose();
+    sums.gradient += e * weighted;
+    if (!sums.of_parts.empty()) sums.of_parts[m.part] += e * weighted;
+    const double by_width = m.rim * normal.dot(m.normal) - s.rim * normal.dot(source_normal);
+    sums.rim_motion += by_width * weighted;
+    sums.rim_information += weight * by_width * by_width;
+    sums.rim_gradient += weight * by_width * e;
+    sums.squares += e * e;
+    ++sums.pairs;
+    if (is_paired != nullptr) (*is_paired)[i] = 1;
+  }
+  Matrix6 to_world = Matrix6::Zero();
+  to_world.topLeftCorner<3, 3>() = target.T_world_view.rotation();
+  to_world.bottomRightCorner<3, 3>() = target.T_world_view.rotation();
+  sums.information = (to_world * sums.information * to_world.transpose()).eval();
+  sums.agreed =
+      (0.5 * to_world * (sums.agreed + sums.agreed.transpose()) * to_world.transpose()).eval();
+  sums.gradient = (to_world * sums.gradient).eval();
+  sums.rim_motion = (to_world * sums.rim_motion).eval();
+  for (Vector6& part : sums.of_parts) part = (to_world * part).eval();
+  return sums;
+}
+
+}  // namespace viewgain::detail

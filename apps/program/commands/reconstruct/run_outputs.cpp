@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/commands/reconstruct/run_outputs.hpp"
+
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "show/pictures/view_picture.hpp"
+#include "viewgain/support/stopwatch.hpp"
+
+namespace viewgain::app {
+
+StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPage& page,
+                       const ShownStep& step, const ExecConfig& exec) {
+  StageSeconds seconds;
+  if (!outputs.draws()) return seconds;
+  Stopwatch watch;
+  const Proposal& proposal = step.record.proposal;
+  // Without a proposal those that the generation holds are of a surface before.
+  const bool is_proposed = !proposal.candidates.empty() || !proposal.dropped.empty();
+  const EstimatedViews estimated = is_proposed ? step.generation.estimated() : EstimatedViews{};
+  std::vector<VoxelContribution> contributions;
+  ViewPicture parts{
+      step.model.surface(), estimated,      proposal.candidates, step.record.T_world_camera,
+      std::nullopt,         step.evaluator, step.sensor,         &contributions};
+  if (step.record.decision) {
+    parts.chosen = proposal.candidates[step.record.decision->candidate].T_world_camera;
+    if (outputs.with_report() || step.evaluator.model() != GainModel::paper) {
+      contributions = step.evaluator.contributions(*parts.chosen);
+    }
+  }
+  const RgbImage picture = view_picture(parts, exec);
+  if (outputs.with_pictures()) write_png(folder.view(step.record.index, ".png"), picture);
+  seconds["pictures"] = watch.seconds();
+  if (!outputs.with_report()) return seconds;
+  watch = {};
+  page.add_view(step.record, step.model, step.generation, estimated, step.evaluator,
+                std::move(contributions), picture);
+  seconds["report"] = watch.seconds();
+  return seconds;
+}
+
+void print_left(const RunOutputs& outputs, const char* files) {
+  std::printf("left in %s: %s%s%s%s\n", outputs.out.c_str(), files,
+              outputs.with_pictures() ? ", views/" : "", outputs.saves_maps() ? ", maps/" : "",
+              outputs.with_report() ? ", report.html" : "");
+}
+
+}  // namespace viewgain::app

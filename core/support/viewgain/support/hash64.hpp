@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "viewgain/support/mix64.hpp"
+
+namespace viewgain {
+
+/// A 64-bit hash of a sequence of 64-bit words, the same on every machine, as a name for what they
+/// say. Not for secrets: nobody gains by two contents of one name.
+class Hash64 {
+ public:
+  void add(std::uint64_t word) {
+    state_ = finalize64(state_ ^ (word + kMixStep)) + kMixStep;
+    ++count_;
+  }
+  void add_number(double number) { add(std::bit_cast<std::uint64_t>(number)); }
+  /// By words, little-endian, and their number.
+  void add_bytes(std::string_view bytes) {
+    const auto word_at = [&](std::size_t at, std::size_t count) {
+      std::uint64_t word = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        word |= std::uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
+      }
+      return word;
+    };
+    std::size_t i = 0;
+    for (; i + 8 <= bytes.size(); i += 8) add(word_at(i, 8));
+    add(word_at(i, bytes.size() - i));
+    add(bytes.size());
+  }
+
+  [[nodiscard]] std::uint64_t value() const { return finalize64(state_ ^ count_); }
+  /// 16 hexadecimal digits.
+  [[nodiscard]] std::string hex() const {
+    std::string text(16, '0');
+    for (std::size_t i = 0; i < 16; ++i) {
+      text[i] = "0123456789abcdef"[value() >> (60U - 4U * i) & 15U];
+    }
+    return text;
+  }
+
+ private:
+  std::uint64_t state_ = 0;
+  std::uint64_t count_ = 0;
+};
+
+/// The 16 digits of a text.
+[[nodiscard]] inline std::string hash_of(std::string_view text) {
+  Hash64 hash;
+  hash.add_bytes(text);
+  return hash.hex();
+}
+
+}  // namespace viewgain

@@ -1,0 +1,346 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Octrees against OctoMap's own library: what it writes is read, what we write it reads.
+
+#include <gtest/gtest.h>
+#include <octomap/ColorOcTree.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/expect_error.hpp"
+#include "core/temporary_folder.hpp"
+#include "viewgain/formats/octomap_io.hpp"
+#include "viewgain/formats/octomap_tree.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace test;
+
+octomap::OcTreeKey key_of(Index3 v) {
+  const auto key = [](std::int32_t i) { return static_cast<octomap::key_type>(i + 32768); };
+  return {key(v.x), key(v.y), key(v.z)};
+}
+
+/// The nearest step of ours, on OctoMap's side of 0.
+float rounded(float log_odds) {
+  const double steps = std::clamp(std::round(static_cast<double>(log_odds) / 0.05), -40.0, 70.0);
+  return static_cast<float>(0.05 * (log_odds >= 0 ? std::max(steps, 1.0) : std::min(steps, 0.0)));
+}
+
+/// Random voxels round the origin, a pruned cube of 16³ free ones and one of 16³ occupied ones.
+template <typename Tree>
+void fill(Tree& tree) {
+  std::mt19937 random(11);
+  std::uniform_int_distribution<int> place(-40, 25);
+  std::uniform_real_distribution<float> value(-2.0F, 3.5F);
+  const auto set = [&](Index3 v, float log_odds) { tree.setNodeValue(key_of(v), log_odds, true); };
+  for (int i = 0; i < 4000; ++i) set({place(random), place(random), place(random)}, value(random));
+  // Near 0, where rounding could change the state.
+  for (const float v : {0.0F, 0.01F, -0.01F, -0.024F, 0.024F, 1e-7F, -1e-7F}) {
+    set({place(random), place(random), place(random)}, v);
+  }
+  for (int x = 0; x < 16; ++x) {
+    for (int y = 0; y < 16; ++y) {
+      for (int z = 0; z < 16; ++z) {
+        set({32 + x, 48 + y, -32 + z}, -2.0F);
+        set({-64 + x, y, 16 + z}, 3.5F);
+      }
+    }
+  }
+  tree.updateInnerOccupancy();
+  tree.prune();
+}
+
+/// Voxels of a box round the tree whose state or log-odds is not the tree's.
+struct Comparison {
+  int voxels = 0, known = 0, differences = 0;
+};
+template <typename Tree>
+Comparison compare(const Tree& tree, const BeliefGrid& grid, bool binary) {
+  Comparison result;
+  for (int x = -70; x < 60; ++x) {
+    for (int y = -50; y < 70; ++y) {
+      for (int z = -50; z < 40; ++z) {
+        const Index3 voxel{x, y, z};
+        const auto* node = tree.search(key_of(voxel));
+        VoxelState state = VoxelState::unknown;
+        std::optional<float> log_odds;
+        if (node != nullptr) {
+          const bool occupied = tree.isNodeOccupied(node);
+          state = occupied ? VoxelState::occupied : VoxelState::free;
+          log_odds = binary ? (occupied ? 3.5F : -2.0F) : rounded(node->getLogOdds());
+          ++result.known;
+        }
+        ++result.voxels;
+        if (grid.state(voxel) != state || grid.log_odds(voxel) != log_odds ||
+            grid.belief(voxel).has_value()) {
+          ++result.differences;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(result.voxels, 130 * 120 * 90);
+  EXPECT_GT(result.known, 10000);
+  return result;
+}
+
+TEST(Octomap, TreesInMemoryAreRead) {
+  octomap::OcTree tree(0.1 / 3);
+  fill(tree);
+  const BeliefGrid grid = grid_from_octree(tree);
+  EXPECT_EQ(grid.voxel_size(), tree.getResolution());
+  EXPECT_EQ(grid.min_index(), (Index3{-64, -40, -40}));
+  EXPECT_EQ(grid.dims(), (Index3{112, 104, 72}));
+  EXPECT_EQ(grid.prior_sigma(), grid.voxel_size() / 2);
+  EXPECT_TRUE(grid.views().empty());
+  EXPECT_EQ(compare(tree, grid, false).differences, 0);
+}
+
+TEST(Octomap, BothKindsOfFilesAndColoursAreRead) {
+  const TemporaryFolder folder;
+  octomap::OcTree tree(0.05);
+  fill(tree);
+  ASSERT_TRUE(tree.write((folder.path() / "a.ot").string()));
+  EXPECT_EQ(compare(tree, load_octomap(folder.path() / "a.ot"), false).differences, 0);
+  EXPECT_EQ(octomap_resolution(folder.path() / "a.ot"), 0.05);
+  octomap::OcTree likeliest(tree);
+  ASSERT_TRUE(likeliest.writeBinary((folder.path() / "a.bt").string()));  // changes the tree
+  EXPECT_EQ(compare(tree, load_octomap(folder.path() / "a.bt"), true).differences, 0);
+
+  octomap::ColorOcTree colours(0.05);
+  fill(colours);
+  colours.setNodeColor(key_of({32, 48, -32}), 10, 20, 30);
+  ASSERT_TRUE(colours.write((folder.path() / "c.ot").string()));
+  EXPECT_EQ(compare(colours, load_octomap(folder.path() / "c.ot"), false).differences, 0);
+  ASSERT_TRUE(colours.writeBinary((folder.path() / "c.bt").string()));
+  EXPECT_EQ(compare(tree, load_octomap(folder.path() / "c.bt"), true).differences, 0);
+}
+
+TEST(Octomap, TheTreesOwnThresholdHolds) {
+  octomap::OcTree tree(0.1);
+  tree.setOccupancyThres(0.7);
+  tree.setNodeValue(key_of({0, 0, 0}), 0.5F);
+  tree.setNodeValue(key_of({1, 0, 0}), 1.5F);
+  const BeliefGrid grid = grid_from_octree(tree);
+  EXPECT_EQ(grid.state({0, 0, 0}), VoxelState::free);
+  EXPECT_EQ(grid.log_odds({0, 0, 0}), 0.0F);
+  EXPECT_EQ(grid.state({1, 0, 0}), VoxelState::occupied);
+  EXPECT_EQ(grid.log_odds({1, 0, 0}), 1.5F);
+}
+
+TEST(Octomap, AWorkspaceCutsAndGrows) {
+  octomap::OcTree tree(0.1);
+  fill(tree);
+  const BeliefGrid all = grid_from_octree(tree);
+  // Through the random voxels and both cubes; not on block borders.
+  OctomapConfig config;
+  config.workspace = Box{{-5.7, -1.3, -2.9}, {3.9, 5.5, 2.5}};
+  config.prior_sigma = 0.02;
+  const BeliefGrid part = grid_from_octree(tree, config);
+  EXPECT_EQ(part.min_index(), (Index3{-57, -13, -29}));
+  EXPECT_EQ(part.dims(), (Index3{96, 68, 54}));
+  EXPECT_EQ(part.prior_sigma(), 0.02);
+  std::vector<std::uint8_t> states(part.voxel_count());
+  part.copy_states(states);
+  std::size_t at = 0;
+  int differences = 0, known = 0;
+  for (int x = -57; x < 39; ++x) {
+    for (int y = -13; y < 55; ++y) {
+      for (int z = -29; z < 25; ++z, ++at) {
+        known += states[at] != 0;
+        if (all.state({x, y, z}) != static_cast<VoxelState>(states[at])) ++differences;
+      }
+    }
+  }
+  EXPECT_EQ(differences, 0);
+  EXPECT_GT(known, 3000);
+  const GridStatistics statistics = part.statistics();
+  EXPECT_EQ(statistics.free + statistics.occupied, static_cast<std::uint64_t>(known));
+
+  config.workspace = Box{{-50, -50, -50}, {50, 50, 50}};
+  const BeliefGrid more = grid_from_octree(tree, config);
+  EXPECT_EQ(more.statistics().free, all.statistics().free);
+  EXPECT_EQ(more.statistics().occupied, all.statistics().occupied);
+}
+
+/// Everything there is: free tiles of 128³ and 8³ voxels, cut by the workspace's faces, occupied
+/// blocks, every code, single voxels.
+BeliefGrid make_rich_grid() {
+  OctomapConfig config;
+  config.workspace = Box{{-30.1, -30.1, -30.1}, {29.9, 30.3, 29.7}};
+  octomap::OcTree tree(0.1);
+  fill(tree);
+  for (int x = -256; x < -128; ++x) {
+    for (int y = -256; y < -128; ++y) {
+      for (int z = 128; z < 256; ++z) tree.setNodeValue(key_of({x, y, z}), -2.0F, true);
+    }
+  }
+  // A pruned free cube that reaches out of the workspace.
+  for (int x = 288; x < 320; ++x) {
+    for (int y = 288; y < 320; ++y) {
+      for (int z = 288; z < 320; ++z) tree.setNodeValue(key_of({x, y, z}), -0.4F, true);
+    }
+  }
+  tree.updateInnerOccupancy();
+  tree.prune();
+  BeliefGrid grid = grid_from_octree(tree, config);
+  for (int i = 0; i <= 110; ++i) {
+    grid.set({100 + i % 11, 100 + i / 11, 7}, static_cast<float>(0.05 * (i - 40)));
+  }
+  return grid;
+}
+
+const BeliefGrid& rich_grid() {
+  static const BeliefGrid grid = make_rich_grid();
+  return grid;
+}
+
+TEST(Octomap, RoundTripKeepsStatesAndLogOdds) {
+  const TemporaryFolder folder;
+  const BeliefGrid& grid = rich_grid();
+  EXPECT_GT(grid.statistics().free, 2000000U);
+  save_octomap(grid, folder.path() / "map.ot");
+  EXPECT_EQ(folder.entries(), 1);
+  // The box of the known voxels is less than the workspace; unknown is the same outside.
+  const BeliefGrid smaller = load_octomap(folder.path() / "map.ot");
+  EXPECT_LT(smaller.voxel_count(), grid.voxel_count());
+  EXPECT_EQ(smaller.statistics().free, grid.statistics().free);
+  EXPECT_EQ(smaller.statistics().occupied, grid.statistics().occupied);
+  // The hash is over every state and log-odds.
+  OctomapConfig config;
+  config.workspace = grid.workspace();
+  config.prior_sigma = grid.prior_sigma();
+  EXPECT_EQ(load_octomap(folder.path() / "map.ot", config).content_hash(), grid.content_hash());
+  EXPECT_EQ(octomap_bytes(smaller), octomap_bytes(grid));
+}
+
+TEST(Octomap, OctomapReadsWhatIsWritten) {
+  const TemporaryFolder folder;
+  const BeliefGrid& grid = rich_grid();
+  save_octomap(grid, folder.path() / "map.ot");
+  const std::unique_ptr<octomap::AbstractOcTree> abstract(
+      octomap::AbstractOcTree::read((folder.path() / "map.ot").string()));
+  ASSERT_NE(abstract, nullptr);
+  auto& tree = dynamic_cast<octomap::OcTree&>(*abstract);
+  const std::unique_ptr<octomap::OcTree> in_memory = octree_from_grid(grid);
+  EXPECT_TRUE(tree == *in_memory);
+  EXPECT_EQ(tree.getResolution(), 0.1);
+
+  std::uint64_t free = 0, occupied = 0, wrong = 0;
+  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+    const octomap::OcTreeKey key = leaf.getIndexKey();
+    const Index3 low{key[0] - 32768, key[1] - 32768, key[2] - 32768};
+    const int size = 1 << (16 - static_cast<int>(leaf.getDepth()));
+    const bool is_occupied = tree.isNodeOccupied(*leaf);
+    const VoxelState state = is_occupied ? VoxelState::occupied : VoxelState::free;
+    for (int i = 0; i < size * size * size; ++i) {
+      const Index3 voxel{low.x + i % size, low.y + i / size % size, low.z + i / size / size};
+      wrong += grid.state(voxel) != state;
+      ++(is_occupied ? occupied : free);
+    }
+  }
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_EQ(free, grid.statistics().free);
+  EXPECT_EQ(occupied, grid.statistics().occupied);
+  // As OctoMap itself would prune it, inner nodes as it would set them.
+  const std::size_t nodes = tree.size();
+  tree.prune();
+  EXPECT_EQ(tree.size(), nodes);
+  octomap::OcTree updated(tree);
+  updated.updateInnerOccupancy();
+  EXPECT_TRUE(updated == tree);
+}
+
+/// Random blobs over large free and unknown parts, the same in every frame.
+BeliefGrid blobs(Index3 low, const Pose& T_world_grid) {
+  const double V = 0.1;
+  const auto corner = [&](Index3 v) { return std::array<double, 3>{v.x * V, v.y * V, v.z * V}; };
+  const Index3 high{low.x + 301, low.y + 170, low.z + 155};
+  BeliefGrid grid({V, {corner(low), corner(high)}, T_world_grid, 0.05});
+  std::vector<std::uint8_t> states(grid.voxel_count(), 1);
+  const auto at = [](int x, int y, int z) {
+    return (static_cast<std::size_t>(x) * 170 + static_cast<std::size_t>(y)) * 155 +
+           static_cast<std::size_t>(z);
+  };
+  std::mt19937 random(11);
+  for (int i = 0; i < 60; ++i) {
+    const int size = 1 + static_cast<int>(random() % 24), x0 = static_cast<int>(random() % 270),
+              y0 = static_cast<int>(random() % 60), z0 = static_cast<int>(random() % 60);
+    for (int x = x0; x < x0 + size; ++x) {
+      for (int y = y0; y < y0 + size; ++y) {
+        for (int z = z0; z < z0 + size; ++z) states[at(x, y, z)] = i % 3 == 0 ? 0 : 2;
+      }
+    }
+  }
+  return BeliefGrid::from_states({V, {corner(low), corner(high)}, T_world_grid, 0.05}, states);
+}
+
+TEST(Octomap, AFrameOfWholeVoxelsMovesTheTree) {
+  const Eigen::Matrix3d upright = Eigen::Matrix3d::Identity();
+  const Index3 low{-37, 11, -150};
+  const std::string in_world = octomap_bytes(blobs(low, {}));
+  EXPECT_GT(in_world.size(), 20000U);
+  for (const Index3 shift :
+       {Index3{1, 0, 0}, Index3{-3, 5, 7}, Index3{8, -16, 24}, Index3{128, 256, -128},
+        Index3{-2048, 0, 2048}, Index3{-32768 - 37, 32000, -1}, Index3{32000, 1000001, 3}}) {
+    // The grid's own lattice lies elsewhere, the voxels in the world do not.
+    const Index3 own{low.x - shift.x, low.y - shift.y, low.z - shift.z};
+    for (const double off : {0.0, 5e-8}) {
+      const Pose T(upright, {0.1 * shift.x + off, 0.1 * shift.y, 0.1 * shift.z - off});
+      const BeliefGrid grid = blobs(own, T);
+      EXPECT_TRUE(octomap_keeps_frame(grid));
+      EXPECT_TRUE(octomap_bytes(grid) == in_world) << shift.x << " " << shift.y << " " << shift.z;
+    }
+  }
+  EXPECT_TRUE(*octree_from_grid(blobs({0, 0, 0}, {upright, {-3.7, 1.1, -15.0}})) ==
+              *octree_from_grid(blobs(low, {})));
+}
+
+TEST(Octomap, OtherFramesAreLost) {
+  const BeliefGrid plain = blobs({-37, 11, -150}, {});
+  EXPECT_TRUE(octomap_keeps_frame(plain));
+  const std::string bytes = octomap_bytes(plain);
+  const Eigen::Matrix3d upright = Eigen::Matrix3d::Identity();
+  const auto turned = [](double angle) {
+    return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  };
+  int cases = 0;
+  for (const Pose& T :
+       {Pose(upright, {0.05, 0, 0}), Pose(upright, {0, 1e-6, 0}), Pose(turned(0.3), {0, 0, 0}),
+        Pose(turned(1e-6), {0, 0, 0}), Pose(turned(1.5707963267948966), {0.1, 0, 0}),
+        Pose(upright, {0, 0, 3276.8}), Pose(upright, {1e12, 0, 0}),
+        Pose(upright, {0, -1e300, 0})}) {
+    const BeliefGrid grid = blobs({-37, 11, -150}, T);
+    EXPECT_FALSE(octomap_keeps_frame(grid)) << cases;
+    EXPECT_TRUE(octomap_bytes(grid) == bytes) << cases;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 8);
+}
+
+TEST(Octomap, EmptyTrees) {
+  octomap::OcTree tree(0.1);
+  expect_error(ErrorCode::format, "no known voxel", [&] { (void)grid_from_octree(tree); });
+  OctomapConfig config;
+  config.workspace = Box{{0, 0, 0}, {1, 1, 1}};
+  const BeliefGrid grid = grid_from_octree(tree, config);
+  EXPECT_EQ(grid.statistics().unknown, 1000U);
+  EXPECT_EQ(octree_from_grid(grid)->size(), 0U);
+  EXPECT_EQ(grid_from_octree(*octree_from_grid(grid), config).content_hash(), grid.content_hash());
+}
+
+TEST(Octomap, IndicesBeyondATreeAreRefused) {
+  BeliefGrid grid({0.1, {{3276.0, 0, 0}, {3277.5, 1, 1}}, {}, 0.05});
+  grid.set({32767, 0, 0}, 1.0F);
+  EXPECT_EQ(octree_from_grid(grid)->getNumLeafNodes(), 1U);
+  grid.set({32768, 0, 0}, 1.0F);
+  expect_error(ErrorCode::capacity, "32768", [&] { (void)octomap_bytes(grid); });
+}
+
+}  // namespace
+}  // namespace viewgain

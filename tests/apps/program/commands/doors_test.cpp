@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The same frames give the same map and the same next views, whichever way they come in: integrate
+// and next, next of the folder, follow, reconstruct, C++. C says what C++ says (c_planner_test),
+// Python what the program says (test_planner.py).
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+#include "viewgain/core/generators.hpp"
+#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/planner/view_planner.hpp"
+#include "viewgain/planner_mesh/boundary_generation.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr std::size_t kTop = 4;
+
+// A view by pose and gain.
+struct Named {
+  std::array<double, 12> pose{};
+  double gain = 0;
+  bool operator==(const Named&) const = default;
+};
+
+class Doors : public test::ProgramTest {
+ protected:
+  Doors() {
+    write_cube();
+    write_small_sensor();
+    // A cube of 0.2 m on a table, and a wall that is known but was not there: readings behind it
+    // carve up to it.
+    run_well({"simulate", "cube.off", "--orbit", "8,0.5,30", "--sensor", "small.toml", "--size",
+              "0.2", "--recenter", "on", "--support-plane", "-0.1", "--noise", "on", "--out",
+              "frames"});
+    write("frames/done", "");
+    write("box.toml", "[[box]]\nmin = [-0.6, -0.6, 0]\nmax = [0.6, 0.6, 0.6]\n");
+    write_tum(dir / "poses.txt", sphere_poses(40, 0.5, Eigen::Vector3d::Zero()));
+    write("poses.toml", "poses = \"poses.txt\"\n");
+  }
+
+  static Strings map_flags() {
+    return {"--voxel", "0.02", "--workspace", "-0.2,-0.2,-0.1,0.2,0.2,0.2"};
+  }
+  static Strings view_flags(const std::string& reach) {
+    Strings flags{"--support-plane", "-0.1", "--obstacle", "0.12,-0.3,-0.1,0.14,0.3,0"};
+    if (!reach.empty()) flags.insert(flags.end(), {"--reach", reach});
+    return flags;
+  }
+  static std::vector<Named> named(const json& next) {
+    std::vector<Named> views;
+    for (const json& one : next["next"]) {
+      Named view{{}, one["gain"].get<double>()};
+      for (std::size_t i = 0; i < 12; ++i) {
+        view.pose[i] = one["T_world_camera"][i / 4][i % 4].get<double>();
+      }
+      views.push_back(view);
+    }
+    return views;
+  }
+  [[nodiscard]] std::string hash_of(const std::string& map) const {
+    return load_map(dir / map).content_hash();
+  }
+
+  [[nodiscard]] PlannerConfig planner_config(const std::string& reach) const {
+    PlannerConfig config;
+    config.grid.voxel_size = 0.02;
+    config.grid.workspace = {{-0.2, -0.2, -0.1}, {0.2, 0.2, 0.2}};
+    config.surroundings = {{{{{0.12, -0.3, -0.1}, {0.14, 0.3, 0}}}, {}}, -0.1};
+    if (!reach.empty()) config.reach = read_reach_toml(dir / reach);
+    return config;
+  }
+
+  // Through every door of the program and C++; returns what all of them say.
+  std::vector<Named> expect_the_same(const std::string& reach) {
+    const Strings top{"--top", std::to_string(kTop), "--json"};
+    const auto call = [&](const Strings& words, const Strings& more) {
+      return test::joined(test::joined(words, more), view_flags(reach));
+    };
+    run_well(test::joined(test::joined({"integrate", "frames", "--out", "map.vdb"}, map_flags()),
+                          view_flags("")));
+    const json of_map = json::parse(run_well(call({"next", "map.vdb"}, top)));
+    const json of_folder =
+        json::parse(run_well(call(test::joined({"next", "frames"}, map_flags()), top)));
+    run_well(
+        call(test::joined({"follow", "frames", "--out", "plan", "--quiet"}, map_flags()), top));
+    run_well(call(test::joined({"reconstruct", "frames", "--out", "run"}, map_flags()), top));
+
+    const std::string hash = hash_of("map.vdb");
+    EXPECT_EQ(hash_of("plan/state.vdb"), hash);
+    EXPECT_EQ(hash_of("run/map.vdb"), hash);
+    const std::vector<Named> views = named(of_map);
+    EXPECT_FALSE(views.empty());
+    const json followed = json::parse(read("plan/next.json"));
+    const json reconstructed = json::parse(read("run/run.json"));
+    for (const json* other : {&of_folder, &followed, &reconstructed}) {
+      EXPECT_EQ(named(*other), views);
+      EXPECT_EQ((*other)["candidates"], of_map["candidates"]);
+      EXPECT_EQ((*other)["dropped"], of_map["dropped"]);
+    }
+
+    const FrameSequence frames = open_frames(dir / "frames");
+    ViewPlanner planner(frames.sensor, planner_config(reach), {1});
+    planner.add_generation(std::make_shared<BoundaryGeneration>(
+        planner.map(), default_boundary(frames.sensor, 0.02), ExecConfig{1}));
+    for (std::size_t i = 0; i < frames.images.size(); ++i) {
+      planner.add(load_frame(frames, i), frames.poses[i]);
+    }
+    EXPECT_EQ(planner.grid().content_hash(), hash);
+    const Proposal& proposal = planner.propose();
+    EXPECT_EQ(proposal.candidates.size(), of_map["candidates"].get<std::size_t>());
+    std::vector<Named> own;
+    for (const RankedView& view : planner.rank(kTop).views) {
+      own.push_back({view.T_world_camera.m, view.gain.gain});
+    }
+    EXPECT_EQ(own, views);
+    return views;
+  }
+};
+
+TEST_F(Doors, AgreeWithObstaclePlaneAndAReachableBox) {
+  const std::vector<Named> views = expect_the_same("box.toml");
+  for (const Named& view : views) EXPECT_GE(view.pose[11], 0);
+}
+
+TEST_F(Doors, AgreeOnAListOfPoses) { EXPECT_FALSE(expect_the_same("poses.toml").empty()); }
+
+}  // namespace
+}  // namespace viewgain
