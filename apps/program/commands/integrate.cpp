@@ -16,6 +16,7 @@
 #include "program/cli/choices.hpp"
 #include "program/cli/flags/obstacle_source.hpp"
 #include "program/cli/flags/sensed_map.hpp"
+#include "program/cli/flags/sensing.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
@@ -341,9 +342,7 @@ Command add_integrate(App& program) {
       *app->add_option("--occupancy", options->occupancy, "log-odds, or the paper's literal rule")
            ->capture_default_str(),
       {"probabilistic", "literal"}, "rule");
-  app->add_option("--jump-edge-filter", options->jump_edge_filter,
-                  "ANGLE_DEG: a reading goes when the edge to a nearer neighbour is within 1..10 "
-                  "degrees of its ray; or off")
+  app->add_option("--jump-edge-filter", options->jump_edge_filter, kJumpEdgeHelp)
       ->capture_default_str();
   app->add_option("--support-plane", options->support_plane,
                   "height z of the table [m]: its readings carve but do not hit; default: none");

@@ -32,6 +32,11 @@ struct SensingOptions {
 /// SIGMA_M,SIGMA_DEG of a flag; empty: both 0. Throws Error(invalid_argument) for other text.
 [[nodiscard]] PoseSigma parse_pose_sigma(std::string_view flag, const std::string& text);
 
+/// Wherever frames go into a map.
+inline constexpr const char* kJumpEdgeHelp =
+    "ANGLE_DEG of the filter that takes flying pixels: a reading goes when the edge to a nearer "
+    "neighbour is within 1..10 degrees of its ray; or off";
+
 /// --jump-edge-filter ANGLE_DEG|off. Throws Error(invalid_argument) for other text; the filter
 /// itself refuses angles out of its bounds.
 [[nodiscard]] std::optional<JumpEdgeConfig> parse_jump_edge_filter(const std::string& text);

@@ -337,10 +337,7 @@ Command add_follow(App& program) {
       ->required();
   app->add_option("--sensor", o.frames.sensor, kSensorHelp + "; default: FRAMES_DIR/sensor.toml");
   add_frame_folder_options(*app, o.frames);
-  app->add_option("--jump-edge-filter", o.jump_edge_filter,
-                  "ANGLE_DEG: a reading goes when the edge to a nearer neighbour is within 1..10 "
-                  "degrees of its ray; or off")
-      ->capture_default_str();
+  app->add_option("--jump-edge-filter", o.jump_edge_filter, kJumpEdgeHelp)->capture_default_str();
   one_of(*app->add_option("--gain", o.gain,
                           "that views are ranked by: paper, surface or combined, as in score")
               ->capture_default_str(),

@@ -70,8 +70,7 @@ void add_frame_map_options(App& app, FrameMapOptions& options) {
   app.add_option("--voxel", options.voxel, "voxel size [m]")->required();
   app.add_option("--workspace", options.workspace,
                  "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: what the frames see");
-  app.add_option("--jump-edge-filter", options.jump_edge_filter,
-                 "angle of the filter that takes flying pixels [deg], or off")
+  app.add_option("--jump-edge-filter", options.jump_edge_filter, kJumpEdgeHelp)
       ->capture_default_str();
   add_frame_folder_options(app, options.folder);
 }

@@ -8,6 +8,7 @@
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/hazard_source.hpp"
 #include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/flags/sensing.hpp"
 #include "program/cli/flags/sensing_flags.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
@@ -135,8 +136,8 @@ void describe(Options& o, Visitor& visit) {
       as_it_is);
   visit.option("frames_per_view", "--frames-per-view", o.frames_per_view, "frames from each pose",
                counted_with_default(1, 1000));
-  visit.option("jump_edge_filter", "--jump-edge-filter", o.jump_edge_filter,
-               "angle of the filter [deg], or off", shows_default);
+  visit.option("jump_edge_filter", "--jump-edge-filter", o.jump_edge_filter, kJumpEdgeHelp,
+               shows_default);
   visit.option("refine", "--refine", o.refine,
                "readings of a voxel refine it; off: the first one wins", switched);
 }

@@ -9,6 +9,7 @@
 
 #include "program/commands/study/statistics.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/planner/view_proposer.hpp"
 #include "viewgain/planner_mesh/oracle_choice.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 
@@ -33,8 +34,9 @@ std::vector<Candidate> candidates_of(Run& run, const ViewRecord& record, std::si
   const RunSetup& setup = run.setup();
   const FeasibilityChecker checker(run.model().scene(), run.generation().config().feasibility);
   std::vector<Candidate> sphere;
-  for (const Pose& pose : sphere_poses(2 * count, setup.distance, setup.stage.center)) {
-    if (checker.check(pose) == Infeasibility::none) sphere.push_back({pose, "sphere"});
+  const std::vector<Pose> around = sphere_poses(2 * count, setup.distance, setup.stage.center);
+  for (const Pose& pose : feasible_poses(checker, around, {}).poses) {
+    sphere.push_back({pose, "sphere"});
   }
   for (Candidate& candidate : evenly(sphere, count - candidates.size())) {
     candidates.push_back(std::move(candidate));
