@@ -13,7 +13,7 @@
 
 namespace viewgain::bench {
 
-/// The objects of DESIGN.md section 11 that maps are made of; the camel is the first.
+/// The objects that maps are made of; the camel is the first.
 [[nodiscard]] std::vector<std::filesystem::path> object_meshes();
 
 struct ModelMapPlan {

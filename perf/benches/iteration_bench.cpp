@@ -65,7 +65,7 @@ int run_iteration(const IterationOptions& options) {
     now["surface"] = seconds_of([&] {
       const std::vector<FusedPoint> fused = fused_points(grid, {}, exec);
       points = fused.size();
-      surface = surface_of(fused, voxel, exec);
+      surface = surface_of(fused, pooling_of(voxels->snapshot()), exec);
     });
     vertices = surface.vertices.size();
     now["candidates"] = seconds_of([&] {

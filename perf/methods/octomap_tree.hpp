@@ -21,7 +21,7 @@ inline constexpr int kOctomapKeyOffset = 1 << 15;
 /// In OctoMap's single precision.
 [[nodiscard]] octomap::point3d octomap_point(const Eigen::Vector3d& p);
 
-/// An empty tree with the update rule of DESIGN.md section 5: +0.85, -0.4, clamped to -2..3.5.
+/// An empty tree with BeliefGrid's update rule: +0.85, -0.4, clamped to -2..3.5.
 [[nodiscard]] std::unique_ptr<octomap::OcTree> empty_octree(double voxel_size);
 
 /// The map's known voxels; unknown ones have no node. Pruned. T_world_grid must be the identity.

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "random_values.hpp"
@@ -66,6 +67,27 @@ TEST(SymmetricMatrix3, OnlyPositiveDefiniteOnesHaveAnInverse) {
     ++cases;
   }
   EXPECT_EQ(cases, 5);
+  // {1, 1, 1, 2, 2, 2} and its like: the determinant is positive where two eigenvalues are not.
+  RandomValues random(9);
+  int with_inverse = 0, two_negative = 0;
+  for (cases = 0; cases < 5000; ++cases) {
+    const auto entry = [&] { return random.uniform(-1, 1); };
+    const SymmetricMatrix3 m{random.uniform(-0.2, 1),
+                             random.uniform(-0.2, 1),
+                             random.uniform(-0.2, 1),
+                             entry(),
+                             entry(),
+                             entry()};
+    const Eigen::Vector3d values =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(m.matrix(), Eigen::EigenvaluesOnly)
+            .eigenvalues();
+    if (values.cwiseAbs().minCoeff() < 1e-9) continue;
+    ASSERT_EQ(std::isnan(m.inverse().xx), values.minCoeff() < 0) << values.transpose();
+    with_inverse += values.minCoeff() > 0 ? 1 : 0;
+    two_negative += m.xx > 0 && m.yy > 0 && values[1] < 0 ? 1 : 0;
+  }
+  EXPECT_GT(with_inverse, 200);
+  EXPECT_GT(two_negative, 200);
 }
 
 TEST(Measurement, CovarianceHasTheSigmasAlongAndAcrossTheRay) {

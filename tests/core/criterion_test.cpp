@@ -21,9 +21,9 @@ using LongMatrix = Eigen::Matrix<long double, 3, 3>;
 constexpr std::array kCriteria{Criterion::log_diagonal, Criterion::log_determinant,
                                Criterion::trace};
 
-/// The definition: an explicit inverse in extended precision, then the table of DESIGN.md
-/// section 6. By elimination, since Eigen's inverse() and determinant() of a 3x3 take cofactors as
-/// the code under test does.
+/// The definition: an explicit inverse in extended precision, then the table of
+/// raycast/README.md. By elimination, since Eigen's inverse() and determinant() of a 3x3 take
+/// cofactors as the code under test does.
 long double explicit_entropy(const LongMatrix& information, Criterion criterion) {
   const LongMatrix covariance = information.fullPivLu().inverse();
   switch (criterion) {

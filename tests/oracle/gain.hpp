@@ -8,7 +8,8 @@
 
 namespace viewgain::oracle {
 
-/// DESIGN.md section 6 for one pose whose rays end in `hits` (pixel order, strided).
+/// The gain of raycast/README.md, as sums, for one pose whose rays end in `hits` (pixel order,
+/// strided).
 [[nodiscard]] ViewGain gain_of_hits(const BeliefGrid& grid, const Sensor& sensor,
                                     const GainConfig& config, const Pose& T_world_camera,
                                     std::span<const RayHit> hits);

@@ -17,8 +17,8 @@ struct SurfaceValue {
   double pixel_refinement = 0;  ///< [nat]
 };
 
-/// DESIGN.md section 6, "what a view would show", for one pose outside occupied voxels, without a
-/// support plane. Hazards come from `hazard`, which has tests of its own.
+/// The surface and the combined gain of raycast/README.md for one pose outside occupied voxels,
+/// without a support plane. Hazards come from `hazard`, which has tests of its own.
 [[nodiscard]] SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map,
                                          const HazardField& hazard, const Sensor& sensor,
                                          const GainConfig& config, const Pose& T_world_camera,

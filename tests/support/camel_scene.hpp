@@ -15,7 +15,7 @@ namespace viewgain::test {
 /// camel.off as the build took it out of Debian's libcgal-demo.
 [[nodiscard]] std::filesystem::path camel_mesh_path();
 
-/// The camel as DESIGN.md section 11 places it: 0.35 m long, centred at the origin.
+/// The camel as all benchmarks place it: 0.35 m long, centred at the origin.
 [[nodiscard]] TriangleMesh camel_mesh(const std::filesystem::path& path = camel_mesh_path());
 
 /// One noise-free frame and where it was taken.

@@ -29,6 +29,10 @@ Pose pose_of(const double* matrix) {
   return pose;
 }
 
+PoseSigma pose_sigma_of(const double* sigmas) {
+  return sigmas == nullptr ? PoseSigma{} : PoseSigma{sigmas[0], sigmas[1]};
+}
+
 Pose rigid_pose_of(const double* matrix) {
   if (!has_lowest_row(matrix)) {
     std::ostringstream text;

@@ -29,6 +29,8 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 [[nodiscard]] Pose pose_of(const double* matrix);
 /// As pose_of(), but throws Error(invalid_argument) for such a row.
 [[nodiscard]] VIEWGAIN_EXPORT Pose rigid_pose_of(const double* matrix);
+/// Of what C calls pose_sigma: null stands for exact poses.
+[[nodiscard]] VIEWGAIN_EXPORT PoseSigma pose_sigma_of(const double* sigmas);
 /// count poses of 16 numbers each; throws Error(invalid_argument) for null.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> poses_of(const double* matrices, std::size_t count);
 

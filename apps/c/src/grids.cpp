@@ -244,7 +244,7 @@ vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_conf
 
 vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* depth,
                        const float* amplitude, const double T_world_camera[16],
-                       vg_integration_report* report) {
+                       const double pose_sigma[2], vg_integration_report* report) {
   return guarded([&] {
     require(integrator, "integrator");
     require(grid, "grid");
@@ -252,8 +252,8 @@ vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* de
     require(T_world_camera, "T_world_camera");
     if (report != nullptr) require_struct(report, "vg_integration_report");
     const DepthFrame frame = frame_of(integrator->camera, depth, amplitude);
-    const IntegrationReport counts =
-        integrator->integrator.integrate(grid->grid, frame, rigid_pose_of(T_world_camera));
+    const IntegrationReport counts = integrator->integrator.integrate(
+        grid->grid, frame, rigid_pose_of(T_world_camera), pose_sigma_of(pose_sigma));
     if (report == nullptr) return;
     write_struct(report, {.struct_size = 0,
                           .readings = counts.readings,

@@ -231,14 +231,15 @@ vg_status vg_planner_add_poses(vg_planner* planner, const double* poses, size_t 
 }
 
 vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* amplitude,
-                         const double T_world_camera[16], vg_planner_view* added) {
+                         const double T_world_camera[16], const double pose_sigma[2],
+                         vg_planner_view* added) {
   return guarded([&] {
     ViewPlanner& own = live(planner);
     require(depth, "depth");
     require(T_world_camera, "T_world_camera");
     if (added != nullptr) require_struct(added, "vg_planner_view");
     const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
-    const AddedView view = own.add(frame, rigid_pose_of(T_world_camera));
+    const AddedView view = own.add(frame, rigid_pose_of(T_world_camera), pose_sigma_of(pose_sigma));
     if (added == nullptr) return;
     write_struct(added, {.struct_size = 0,
                          .view = view.view,
@@ -271,6 +272,9 @@ vg_status vg_planner_register(vg_planner* planner, const float* depth, const flo
     result.free_directions = static_cast<int32_t>(own_found.free_directions.size());
     write_pose(own_found.T_world_camera, result.T_world_camera);
     std::copy(own_found.covariance.begin(), own_found.covariance.end(), result.covariance);
+    const PoseSigma left = own_found.pose_sigma();
+    result.pose_sigma[0] = left.translation;
+    result.pose_sigma[1] = left.rotation;
     result.translation = own_found.translation;
     result.rotation = own_found.rotation;
     result.residual_before = own_found.residual_before;

@@ -83,8 +83,8 @@ Proposal BoundaryGeneration::generate(const Pose&) {
   if (map_.grid().views().empty()) return {};
   SurfaceMesh made;
   if (model_ == nullptr) {
-    const double spacing = pooling_of(map_.scene()->snapshot()).length;
-    made = surface_of(fused_points(map_.grid(), {}, exec_), spacing, exec_);
+    made = surface_of(fused_points(map_.grid(), {}, exec_), pooling_of(map_.scene()->snapshot()),
+                      exec_);
   }
   estimated_ = boundary_views(model_ != nullptr ? model_->surface() : made, map_.scene(),
                               map_.grid().views(), map_.sensor(), config_, exec_);

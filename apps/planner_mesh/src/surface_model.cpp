@@ -12,13 +12,13 @@
 
 namespace viewgain {
 
-SurfaceMesh surface_of(const std::vector<FusedPoint>& points, double spacing,
+SurfaceMesh surface_of(const std::vector<FusedPoint>& points, const Pooling& pooling,
                        const ExecConfig& exec) {
   std::vector<OrientedPoint> oriented;
   oriented.reserve(points.size());
   for (const FusedPoint& point : points) oriented.push_back({point.position, point.toward_free});
   SurfaceConfig config;
-  config.spacing = spacing;
+  config.spacing = pooling.length;
   return reconstruct_surface(oriented, config, exec);
 }
 
@@ -92,7 +92,7 @@ ModelOutlook SurfaceModel::after(const Measurements& measurements) const {
 
 void SurfaceModel::derive_surface() {
   points_ = fused_points(grid(), config_.points, exec_);
-  surface_ = surface_of(points_, pooling_of(scene()->snapshot()).length, exec_);
+  surface_ = surface_of(points_, pooling_of(scene()->snapshot()), exec_);
 }
 
 }  // namespace viewgain

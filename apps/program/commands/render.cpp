@@ -23,6 +23,7 @@
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/fused_points.hpp"
+#include "viewgain/grid/pooling.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
@@ -88,7 +89,7 @@ struct MapSurface {
 
   MapSurface(const BeliefGrid& grid, const ExecConfig& exec)
       : points(fused_points(grid, {}, exec)),
-        surface(surface_of(points, grid.voxel_size(), exec)),
+        surface(surface_of(points, pooling_of(grid.snapshot()), exec)),
         sigmas(surface_sigmas(surface, points)) {}
 };
 

@@ -18,6 +18,7 @@
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/fused_points.hpp"
+#include "viewgain/grid/pooling.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/mesh/quality.hpp"
 #include "viewgain/planner/point_arrays.hpp"
@@ -147,7 +148,7 @@ void surface(const Options& options, const App& app) {
     throw Error(ErrorCode::invalid_argument,
                 options.map + ": no voxel has readings that make a surface");
   }
-  const SurfaceMesh surface = surface_of(points, map.grid.voxel_size(), exec);
+  const SurfaceMesh surface = surface_of(points, pooling_of(map.grid.snapshot()), exec);
   write_surfaces(surface, points, options.out, options.points);
   std::vector<double> sigmas = surface_sigmas(surface, points);
   std::optional<double> median;

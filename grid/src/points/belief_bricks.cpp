@@ -89,11 +89,12 @@ void BeliefBricks::find_states(const GridSnapshot& snapshot) {
         for_each_bit(found->second->occupied, [&](unsigned offset) {
           set_bit(brick.occupied, block_offset(cell_of(offset_voxel(origin, offset))));
         });
-      } else if (!is_unknown_voxel({std::max(origin.x, workspace_.min.x),
-                                    std::max(origin.y, workspace_.min.y),
-                                    std::max(origin.z, workspace_.min.z)})) {
+      } else if (!is_unknown_voxel(origin)) {
         free.fill(~std::uint64_t{0});
       }
+      // What lies beyond the workspace says nothing of where free space is.
+      const LeafMask inside = block_mask(workspace_, origin);
+      for (std::size_t w = 0; w < free.size(); ++w) free[w] &= inside[w];
       for_each_bit(free, [&](unsigned offset) {
         set_bit(has_free, block_offset(cell_of(offset_voxel(origin, offset))));
       });
@@ -127,8 +128,16 @@ bool BeliefBricks::is_unknown_tile(Index3 v) const {
   return is_unknown_voxel({v.x << shift_, v.y << shift_, v.z << shift_});
 }
 
-bool BeliefBricks::is_unknown_voxel(Index3 v) const {
-  if (!workspace_.contains(v)) return false;
+VoxelBox BeliefBricks::workspace_cells() const {
+  const Index3& max = workspace_.max;
+  const Index3 last = cell_of({max.x - 1, max.y - 1, max.z - 1});
+  return {cell_of(workspace_.min), {last.x + 1, last.y + 1, last.z + 1}};
+}
+
+bool BeliefBricks::is_unknown_voxel(Index3 voxel) const {
+  // A cube that the workspace's lower face cuts begins outside of it.
+  const Index3 v{std::max(voxel.x, workspace_.min.x), std::max(voxel.y, workspace_.min.y),
+                 std::max(voxel.z, workspace_.min.z)};
   for (std::size_t size = 0; size < kTileShifts.size(); ++size) {
     if (unknown_cubes_[size].contains(cube_number(v, kTileShifts[size]))) return true;
   }
@@ -160,11 +169,16 @@ BrickNeighborhood::BrickNeighborhood(const BeliefBricks& bricks, Index3 origin) 
 Eigen::Vector3d BrickNeighborhood::free_side(const Eigen::Vector3d& position) const {
   constexpr int kRadius = 3;
   const Index3 voxel = containing(position);
+  const VoxelBox near = VoxelBox{
+      {voxel.x - kRadius, voxel.y - kRadius, voxel.z - kRadius},
+      {voxel.x + kRadius + 1, voxel.y + kRadius + 1,
+       voxel.z + kRadius +
+           1}}.intersection(bricks_->workspace_cells());
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int x = -kRadius; x <= kRadius; ++x) {
-    for (int y = -kRadius; y <= kRadius; ++y) {
-      for (int z = -kRadius; z <= kRadius; ++z) {
-        const Index3 v{voxel.x + x, voxel.y + y, voxel.z + z};
+  for (std::int32_t x = near.min.x; x < near.max.x; ++x) {
+    for (std::int32_t y = near.min.y; y < near.max.y; ++y) {
+      for (std::int32_t z = near.min.z; z < near.max.z; ++z) {
+        const Index3 v{x, y, z};
         const std::int32_t brick = brick_of(v);
         bool free, unknown;
         if (brick != BeliefBricks::kNone) {
@@ -174,7 +188,7 @@ Eigen::Vector3d BrickNeighborhood::free_side(const Eigen::Vector3d& position) co
           unknown = bricks_->is_unknown_tile(v);
           free = !unknown;
         }
-        const Eigen::Vector3d d(x, y, z);
+        const Eigen::Vector3d d(x - voxel.x, y - voxel.y, z - voxel.z);
         if (free) sum += d;
         if (unknown) sum -= d;
       }

@@ -55,6 +55,8 @@ class BeliefBricks {
   [[nodiscard]] std::int32_t number(Index3 origin) const;
   /// State of a voxel in a block without a brick, which is uniform. O(1).
   [[nodiscard]] bool is_unknown_tile(Index3 voxel) const;
+  /// What of the lattice of these voxels the workspace touches.
+  [[nodiscard]] VoxelBox workspace_cells() const;
 
  private:
   struct Brick {

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kOutlierDistance = 0.010;  // [m], DESIGN.md section 10
+constexpr double kOutlierDistance = 0.010;  // [m], a reading is an outlier from here on
 constexpr double kClip = 25.0;              // of z²
 constexpr std::size_t kChunk = 256;
 

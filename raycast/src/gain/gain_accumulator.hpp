@@ -33,9 +33,9 @@ struct GainSettings {
   bool posterior_entropy = false;
 };
 
-/// Sums the hits of one view by voxel and turns the sums into a gain (DESIGN.md section 6). One
-/// object serves one thread, view after view, except where it says so; it allocates when made and
-/// when a view touches more voxels than any before.
+/// Sums the hits of one view by voxel and turns the sums into a gain (raycast/README.md, "Gains").
+/// One object serves one thread, view after view, except where it says so; it allocates when made
+/// and when a view touches more voxels than any before.
 class GainAccumulator {
  public:
   /// max_rays bounds the hits of one view. Scene and settings must outlive its use.

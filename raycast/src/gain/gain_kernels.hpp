@@ -73,7 +73,7 @@ struct VoxelClass {
 struct GainKernels {
   /// Appends the hits of a tile.
   void (*append)(const RayTile& tile, HitList& hits);
-  /// Λ_r = a I + (b - a) d dᵀ of every hit (DESIGN.md section 4), d normalised in double.
+  /// Λ_r = a I + (b - a) d dᵀ of every hit, d normalised in double.
   void (*expand)(const FrontalSigmas& sigmas, double voxel_size, HitBatch& batch);
   /// Adds the batch's Λ_r to the sums at `places`, in order. Where keep[i] is 0 hit i is the first
   /// of its voxel, and what stood there is forgotten; else it is all ones.

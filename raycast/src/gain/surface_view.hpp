@@ -14,7 +14,7 @@
 
 namespace viewgain::detail {
 
-/// The surface and the combined gain of views (DESIGN.md section 6, "what a view would show"), for
+/// The surface and the combined gain of views (raycast/README.md, "Gains"), for
 /// the evaluator of one scene. Immutable; thread safe.
 class SurfaceView {
  public:

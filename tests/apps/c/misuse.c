@@ -116,6 +116,7 @@ static void of_frames(void) {
   vg_grid* map = test_map();
   vg_grid_info info;
   float depth[640] = {0};
+  const double bad_sigma[2] = {0, -1};
   double pose[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
   vg_sensor_init(&sensor, sizeof sensor);
@@ -136,18 +137,21 @@ static void of_frames(void) {
   CHECK_FAILS(vg_integrator_create(&sensor, &config, &integrator), VG_INVALID_ARGUMENT, "-4");
   config.num_threads = 1;
   CHECK_OK(vg_integrator_create(&sensor, &config, &integrator));
-  CHECK_FAILS(vg_integrate(NULL, map, depth, NULL, pose, NULL), VG_INVALID_ARGUMENT,
+  CHECK_FAILS(vg_integrate(NULL, map, depth, NULL, pose, NULL, NULL), VG_INVALID_ARGUMENT,
               "integrator is null");
-  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, NULL, NULL), VG_INVALID_ARGUMENT,
+  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, NULL, NULL, NULL), VG_INVALID_ARGUMENT,
               "T_world_camera is null");
   report.struct_size = 0;
-  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, pose, &report), VG_INVALID_ARGUMENT,
+  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, pose, NULL, &report), VG_INVALID_ARGUMENT,
               "vg_integration_report");
+  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, pose, bad_sigma, NULL),
+              VG_INVALID_ARGUMENT, "sigma");
   pose[0] = NAN;
-  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, pose, NULL), VG_INVALID_ARGUMENT, "pose");
+  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, pose, NULL, NULL), VG_INVALID_ARGUMENT,
+              "pose");
   pose[0] = 1;
   pose[14] = 0.5; /* a matrix column by column */
-  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, pose, NULL), VG_INVALID_ARGUMENT,
+  CHECK_FAILS(vg_integrate(integrator, map, depth, NULL, pose, NULL, NULL), VG_INVALID_ARGUMENT,
               "0 0 0.5 1");
   vg_grid_info_init(&info, sizeof info);
   CHECK_OK(vg_grid_get_info(map, &info));

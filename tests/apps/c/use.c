@@ -132,10 +132,10 @@ static void frames(void) {
   CHECK_OK(vg_integrator_create(&sensor, &config, &integrator));
   CHECK_OK(vg_scene_build(grid, NULL, &before));
   vg_integration_report_init(&report, sizeof report);
-  CHECK_OK(vg_integrate(integrator, grid, depth, NULL, pose, &report));
+  CHECK_OK(vg_integrate(integrator, grid, depth, NULL, pose, NULL, &report));
   CHECK(report.readings == pixels - 2 && report.invalid == 1 && report.out_of_range == 1);
   CHECK(report.voxels_hit > 0 && report.voxels_crossed > 0);
-  CHECK_OK(vg_integrate(integrator, grid, depth, NULL, pose, NULL));
+  CHECK_OK(vg_integrate(integrator, grid, depth, NULL, pose, NULL, NULL));
   vg_grid_info_init(&info, sizeof info);
   CHECK_OK(vg_grid_get_info(grid, &info));
   CHECK(info.views == 2 && info.entropy_removed > 0);

@@ -104,11 +104,14 @@ TEST(CPlanner, SaysWhatTheOtherSays) {
       EXPECT_EQ(found_pose.overlap, registered.overlap);
       EXPECT_EQ(found_pose.residual_after, registered.residual_after);
 
-      const AddedView expected = own.add(frame, pose);
+      EXPECT_EQ(found_pose.pose_sigma[0], registered.pose_sigma().translation);
+      EXPECT_EQ(found_pose.pose_sigma[1], registered.pose_sigma().rotation);
+
+      const AddedView expected = own.add(frame, pose, registered.pose_sigma());
       vg_planner_view added;
       vg_planner_view_init(&added, sizeof added);
       ASSERT_EQ(vg_planner_add(planner, frame.depth.data(), frame.amplitude.data(),
-                               numbers_of({pose}).data(), &added),
+                               numbers_of({pose}).data(), found_pose.pose_sigma, &added),
                 VG_OK)
           << vg_last_error();
       EXPECT_EQ(added.view, view);
@@ -191,15 +194,17 @@ TEST(CPlanner, RefusesWrongUse) {
   refused(vg_planner_rank(planner, 1, nullptr, 0, 0, &best, 8, &found, nullptr), "view_size");
   refused(vg_planner_rank(planner, 1, nullptr, 0, 0, nullptr, sizeof best, &found, nullptr),
           "views is null");
-  refused(vg_planner_add(planner, nullptr, nullptr, pose.data(), nullptr), "depth");
+  refused(vg_planner_add(planner, nullptr, nullptr, pose.data(), nullptr, nullptr), "depth");
   std::vector<double> bad = pose;
   bad[3] = kNan;
-  refused(vg_planner_add(planner, frame.depth.data(), nullptr, bad.data(), nullptr), "rigid");
+  refused(vg_planner_add(planner, frame.depth.data(), nullptr, bad.data(), nullptr, nullptr),
+          "rigid");
   bad = pose;
   bad[15] = 2;
   refused(vg_planner_tried(planner, bad.data(), 1), "lowest row");
   vg_planner_view unset{};
-  refused(vg_planner_add(planner, frame.depth.data(), nullptr, pose.data(), &unset), "struct_size");
+  refused(vg_planner_add(planner, frame.depth.data(), nullptr, pose.data(), nullptr, &unset),
+          "struct_size");
   refused(
       vg_planner_register(planner, frame.depth.data(), nullptr, pose.data(), 0.01, 0.01, nullptr),
       "found is null");

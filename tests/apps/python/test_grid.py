@@ -135,6 +135,16 @@ def test_frames_make_a_map(sensor):
     assert len(points) > 300
     distance = np.abs(np.max(np.abs(points["position"]), axis=1) - 0.1)
     assert np.median(distance) < 0.005
+    # A frame's pose that is less sure makes beliefs as a sensor with that sigma does.
+    unsure = viewgain.Sensor(
+        sensor.camera, min_range=sensor.min_range, max_range=sensor.max_range,
+        working_distance=sensor.working_distance, noise=sensor.noise, pose_sigma=(0.004, 0.01))
+    twins = [viewgain.BeliefGrid(voxel_size=0.01, workspace=[[-0.2] * 3, [0.2] * 3], sensor=sensor)
+             for _ in range(3)]
+    integrator.integrate(twins[0], depth, poses[-1], amplitude=amplitude, pose_sigma=(0.004, 0.01))
+    viewgain.FrameIntegrator(unsure).integrate(twins[1], depth, poses[-1], amplitude=amplitude)
+    integrator.integrate(twins[2], depth, poses[-1], amplitude=amplitude)
+    assert twins[0].content_hash() == twins[1].content_hash() != twins[2].content_hash()
     beliefs = grid.beliefs()
     occupied = grid.states() == 2
     hit = np.zeros_like(occupied)
@@ -151,6 +161,8 @@ def test_frames_make_a_map(sensor):
         integrator.integrate(grid, depth, poses[0], amplitude=amplitude[1:])
     with pytest.raises(ValueError, match="orthonormal"):
         integrator.integrate(grid, depth, 2 * poses[0] - np.diag([0, 0, 0, 1]))
+    with pytest.raises(ValueError, match="sigma -1"):
+        integrator.integrate(grid, depth, poses[0], pose_sigma=(0, -1))
     with pytest.raises(ValueError, match="carve"):
         viewgain.FrameIntegrator(sensor, carve="rays")
     with pytest.raises(ValueError, match="occupancy"):

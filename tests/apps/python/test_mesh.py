@@ -184,6 +184,7 @@ def test_surface_and_boundaries(camera, sensor, start):
     assert np.array_equal(again.triangles, surface.triangles)
     assert surface.triangles.max() < len(surface.vertices) == len(surface.normals)
     assert surface.source.max() < len(points)
+    assert grid.pooling_length() == VOXEL
     poses, reasons = viewgain.mesh.boundary_candidates(surface, [start], sensor, spacing=VOXEL)
     assert poses.shape == (len(reasons), 4, 4) and len(reasons) > 10
     assert {viewgain.mesh.BoundaryClass(int(code)).name.lower() for code in reasons["boundary_class"]} <= set(viewgain.mesh.BOUNDARY_CLASS_NAMES)

@@ -28,7 +28,7 @@ def test_the_paper_s_camera_can_be_written_out():
         camera, min_range=0.2, max_range=5.0, working_distance=0.4, noise=viewgain.ShotNoise())
     preset = viewgain.sensor_preset("sr4000")
     assert sensor.camera == preset.camera and sensor.noise == preset.noise
-    # DESIGN.md: 4.0 mm at 1.30 m and 8.5 ms; 3.6 mm at 0.4 m and 1 ms
+    # Of the sensor's model: 4.0 mm at 1.30 m and 8.5 ms; 3.6 mm at 0.4 m and 1 ms
     assert viewgain.Sensor(
         camera, min_range=0.2, max_range=5.0, working_distance=0.4,
         noise=viewgain.ShotNoise(integration_time=8.5e-3)).sigmas(1.30)[0] == pytest.approx(4.0e-3)

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/grid/pooling.hpp"
 
 namespace viewgain {
 namespace {
@@ -100,8 +102,8 @@ TEST(FusedPointsShapes, FreeSideBesideLargeUnknownTiles) {
           const Index3 v{static_cast<std::int32_t>(std::floor(at.x())) + x,
                          static_cast<std::int32_t>(std::floor(at.y())) + y,
                          static_cast<std::int32_t>(std::floor(at.z())) + z};
-          const bool inside = workspace.contains(v);
-          const VoxelState state = inside ? grid.state(v) : VoxelState::free;
+          if (!workspace.contains(v)) continue;
+          const VoxelState state = grid.state(v);
           if (state == VoxelState::free) side += Vector3d(x, y, z);
           if (state == VoxelState::unknown) side -= Vector3d(x, y, z);
         }
@@ -112,6 +114,41 @@ TEST(FusedPointsShapes, FreeSideBesideLargeUnknownTiles) {
     if (along > 0) ++compared;
   }
   EXPECT_GT(compared, 1200U);
+}
+
+// Two layers of a wall at each face of the workspace, free space before them, pooled by one and by
+// two voxels. Its points look into the workspace, as nothing is known to lie beyond.
+TEST(FusedPointsShapes, WallsAtTheWorkspacesFacesLookInwards) {
+  constexpr double kVoxel = 0.01;
+  constexpr std::array<std::int32_t, 3> kDims{19, 22, 27};
+  std::size_t points_seen = 0;
+  for (const bool coarse : {false, true}) {
+    for (int face = 0; face < 6; ++face) {
+      const auto axis = static_cast<std::size_t>(face / 2);
+      Vector3d inward = Vector3d::Zero();
+      inward[face / 2] = face % 2 == 0 ? 1 : -1;
+      BeliefGrid grid({kVoxel, {{0.03, -0.05, 0}, {0.22, 0.17, 0.27}}, {}, 0.01});
+      const Index3 from = grid.min_index();
+      const float information = coarse ? 1 / (0.02F * 0.02F) : 1e5F;
+      for (std::int32_t i = 0; i < kDims[0] * kDims[1] * kDims[2]; ++i) {
+        const std::array at{i / kDims[2] / kDims[1], i / kDims[2] % kDims[1], i % kDims[2]};
+        const std::int32_t depth = face % 2 == 0 ? at[axis] : kDims[axis] - 1 - at[axis];
+        const Index3 voxel{from.x + at[0], from.y + at[1], from.z + at[2]};
+        if (depth < 2) {
+          grid.set(voxel, 2.0F,
+                   Belief{{information, information, information, 0, 0, 0}, {0, 0, 0}, 1});
+        } else if (depth < 12) {
+          grid.set(voxel, -1.0F);
+        }
+      }
+      EXPECT_EQ(pooling_of(grid.snapshot()).shift, coarse ? 1 : 0);
+      for (const FusedPoint& point : fused_points(grid)) {
+        ++points_seen;
+        EXPECT_GT(vector(point.toward_free).dot(inward), 0.7) << face << ' ' << coarse;
+      }
+    }
+  }
+  EXPECT_GT(points_seen, 1000U);
 }
 
 // Numbers that no reading makes, as far as `set` takes them: none may cost more than another, nor

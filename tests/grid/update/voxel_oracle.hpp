@@ -19,7 +19,7 @@ namespace viewgain::test {
 [[nodiscard]] DepthFrame mixed_frame(const Sensor& sensor, const Pose& pose, std::mt19937& random,
                                      bool out_of_range = true);
 
-/// The map update of DESIGN.md section 5 as plain loops over all voxels and all pixels, one entry a
+/// The map update of grid/README.md as plain loops over all voxels and all pixels, one entry a
 /// voxel. For sensors whose noise does not depend on the angle of incidence.
 class VoxelOracle {
  public:

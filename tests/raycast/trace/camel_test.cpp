@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The camel's map: what DESIGN.md section 11 expects of it, and its rays against the oracle.
+// The camel's map: its size and counts, and its rays against the oracle.
 #include <gtest/gtest.h>
 
 #include <cmath>

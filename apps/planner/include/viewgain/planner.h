@@ -91,9 +91,11 @@ typedef struct vg_planner_view {
 /* Makes `view` ready for a call. */
 VG_API void vg_planner_view_init(vg_planner_view* view, size_t struct_size);
 
-/* Puts a frame into the map, as vg_integrate(); `added` or null. */
+/* Puts a frame into the map, as vg_integrate(); `pose_sigma`, after vg_planner_register() what it
+   found, or null; `added` or null. */
 VG_API vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* amplitude,
-                                const double T_world_camera[16], vg_planner_view* added);
+                                const double T_world_camera[16], const double pose_sigma[2],
+                                vg_planner_view* added);
 
 /* What became of a frame that was registered. */
 enum {
@@ -109,6 +111,7 @@ typedef struct vg_registration {
   int32_t free_directions;      /* motions that the frame does not hold: as reported */
   double T_world_camera[16];    /* corrected if registered, else as reported; rows */
   double covariance[36];        /* 6 x 6, row by row: translation [m], rotation [rad], world axes */
+  double pose_sigma[2];         /* the same by the axes' mean, as vg_planner_add() takes it */
   double translation, rotation; /* of the correction that was found [m], [rad] */
   double residual_before;       /* RMS distance from the map at the reported pose [m] */
   double residual_after;        /* and at the one that was found [m] */

@@ -22,6 +22,7 @@
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/fused_points.hpp"
+#include "viewgain/grid/pooling.hpp"
 
 namespace viewgain::python {
 
@@ -360,6 +361,14 @@ Raises
 ------
 ValueError
     num_threads is out of its bounds.)")
+      .def(
+          "pooling_length",
+          [](const SharedGrid& grid) {
+            return grid.read([](const BeliefGrid& g) { return pooling_of(g.snapshot()).length; });
+          },
+          R"(How far apart the map's points are [m]: the voxel size, or the sensor's footprint where that is longer.
+
+Cost: of a snapshot, some ms.)")
       .def("statistics", &statistics_of, py::arg("criterion") = "log_diagonal",
            R"(Voxel counts and progress.
 

@@ -42,9 +42,11 @@ IntegrationConfig config_of(const std::string& carve, const std::string& occupan
 }
 
 py::object integrate(Integrator& self, const Given<SharedGrid>& grid, const py::object& depth,
-                     const py::object& T_world_camera, const py::object& amplitude) {
+                     const py::object& T_world_camera, const std::array<double, 2>& pose_sigma,
+                     const py::object& amplitude) {
   const DepthFrame frame = depth_frame(self.sensor, depth, amplitude);
-  return self.integrate(*grid, frame, one_pose(T_world_camera, "T_world_camera"));
+  return self.integrate(*grid, frame, one_pose(T_world_camera, "T_world_camera"),
+                        PoseSigma{pose_sigma[0], pose_sigma[1]});
 }
 
 void calibrate_hazard(const Integrator& self, const Given<SharedGrid>& grid,
@@ -81,6 +83,8 @@ depth : array_like, (height, width), floating point
     up to the sensor's max_range.
 T_world_camera : array_like, (4, 4)
     Rotations that are off by up to 1e-3 are orthonormalised.
+pose_sigma : array_like, (2,), optional
+    What this pose may be off beside the sensor's own pose_sigma [m], [rad].
 amplitude : array_like, (height, width), floating point, optional
     cos / range**2 [1/m**2], from which the angle of incidence is taken; else from the depth. NaN or
     masked: the least information.
@@ -98,7 +102,8 @@ amplitude : array_like, (height, width), floating point, optional
            py::arg("occupancy") = "probabilistic", py::arg("support_plane") = py::none(),
            py::arg("num_threads") = 0)
       .def("integrate", &integrate, py::arg("grid"), py::arg("depth"), py::arg("T_world_camera"),
-           py::kw_only(), py::arg("amplitude") = py::none(), integrate_doc.c_str())
+           py::kw_only(), py::arg("pose_sigma") = std::array<double, 2>{0, 0},
+           py::arg("amplitude") = py::none(), integrate_doc.c_str())
       .def("calibrate_hazard", &calibrate_hazard, py::arg("grid"), py::arg("scene"),
            py::arg("depth"), py::arg("T_world_camera"),
            R"(Counts how often a frame meets the surface in unknown space, before it is integrated.

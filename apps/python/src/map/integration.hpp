@@ -81,12 +81,12 @@ struct SharedIntegrator {
       : sensor(of), integrator(of, config, ExecConfig{num_threads}) {}
 
   /// Call with the GIL.
-  template <typename Readings>
-  pybind11::object integrate(SharedGrid& grid, const Readings& readings,
-                             const Pose& T_world_sensor) {
+  template <typename Readings, typename... More>
+  pybind11::object integrate(SharedGrid& grid, const Readings& readings, const Pose& T_world_sensor,
+                             const More&... more) {
     return to_python(grid.write([&](BeliefGrid& g) {
       const std::lock_guard lock(mutex);
-      return integrator.integrate(g, readings, T_world_sensor);
+      return integrator.integrate(g, readings, T_world_sensor, more...);
     }));
   }
 };

@@ -107,7 +107,7 @@ views : array_like, (n, 4, 4)
     T_world_camera of the views that saw it, in order; at least one.
 sensor : Sensor
 spacing : float
-    The map's voxel size [m].
+    How far apart its points are [m]: ``grid.pooling_length()`` of the map.
 working_distance : float, optional
     From the surface [m]; the sensor's unless given.
 overlap : float, optional

@@ -62,15 +62,16 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   [[nodiscard]] SymmetricMatrix3 inverse(double& determinant) const {
     // determinant / (xx yy zz) is in (0, 1] and bounds the cancellation in cofactors.
     constexpr double kWellScaled = 1e-4;
-    const double c_xx = yy * zz - yz * yz;
+    const double c_xx = yy * zz - yz * yz, c_zz = xx * yy - xy * xy;
     const double c_xy = xz * yz - xy * zz;
     const double c_xz = xy * yz - xz * yy;
     determinant = xx * c_xx + xy * c_xy + xz * c_xz;
-    if (!(xx > 0 && yy > 0 && determinant > kWellScaled * (xx * yy * zz))) {
+    // Positive definite: the leading minors are positive (Sylvester).
+    if (!(xx > 0 && c_zz > 0 && determinant > kWellScaled * (xx * yy * zz))) {
       return inverse_by_factorisation(determinant);
     }
     const double s = 1.0 / determinant;
-    return {c_xx * s, (xx * zz - xz * xz) * s, (xx * yy - xy * xy) * s, c_xy * s,
+    return {c_xx * s, (xx * zz - xz * xz) * s, c_zz * s, c_xy * s,
             c_xz * s, (xy * xz - xx * yz) * s};
   }
   bool operator==(const SymmetricMatrix3&) const = default;

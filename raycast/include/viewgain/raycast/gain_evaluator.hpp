@@ -17,6 +17,7 @@
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/ray_outcomes.hpp"
 #include "viewgain/raycast/view_contributions.hpp"
 #include "viewgain/raycast/view_measure.hpp"
 #include "viewgain/raycast/view_selection.hpp"
@@ -182,6 +183,12 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// Where the rays of a pose end, in pixel order (row by row, strided); the hits that evaluate()
   /// uses. Empty for a bad pose: nothing is thrown for it. Costs a trace of the pose.
   [[nodiscard]] std::vector<RayHit> trace(const Pose& T_world_camera) const;
+
+  /// Why a view's gain is what it is: what becomes of each of the rays that evaluate() uses. A
+  /// camera in an occupied voxel sees from there. All counts are 0 for a bad pose: nothing is
+  /// thrown for it. Costs two traces of the pose and a PinholeCamera::ray() for each ray that meets
+  /// nothing.
+  [[nodiscard]] RayOutcomes outcomes(const Pose& T_world_camera) const;
 
   /// The k best poses: best_indices() of evaluate()'s results and those results, ties to the lower
   /// index, NaN last, k clamped; nothing for k = 0 or no poses. `config` may subtract costs and put

@@ -348,6 +348,22 @@ TEST_F(Workflow, FramesThatContradictTheMapAreLeftOut) {
                        {{"--register", "on", "--pose-sigma", "x"}, "--pose-sigma"}});
 }
 
+// Readings 5 mm apart: voxels finer than that leave gaps between the points, not in the surface.
+TEST_F(Workflow, TheSurfaceHasNoHolesWhereVoxelsAreFinerThanTheReadings) {
+  run_well({"simulate", "cube.off", "--orbit", "12,0.6,27,0,46", "--sensor", "small.toml", "--size",
+            "0.3", "--recenter", "on", "--out", "frames"});
+  const auto area = [this](const char* voxel) {
+    run_well({"integrate", "frames", "--voxel", voxel, "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+              "--out", "map.vdb"});
+    return json::parse(run_well({"surface", "map.vdb", "--json", "--out", "surface.ply"}))
+        .at("area")
+        .get<double>();
+  };
+  const double coarse = area("0.01");
+  EXPECT_GT(coarse, 0.05);
+  EXPECT_NEAR(area("0.0025"), coarse, 0.1 * coarse);
+}
+
 TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   simulate("frames");
   integrate("frames", "map.vdb");

@@ -204,11 +204,12 @@ VG_API vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrat
                                       vg_integrator** integrator);
 
 /* Integrates one frame: `depth` along the optical axis [m], row by row, width * height values, 0
-   invalid, +infinity out of range; `amplitude` [1/m^2] of the same size, or null; `report` or null.
-   A bad pose is VG_INVALID_ARGUMENT, and the map is unchanged. */
+   invalid, +infinity out of range; `amplitude` [1/m^2] of the same size, or null; `pose_sigma` [m],
+   [rad], what this pose may be off beside the sensor's own pose_sigma, or null: nothing; `report`
+   or null. A bad pose or sigma is VG_INVALID_ARGUMENT, and the map is unchanged. */
 VG_API vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* depth,
                               const float* amplitude, const double T_world_camera[16],
-                              vg_integration_report* report);
+                              const double pose_sigma[2], vg_integration_report* report);
 /* Null does nothing. */
 VG_API void vg_integrator_release(vg_integrator* integrator);
 
