@@ -9,6 +9,7 @@
 #include <stop_token>
 
 #include "raycast/scene_makers.hpp"
+#include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
 
 namespace viewgain {
@@ -171,8 +172,11 @@ TEST_P(TwoStages, StopsInEitherStage) {
     EXPECT_FALSE(part.complete);
     ASSERT_EQ(part.scored_indices.size(), scored);
     for (std::size_t j = 0; j < scored; ++j) {
-      EXPECT_EQ(part.scored_indices[j], whole.scored_indices[j]);
-      EXPECT_TRUE(test::same_bits(part.scored_gains[j], whole.scored_gains[j]));
+      const auto& all = whole.scored_indices;
+      const auto at = std::find(all.begin(), all.end(), part.scored_indices[j]);
+      ASSERT_NE(at, all.end());
+      EXPECT_TRUE(test::same_bits(part.scored_gains[j],
+                                  whole.scored_gains[static_cast<std::size_t>(at - all.begin())]));
     }
     EXPECT_EQ(part.indices.size(), std::min<std::size_t>(2, scored));
   }
@@ -181,6 +185,50 @@ TEST_P(TwoStages, StopsInEitherStage) {
       one.race(poses_, 2, {}, {.is_cancelled = [&] { return ++asked > poses_.size() / 2; }});
   EXPECT_FALSE(early.complete);
   EXPECT_TRUE(early.scored_indices.empty());
+}
+
+TEST_P(TwoStages, ADeadlineLeavesTheBestOfWhatWasScoredInTime) {
+  const GainEvaluator two = evaluator(VoxelScene::build(ball(2)), 2);
+  const std::vector<ViewGain> all = two.evaluate(poses_);
+  const BestViews whole = two.race(poses_, 3);
+  EXPECT_EQ(whole.estimated, poses_.size());
+  const BestViews late = two.race(poses_, 3, {.deadline = 1e6});
+  EXPECT_TRUE(late.complete);
+  EXPECT_EQ(late.indices, whole.indices);
+  EXPECT_EQ(late.scored_indices, whole.scored_indices);
+  EXPECT_EQ(late.rays_traced, whole.rays_traced);
+  EXPECT_EQ(two.best(poses_, 3, {.deadline = 1e6}).indices, best_indices(all, 3));
+  std::size_t cut = 0;
+  for (const double deadline : {0.0, 1e-4, 1e-3, 4e-3, 1.6e-2, 6.4e-2}) {
+    SCOPED_TRACE(deadline);
+    for (const bool in_two : {true, false}) {
+      const BestConfig config{.deadline = deadline};
+      const BestViews some = in_two ? two.race(poses_, 3, config) : two.best(poses_, 3, config);
+      const std::size_t scored = some.scored_indices.size();
+      EXPECT_LE(some.estimated, in_two ? poses_.size() : 0U);
+      EXPECT_LE(scored, in_two ? whole.scored_indices.size() : poses_.size());
+      if (deadline == 0) {
+        EXPECT_EQ(some.estimated + scored + some.rays_traced, 0U);
+      }
+      EXPECT_EQ(some.complete,
+                in_two ? some.estimated == poses_.size() && scored == whole.scored_indices.size()
+                       : scored == poses_.size());
+      ASSERT_EQ(some.scored_gains.size(), scored);
+      for (std::size_t j = 0; j < scored; ++j) {
+        EXPECT_TRUE(test::same_bits(some.scored_gains[j], all[some.scored_indices[j]]));
+      }
+      const std::vector<std::size_t> order = best_indices(some.scored_gains, 3);
+      ASSERT_EQ(some.indices.size(), order.size());
+      for (std::size_t j = 0; j < order.size(); ++j) {
+        EXPECT_EQ(some.indices[j], some.scored_indices[order[j]]);
+      }
+      cut += some.complete ? 0U : 1U;
+    }
+  }
+  EXPECT_GE(cut, 4U);
+  for (const double bad : {-1e-9, std::nan("")}) {
+    EXPECT_THROW((void)two.race(poses_, 3, {.deadline = bad}), Error);
+  }
 }
 
 std::string model_name(const testing::TestParamInfo<GainModel>& info) {
