@@ -25,7 +25,7 @@ ViewTracer::ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays>
     : scene_(scene),
       kernels_(scene.tracing->kernels),
       rays_(std::move(rays)),
-      // Whatever was measured, the sweep was faster (perf/results/tracers.md).
+      // A BVH would have to pay for its making first (perf/results/tracers.md).
       by_sweep_(tracer != Tracer::embree),
       T_grid_world_(scene.snapshot.T_world_grid.inverse()) {
   const double voxel = scene.snapshot.voxel_size;

@@ -36,8 +36,8 @@ inline void add_common_options(App& app, CommonOptions& options) {
 /// Of subcommands that score.
 inline void add_trace_option(App& app, CommonOptions& options) {
   one_of(*app.add_option("--trace", options.trace,
-                         "how rays meet voxels: by Embree's BVH, by sweeping cells from near to "
-                         "far, or by what is faster; never changes a result")
+                         "how rays meet voxels: by Embree's BVH or by sweeping cells from near to "
+                         "far, as unless told otherwise; never changes a result")
               ->capture_default_str(),
          tracer_names(), "tracer");
 }

@@ -40,9 +40,8 @@ namespace {
 using Options = ScoreOptions;
 
 void check_feasibility(const Options& options) {
-  if (options.deadline && !options.race) {
+  if (options.deadline && !options.race)
     throw Error(ErrorCode::invalid_argument, "--deadline goes with --race");
-  }
   if (options.deadline) check_at_least_0("--deadline", *options.deadline);
   if (!options.body.empty() && options.feasible == "off") {
     throw Error(ErrorCode::invalid_argument, "--body goes with --feasible on");
@@ -162,9 +161,8 @@ Scores scored(const Options& options, const GainEvaluator& evaluator,
   ranking.scored.indices.resize(poses.size());
   std::iota(ranking.scored.indices.begin(), ranking.scored.indices.end(), std::size_t{0});
   ranking.best.indices = best_indices(ranking.scored.gains, options.top);
-  for (const std::size_t i : ranking.best.indices) {
+  for (const std::size_t i : ranking.best.indices)
     ranking.best.gains.push_back(ranking.scored.gains[i]);
-  }
   std::uint64_t rays = 0;
   for (const ViewGain& gain : ranking.scored.gains) rays += gain.rays;
   return {std::move(ranking), rays};
@@ -375,8 +373,7 @@ Command add_score(App& program) {
       ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
   selection->require_option(0, 1);
   app->add_option("--deadline", options->deadline,
-                  "SECONDS: --race ends with the best that it can say by then, and with how many "
-                  "poses it has estimated and scored in full; default: none");
+                  "SECONDS: --race ends with the best that it can say by then; default: none");
   add_seed_option(*app, options->seed, "of --shell, --race (the paper's gain) and --approximate");
   app->add_option("--shard", options->shard,
                   "i/n: the i-th of n shards of the poses, i from 0, rows that follow one another; "

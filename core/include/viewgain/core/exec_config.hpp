@@ -16,8 +16,8 @@ namespace viewgain {
 
 /// How a view's rays find the first voxel that is not free. Results are the same bits.
 enum class Tracer : std::uint8_t {
-  automatic,  ///< what is faster for the scene and the rays (perf/results/tracers.md)
-  embree,     ///< Embree's BVH over leaves and boxes of voxels, in packets of rays
+  automatic,  ///< the sweep: full images are faster by it, and there is no BVH to make
+  embree,     ///< a BVH of leaves and boxes: for few rays and many views (perf/results/tracers.md)
   sweep,      ///< the scene's cells from near to far, each over the rays that it can end
 };
 /// Names of the tracers, in their order.

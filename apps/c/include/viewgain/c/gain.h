@@ -81,8 +81,8 @@ typedef struct vg_weight_region {
   double weight;                 /* >= 0; 1 outside all regions */
 } vg_weight_region;
 
-/* How rays meet voxels; the same gains: by what is faster, by Embree's BVH, by sweeping cells from
-   near to far. */
+/* How rays meet voxels; the same gains: as is mostly faster, by Embree's BVH, by sweeping cells
+   from near to far. */
 enum { VG_TRACER_AUTOMATIC = 0, VG_TRACER_EMBREE = 1, VG_TRACER_SWEEP = 2 };
 
 /* What changes the answer, num_threads and tracer. */
