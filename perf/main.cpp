@@ -9,6 +9,7 @@
 #include "benches/integrate_bench.hpp"
 #include "benches/iteration_bench.hpp"
 #include "benches/trace_bench.hpp"
+#include "benches/tracers_bench.hpp"
 #include "choose/approximate_bench.hpp"
 #include "choose/choose_bench.hpp"
 #include "environment.hpp"
@@ -184,6 +185,18 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   memory_app->add_option("--mesh", memory.mesh, "the camel's mesh file")->capture_default_str();
 
+  viewgain::bench::TracersOptions tracers;
+  tracers.mesh = viewgain::test::camel_mesh_path();
+  CLI::App* tracers_app =
+      app.add_subcommand("tracers", "Embree's BVH against the sweep, by map, gain, image and call");
+  tracers_app->add_option("--threads", tracers.num_threads, "threads, 0: all")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  tracers_app->add_option("--repetitions", tracers.repetitions, "timed runs of each tracer")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  tracers_app->add_option("--mesh", tracers.mesh, "the camel's mesh file")->capture_default_str();
+
   viewgain::bench::HallOptions hall;
   CLI::App* hall_app =
       app.add_subcommand("hall", "memory and speed of the map of a hall of 20 m x 20 m x 3 m");
@@ -308,6 +321,7 @@ int run(int argc, char** argv) {
   if (choose_app->parsed()) return viewgain::bench::run_choose(choose);
   if (bars_app->parsed()) return viewgain::bench::run_bars(bars);
   if (memory_app->parsed()) return viewgain::bench::run_memory(memory);
+  if (tracers_app->parsed()) return viewgain::bench::run_tracers(tracers);
   if (hall_app->parsed()) return viewgain::bench::run_hall(hall);
   if (armadillo_app->parsed()) return viewgain::bench::run_armadillo(armadillo);
   if (hemisphere_app->parsed()) return viewgain::bench::run_hemisphere(hemisphere);

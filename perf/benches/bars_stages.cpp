@@ -68,7 +68,7 @@ std::vector<Figure> stages_figures(const BarsOptions& options) {
     for (std::size_t i = 0; i < kModels.size(); ++i) {
       const GainEvaluator evaluator(map.scene, sensor, {.model = kModels[i]}, exec);
       (void)evaluator.evaluate(few);
-      RacedViews raced;
+      BestViews raced;
       const double in_stages = seconds_of([&] { raced = evaluator.race(poses, 1); });
       choices[i].add(in_stages / all_by_paper, raced.gains.at(0).gain,
                      evaluator.best(poses, 1).gains.at(0).gain);

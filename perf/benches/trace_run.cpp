@@ -32,9 +32,10 @@ std::vector<TraceEntry> make_entries(const TraceTask& task, const ScenePointer& 
   const std::vector<Pose> all(task.poses.begin(), task.poses.end());
   const auto least = static_cast<std::size_t>(4 * task.num_threads);
   std::vector<TraceEntry> entries;
-  for (auto& method : make_viewgain_gains(task, scene)) entries.emplace_back(std::move(method), all);
+  for (auto& method : make_viewgain_gains(task, scene))
+    entries.emplace_back(std::move(method), all);
   entries.emplace_back(make_viewgain_trace(task, scene), all);
-  entries.emplace_back(make_viewgain_trace_bvh(task, scene), all);
+  entries.emplace_back(make_viewgain_trace_embree(task, scene), all);
   entries.emplace_back(make_viewgain_floor(task, scene), all);
   for (auto& method : make_embree_quads(task)) entries.emplace_back(std::move(method), all);
   if (wants("dense")) entries.emplace_back(make_dense_dda(task), all);

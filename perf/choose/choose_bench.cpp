@@ -141,7 +141,7 @@ void in_a_room(const ChooseOptions& options, const ExecConfig& exec, Json& entri
         some.push_back(poses[j]);
         best = std::max(best, truth[j].gain);
       }
-      RacedViews raced;
+      BestViews raced;
       const double of_race = seconds_of([&] { raced = evaluator.race(some, 1, {.seed = seed}); });
       races.add(raced.gains.at(0).gain, best);
       if (i < kTimedSubsets) {
@@ -168,7 +168,7 @@ void on_objects(const ChooseOptions& options, const ExecConfig& exec, Json& entr
     const GainEvaluator evaluator(map.scene, sensor_preset("sr4000"),
                                   {.model = parse_gain_model(options.gain)}, exec);
     std::vector<ViewGain> truth;
-    RacedViews raced;
+    BestViews raced;
     const auto score = [&] { return seconds_of([&] { truth = evaluator.evaluate(poses); }); };
     const auto race = [&] {
       return seconds_of([&] { raced = evaluator.race(poses, 1, {.seed = options.seed}); });

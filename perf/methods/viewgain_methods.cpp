@@ -19,16 +19,14 @@ namespace {
 /// Traces alone.
 class ViewgainTrace : public TraceMethod {
  public:
-  using Way = detail::TraceWay;
-
-  ViewgainTrace(std::string name, const TraceTask& task, ScenePointer scene, Way way)
+  ViewgainTrace(std::string name, const TraceTask& task, ScenePointer scene, Tracer tracer)
       : TraceMethod(std::move(name), task.sensor.camera.ray_table().size()),
         map_(task.map),
         scene_(std::move(scene)),
         data_(detail::SceneAccess::data(*scene_)),
         tracer_(data_, std::make_shared<const detail::SensorRays>(task.sensor.camera, 1),
-                task.sensor.min_range, task.sensor.max_range, way),
-        way_(way) {}
+                task.sensor.min_range, task.sensor.max_range, tracer),
+        way_(tracer) {}
 
   void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
     std::fill(endings.begin(), endings.end(), kMiss);
@@ -58,7 +56,7 @@ class ViewgainTrace : public TraceMethod {
       });
     }
     const auto all = static_cast<double>(poses.size() * rays_per_pose());
-    return {1 - static_cast<double>(traced) / all, way_ == Way::bvh ? 1.0 : 0.0};
+    return {1 - static_cast<double>(traced) / all, way_ == Tracer::embree ? 1.0 : 0.0};
   }
 
  protected:
@@ -82,14 +80,14 @@ class ViewgainTrace : public TraceMethod {
   detail::ViewTracer tracer_;
 
  private:
-  Way way_;
+  Tracer way_;
 };
 
 /// The same kernel on the leaves that each tile is known to end in.
 class ViewgainFloor final : public ViewgainTrace {
  public:
   ViewgainFloor(const TraceTask& task, ScenePointer scene)
-      : ViewgainTrace("viewgain_floor", task, std::move(scene), Way::sweep), poses_(task.poses) {
+      : ViewgainTrace("viewgain_floor", task, std::move(scene), Tracer::sweep), poses_(task.poses) {
     const std::size_t tiles = tracer_.table().tile_count;
     begins_.assign(poses_.size() * tiles + 1, 0);
     detail::ViewSweep sweep;
@@ -134,12 +132,14 @@ class ViewgainFloor final : public ViewgainTrace {
 /// A gain of each pose.
 class ViewgainGain final : public TraceMethod {
  public:
-  ViewgainGain(std::string name, const TraceTask& task, const ScenePointer& scene, GainModel model)
+  ViewgainGain(std::string name, const TraceTask& task, const ScenePointer& scene, GainModel model,
+               Tracer tracer)
       : TraceMethod(std::move(name), task.sensor.camera.ray_table().size()),
         map_(task.map),
         model_(model),
-        evaluator_(scene, task.sensor, {.model = model}, {.num_threads = task.num_threads}),
-        tracing_("", task, scene, ViewgainTrace::Way::sweep) {}
+        evaluator_(scene, task.sensor, {.model = model},
+                   {.num_threads = task.num_threads, .tracer = tracer}),
+        tracing_("", task, scene, tracer) {}
 
   void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
     const std::vector<RayHit> hits = evaluator_.trace(T_world_camera);
@@ -177,22 +177,24 @@ class ViewgainGain final : public TraceMethod {
 std::vector<std::unique_ptr<TraceMethod>> make_viewgain_gains(const TraceTask& task,
                                                               const ScenePointer& scene) {
   std::vector<std::unique_ptr<TraceMethod>> methods;
-  for (const auto& [name, model] : {std::pair("viewgain_gain", GainModel::paper),
-                                    std::pair("viewgain_surface", GainModel::surface),
-                                    std::pair("viewgain_combined", GainModel::combined)}) {
-    methods.push_back(std::make_unique<ViewgainGain>(name, task, scene, model));
+  for (const Tracer tracer : {Tracer::sweep, Tracer::embree}) {
+    const std::string by = tracer == Tracer::embree ? "_embree" : "";
+    for (const auto& [name, model] : {std::pair("viewgain_gain", GainModel::paper),
+                                      std::pair("viewgain_surface", GainModel::surface),
+                                      std::pair("viewgain_combined", GainModel::combined)}) {
+      methods.push_back(std::make_unique<ViewgainGain>(name + by, task, scene, model, tracer));
+    }
   }
   return methods;
 }
 
 std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task, ScenePointer scene) {
-  return std::make_unique<ViewgainTrace>("viewgain_trace", task, std::move(scene),
-                                         ViewgainTrace::Way::sweep);
+  return std::make_unique<ViewgainTrace>("viewgain_trace", task, std::move(scene), Tracer::sweep);
 }
 
-std::unique_ptr<TraceMethod> make_viewgain_trace_bvh(const TraceTask& task, ScenePointer scene) {
-  return std::make_unique<ViewgainTrace>("viewgain_trace_bvh", task, std::move(scene),
-                                         ViewgainTrace::Way::bvh);
+std::unique_ptr<TraceMethod> make_viewgain_trace_embree(const TraceTask& task, ScenePointer scene) {
+  return std::make_unique<ViewgainTrace>("viewgain_trace_embree", task, std::move(scene),
+                                         Tracer::embree);
 }
 
 std::unique_ptr<TraceMethod> make_viewgain_floor(const TraceTask& task, ScenePointer scene) {

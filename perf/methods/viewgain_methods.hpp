@@ -13,7 +13,7 @@ namespace viewgain::bench {
 using ScenePointer = std::shared_ptr<const VoxelScene>;
 
 /// GainEvaluator::evaluate on a batch: tracing, sums by voxel, entropies (`viewgain_gain`); the
-/// same by the surface and by the combined gain.
+/// same by the surface and by the combined gain, and all three by the tracer embree (`_embree`).
 [[nodiscard]] std::vector<std::unique_ptr<TraceMethod>> make_viewgain_gains(
     const TraceTask& task, const ScenePointer& scene);
 
@@ -21,9 +21,9 @@ using ScenePointer = std::shared_ptr<const VoxelScene>;
 [[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task,
                                                                ScenePointer scene);
 
-/// The same kernel through Embree's BVH for every tile, as with VIEWGAIN_TRACE=bvh.
-[[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_trace_bvh(const TraceTask& task,
-                                                                   ScenePointer scene);
+/// The same by the tracer embree: a BVH of leaves and boxes, for every tile.
+[[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_trace_embree(const TraceTask& task,
+                                                                      ScenePointer scene);
 
 /// The same kernel when the leaves that are hit are known beforehand, tile by tile, and so are the
 /// tiles that hit nothing: what no way of finding them could beat. Knows the way for task.poses

@@ -29,7 +29,7 @@ class MicroScene {
   };
 
   /// Of the same views, one way or the other.
-  [[nodiscard]] detail::ViewTracer make_tracer(detail::TraceWay way) const;
+  [[nodiscard]] detail::ViewTracer make_tracer(Tracer way) const;
 
   Sensor sensor;
   std::vector<test::CamelView> frames;  ///< three make the map, the fourth is new

@@ -22,7 +22,7 @@ void count_rays(benchmark::State& state, std::size_t rays) {
 }
 
 // Whole views: swept, as the evaluator does, or all tiles through Embree.
-void view_traversal(benchmark::State& state, detail::TraceWay way) {
+void view_traversal(benchmark::State& state, Tracer way) {
   const MicroScene& micro = MicroScene::get();
   const detail::ViewTracer tracer = micro.make_tracer(way);
   detail::ViewSweep sweep;
@@ -41,7 +41,7 @@ void view_traversal(benchmark::State& state, detail::TraceWay way) {
 // Only the leaves that a tile's rays end in, only tiles that hit something.
 void leaf_dda(benchmark::State& state, Isa isa) {
   const MicroScene& micro = MicroScene::get();
-  const detail::TraceKernels& kernels = detail::trace_kernels(isa);
+  const detail::TileKernels& kernels = detail::tile_kernels(isa);
   const detail::SceneData& scene = detail::SceneAccess::data(*micro.scene);
   detail::RayTile out;
   std::size_t rays = 0, next = 0;
@@ -90,8 +90,8 @@ void ordered_walk(benchmark::State& state, Isa isa) {
 }  // namespace
 
 void register_trace_benchmarks() {
-  benchmark::RegisterBenchmark("view_traversal/sweep", view_traversal, detail::TraceWay::sweep);
-  benchmark::RegisterBenchmark("view_traversal/bvh", view_traversal, detail::TraceWay::bvh);
+  benchmark::RegisterBenchmark("view_traversal/sweep", view_traversal, Tracer::sweep);
+  benchmark::RegisterBenchmark("view_traversal/embree", view_traversal, Tracer::embree);
   for (const Isa isa : micro_isas()) {
     const std::string name(isa_name(isa));
     benchmark::RegisterBenchmark(("leaf_dda/" + name).c_str(), leaf_dda, isa);

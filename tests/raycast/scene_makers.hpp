@@ -53,11 +53,8 @@ class ScopedIsa : ScopedVariable {
   explicit ScopedIsa(const std::string& isa) : ScopedVariable("VIEWGAIN_ISA", isa) {}
 };
 
-/// Evaluators made meanwhile trace that way: `sweep` or `bvh`.
-class ScopedTrace : ScopedVariable {
- public:
-  explicit ScopedTrace(const std::string& way) : ScopedVariable("VIEWGAIN_TRACE", way) {}
-};
+/// The ways to trace.
+inline constexpr std::array kTracers{Tracer::sweep, Tracer::embree};
 
 /// What the random maps look like.
 enum class MapFamily {

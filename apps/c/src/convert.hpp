@@ -5,13 +5,16 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "status.hpp"
 #include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -23,6 +26,14 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// NaN stands for what is not given.
 [[nodiscard]] inline std::optional<double> given(double value) {
   return std::isnan(value) ? std::nullopt : std::optional(value);
+}
+
+/// Throws Error(invalid_argument) for a number that is no VG_TRACER_.
+[[nodiscard]] inline ExecConfig exec_of(std::int32_t num_threads, std::int32_t tracer) {
+  if (tracer < VG_TRACER_AUTOMATIC || tracer > VG_TRACER_SWEEP) {
+    reject("tracer is " + std::to_string(tracer) + "; the tracers are 0 to 2");
+  }
+  return {num_threads, static_cast<Tracer>(tracer)};
 }
 
 /// A pose from 16 numbers, row by row; all NaN if the lowest row is off by more than 1e-3.

@@ -19,6 +19,7 @@ using namespace viewgain::c_api;
 namespace {
 
 static_assert(VG_GAIN_COMBINED == static_cast<int>(GainModel::combined));
+static_assert(VG_TRACER_SWEEP == static_cast<int>(Tracer::sweep));
 static_assert(VG_TRACE == static_cast<int>(Criterion::trace));
 static_assert(VG_VIEW_CAMERA_IN_OCCUPIED == static_cast<int>(ViewStatus::camera_in_occupied));
 static_assert(VG_HIT_OBSTACLE == static_cast<int>(RayHit::Kind::obstacle));
@@ -110,7 +111,7 @@ vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
     require(scene, "scene");
     const vg_evaluator_config chosen = read_config(config, "vg_evaluator_config");
     return GainEvaluator(scene->scene, sensor_of(sensor), settings_of(chosen),
-                         {.num_threads = chosen.num_threads});
+                         exec_of(chosen.num_threads, chosen.tracer));
   });
 }
 
@@ -200,6 +201,20 @@ vg_status vg_race(const vg_evaluator* evaluator, const double* poses, size_t cou
         evaluator->evaluator.race(poses_of(poses, count), k, {.seed = seed}, watcher.control());
     hand_over(best.indices, best.gains, indices, gains, found);
     watcher.finish(best.complete);
+  });
+}
+
+vg_status vg_race_until(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
+                        uint64_t seed, double seconds, size_t* indices, double* gains,
+                        size_t* found, size_t* estimated, size_t* scored) {
+  return guarded([&] {
+    require_choice(evaluator, k, indices, found);
+    *found = 0;
+    const BestViews best =
+        evaluator->evaluator.race(poses_of(poses, count), k, {.deadline = seconds, .seed = seed});
+    hand_over(best.indices, best.gains, indices, gains, found);
+    if (estimated != nullptr) *estimated = best.estimated;
+    if (scored != nullptr) *scored = best.scored_indices.size();
   });
 }
 

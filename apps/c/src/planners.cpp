@@ -218,7 +218,7 @@ vg_status vg_planner_create(const vg_sensor* sensor, const vg_planner_config* co
   return make_planner(planner, [&] {
     const vg_planner_config chosen = read_struct(config, "vg_planner_config");
     return ViewPlanner(sensor_with_body(sensor, chosen), settings_of(chosen),
-                       {.num_threads = chosen.num_threads});
+                       exec_of(chosen.num_threads, chosen.tracer));
   });
 }
 
@@ -358,7 +358,7 @@ vg_status vg_planner_load(const char* path, const vg_sensor* sensor,
     require(path, "path");
     const vg_planner_config chosen = read_struct(config, "vg_planner_config");
     return ViewPlanner::load(path, sensor_with_body(sensor, chosen), settings_of(chosen),
-                             {.num_threads = chosen.num_threads});
+                             exec_of(chosen.num_threads, chosen.tracer));
   });
 }
 

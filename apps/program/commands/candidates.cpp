@@ -91,7 +91,7 @@ void refuse_none(const Options& options, const Proposal& proposal) {
 
 void candidates(const Options& options) {
   check(options.proposal);
-  const ExecConfig exec{options.common.threads};
+  const ExecConfig exec = exec_of(options.common);
   SensedMap map = load_sensed_map(options.map, options.sensor);
   const Sensor sensor = with_body(std::move(map.sensor), options.proposal);
   const GenerationConfig config =
@@ -185,6 +185,7 @@ Command add_candidates(App& program) {
              "paper, surface or combined, as in score: order the poses by it, best first"),
          gain_model_names(), "gain");
   app->add_option("--out", o.out, "TUM file of camera-to-world poses")->required();
+  add_trace_option(*app, o.common);
   add_common_options(*app, o.common);
   add_help(*app, kViewsGroup,
            "candidates map.vdb --generator boundary --sensor sr4000 --out poses.txt");

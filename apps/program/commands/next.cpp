@@ -46,7 +46,7 @@ SensedMap map_of(const Options& options, const ExecConfig& exec) {
 void next(const Options& options) {
   const Stopwatch watch;
   check(options.proposal);
-  const ExecConfig exec{options.common.threads};
+  const ExecConfig exec = exec_of(options.common);
   auto [grid, sensor] = map_of(options, exec);
   const GenerationConfig config = generation_config(options.proposal, sensor, grid, options.source);
   const SurfaceModel model = model_of(std::move(grid), sensor, options.proposal, exec);
@@ -73,6 +73,7 @@ void next(const Options& options) {
 void add_options(App& app, Options& o) {
   add_next_view_options(app, o.proposal, o.top);
   app.add_option("--out", o.out, "TUM file of camera-to-world poses to write, best first");
+  add_trace_option(app, o.common);
   add_common_options(app, o.common);
 }
 

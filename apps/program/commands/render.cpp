@@ -156,7 +156,7 @@ Picture picture_of(const Options& options, const ExecConfig& exec) {
 
 void render(const Options& options, const App& app) {
   check(options, app);
-  const Picture picture = picture_of(options, {options.common.threads});
+  const Picture picture = picture_of(options, exec_of(options.common));
   write_png(options.out, picture.image);
   if (options.common.json) {
     Json json{{"what", options.what},
@@ -210,6 +210,7 @@ Command add_render(App& program) {
   auto* gain = app->add_option("--gain", o.gain, "gain: paper, surface or combined, as in score");
   one_of(*gain->capture_default_str(), gain_model_names(), "gain");
   app->add_option("--out", o.out, "PNG file to write")->required();
+  add_trace_option(*app, o.common);
   add_common_options(*app, o.common);
   add_help(*app, kLookGroup, "render run --what sigma --out sigma.png");
   return {app, [options, app] { render(*options, *app); }};

@@ -76,13 +76,14 @@ std::unique_ptr<Evaluator> make_evaluator(
     const Given<Scene>& given, const Given<Sensor>& of, const std::string& gain,
     const std::string& criterion, int pixel_stride, std::optional<double> prior_sigma,
     std::optional<double> min_range, std::optional<double> max_range, const py::iterable& weights,
-    std::optional<double> refinement_weight, bool posterior_entropy, int num_threads) {
+    std::optional<double> refinement_weight, bool posterior_entropy, const std::string& tracer,
+    int num_threads) {
   const Scene& scene = *given;
   const Sensor& sensor = *of;
   const GainConfig config = gain_config(gain, criterion, pixel_stride, prior_sigma, min_range,
                                         max_range, weights, refinement_weight, posterior_entropy);
   return held(scene, sensor, criterion, pixel_stride,
-              GainEvaluator(scene.scene, sensor, config, ExecConfig{num_threads}));
+              GainEvaluator(scene.scene, sensor, config, {num_threads, parse_tracer(tracer)}));
 }
 
 std::unique_ptr<Evaluator> with_scene(const Evaluator& self, const Given<Scene>& given) {
@@ -150,12 +151,24 @@ py::object best(const Evaluator& self, const py::object& T_world_camera, std::si
 py::object race(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
                 std::uint64_t seed, bool return_gains, const GivenOrNone<Control>& control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
-  const RaceConfig config{seed};
+  const BestConfig config{.seed = seed};
   BestViews result;
   run_batch(control, [&](const BatchControl& watched) {
     result = self.evaluator.race(batch.poses, k, config, watched);
   });
   return chosen(result, return_gains);
+}
+
+py::object race_until(const Evaluator& self, const py::object& T_world_camera, double seconds,
+                      std::size_t k, std::uint64_t seed, const GivenOrNone<Control>& control) {
+  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  BestViews result;
+  run_batch(control, [&](const BatchControl& watched) {
+    result = self.evaluator.race(batch.poses, k, {.deadline = seconds, .seed = seed}, watched);
+  });
+  return named("RacedViews", index_array(result.indices), to_array_1d<ViewGain>(result.gains),
+               result.estimated, index_array(result.scored_indices),
+               to_array_1d<ViewGain>(result.scored_gains));
 }
 
 py::object best_set(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
@@ -206,7 +219,7 @@ void bind_evaluator(py::module_& module) {
   }
   module.attr("VIEW_STATUS_NAMES") = py::tuple(statuses);
 
-  const RaceConfig race_defaults;
+  const BestConfig race_defaults;
   const ApproximateConfig approximate_defaults;
   auto evaluator = bound_class<Evaluator>(module, "GainEvaluator", kEvaluatorDoc);
   refuse_pickling(evaluator);
@@ -216,7 +229,8 @@ void bind_evaluator(py::module_& module) {
            py::arg("pixel_stride") = 1, py::arg("prior_sigma") = py::none(),
            py::arg("min_range") = py::none(), py::arg("max_range") = py::none(),
            py::arg("weights") = py::tuple(), py::arg("refinement_weight") = py::none(),
-           py::arg("posterior_entropy") = false, py::arg("num_threads") = 0)
+           py::arg("posterior_entropy") = false, py::arg("tracer") = "automatic",
+           py::arg("num_threads") = 0)
       .def("with_scene", &with_scene, py::arg("scene"), kWithSceneDoc)
       .def("evaluate", &evaluate, py::arg("T_world_camera"), py::kw_only(),
            py::arg("strict") = false, py::arg("control") = py::none(), kEvaluateDoc)
@@ -227,6 +241,9 @@ void bind_evaluator(py::module_& module) {
       .def("race", &race, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
            py::arg("seed") = race_defaults.seed, py::arg("return_gains") = false,
            py::arg("control") = py::none(), kRaceDoc)
+      .def("race_until", &race_until, py::arg("T_world_camera"), py::arg("seconds"),
+           py::arg("k") = 1, py::kw_only(), py::arg("seed") = race_defaults.seed,
+           py::arg("control") = py::none(), kRaceUntilDoc)
       .def("best_set", &best_set, py::arg("T_world_camera"), py::arg("k"), py::kw_only(),
            py::arg("return_gains") = false, py::arg("control") = py::none(), kBestSetDoc)
       .def("approximate", &approximate, py::arg("T_world_camera"), py::kw_only(),

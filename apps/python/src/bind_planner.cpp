@@ -39,7 +39,7 @@ std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
                               double clearance, bool jump_edges, bool check_feasibility,
                               std::size_t max_views, std::size_t idle_views,
                               std::optional<double> stop_gain, std::optional<double> stop_area,
-                              const py::object& state, int num_threads) {
+                              const py::object& state, const std::string& tracer, int num_threads) {
   Sensor sensor = *of;
   PlannerConfig config;
   config.grid.voxel_size = voxel_size;
@@ -62,7 +62,7 @@ std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
   config.idle_views = idle_views;
   config.stop_gain = stop_gain;
   config.stop_area = stop_area;
-  const ExecConfig exec{num_threads};
+  const ExecConfig exec{num_threads, parse_tracer(tracer)};
   if (state.is_none()) {
     return std::make_unique<Planner>(sensor, ViewPlanner(sensor, config, exec));
   }
@@ -172,7 +172,8 @@ void bind_planner(py::module_& module) {
            py::arg("jump_edges") = true, py::arg("check_feasibility") = true,
            py::arg("max_views") = defaults.max_views, py::arg("idle_views") = defaults.idle_views,
            py::arg("stop_gain") = py::none(), py::arg("stop_area") = py::none(),
-           py::arg("state") = py::none(), py::arg("num_threads") = 0)
+           py::arg("state") = py::none(), py::arg("tracer") = "automatic",
+           py::arg("num_threads") = 0)
       .def_static(
           "load",
           [](const py::object& path, const py::args& args, const py::kwargs& settings) {

@@ -36,6 +36,9 @@ refinement_weight : float, optional
     Weight of refining against finding new surface, with "combined" alone. Default: 0.3.
 posterior_entropy : bool
     Let ``evaluate_detailed`` have it, too: with "paper" alone, some 4 % slower.
+tracer : {"automatic", "embree", "sweep"}
+    How rays meet voxels: by Embree's BVH, faster for images of under 100 rays in a map that stays, or by
+    sweeping cells from near to far, as unless told otherwise. Never changes a result.
 num_threads : int
     0: all hardware threads.
 
@@ -155,6 +158,30 @@ Returns
 indices : ndarray, (k,), int64
 gains : ndarray, (k,), structured
     Only if return_gains. Both as from ``best``.)";
+
+inline constexpr const char* kRaceUntilDoc =
+    R"(The best that can be said in so many seconds; see ``race``.
+
+Poses from all over the list are estimated for half of the time at most, then the most promising scored in
+full. It ends once the views that the threads are at are done, and earlier where ``race`` would.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+seconds : float
+    From the call on; at least 0.
+k : int
+seed, control
+    As ``race``.
+
+Returns
+-------
+RacedViews
+
+Raises
+------
+ValueError
+    The time is negative; or as ``race``.)";
 
 inline constexpr const char* kBestSetDoc =
     R"(Up to k poses that are good together, chosen one after the other, by the paper's gain.

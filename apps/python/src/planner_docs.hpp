@@ -58,6 +58,8 @@ stop_area : float, optional
     far as new surface, on the mean of three rankings; 0: never. Default: 0.0016.
 state : path-like, optional
     A file of ``save`` to go on from; what ``load`` gives.
+tracer : {"automatic", "embree", "sweep"}
+    How rays meet voxels, as in ``GainEvaluator``. Never changes a result.
 num_threads : int
     0: all hardware threads. Never changes a result.
 

@@ -76,6 +76,17 @@ class ChosenViews(NamedTuple):
 
 
 @named("viewgain")
+class RacedViews(NamedTuple):
+    """The best of many poses that could be found in time, of ``race_until``, and what was done."""
+
+    indices: Annotated[NDArray[np.int64], "(<= k,), int64: as ``ChosenViews``, of poses that were scored in full."]
+    gains: Annotated[NDArray[np.void], "(<= k,), structured: of these, as from ``evaluate_detailed``."]
+    estimated: Annotated[int, "Poses that were scored by some of their rays; 0 where all are scored in full."]
+    scored: Annotated[NDArray[np.int64], "(n,), int64: indices of the poses that were scored in full, rising."]
+    scored_gains: Annotated[NDArray[np.void], "(n,), structured: of these."]
+
+
+@named("viewgain")
 class Frame(NamedTuple):
     """A recorded frame, of ``read_frames``."""
 

@@ -3,6 +3,8 @@
 #include "viewgain/grid/grid_snapshot.hpp"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <utility>
 
 #include "code_mask.hpp"
@@ -12,6 +14,12 @@ namespace viewgain {
 namespace {
 
 using namespace detail;
+
+// Where tiles larger than a region come in their list: by the nodes of 4096³ and of 128³ voxels
+// that hold their lowest voxel, each by x, y, z.
+std::array<std::int32_t, 6> place_of(Index3 v) {
+  return {v.x >> 12, v.y >> 12, v.z >> 12, v.x >> 7, v.y >> 7, v.z >> 7};
+}
 
 /// Makes a snapshot's lists of leaves and tiles, node by node and region by region. A map has many
 /// times more free leaves than others, spread over the heap: those of a node are read some time
@@ -45,6 +53,9 @@ class SnapshotMaker {
         }
       }
     }
+    std::sort(out_.tiles.begin(), out_.tiles.end(), [](const VoxelBox& a, const VoxelBox& b) {
+      return place_of(a.min) < place_of(b.min);
+    });
     std::sort(nodes.begin(), nodes.end());
     for (const auto& [number, node] : nodes) {
       for (std::uint64_t part = 0; part < 64; ++part) add_region(number << 6U | part, *node);
@@ -196,20 +207,23 @@ const SnapshotLeaf* GridSnapshot::find_leaf(Index3 voxel) const {
 bool GridSnapshot::is_free(Index3 voxel) const {
   const BlockLattice lattice(min_index, dims);
   if (!lattice.contains(voxel)) return true;
-  const auto in_tile = [&](std::uint32_t first, std::uint32_t last) {
-    return std::any_of(tiles.begin() + first, tiles.begin() + last,
-                       [&](const VoxelBox& tile) { return tile.contains(voxel); });
-  };
   if (const auto region = listed_region(*this, lattice, voxel)) {
     if (const SnapshotLeaf* leaf = leaf_in(*this, *region, voxel)) {
       return !test_bit(leaf->non_free, block_offset(voxel));
     }
     const auto [first, last] = tiles_of(*region);
-    if (in_tile(first, last)) return false;
+    const bool in_tile = std::any_of(tiles.begin() + first, tiles.begin() + last,
+                                     [&](const VoxelBox& tile) { return tile.contains(voxel); });
+    if (in_tile) return false;
   }
+  // A larger one fills a node, or what the workspace has of it: the last that is not behind.
   const auto large =
-      regions.empty() ? static_cast<std::uint32_t>(tiles.size()) : regions.front().first_tile;
-  return !in_tile(0, large);
+      tiles.begin() +
+      static_cast<std::ptrdiff_t>(regions.empty() ? tiles.size() : regions.front().first_tile);
+  const auto behind = std::upper_bound(
+      tiles.begin(), large, place_of(voxel),
+      [](const auto& place, const VoxelBox& tile) { return place < place_of(tile.min); });
+  return behind == tiles.begin() || !std::prev(behind)->contains(voxel);
 }
 
 GridSnapshot BeliefGrid::snapshot() const { return snapshot(GridSnapshot{}); }

@@ -92,7 +92,7 @@ EvaluatorCore::EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config
       working_distance(sensor.working_distance),
       min_range(gain_config.min_range.value_or(sensor.min_range)),
       max_range(gain_config.max_range.value_or(sensor.max_range)),
-      way(wished_way()),
+      tracer(exec.tracer),
       rays(std::make_shared<const SensorRays>(sensor.camera, gain_config.pixel_stride)),
       ray_count(rays_of(*rays)),
       pool(exec.num_threads) {}
@@ -103,7 +103,7 @@ EvaluatorCore::EvaluatorCore(const EvaluatorCore& full, const RayLattice& lattic
       working_distance(full.working_distance),
       min_range(full.min_range),
       max_range(full.max_range),
-      way(full.way),
+      tracer(full.tracer),
       rays(std::make_shared<const SensorRays>(*full.rays, lattice)),
       ray_count(rays_of(*rays)),
       pool(1) {

@@ -14,7 +14,6 @@
 #include "occupied_sums.hpp"
 #include "trace/ordered_walk.hpp"
 #include "trace/sensor_rays.hpp"
-#include "trace/trace_choice.hpp"
 #include "trace/view_sweep.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/thread_pool.hpp"
@@ -72,7 +71,7 @@ struct EvaluatorCore {
   FrontalSigmas sigmas;
   double working_distance;      ///< the sensor's [m]
   double min_range, max_range;  ///< along the ray [m]
-  TraceWay way;                 ///< of all views, samples of them too
+  Tracer tracer;                ///< of all views, samples of them too
   std::shared_ptr<const SensorRays> rays;
   std::uint32_t ray_count = 0;  ///< of the rays that a lens has
   ThreadPool pool;

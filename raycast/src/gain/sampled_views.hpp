@@ -15,6 +15,8 @@ class SampledViews {
   /// The estimate; NaN for a bad pose. `lease` is one of the full driver.
   [[nodiscard]] ApproximateGain estimate(const Pose& T_world_camera,
                                          ViewDriver::Lease& lease) const;
+  /// Of the lattice's rays; leases are the full driver's here, too.
+  [[nodiscard]] const ViewDriver& driver() const { return driver_; }
   /// That are traced for a view.
   [[nodiscard]] std::uint32_t rays() const { return driver_.core()->ray_count; }
 

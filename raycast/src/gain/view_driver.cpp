@@ -13,7 +13,7 @@ ViewDriver::ViewDriver(const VoxelScene& scene, std::shared_ptr<EvaluatorCore> c
       prior_sigma_(core_->prior_sigma_in(scene)),
       settings_{core_->config.criterion, 1.0 / (prior_sigma_ * prior_sigma_), core_->sigmas,
                 core_->config.weights, core_->config.posterior_entropy},
-      tracer_(scene_, core_->rays, core_->min_range, core_->max_range, core_->way),
+      tracer_(scene_, core_->rays, core_->min_range, core_->max_range, core_->tracer),
       number_(++core_->drivers) {
   (void)surface();  // an evaluator that exists does not wait for it, nor throw
 }

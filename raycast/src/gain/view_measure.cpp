@@ -11,6 +11,7 @@
 
 #include "batch_loop.hpp"
 #include "gain_evaluator_impl.hpp"
+#include "measured_view.hpp"
 
 namespace viewgain {
 namespace {
@@ -45,8 +46,9 @@ struct MeasureConsumer {
 
 // Lists what the rays of a view pass.
 void list_runs(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
-               const Eigen::Matrix3d& R_world_grid, detail::Workspace& workspace) {
+               detail::Workspace& workspace) {
   const GridSnapshot& snapshot = driver.scene().snapshot;
+  const Eigen::Matrix3d R_world_grid = snapshot.T_world_grid.rotation();
   const double V = snapshot.voxel_size;
   const detail::SurfaceView& walk = driver.ordered();
   driver.tracer().prepare(frame, workspace.sweep);
@@ -87,36 +89,48 @@ void list_runs(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
 ViewMeasure::~ViewMeasure() = default;
 RunMeasure::~RunMeasure() = default;
 
-std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
-                                    const ViewMeasure& measure, const BatchControl& control) const {
+double detail::measured(const ViewDriver& driver, const Pose& T_world_camera,
+                        ViewDriver::Lease& lease, const ViewMeasure& measure) {
+  const Eigen::Matrix3d R_world_grid = driver.scene().snapshot.T_world_grid.rotation();
+  MeasureConsumer consumer{driver, R_world_grid, T_world_camera, measure,
+                           lease.workspace().view_hits};
+  return driver.view(T_world_camera, lease, consumer).gain;
+}
+
+double detail::measured(const ViewDriver& driver, const Pose& T_world_camera,
+                        ViewDriver::Lease& lease, const RunMeasure& measure) {
+  ViewGain result;
+  const auto frame = driver.open(T_world_camera, result);
+  if (!frame) return result.gain;
+  list_runs(driver, *frame, lease.workspace());
+  return measure.measure(T_world_camera, lease.workspace().view_runs);
+}
+
+namespace {
+
+template <typename Measure>
+std::size_t measure_all(const detail::ViewDriver& driver, std::span<const Pose> T_world_camera,
+                        std::span<double> results, const Measure& measure,
+                        const BatchControl& control) {
   detail::check_room(T_world_camera.size(), results.size());
   std::fill(results.begin(), results.end(), std::numeric_limits<double>::quiet_NaN());
-  const detail::ViewDriver& driver = impl_->driver;
-  const Eigen::Matrix3d R_world_grid = driver.scene().snapshot.T_world_grid.rotation();
-  return detail::for_each_pose(driver, results.size(), control,
-                               [&](std::size_t i, detail::ViewDriver::Lease& lease) {
-                                 MeasureConsumer consumer{driver, R_world_grid, T_world_camera[i],
-                                                          measure, lease.workspace().view_hits};
-                                 results[i] = driver.view(T_world_camera[i], lease, consumer).gain;
-                               });
+  return detail::for_each_pose(
+      driver, results.size(), control, [&](std::size_t i, detail::ViewDriver::Lease& lease) {
+        results[i] = detail::measured(driver, T_world_camera[i], lease, measure);
+      });
+}
+
+}  // namespace
+
+std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
+                                    const ViewMeasure& measure, const BatchControl& control) const {
+  return measure_all(impl_->driver, T_world_camera, results, measure, control);
 }
 
 std::size_t GainEvaluator::evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
                                     const RunMeasure& measure, const BatchControl& control) const {
-  detail::check_room(T_world_camera.size(), results.size());
-  std::fill(results.begin(), results.end(), std::numeric_limits<double>::quiet_NaN());
-  const detail::ViewDriver& driver = impl_->driver;
-  (void)driver.ordered();  // its errors on this thread
-  const Eigen::Matrix3d R_world_grid = driver.scene().snapshot.T_world_grid.rotation();
-  return detail::for_each_pose(
-      driver, results.size(), control, [&](std::size_t i, detail::ViewDriver::Lease& lease) {
-        ViewGain result;
-        if (const auto frame = driver.open(T_world_camera[i], result)) {
-          list_runs(driver, *frame, R_world_grid, lease.workspace());
-          result.gain = measure.measure(T_world_camera[i], lease.workspace().view_runs);
-        }
-        results[i] = result.gain;
-      });
+  (void)impl_->driver.ordered();  // its errors on this thread
+  return measure_all(impl_->driver, T_world_camera, results, measure, control);
 }
 
 }  // namespace viewgain

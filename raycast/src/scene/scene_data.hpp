@@ -5,16 +5,28 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
 #include "scene_cells.hpp"
+#include "viewgain/core/isa.hpp"
 #include "viewgain/grid/hazard.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain::detail {
 
+struct SceneData;
 class SceneTracing;
+
+// What the room trace defines.
+
+/// What a scene whose primitives are gathered needs for being traced; `before`: null, or the scene
+/// that it is an update of. Throws as VoxelScene::build().
+[[nodiscard]] std::shared_ptr<const SceneTracing> make_tracing(const SceneData& data,
+                                                               const SceneData* before);
+/// The instruction set that the scene is traced with.
+[[nodiscard]] Isa isa_of(const SceneTracing& tracing);
 
 /// The mask that rays are traced against: 512 bits, one cache line.
 struct alignas(64) TraceMask {
@@ -68,6 +80,12 @@ struct SceneData {
   std::optional<SceneCells> cells;             ///< for sweeping views
   /// Kernels and BVH: what the room trace keeps with a scene; opaque here.
   std::shared_ptr<const SceneTracing> tracing;
+
+  /// The hazard of its unknown voxels; found when first asked for. Thread safe.
+  [[nodiscard]] const HazardField& hazard_field() const {
+    std::call_once(hazard_once_, [&] { hazard_field_.emplace(snapshot, *hazard); });
+    return *hazard_field_;
+  }
 
   /// Key of the voxel at (x, y, z), relative to the workspace's lowest voxel.
   [[nodiscard]] std::uint64_t voxel_key(std::int32_t x, std::int32_t y, std::int32_t z) const {
@@ -136,6 +154,10 @@ struct SceneData {
     return voxel_key(voxel.x - snapshot.min_index.x, voxel.y - snapshot.min_index.y,
                      voxel.z - snapshot.min_index.z);
   }
+
+ private:
+  mutable std::once_flag hazard_once_;
+  mutable std::optional<HazardField> hazard_field_;
 };
 
 /// The way into a scene for this module's other rooms and for perf/.

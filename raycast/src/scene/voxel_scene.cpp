@@ -4,10 +4,22 @@
 
 #include <utility>
 
+#include "gather_scene.hpp"
 #include "scene_data.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
+
+using detail::SceneAccess;
+
+std::shared_ptr<const VoxelScene> make_traceable(std::unique_ptr<detail::SceneData> data,
+                                                 const detail::SceneData* before) {
+  data->cells.emplace(*data);
+  data->tracing = detail::make_tracing(*data, before);
+  return SceneAccess::make(std::move(data));
+}
 
 std::size_t bytes_of(const TriangleMesh& mesh) {
   return mesh.vertices.size() * sizeof(mesh.vertices[0]) +
@@ -15,6 +27,37 @@ std::size_t bytes_of(const TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+std::shared_ptr<const VoxelScene> VoxelScene::build(const BeliefGrid& grid,
+                                                    const Surroundings& surroundings,
+                                                    const ExecConfig& exec,
+                                                    const HazardConfig& hazard) {
+  return build(grid.snapshot(), surroundings, exec, hazard);
+}
+
+std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
+                                                    const Surroundings& surroundings,
+                                                    const ExecConfig& exec,
+                                                    const HazardConfig& hazard) {
+  (void)thread_count(exec.num_threads);
+  detail::check_surroundings(surroundings);
+  hazard.validate();
+  return make_traceable(
+      detail::gather_scene(std::move(snapshot), std::make_shared<const Surroundings>(surroundings),
+                           std::make_shared<const HazardConfig>(hazard), nullptr),
+      nullptr);
+}
+
+std::shared_ptr<const VoxelScene> VoxelScene::update(
+    const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
+    const ExecConfig& exec) {
+  if (!before) throw Error(ErrorCode::invalid_argument, "there is no scene to update");
+  (void)thread_count(exec.num_threads);
+  const detail::SceneData& data = SceneAccess::data(*before);
+  return make_traceable(
+      detail::gather_scene(grid.snapshot(data.snapshot), data.surroundings, data.hazard, &data),
+      &data);
+}
 
 VoxelScene::VoxelScene(std::unique_ptr<const detail::SceneData> data) : data_(std::move(data)) {}
 VoxelScene::~VoxelScene() = default;
@@ -32,6 +75,18 @@ std::uint64_t VoxelScene::bytes() const noexcept {
                       data_->surroundings->obstacles.boxes.size() * sizeof(Box);
   for (const TriangleMesh& mesh : data_->surroundings->obstacles.meshes) bytes += bytes_of(mesh);
   return bytes;
+}
+
+const HazardField& VoxelScene::hazard() const { return data_->hazard_field(); }
+
+std::string_view VoxelScene::isa() const noexcept {
+  return isa_name(detail::isa_of(*data_->tracing));
+}
+
+std::vector<std::string> available_isas() {
+  std::vector<std::string> names;
+  for (const Isa isa : supported_isas()) names.emplace_back(isa_name(isa));
+  return names;
 }
 
 }  // namespace viewgain

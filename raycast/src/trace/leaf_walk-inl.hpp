@@ -219,6 +219,19 @@ HWY_INLINE MF enter_box(const SceneData& scene, const PoseFrame& frame, const La
   return hits;
 }
 
+// The lanes from lane0 on that a primitive ends; where, but for the range, is kept in the tile.
+template <typename Kernel>
+HWY_INLINE MF meet(const SceneData& scene, const PoseFrame& frame, RayTile& tile, int lane0,
+                   std::uint32_t primitive, const Slabs& slabs, MF active, VF& range,
+                   Kernel kernel) {
+  LaneEnds ends{range, hn::Load(du, tile.primitive + lane0), hn::Load(du, tile.offset + lane0)};
+  const MF hits = kernel(scene, frame, rays_of(tile, lane0), primitive, slabs, active, ends);
+  range = ends.range;
+  hn::Store(ends.primitive, du, tile.primitive + lane0);
+  hn::Store(ends.offset, du, tile.offset + lane0);
+  return hits;
+}
+
 }  // namespace
 }  // namespace viewgain::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -8,38 +8,41 @@
 #include <optional>
 
 #include "device.hpp"
-#include "leaf_traversal.hpp"
 #include "obstacle_scene.hpp"
 #include "scene/brick_table.hpp"
 #include "scene/scene_data.hpp"
-#include "trace_choice.hpp"
-#include "viewgain/grid/hazard.hpp"
+#include "tile_kernels.hpp"
 
 namespace viewgain::detail {
+
+/// The margin by which boxes count as larger [voxels], so that rounding hides none from a ray that
+/// the kernels let into it: by halvings and doublings of the coordinates that single precision has
+/// to hold.
+inline constexpr int kMarginLevels = 9;
+/// For coordinates up to `reach` [voxels]; level 0 holds up to 2e4.
+[[nodiscard]] int margin_level(double reach);
+[[nodiscard]] inline float margin_of(int level) {
+  return kBoxMargin * static_cast<float>(1 << level);
+}
 
 /// What a scene keeps for being traced: its kernels, obstacles, and Embree's BVH of its voxels
 /// where one is wanted.
 class SceneTracing {
  public:
   /// Of a scene whose primitives are gathered, which owns this; `before`: null, or the scene that
-  /// it is an update of. Throws as ObstacleScene.
-  SceneTracing(const SceneData& data, const SceneData* before)
-      : kernels(trace_kernels(choose_isa())),
-        obstacles(ObstacleScene::of(data, kernels.isa, before)),
-        data_(data) {}
+  /// it is an update of. Throws as ObstacleScene, Error(invalid_argument) as select_isa(); with
+  /// obstacles Error(backend) where Embree has no packets.
+  SceneTracing(const SceneData& data, const SceneData* before);
 
   /// The BVH of voxels, with boxes of this margin; built when first asked for. Thread safe. Throws
   /// Error(backend), Error(capacity).
-  [[nodiscard]] RTCScene bvh(int margin_level) const;
-
-  /// Of the scene's unknown voxels; found when first asked for. Thread safe.
-  [[nodiscard]] const HazardField& hazard() const;
+  [[nodiscard]] RTCScene bvh(int level) const;
 
   /// For rays that go on through unknown voxels; built when first asked for. Thread safe. Throws
   /// Error(capacity).
   [[nodiscard]] const BrickTable& bricks() const;
 
-  const TraceKernels& kernels;
+  const TileKernels& kernels;
   const std::shared_ptr<const ObstacleScene> obstacles;  ///< null: none
 
  private:
@@ -49,8 +52,6 @@ class SceneTracing {
   };
   const SceneData& data_;
   mutable std::array<Bvh, kMarginLevels> bvhs_;
-  mutable std::once_flag hazard_once_;
-  mutable std::optional<HazardField> hazard_;
   mutable std::once_flag bricks_once_;
   mutable std::optional<BrickTable> bricks_;
 };

@@ -8,6 +8,7 @@
 
 #include "cell_sweep.hpp"
 #include "obstacle_ranges.hpp"
+#include "voxel_bvh.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -20,18 +21,22 @@ constexpr double kRayEnd = 4 * kFarthestCamera;
 }  // namespace
 
 ViewTracer::ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays> rays,
-                       double min_range, double max_range, TraceWay way)
+                       double min_range, double max_range, Tracer tracer)
     : scene_(scene),
       kernels_(scene.tracing->kernels),
       rays_(std::move(rays)),
+      // A BVH would have to pay for its making first (perf/results/tracers.md).
+      by_sweep_(tracer != Tracer::embree),
       T_grid_world_(scene.snapshot.T_world_grid.inverse()) {
   const double voxel = scene.snapshot.voxel_size;
   const double nearest = min_range / voxel, farthest = std::min(max_range / voxel, kRayEnd);
   min_range_ = static_cast<float>(nearest);
   max_range_ = static_cast<float>(farthest);
   is_out_of_range_ = nearest >= kRayEnd;
-  choice_ = choose_tracing(scene, way, farthest);
-  if (!choice_.by_sweep) (void)scene.tracing->bvh(choice_.margin_level);
+  // A camera that sees anything is no farther than its range from the workspace.
+  const Index3& dims = scene.snapshot.dims;
+  margin_level_ = margin_level(farthest + std::max({dims.x, dims.y, dims.z}));
+  if (!by_sweep_) (void)scene.tracing->bvh(margin_level_);
 }
 
 std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const {
@@ -54,7 +59,7 @@ std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const 
   frame.sees_nothing = !(origin.cwiseAbs().maxCoeff() <= kFarthestCamera) || is_out_of_range_;
   frame.min_range = min_range_;
   frame.max_range = max_range_;
-  frame.extra_margin = margin_of(choice_.margin_level) - margin_of(0);
+  frame.extra_margin = margin_of(margin_level_) - margin_of(0);
   return frame;
 }
 
@@ -62,7 +67,7 @@ void ViewTracer::prepare(const PoseFrame& frame, ViewSweep& sweep, Asked asked) 
   sweep.obstacles.clear();
   if (frame.sees_nothing) return;
   const ObstacleScene* obstacles = scene_.tracing->obstacles.get();
-  if (choice_.by_sweep) {
+  if (by_sweep_) {
     const ImageBoundsKernels& kernels = image_bounds_kernels(kernels_.isa);
     sweep.see(kernels, *scene_.cells, frame, rays_->projector.scale_for(frame, frame.min_range));
     if (obstacles == nullptr) return;
@@ -103,7 +108,7 @@ void ViewTracer::sweep_strip(const PoseFrame& frame, TileRows strip, Asked asked
   const SetUp maker(*this, frame, asked, sweep.obstacles);
   StripRays& rays = sweep.strip;
   rays.begin(rays_->table, strip, maker);
-  if (!choice_.by_sweep) return;
+  if (!by_sweep_) return;
   if (asked == Asked::everywhere && scene_.has_obstacles) {
     for (std::size_t i = 0; i < rays.tile_count(); ++i) {
       if (sweep.obstacles.near(rays.first_tile() + i) == ObstacleMarks::kNoObstacle) continue;
@@ -119,10 +124,10 @@ void ViewTracer::sweep_strip(const PoseFrame& frame, TileRows strip, Asked asked
 
 void ViewTracer::finish(const PoseFrame& frame, std::size_t tile, const ObstacleMarks& obstacles,
                         RayTile& rays) const {
-  if (!choice_.by_sweep) {
+  if (!by_sweep_) {
     kernels_.begin(rays_->table, frame, tile, rays);
     if (scene_.has_obstacles) ask_first(frame, rays);
-    kernels_.trace(scene_, scene_.tracing->bvh(choice_.margin_level), frame, rays);
+    packet_kernels(kernels_.isa).trace(scene_, scene_.tracing->bvh(margin_level_), frame, rays);
   } else if (scene_.has_obstacles && !rays.has_far) {
     ask_afterwards(frame, tile, obstacles.near(tile), rays);
   }

@@ -11,19 +11,26 @@
 #include "scene/scene_data.hpp"
 #include "scene_tracing.hpp"
 #include "sensor_rays.hpp"
-#include "trace_choice.hpp"
 #include "view_sweep.hpp"
+#include "viewgain/core/exec_config.hpp"
 
 namespace viewgain::detail {
 
-/// Traces the views of one sensor in one scene, one way or the other (trace_choice.hpp); the scene
-/// must outlive it. Immutable; thread safe.
+/// Traces the views of one sensor in one scene; the scene must outlive it. Which way is decided
+/// here and nowhere else, and the bits are the same:
+///
+/// - by sweep: the scene's primitives from near to far, each with the rays that can meet it and
+///   have not ended yet;
+/// - by Embree: a BVH of the primitives, tile by tile, in packets.
+///
+/// Known obstacles are triangles and always traced by Embree, where they can end a ray.
+/// Immutable; thread safe.
 class ViewTracer {
  public:
   /// Ranges in metres. Throws Error(backend), Error(capacity) if a BVH is wanted and cannot be
   /// built.
   ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays> rays, double min_range,
-             double max_range, TraceWay way = TraceWay::sweep);
+             double max_range, Tracer tracer = Tracer::automatic);
 
   /// The pose in the scene's coordinates; nothing if it is not finite or its rotation is off by
   /// more than 1e-3.
@@ -47,7 +54,7 @@ class ViewTracer {
     sweep_strip(frame, strip, kAsked, sweep);
     StripRays& strip_rays = sweep.strip;
     for (std::size_t i = 0; i < strip_rays.tile_count(); ++i) {
-      if (choice_.by_sweep && !strip_rays.is_met(i)) continue;
+      if (by_sweep_ && !strip_rays.is_met(i)) continue;
       RayTile& rays = strip_rays.tile(i);
       finish(frame, strip_rays.first_tile() + i, sweep.obstacles, rays);
       visit(strip_rays.first_tile() + i, std::as_const(rays));
@@ -80,9 +87,10 @@ class ViewTracer {
   void ask_afterwards(const PoseFrame& frame, std::size_t tile, float near, RayTile& rays) const;
 
   const SceneData& scene_;
-  const TraceKernels& kernels_;
+  const TileKernels& kernels_;
   std::shared_ptr<const SensorRays> rays_;
-  ViewChoice choice_;
+  bool by_sweep_;
+  int margin_level_;
   Pose T_grid_world_;
   float min_range_, max_range_;  // [voxels]
   bool is_out_of_range_;         // min_range is beyond all that is traced

@@ -2,10 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "voxel_bvh.hpp"
 
-#include "scene_tracing.hpp"
+#include <string>
+
+#include "viewgain/core/error.hpp"
 
 namespace viewgain::detail {
 namespace {
+
+// Geometry numbers in the Embree scene.
+constexpr unsigned kLeafGeometry = 0, kBoxGeometry = 1;
+
+// Has Embree packets of the kernels' width?
+bool has_packets(Isa isa) {
+  const int width = packet_kernels(isa).width;
+  const RTCDeviceProperty native = width == 16  ? RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED
+                                   : width == 8 ? RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED
+                                                : RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED;
+  return rtcGetDeviceProperty(shared_device(isa), native) != 0;
+}
 
 // What Embree asks the bounds of.
 struct BoundsQuestion {
@@ -41,8 +55,21 @@ void attach_boxes(RTCDevice device, RTCScene scene, unsigned id, std::size_t cou
 
 }  // namespace
 
-ScenePtr build_bvh(const SceneData& data, const TraceKernels& kernels, float margin) {
-  RTCDevice device = shared_device(kernels.isa);
+Isa packet_isa(Isa isa) {
+  for (const Isa candidate : supported_isas()) {
+    if (candidate <= isa && has_packets(candidate)) return candidate;
+  }
+  throw Error(ErrorCode::backend, "this build of Embree has no ray packets");
+}
+
+ScenePtr build_bvh(const SceneData& data, Isa isa, float margin) {
+  if (!has_packets(isa)) {
+    throw Error(ErrorCode::backend, "this build of Embree has no ray packets for " +
+                                        std::string(isa_name(isa)) +
+                                        "; the tracer sweep needs none");
+  }
+  const PacketKernels& kernels = packet_kernels(isa);
+  RTCDevice device = shared_device(isa);
   ScenePtr bvh(rtcNewScene(device));
   rtcSetSceneBuildQuality(bvh.get(), RTC_BUILD_QUALITY_HIGH);
   BoundsQuestion leaves{data.boxes.data(), margin};
@@ -52,22 +79,6 @@ ScenePtr build_bvh(const SceneData& data, const TraceKernels& kernels, float mar
                kernels.intersect_box);
   commit_scene(device, bvh.get(), "building the voxel scene");
   return bvh;
-}
-
-RTCScene SceneTracing::bvh(int margin_level) const {
-  Bvh& bvh = bvhs_.at(static_cast<std::size_t>(margin_level));
-  std::call_once(bvh.once, [&] { bvh.scene = build_bvh(data_, kernels, margin_of(margin_level)); });
-  return bvh.scene.get();
-}
-
-const HazardField& SceneTracing::hazard() const {
-  std::call_once(hazard_once_, [&] { hazard_.emplace(data_.snapshot, *data_.hazard); });
-  return *hazard_;
-}
-
-const BrickTable& SceneTracing::bricks() const {
-  std::call_once(bricks_once_, [&] { bricks_.emplace(data_.snapshot, hazard()); });
-  return *bricks_;
 }
 
 }  // namespace viewgain::detail

@@ -241,6 +241,10 @@ static void of_evaluators(const vg_scene* scene) {
   CHECK_FAILS(vg_evaluator_create(scene, &sensor, &config, &evaluator), VG_INVALID_ARGUMENT,
               "stride is 0");
   config.pixel_stride = 1;
+  config.tracer = 3;
+  CHECK_FAILS(vg_evaluator_create(scene, &sensor, &config, &evaluator), VG_INVALID_ARGUMENT,
+              "tracer is 3");
+  config.tracer = VG_TRACER_EMBREE;
   config.weight_count = 1;
   CHECK_FAILS(vg_evaluator_create(scene, &sensor, &config, &evaluator), VG_INVALID_ARGUMENT,
               "weights is null");

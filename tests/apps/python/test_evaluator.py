@@ -54,6 +54,16 @@ def test_choices_agree_with_the_gains(grid, sensor, poses, criterion):
     raced, of_raced = evaluator.race(poses, k=2, return_gains=True)
     assert np.array_equal(of_raced["gain"], gains[raced])
     assert gains[raced[0]] > 0.95 * gains.max()
+    late = evaluator.race_until(poses, 1e6, k=2)
+    assert np.array_equal(late.indices, raced) and np.array_equal(late.gains["gain"], gains[raced])
+    assert late.estimated in (0, 60) and np.array_equal(late.scored_gains["gain"], gains[late.scored])
+    none = evaluator.race_until(poses, 0)
+    assert none.indices.size == none.estimated == none.scored.size == 0
+    for tracer in ("embree", "sweep"):
+        traced = viewgain.GainEvaluator(evaluator.scene, sensor, gain="paper", pixel_stride=4, criterion=criterion, tracer=tracer)
+        assert np.array_equal(traced.evaluate(poses), gains)
+    with pytest.raises(ValueError, match="valid are automatic, embree, sweep"):
+        viewgain.GainEvaluator(evaluator.scene, sensor, tracer="bvh")
     chosen, marginal = evaluator.best_set(poses, 3, return_gains=True)
     assert chosen[0] == order[0] and len(set(chosen.tolist())) == 3
     assert marginal["gain"][0] == gains[order[0]]

@@ -172,6 +172,34 @@ TEST(Snapshot, AnUnknownWorkspaceIsAFewBoxes) {
   EXPECT_TRUE(snapshot.is_free({2000, 0, 0}));
 }
 
+// Nodes of 4096³ voxels without a reading are a tile each, the others thousands of tiles of 128³.
+TEST(Snapshot, AmongThousandsOfTilesItKnowsWhatIsFree) {
+  BeliefGrid grid(GridConfig{0.01, {{-60, -30, -3}, {60, 45, 3}}, {}, 0.01});
+  std::mt19937_64 random(5);
+  const Index3 first = grid.min_index(), dims = grid.dims();
+  const auto any = [&](std::int32_t from, std::int32_t count) {
+    return std::uniform_int_distribution<std::int32_t>(from, from + count - 1)(random);
+  };
+  std::vector<Index3> asked;
+  for (int i = 0; i < 40; ++i) {
+    asked.push_back({any(-4000, 7000), any(first.y, 3000), any(first.z, dims.z)});
+    grid.set(asked.back(), -0.4F);
+  }
+  const GridSnapshot snapshot = grid.snapshot();
+  ASSERT_GT(snapshot.tiles.size(), 5000U);
+  for (int i = 0; i < 20'000; ++i) {
+    asked.push_back({any(first.x, dims.x), any(first.y, dims.y), any(first.z, dims.z)});
+  }
+  std::size_t wrong = 0, free = 0;
+  for (const Index3& voxel : asked) {
+    const bool is_free = grid.state(voxel) == VoxelState::free;
+    free += is_free ? 1U : 0U;
+    wrong += snapshot.is_free(voxel) != is_free ? 1U : 0U;
+  }
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_GE(free, 40U);
+}
+
 TEST(Snapshot, StaysAsItWasAndSharesWhatDidNotChange) {
   const Sensor sensor = small_sensor(64, 48);
   const auto frame = [&](int view) {

@@ -32,7 +32,7 @@ TEST(ChoosingInARoom, RaceFindsTheBest) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed, ++cases) {
     const std::vector<Pose> poses = test::poses_in(room()->snapshot(), 100, seed);
     const std::vector<ViewGain> all = evaluator.evaluate(poses);
-    const RacedViews raced = evaluator.race(poses, 1, {.seed = seed});
+    const BestViews raced = evaluator.race(poses, 1, {.seed = seed});
     const std::size_t best = best_indices(all, 1).at(0);
     ASSERT_GT(all[best].gain, 0);
     right += raced.indices.at(0) == best ? 1U : 0U;

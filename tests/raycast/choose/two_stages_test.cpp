@@ -9,6 +9,7 @@
 #include <stop_token>
 
 #include "raycast/scene_makers.hpp"
+#include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
 
 namespace viewgain {
@@ -71,7 +72,7 @@ TEST_P(TwoStages, FindsNearlyTheBestAndReportsExactGains) {
     const GainEvaluator one = evaluator(scene);
     const std::vector<ViewGain> all = one.evaluate(poses_);
     for (const std::size_t k : {std::size_t{1}, std::size_t{12}}) {
-      const RacedViews raced = one.race(poses_, k);
+      const BestViews raced = one.race(poses_, k);
       EXPECT_TRUE(raced.complete);
       ASSERT_EQ(raced.scored_indices.size(), std::max<std::size_t>(24, 4 * k));
       // By the paper's gain they begin anywhere in the cells, so that one more or less fits in.
@@ -105,9 +106,9 @@ TEST_P(TwoStages, FindsNearlyTheBestAndReportsExactGains) {
 
 TEST_P(TwoStages, SameBitsForAnyNumberOfThreads) {
   const auto scene = VoxelScene::build(ball(3));
-  const RacedViews expected = evaluator(scene, 1).race(poses_, 3);
+  const BestViews expected = evaluator(scene, 1).race(poses_, 3);
   for (const int threads : {2, 5}) {
-    const RacedViews actual = evaluator(scene, threads).race(poses_, 3);
+    const BestViews actual = evaluator(scene, threads).race(poses_, 3);
     EXPECT_EQ(actual.indices, expected.indices);
     EXPECT_EQ(actual.scored_indices, expected.scored_indices);
     EXPECT_TRUE(test::same_bits(actual.scored_gains, expected.scored_gains));
@@ -120,13 +121,13 @@ TEST_P(TwoStages, TakesOddRequests) {
   EXPECT_TRUE(one.race(poses_, 0).indices.empty());
   EXPECT_TRUE(one.race({}, 2).indices.empty());
   // All are asked for: all are scored in full, in one stage.
-  const RacedViews all = one.race(poses_, 1000);
+  const BestViews all = one.race(poses_, 1000);
   EXPECT_EQ(all.indices, one.best(poses_, poses_.size()).indices);
   EXPECT_EQ(all.rays_traced, poses_.size() * one.rays_per_pose());
   // Bad poses come last, and only where there are too few others.
   std::vector<Pose> bad = poses_;
   for (std::size_t i = 0; i < 395; ++i) bad[i].m[0] = std::nan("");
-  const RacedViews few = one.race(bad, 8);
+  const BestViews few = one.race(bad, 8);
   EXPECT_EQ(few.indices, one.best(bad, 8).indices);
   ASSERT_EQ(few.gains.size(), 8U);
   EXPECT_FALSE(std::isnan(few.gains[4].gain));
@@ -138,7 +139,7 @@ TEST_P(TwoStages, PosesWithoutGainAreChosenInOrder) {
   // They look away.
   std::vector<Pose> away;
   for (int i = 0; i < 100; ++i) away.push_back(look_at({0.6, 0.01 * i, 0}, {1.2, 0, 0}));
-  const RacedViews raced = one.race(away, 3);
+  const BestViews raced = one.race(away, 3);
   EXPECT_EQ(raced.indices, (std::vector<std::size_t>{0, 1, 2}));
   ASSERT_EQ(raced.gains.size(), 3U);
   for (const ViewGain& gain : raced.gains) EXPECT_EQ(gain.gain, 0.0);
@@ -147,7 +148,7 @@ TEST_P(TwoStages, PosesWithoutGainAreChosenInOrder) {
 TEST_P(TwoStages, ImagesOfFewRaysAreScoredInFull) {
   const GainEvaluator one(VoxelScene::build(ball(2)), sensor_of(24, 18), {.model = GetParam()},
                           {.num_threads = 1});
-  const RacedViews raced = one.race(poses_, 2);
+  const BestViews raced = one.race(poses_, 2);
   EXPECT_EQ(raced.scored_indices.size(), poses_.size());
   EXPECT_EQ(raced.indices, one.best(poses_, 2).indices);
 }
@@ -156,31 +157,78 @@ TEST_P(TwoStages, StopsInEitherStage) {
   const GainEvaluator one = evaluator(VoxelScene::build(ball(1)));
   std::stop_source source;
   source.request_stop();
-  const RacedViews none = one.race(poses_, 2, {}, {.stop = source.get_token()});
+  const BestViews none = one.race(poses_, 2, {}, {.stop = source.get_token()});
   EXPECT_FALSE(none.complete);
   EXPECT_TRUE(none.indices.empty());
   EXPECT_EQ(none.rays_traced, 0U);
 
-  const RacedViews whole = one.race(poses_, 2);
+  const BestViews whole = one.race(poses_, 2);
   // It is asked before each pose of each stage.
   for (const std::size_t scored : {std::size_t{0}, std::size_t{5}, std::size_t{23}}) {
     SCOPED_TRACE(scored);
     std::size_t asked = 0;
-    const RacedViews part =
+    const BestViews part =
         one.race(poses_, 2, {}, {.is_cancelled = [&] { return ++asked > poses_.size() + scored; }});
     EXPECT_FALSE(part.complete);
     ASSERT_EQ(part.scored_indices.size(), scored);
     for (std::size_t j = 0; j < scored; ++j) {
-      EXPECT_EQ(part.scored_indices[j], whole.scored_indices[j]);
-      EXPECT_TRUE(test::same_bits(part.scored_gains[j], whole.scored_gains[j]));
+      const auto& all = whole.scored_indices;
+      const auto at = std::find(all.begin(), all.end(), part.scored_indices[j]);
+      ASSERT_NE(at, all.end());
+      EXPECT_TRUE(test::same_bits(part.scored_gains[j],
+                                  whole.scored_gains[static_cast<std::size_t>(at - all.begin())]));
     }
     EXPECT_EQ(part.indices.size(), std::min<std::size_t>(2, scored));
   }
   std::size_t asked = 0;
-  const RacedViews early =
+  const BestViews early =
       one.race(poses_, 2, {}, {.is_cancelled = [&] { return ++asked > poses_.size() / 2; }});
   EXPECT_FALSE(early.complete);
   EXPECT_TRUE(early.scored_indices.empty());
+}
+
+TEST_P(TwoStages, ADeadlineLeavesTheBestOfWhatWasScoredInTime) {
+  const GainEvaluator two = evaluator(VoxelScene::build(ball(2)), 2);
+  const std::vector<ViewGain> all = two.evaluate(poses_);
+  const BestViews whole = two.race(poses_, 3);
+  EXPECT_EQ(whole.estimated, poses_.size());
+  const BestViews late = two.race(poses_, 3, {.deadline = 1e6});
+  EXPECT_TRUE(late.complete);
+  EXPECT_EQ(late.indices, whole.indices);
+  EXPECT_EQ(late.scored_indices, whole.scored_indices);
+  EXPECT_EQ(late.rays_traced, whole.rays_traced);
+  EXPECT_EQ(two.best(poses_, 3, {.deadline = 1e6}).indices, best_indices(all, 3));
+  std::size_t cut = 0;
+  for (const double deadline : {0.0, 1e-4, 1e-3, 4e-3, 1.6e-2, 6.4e-2}) {
+    SCOPED_TRACE(deadline);
+    for (const bool in_two : {true, false}) {
+      const BestConfig config{.deadline = deadline};
+      const BestViews some = in_two ? two.race(poses_, 3, config) : two.best(poses_, 3, config);
+      const std::size_t scored = some.scored_indices.size();
+      EXPECT_LE(some.estimated, in_two ? poses_.size() : 0U);
+      EXPECT_LE(scored, in_two ? whole.scored_indices.size() : poses_.size());
+      if (deadline == 0) {
+        EXPECT_EQ(some.estimated + scored + some.rays_traced, 0U);
+      }
+      EXPECT_EQ(some.complete,
+                in_two ? some.estimated == poses_.size() && scored == whole.scored_indices.size()
+                       : scored == poses_.size());
+      ASSERT_EQ(some.scored_gains.size(), scored);
+      for (std::size_t j = 0; j < scored; ++j) {
+        EXPECT_TRUE(test::same_bits(some.scored_gains[j], all[some.scored_indices[j]]));
+      }
+      const std::vector<std::size_t> order = best_indices(some.scored_gains, 3);
+      ASSERT_EQ(some.indices.size(), order.size());
+      for (std::size_t j = 0; j < order.size(); ++j) {
+        EXPECT_EQ(some.indices[j], some.scored_indices[order[j]]);
+      }
+      cut += some.complete ? 0U : 1U;
+    }
+  }
+  EXPECT_GE(cut, 4U);
+  for (const double bad : {-1e-9, std::nan("")}) {
+    EXPECT_THROW((void)two.race(poses_, 3, {.deadline = bad}), Error);
+  }
 }
 
 std::string model_name(const testing::TestParamInfo<GainModel>& info) {

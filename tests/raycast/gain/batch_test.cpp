@@ -168,14 +168,17 @@ class Meeting final : public ViewMeasure {
     changed_.notify_all();
     const bool met =
         changed_.wait_for(lock, std::chrono::seconds(60), [&] { return here_ >= size_; });
+    all_met_ = all_met_ && met;
     return met ? 1 : 0;
   }
+  [[nodiscard]] bool all_met() const { return all_met_; }
 
  private:
   int size_;
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
   mutable int here_ = 0;
+  mutable bool all_met_ = true;
 };
 
 TEST_F(Batch, AllThreadsTakePartInASmallOne) {
@@ -186,6 +189,17 @@ TEST_F(Batch, AllThreadsTakePartInASmallOne) {
     EXPECT_EQ(own.evaluate(same, results, Meeting(8)), count);
     EXPECT_EQ(results, std::vector<double>(count, 1.0));
   }
+}
+
+TEST_F(Batch, AllThreadsTakePartInTheFirstStageOfARace) {
+  sensor_.camera.width = sensor_.camera.height = 60;
+  const GainEvaluator own = evaluator(8);
+  const std::vector<Pose> same(200, poses_[0]);
+  const Meeting meeting(8);
+  const BestViews raced = own.race(same, 30, {.measure = &meeting});
+  EXPECT_EQ(raced.estimated, same.size());
+  EXPECT_EQ(raced.worth, std::vector<double>(30, 1.0));
+  EXPECT_TRUE(meeting.all_met());
 }
 
 TEST_F(Batch, AlreadyStoppedScoresNothing) {

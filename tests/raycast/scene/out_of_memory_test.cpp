@@ -126,7 +126,6 @@ TEST_F(OutOfMemory, AnUpdate) {
 // The first evaluator that wants the BVH makes it; one that failed is made again.
 TEST_F(OutOfMemory, AnEvaluatorAndTheBvhThatItWants) {
   const std::vector<ViewGain> expected = gains(VoxelScene::build(map_.grid));
-  const test::ScopedTrace scoped("bvh");
   std::shared_ptr<const VoxelScene> scene;
   std::optional<GainEvaluator> evaluator;
   const int threw = runs_that_threw(
@@ -137,7 +136,7 @@ TEST_F(OutOfMemory, AnEvaluatorAndTheBvhThatItWants) {
           scene = VoxelScene::build(map_.grid, {}, {.num_threads = 1});
           allocations_left = left;
         }
-        evaluator.emplace(scene, sensor_, test::kPaper, ExecConfig{2});
+        evaluator.emplace(scene, sensor_, test::kPaper, ExecConfig{2, Tracer::embree});
       },
       [&] {
         EXPECT_TRUE(test::same_bits(gains(scene), expected));

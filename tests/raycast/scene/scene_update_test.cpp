@@ -196,7 +196,7 @@ TEST_P(SceneUpdate, AChainOfUpdatesIsWhatBuildsAre) {
   sensor.min_range = 0.01;
   sensor.max_range = 1.5;
 
-  const test::ScopedTrace scoped_trace(chain.is_by_bvh ? "bvh" : "sweep");
+  const ExecConfig exec{1, chain.is_by_bvh ? Tracer::embree : Tracer::sweep};
   const std::vector<std::string> isas = available_isas();
   std::vector<std::shared_ptr<const VoxelScene>> scenes;
   for (const std::string& isa : isas) {
@@ -234,8 +234,8 @@ TEST_P(SceneUpdate, AChainOfUpdatesIsWhatBuildsAre) {
       ASSERT_EQ(scenes[k]->isa(), isas[k]);
       ASSERT_EQ(scenes[k]->primitive_count(), anew->primitive_count());
       in_cells += anew->primitive_count() > kManyPrimitives ? 1U : 0U;
-      const GainEvaluator updated(scenes[k], sensor, test::kPaper, {.num_threads = 1});
-      const GainEvaluator built(anew, sensor, test::kPaper, {.num_threads = 1});
+      const GainEvaluator updated(scenes[k], sensor, test::kPaper, exec);
+      const GainEvaluator built(anew, sensor, test::kPaper, exec);
       const std::vector<ViewGain> gains = updated.evaluate(poses);
       ASSERT_TRUE(test::same_bits(gains, built.evaluate(poses)));
       for (std::size_t p = 0; p < poses.size(); ++p) {

@@ -7,8 +7,20 @@
 
 #include <stdexcept>
 
+#include "core/expect_error.hpp"
 #include "raycast/scene_makers.hpp"
 #include "viewgain/viewgain.hpp"
+
+namespace {
+bool has_ray_packets = true;
+}
+
+/// Embree's, but that it can be one that was built without packets of rays.
+extern "C" ssize_t rtcGetDeviceProperty(void* device, int property) {
+  using Original = ssize_t (*)(void*, int);
+  static const auto original = reinterpret_cast<Original>(dlsym(RTLD_NEXT, "rtcGetDeviceProperty"));
+  return has_ray_packets ? original(device, property) : 0;
+}
 
 namespace viewgain {
 namespace {
@@ -63,6 +75,27 @@ TEST(VoxelScene, EmbreeDoesNotLimitTheProcessesTbb) {
   mesh.triangles = {{0, 1, 2}};
   const SurfaceScene surface(mesh, one);
   EXPECT_EQ(tbb_limit(), before);
+}
+
+TEST(VoxelScene, NeedsRayPacketsOnlyForObstaclesAndTheTracerEmbree) {
+  const BeliefGrid grid = many_leaves();
+  const Obstacles obstacles{.boxes = {{{5, 5, 5}, {6, 6, 6}}}, .meshes = {}};
+  const Sensor sensor = test::lattice_sensor(9, 9);
+  const std::vector<Pose> poses{test::axis_pose({-9, 8.5, 8.5}, 0, true)};
+  const std::vector<ViewGain> expected =
+      GainEvaluator(VoxelScene::build(grid), sensor, test::kPaper).evaluate(poses);
+  has_ray_packets = false;
+  const auto scene = VoxelScene::build(grid);
+  EXPECT_TRUE(
+      test::same_bits(GainEvaluator(scene, sensor, test::kPaper).evaluate(poses), expected));
+  test::expect_error(ErrorCode::backend, "no ray packets", [&] {
+    GainEvaluator(scene, sensor, test::kPaper, {1, Tracer::embree});
+  });
+  test::expect_error(ErrorCode::backend, "no ray packets",
+                     [&] { (void)VoxelScene::build(grid, {obstacles}); });
+  has_ray_packets = true;
+  EXPECT_TRUE(test::same_bits(
+      GainEvaluator(scene, sensor, test::kPaper, {1, Tracer::embree}).evaluate(poses), expected));
 }
 
 TEST(Umbrella, HasTheFilesOfTheGridToo) {

@@ -21,11 +21,8 @@ std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vec
     SCOPED_TRACE(isa);
     const test::ScopedIsa scoped(isa);
     const auto scene = VoxelScene::build(grid, {obstacles});
-    const auto evaluator = [&](const char* way) {
-      const test::ScopedTrace scoped_way(way);
-      return GainEvaluator(scene, sensor, test::kPaper, {.num_threads = 1});
-    };
-    const GainEvaluator sweep = evaluator("sweep"), bvh = evaluator("bvh");
+    const GainEvaluator sweep(scene, sensor, test::kPaper, {1, Tracer::sweep});
+    const GainEvaluator bvh(scene, sensor, test::kPaper, {1, Tracer::embree});
     EXPECT_TRUE(test::same_bits(sweep.evaluate(poses), bvh.evaluate(poses)));
     for (const Pose& pose : poses) {
       const std::vector<RayHit> a = sweep.trace(pose), b = bvh.trace(pose);

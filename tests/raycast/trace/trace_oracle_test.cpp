@@ -31,12 +31,13 @@ class TraceOracle : public testing::TestWithParam<MapFamily> {
  protected:
   void compare_gains(const BeliefGrid& grid, const std::shared_ptr<const VoxelScene>& scene,
                      const Sensor& sensor, const Pose& pose, const std::vector<RayHit>& expected,
-                     const std::vector<RayHit>& own, std::size_t different) {
+                     const std::vector<RayHit>& own, std::size_t different,
+                     const ExecConfig& exec) {
     for (const Criterion criterion : kCriteria) {
       SCOPED_TRACE(criterion_name(criterion));
       const GainConfig config{
           .model = GainModel::paper, .criterion = criterion, .posterior_entropy = true};
-      const GainEvaluator evaluator(scene, sensor, config, {.num_threads = 1});
+      const GainEvaluator evaluator(scene, sensor, config, exec);
       const ViewGain actual = evaluator.evaluate(pose);
       const ViewGain by_own = oracle::gain_of_hits(grid, sensor, config, pose, own);
       ASSERT_EQ(actual.status, by_own.status);
@@ -70,7 +71,7 @@ TEST_P(TraceOracle, AgreesUnderEachInstructionSet) {
   test::Random random(1234 + static_cast<unsigned>(GetParam()));
   const std::vector<std::string> isas = available_isas();
   ASSERT_FALSE(isas.empty());
-  std::map<std::string, test::OracleTally> tallies;
+  std::map<std::pair<std::string, Tracer>, test::OracleTally> tallies;
   for (int i = 0; i < kMaps; ++i) {
     const test::RandomMap made = test::random_map(GetParam(), random);
     const oracle::DenseMap map(made.grid);
@@ -84,24 +85,25 @@ TEST_P(TraceOracle, AgreesUnderEachInstructionSet) {
       const test::ScopedIsa scoped(isa);
       const auto scene = VoxelScene::build(made.grid, {}, {.num_threads = 1});
       ASSERT_EQ(scene->isa(), isa);
-      const GainEvaluator evaluator(scene, sensor, test::kPaper, {.num_threads = 1});
-      for (std::size_t k = 0; k < poses.size(); ++k) {
-        const std::vector<RayHit> own = evaluator.trace(poses[k]);
-        const std::size_t different = tallies[isa].add(map, sensor, poses[k], expected[k], own);
-        const bool with_gains = k == static_cast<std::size_t>(i) % poses.size();
-        if (with_gains) {
-          compare_gains(made.grid, scene, sensor, poses[k], expected[k], own, different);
+      for (const Tracer tracer : test::kTracers) {
+        const ExecConfig exec{1, tracer};
+        const GainEvaluator evaluator(scene, sensor, test::kPaper, exec);
+        test::OracleTally& tally = tallies[{isa, tracer}];
+        for (std::size_t k = 0; k < poses.size(); ++k) {
+          const std::vector<RayHit> own = evaluator.trace(poses[k]);
+          const std::size_t different = tally.add(map, sensor, poses[k], expected[k], own);
+          if (k != static_cast<std::size_t>(i) % poses.size()) continue;
+          compare_gains(made.grid, scene, sensor, poses[k], expected[k], own, different, exec);
         }
       }
     }
   }
 
-  EXPECT_EQ(gain_checks_, kMaps * kCriteria.size() * isas.size());
-  for (const std::string& isa : isas) {
-    const test::OracleTally& tally = tallies[isa];
-    EXPECT_EQ(tally.rays, kMaps * kPosesPerMap * kRaysPerPose) << isa;
-    EXPECT_TRUE(tally.agrees(1)) << isa;
-    RecordProperty(isa + "_different", std::to_string(tally.ties));
+  EXPECT_EQ(tallies.size(), isas.size() * test::kTracers.size());
+  EXPECT_EQ(gain_checks_, kMaps * kCriteria.size() * tallies.size());
+  for (const auto& [isa_and_tracer, tally] : tallies) {
+    EXPECT_EQ(tally.rays, kMaps * kPosesPerMap * kRaysPerPose) << isa_and_tracer.first;
+    EXPECT_TRUE(tally.agrees(1)) << isa_and_tracer.first;
   }
 }
 

@@ -14,18 +14,17 @@
 namespace viewgain {
 namespace {
 
-GainEvaluator evaluator_by(const std::string& way, const std::shared_ptr<const VoxelScene>& scene,
+GainEvaluator evaluator_by(Tracer tracer, const std::shared_ptr<const VoxelScene>& scene,
                            const Sensor& sensor, GainModel model = GainModel::paper) {
-  const test::ScopedTrace scoped(way);
-  return GainEvaluator(scene, sensor, {.model = model}, {.num_threads = 1});
+  return GainEvaluator(scene, sensor, {.model = model}, {.num_threads = 1, .tracer = tracer});
 }
 
 // Compares gains and hits of the two ways; returns the number of rays that hit something.
 std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vector<Pose>& poses,
                     const Obstacles& obstacles = {}) {
   const auto scene = VoxelScene::build(grid, {obstacles});
-  const GainEvaluator free_choice = evaluator_by("sweep", scene, sensor);
-  const GainEvaluator bvh = evaluator_by("bvh", scene, sensor);
+  const GainEvaluator free_choice = evaluator_by(Tracer::sweep, scene, sensor);
+  const GainEvaluator bvh = evaluator_by(Tracer::embree, scene, sensor);
   EXPECT_TRUE(test::same_bits(free_choice.evaluate(poses), bvh.evaluate(poses)));
   for (const double share : {0.02, 0.1, 0.4}) {
     std::vector<ApproximateGain> a(poses.size()), b(poses.size());
@@ -109,8 +108,8 @@ TEST(TracePaths, ObstaclesEndTheSameRaysEitherWay) {
     const std::vector<Pose> poses = test::random_poses(map, 6, random);
     hits += compare(map.grid, sensor, poses, obstacles);
     const auto scene = VoxelScene::build(map.grid, {obstacles});
-    const GainEvaluator swept = evaluator_by("sweep", scene, sensor, GainModel::combined);
-    const GainEvaluator bvh = evaluator_by("bvh", scene, sensor, GainModel::combined);
+    const GainEvaluator swept = evaluator_by(Tracer::sweep, scene, sensor, GainModel::combined);
+    const GainEvaluator bvh = evaluator_by(Tracer::embree, scene, sensor, GainModel::combined);
     const std::vector<ViewGain> gains = swept.evaluate(poses);
     EXPECT_TRUE(test::same_bits(gains, bvh.evaluate(poses)));
     walked += test::gaining(gains);
@@ -123,7 +122,7 @@ TEST(TracePaths, ObstaclesEndTheSameRaysEitherWay) {
         in_voxels +=
             hit.kind == RayHit::Kind::occupied || hit.kind == RayHit::Kind::unknown ? 1 : 0;
       }
-      const ViewGain view = evaluator_by("sweep", scene, sensor).evaluate(pose);
+      const ViewGain view = evaluator_by(Tracer::sweep, scene, sensor).evaluate(pose);
       if (view.status == ViewStatus::ok) {
         EXPECT_EQ(view.hits, in_voxels);
       }
@@ -160,7 +159,7 @@ TEST(TracePaths, ObstaclesAtTheEndsOfRangesAreTheSameEitherWay) {
       const Obstacles obstacles{{Box{{x * v, -v, -v}, {(x + 1) * v, 17 * v, 17 * v}}}, {}};
       hits += compare(grid, sensor, poses, obstacles);
       const GainEvaluator evaluator =
-          evaluator_by("sweep", VoxelScene::build(grid, {obstacles}), sensor);
+          evaluator_by(Tracer::sweep, VoxelScene::build(grid, {obstacles}), sensor);
       for (const Pose& pose : poses) {
         std::uint32_t in_voxels = 0;
         for (const RayHit& hit : evaluator.trace(pose)) {
@@ -190,8 +189,8 @@ TEST(TracePaths, ObstaclesBeyondSinglePrecisionHideNothing) {
     const Obstacles both{{wall, Box{{-huge, -huge, -huge}, {huge, huge, -1e9}}}, {}};
     (void)compare(grid, sensor, poses, both);
     const std::vector<RayHit>
-        a = evaluator_by("sweep", VoxelScene::build(grid, {alone}), sensor).trace(poses[0]),
-        b = evaluator_by("sweep", VoxelScene::build(grid, {both}), sensor).trace(poses[0]);
+        a = evaluator_by(Tracer::sweep, VoxelScene::build(grid, {alone}), sensor).trace(poses[0]),
+        b = evaluator_by(Tracer::sweep, VoxelScene::build(grid, {both}), sensor).trace(poses[0]);
     for (std::size_t i = 0; i < a.size(); ++i) {
       EXPECT_EQ(a[i].kind, b[i].kind) << huge << " " << i;
       blocked += b[i].kind == RayHit::Kind::obstacle ? 1U : 0U;
@@ -223,10 +222,11 @@ TEST(TracePaths, StrongLensesSeeTheSameBits) {
   EXPECT_GT(hits, 50'000U);
 }
 
-TEST(TracePaths, AnotherWayIsAnError) {
-  const auto scene = VoxelScene::build(test::sparse_map({8, 8, 8}, {{1, 2, 3}}));
-  test::expect_error(ErrorCode::invalid_argument, "VIEWGAIN_TRACE is 'octree', not sweep or bvh",
-                     [&] { (void)evaluator_by("octree", scene, test::lattice_sensor(5, 5)); });
+TEST(TracePaths, TracersAreNamed) {
+  EXPECT_EQ(parse_tracer("embree"), Tracer::embree);
+  EXPECT_EQ(tracer_names().at(static_cast<std::size_t>(Tracer::sweep)), "sweep");
+  test::expect_error(ErrorCode::invalid_argument, "\"octree\"; valid are automatic, embree, sweep",
+                     [] { (void)parse_tracer("octree"); });
 }
 
 constexpr int kSmallEdge = 24;

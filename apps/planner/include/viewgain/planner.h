@@ -64,6 +64,7 @@ typedef struct vg_planner_config {
   void* user;                       /* handed to reachable */
   uint64_t max_views, idle_views;   /* 20 and 3; idle_views 0: never */
   double stop_gain, stop_area;      /* NaN: the defaults of the gain; 0: never */
+  int32_t tracer;                   /* VG_TRACER_AUTOMATIC; never changes a result */
 } vg_planner_config;
 /* The defaults. */
 VG_API void vg_planner_config_init(vg_planner_config* config, size_t struct_size);

@@ -36,23 +36,14 @@ Ranking rank_views(const GainEvaluator& evaluator, std::span<const Pose> T_world
                    std::size_t k, const RankConfig& config,
                    const std::optional<Eigen::Vector3d>& here, const BatchControl& control) {
   const std::vector<double> costs = costs_of(T_world_camera, config, here);
-  RacedViews best;
-  if (config.exact || evaluator.model() == GainModel::paper) {
-    const BestConfig best_config{costs, config.measure, config.run_measure};
-    // All of them, since the rule of area asks for the most that any promises.
-    static_cast<BestViews&>(best) =
-        evaluator.best(T_world_camera, T_world_camera.size(), best_config, control);
-    if (!best.gains.empty()) {
-      best.scored_indices = best.indices;
-      best.scored_gains = best.gains;
-    }
-  } else {
-    RaceConfig race;
-    race.costs = costs;
-    race.measure = config.measure;
-    race.run_measure = config.run_measure;
-    best = evaluator.race(T_world_camera, std::max<std::size_t>(k, 1), race, control);
-  }
+  const BestConfig best_by{
+      .costs = costs, .measure = config.measure, .run_measure = config.run_measure};
+  // Of all of them where all are scored, since the rule of area asks for the most that any
+  // promises.
+  BestViews best =
+      config.exact || evaluator.model() == GainModel::paper
+          ? evaluator.best(T_world_camera, T_world_camera.size(), best_by, control)
+          : evaluator.race(T_world_camera, std::max<std::size_t>(k, 1), best_by, control);
   Ranking ranking;
   ranking.complete = best.complete;
   const std::size_t wanted = std::min(best.indices.size(), k);
@@ -61,7 +52,7 @@ Ranking rank_views(const GainEvaluator& evaluator, std::span<const Pose> T_world
     ranking.views.push_back(
         {at, T_world_camera[at], best.gains.empty() ? ViewGain{} : best.gains[i], best.worth[i]});
   }
-  ranking.scored_indices = std::move(best.scored_indices);
+  if (!best.scored_gains.empty()) ranking.scored_indices = std::move(best.scored_indices);
   ranking.scored_gains = std::move(best.scored_gains);
   return ranking;
 }

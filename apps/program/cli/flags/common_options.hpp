@@ -7,6 +7,7 @@
 
 #include "program/cli/app.hpp"
 #include "program/cli/choices.hpp"
+#include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/support/nearest_name.hpp"
 
@@ -17,6 +18,7 @@ struct CommonOptions {
   bool json = false;
   bool quiet = false;
   int threads = 0;
+  std::string trace = "automatic";  ///< of subcommands that score
   std::string config, save_config;  ///< main() reads and writes them
 };
 inline void add_common_options(App& app, CommonOptions& options) {
@@ -29,6 +31,19 @@ inline void add_common_options(App& app, CommonOptions& options) {
                  "command line says holds");
   app.add_option("--save-config", options.save_config,
                  "TOML file to write what was given to, for --config");
+}
+
+/// Of subcommands that score.
+inline void add_trace_option(App& app, CommonOptions& options) {
+  one_of(*app.add_option("--trace", options.trace,
+                         "how rays meet voxels: by Embree's BVH or by sweeping cells from near to "
+                         "far, as unless told otherwise; never changes a result")
+              ->capture_default_str(),
+         tracer_names(), "tracer");
+}
+
+[[nodiscard]] inline ExecConfig exec_of(const CommonOptions& options) {
+  return {options.threads, parse_tracer(options.trace)};
 }
 
 // What the subcommands are for, as the program's help groups them.

@@ -220,7 +220,7 @@ class Following {
     config_.grid.prior_sigma = default_prior_sigma(options_.voxel, sensor);
     config_.hazard = hazard_source(options_.hazard, options_.object_size, BeliefGrid(config_.grid));
     map_.emplace(sensor, body_, config_, out_ / "state.vdb", saved_, sigma_,
-                 ExecConfig{options_.common.threads});
+                 exec_of(options_.common));
     // What was next may be missing or older than the state.
     has_news_ = saved_.has_value();
   }
@@ -357,6 +357,7 @@ Command add_follow(App& program) {
       ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
   add_registration_options(*app, o.registration);
   app->add_option("--out", o.out, "folder for state.vdb, next.txt, next.json")->required();
+  add_trace_option(*app, o.common);
   add_common_options(*app, o.common);
   add_help(*app, kViewsGroup,
            "follow frames --voxel 0.005 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out plan");

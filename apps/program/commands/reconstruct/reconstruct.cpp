@@ -67,7 +67,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   const RunOutputs& outputs = options.outputs;
   if (outputs.with_report()) check_report_page("--report");
   StageSeconds seconds;
-  const ExecConfig exec{options.common.threads};
+  const ExecConfig exec = exec_of(options.common);
   RunSetup setup = set_up(options, exec);
   const InterruptGuard interrupt;
   setup.planning.stop = interrupt.token();

@@ -80,7 +80,7 @@ struct Moment {
 class Recording {
  public:
   explicit Recording(const Options& options)
-      : options_(options), proposal_(options.proposal), exec_{options.common.threads} {
+      : options_(options), proposal_(options.proposal), exec_(exec_of(options.common)) {
     check(proposal_);
     map_.emplace(options.frames, proposal_, options.common.quiet, exec_);
     sigma_ = registration_sigma(options.registration);
@@ -237,6 +237,7 @@ Command add_reconstruct_frames(App& reconstruct_of_meshes) {
   add_registration_options(*app, o.registration);
   add_next_view_options(*app, o.proposal, o.top);
   add_output_options(*app, o.outputs);
+  add_trace_option(*app, o.common);
   add_common_options(*app, o.common);
   add_help(*app, kLoopGroup, "reconstruct frames --voxel 0.01 --pictures off --out run_of_frames");
   return {app, [options, app] { reconstruct(*options, *app); }};

@@ -159,6 +159,7 @@ void add_options(App& app, ReconstructOptions& o) {
   const OptionDeclaration declaration(app);
   describe(o, declaration);
   add_output_options(app, o.outputs);
+  add_trace_option(app, o.common);
   add_common_options(app, o.common);
   add_help(app, kLoopGroup,
            "reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 4 "

@@ -40,6 +40,9 @@ namespace {
 using Options = ScoreOptions;
 
 void check_feasibility(const Options& options) {
+  if (options.deadline && !options.race)
+    throw Error(ErrorCode::invalid_argument, "--deadline goes with --race");
+  if (options.deadline) check_at_least_0("--deadline", *options.deadline);
   if (!options.body.empty() && options.feasible == "off") {
     throw Error(ErrorCode::invalid_argument, "--body goes with --feasible on");
   }
@@ -158,9 +161,8 @@ Scores scored(const Options& options, const GainEvaluator& evaluator,
   ranking.scored.indices.resize(poses.size());
   std::iota(ranking.scored.indices.begin(), ranking.scored.indices.end(), std::size_t{0});
   ranking.best.indices = best_indices(ranking.scored.gains, options.top);
-  for (const std::size_t i : ranking.best.indices) {
+  for (const std::size_t i : ranking.best.indices)
     ranking.best.gains.push_back(ranking.scored.gains[i]);
-  }
   std::uint64_t rays = 0;
   for (const ViewGain& gain : ranking.scored.gains) rays += gain.rays;
   return {std::move(ranking), rays};
@@ -168,10 +170,12 @@ Scores scored(const Options& options, const GainEvaluator& evaluator,
 
 Scores raced(const Options& options, const GainEvaluator& evaluator, const std::vector<Pose>& poses,
              const BatchControl& control) {
-  RacedViews views = evaluator.race(poses, options.top, {.seed = options.seed}, control);
+  BestConfig config{.seed = options.seed};
+  config.deadline = options.deadline.value_or(config.deadline);
+  BestViews views = evaluator.race(poses, options.top, config, control);
   return {Ranking{{std::move(views.scored_indices), std::move(views.scored_gains)},
                   {std::move(views.indices), std::move(views.gains)}},
-          views.rays_traced};
+          views.rays_traced, views.estimated};
 }
 
 Scores chosen_together(const Options& options, const GainEvaluator& evaluator,
@@ -194,7 +198,7 @@ Scores estimated(const Options& options, const GainEvaluator& evaluator,
     rays += estimates.gains[i].rays;
   }
   estimates.best = best_indices(ranked, options.top);
-  return {std::move(estimates), rays};
+  return {std::move(estimates), rays, poses.size()};
 }
 
 Scores make_scores(const Options& options, const GainEvaluator& evaluator,
@@ -207,7 +211,7 @@ Scores make_scores(const Options& options, const GainEvaluator& evaluator,
 
 void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gains) {
   const ClassicConfig config = classic_config(options, std::move(gains));
-  const ExecConfig exec{options.common.threads};
+  const ExecConfig exec = exec_of(options.common);
   const Shard shard = shard_of(options);
   const PoseSource source = make_poses(options.poses, options.seed, shard);
   const SensedMap map = load_sensed_map(options.map, options.sensor);
@@ -248,7 +252,7 @@ void score(const Options& options) {
     return score_by_classic_gains(options, std::move(*gains));
   }
   if (!options.report.empty()) check_report_page("--report");
-  const ExecConfig exec{options.common.threads};
+  const ExecConfig exec = exec_of(options.common);
   const GainConfig config = gain_config(options);
   const Shard shard = shard_of(options);
   const PoseSource source = make_poses(options.poses, options.seed, shard);
@@ -368,6 +372,8 @@ Command add_score(App& program) {
                    "before")
       ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
   selection->require_option(0, 1);
+  app->add_option("--deadline", options->deadline,
+                  "SECONDS: --race ends with the best that it can say by then; default: none");
   add_seed_option(*app, options->seed, "of --shell, --race (the paper's gain) and --approximate");
   app->add_option("--shard", options->shard,
                   "i/n: the i-th of n shards of the poses, i from 0, rows that follow one another; "
@@ -384,6 +390,7 @@ Command add_score(App& program) {
   app->add_option("--report", options->report,
                   "HTML file: map, candidates by gain, ranking and what the best ones see, to look "
                   "at in a browser");
+  add_trace_option(*app, options->common);
   add_common_options(*app, options->common);
   add_help(*app, kViewsGroup,
            "score map.vdb --sphere 500,0.6 --sensor sr4000 --gain surface --top 5");

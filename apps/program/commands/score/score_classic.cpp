@@ -20,8 +20,9 @@ namespace {
 
 // What there is no such thing of for classic gains.
 void check_classic(const ScoreOptions& options) {
-  const std::array<std::pair<const char*, bool>, 11> given{
+  const std::array<std::pair<const char*, bool>, 12> given{
       {{"--race", options.race},
+       {"--trace", options.common.trace != CommonOptions{}.trace},
        {"--approximate", options.approximate.has_value()},
        {"--set", options.set.has_value()},
        {"--picture", !options.picture.empty()},

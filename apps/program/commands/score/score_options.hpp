@@ -32,6 +32,7 @@ struct ScoreOptions {
   std::optional<double> prior_sigma, min_range, max_range;
   std::size_t top = 10;
   bool race = false;
+  std::optional<double> deadline;     // of the race [s]
   std::optional<double> approximate;  // share of the rays
   std::optional<std::size_t> set;     // how many
   std::uint64_t seed = 1;

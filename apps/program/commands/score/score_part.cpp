@@ -34,6 +34,7 @@ ScoreSettings settings_of(const ScoreOptions& options, const GainConfig& config)
   if (options.approximate) further["approximate"] = {exact_text(*options.approximate)};
   if (options.approximate || options.race) further["seed"] = {std::to_string(options.seed)};
   if (options.race) further["race"] = {std::to_string(options.top)};
+  if (options.deadline) further["deadline"] = {exact_text(*options.deadline)};
   if (options.set) further["set"] = {std::to_string(*options.set)};
   if (!options.body.empty()) further["body"] = {options.body};
   for (const std::string& obstacle : options.obstacles) {

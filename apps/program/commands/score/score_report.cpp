@@ -154,6 +154,7 @@ Table table_of(const Scores& scores, GainModel model) {
 Json ScoreReport::summary() const {
   return {{"poses", source.poses.size()},
           {"dropped", scores.dropped},
+          {"poses_estimated", scores.estimated},
           {"poses_scored", scored_in_full(scores).gains.size()},
           {"rays_traced", scores.rays_traced},
           {"rays_per_pose", evaluator.rays_per_pose()},
@@ -214,7 +215,8 @@ void ScoreReport::print_table() const {
       with_commas(evaluator.rays_per_pose()).c_str(), with_commas(grid.voxel_count()).c_str(),
       threads, threads == 1 ? "thread" : "threads", std::string(evaluator.scene().isa()).c_str());
   if (in_full < poses) {
-    std::printf("%s scored in full, %s rays traced\n", with_commas(in_full).c_str(),
+    std::printf("%s estimated, %s scored in full, %s rays traced\n",
+                with_commas(scores.estimated).c_str(), with_commas(in_full).c_str(),
                 with_commas(scores.rays_traced).c_str());
   }
 }

@@ -48,6 +48,7 @@ struct Estimates {
 struct Scores {
   std::variant<Ranking, JointViews, Estimates> found;
   std::uint64_t rays_traced = 0;
+  std::size_t estimated = 0;                     ///< poses that a race scored by some rays
   std::size_t candidates = 0;                    ///< poses that were not dropped
   std::map<std::string, std::size_t> dropped{};  ///< the others: reason -> count
 

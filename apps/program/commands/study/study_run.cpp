@@ -71,7 +71,7 @@ std::string rows_of(const PredictionQuality& quality) {
 std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& study_run, int threads,
                                      const std::stop_token& stop) {
   const ReconstructOptions options = options_of(spec, study_run);
-  const ExecConfig exec{threads};
+  const ExecConfig exec{threads, parse_tracer(options.common.trace)};
   RunSetup setup = set_up(options, exec);
   setup.planning.stop = stop;
   Run run(std::move(setup), options.frames_per_view, exec);

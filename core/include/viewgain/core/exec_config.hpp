@@ -3,16 +3,32 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "viewgain/core/export.hpp"
 
 namespace viewgain {
 
+/// How a view's rays find the first voxel that is not free. Results are the same bits.
+enum class Tracer : std::uint8_t {
+  automatic,  ///< the sweep: full images are faster by it, and there is no BVH to make
+  embree,     ///< a BVH of leaves and boxes: for few rays and many views (perf/results/tracers.md)
+  sweep,      ///< the scene's cells from near to far, each over the rays that it can end
+};
+/// Names of the tracers, in their order.
+[[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& tracer_names();
+/// Throws Error(invalid_argument) that lists the valid names.
+[[nodiscard]] VIEWGAIN_EXPORT Tracer parse_tracer(std::string_view name);
+
 /// What changes only speed, never an answer.
 struct VIEWGAIN_EXPORT ExecConfig {
   int num_threads = 0;  ///< 0: all hardware threads; 1: the caller alone; n: caller and n - 1 more
+  Tracer tracer = Tracer::automatic;  ///< of gain evaluators; others do not trace voxels
 };
 
 /// Watches one long call, or ends it early: two ways to do so with one effect, see the call.

@@ -44,8 +44,9 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   Index3 dims;                       ///< voxels along x, y, z
   HazardCounters hazard;             ///< what frames have said of unknown space
   std::vector<SnapshotLeaf> leaves;  ///< with a voxel that is not free, in the order of the regions
-  std::vector<VoxelBox> tiles;       ///< of unknown voxels, clipped to the workspace; those larger
-                                     ///< than a region first, then in the order of the regions
+  /// Of unknown voxels, clipped to the workspace; those larger than a region first, by the nodes of
+  /// 4096³ and then 128³ voxels that they fill, each by x, y, z; then in the order of the regions.
+  std::vector<VoxelBox> tiles;
   std::vector<SnapshotRegion> regions;  ///< cubes of 32³ voxels that hold any, numbers rising
   /// Which grid it is of and when, for BeliefGrid::snapshot(before); 0: none.
   std::uint64_t grid_number = 0;
@@ -67,8 +68,8 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   /// The leaf that holds a voxel, null if there is none. O(log regions).
   [[nodiscard]] const SnapshotLeaf* find_leaf(Index3 voxel) const;
 
-  /// Is the voxel neither unknown nor occupied? So is all outside the workspace. O(log regions),
-  /// and as many steps as there are tiles larger than a region where the voxel is in no leaf.
+  /// Is the voxel neither unknown nor occupied? So is all outside the workspace. O(log regions +
+  /// log tiles).
   [[nodiscard]] bool is_free(Index3 voxel) const;
 
   /// The [first, last) leaves and tiles of a region, by its place in the list.

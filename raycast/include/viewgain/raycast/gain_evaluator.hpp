@@ -120,11 +120,12 @@ struct VIEWGAIN_EXPORT RayHit {
 /// the hazard of a scene that has none yet.
 class VIEWGAIN_EXPORT GainEvaluator {
  public:
-  /// Undoes the lens distortion once. The environment variable VIEWGAIN_TRACE, `sweep` or `bvh`,
-  /// forces a way to trace; results are the same bits. Throws Error(invalid_argument), naming the
-  /// value, for a null scene, a sensor that is not valid or whose sigmas differ by a factor over
-  /// 1e4, a stride below 1, a prior outside 1e-6..1e3 m, a weight or range that is negative or not
-  /// finite, min_range >= max_range, or a weight box inside out.
+  /// Undoes the lens distortion once. By ExecConfig::tracer `embree` the first evaluator of a scene
+  /// builds the scene's BVH, 0.5 ms per 1,000 primitives. Throws Error(backend) or Error(capacity)
+  /// if it cannot be built, Error(invalid_argument), naming the value, for a null scene, a sensor
+  /// that is not valid or whose sigmas differ by a factor over 1e4, a stride below 1, a prior
+  /// outside 1e-6..1e3 m, a weight or range that is negative or not finite, min_range >= max_range,
+  /// or a weight box inside out.
   GainEvaluator(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
                 const GainConfig& config = {}, const ExecConfig& exec = {});
   ~GainEvaluator();
@@ -193,30 +194,33 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// The k best poses: best_indices() of evaluate()'s results and those results, ties to the lower
   /// index, NaN last, k clamped; nothing for k = 0 or no poses. `config` may subtract costs and put
   /// a measure of the user's own in the gain's place. All poses are scored, so it costs what
-  /// evaluate() does. If a stop is requested the result is the best of those scored so far that are
-  /// not NaN, and not `complete`. Throws Error(invalid_argument) if there are costs but not one a
-  /// pose, for one that is not finite and for two measures; and as evaluate() with the measure.
+  /// evaluate() does. If a stop is requested or the deadline passes the result is the best of those
+  /// scored so far that are not NaN, and not `complete`. Throws Error(invalid_argument) if there
+  /// are costs but not one a pose, for one that is not finite, for a deadline that is not >= 0 and
+  /// for two measures; and as evaluate() with the measure.
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BestConfig& config = {},
                                const BatchControl& control = {}) const;
 
   /// The k best poses, very probably, in two stages: all poses are scored by about 400 of their
   /// rays, every so manieth pixel and row, as approximate() does, and the best max(24, 4 k, 5 %) of
-  /// them in full (by the other gains 1.6 %), so gains reported are exact; best first, ties to the
-  /// lower index. A view is lost if its 400 rays make it look worse than that many others: by the
-  /// paper's gain the best of 2,000 poses on 3 to 6 of 200 maps of objects, 0.4 % of its gain at
-  /// most (perf/results/choosing.md). Images of under 900 rays are all scored in full. By a measure
-  /// of the user's own: the same two stages, in which the measure is asked about few rays. Where
-  /// there are costs, such measures are brought to the scale of all rays by the median ratio of
-  /// eight poses that are measured by both. Works with obstacles, weights and distortion.
-  /// Deterministic for a seed and any number of threads. control.progress counts poses that are
-  /// out, after each stage. Stopped in the first, it returns nothing, stopped in the second the
-  /// best of those that were scored; either is not `complete`. Of 2,000 poses it costs 0.22 times
-  /// what scoring all takes, by the paper's gain (perf/README.md). Throws Error(invalid_argument)
-  /// for costs as best() and for two measures.
-  [[nodiscard]] RacedViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
-                                const RaceConfig& config = {},
-                                const BatchControl& control = {}) const;
+  /// them in full (by the other gains and measures 1.6 %), so gains reported are exact; best first,
+  /// ties to the lower index. A view is lost if its 400 rays make it look worse than that many
+  /// others: by the paper's gain the best of 2,000 poses on 3 to 6 of 200 maps of objects, 0.4 % of
+  /// its gain at most (perf/results/choosing.md). Images of under 900 rays are all scored in full.
+  /// A measure of the user's own is asked about few rays in the first stage; where there are costs
+  /// it is brought to the scale of all rays by the median ratio of eight poses that are measured by
+  /// both. Works with obstacles, weights and distortion. Without a deadline deterministic for a
+  /// seed and any number of threads. With one, the best that can be said by then: poses from all
+  /// over the list are estimated in half of the time, then the most promising ones scored in full;
+  /// `estimated` and `scored_indices` say how many of each, the others were not looked at.
+  /// control.progress counts poses that are out or scored in full. Stopped in the first stage it
+  /// returns nothing, in the second the best of those that were scored; either is not `complete`.
+  /// Of 2,000 poses it costs 0.22 times what scoring all takes, by the paper's gain
+  /// (perf/README.md). Throws as best().
+  [[nodiscard]] BestViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
+                               const BestConfig& config = {},
+                               const BatchControl& control = {}) const;
 
   /// Up to k different poses of T_world_camera, in the order of their choice, that are good
   /// together on the map as it stands, greedily, by the paper's gain (Error(invalid_argument) with

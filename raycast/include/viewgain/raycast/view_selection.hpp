@@ -16,36 +16,30 @@ struct ViewGain;
 class ViewMeasure;
 class RunMeasure;
 
-/// By what GainEvaluator::best() chooses.
+/// By what GainEvaluator::best() and race() choose, and how long they may take.
 struct VIEWGAIN_EXPORT BestConfig {
   /// One a pose, subtracted from its gain, in the gain's unit: say for the way there. Empty: none.
   std::span<const double> costs{};
   const ViewMeasure* measure = nullptr;     ///< instead of the evaluator's gain; may be null,
   const RunMeasure* run_measure = nullptr;  ///< as may this, of which only one can be given
+  /// From the call on [s]: the call ends with what it has by then, at latest when the views that
+  /// the threads are at are done. Half of it at most is the first stage's. Infinity: none.
+  double deadline = std::numeric_limits<double>::infinity();
+  std::uint64_t seed = 1;  ///< which rays race()'s first stage takes, by the paper's gain
 };
 
-/// Views chosen from a batch of poses; see GainEvaluator::best().
+/// Views chosen from a batch of poses, and what that took; see GainEvaluator::best() and race().
 struct VIEWGAIN_EXPORT BestViews {
-  std::vector<std::size_t> indices;  ///< into the poses, best first
+  std::vector<std::size_t> indices;  ///< into the poses, best first; of those scored in full
   std::vector<ViewGain> gains;       ///< of those, as evaluate() has them; empty with a measure
   /// Of each of them: the gain, or the measure, less the cost, in the gain's unit.
   std::vector<double> worth;
-  bool complete = true;  ///< false: a stop was requested, and this is the best of those scored
-};
-
-/// Views chosen by GainEvaluator::race(), and what that took.
-struct VIEWGAIN_EXPORT RacedViews : BestViews {
+  /// False: a stop was requested or the deadline passed before all was done.
+  bool complete = true;
+  std::size_t estimated = 0;                ///< poses that were scored by some of their rays
   std::vector<std::size_t> scored_indices;  ///< poses that were scored in full, ascending
   std::vector<ViewGain> scored_gains;       ///< of those; empty with a measure
   std::uint64_t rays_traced = 0;            ///< of both stages
-};
-
-/// What GainEvaluator::race() chooses by.
-struct VIEWGAIN_EXPORT RaceConfig {
-  std::uint64_t seed = 1;                ///< which rays the first stage takes, by the paper's gain
-  std::span<const double> costs{};       ///< as BestConfig::costs
-  const ViewMeasure* measure = nullptr;  ///< instead of the evaluator's gain; may be null,
-  const RunMeasure* run_measure = nullptr;  ///< as may this, of which only one can be given
 };
 
 /// Views that are good together, in the order of their choice; see GainEvaluator::best_set().

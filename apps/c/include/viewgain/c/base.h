@@ -49,8 +49,8 @@ VG_API const char* vg_last_error(void);
    soon, with VG_STOPPED. It must not throw or jump out. */
 typedef struct vg_watch {
   size_t struct_size; /* as _init() sets it */
-  /* done of total poses: scored (vg_evaluate and its like), in need of no more work (vg_best),
-     chosen (vg_best_set); 0 until the end for vg_race. */
+  /* done of total poses: scored (vg_evaluate and its like), in need of no more work (vg_best,
+     vg_race), chosen (vg_best_set). */
   int32_t (*poll)(size_t done, size_t total, void* user);
   void* user; /* may be null */
 } vg_watch;

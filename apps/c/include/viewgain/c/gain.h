@@ -81,7 +81,11 @@ typedef struct vg_weight_region {
   double weight;                 /* >= 0; 1 outside all regions */
 } vg_weight_region;
 
-/* What changes the answer, and num_threads. */
+/* How rays meet voxels; the same gains: as is mostly faster, by Embree's BVH, by sweeping cells
+   from near to far. */
+enum { VG_TRACER_AUTOMATIC = 0, VG_TRACER_EMBREE = 1, VG_TRACER_SWEEP = 2 };
+
+/* What changes the answer, num_threads and tracer. */
 typedef struct vg_evaluator_config {
   size_t struct_size;              /* as _init() sets it */
   int32_t criterion;               /* VG_LOG_DIAGONAL */
@@ -95,6 +99,7 @@ typedef struct vg_evaluator_config {
   int32_t gain;              /* VG_GAIN_COMBINED */
   int32_t posterior_entropy; /* 1: vg_view_gain.posterior_entropy too, by VG_GAIN_PAPER; 0 (the
                                 default) */
+  int32_t tracer;            /* VG_TRACER_AUTOMATIC; never changes a gain */
 } vg_evaluator_config;
 /* The defaults. */
 VG_API void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_size);
@@ -170,6 +175,15 @@ VG_API vg_status vg_best(const vg_evaluator* evaluator, const double* poses, siz
 VG_API vg_status vg_race(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                          uint64_t seed, size_t* indices, double* gains, size_t* found,
                          const vg_watch* watch);
+
+/* The best that can be said in so many seconds from the call on (>= 0): poses from all over the
+   list are estimated for half of the time at most, then the most promising scored in full; VG_OK,
+   whatever was reached. *found, fewer than k where fewer were scored in full, `indices` and `gains`
+   as for vg_race(). *estimated and *scored (null: not wanted) say how many poses were scored by
+   some of their rays and how many in full; the others were not looked at. */
+VG_API vg_status vg_race_until(const vg_evaluator* evaluator, const double* poses, size_t count,
+                               size_t k, uint64_t seed, double seconds, size_t* indices,
+                               double* gains, size_t* found, size_t* estimated, size_t* scored);
 
 /* Up to k poses that are good together, in the order of their choice; gains: what each adds to
    those before it. By VG_GAIN_PAPER only, else VG_INVALID_ARGUMENT. VG_STOPPED: those chosen so

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Tiles of rays through a scene: by Embree's BVH with callbacks, or along lists of primitives.
-// Compiled once for each instruction set.
+// What Embree calls: packets of a tile's rays, and the primitives that they come to. Compiled once
+// for each instruction set.
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "trace/leaf_traversal.cpp"
+#define HWY_TARGET_INCLUDE "trace/embree_packets.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
 //
 #include <hwy/highway.h>
 
-#include "leaf_traversal.hpp"
 #include "leaf_walk-inl.hpp"
+#include "voxel_bvh.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
@@ -27,21 +27,6 @@ struct PacketQuery : RayQuery {
   RayTile* tile = nullptr;
   int lane0 = 0;
 };
-
-// The lanes that a primitive ends; their ends are kept in the tile.
-template <typename Kernel>
-HWY_INLINE MF meet(const PacketQuery& query, std::uint32_t primitive, const Slabs& slabs, MF active,
-                   VF& range, Kernel kernel) {
-  RayTile& tile = *query.tile;
-  LaneEnds ends{range, hn::Load(du, tile.primitive + query.lane0),
-                hn::Load(du, tile.offset + query.lane0)};
-  const MF hits = kernel(*query.scene, *query.frame, rays_of(tile, query.lane0), primitive, slabs,
-                         active, ends);
-  range = ends.range;
-  hn::Store(ends.primitive, du, tile.primitive + query.lane0);
-  hn::Store(ends.offset, du, tile.offset + query.lane0);
-  return hits;
-}
 
 // Embree's callback. Almost always the packet is the one that was sent, N = kWidth with lanes in
 // order; else each ray is looked up by the lane in its id and goes through the same kernel alone.
@@ -59,7 +44,8 @@ HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint3
     float* tfar = &RTCRayN_tfar(rays, args->N, 0);
     VF range = hn::LoadU(df, tfar);
     const MF active = hn::RebindMask(df, hn::Ne(hn::LoadU(di, args->valid), hn::Zero(di)));
-    const MF hits = meet(query, primitive, slabs, active, range, kernel);
+    const MF hits = meet(*query.scene, *query.frame, *query.tile, query.lane0, primitive, slabs,
+                         active, range, kernel);
     if (hn::AllFalse(df, hits)) return;
     hn::StoreU(range, df, tfar);
     hn::BlendedStore(hn::Set(du, args->geomID), hn::RebindMask(du, hits), du,
@@ -71,7 +57,8 @@ HWY_INLINE void intersect(const RTCIntersectFunctionNArguments* args, std::uint3
     const unsigned lane = RTCRayN_id(rays, args->N, i);
     VF range = hn::Set(df, RTCRayN_tfar(rays, args->N, i));
     const MF active = hn::RebindMask(df, hn::Eq(hn::Iota(du, 0U), hn::Set(du, lane)));
-    const MF hits = meet(query, primitive, slabs, active, range, kernel);
+    const MF hits = meet(*query.scene, *query.frame, *query.tile, query.lane0, primitive, slabs,
+                         active, range, kernel);
     if (hn::AllFalse(df, hits)) continue;
     HWY_ALIGN float ranges[kWidth];
     hn::Store(range, df, ranges);
@@ -89,37 +76,6 @@ void intersect_box(const RTCIntersectFunctionNArguments* args) {
   const PacketQuery& query = query_of<PacketQuery>(args);
   intersect(args, static_cast<std::uint32_t>(query.scene->leaf_count) + args->primID,
             [](auto&&... a) HWY_ATTR { return enter_box(static_cast<decltype(a)>(a)...); });
-}
-
-// Directions of a tile in the grid's frame and their inverses.
-void set_up(const TileTable& table, const PoseFrame& frame, std::size_t tile, RayTile& out) {
-  const float* table_x = table.directions.data() + tile * 3 * kTileRays;
-  const float* table_y = table_x + kTileRays;
-  const float* table_z = table_y + kTileRays;
-  const VF tiny = hn::Set(df, 1e-20F);
-  for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
-    const VF x = hn::LoadU(df, table_x + lane0), y = hn::LoadU(df, table_y + lane0),
-             z = hn::LoadU(df, table_z + lane0);
-    const auto row = [&](std::size_t r, float* direction, float* inverse) HWY_ATTR {
-      const VF d = hn::Add(hn::Add(hn::Mul(hn::Set(df, frame.rotation[3 * r]), x),
-                                   hn::Mul(hn::Set(df, frame.rotation[3 * r + 1]), y)),
-                           hn::Mul(hn::Set(df, frame.rotation[3 * r + 2]), z));
-      // Zero counts as a small positive number: 0 * inverse stays 0, and a ray that runs in a face
-      // belongs to the larger index.
-      const VF safe = hn::IfThenElse(hn::Lt(hn::Abs(d), tiny), tiny, d);
-      hn::Store(safe, df, direction + lane0);
-      hn::Store(hn::Div(hn::Set(df, 1.0F), safe), df, inverse + lane0);
-    };
-    row(0, out.dx, out.ix);
-    row(1, out.dy, out.iy);
-    row(2, out.dz, out.iz);
-    hn::Store(hn::Set(df, frame.max_range), df, out.range + lane0);
-    hn::Store(hn::Set(du, kNoPrimitive), du, out.primitive + lane0);
-  }
-  out.valid = table.valid[tile];
-  out.hit = 0;
-  out.blocked = 0;
-  out.has_far = false;
 }
 
 #if HWY_TARGET == HWY_AVX3
@@ -169,30 +125,10 @@ void trace(const SceneData& scene, RTCScene bvh, const PoseFrame& frame, RayTile
   }
 }
 
-void visit(const SceneData& scene, const PoseFrame& frame, std::uint32_t primitive, RayTile& out) {
-  PacketQuery query;
-  query.scene = &scene;
-  query.frame = &frame;
-  query.tile = &out;
-  const Slabs slabs = slabs_of(scene.boxes[primitive], frame);
-  for (query.lane0 = 0; query.lane0 < kTileRays; query.lane0 += kWidth) {
-    VF range = hn::Load(df, out.range + query.lane0);
-    const MF active = mask_of(out.valid >> query.lane0);
-    const auto each = [&](auto kernel)
-                          HWY_ATTR { return meet(query, primitive, slabs, active, range, kernel); };
-    const MF hits =
-        primitive < scene.leaf_count
-            ? each([](auto&&... a) HWY_ATTR { return walk_leaf(static_cast<decltype(a)>(a)...); })
-            : each([](auto&&... a) HWY_ATTR { return enter_box(static_cast<decltype(a)>(a)...); });
-    hn::Store(range, df, out.range + query.lane0);
-    out.hit |= bits_of(hits) << query.lane0;
-  }
-}
-
 }  // namespace
 
-const TraceKernels& kernels(Isa isa) {
-  static const TraceKernels table{isa, kWidth, intersect_leaf, intersect_box, set_up, trace, visit};
+const PacketKernels& kernels() {
+  static const PacketKernels table{kWidth, intersect_leaf, intersect_box, trace};
   return table;
 }
 
@@ -202,18 +138,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace viewgain::detail {
 
-const TraceKernels& trace_kernels(Isa isa) {
+const PacketKernels& packet_kernels(Isa isa) {
   switch (isa) {
 #if HWY_TARGETS & HWY_AVX3
     case Isa::avx512:
-      return N_AVX3::kernels(isa);
+      return N_AVX3::kernels();
 #endif
 #if HWY_TARGETS & HWY_AVX2
     case Isa::avx2:
-      return N_AVX2::kernels(isa);
+      return N_AVX2::kernels();
 #endif
     default:
-      return HWY_STATIC_DISPATCH(kernels)(isa);
+      return HWY_STATIC_DISPATCH(kernels)();
   }
 }
 

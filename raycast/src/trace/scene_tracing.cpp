@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_tracing.hpp"
+
+#include <cmath>
+
+#include "voxel_bvh.hpp"
+
+namespace viewgain::detail {
+
+int margin_level(double reach) {
+  constexpr double kLevelZeroReach = 2e4;
+  int level = 0;
+  while (level + 1 < kMarginLevels && reach > std::ldexp(kLevelZeroReach, level)) ++level;
+  return level;
+}
+
+std::shared_ptr<const SceneTracing> make_tracing(const SceneData& data, const SceneData* before) {
+  return std::make_shared<const SceneTracing>(data, before);
+}
+
+Isa isa_of(const SceneTracing& tracing) { return tracing.kernels.isa; }
+
+// Only obstacles are always Embree's.
+SceneTracing::SceneTracing(const SceneData& data, const SceneData* before)
+    : kernels(tile_kernels(data.has_obstacles ? packet_isa(select_isa()) : select_isa())),
+      obstacles(ObstacleScene::of(data, kernels.isa, before)),
+      data_(data) {}
+
+RTCScene SceneTracing::bvh(int level) const {
+  Bvh& bvh = bvhs_.at(static_cast<std::size_t>(level));
+  std::call_once(bvh.once, [&] { bvh.scene = build_bvh(data_, kernels.isa, margin_of(level)); });
+  return bvh.scene.get();
+}
+
+const BrickTable& SceneTracing::bricks() const {
+  std::call_once(bricks_once_, [&] { bricks_.emplace(data_.snapshot, data_.hazard_field()); });
+  return *bricks_;
+}
+
+}  // namespace viewgain::detail
