@@ -9,7 +9,7 @@
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
-#include "viewgain/raycast/classic_gains.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 
 namespace viewgain {
 

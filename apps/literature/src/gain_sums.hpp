@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "classic_table.hpp"
 #include "distinct_voxels.hpp"
-#include "trace/ray_tile.hpp"
 #include "viewgain/core/isa.hpp"
+#include "viewgain/support/walk_task.hpp"
 #include "voxel_values.hpp"
 
 namespace viewgain::detail {
@@ -24,30 +23,27 @@ struct ClassicSums {
   std::uint64_t on_surface = 0, on_hidden = 0;  ///< rays of area_factor's classes
 };
 
-/// A tile of rays in table coordinates [voxels].
-struct alignas(64) ClassicTile {
-  double dx[kTileRays], dy[kTileRays], dz[kTileRays];  ///< unit directions, grid frame
-  double far[kTileRays];                               ///< where each ray must end
-  const float* solid_angle = nullptr;                  ///< what each stands for [sr]
-  std::uint32_t valid = 0;                             ///< one bit a lane
-};
-
-/// What a view's tiles have in common.
+/// What all views of a map have in common.
 struct ClassicView {
   const ClassicTable& table;
   const VoxelValues& values;
-  std::array<double, 3> origin{};  ///< of the rays
-  double min_range = 0;
   double most_steps = 0;     ///< proximity_count: what a voxel's steps are taken from
   bool is_shipped = false;   ///< average_entropy and rear_side_entropy differ
   bool is_distinct = false;  ///< are distinct unknown voxels asked for?
 };
 
-/// Walks the rays of a tile, in order through all voxels, and adds what they meet.
-using AddTile = void (*)(const ClassicView& view, const ClassicTile& tile, ClassicSums& sums,
-                         DistinctVoxels& distinct);
+/// Walks of a tile's rays through a ClassicTable.
+struct ClassicKernels {
+  /// In order through all voxels to the first occupied one: adds what they meet.
+  void (*add)(const ClassicView& view, const WalkLimits& limits, const WalkTask& task,
+              ClassicSums& sums, DistinctVoxels& distinct);
+  /// To the first occupied voxel and `depth` [voxels] on: marks which unknown ones are how many
+  /// steps behind. Changes `task`.
+  void (*mark_hidden)(const ClassicTable& table, const WalkLimits& limits, float depth,
+                      WalkTask& task, OcclusionSteps& steps);
+};
 
 /// For an instruction set that the CPU supports.
-[[nodiscard]] AddTile classic_walk(Isa isa);
+[[nodiscard]] const ClassicKernels& classic_kernels(Isa isa);
 
 }  // namespace viewgain::detail

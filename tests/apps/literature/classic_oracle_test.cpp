@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "raycast/classic/classic_makers.hpp"
-#include "raycast/classic/octomap_oracle.hpp"
+#include "apps/literature/classic_makers.hpp"
+#include "apps/literature/octomap_oracle.hpp"
 #include "raycast/scene_makers.hpp"
 
 namespace viewgain {

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/raycast/classic_gains.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 
 namespace viewgain {
 namespace {

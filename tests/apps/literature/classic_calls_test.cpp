@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "raycast/classic/classic_makers.hpp"
+#include "apps/literature/classic_makers.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain {
@@ -196,7 +196,7 @@ TEST(ClassicGains, RefuseWhatTheyCannotDo) {
   expect(refused(map, {.gains = {one, one}}), "twice");
   expect(refused(nullptr, {.gains = {one}}), "no map");
   expect(refused(map, {.gains = {one}, .pixel_stride = 0}), "stride is 0");
-  expect(refused(map, {.gains = {one}, .min_range = 2, .max_range = 1}), "2 to 1");
+  expect(refused(map, {.gains = {one}, .min_range = 2, .max_range = 1}), "min_range 2 m");
   expect(refused(map, {.gains = {one}, .unknown_prior = 1.5}), "1.5");
   expect(refused(map, {.gains = {one}, .semantics = GainSemantics::shipped, .free_below = 0.6}),
          "0.6");

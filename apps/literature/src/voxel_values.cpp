@@ -19,24 +19,24 @@ double entropy_of(double p) {
 }  // namespace
 
 VoxelValues::VoxelValues(const ClassicConfig& config) {
-  static_assert(OccupancyCodes::kCount <= 128 && kLastFree < kPassed);
+  static_assert(kMaxCode < 128 && kZeroCode < kPassed);
   const bool shipped = config.semantics == GainSemantics::shipped;
-  for (int i = 0; i < OccupancyCodes::kCount; ++i) {
+  for (int i = 0; i <= kMaxCode; ++i) {
     const auto code = static_cast<std::uint8_t>(i);
     const auto at = static_cast<std::size_t>(i);
-    const bool is_known = code != OccupancyCodes::kUnknown;
+    const bool is_known = code != kUnknownCode;
     const double p = is_known
-                         ? 1 / (1 + std::exp(-static_cast<double>(OccupancyCodes::log_odds(code))))
+                         ? 1 / (1 + std::exp(-static_cast<double>(code_log_odds(code))))
                          : config.unknown_prior;
     // p rises with the code.
     const bool is_occupied =
-        shipped ? p > config.occupied_above : OccupancyCodes::is_occupied(code);
-    const bool is_free = shipped ? p < config.free_below : !OccupancyCodes::is_occupied(code);
+        shipped ? p > config.occupied_above : detail::is_occupied(code);
+    const bool is_free = shipped ? p < config.free_below : !detail::is_occupied(code);
     if (is_known && is_free) free_end = i + 1;
     if (is_known && is_occupied && occupied_begin > i) occupied_begin = i;
     const double H = entropy_of(p), q = shipped ? p : 1 - p;
     entropy[at] = static_cast<float>(H);
-    if (i > kLastFree) continue;
+    if (i > kZeroCode) continue;
     passed_entropy[at] = entropy[at];
     const double absorbs = q > 0 ? std::min(-std::log2(q), kAllAbsorbed) : kAllAbsorbed;
     const double first = std::floor(absorbs * kPart) / kPart;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "classic_table.hpp"
-#include "viewgain/raycast/classic_gains.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 
 namespace viewgain::detail {
 
@@ -21,11 +21,11 @@ struct ClassicMapData {
   OcclusionKnown occlusion = OcclusionKnown::no_sensor;
   double occlusion_depth = 0;  ///< [voxels]
 
-  ClassicMapData(std::shared_ptr<const VoxelScene> s, const OccupancyCodes& codes)
-      : scene(std::move(s)), table(codes) {}
+  ClassicMapData(std::shared_ptr<const VoxelScene> s, const BeliefGrid& grid)
+      : scene(std::move(s)), table(grid) {}
 };
 
-/// The way into a map for this room.
+/// The way into a map for this library.
 struct ClassicAccess {
   [[nodiscard]] static const ClassicMapData& data(const ClassicMap& map) { return *map.data_; }
 };

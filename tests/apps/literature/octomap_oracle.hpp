@@ -12,7 +12,7 @@
 
 #include "oracle/dense_map.hpp"
 #include "oracle/walk.hpp"
-#include "viewgain/raycast/classic_gains.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 
 namespace viewgain::test {
 

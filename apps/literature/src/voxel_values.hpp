@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
-#include "viewgain/grid/occupancy_codes.hpp"
-#include "viewgain/raycast/classic_gains.hpp"
+#include "viewgain/literature/classic_gains.hpp"
+#include "viewgain/support/log_odds_code.hpp"
 
 namespace viewgain::detail {
 
@@ -14,9 +14,6 @@ namespace viewgain::detail {
 struct VoxelValues {
   /// Codes of voxels that rays go on through are below this.
   static constexpr std::size_t kPassed = 64;
-  /// Of the code of log-odds 0, the last that rays go on through.
-  static constexpr std::int32_t kLastFree = 41;
-
   /// -log2 q in two parts. Multiples of the first by numbers of voxels, and sums of such, are exact
   /// in single precision; the second is small, so that its rounding does not matter.
   alignas(64) std::array<float, kPassed> absorbed{}, absorbed_rest{};
@@ -26,7 +23,7 @@ struct VoxelValues {
   alignas(64) std::array<float, 128> entropy{};             ///< H of all codes [nat]
   /// Known voxels count as free below, as occupied from there on; others, and those that no reading
   /// told of, as unknown.
-  std::int32_t free_end = 0, occupied_begin = OccupancyCodes::kCount;
+  std::int32_t free_end = 0, occupied_begin = kMaxCode + 1;
 
   explicit VoxelValues(const ClassicConfig& config);
 };

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "raycast/scene_makers.hpp"
-#include "viewgain/raycast/classic_gains.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 
 namespace viewgain::test {
 

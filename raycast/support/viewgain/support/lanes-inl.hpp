@@ -11,7 +11,7 @@
 
 #include <hwy/highway.h>
 
-#include "ray_tile.hpp"
+#include "viewgain/support/walk_task.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "raycast/classic/octomap_oracle.hpp"
+#include "apps/literature/octomap_oracle.hpp"
 
 #include <algorithm>
 #include <cmath>

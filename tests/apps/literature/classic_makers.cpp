@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "raycast/classic/classic_makers.hpp"
+#include "apps/literature/classic_makers.hpp"
 
 namespace viewgain::test {
 

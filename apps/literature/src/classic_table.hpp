@@ -2,21 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "occlusion_steps.hpp"
-#include "viewgain/grid/occupancy_codes.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/support/brick_index.hpp"
+#include "viewgain/support/log_odds_code.hpp"
 
 namespace viewgain::detail {
 
-/// What classic gains weigh of each voxel, found by place: nodes of 128³ voxels have 16³ entries,
-/// one for each brick of 8³.
-///
-/// Table coordinates count voxels from the lowest voxel of the workspace's lowest brick, where the
-/// first node begins too; the workspace's lowest voxel is `offset`, in 0..7 along each axis.
-struct ClassicTable {
+/// What classic gains weigh of each voxel, found by place.
+struct ClassicTable : BrickIndex {
   /// A word of 13 bits. A known voxel's begins with the code of its log-odds, an unknown one's has
   /// kUnknown, its steps behind a measured surface and whether it is a surface frontier. Above
   /// either the binary logarithm of the edge of the largest aligned cube round it whose values are
@@ -27,8 +24,7 @@ struct ClassicTable {
   static constexpr unsigned kLargestShift = 5;
   [[nodiscard]] static bool is_unknown(std::uint32_t word) { return (word & kUnknown) != 0; }
   [[nodiscard]] static bool is_occupied(std::uint32_t word) {
-    return !is_unknown(word) &&
-           OccupancyCodes::is_occupied(static_cast<std::uint8_t>(word & kCode));
+    return !is_unknown(word) && (word & kCode) > kZeroCode;
   }
   [[nodiscard]] static bool is_frontier(std::uint32_t word) {
     return is_unknown(word) && (word & kFrontier) != 0;
@@ -44,16 +40,10 @@ struct ClassicTable {
   /// An entry is the word of all its brick's voxels with this bit, or its first index in `words`.
   static constexpr std::uint32_t kUniform = 0x80000000U;
 
-  Index3 base;                                   ///< lattice index of the voxel (0, 0, 0)
-  std::array<std::int32_t, 3> offset{}, size{};  ///< of the workspace
-  std::array<std::int32_t, 3> nodes{};           ///< along x, y, z
-  std::vector<std::uint32_t> node_entries;       ///< first entry of each node, x-major
-  std::vector<std::uint32_t> entries;            ///< 4096 a node, x-major
-  /// 512 a mixed brick, by word_in_brick(); those before the first brick are for gathers that read
-  /// four bytes, which end in a word.
-  std::vector<std::uint16_t> words;
+  std::vector<std::uint16_t> words;  ///< 512 a mixed brick, by word_in_brick(); 512 of none first
 
-  explicit ClassicTable(const OccupancyCodes& codes);
+  /// Of the grid as it is. Throws Error(capacity).
+  explicit ClassicTable(const BeliefGrid& grid);
 
   /// Puts the steps of unknown voxels in.
   void add(const OcclusionSteps& steps);
@@ -71,22 +61,16 @@ struct ClassicTable {
     return (x & 4U) << 6U | (y & 4U) << 5U | (z & 4U) << 4U | (x & 3U) << 4U | (y & 3U) << 2U |
            (z & 3U);
   }
-  /// The voxel's node.
-  [[nodiscard]] std::size_t node_index(std::int32_t x, std::int32_t y, std::int32_t z) const {
-    return (static_cast<std::size_t>(x >> 7) * static_cast<std::size_t>(nodes[1]) +
-            static_cast<std::size_t>(y >> 7)) *
-               static_cast<std::size_t>(nodes[2]) +
-           static_cast<std::size_t>(z >> 7);
-  }
-  [[nodiscard]] std::size_t entry_index(std::int32_t x, std::int32_t y, std::int32_t z) const {
-    return node_entries[node_index(x, y, z)] +
-           static_cast<std::size_t>((x >> 3 & 15) << 8 | (y >> 3 & 15) << 4 | (z >> 3 & 15));
-  }
 
   [[nodiscard]] std::uint64_t bytes() const {
-    return (node_entries.size() + entries.size()) * sizeof(std::uint32_t) +
-           words.size() * sizeof(std::uint16_t);
+    return BrickIndex::bytes() + words.size() * sizeof(std::uint16_t);
   }
+
+ private:
+  std::uint16_t* own_words(Index3 brick);
+  void find_frontiers(const std::vector<Index3>& with_occupied);
+  void mark_frontiers(Index3 brick);
+  void find_cubes();
 };
 
 }  // namespace viewgain::detail
