@@ -128,9 +128,10 @@ class SumConsumer final : public RayConsumer {
     if (!statuses_.empty()) statuses_[i] = view.status;
     if (view.status == ViewStatus::bad_pose) return;
     for (std::size_t g = 0; g < gains_.size(); ++g) {
-      results_[i * gains_.size() + g] = view.status == ViewStatus::camera_in_occupied
-                                            ? 0.0
-                                            : value(gains_[g], static_cast<Scratch&>(scratch), view);
+      results_[i * gains_.size() + g] =
+          view.status == ViewStatus::camera_in_occupied
+              ? 0.0
+              : value(gains_[g], static_cast<Scratch&>(scratch), view);
     }
   }
 
@@ -186,8 +187,8 @@ ClassicGainEvaluator::ClassicGainEvaluator(std::shared_ptr<const ClassicMap> map
                                            const ExecConfig& exec) {
   map = checked(std::move(map), checked(config));
   GainEvaluator rays(ClassicAccess::data(*map).scene, sensor, rays_of(config), exec);
-  impl_ = std::make_unique<Impl>(
-      Impl{config, std::move(map), VoxelValues(config), std::move(rays)});
+  impl_ =
+      std::make_unique<Impl>(Impl{config, std::move(map), VoxelValues(config), std::move(rays)});
 }
 ClassicGainEvaluator::ClassicGainEvaluator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 ClassicGainEvaluator::~ClassicGainEvaluator() = default;
@@ -197,8 +198,8 @@ ClassicGainEvaluator& ClassicGainEvaluator::operator=(ClassicGainEvaluator&&) no
 ClassicGainEvaluator ClassicGainEvaluator::with_map(std::shared_ptr<const ClassicMap> map) const {
   map = checked(std::move(map), config());
   GainEvaluator rays = impl_->rays.with_scene(ClassicAccess::data(*map).scene);
-  return ClassicGainEvaluator(std::make_unique<Impl>(
-      Impl{config(), std::move(map), impl_->values, std::move(rays)}));
+  return ClassicGainEvaluator(
+      std::make_unique<Impl>(Impl{config(), std::move(map), impl_->values, std::move(rays)}));
 }
 
 std::size_t ClassicGainEvaluator::evaluate(std::span<const Pose> T_world_camera,

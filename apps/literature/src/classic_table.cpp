@@ -16,7 +16,6 @@ constexpr std::size_t kBrickVoxels = 512;
 constexpr int kRows = 10;
 using Rows = std::array<std::array<std::uint16_t, kRows>, kRows>;
 
-
 std::uint32_t word_of(std::uint8_t code) {
   return code == kUnknownCode ? ClassicTable::kUnknown : code;
 }
@@ -64,8 +63,8 @@ void find_cubes_in_brick(std::uint16_t* words) {
 void find_cubes_in_node(std::uint32_t* entries) {
   std::for_each_n(entries, BrickIndex::kEntries, [](std::uint32_t& entry) {
     if ((entry & ClassicTable::kUniform) == 0) return;
-    entry = ClassicTable::kUniform | (entry & ClassicTable::kValue) |
-            3U << ClassicTable::kEdgeShift;
+    entry =
+        ClassicTable::kUniform | (entry & ClassicTable::kValue) | 3U << ClassicTable::kEdgeShift;
   });
   widen_cubes(
       16, 1U << (ClassicTable::kLargestShift - 3U),
@@ -96,7 +95,8 @@ ClassicTable::ClassicTable(const BeliefGrid& grid)
       grid,
       [&](Index3 origin, const std::uint8_t* codes) {
         const Index3 brick = in_table(origin);
-        if (std::any_of(codes, codes + kBrickVoxels, [](std::uint8_t c) { return c > kZeroCode; })) {
+        if (std::any_of(codes, codes + kBrickVoxels,
+                        [](std::uint8_t c) { return c > kZeroCode; })) {
           with_occupied.push_back(brick);
         }
         if (std::all_of(codes, codes + kBrickVoxels, [&](std::uint8_t c) { return c == *codes; })) {

@@ -70,8 +70,8 @@ class WordFinder {
     }
     Place place{as_i(hn::Load(du, words)), set_i(1), node_};
     if constexpr (!kByVoxel) {
-      const VI shift = hn::And(hn::ShiftRight<ClassicTable::kEdgeShift>(place.word),
-                               set_i(ClassicTable::kEdge));
+      const VI shift =
+          hn::And(hn::ShiftRight<ClassicTable::kEdgeShift>(place.word), set_i(ClassicTable::kEdge));
       place.edge = hn::Shl(set_i(1), hn::IfThenZeroElse(place.is_unknown(), shift));
     }
     return place;
@@ -264,8 +264,8 @@ class GainSink {
   const ClassicView& view_;
   const float* solid_angle_;
   DistinctVoxels& distinct_;
-  VF absorbed_ = hn::Zero(df), rest_ = hn::Zero(df);  // -log2 of P, as VoxelValues has it
-  VF left_ = hn::Set(df, 1.0F), stretch_ = hn::Zero(df);     // P, and Σ P H since what was not unknown
+  VF absorbed_ = hn::Zero(df), rest_ = hn::Zero(df);      // -log2 of P, as VoxelValues has it
+  VF left_ = hn::Set(df, 1.0F), stretch_ = hn::Zero(df);  // P, and Σ P H since what was not unknown
   VF occlusion_aware_ = hn::Zero(df), unobserved_ = hn::Zero(df);
   VF entropy_ = hn::Zero(df), entropy_error_ = hn::Zero(df);
   VI voxels_ = hn::Zero(di), ended_voxels_ = hn::Zero(di), hidden_steps_ = hn::Zero(di);
@@ -306,8 +306,8 @@ class HiddenSink {
     const MI counts = to_i(step.counts);
     count_ = hn::Add(count_, hn::IfThenElseZero(hn::And(counts, is_behind_), set_i(1)));
     is_behind_ = hn::Or(is_behind_, to_i(hn::And(step.counts, step.place.is_occupied())));
-    const MI hidden = hn::And(hn::And(counts, step.place.is_unknown()),
-                              hn::Gt(count_, hn::Zero(di)));
+    const MI hidden =
+        hn::And(hn::And(counts, step.place.is_unknown()), hn::Gt(count_, hn::Zero(di)));
     HWY_ALIGN std::int32_t xs[kWidth], ys[kWidth], zs[kWidth], counted[kWidth];
     hn::Store(step.at.x, di, xs);
     hn::Store(step.at.y, di, ys);
@@ -334,8 +334,8 @@ void walk(const ClassicTable& table, const WalkLimits& limits, const WalkTask& t
   }
 }
 
-void add(const ClassicView& view, const WalkLimits& limits, const WalkTask& task,
-         ClassicSums& sums, DistinctVoxels& distinct) {
+void add(const ClassicView& view, const WalkLimits& limits, const WalkTask& task, ClassicSums& sums,
+         DistinctVoxels& distinct) {
   for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
     PacketWalk<CubeFinder, GainSink> packet{CubeFinder(view.table)};
     GainSink sink(view, task.solid_angle + lane0, distinct);

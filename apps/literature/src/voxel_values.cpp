@@ -25,12 +25,10 @@ VoxelValues::VoxelValues(const ClassicConfig& config) {
     const auto code = static_cast<std::uint8_t>(i);
     const auto at = static_cast<std::size_t>(i);
     const bool is_known = code != kUnknownCode;
-    const double p = is_known
-                         ? 1 / (1 + std::exp(-static_cast<double>(code_log_odds(code))))
-                         : config.unknown_prior;
+    const double p = is_known ? 1 / (1 + std::exp(-static_cast<double>(code_log_odds(code))))
+                              : config.unknown_prior;
     // p rises with the code.
-    const bool is_occupied =
-        shipped ? p > config.occupied_above : detail::is_occupied(code);
+    const bool is_occupied = shipped ? p > config.occupied_above : detail::is_occupied(code);
     const bool is_free = shipped ? p < config.free_below : !detail::is_occupied(code);
     if (is_known && is_free) free_end = i + 1;
     if (is_known && is_occupied && occupied_begin > i) occupied_begin = i;

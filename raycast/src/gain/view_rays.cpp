@@ -7,7 +7,9 @@
 #include "batch_loop.hpp"
 #include "gain_evaluator_impl.hpp"
 
-namespace viewgain::detail {
+namespace viewgain {
+
+using namespace detail;
 
 ViewScratch::~ViewScratch() = default;
 RayConsumer::~RayConsumer() = default;
@@ -39,4 +41,4 @@ std::size_t for_each_view_rays(const GainEvaluator& evaluator, std::span<const P
       });
 }
 
-}  // namespace viewgain::detail
+}  // namespace viewgain

@@ -138,9 +138,9 @@ class BrickTableMaker {
           return is_far_at(node, BrickIndex::kNode) ? std::optional(kFarBrick) : std::nullopt;
         },
         [&](Index3 brick) {
-          return BrickTable::kUnknown << 30U | (is_far_at(brick, BrickIndex::kBrick)
-                                                    ? BrickTable::kFarSlot
-                                                    : add_slot(on_lattice(brick)));
+          return BrickTable::kUnknown << 30U |
+                 (is_far_at(brick, BrickIndex::kBrick) ? BrickTable::kFarSlot
+                                                       : add_slot(on_lattice(brick)));
         });
   }
 

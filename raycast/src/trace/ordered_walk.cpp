@@ -33,9 +33,9 @@ HWY_INLINE VI cube_in_brick(const Voxels& at) {
 class HazardFinder {
  public:
   struct Place {
-    VU state;     // of the voxel, as in BrickTable
+    VU state;  // of the voxel, as in BrickTable
     VI edge;
-    VI entry;     // of its brick
+    VI entry;  // of its brick
     VI cube;
   };
 

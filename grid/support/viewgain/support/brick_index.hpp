@@ -23,8 +23,8 @@ namespace viewgain::detail {
 /// Table coordinates count voxels from the lowest voxel of the workspace's lowest brick, where the
 /// first node begins too; the workspace's lowest voxel is `offset`, in 0..7 along each axis.
 struct BrickIndex {
-  static constexpr std::int32_t kBrick = 8, kNode = 128;    ///< edges [voxels]
-  static constexpr std::uint32_t kEntries = 16 * 16 * 16;   ///< of a node
+  static constexpr std::int32_t kBrick = 8, kNode = 128;   ///< edges [voxels]
+  static constexpr std::uint32_t kEntries = 16 * 16 * 16;  ///< of a node
   static constexpr std::size_t kMostNodes = std::size_t{1} << 24U;
 
   Index3 base;                                   ///< lattice index of the voxel (0, 0, 0)

@@ -158,14 +158,13 @@ class PacketWalk {
       const VI inside = hn::Min(hn::Max(voxel_at(axis, next), a.low), hn::Or(v, top));
       const MI crosses = to_i(hn::Le(a.leaves, hn::Min(exit, end_)));
       if constexpr (Sink::kCountsVoxels) {
-        const VI last = hn::IfThenElse(crosses, hn::Sub(a.over, hn::Or(axis.backward, set_i(1))),
-                                       inside);
+        const VI last =
+            hn::IfThenElse(crosses, hn::Sub(a.over, hn::Or(axis.backward, set_i(1))), inside);
         voxels = hn::Add(voxels, hn::Abs(hn::Sub(last, v)));
       }
       return hn::IfThenElse(crosses, a.over, inside);
     };
-    const Voxels at = at_,
-                 beyond{advance(x_, at.x, x), advance(y_, at.y, y), advance(z_, at.z, z)};
+    const Voxels at = at_, beyond{advance(x_, at.x, x), advance(y_, at.y, y), advance(z_, at.z, z)};
     const VI moved = moved_;
     const MF ends = Sink::ends(place, counts);
     active_ = hn::AndNot(ends, hn::And(active_, hn::Lt(exit, end_)));
@@ -179,7 +178,8 @@ class PacketWalk {
       // What is gathered here is waited for while the sink is busy.
       place_ = finder_.find(at_, moved_, active_);
     }
-    sink.step(finder_, Step<typename Finder::Place>{place, at, moved, voxels, counts, ends, t, next});
+    sink.step(finder_,
+              Step<typename Finder::Place>{place, at, moved, voxels, counts, ends, t, next});
     return any;
   }
 
@@ -209,11 +209,11 @@ class PacketWalk {
   // Rays that go down from above the plane end there.
   HWY_INLINE void end_at_plane(const WalkLimits& limits) {
     const std::array<float, 3>& n = limits.normal;
-    const VF down = hn::Add(hn::Add(hn::Mul(hn::Set(df, n[0]), x_.direction),
-                                    hn::Mul(hn::Set(df, n[1]), y_.direction)),
-                            hn::Mul(hn::Set(df, n[2]), z_.direction));
-    const float above = n[0] * limits.origin[0] + n[1] * limits.origin[1] +
-                        n[2] * limits.origin[2] - limits.height;
+    const VF down = hn::Add(
+        hn::Add(hn::Mul(hn::Set(df, n[0]), x_.direction), hn::Mul(hn::Set(df, n[1]), y_.direction)),
+        hn::Mul(hn::Set(df, n[2]), z_.direction));
+    const float above =
+        n[0] * limits.origin[0] + n[1] * limits.origin[1] + n[2] * limits.origin[2] - limits.height;
     const MF meets = hn::Lt(down, hn::Zero(df));
     const VF at = hn::Div(hn::Set(df, -above), hn::IfThenElse(meets, down, hn::Set(df, -1.0F)));
     if (above >= 0) end_ = hn::IfThenElse(meets, hn::Min(end_, at), end_);

@@ -10,7 +10,7 @@
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/walk_task.hpp"
 
-namespace viewgain::detail {
+namespace viewgain {
 
 /// What a RayConsumer keeps while a view is walked. Used by one thread at a time, for view after
 /// view.
@@ -28,7 +28,8 @@ class VIEWGAIN_EXPORT RayConsumer {
   /// Once a view.
   virtual void begin(ViewScratch& scratch) const = 0;
   /// Its tiles, in order.
-  virtual void add(const WalkLimits& limits, const WalkTask& task, ViewScratch& scratch) const = 0;
+  virtual void add(const detail::WalkLimits& limits, const detail::WalkTask& task,
+                   ViewScratch& scratch) const = 0;
   /// `view` has only rays and status. Where that is bad_pose, or camera_in_occupied, no tile was
   /// added.
   virtual void finish(std::size_t i, const ViewGain& view, ViewScratch& scratch) const = 0;
@@ -43,4 +44,4 @@ VIEWGAIN_EXPORT std::size_t for_each_view_rays(const GainEvaluator& evaluator,
                                                bool from_occupied, const RayConsumer& consumer,
                                                const BatchControl& control = {});
 
-}  // namespace viewgain::detail
+}  // namespace viewgain

@@ -26,10 +26,10 @@ struct ClassicMapData;
 struct ClassicAccess;
 }  // namespace detail
 
-/// The gains of the literature, by name; raycast/README.md "Classic gains" has equations and
-/// sources. Sums run over the rays of a view and the voxels v of each, in order; H is the entropy
-/// of a voxel's occupancy [nat] and P its visibility, the product of what the voxels before it on
-/// the ray let through.
+/// The gains of the literature, by name; apps/literature/README.md has equations and sources. Sums
+/// run over the rays of a view and the voxels v of each, in order; H is the entropy of a voxel's
+/// occupancy [nat] and P its visibility, the product of what the voxels before it on the ray let
+/// through.
 enum class ClassicGain : std::uint8_t {
   occlusion_aware,         ///< Σ P H [nat]
   unobserved_voxel,        ///< Σ P H over unknown voxels [nat]
@@ -99,9 +99,9 @@ class VIEWGAIN_EXPORT ClassicMap {
  public:
   /// Obstacles are the scene's, voxels those of `grid` as it is. Throws Error(invalid_argument) for
   /// a null scene or one of another workspace, a sensor that is not valid, or a depth that is
-  /// negative, not finite or over 140 voxels; Error(capacity) as OccupancyCodes. One pass over the
-  /// map (some milliseconds at 128³) and, with `acquisition`, one over the rays of its views, on
-  /// all threads of `exec`.
+  /// negative, not finite or over 140 voxels; Error(capacity) beyond 2^24 cubes of 128 voxels or
+  /// 2^31 voxels where blocks of 8³ are not uniform. One pass over the map (some milliseconds at
+  /// 128³) and, with `acquisition`, one over the rays of its views, on all threads of `exec`.
   [[nodiscard]] static std::shared_ptr<const ClassicMap> build(
       std::shared_ptr<const VoxelScene> scene, const BeliefGrid& grid,
       const std::optional<Acquisition>& acquisition = {}, const ExecConfig& exec = {});
@@ -130,11 +130,11 @@ class VIEWGAIN_EXPORT ClassicMap {
 /// workspace's edge. Nothing outside the workspace counts, and no ray twice; but a voxel that
 /// several rays pass counts with each of them, unless its gain says distinct.
 ///
-/// The voxels are those of rays in double precision: gains agree with voxel by voxel sums to 1e-6
-/// of them, under every instruction set. Thread safety: const members may run from many threads at
-/// once. Determinism: the same bits for any number of threads.
+/// Rays are in single precision, as the tracer's: some in a hundred thousand go by the other side
+/// of a voxel's edge. Else gains agree with sums in double precision to 1e-5. Thread safety: const
+/// members may run from many threads at once. Determinism: the same bits for any number of threads.
 ///
-/// Cost of evaluate(): all ten gains together take 22 to 27 times the time of the paper's gain
+/// Cost of evaluate(): all ten gains together take some 20 times the time of the paper's gain
 /// (perf/README.md). Cost of the constructor: a PinholeCamera::ray() a pixel; of with_map()
 /// constant time.
 class VIEWGAIN_EXPORT ClassicGainEvaluator {
