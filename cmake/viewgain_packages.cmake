@@ -94,7 +94,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # Where dpkg-shlibdeps finds our own libraries, which no package has yet.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}
-    ${PROJECT_BINARY_DIR}/apps/formats ${PROJECT_BINARY_DIR}/apps/planner
+    ${PROJECT_BINARY_DIR}/apps/formats ${PROJECT_BINARY_DIR}/apps/literature
+    ${PROJECT_BINARY_DIR}/apps/planner
     ${PROJECT_BINARY_DIR}/apps/planner_mesh ${PROJECT_BINARY_DIR}/mesh)
 # While the version is 0.x a binary needs the very version it was linked with.
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)

@@ -12,7 +12,7 @@
 #include "support/camel_scene.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/grid/hazard.hpp"
-#include "viewgain/raycast/classic_gains.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::bench {

@@ -65,21 +65,16 @@ void ordered_walk(benchmark::State& state, Isa isa) {
   const detail::WalkKernels& kernels = detail::walk_kernels(isa);
   const detail::SceneData& scene = detail::SceneAccess::data(*micro.scene);
   const detail::BrickTable& bricks = scene.tracing->bricks();
-  const Index3& dims = scene.snapshot.dims;
-  detail::WalkLimits limits;
-  limits.workspace = {static_cast<float>(dims.x), static_cast<float>(dims.y),
-                      static_cast<float>(dims.z)};
   constexpr float kCap = 1.0F;
   detail::WalkTask task;
   detail::WalkedTile out;
   std::size_t rays = 0, next = 0;
   for (auto _ : state) {
     const MicroScene::View& view = micro.views[next++ % micro.views.size()];
+    const detail::WalkLimits limits = detail::walk_limits(scene, view.frame);
     for (std::size_t i = 0; i < view.tiles.size(); ++i) {
-      task.rays = view.tiles[i];
-      std::fill(task.far, task.far + detail::kTileRays, view.frame.max_range);
-      task.solid_angle = &micro.tracer.table().solid_angle[view.numbers[i] * detail::kTileRays];
-      kernels.area(bricks, view.frame, limits, task, kCap, out);
+      detail::set_up(micro.tracer.table(), view.numbers[i], view.frame, view.tiles[i], task);
+      kernels.area(bricks, limits, task, kCap, out);
       benchmark::DoNotOptimize(out.occupied);
     }
     rays += view.tiles.size() * detail::kTileRays;

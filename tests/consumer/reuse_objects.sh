@@ -9,7 +9,7 @@ for argument in "$@"; do
   [ "$previous" = -MF ] && depfile=$argument
   previous=$argument
 done
-if [[ "$object" =~ ((core|grid|raycast|mesh|apps/c|apps/formats|apps/planner|apps/planner_mesh)/CMakeFiles/viewgain_.*\.o)$ ]]; then
+if [[ "$object" =~ ((core|grid|raycast|mesh|apps/c|apps/formats|apps/literature|apps/planner|apps/planner_mesh)/CMakeFiles/viewgain_.*\.o)$ ]]; then
   made=$VIEWGAIN_OBJECTS/${BASH_REMATCH[1]}
   if [ -f "$made" ]; then
     cp "$made" "$object"

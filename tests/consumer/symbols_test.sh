@@ -18,7 +18,7 @@ for library in "$@"; do
 done
 
 # What is Apache-2.0 stays clear of CGAL, whose surfaces are GPL.
-for library in "${@:1:3}"; do
+for library in "${@:1:4}"; do
   nm -DC "$library" >"$symbols"
   ! grep -E 'CGAL|gmp|mpfr' "$symbols" || fail "$library holds CGAL"
   ! readelf -d "$library" | grep -E 'NEEDED.*(gmp|mpfr|CGAL|mesh)' || fail "$library is linked to CGAL's libraries"

@@ -3,8 +3,9 @@
 #include "line_marks.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <array>
+
+#include "viewgain/support/voxel_walk.hpp"
 
 namespace viewgain::detail {
 
@@ -39,60 +40,28 @@ const LineMarks::Block* LineMarks::find(std::uint64_t key) const {
 
 void walk_line(const BlockLattice& lattice, double voxel_size, const GridRay& ray,
                LineMarks& marks) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
-  const std::int32_t low[3] = {lattice.min.x, lattice.min.y, lattice.min.z};
-  const std::int32_t high[3] = {lattice.max.x, lattice.max.y, lattice.max.z};
-
-  double enter = 0, leave = ray.reach;
-  double inverse[3];
-  for (int a = 0; a < 3; ++a) {
-    inverse[a] = 1.0 / ray.direction[a];
-    const double near_plane = low[a] * voxel_size - ray.origin[a];
-    const double far_plane = high[a] * voxel_size - ray.origin[a];
-    if (ray.direction[a] == 0) {
-      if (near_plane > 0 || far_plane <= 0) return;
-      continue;
-    }
-    const double t0 = near_plane * inverse[a], t1 = far_plane * inverse[a];
-    enter = std::max(enter, std::min(t0, t1));
-    leave = std::min(leave, std::max(t0, t1));
-  }
-  if (!(enter < leave)) return;
-
-  std::int32_t voxel[3], step[3];
-  double plane_t[3];
-  const auto next_plane = [&](int a) {
-    if (step[a] == 0) return kNever;
-    const std::int32_t plane = step[a] > 0 ? voxel[a] + 1 : voxel[a];
-    return (plane * voxel_size - ray.origin[a]) * inverse[a];
+  const HalfLine line(ray.origin / voxel_size, ray.direction);
+  const auto corner = [](Index3 v) {
+    return std::array<double, 3>{static_cast<double>(v.x), static_cast<double>(v.y),
+                                 static_cast<double>(v.z)};
   };
-  for (int a = 0; a < 3; ++a) {
-    const double index = std::floor((ray.origin[a] + ray.direction[a] * enter) / voxel_size);
-    voxel[a] = static_cast<std::int32_t>(
-        std::clamp(index, static_cast<double>(low[a]), static_cast<double>(high[a] - 1)));
-    step[a] = ray.direction[a] > 0 ? 1 : ray.direction[a] < 0 ? -1 : 0;
-    plane_t[a] = next_plane(a);
-  }
-
+  const std::array<double, 2> inside = line.inside({corner(lattice.min), corner(lattice.max)});
+  const double enter = std::max(inside[0], 0.0),
+               leave = std::min(inside[1], ray.reach / voxel_size);
+  if (!(enter < leave)) return;
   LineMarks::Block* block = nullptr;
   Index3 in_block{};
-  while (enter < leave) {
-    int axis = plane_t[0] <= plane_t[1] ? 0 : 1;
-    if (plane_t[2] < plane_t[axis]) axis = 2;
-    if (plane_t[axis] > enter) {  // a stretch of positive length
-      const Index3 v{voxel[0], voxel[1], voxel[2]};
-      if (block == nullptr || block_origin(v) != in_block) {
-        block = &marks.touch(lattice.key(v));
-        in_block = block_origin(v);
-      }
-      std::uint8_t& mark = (*block)[block_offset(v)];
-      mark =
-          std::max(mark, static_cast<std::uint8_t>(1 + miss_weight(ray.reach - enter, ray.taper)));
-      enter = plane_t[axis];
+  for (VoxelWalk walk(line, enter, lattice);
+       walk.from() < leave && lattice.contains(walk.voxel());) {
+    const Index3 v = walk.voxel();
+    const double begin = walk.from() * voxel_size;
+    if (!walk.leave<1>()) continue;
+    if (block == nullptr || block_origin(v) != in_block) {
+      block = &marks.touch(lattice.key(v));
+      in_block = block_origin(v);
     }
-    voxel[axis] += step[axis];
-    if (voxel[axis] < low[axis] || voxel[axis] >= high[axis]) return;
-    plane_t[axis] = next_plane(axis);
+    std::uint8_t& mark = (*block)[block_offset(v)];
+    mark = std::max(mark, static_cast<std::uint8_t>(1 + miss_weight(ray.reach - begin, ray.taper)));
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "viewgain/core/box.hpp"
+#include "viewgain/support/voxel_walk.hpp"
 
 namespace viewgain::detail {
 
@@ -20,35 +21,6 @@ namespace viewgain::detail {
   }
   return true;
 }
-
-/// A half-line, and what its intersections with boxes need.
-struct HalfLine {
-  Eigen::Vector3d origin;
-  Eigen::Vector3d direction;  ///< of any length but zero
-  Eigen::Vector3d inverse;    ///< 1 / direction; zero counts as a small positive number
-
-  HalfLine(const Eigen::Vector3d& from, const Eigen::Vector3d& along)
-      : origin(from), direction(along) {
-    constexpr double kTiny = 1e-300;
-    for (int k = 0; k < 3; ++k) {
-      inverse[k] = 1.0 / (std::abs(along[k]) < kTiny ? kTiny : along[k]);
-    }
-  }
-
-  /// Where its line is inside a box: from the first to the second, nowhere if the first is not
-  /// less. In units of the direction.
-  [[nodiscard]] std::array<double, 2> inside(const Box& box) const {
-    std::array<double, 2> t{-1e300, 1e300};
-    for (int k = 0; k < 3; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      const double a = (box.min[i] - origin[k]) * inverse[k];
-      const double b = (box.max[i] - origin[k]) * inverse[k];
-      t[0] = std::max(t[0], std::min(a, b));
-      t[1] = std::min(t[1], std::max(a, b));
-    }
-    return t;
-  }
-};
 
 /// A binary tree over axis-aligned boxes, to find those near a place. Items are numbered as the
 /// boxes were.

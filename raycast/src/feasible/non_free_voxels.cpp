@@ -9,8 +9,6 @@
 #include <optional>
 #include <tuple>
 
-#include "voxel_walk.hpp"
-
 namespace viewgain::detail {
 namespace {
 

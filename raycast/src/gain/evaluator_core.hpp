@@ -18,6 +18,7 @@
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/view_rays.hpp"
 
 namespace viewgain::detail {
 
@@ -48,6 +49,7 @@ struct Workspace {
   std::vector<SampledEnd> sampled_ends;
   std::vector<VoxelVisit> visits;
   std::vector<SurfaceShare> shares;
+  std::unique_ptr<ViewScratch> scratch;        ///< of a gain that walks rays itself
   std::optional<GainAccumulator> accumulator;  ///< made when first needed
   std::uint64_t bound_to = 0;                  ///< number of the driver whose scene it sums for
 };

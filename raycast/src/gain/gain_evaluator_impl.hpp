@@ -17,4 +17,15 @@ struct GainEvaluator::Impl {
       : scene(std::move(s)), driver(*scene, std::move(core)) {}
 };
 
+namespace detail {
+
+/// The way into an evaluator for this module.
+struct EvaluatorAccess {
+  [[nodiscard]] static const ViewDriver& driver(const GainEvaluator& evaluator) {
+    return evaluator.impl_->driver;
+  }
+};
+
+}  // namespace detail
+
 }  // namespace viewgain

@@ -55,7 +55,6 @@ SurfaceView::SurfaceView(const SceneData& scene, const EvaluatorCore& core,
       tracer_(tracer),
       bricks_(scene.tracing->bricks()),
       walk_(walk_kernels(scene.tracing->kernels.isa)),
-      limits_(limits_of()),
       prior_information_(1.0 / (prior_sigma * prior_sigma)) {
   const double V = scene.snapshot.voxel_size;
   const double stride = core.config.pixel_stride;
@@ -63,37 +62,6 @@ SurfaceView::SurfaceView(const SceneData& scene, const EvaluatorCore& core,
   cap_ = static_cast<float>(stride * stride * std::numbers::pi * radius * radius / kLeastReadings);
   floor_variance_ = V * V;
   nats_per_area_ = entropy_of_new_voxel(core, prior_information_, floor_variance_) / (V * V);
-}
-
-WalkLimits SurfaceView::limits_of() const {
-  const GridSnapshot& snapshot = scene_.snapshot;
-  WalkLimits limits;
-  limits.workspace = {static_cast<float>(snapshot.dims.x), static_cast<float>(snapshot.dims.y),
-                      static_cast<float>(snapshot.dims.z)};
-  const std::optional<double>& plane = scene_.surroundings->support_plane;
-  if (!plane) return limits;
-  const Pose T_grid_world = snapshot.T_world_grid.inverse();
-  const Eigen::Vector3d normal = T_grid_world.rotation() * Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d base(snapshot.min_index.x, snapshot.min_index.y, snapshot.min_index.z);
-  const Eigen::Vector3d on_plane =
-      T_grid_world * Eigen::Vector3d(0, 0, *plane) / snapshot.voxel_size - base;
-  limits.has_plane = true;
-  for (Eigen::Index a = 0; a < 3; ++a) {
-    limits.normal[static_cast<std::size_t>(a)] = static_cast<float>(normal[a]);
-  }
-  limits.height = static_cast<float>(normal.dot(on_plane));
-  return limits;
-}
-
-void SurfaceView::set_up(const PoseFrame& frame, std::size_t number, const RayTile& rays,
-                         WalkTask& task) const {
-  task.rays = rays;
-  if (rays.has_far) {
-    std::copy_n(rays.far, kTileRays, task.far);
-  } else {
-    std::fill_n(task.far, kTileRays, frame.max_range);
-  }
-  task.solid_angle = &tracer_.table().solid_angle[number * kTileRays];
 }
 
 Index3 SurfaceView::voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) const {
@@ -149,12 +117,13 @@ double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, std::uin
     return area;
   }
   double sum = 0;  // [voxels²]
+  const WalkLimits limits = walk_limits(scene_, frame);
   WalkTask task;
   WalkedTile walked;
   trace_rays(frame, workspace, [&](std::size_t number, const RayTile& rays) {
     if (rays.hit == 0) return;
-    set_up(frame, number, rays, task);
-    walk_.area(bricks_, frame, limits_, task, cap_, walked);
+    set_up(tracer_.table(), number, frame, rays, task);
+    walk_.area(bricks_, limits, task, cap_, walked);
     sum += area_of(rays, walked);
     if (by_lane != nullptr) {
       for_each_lane(rays.hit, [&](int lane) {
@@ -265,9 +234,9 @@ double SurfaceView::saturated_gain(Index3 voxel, const SymmetricMatrix3& informa
 void SurfaceView::find_visits(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                               Workspace& workspace) const {
   WalkTask task;
-  set_up(frame, number, rays, task);
+  set_up(tracer_.table(), number, frame, rays, task);
   workspace.visits.clear();
-  walk_.visits(bricks_, frame, limits_, task, workspace.visits);
+  walk_.visits(bricks_, walk_limits(scene_, frame), task, workspace.visits);
   // A packet's rays take turns; each ray's visits are in order.
   std::stable_sort(workspace.visits.begin(), workspace.visits.end(),
                    [](const VoxelVisit& a, const VoxelVisit& b) { return a.lane < b.lane; });

@@ -79,9 +79,6 @@ class SurfaceView {
                    Workspace& workspace) const;
   void find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                    Workspace& workspace) const;
-  [[nodiscard]] WalkLimits limits_of() const;
-  void set_up(const PoseFrame& frame, std::size_t number, const RayTile& rays,
-              WalkTask& task) const;
   [[nodiscard]] double area_of(const RayTile& rays, WalkedTile& tile) const;
   /// Does the ray come to an occupied voxel, in table coordinates, from behind?
   [[nodiscard]] bool is_behind(const RayTile& rays, int lane, Index3 at) const;
@@ -92,7 +89,6 @@ class SurfaceView {
   const ViewTracer& tracer_;
   const BrickTable& bricks_;
   const WalkKernels& walk_;
-  WalkLimits limits_;
   float cap_;  // the most that a ray counts for [voxels²]
   double prior_information_, floor_variance_, nats_per_area_;
 };

@@ -3,22 +3,17 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "viewgain/grid/grid_snapshot.hpp"
 #include "viewgain/grid/hazard.hpp"
+#include "viewgain/support/brick_index.hpp"
 
 namespace viewgain::detail {
 
-/// What rays need that go on through unknown voxels: states and hazard, found by place. Nodes of
-/// 128³ voxels have 16³ entries, one for each brick of 8³ voxels; a node that is free throughout,
-/// or unknown with the far rate, has no entries of its own.
-///
-/// Table coordinates count voxels from the lowest voxel of the workspace's lowest brick, where the
-/// first node begins too; the workspace's lowest voxel is `offset`, in 0..7 along each axis.
-struct BrickTable {
+/// What rays need that go on through unknown voxels: states and hazard, found by place.
+struct BrickTable : BrickIndex {
   /// Kinds of entries, in the two highest bits. The rest: edge of the largest aligned free cube
   /// round the brick [voxels], 8 to 128; else the brick's slot.
   static constexpr std::uint32_t kFree = 0, kUnknown = 1, kMixed = 2;
@@ -31,13 +26,9 @@ struct BrickTable {
   static constexpr std::uint32_t kFreeVoxel = 0, kUnknownVoxel = 1, kOccupiedVoxel = 2;
   static constexpr std::uint32_t kAllUnknown = 0x5555;
 
-  std::array<std::int32_t, 3> offset{};
-  std::array<std::int32_t, 3> nodes{};      ///< along x, y, z
-  double pooling_length = 1;                ///< [voxels]: Pooling::length
-  int rate_shift = 0;                       ///< rates are by cubes of 2^rate_shift voxels
-  std::vector<std::uint32_t> node_entries;  ///< first entry of each node, x-major
-  std::vector<std::uint32_t> entries;       ///< 4096 a node, x-major
-  std::vector<std::uint32_t> states;        ///< 64 a mixed brick, by slot; slots begin with those
+  double pooling_length = 1;          ///< [voxels]: Pooling::length
+  int rate_shift = 0;                 ///< rates are by cubes of 2^rate_shift voxels
+  std::vector<std::uint32_t> states;  ///< 64 a mixed brick, by slot; slots begin with those
   /// 8^(3 - rate_shift) a slot [1/voxel]; with the sign bit set where surface is not new.
   std::vector<float> rates;
 
@@ -51,15 +42,9 @@ struct BrickTable {
   [[nodiscard]] Eigen::Vector3f normal_at(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
   [[nodiscard]] std::uint64_t bytes() const {
-    return (node_entries.size() + entries.size() + states.size() + normals.size()) *
-               sizeof(std::uint32_t) +
+    return BrickIndex::bytes() + (states.size() + normals.size()) * sizeof(std::uint32_t) +
            rates.size() * sizeof(float);
   }
-
- private:
-  /// Index into `entries` of the brick of a voxel in table coordinates.
-  [[nodiscard]] std::size_t entry_index(std::int32_t x, std::int32_t y, std::int32_t z) const;
-  friend class BrickTableMaker;
 };
 
 }  // namespace viewgain::detail

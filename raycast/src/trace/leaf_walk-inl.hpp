@@ -19,9 +19,9 @@
 
 #include <hwy/highway.h>
 
-#include "lanes-inl.hpp"
 #include "ray_tile.hpp"
 #include "scene/scene_data.hpp"
+#include "viewgain/support/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {

@@ -2,23 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "ray_tile.hpp"
 #include "scene/brick_table.hpp"
+#include "scene/scene_data.hpp"
 #include "viewgain/core/isa.hpp"
+#include "viewgain/support/walk_task.hpp"
 
 namespace viewgain::detail {
-
-/// Where the rays of a view may go: between these [voxels], beside the range limits of the frame.
-struct WalkLimits {
-  std::array<float, 3> workspace{};  ///< its size along x, y, z, from (0, 0, 0) on
-  bool has_plane = false;            ///< a support plane, at which rays that go down end
-  std::array<float, 3> normal{};     ///< of the plane, grid frame, unit length, upwards
-  float height = 0;                  ///< of the plane along the normal
-};
 
 /// What the rays of a tile meet, and where they end. Lengths in voxels, areas in voxels².
 struct alignas(64) WalkedTile {
@@ -43,23 +36,23 @@ struct VoxelVisit {
   float rate;            ///< [1/voxel], as in BrickTable::rates; unknown voxels only
 };
 
-/// A traced tile whose rays that hit a voxel are to be walked on, from where they hit it.
-struct alignas(64) WalkTask {
-  RayTile rays;
-  float far[kTileRays];      ///< where each ray must end [voxels]
-  const float* solid_angle;  ///< what each ray stands for [sr]
-};
-
 /// Walks rays through the bricks in order, through unknown voxels to the first occupied one or the
 /// end of what is to be seen.
 struct WalkKernels {
   /// `cap`: the most that P is multiplied by.
-  void (*area)(const BrickTable& table, const PoseFrame& frame, const WalkLimits& limits,
-               const WalkTask& task, float cap, WalkedTile& out);
+  void (*area)(const BrickTable& table, const WalkLimits& limits, const WalkTask& task, float cap,
+               WalkedTile& out);
   /// The same voxel by voxel: appends what the rays of a tile visit, each ray's in order.
-  void (*visits)(const BrickTable& table, const PoseFrame& frame, const WalkLimits& limits,
-                 const WalkTask& task, std::vector<VoxelVisit>& out);
+  void (*visits)(const BrickTable& table, const WalkLimits& limits, const WalkTask& task,
+                 std::vector<VoxelVisit>& out);
 };
+
+/// Where a view's rays may go in a scene.
+[[nodiscard]] WalkLimits walk_limits(const SceneData& scene, const PoseFrame& frame);
+
+/// A tile's rays that end in a voxel, to be walked on from there, as far as is known.
+void set_up(const TileTable& table, std::size_t number, const PoseFrame& frame, const RayTile& rays,
+            WalkTask& task);
 
 /// Kernels of an instruction set that the CPU supports.
 [[nodiscard]] const WalkKernels& walk_kernels(Isa isa);

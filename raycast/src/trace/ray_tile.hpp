@@ -8,13 +8,9 @@
 
 #include "viewgain/core/camera.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/support/walk_task.hpp"
 
 namespace viewgain::detail {
-
-/// Rays are traced in tiles of 4×4 pixels, whatever the packet width of the CPU, so that every
-/// instruction set meets the hits in the same order.
-inline constexpr int kTileEdge = 4;
-inline constexpr int kTileRays = kTileEdge * kTileEdge;
 
 /// Of so many pixels every stride-th, the first included.
 [[nodiscard]] inline int strided(int pixels, int stride) { return (pixels - 1) / stride + 1; }

@@ -71,6 +71,19 @@ class ViewTracer {
     }
   }
 
+  /// Calls visit(tile number, RayTile) for all tiles of the view, in order, as they are before any
+  /// voxel is looked at: only `far` is known, if there are obstacles.
+  template <typename Visit>
+  void place(const PoseFrame& frame, Visit&& visit) const {
+    if (frame.sees_nothing) return;
+    RayTile rays;
+    for (std::size_t tile = 0; tile < table().tile_count; ++tile) {
+      kernels_.begin(table(), frame, tile, rays);
+      if (scene_.has_obstacles) ask_first(frame, rays);
+      visit(tile, std::as_const(rays));
+    }
+  }
+
   [[nodiscard]] const TileTable& table() const { return rays_->table; }
 
  private:

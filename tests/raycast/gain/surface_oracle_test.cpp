@@ -127,6 +127,44 @@ TEST_P(SurfaceOracle, AgreesUnderEachInstructionSet) {
   EXPECT_GT(exact, checks / 3);
 }
 
+// Rays from a corner of the lattice through others, which touch many voxels for no length: whatever
+// the other rays of a packet are in meanwhile, a ray is worth what it is worth alone.
+TEST(SurfaceLanes, ARayGainsTheSameAlone) {
+  test::Random random(17);
+  std::vector<Index3> unknown;
+  const auto any = [&] { return test::uniform_int(random, 0, 31); };
+  for (int i = 0; i < 20000; ++i) unknown.push_back({any(), any(), any()});
+  BeliefGrid grid = test::sparse_map({32, 32, 32}, unknown, VoxelState::unknown);
+  for (int i = 0; i < 20; ++i) {
+    test::set_occupied_with_belief(grid, {any(), any(), any()}, random);
+  }
+  constexpr int kWidth = 9, kHeight = 7;
+  for (int shift = 0; shift < 4; ++shift) {
+    const auto scene =
+        VoxelScene::build(grid, {}, {.num_threads = 1}, random_hazard(grid, 20 + shift, random));
+    const auto area = [&](int width, int height, int u, int v, const Pose& pose) {
+      Sensor sensor = test::lattice_sensor(width, height);
+      sensor.camera.cx = test::lattice_sensor(kWidth, kHeight).camera.cx - u;
+      sensor.camera.cy = test::lattice_sensor(kWidth, kHeight).camera.cy - v;
+      const GainEvaluator evaluator(scene, sensor, {.model = GainModel::surface},
+                                    {.num_threads = 1});
+      return evaluator.evaluate(pose).area;
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const bool positive : {false, true}) {
+        const Pose pose = test::axis_pose({16, 15, 17}, axis, positive);
+        double sum = 0;
+        for (int v = 0; v < kHeight; ++v) {
+          for (int u = 0; u < kWidth; ++u) sum += area(1, 1, u, v, pose);
+        }
+        EXPECT_GT(sum, 0);
+        EXPECT_NEAR(area(kWidth, kHeight, 0, 0, pose), sum, 1e-12 * sum)
+            << "cells of 2^" << shift << ", axis " << axis;
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Maps, SurfaceOracle, testing::ValuesIn(test::kMapFamilies),
                          test::family_name);
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "viewgain/raycast/classic_gains.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {

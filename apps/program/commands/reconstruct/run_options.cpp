@@ -13,8 +13,8 @@
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
-#include "viewgain/raycast/classic_gains.hpp"
 
 namespace viewgain::app {
 namespace {

@@ -11,7 +11,7 @@
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/json.hpp"
 #include "program/commands/score/score_options.hpp"
-#include "viewgain/raycast/classic_gains.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/support/columns/table.hpp"
 
 namespace viewgain::app {

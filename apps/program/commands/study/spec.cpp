@@ -15,7 +15,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
-#include "viewgain/raycast/classic_gains.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/hash64.hpp"
 #include "viewgain/support/toml_table.hpp"

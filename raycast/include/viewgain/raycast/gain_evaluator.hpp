@@ -25,6 +25,10 @@
 
 namespace viewgain {
 
+namespace detail {
+struct EvaluatorAccess;
+}
+
 /// A task weight for a part of the workspace: the paper's "selected parts".
 struct VIEWGAIN_EXPORT WeightRegion {
   Box box;            ///< grid frame [m]; a voxel belongs to it if its centre does
@@ -269,6 +273,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
 
  private:
   struct Impl;
+  friend struct detail::EvaluatorAccess;
   explicit GainEvaluator(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

@@ -34,7 +34,7 @@ struct VIEWGAIN_EXPORT Obstacles {
 struct VIEWGAIN_EXPORT Surroundings {
   Obstacles obstacles{};  ///< known ones
   /// Height z of a table without end [m]. Bodies stay above it. Rays of the surface, the combined
-  /// and the classic gains that go down end there.
+  /// and the literature's gains that go down end there.
   std::optional<double> support_plane{};
 };
 

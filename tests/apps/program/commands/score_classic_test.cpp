@@ -12,7 +12,7 @@
 #include "viewgain/core/generators.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/vdb_io.hpp"
-#include "viewgain/raycast/classic_gains.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 
 namespace viewgain {
 namespace {

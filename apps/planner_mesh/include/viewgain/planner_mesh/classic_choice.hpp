@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "viewgain/core/export.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
-#include "viewgain/raycast/classic_gains.hpp"
 
 namespace viewgain {
 

@@ -1,0 +1,238 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "classic_map_data.hpp"
+#include "gain_sums.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/support/text.hpp"
+#include "viewgain/support/view_rays.hpp"
+
+namespace viewgain {
+namespace detail {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+[[noreturn]] void reject(const std::string& what) {
+  throw Error(ErrorCode::invalid_argument, what);
+}
+
+void check_gains(const std::vector<ClassicGain>& gains) {
+  if (gains.empty()) reject("no classic gain is asked for");
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    if (std::find(gains.begin(), gains.begin() + static_cast<std::ptrdiff_t>(i), gains[i]) !=
+        gains.begin() + static_cast<std::ptrdiff_t>(i)) {
+      std::string text("the classic gain ");
+      reject(text.append(classic_gain_name(gains[i])).append(" is asked for twice"));
+    }
+  }
+}
+
+const ClassicConfig& checked(const ClassicConfig& config) {
+  check_gains(config.gains);
+  const double prior = config.unknown_prior;
+  if (!(prior >= 0 && prior <= 1)) {
+    reject("the unknown voxels' prior is " + short_text(prior) + "; it must be in 0..1");
+  }
+  if (config.semantics == GainSemantics::shipped &&
+      !(config.free_below >= 0 && config.free_below <= prior && prior <= config.occupied_above &&
+        config.occupied_above <= 1)) {
+    reject("thresholds " + short_text(config.free_below) + " and " +
+           short_text(config.occupied_above) + " must be in 0..1, on both sides of the prior " +
+           short_text(prior));
+  }
+  return config;
+}
+
+std::shared_ptr<const ClassicMap> checked(std::shared_ptr<const ClassicMap> map,
+                                          const ClassicConfig& config) {
+  if (!map) reject("the classic gains have no map");
+  const OcclusionKnown known = ClassicAccess::data(*map).occlusion;
+  for (const ClassicGain gain : config.gains) {
+    if (!needs_occlusion(gain) || known == OcclusionKnown::yes) continue;
+    std::string text(classic_gain_name(gain));
+    text.append(" needs to know what earlier views have left behind surfaces: ");
+    reject(text.append(known == OcclusionKnown::no_views
+                           ? "the map remembers no views"
+                           : "the sensor that the map's readings came from is not given"));
+  }
+  return map;
+}
+
+GainConfig rays_of(const ClassicConfig& config) {
+  return {.model = GainModel::paper,
+          .pixel_stride = config.pixel_stride,
+          .min_range = config.min_range,
+          .max_range = config.max_range};
+}
+
+// f(x; a): 0 at 0 and 1, 1 at a, two cubics without slope at these.
+double area_weight(double x, double a) {
+  if (x <= a) return (-2 * x / a + 3) * (x / a) * (x / a);
+  return (((-2 * x + 3 * (a + 1)) * x - 6 * a) * x + 3 * a - 1) / std::pow(a - 1, 3);
+}
+
+}  // namespace
+}  // namespace detail
+
+using namespace detail;
+
+struct ClassicGainEvaluator::Impl {
+  ClassicConfig config;
+  std::shared_ptr<const ClassicMap> map;
+  VoxelValues values;
+  GainEvaluator rays;
+
+  [[nodiscard]] const ClassicMapData& data() const { return ClassicAccess::data(*map); }
+};
+
+namespace {
+
+// Sums what the rays of views meet.
+class SumConsumer final : public RayConsumer {
+ public:
+  SumConsumer(const ClassicMapData& data, const ClassicConfig& config, const VoxelValues& values,
+              std::span<double> results, std::span<ViewStatus> statuses)
+      : data_(data),
+        gains_(config.gains),
+        view_{data.table, values, 2 * data.occlusion_depth,
+              config.semantics == GainSemantics::shipped,
+              std::any_of(gains_.begin(), gains_.end(),
+                          [](ClassicGain gain) {
+                            return gain == ClassicGain::unknown_count ||
+                                   gain == ClassicGain::surface_frontier_count;
+                          })},
+        kernels_(classic_kernels(select_isa())),
+        results_(results),
+        statuses_(statuses) {}
+
+  [[nodiscard]] std::unique_ptr<ViewScratch> make_scratch() const override {
+    return std::make_unique<Scratch>();
+  }
+  void begin(ViewScratch& scratch) const override {
+    auto& own = static_cast<Scratch&>(scratch);
+    own.sums = {};
+    if (view_.is_distinct) own.distinct.begin(data_.table);
+  }
+  void add(const WalkLimits& limits, const WalkTask& task, ViewScratch& scratch) const override {
+    auto& own = static_cast<Scratch&>(scratch);
+    kernels_.add(view_, limits, task, own.sums, own.distinct);
+  }
+  void finish(std::size_t i, const ViewGain& view, ViewScratch& scratch) const override {
+    if (!statuses_.empty()) statuses_[i] = view.status;
+    if (view.status == ViewStatus::bad_pose) return;
+    for (std::size_t g = 0; g < gains_.size(); ++g) {
+      results_[i * gains_.size() + g] =
+          view.status == ViewStatus::camera_in_occupied
+              ? 0.0
+              : value(gains_[g], static_cast<Scratch&>(scratch), view);
+    }
+  }
+
+ private:
+  struct Scratch final : ViewScratch {
+    ClassicSums sums;
+    DistinctVoxels distinct;
+  };
+
+  [[nodiscard]] double value(ClassicGain gain, const Scratch& scratch, const ViewGain& view) const {
+    const ClassicSums& sums = scratch.sums;
+    const double V = data_.scene->snapshot().voxel_size;
+    const auto share = [&](std::uint64_t rays) {
+      return view.rays == 0 ? 0.0 : static_cast<double>(rays) / static_cast<double>(view.rays);
+    };
+    switch (gain) {
+      case ClassicGain::occlusion_aware:
+        return sums.occlusion_aware;
+      case ClassicGain::unobserved_voxel:
+        return sums.unobserved;
+      case ClassicGain::average_entropy:
+        return sums.voxels > 0 ? sums.entropy / sums.voxels : 0.0;
+      case ClassicGain::rear_side_voxel:
+        return static_cast<double>(sums.rear_side);
+      case ClassicGain::rear_side_entropy:
+        return sums.rear_side_entropy;
+      case ClassicGain::proximity_count:
+        return sums.proximity;
+      case ClassicGain::area_factor:
+        return area_weight(share(sums.on_surface), 0.2) + area_weight(share(sums.on_hidden), 0.8);
+      case ClassicGain::unknown_volume:
+        return sums.volume * V * V * V;
+      case ClassicGain::unknown_count:
+        return static_cast<double>(scratch.distinct.count());
+      case ClassicGain::surface_frontier_count:
+        return static_cast<double>(scratch.distinct.frontiers());
+    }
+    return kNaN;
+  }
+
+  const ClassicMapData& data_;
+  const std::vector<ClassicGain>& gains_;
+  ClassicView view_;
+  const ClassicKernels& kernels_;
+  std::span<double> results_;
+  std::span<ViewStatus> statuses_;
+};
+
+}  // namespace
+
+ClassicGainEvaluator::ClassicGainEvaluator(std::shared_ptr<const ClassicMap> map,
+                                           const Sensor& sensor, const ClassicConfig& config,
+                                           const ExecConfig& exec) {
+  map = checked(std::move(map), checked(config));
+  GainEvaluator rays(ClassicAccess::data(*map).scene, sensor, rays_of(config), exec);
+  impl_ =
+      std::make_unique<Impl>(Impl{config, std::move(map), VoxelValues(config), std::move(rays)});
+}
+ClassicGainEvaluator::ClassicGainEvaluator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+ClassicGainEvaluator::~ClassicGainEvaluator() = default;
+ClassicGainEvaluator::ClassicGainEvaluator(ClassicGainEvaluator&&) noexcept = default;
+ClassicGainEvaluator& ClassicGainEvaluator::operator=(ClassicGainEvaluator&&) noexcept = default;
+
+ClassicGainEvaluator ClassicGainEvaluator::with_map(std::shared_ptr<const ClassicMap> map) const {
+  map = checked(std::move(map), config());
+  GainEvaluator rays = impl_->rays.with_scene(ClassicAccess::data(*map).scene);
+  return ClassicGainEvaluator(
+      std::make_unique<Impl>(Impl{config(), std::move(map), impl_->values, std::move(rays)}));
+}
+
+std::size_t ClassicGainEvaluator::evaluate(std::span<const Pose> T_world_camera,
+                                           std::span<double> results,
+                                           std::span<ViewStatus> statuses,
+                                           const BatchControl& control) const {
+  const std::size_t poses = T_world_camera.size(), gains = config().gains.size();
+  if (results.size() != poses * gains) {
+    reject(std::to_string(poses) + " poses of " + std::to_string(gains) + " gains but room for " +
+           std::to_string(results.size()) + " results");
+  }
+  if (!statuses.empty() && statuses.size() != poses) {
+    reject(std::to_string(poses) + " poses but room for " + std::to_string(statuses.size()) +
+           " statuses");
+  }
+  std::fill(results.begin(), results.end(), kNaN);
+  std::fill(statuses.begin(), statuses.end(), ViewStatus::bad_pose);
+  const SumConsumer consumer(impl_->data(), config(), impl_->values, results, statuses);
+  return for_each_view_rays(impl_->rays, T_world_camera, /*from_occupied=*/false, consumer,
+                            control);
+}
+
+std::vector<double> ClassicGainEvaluator::evaluate(std::span<const Pose> T_world_camera) const {
+  std::vector<double> results(T_world_camera.size() * config().gains.size());
+  evaluate(T_world_camera, results);
+  return results;
+}
+
+const ClassicConfig& ClassicGainEvaluator::config() const noexcept { return impl_->config; }
+const ClassicMap& ClassicGainEvaluator::map() const noexcept { return *impl_->map; }
+std::size_t ClassicGainEvaluator::rays_per_pose() const noexcept {
+  return impl_->rays.rays_per_pose();
+}
+int ClassicGainEvaluator::num_threads() const noexcept { return impl_->rays.num_threads(); }
+
+}  // namespace viewgain

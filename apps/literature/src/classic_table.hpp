@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "occlusion_steps.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/support/brick_index.hpp"
+#include "viewgain/support/log_odds_code.hpp"
+
+namespace viewgain::detail {
+
+/// What classic gains weigh of each voxel, found by place.
+struct ClassicTable : BrickIndex {
+  /// A word of 13 bits. A known voxel's begins with the code of its log-odds, an unknown one's has
+  /// kUnknown, its steps behind a measured surface and whether it is a surface frontier. Above
+  /// either the binary logarithm of the edge of the largest aligned cube round it whose values are
+  /// the same, 0 to 2 in a brick, 3 to kLargestShift else [voxels].
+  static constexpr std::uint32_t kCode = 0x7FU, kFrontier = 1, kUnknown = 0x200U;
+  static constexpr int kStepsShift = 1, kEdgeShift = 10;
+  static constexpr std::uint32_t kMostSteps = 255, kValue = 0x3FFU, kEdge = 7;
+  static constexpr unsigned kLargestShift = 5;
+  [[nodiscard]] static bool is_unknown(std::uint32_t word) { return (word & kUnknown) != 0; }
+  [[nodiscard]] static bool is_occupied(std::uint32_t word) {
+    return !is_unknown(word) && (word & kCode) > kZeroCode;
+  }
+  [[nodiscard]] static bool is_frontier(std::uint32_t word) {
+    return is_unknown(word) && (word & kFrontier) != 0;
+  }
+  [[nodiscard]] static std::uint32_t steps(std::uint32_t word) {
+    return is_unknown(word) ? word >> kStepsShift & kMostSteps : 0;
+  }
+  /// Edge of the cube [voxels].
+  [[nodiscard]] static std::int32_t edge(std::uint32_t word) {
+    return 1 << (word >> kEdgeShift & kEdge);
+  }
+
+  /// An entry is the word of all its brick's voxels with this bit, or its first index in `words`.
+  static constexpr std::uint32_t kUniform = 0x80000000U;
+
+  std::vector<std::uint16_t> words;  ///< 512 a mixed brick, by word_in_brick(); 512 of none first
+
+  /// Of the grid as it is. Throws Error(capacity).
+  explicit ClassicTable(const BeliefGrid& grid);
+
+  /// Puts the steps of unknown voxels in.
+  void add(const OcclusionSteps& steps);
+
+  /// Of a voxel of the workspace in table coordinates.
+  [[nodiscard]] std::uint32_t word(std::int32_t x, std::int32_t y, std::int32_t z) const {
+    const std::uint32_t entry = entries[entry_index(x, y, z)];
+    if ((entry & kUniform) != 0) return entry;
+    return words[entry + word_in_brick(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                       static_cast<std::uint32_t>(z))];
+  }
+  /// Words lie by cubes of 4³, in two cache lines each.
+  [[nodiscard]] static std::uint32_t word_in_brick(std::uint32_t x, std::uint32_t y,
+                                                   std::uint32_t z) {
+    return (x & 4U) << 6U | (y & 4U) << 5U | (z & 4U) << 4U | (x & 3U) << 4U | (y & 3U) << 2U |
+           (z & 3U);
+  }
+
+  [[nodiscard]] std::uint64_t bytes() const {
+    return BrickIndex::bytes() + words.size() * sizeof(std::uint16_t);
+  }
+
+ private:
+  std::uint16_t* own_words(Index3 brick);
+  void find_frontiers(const std::vector<Index3>& with_occupied);
+  void mark_frontiers(Index3 brick);
+  void find_cubes();
+};
+
+}  // namespace viewgain::detail
