@@ -93,10 +93,10 @@ bool sees(const SurfaceScene& scene, const SurfaceScene* surroundings, const Sen
   const double slack = 1e-4 * range;  // the sample's own triangle does not hide it
   const Eigen::Vector3d direction = sight / range;
   if (surroundings != nullptr &&
-      surroundings->intersect(eye, direction, range).range < range - slack) {
+      surroundings->intersect({eye, direction, range}).range < range - slack) {
     return false;
   }
-  return scene.intersect(eye, direction, range).range >= range - slack;
+  return scene.intersect({eye, direction, range}).range >= range - slack;
 }
 
 Truth::Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,

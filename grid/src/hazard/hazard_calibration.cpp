@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "map/rigid_view.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -69,9 +70,10 @@ HazardCalibration::HazardCalibration(const Sensor& sensor, std::optional<double>
 }
 
 void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const DepthFrame& frame,
-                              const Pose& T_world_camera) const {
+                              const Pose& T_world_camera_in) const {
   const PinholeCamera& camera = sensor_.camera;
   check_frame_size(frame, camera);
+  const Pose T_world_camera = detail::rigid_view(T_world_camera_in);
   if (hazard.voxel_size() != grid.voxel_size()) {
     throw Error(ErrorCode::invalid_argument,
                 "the hazard is of voxels of " + short_text(hazard.voxel_size()) +

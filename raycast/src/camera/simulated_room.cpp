@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulated_room.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace viewgain::detail {
@@ -16,27 +18,42 @@ double sphere_exit(const Eigen::Vector3d& origin, const Eigen::Vector3d& directi
   return -b + std::sqrt(b * b - c);
 }
 
-}  // namespace
-
-RayReturn SimulatedRoom::first_return(const Eigen::Vector3d& origin,
-                                      const Eigen::Vector3d& direction) const {
-  const SurfaceHit hit = object->intersect(origin, direction);
-  RayReturn first{hit.range, std::abs(hit.normal.dot(direction))};
-  if (surroundings) {
-    const SurfaceHit other = surroundings->intersect(origin, direction);
-    if (other.range < first.range) first = {other.range, std::abs(other.normal.dot(direction))};
-  }
-  if (background_radius > 0) {
-    const double wall = sphere_exit(origin, direction, background_radius);
+// The sphere and the table, where they are nearer.
+void meet_walls(const SimulatedRoom& room, const SurfaceRay& ray, RayReturn& first) {
+  const Eigen::Vector3d &origin = ray.origin, &direction = ray.direction;
+  if (room.background_radius > 0) {
+    const double wall = sphere_exit(origin, direction, room.background_radius);
     if (wall < first.range) {
-      first = {wall, std::abs((origin + wall * direction).dot(direction)) / background_radius};
+      first = {wall, std::abs((origin + wall * direction).dot(direction)) / room.background_radius};
     }
   }
-  if (support_plane) {
-    const double table = (*support_plane - origin.z()) / direction.z();  // NaN inside the plane
+  if (room.support_plane) {
+    const double table =
+        (*room.support_plane - origin.z()) / direction.z();  // NaN inside the plane
     if (table > 0 && table < first.range) first = {table, std::abs(direction.z())};
   }
-  return first;
+}
+
+}  // namespace
+
+void SimulatedRoom::first_returns(std::span<const SurfaceRay> rays,
+                                  std::span<RayReturn> returns) const {
+  constexpr std::size_t kAtOnce = 64;
+  std::array<SurfaceHit, kAtOnce> hits;
+  for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
+    const auto some = rays.subspan(first, std::min(kAtOnce, rays.size() - first));
+    const auto found = returns.subspan(first, some.size());
+    std::fill(found.begin(), found.end(), RayReturn{});
+    for (const SurfaceScene* scene : {object.get(), surroundings.get()}) {
+      if (scene == nullptr) continue;
+      scene->intersect(some, hits);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        if (!(hits[i].range < found[i].range)) continue;
+        found[i] = {hits[i].range, std::abs(hits[i].normal.dot(some[i].direction))};
+      }
+    }
+    for (std::size_t i = 0; i < some.size(); ++i) meet_walls(*this, some[i], found[i]);
+  }
 }
 
 }  // namespace viewgain::detail

@@ -6,13 +6,10 @@
 #include <bit>
 
 #include "scene/scene_data.hpp"
-#include "trace/obstacle_ranges.hpp"
 #include "trace/scene_tracing.hpp"
 
 namespace viewgain::detail {
 namespace {
-
-constexpr double kMaxPoseError = 1e-3, kMendPoseError = 1e-9;  // as ViewTracer's
 
 // Shortens a tile's rays to where they meet an obstacle; in single precision, as all tracing of
 // triangles.
@@ -32,7 +29,7 @@ void cut(const SceneData& data, const ClassicTable& table, const ClassicFrame& f
     far[lane] = static_cast<float>(std::min(tile.far[lane], 4 * kFarthestCamera));
   }
   const std::array<float, kTileRays> before = std::to_array(far);
-  cut_at_obstacles(*data.tracing->obstacles, single, rays, rays.valid, far);
+  data.tracing->obstacles->cut(single, rays, rays.valid, far);
   for (int lane = 0; lane < kTileRays; ++lane) {
     if (far[lane] < before[static_cast<std::size_t>(lane)]) {
       tile.far[lane] = std::min(tile.far[lane], static_cast<double>(far[lane]));
@@ -44,12 +41,10 @@ void cut(const SceneData& data, const ClassicTable& table, const ClassicFrame& f
 
 std::optional<ClassicFrame> classic_frame(const VoxelScene& scene, const ClassicTable& table,
                                           const Pose& T_world_camera) {
-  const double error = orthonormality_error(T_world_camera);
-  if (!(error <= kMaxPoseError)) return std::nullopt;
+  const std::optional<Pose> T_rigid = rigid_pose(T_world_camera);
+  if (!T_rigid) return std::nullopt;
   const GridSnapshot& snapshot = scene.snapshot();
-  const Pose T_grid_camera =
-      snapshot.T_world_grid.inverse() *
-      (error <= kMendPoseError ? T_world_camera : orthonormalized(T_world_camera));
+  const Pose T_grid_camera = snapshot.T_world_grid.inverse() * *T_rigid;
   const Eigen::Vector3d origin = T_grid_camera.translation() / snapshot.voxel_size -
                                  Eigen::Vector3d(table.base.x, table.base.y, table.base.z);
   const Eigen::Matrix3d R = T_grid_camera.rotation();
