@@ -9,22 +9,16 @@
 namespace viewgain::detail {
 namespace {
 
-// Where a ray from inside the sphere of radius r round the origin leaves it; outside: infinity,
-// then the room is not there.
-double sphere_exit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double r) {
-  const double b = origin.dot(direction);
-  const double c = origin.squaredNorm() - r * r;
-  if (c > 0) return std::numeric_limits<double>::infinity();
-  return -b + std::sqrt(b * b - c);
-}
-
 // The sphere and the table, where they are nearer.
 void meet_walls(const SimulatedRoom& room, const SurfaceRay& ray, RayReturn& first) {
   const Eigen::Vector3d &origin = ray.origin, &direction = ray.direction;
-  if (room.background_radius > 0) {
-    const double wall = sphere_exit(origin, direction, room.background_radius);
-    if (wall < first.range) {
-      first = {wall, std::abs((origin + wall * direction).dot(direction)) / room.background_radius};
+  if (const double r = room.background_radius; r > 0) {
+    const double b = origin.dot(direction), c = origin.squaredNorm() - r * r;
+    // From outside of the sphere it is not there; what is met inside is nearer than its wall.
+    if (c <= 0 && !(first.range * (first.range + 2 * b) + c < 0)) {
+      const double wall = -b + std::sqrt(b * b - c);
+      if (wall < first.range)
+        first = {wall, std::abs((origin + wall * direction).dot(direction)) / r};
     }
   }
   if (room.support_plane) {

@@ -113,13 +113,13 @@ struct SimulatedSensor::Impl {
     std::uint64_t frame_index = 0;
   };
 
-  // Rays (x, y, 1) of some pixels and what they meet.
+  // Rays of some pixels and what they meet.
   struct Bundle {
     std::vector<SurfaceRay> rays;
     std::vector<RayReturn> returns;
 
-    void add(const View& view, const Eigen::Vector3d& ray) {
-      rays.push_back({view.p_world, view.R_world_camera * (ray / ray.norm())});
+    void add(const View& view, const Eigen::Vector3d& ray_world) {
+      rays.push_back({view.p_world, ray_world * (1.0 / ray_world.norm())});
     }
     void trace(const detail::SimulatedRoom& room) {
       returns.resize(rays.size());
@@ -156,11 +156,14 @@ struct SimulatedSensor::Impl {
   // Adds a pixel's rays.
   void add_rays(const View& view, const PixelRays& pixel, const Eigen::Vector3d& center,
                 Bundle& bundle) const {
-    if (!pixel_model.mixes()) return bundle.add(view, center);
+    const Eigen::Matrix3d& R = view.R_world_camera;
+    const Eigen::Vector3d center_world = R * center;
+    if (!pixel_model.mixes()) return bundle.add(view, center_world);
+    const Eigen::Vector3d along_u = R * pixel.along_u, along_v = R * pixel.along_v;
     const int n = config.sub_rays;
     for (int j = 0; j < n; ++j) {
-      const Eigen::Vector3d row = center + ((j + 0.5) / n - 0.5) * pixel.along_v;
-      for (int i = 0; i < n; ++i) bundle.add(view, row + ((i + 0.5) / n - 0.5) * pixel.along_u);
+      const Eigen::Vector3d row = center_world + ((j + 0.5) / n - 0.5) * along_v;
+      for (int i = 0; i < n; ++i) bundle.add(view, row + ((i + 0.5) / n - 0.5) * along_u);
     }
   }
 
@@ -175,8 +178,9 @@ struct SimulatedSensor::Impl {
     std::vector<RayReturn> centers;
     bundle.rays.clear();
     if (config.lateral_noise) {
-      for_each_pixel(
-          [&](std::size_t i, const PixelRandom&) { bundle.add(view, pixels[i].center); });
+      for_each_pixel([&](std::size_t i, const PixelRandom&) {
+        bundle.add(view, view.R_world_camera * pixels[i].center);
+      });
       bundle.trace(room);
       centers.swap(bundle.returns);
       bundle.rays.clear();

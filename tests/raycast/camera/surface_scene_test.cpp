@@ -6,6 +6,9 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <span>
+#include <vector>
 
 #include "raycast/scene_makers.hpp"
 #include "surface_makers.hpp"
@@ -47,6 +50,52 @@ TEST(SurfaceScene, MissesAndRespectsMaxRange) {
   EXPECT_EQ(scene.intersect({origin, Eigen::Vector3d::UnitZ(), 0.999}).range,
             std::numeric_limits<double>::infinity());
   EXPECT_NEAR(scene.intersect({origin, Eigen::Vector3d::UnitZ(), 1.001}).range, 1.0, 1e-6);
+}
+
+// Rays from all round at a ball, which many miss: together, each by itself, and with the world's
+// origin far away.
+TEST(SurfaceScene, RaysAreWhatEachIsByItselfWhereverTheOriginIs) {
+  const Eigen::Vector3d utm(500'000, 4'500'000, 400);
+  const TriangleMesh ball = test::sphere(0.3, 40);
+  TriangleMesh moved = ball;
+  for (auto& v : moved.vertices) {
+    for (std::size_t k = 0; k < 3; ++k) v[k] += utm[static_cast<Eigen::Index>(k)];
+  }
+  const SurfaceScene scene(ball), far_scene(moved);
+  test::Random random(2);
+  std::vector<SurfaceRay> rays;
+  for (int i = 0; i < 1003; ++i) {
+    const Eigen::Vector3d eye = test::random_rigid(random, 1).translation();
+    const Eigen::Vector3d target = 0.5 * test::random_rigid(random, 1).translation();
+    rays.push_back({eye, (target - eye).normalized(), i % 3 == 0 ? 0.4 : 10.0});
+  }
+  std::vector<SurfaceHit> hits(rays.size()), far_hits(rays.size());
+  const auto blocked = std::make_unique<bool[]>(rays.size());
+  scene.intersect(rays, hits);
+  scene.block(rays, {blocked.get(), rays.size()});
+  std::vector<SurfaceRay> far_rays = rays;
+  for (SurfaceRay& ray : far_rays) ray.origin += utm;
+  far_scene.intersect(far_rays, far_hits);
+  int met = 0, at_edges = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const SurfaceHit alone = scene.intersect(rays[i]);
+    ASSERT_EQ(blocked[i], std::isfinite(hits[i].range));
+    ASSERT_EQ(std::isfinite(alone.range), std::isfinite(hits[i].range));
+    met += blocked[i] ? 1 : 0;
+    if (std::isfinite(far_hits[i].range) != blocked[i]) {
+      ++at_edges;
+    } else if (blocked[i]) {
+      ASSERT_NEAR(hits[i].range, alone.range, 1e-6);
+      ASSERT_NEAR(far_hits[i].range, alone.range, 2e-6);
+      const Eigen::Vector3d p = rays[i].origin + hits[i].range * rays[i].direction;
+      ASSERT_NEAR(std::abs(hits[i].normal.dot(p.normalized())), 1, 4e-3);
+    }
+  }
+  EXPECT_GT(met, 200);
+  EXPECT_LT(met, 900);
+  EXPECT_LE(at_edges, 2);
+  EXPECT_THROW(scene.intersect(rays, std::span(hits).first(3)), Error);
+  EXPECT_THROW(scene.block(rays, {blocked.get(), 3}), Error);
 }
 
 TEST(SurfaceScene, KeepsItsOwnCopyAndRefusesBadMeshes) {
