@@ -287,11 +287,11 @@ RgbImage render(const PaintedMesh& scene, const PinholeCamera& camera, const Pos
              (v + 1 == rows || renderer.is_smooth(*here, here[columns]));
     };
     pool.for_each_chunk((last - first) * columns, kAtOnce, [&](std::size_t begin, std::size_t end) {
-      const std::size_t offset = first * columns;
+      const std::size_t offset = first * columns + begin;
       std::vector<std::size_t> edges;
       std::vector<Renderer::Look> looks;
-      std::vector<Renderer::Shade> shades;
-      for (std::size_t i = offset + begin; i < offset + end; ++i) {
+      std::vector<Renderer::Shade> shades;  // whose seeds count the samples of all pixels
+      for (std::size_t i = offset; i < offset + end - begin; ++i) {
         if (is_smooth(i)) {
           shades.push_back({&centers[i - top * columns], kSmoothSkyRays, kSamples * i});
           continue;
@@ -304,25 +304,18 @@ RgbImage render(const PaintedMesh& scene, const PinholeCamera& camera, const Pos
       }
       std::vector<Renderer::Sample> samples(looks.size());
       renderer.sample(looks, samples);
+      const std::size_t smooth = shades.size();
       for (std::size_t k = 0; k < samples.size(); ++k) {
         shades.push_back(
             {&samples[k], kEdgeSkyRays, kSamples * edges[k / kSamples] + k % kSamples});
       }
       const std::vector<Vector3d> colors = renderer.colors(shades);
-      std::size_t smooth = 0, edge = 0;
-      for (std::size_t i = offset + begin; i < offset + end; ++i) {
-        Vector3d color;
-        if (edge < edges.size() && edges[edge] == i) {
-          const auto at =
-              colors.end() - static_cast<std::ptrdiff_t>(kSamples * (edges.size() - edge));
-          color = std::accumulate(at, at + kSamples, Vector3d(Vector3d::Zero())) / kSamples;
-          ++edge;
-        } else {
-          color = colors[smooth++];
-        }
-        for (std::size_t k = 0; k < 3; ++k) {
-          image.pixels[3 * i + k] = encoded(color[static_cast<Eigen::Index>(k)]);
-        }
+      std::vector<Vector3d> pixels(end - begin, Vector3d::Zero());
+      for (std::size_t k = 0; k < shades.size(); ++k) {
+        pixels[shades[k].seed / kSamples - offset] += colors[k] / (k < smooth ? 1 : kSamples);
+      }
+      for (std::size_t i = 0; i < 3 * pixels.size(); ++i) {
+        image.pixels[3 * offset + i] = encoded(pixels[i / 3][static_cast<Eigen::Index>(i % 3)]);
       }
     });
   }

@@ -43,12 +43,6 @@ void check(const TriangleMesh& mesh) {
   }
 }
 
-void check_room(std::size_t rays, std::size_t results) {
-  if (rays <= results) return;
-  throw Error(ErrorCode::invalid_argument, "there is room for " + std::to_string(results) +
-                                               " results of " + std::to_string(rays) + " rays");
-}
-
 std::uint32_t lanes_of(std::size_t count) { return (1U << count) - 1U; }
 
 }  // namespace
@@ -106,7 +100,6 @@ SurfaceScene::SurfaceScene(SurfaceScene&&) noexcept = default;
 SurfaceScene& SurfaceScene::operator=(SurfaceScene&&) noexcept = default;
 
 void SurfaceScene::intersect(std::span<const SurfaceRay> rays, std::span<SurfaceHit> hits) const {
-  check_room(rays.size(), hits.size());
   TriangleRays packet;
   for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, rays.size() - first);
@@ -130,7 +123,6 @@ SurfaceHit SurfaceScene::intersect(const SurfaceRay& ray) const {
 }
 
 void SurfaceScene::block(std::span<const SurfaceRay> rays, std::span<bool> blocked) const {
-  check_room(rays.size(), blocked.size());
   TriangleRays packet;
   for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, rays.size() - first);

@@ -169,7 +169,7 @@ TEST(HazardCalibration, EarlierFramesFade) {
 
 TEST(HazardCalibration, PosesThatAreALittleOffAreMended) {
   const Sensor sensor = looking();
-  BeliefGrid mended = unknown_cube(), grid = unknown_cube();
+  BeliefGrid mended = unknown_cube({}, {0, 0, 0}), grid = unknown_cube({}, {0, 0, 0});
   const HazardField field(grid.snapshot(), {.object_size = 0.35});
   Eigen::Matrix3d R = kFromFront.rotation();
   R.col(0) += 9e-4 * R.col(1);

@@ -43,16 +43,15 @@ class VIEWGAIN_EXPORT SurfaceScene {
   SurfaceScene(SurfaceScene&&) noexcept;
   SurfaceScene& operator=(SurfaceScene&&) noexcept;
 
-  /// First hits in (0, max_range], hit i of ray i. Checks nothing but that there is room: throws
-  /// Error(invalid_argument) if there are more rays than hits. Fastest if rays that follow on one
-  /// another start and look alike, since 4 to 16 are traced together; O(log n) of the triangles a
-  /// ray.
+  /// First hits in (0, max_range], hit i of ray i; as many as rays. Checks nothing. Fastest if rays
+  /// that follow on one another start and look alike, since 4 to 16 are traced together; O(log n)
+  /// of the triangles a ray.
   void intersect(std::span<const SurfaceRay> rays, std::span<SurfaceHit> hits) const;
   /// The same of one ray.
   [[nodiscard]] SurfaceHit intersect(const SurfaceRay& ray) const;
 
   /// Whether rays meet anything in (0, max_range], whatever it is, as it takes for shadows. Faster
-  /// than first hits, and rays may look anywhere. Throws as intersect().
+  /// than first hits, and rays may look anywhere. As many answers as rays; checks nothing.
   void block(std::span<const SurfaceRay> rays, std::span<bool> blocked) const;
 
   /// The triangles that are traced.
