@@ -104,6 +104,19 @@ TEST(Orthonormality, LeavesWhatIsNotFinite) {
   EXPECT_EQ(orthonormalized(pose), pose);
 }
 
+TEST(Orthonormality, APoseIsRigidAsItIsOrMendedOrNotAtAll) {
+  RandomValues random(6);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Matrix3d R = random.rotation();
+    const auto off_by = [&](double error) { return Pose{(1 + 0.5 * error) * R, {1, 2, 3}}; };
+    EXPECT_EQ(rigid_pose(off_by(5e-10)), off_by(5e-10));
+    EXPECT_EQ(rigid_pose(off_by(5e-9)), orthonormalized(off_by(5e-9)));
+    EXPECT_EQ(rigid_pose(off_by(0.99e-3)), orthonormalized(off_by(0.99e-3)));
+    EXPECT_EQ(rigid_pose(off_by(1.01e-3)), std::nullopt);
+  }
+  EXPECT_EQ(rigid_pose({Eigen::Matrix3d::Identity(), {0, kInfinity, 0}}), std::nullopt);
+}
+
 // The camera's frame, derived without cross products: z towards the target, image-up the part of
 // `up` that is left across z.
 void expect_looks(const Pose& pose, const Eigen::Vector3d& eye, const Eigen::Vector3d& target,

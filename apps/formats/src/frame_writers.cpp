@@ -151,7 +151,6 @@ RecordedFramesWriter::RecordedFramesWriter(const fs::path& dir)
 void RecordedFramesWriter::write_frame(std::uint64_t number, const GrayImage& depth,
                                        const Pose& T_world_camera,
                                        const std::optional<GrayImage>& amplitude) {
-  constexpr double kRigid = 1e-3;
   const std::string image = frame_name(number, kDepthSuffix);
   const auto refuse = [&](const std::string& what) {
     throw Error(ErrorCode::invalid_argument, image + ": " + what);
@@ -163,7 +162,7 @@ void RecordedFramesWriter::write_frame(std::uint64_t number, const GrayImage& de
   if (amplitude && (amplitude->width != depth.width || amplitude->height != depth.height)) {
     refuse("the amplitudes are of another size");
   }
-  if (!(orthonormality_error(T_world_camera) <= kRigid)) refuse("the pose is no rigid transform");
+  if (!rigid_pose(T_world_camera)) refuse("the pose is no rigid transform");
   const auto& m = T_world_camera.m;
   std::string text;
   for (std::size_t i = 0; i < m.size(); ++i) {

@@ -52,12 +52,10 @@ std::vector<std::size_t> OracleChoice::uncovered_in_view(
   ThreadPool pool(exec_.num_threads);
   pool.for_each_chunk(candidates.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Pose& pose = candidates[i].T_world_camera;
-      counts[i] = static_cast<std::size_t>(
-          std::count_if(uncovered.begin(), uncovered.end(), [&](const SurfaceSample& sample) {
-            return sees(*object_.mesh, object_.simulation.surroundings.get(), sensor_, pose, sample,
-                        kLeastCosine);
-          }));
+      std::vector<std::uint8_t> seen(uncovered.size());
+      mark_seen(*object_.mesh, object_.simulation.surroundings.get(), sensor_,
+                candidates[i].T_world_camera, kLeastCosine, uncovered, seen);
+      counts[i] = static_cast<std::size_t>(std::count(seen.begin(), seen.end(), 1));
     }
   });
   return counts;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <numbers>
 #include <optional>
 
@@ -81,22 +82,32 @@ std::vector<Pose> looking_poses(const VisibilityConfig& config, const Sensor& se
 
 }  // namespace
 
-bool sees(const SurfaceScene& scene, const SurfaceScene* surroundings, const Sensor& sensor,
-          const Pose& T_world_camera, const SurfaceSample& sample, double least_cosine) {
+void mark_seen(const SurfaceScene& scene, const SurfaceScene* surroundings, const Sensor& sensor,
+               const Pose& T_world_camera, double least_cosine,
+               std::span<const SurfaceSample> samples, std::span<std::uint8_t> seen) {
   const Eigen::Vector3d eye = T_world_camera.translation();
-  const Eigen::Vector3d sight = sample.position - eye;
-  const double range = sight.norm();
-  if (!(range > sensor.min_range && range < sensor.max_range)) return false;
-  if (std::abs(sight.dot(sample.normal)) < least_cosine * range) return false;
-  const Eigen::Vector3d p_camera = T_world_camera.inverse() * sample.position;
-  if (!sensor.camera.sees(p_camera)) return false;
-  const double slack = 1e-4 * range;  // the sample's own triangle does not hide it
-  const Eigen::Vector3d direction = sight / range;
-  if (surroundings != nullptr &&
-      surroundings->intersect(eye, direction, range).range < range - slack) {
-    return false;
+  const Pose T_camera_world = T_world_camera.inverse();
+  std::vector<SurfaceRay> rays;
+  std::vector<std::size_t> asked;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (seen[i] != 0) continue;
+    const SurfaceSample& sample = samples[i];
+    const Eigen::Vector3d sight = sample.position - eye;
+    const double range = sight.norm();
+    if (!(range > sensor.min_range && range < sensor.max_range)) continue;
+    if (std::abs(sight.dot(sample.normal)) < least_cosine * range) continue;
+    if (!sensor.camera.sees(T_camera_world * sample.position)) continue;
+    // The sample's own triangle does not hide it.
+    rays.push_back({eye, sight / range, range * (1 - 1e-4)});
+    asked.push_back(i);
   }
-  return scene.intersect(eye, direction, range).range >= range - slack;
+  const auto hidden = std::make_unique<bool[]>(2 * rays.size());
+  const std::span all(hidden.get(), 2 * rays.size());
+  scene.block(rays, all.first(rays.size()));
+  if (surroundings != nullptr) surroundings->block(rays, all.last(rays.size()));
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    if (!all[k] && !all[rays.size() + k]) seen[asked[k]] = 1;
+  }
 }
 
 Truth::Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
@@ -107,15 +118,11 @@ Truth::Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
   const std::vector<SurfaceSample>& samples = truth_.samples();
   visible_.resize(samples.size());
   ThreadPool pool(exec.num_threads);
-  pool.for_each_chunk(samples.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      for (const Pose& pose : poses) {
-        if (!sees(*scene, config.surroundings.get(), sensor, pose, samples[i], kMinCosine)) {
-          continue;
-        }
-        visible_[i] = 1;
-        break;
-      }
+  pool.for_each_chunk(samples.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (const Pose& pose : poses) {
+      mark_seen(*scene, config.surroundings.get(), sensor, pose, kMinCosine,
+                std::span(samples).subspan(begin, end - begin),
+                std::span(visible_).subspan(begin, end - begin));
     }
   });
 }

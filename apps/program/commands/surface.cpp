@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -77,11 +78,11 @@ std::vector<std::uint8_t> seen_samples(const GroundTruth& truth, const SurfaceSc
   const std::vector<SurfaceSample>& samples = truth.samples();
   std::vector<std::uint8_t> seen(samples.size());
   ThreadPool pool(exec.num_threads);
-  pool.for_each_chunk(samples.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      seen[i] = std::any_of(views.begin(), views.end(), [&](const Pose& view) {
-        return sees(mesh, nullptr, sensor, view, samples[i], std::cos(kSteepest));
-      });
+  pool.for_each_chunk(samples.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (const Pose& view : views) {
+      mark_seen(mesh, nullptr, sensor, view, std::cos(kSteepest),
+                std::span(samples).subspan(begin, end - begin),
+                std::span(seen).subspan(begin, end - begin));
     }
   });
   return seen;

@@ -16,7 +16,7 @@
 namespace viewgain::python {
 namespace {
 
-constexpr double kRigid = 1e-3;
+constexpr double kRigid = kMaxPoseError;
 
 std::string wanted_text(const Shape& wanted) {
   std::string text = "(";

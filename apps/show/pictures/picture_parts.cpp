@@ -75,7 +75,7 @@ std::uint8_t HeatPaints::at(double share) const {
   return paints_[static_cast<std::size_t>(std::lround(place))];
 }
 
-bool is_rigid(const Pose& pose) { return orthonormality_error(pose) < 1e-3; }
+bool is_rigid(const Pose& pose) { return rigid_pose(pose).has_value(); }
 
 std::array<Vector3d, 8> workspace_corners(const GridSnapshot& snapshot) {
   const Vector3d low(snapshot.min_index.x, snapshot.min_index.y, snapshot.min_index.z);
@@ -202,15 +202,16 @@ Vector3d viewer_beside(const Vector3d& view_eye, const Vector3d& view_target, Si
 
 Pose place_viewer(const std::vector<Vector3d>& points, const Vector3d& direction,
                   PinholeCamera& camera) {
-  constexpr double kFarthest = 1e6;  // [m]; the tracer's numbers have seven digits
+  constexpr double kWidest = 1e6;  // [m]; the tracer's numbers have seven digits
   Bounds bounds;
   for (const Vector3d& p : points) {
-    if (!(p.cwiseAbs().maxCoeff() < kFarthest)) {
+    bounds.add(p);
+    if (!p.allFinite() || !((bounds.max - bounds.min).maxCoeff() < kWidest)) {
       throw Error(ErrorCode::invalid_argument, "a picture cannot show a place at " +
                                                    short_text(p.x()) + ", " + short_text(p.y()) +
-                                                   ", " + short_text(p.z()) + " m");
+                                                   ", " + short_text(p.z()) +
+                                                   " m and one that is " + "1000 km away");
     }
-    bounds.add(p);
   }
   const Vector3d center = 0.5 * (bounds.min + bounds.max);
   const double radius = 0.5 * (bounds.max - bounds.min).norm();

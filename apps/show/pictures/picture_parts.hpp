@@ -109,7 +109,7 @@ enum class Side : std::uint8_t { counter_clockwise, clockwise };
                                             const Eigen::Vector3d& view_target, Side side);
 
 /// T_world_camera of a viewer in this direction (unit) who sees all `points`. Moves the principal
-/// point of `camera` to centre them. Throws Error(invalid_argument) for a point 1e6 m away or more.
+/// point of `camera` to centre them. Throws Error(invalid_argument) for points 1e6 m apart or more.
 [[nodiscard]] Pose place_viewer(const std::vector<Eigen::Vector3d>& points,
                                 const Eigen::Vector3d& direction, PinholeCamera& camera);
 

@@ -38,6 +38,13 @@ Pose orthonormalized(const Pose& pose) {
   return {U * svd.matrixV().transpose(), pose.translation()};
 }
 
+std::optional<Pose> rigid_pose(const Pose& pose) {
+  constexpr double kUnnoticed = 1e-9;
+  const double error = orthonormality_error(pose);
+  if (!(error <= kMaxPoseError)) return std::nullopt;
+  return error <= kUnnoticed ? pose : orthonormalized(pose);
+}
+
 Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up) {
   if (!eye.allFinite() || !target.allFinite() || !up.allFinite()) {
     throw Error(ErrorCode::invalid_argument, "look_at: a number is not finite");

@@ -119,7 +119,7 @@ void Sensor::validate() const {
          short_text(working_distance));
   }
   std::visit([](const auto& model) { validate_noise(model); }, noise);
-  if (T_flange_camera && !(orthonormality_error(*T_flange_camera) <= 1e-3)) {
+  if (T_flange_camera && !rigid_pose(*T_flange_camera)) {
     fail("T_flange_camera is not a rigid transform");
   }
   if (body_size) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/text.hpp"
@@ -72,6 +73,10 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
                               const Pose& T_world_camera) const {
   const PinholeCamera& camera = sensor_.camera;
   check_frame_size(frame, camera);
+  const std::optional<Pose> T_rigid = rigid_pose(T_world_camera);
+  if (!T_rigid) {
+    throw Error(ErrorCode::invalid_argument, "the frame's pose is not a rigid transform");
+  }
   if (hazard.voxel_size() != grid.voxel_size()) {
     throw Error(ErrorCode::invalid_argument,
                 "the hazard is of voxels of " + short_text(hazard.voxel_size()) +
@@ -79,7 +84,7 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
   }
   if (!hazard.follows_counters() || hazard.near_box().volume() == 0) return;
 
-  const Pose T_grid_camera = grid.T_world_grid().inverse() * T_world_camera;
+  const Pose T_grid_camera = grid.T_world_grid().inverse() * *T_rigid;
   const Eigen::Vector3d eye = T_grid_camera.translation();
   const Box workspace = grid.workspace();
   const HazardModel& model = hazard.model();
@@ -95,8 +100,8 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
   };
   const auto sees_plane = [&](const Eigen::Vector3d& p_camera, double range) {
     if (!support_plane_) return false;
-    const Eigen::Vector3d p = T_world_camera * p_camera;
-    const double rise = (p.z() - T_world_camera.translation().z()) / range;
+    const Eigen::Vector3d p = *T_rigid * p_camera;
+    const double rise = (p.z() - T_rigid->translation().z()) / range;
     return is_of_plane(p.z() - *support_plane_, rise, sensor_.sigmas(range, std::abs(rise)));
   };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rigid_view.hpp"
 
+#include <optional>
 #include <string>
 
 #include "viewgain/core/error.hpp"
@@ -10,14 +11,12 @@
 namespace viewgain::detail {
 
 Pose rigid_view(const Pose& T_world_camera) {
-  constexpr double kTolerance = 1e-3;
-  constexpr double kOrthonormal = 1e-12;  // rotations nearer to orthonormal are taken as they are
-  const double error = orthonormality_error(T_world_camera);
-  if (!(error <= kTolerance)) {
-    throw Error(ErrorCode::invalid_argument,
-                "camera pose is not rigid: its rotation is off by " + short_text(error));
+  const std::optional<Pose> rigid = rigid_pose(T_world_camera);
+  if (!rigid) {
+    throw Error(ErrorCode::invalid_argument, "camera pose is not rigid: its rotation is off by " +
+                                                 short_text(orthonormality_error(T_world_camera)));
   }
-  return error <= kOrthonormal ? T_world_camera : orthonormalized(T_world_camera);
+  return *rigid;
 }
 
 }  // namespace viewgain::detail

@@ -6,8 +6,8 @@
 
 namespace viewgain::detail {
 
-/// A camera's pose as a map keeps it: orthonormalised if it is off by less than 1e-3. Throws
-/// Error(invalid_argument) if it is off by more or not finite.
+/// A camera's pose as a map takes it, rigid_pose(). Throws Error(invalid_argument) if there is
+/// none.
 [[nodiscard]] Pose rigid_view(const Pose& T_world_camera);
 
 }  // namespace viewgain::detail

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -38,11 +39,12 @@ class EdgeClassifier {
                  const std::function<bool(std::size_t, const Eigen::Vector3d&)>& sees)
       : sensor_(sensor), min_cosine_(std::cos(max_view_angle)), sees_(sees) {
     for (std::size_t i = 0; i < views.size(); ++i) {
-      if (!(orthonormality_error(views[i]) <= 1e-3)) {
+      const std::optional<Pose> view = rigid_pose(views[i]);
+      if (!view) {
         throw Error(ErrorCode::invalid_argument,
                     "view " + std::to_string(i) + " is not a rigid transform");
       }
-      const Pose T_camera_world = orthonormalized(views[i]).inverse();
+      const Pose T_camera_world = view->inverse();
       axes_.push_back({T_camera_world, T_camera_world.rotation(), views[i].translation()});
     }
   }

@@ -4,10 +4,12 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -19,7 +21,7 @@
 namespace viewgain {
 namespace {
 
-constexpr std::size_t kRayChunk = 1024;
+constexpr std::size_t kRayChunk = 256;
 
 }  // namespace
 
@@ -52,26 +54,35 @@ void ObstacleView::mark(DepthFrame& frame, const Pose& T_world_camera) const {
   const Impl& m = *impl_;
   frame.known_depth.clear();
   check_frame_size(frame, m.sensor.camera);
-  if (!(orthonormality_error(T_world_camera) <= 1e-3)) {
+  const std::optional<Pose> T_rigid = rigid_pose(T_world_camera);
+  if (!T_rigid) {
     throw Error(ErrorCode::invalid_argument, "the frame's pose is not a rigid transform");
   }
   if (!m.scene) return;
   frame.known_depth.assign(m.rays.size(), DepthFrame::kOutOfRange);
-  const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
-  const Eigen::Vector3d eye = T_world_camera.translation();
+  const Eigen::Matrix3d R_world_camera = T_rigid->rotation();
+  const Eigen::Vector3d eye = T_rigid->translation();
   m.pool.for_each_chunk(m.rays.size(), kRayChunk, [&](std::size_t begin, std::size_t end) {
+    std::array<SurfaceRay, kRayChunk> rays;
+    std::array<SurfaceHit, kRayChunk> hits;
+    std::array<std::size_t, kRayChunk> pixels;
+    std::size_t count = 0;
     for (std::size_t i = begin; i < end; ++i) {
       if (!m.rays[i].allFinite()) continue;
-      const double norm = m.rays[i].norm();  // range per depth
-      const Eigen::Vector3d direction = R_world_camera * m.rays[i] / norm;
-      const SurfaceHit hit = m.scene->intersect(eye, direction);
+      rays[count] = {eye, R_world_camera * m.rays[i] / m.rays[i].norm()};
+      pixels[count++] = i;
+    }
+    m.scene->intersect(std::span(rays).first(count), hits);
+    for (std::size_t k = 0; k < count; ++k) {
+      const SurfaceHit& hit = hits[k];
       if (!std::isfinite(hit.range)) continue;
-      const double cosine = std::abs(hit.normal.dot(direction));
+      const double cosine = std::abs(hit.normal.dot(rays[k].direction));
       // Along the ray; at a graze all before the obstacle may be a reading of it.
       const double sigma = sigma_along_normal(m.sensor.sigmas(hit.range, cosine), cosine) /
                            std::max(cosine, kMinCosIncidence);
       const double from = std::max(0.0, hit.range - kKnownSigmas * sigma);
-      frame.known_depth[i] = static_cast<float>(from / norm);
+      const std::size_t i = pixels[k];
+      frame.known_depth[i] = static_cast<float>(from / m.rays[i].norm());  // range per depth
     }
   });
 }

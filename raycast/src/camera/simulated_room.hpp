@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "viewgain/raycast/surface_scene.hpp"
 
@@ -24,9 +24,8 @@ struct SimulatedRoom {
   std::optional<double> support_plane;               ///< height of a table without end [m]
   std::shared_ptr<const SurfaceScene> surroundings;  ///< may be null
 
-  /// The first return of a ray along the unit direction, world frame.
-  [[nodiscard]] RayReturn first_return(const Eigen::Vector3d& origin,
-                                       const Eigen::Vector3d& direction) const;
+  /// The first returns of rays, which go on for ever, world frame; as many as there are rays.
+  void first_returns(std::span<const SurfaceRay> rays, std::span<RayReturn> returns) const;
 };
 
 }  // namespace viewgain::detail

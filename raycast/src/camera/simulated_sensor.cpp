@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -25,6 +26,7 @@ using detail::RayReturn;
 
 constexpr int kMaxSubRays = 16;
 constexpr std::size_t kPixelChunk = 1024;
+constexpr std::size_t kRaysAtOnce = 256;  // or those of one pixel
 
 void check(const Sensor& sensor, const SimulationConfig& config) {
   sensor.validate();
@@ -40,13 +42,6 @@ void check(const Sensor& sensor, const SimulationConfig& config) {
   }
   if (config.support_plane && !std::isfinite(*config.support_plane)) {
     fail("support plane " + short_text(*config.support_plane) + " m is not finite");
-  }
-}
-
-void check_pose(const Pose& T_world_camera) {
-  if (!(orthonormality_error(T_world_camera) <= 1e-3)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the simulated sensor's pose is not a rigid transform");
   }
 }
 
@@ -118,16 +113,26 @@ struct SimulatedSensor::Impl {
     std::uint64_t frame_index = 0;
   };
 
-  [[nodiscard]] RayReturn trace(const View& view, const Eigen::Vector3d& ray) const {
-    return room.first_return(view.p_world, view.R_world_camera * (ray / ray.norm()));
-  }
+  // Rays of some pixels and what they meet.
+  struct Bundle {
+    std::vector<SurfaceRay> rays;
+    std::vector<RayReturn> returns;
 
-  // By how much the pixel's rays (x, y, 1) move, all alike, when it looks beside its place.
-  [[nodiscard]] Eigen::Vector3d displacement(const View& view, const Eigen::Vector3d& ray,
+    void add(const View& view, const Eigen::Vector3d& ray_world) {
+      rays.push_back({view.p_world, ray_world * (1.0 / ray_world.norm())});
+    }
+    void trace(const detail::SimulatedRoom& room) {
+      returns.resize(rays.size());
+      room.first_returns(rays, returns);
+    }
+  };
+
+  // By how much a pixel's rays move, all alike, when it looks beside its place. `center`: what the
+  // ray of its centre meets.
+  [[nodiscard]] Eigen::Vector3d displacement(const RayReturn& center, const Eigen::Vector3d& ray,
                                              const PixelRandom& random) const {
     const double length = ray.norm();
     const Eigen::Vector3d direction = ray / length;
-    const RayReturn center = trace(view, ray);
     const bool nothing = !(center.range <= sensor.max_range);
     const double range = nothing ? sensor.max_range : std::max(center.range, kMinNoiseRange);
     const double sigma = sensor.noise_sigmas(range, nothing ? 1.0 : center.cos_incidence).lateral;
@@ -148,38 +153,59 @@ struct SimulatedSensor::Impl {
     return pixel_model.mixes() ? n * n : 1;
   }
 
-  // `hits`: room for the returns of a pixel's rays.
-  [[nodiscard]] Pixel pixel(const View& view, std::size_t index, std::span<RayReturn> hits,
-                            PixelTruth* truth) const {
-    const PixelRays& rays = pixels[index];
-    if (truth != nullptr) *truth = {};
-    if (!rays.center.allFinite()) return {};
-    const PixelRandom random(config.seed, view.frame_index, index);
-    Eigen::Vector3d center = rays.center;
-    if (config.lateral_noise) center += displacement(view, rays.center, random);
+  // Adds a pixel's rays.
+  void add_rays(const View& view, const PixelRays& pixel, const Eigen::Vector3d& center,
+                Bundle& bundle) const {
+    const Eigen::Matrix3d& R = view.R_world_camera;
+    const Eigen::Vector3d center_world = R * center;
+    if (!pixel_model.mixes()) return bundle.add(view, center_world);
+    const Eigen::Vector3d along_u = R * pixel.along_u, along_v = R * pixel.along_v;
+    const int n = config.sub_rays;
+    for (int j = 0; j < n; ++j) {
+      const Eigen::Vector3d row = center_world + ((j + 0.5) / n - 0.5) * along_v;
+      for (int i = 0; i < n; ++i) bundle.add(view, row + ((i + 0.5) / n - 0.5) * along_u);
+    }
+  }
 
-    PixelReading reading;
-    if (pixel_model.mixes()) {
-      const int n = config.sub_rays;
-      std::size_t k = 0;
-      for (int j = 0; j < n; ++j) {
-        const Eigen::Vector3d row = center + ((j + 0.5) / n - 0.5) * rays.along_v;
-        for (int i = 0; i < n; ++i) {
-          hits[k++] = trace(view, row + ((i + 0.5) / n - 0.5) * rays.along_u);
-        }
+  // Pixels [begin, end), all rays of which are traced together.
+  void acquire(const View& view, std::size_t begin, std::size_t end, Bundle& bundle,
+               DepthFrame& frame, PixelTruth* truth) const {
+    const auto for_each_pixel = [&](const auto& visit) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (pixels[i].center.allFinite()) visit(i, PixelRandom(config.seed, view.frame_index, i));
       }
-      reading = pixel_model.mixed(hits);
-    } else {
-      hits[0] = trace(view, center);
-      reading = pixel_model.single(hits[0]);
+    };
+    std::vector<RayReturn> centers;
+    bundle.rays.clear();
+    if (config.lateral_noise) {
+      for_each_pixel([&](std::size_t i, const PixelRandom&) {
+        bundle.add(view, view.R_world_camera * pixels[i].center);
+      });
+      bundle.trace(room);
+      centers.swap(bundle.returns);
+      bundle.rays.clear();
     }
-    const double length = rays.center.norm();
-    const Pixel result = measured(reading, length, random);
-    if (truth != nullptr) {
+    std::size_t k = 0;
+    for_each_pixel([&](std::size_t i, const PixelRandom& random) {
+      Eigen::Vector3d center = pixels[i].center;
+      if (config.lateral_noise) center += displacement(centers[k++], center, random);
+      add_rays(view, pixels[i], center, bundle);
+    });
+    bundle.trace(room);
+    k = 0;
+    for_each_pixel([&](std::size_t i, const PixelRandom& random) {
+      const auto hits = std::span<const RayReturn>(bundle.returns).subspan(k, rays_per_pixel());
+      k += hits.size();
+      const double length = pixels[i].center.norm();
+      const Pixel result =
+          measured(pixel_model.mixes() ? pixel_model.mixed(hits) : pixel_model.single(hits[0]),
+                   length, random);
+      frame.depth[i] = result.depth;
+      frame.amplitude[i] = result.amplitude;
+      if (truth == nullptr) return;
       const bool is_reading = result.depth > 0 && std::isfinite(result.depth);
-      *truth = truth_of(hits, is_reading ? result.depth * length : 0.0);
-    }
-    return result;
+      truth[i] = truth_of(hits, is_reading ? result.depth * length : 0.0);
+    });
   }
 
   [[nodiscard]] Pixel measured(PixelReading reading, double ray_length,
@@ -194,16 +220,21 @@ struct SimulatedSensor::Impl {
 
   [[nodiscard]] DepthFrame acquire(const Pose& T_world_camera, std::uint64_t frame_index,
                                    PixelTruth* truth) const {
-    const Pose pose = orthonormalized(T_world_camera);
-    const View view{pose.rotation(), pose.translation(), frame_index};
-    DepthFrame frame{sensor.camera.width, sensor.camera.height, std::vector<float>(pixels.size()),
+    const std::optional<Pose> pose = rigid_pose(T_world_camera);
+    if (!pose) {
+      throw Error(ErrorCode::invalid_argument,
+                  "the simulated sensor's pose is not a rigid transform");
+    }
+    const View view{pose->rotation(), pose->translation(), frame_index};
+    DepthFrame frame{sensor.camera.width, sensor.camera.height,
+                     std::vector<float>(pixels.size(), DepthFrame::kInvalid),
                      std::vector<float>(pixels.size())};
+    if (truth != nullptr) std::fill_n(truth, pixels.size(), PixelTruth{});
+    const std::size_t at_once = std::max<std::size_t>(1, kRaysAtOnce / rays_per_pixel());
     pool.for_each_chunk(pixels.size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
-      std::vector<RayReturn> hits(rays_per_pixel());
-      for (std::size_t i = begin; i < end; ++i) {
-        const Pixel result = pixel(view, i, hits, truth == nullptr ? nullptr : truth + i);
-        frame.depth[i] = result.depth;
-        frame.amplitude[i] = result.amplitude;
+      Bundle bundle;
+      for (std::size_t i = begin; i < end; i += at_once) {
+        acquire(view, i, std::min(i + at_once, end), bundle, frame, truth);
       }
     });
     return frame;
@@ -222,13 +253,11 @@ SimulatedSensor::SimulatedSensor(SimulatedSensor&&) noexcept = default;
 SimulatedSensor& SimulatedSensor::operator=(SimulatedSensor&&) noexcept = default;
 
 DepthFrame SimulatedSensor::acquire(const Pose& T_world_camera, std::uint64_t frame_index) const {
-  check_pose(T_world_camera);
   return impl_->acquire(T_world_camera, frame_index, nullptr);
 }
 
 DepthFrame SimulatedSensor::acquire(const Pose& T_world_camera, std::uint64_t frame_index,
                                     std::vector<PixelTruth>& truth) const {
-  check_pose(T_world_camera);
   truth.resize(impl_->pixels.size());
   return impl_->acquire(T_world_camera, frame_index, truth.data());
 }

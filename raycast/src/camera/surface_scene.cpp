@@ -3,88 +3,133 @@
 #include "viewgain/raycast/surface_scene.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "trace/device.hpp"
+#include "trace/triangle_scene.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/thread_pool.hpp"
 
 namespace viewgain {
+namespace {
+
+using detail::TriangleRays;
+using Eigen::Vector3d;
+
+constexpr std::size_t kAtOnce = TriangleRays::kCount;
+
+Vector3d corner(const TriangleMesh& mesh, std::uint32_t index) {
+  return Vector3d(mesh.vertices[index].data());
+}
+
+void check(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) throw Error(ErrorCode::invalid_argument, "the mesh has no triangles");
+  for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (!corner(mesh, i).cast<float>().allFinite()) {
+      throw Error(ErrorCode::invalid_argument, "the mesh has a vertex that is not finite");
+    }
+  }
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t index : triangle) {
+      if (index < mesh.vertices.size()) continue;
+      throw Error(ErrorCode::invalid_argument, "a triangle refers to vertex " +
+                                                   std::to_string(index) + " of " +
+                                                   std::to_string(mesh.vertices.size()));
+    }
+  }
+}
+
+std::uint32_t lanes_of(std::size_t count) { return (1U << count) - 1U; }
+
+}  // namespace
 
 struct SurfaceScene::Impl {
   TriangleMesh mesh;
-  detail::ScenePtr scene;
+  Vector3d middle;                // what is traced is relative to it
+  std::vector<Vector3d> normals;  // a triangle each
+  std::optional<detail::TriangleScene> scene;
+
+  // At most kAtOnce.
+  void load(std::span<const SurfaceRay> rays, TriangleRays& packet) const {
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
+      // Lanes that are not asked for repeat a ray.
+      const SurfaceRay& ray = rays[std::min(i, rays.size() - 1)];
+      const Vector3d origin = ray.origin - middle;
+      packet.ox[i] = static_cast<float>(origin.x());
+      packet.oy[i] = static_cast<float>(origin.y());
+      packet.oz[i] = static_cast<float>(origin.z());
+      packet.dx[i] = static_cast<float>(ray.direction.x());
+      packet.dy[i] = static_cast<float>(ray.direction.y());
+      packet.dz[i] = static_cast<float>(ray.direction.z());
+      packet.far[i] = static_cast<float>(ray.max_range);
+    }
+  }
 };
 
 SurfaceScene::SurfaceScene(TriangleMesh mesh, const ExecConfig& exec)
     : impl_(std::make_unique<Impl>()) {
-  if (mesh.triangles.empty()) throw Error(ErrorCode::invalid_argument, "the mesh has no triangles");
-  std::vector<float> vertices;
-  vertices.reserve(3 * mesh.vertices.size());
-  for (const auto& vertex : mesh.vertices) {
-    for (const double c : vertex) {
-      if (!std::isfinite(static_cast<float>(c))) {
-        throw Error(ErrorCode::invalid_argument, "the mesh has a vertex that is not finite");
-      }
-      vertices.push_back(static_cast<float>(c));
-    }
-  }
+  check(mesh);
+  (void)thread_count(exec.num_threads);
+  Eigen::AlignedBox3d box;
   std::vector<unsigned> indices;
   indices.reserve(3 * mesh.triangles.size());
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t index : triangle) {
-      if (index >= mesh.vertices.size()) {
-        throw Error(ErrorCode::invalid_argument, "a triangle refers to vertex " +
-                                                     std::to_string(index) + " of " +
-                                                     std::to_string(mesh.vertices.size()));
-      }
-      indices.push_back(index);
-    }
+  impl_->normals.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    const Vector3d a = corner(mesh, t[0]), b = corner(mesh, t[1]), c = corner(mesh, t[2]);
+    box.extend(a).extend(b).extend(c);
+    indices.insert(indices.end(), t.begin(), t.end());
+    impl_->normals.push_back((b - a).cross(c - a).normalized());
   }
+  impl_->middle = box.center();
+  std::vector<float> vertices;
+  vertices.reserve(3 * mesh.vertices.size());
+  for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Eigen::Vector3f p = (corner(mesh, i) - impl_->middle).cast<float>();
+    vertices.insert(vertices.end(), p.begin(), p.end());
+  }
+  impl_->scene.emplace(select_isa(), vertices, indices, "building the surface scene");
   impl_->mesh = std::move(mesh);
-  (void)thread_count(exec.num_threads);
-  RTCDevice device = detail::shared_device(select_isa());
-  impl_->scene.reset(rtcNewScene(device));
-  // Robust: no ray may slip between two triangles that share an edge.
-  rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(impl_->scene.get(), RTC_BUILD_QUALITY_HIGH);
-  detail::attach_triangles(device, impl_->scene.get(), 0, vertices.data(), vertices.size() / 3,
-                           indices.data(), indices.size() / 3);
-  detail::commit_scene(device, impl_->scene.get(), "building the surface scene");
 }
 
 SurfaceScene::~SurfaceScene() = default;
 SurfaceScene::SurfaceScene(SurfaceScene&&) noexcept = default;
 SurfaceScene& SurfaceScene::operator=(SurfaceScene&&) noexcept = default;
 
-SurfaceHit SurfaceScene::intersect(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                                   double max_range) const {
-  detail::RayQuery query(false);
-  RTCRayHit ray{};
-  ray.ray.org_x = static_cast<float>(origin.x());
-  ray.ray.org_y = static_cast<float>(origin.y());
-  ray.ray.org_z = static_cast<float>(origin.z());
-  ray.ray.dir_x = static_cast<float>(direction.x());
-  ray.ray.dir_y = static_cast<float>(direction.y());
-  ray.ray.dir_z = static_cast<float>(direction.z());
-  ray.ray.tnear = 0;
-  ray.ray.tfar = static_cast<float>(max_range);
-  ray.ray.mask = 0xFFFFFFFFU;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  detail::intersect1(impl_->scene.get(), &ray, &query);
+void SurfaceScene::intersect(std::span<const SurfaceRay> rays, std::span<SurfaceHit> hits) const {
+  TriangleRays packet;
+  for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, rays.size() - first);
+    impl_->load(rays.subspan(first, count), packet);
+    const std::uint32_t met = impl_->scene->meet(packet, lanes_of(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      SurfaceHit& hit = hits[first + i];
+      hit = {};
+      if ((met >> i & 1U) == 0) continue;
+      hit.range = static_cast<double>(packet.far[i]);
+      hit.triangle = packet.triangle[i];
+      hit.normal = impl_->normals[hit.triangle];
+    }
+  }
+}
+
+SurfaceHit SurfaceScene::intersect(const SurfaceRay& ray) const {
   SurfaceHit hit;
-  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
-  hit.range = static_cast<double>(ray.ray.tfar);
-  hit.triangle = ray.hit.primID;
-  const auto& corners = impl_->mesh.triangles[hit.triangle];
-  const auto vertex = [&](std::size_t i) {
-    return Eigen::Map<const Eigen::Vector3d>(impl_->mesh.vertices[corners[i]].data());
-  };
-  hit.normal = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)).normalized();
+  intersect(std::span(&ray, 1), std::span(&hit, 1));
   return hit;
+}
+
+void SurfaceScene::block(std::span<const SurfaceRay> rays, std::span<bool> blocked) const {
+  TriangleRays packet;
+  for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, rays.size() - first);
+    impl_->load(rays.subspan(first, count), packet);
+    const std::uint32_t met = impl_->scene->block(packet, lanes_of(count));
+    for (std::size_t i = 0; i < count; ++i) blocked[first + i] = (met >> i & 1U) != 0;
+  }
 }
 
 const TriangleMesh& SurfaceScene::mesh() const noexcept { return impl_->mesh; }

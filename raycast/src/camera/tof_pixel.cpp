@@ -42,19 +42,19 @@ PixelReading TofPixel::single(const RayReturn& hit) const {
 
 PixelReading TofPixel::mixed(std::span<const RayReturn> hits) const {
   const double per_metre = kTwoPi / unambiguous_range_;
+  // Phases relative to that of the first return: they are small, which is faster and loses less.
+  const auto first = std::find_if(hits.begin(), hits.end(),
+                                  [](const RayReturn& hit) { return std::isfinite(hit.range); });
+  if (first == hits.end()) return single(RayReturn{});
   double real = 0, imaginary = 0;
-  bool any = false;
-  for (const RayReturn& hit : hits) {
-    if (!std::isfinite(hit.range)) continue;
-    any = true;
-    const double phase = per_metre * hit.range;
-    const double amplitude = amplitude_of(hit);
+  for (auto hit = first; hit != hits.end(); ++hit) {
+    if (!std::isfinite(hit->range)) continue;
+    const double phase = per_metre * (hit->range - first->range);
+    const double amplitude = amplitude_of(*hit);
     real += amplitude * std::cos(phase);
     imaginary += amplitude * std::sin(phase);
   }
-  if (!any) return single(RayReturn{});
-  const double phase = std::atan2(imaginary, real);
-  const double range = folded(phase / per_metre);
+  const double range = folded(first->range + std::atan2(imaginary, real) / per_metre);
   const double amplitude = std::hypot(real, imaginary) / static_cast<double>(hits.size());
   return {range, std::min(1.0, amplitude * range * range), amplitude};
 }

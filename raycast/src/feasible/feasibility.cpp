@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "non_free_voxels.hpp"
 #include "obstacle_check.hpp"
 #include "oriented_box.hpp"
+#include "scene/scene_data.hpp"
 #include "sight_check.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/thread_pool.hpp"
@@ -23,7 +25,6 @@ namespace {
 
 using detail::OrientedBox;
 
-constexpr double kMaxPoseError = 1e-3;
 constexpr double kTouch = 1e-9;           // smaller overlaps are touching [m]
 constexpr std::size_t kPosesAtOnce = 16;  // that a thread takes
 
@@ -38,8 +39,7 @@ void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConf
       fail("the body's size must be positive and finite, not " + short_text(size));
     }
   }
-  if (config.body.T_flange_camera &&
-      !(orthonormality_error(*config.body.T_flange_camera) <= kMaxPoseError)) {
+  if (config.body.T_flange_camera && !rigid_pose(*config.body.T_flange_camera)) {
     fail("T_flange_camera is not a rigid transform");
   }
   if (!(std::isfinite(config.clearance) && config.clearance >= 0)) {
@@ -92,7 +92,7 @@ struct FeasibilityChecker::Impl {
              Eigen::Vector3d::Constant(config.clearance);
       T_camera_body = Pose(Eigen::Matrix3d::Identity(), {0, 0, -0.5 * depth});
       if (body.T_flange_camera) {
-        T_camera_body = orthonormalized(*body.T_flange_camera).inverse() *
+        T_camera_body = rigid_pose(*body.T_flange_camera)->inverse() *
                         Pose(Eigen::Matrix3d::Identity(), {0, 0, 0.5 * depth});
       }
       if (config.sensor && config.sensor->min_range > 0) {
@@ -129,11 +129,12 @@ struct FeasibilityChecker::Impl {
     return std::min(T_world_body.translation().z() - below, camera.z()) <= *plane + kTouch;
   }
 
-  [[nodiscard]] bool meets_obstacle(const Pose& T_world_body) const {
+  [[nodiscard]] bool meets_obstacle(const Pose& T_world_body, const Eigen::Vector3d& camera) const {
     if (obstacles->is_empty()) return false;
     const Eigen::Vector3d center = T_world_body.translation();
     return obstacles->overlaps(OrientedBox(center, T_world_body.rotation(), settings->half, kTouch),
-                               center);
+                               center) ||
+           obstacles->enclose(camera, kTouch);
   }
 
   [[nodiscard]] bool meets_voxel(const Pose& T_world_body, const Eigen::Vector3d& camera) const {
@@ -146,20 +147,19 @@ struct FeasibilityChecker::Impl {
   }
 
   [[nodiscard]] Infeasibility check(const Pose& T_world_camera, std::span<const Pose> taken) const {
-    if (!(orthonormality_error(T_world_camera) <= kMaxPoseError)) return Infeasibility::bad_pose;
+    const std::optional<Pose> T_rigid = rigid_pose(T_world_camera);
+    if (!T_rigid) return Infeasibility::bad_pose;
     const FeasibilityConfig& config = settings->config;
     if (!config.reach.contains(T_world_camera)) return Infeasibility::unreachable;
     if (is_among(T_world_camera, taken, config.taken_tolerance)) return Infeasibility::taken;
 
     const Eigen::Vector3d camera = T_world_camera.translation();
-    const Pose T_rigid = orthonormalized(T_world_camera);
-    const Pose T_world_body = T_rigid * settings->T_camera_body;
+    const Pose T_world_body = *T_rigid * settings->T_camera_body;
     if (meets_plane(T_world_body, camera)) return Infeasibility::plane;
-    if (meets_obstacle(T_world_body)) return Infeasibility::obstacle;
+    if (meets_obstacle(T_world_body, camera)) return Infeasibility::obstacle;
     if (meets_voxel(T_world_body, camera)) return Infeasibility::collision;
-    if (settings->sight &&
-        settings->sight->too_near(T_rigid, T_grid_world * T_rigid, scene->snapshot().voxel_size,
-                                  voxels, *obstacles)) {
+    if (settings->sight && settings->sight->too_near(T_grid_world * *T_rigid, voxels,
+                                                     detail::SceneAccess::data(*scene))) {
       return Infeasibility::too_near;
     }
     return Infeasibility::none;

@@ -123,20 +123,6 @@ std::optional<int> crossing(const Triangle& triangle, const Eigen::Vector3d& p) 
   return side[0] > 0 ? 1 : -1;
 }
 
-// Möller and Trumbore 1997, from either side.
-bool crosses(const HalfLine& ray, double range, const Triangle& triangle) {
-  const Eigen::Vector3d u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
-  const Eigen::Vector3d across = ray.direction.cross(v);
-  const double det = u.dot(across);
-  if (det == 0) return false;
-  const Eigen::Vector3d from = ray.origin - triangle[0];
-  const double a = from.dot(across) / det;
-  const Eigen::Vector3d other = from.cross(u);
-  const double b = ray.direction.dot(other) / det;
-  const double t = v.dot(other) / det;
-  return a >= 0 && b >= 0 && a + b <= 1 && t >= 0 && t <= range;
-}
-
 std::vector<Triangle> all_triangles(const Obstacles& obstacles) {
   std::vector<Triangle> triangles;
   for (const TriangleMesh& mesh : obstacles.meshes) {
@@ -190,17 +176,23 @@ bool ObstacleCheck::overlaps(const OrientedBox& body, const Eigen::Vector3d& bod
     return true;
   }
   // No triangle meets the body: it is inside a solid as a whole or not at all.
-  return std::any_of(solids_.begin(), solids_.end(),
-                     [&](const Solid& solid) { return encloses(solid, body_center); });
+  return is_in_mesh(body_center);
 }
 
-bool ObstacleCheck::block(const HalfLine& ray, double range) const {
-  for (const Box& box : boxes_) {
-    const auto [enter, leave] = ray.inside(box);
-    if (enter <= leave && leave >= 0 && (enter >= 0 ? enter : leave) <= range) return true;
-  }
-  return triangle_boxes_.any_along(
-      ray, range, [&](std::uint32_t i) { return crosses(ray, range, triangles_[i]); });
+bool ObstacleCheck::enclose(const Eigen::Vector3d& point, double touch) const {
+  const auto is_inside = [&](const Box& box) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double x = point[static_cast<Eigen::Index>(k)];
+      if (!(box.min[k] + touch < x && x < box.max[k] - touch)) return false;
+    }
+    return true;
+  };
+  return std::any_of(boxes_.begin(), boxes_.end(), is_inside) || is_in_mesh(point);
+}
+
+bool ObstacleCheck::is_in_mesh(const Eigen::Vector3d& point) const {
+  return std::any_of(solids_.begin(), solids_.end(),
+                     [&](const Solid& solid) { return encloses(solid, point); });
 }
 
 }  // namespace viewgain::detail

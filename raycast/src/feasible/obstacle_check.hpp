@@ -24,9 +24,8 @@ class ObstacleCheck {
 
   [[nodiscard]] bool overlaps(const OrientedBox& body, const Eigen::Vector3d& body_center) const;
 
-  /// Whether the surface of one crosses a ray, whose direction has unit length, within `range` of
-  /// its origin.
-  [[nodiscard]] bool block(const HalfLine& ray, double range) const;
+  /// Whether a point is inside of a solid, of a box by more than `touch` [m].
+  [[nodiscard]] bool enclose(const Eigen::Vector3d& point, double touch) const;
 
  private:
   using Triangle = std::array<Eigen::Vector3d, 3>;
@@ -36,6 +35,7 @@ class ObstacleCheck {
     std::uint32_t first, last;
   };
   [[nodiscard]] bool encloses(const Solid& solid, const Eigen::Vector3d& point) const;
+  [[nodiscard]] bool is_in_mesh(const Eigen::Vector3d& point) const;
 
   std::vector<Box> boxes_;
   std::vector<Triangle> triangles_;

@@ -3,14 +3,40 @@
 #include "sight_check.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <optional>
+#include <cstdint>
+#include <numeric>
+#include <span>
+
+#include "trace/scene_tracing.hpp"
 
 namespace viewgain::detail {
 namespace {
 
 constexpr int kStride = 8;  // of the pixels that stand for the view
 constexpr int kEdge = 4;    // rays a bundle and axis
+constexpr std::size_t kAtOnce = TriangleRays::kCount;
+static_assert(kEdge * kEdge == kAtOnce);
+
+// How much of a view ends near, as far as it is known.
+struct Tally {
+  double max_share;
+  std::size_t left;  // rays that were not looked at
+  std::size_t ends = 0, near = 0;
+
+  // Whether there are too many whatever the others do.
+  [[nodiscard]] bool is_too_near() const { return exceeds(ends + left); }
+  // Whether there are too many if no other ends in the map. Where not, and no other ends near,
+  // there never are.
+  [[nodiscard]] bool may_be_too_near() const { return exceeds(ends); }
+
+ private:
+  [[nodiscard]] bool exceeds(std::size_t of) const {
+    return static_cast<double>(near) > max_share * static_cast<double>(of);
+  }
+};
 
 }  // namespace
 
@@ -54,8 +80,9 @@ SightCheck::Bundle SightCheck::bundle_of(const std::vector<Eigen::Vector3d>& ray
   return bundle;
 }
 
-bool SightCheck::too_near(const Pose& T_world_camera, const Pose& T_grid_camera, double voxel_size,
-                          const NonFreeVoxels& voxels, const ObstacleCheck& obstacles) const {
+bool SightCheck::too_near(const Pose& T_grid_camera, const NonFreeVoxels& voxels,
+                          const SceneData& scene) const {
+  const double voxel_size = scene.snapshot.voxel_size;
   const Eigen::Matrix3d R_grid_camera = T_grid_camera.rotation();
   const Eigen::Vector3d tip = T_grid_camera.translation() / voxel_size;
   const double near_end = min_range_ / voxel_size, far_end = max_range_ / voxel_size;
@@ -75,47 +102,55 @@ bool SightCheck::too_near(const Pose& T_world_camera, const Pose& T_grid_camera,
   };
   if (!may_be_near(all_)) return false;
 
-  std::size_t ends = 0, near = 0, left = rays_.size();
-  const auto too_many = [&](std::size_t of) {
-    return static_cast<double>(near) > max_near_share_ * static_cast<double>(of);
-  };
-  // Where a ray ends, from `begin` on; nothing if it does not end in the map yet.
-  const auto end_of = [&](std::size_t ray, double begin, double end) -> std::optional<double> {
-    const double t = voxels.first_along(HalfLine(tip, R_grid_camera * rays_[ray]), begin, end);
-    return t <= end ? std::optional(t) : std::nullopt;
-  };
-  const auto count = [&](std::size_t ray, double t) {
-    --left;
-    if (obstacles.block({T_world_camera.translation(), T_world_camera.rotation() * rays_[ray]},
-                        t * voxel_size)) {
-      return;
+  // Counts those of at most kAtOnce rays that end from `begin` to `end`; visits the others.
+  Tally tally{max_near_share_, rays_.size()};
+  const Index3& base = scene.snapshot.min_index;
+  const Eigen::Vector3f tip_scene = (tip - Eigen::Vector3d(base.x, base.y, base.z)).cast<float>();
+  const auto count = [&](std::span<const std::size_t> rays, double begin, double end,
+                         const auto& visit) {
+    TriangleRays packet;
+    std::uint32_t ended = 0, is_near = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Eigen::Vector3d direction = R_grid_camera * rays_[rays[i]];
+      const double t = voxels.first_along(HalfLine(tip, direction), begin, end);
+      if (!(t <= end)) {
+        visit(rays[i]);
+        continue;
+      }
+      ended |= 1U << i;
+      is_near |= (t < near_end ? 1U : 0U) << i;
+      packet.ox[i] = tip_scene.x(), packet.oy[i] = tip_scene.y(), packet.oz[i] = tip_scene.z();
+      packet.dx[i] = static_cast<float>(direction.x());
+      packet.dy[i] = static_cast<float>(direction.y());
+      packet.dz[i] = static_cast<float>(direction.z());
+      packet.far[i] = static_cast<float>(t);
     }
-    ++ends;
-    near += t < near_end ? 1U : 0U;
+    tally.left -= static_cast<std::size_t>(std::popcount(ended));
+    if (scene.has_obstacles && ended != 0) {
+      ended &= ~scene.tracing->obstacles->triangles().block(packet, ended);
+    }
+    tally.ends += static_cast<std::size_t>(std::popcount(ended));
+    tally.near += static_cast<std::size_t>(std::popcount(ended & is_near));
   };
   std::vector<std::size_t> farther;  // rays that do not end near
   for (const Bundle& bundle : bundles_) {
-    const bool is_near = may_be_near(bundle);
-    for (std::size_t ray = bundle.first; ray < bundle.first + bundle.count; ++ray) {
-      const std::optional<double> t = is_near ? end_of(ray, 0, near_end) : std::nullopt;
-      if (!t) {
-        farther.push_back(ray);
-        continue;
-      }
-      count(ray, *t);
-      if (too_many(ends + left)) return true;
+    std::array<std::size_t, kAtOnce> rays{};
+    const auto own = std::span(rays).first(bundle.count);
+    std::iota(own.begin(), own.end(), bundle.first);
+    if (!may_be_near(bundle)) {
+      farther.insert(farther.end(), own.begin(), own.end());
+      continue;
     }
+    count(own, 0, near_end, [&](std::size_t ray) { farther.push_back(ray); });
+    if (tally.is_too_near()) return true;
   }
-  for (const std::size_t ray : farther) {
-    if (!too_many(ends)) return false;
-    if (const std::optional<double> t = end_of(ray, near_end, far_end)) {
-      count(ray, *t);
-    } else {
-      --left;
-    }
-    if (too_many(ends + left)) return true;
+  for (std::size_t first = 0; first < farther.size(); first += kAtOnce) {
+    if (!tally.may_be_too_near()) return false;
+    const auto some = std::span(farther).subspan(first, std::min(kAtOnce, farther.size() - first));
+    count(some, near_end, far_end, [&](std::size_t) { --tally.left; });
+    if (tally.is_too_near()) return true;
   }
-  return too_many(ends);
+  return tally.may_be_too_near();
 }
 
 }  // namespace viewgain::detail

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "non_free_voxels.hpp"
-#include "obstacle_check.hpp"
+#include "scene/scene_data.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 
@@ -22,10 +22,10 @@ class SightCheck {
   SightCheck(const Sensor& sensor, double max_near_share);
 
   /// Of a camera whose rotation is orthonormal. Most views have nothing within min_range, which a
-  /// look at the blocks of voxels there tells; else rays are traced until the answer is clear.
-  [[nodiscard]] bool too_near(const Pose& T_world_camera, const Pose& T_grid_camera,
-                              double voxel_size, const NonFreeVoxels& voxels,
-                              const ObstacleCheck& obstacles) const;
+  /// look at the blocks of voxels there tells; else rays are traced until the answer is clear. Rays
+  /// that meet an obstacle before a voxel, in single precision, end there.
+  [[nodiscard]] bool too_near(const Pose& T_grid_camera, const NonFreeVoxels& voxels,
+                              const SceneData& scene) const;
 
  private:
   /// Rays next to each other, and a cone round them.

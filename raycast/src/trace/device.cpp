@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device.hpp"
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 
@@ -78,25 +77,6 @@ void check_device(RTCDevice device, const std::string& what) {
   }
   if (code != RTC_ERROR_NONE)
     throw Error(ErrorCode::backend, what + ": Embree: " + error_text(code));
-}
-
-void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, const float* vertices,
-                      std::size_t vertex_count, const unsigned* indices,
-                      std::size_t triangle_count) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertex_count));
-  auto* t = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), triangle_count));
-  if (v != nullptr && t != nullptr) {
-    std::copy_n(vertices, 3 * vertex_count, v);
-    std::copy_n(indices, 3 * triangle_count, t);
-    rtcSetGeometryMask(geometry, 0xFFFFFFFFU);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, id);
-  }
-  rtcReleaseGeometry(geometry);
-  check_device(device, "triangles");
 }
 
 }  // namespace viewgain::detail

@@ -28,9 +28,4 @@ void commit_scene(RTCDevice device, RTCScene scene, const std::string& what);
 /// failed.
 void check_device(RTCDevice device, const std::string& what);
 
-/// Attaches triangles to a scene as geometry `id`, vertices copied. Throws Error(backend).
-void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, const float* vertices,
-                      std::size_t vertex_count, const unsigned* indices,
-                      std::size_t triangle_count);
-
 }  // namespace viewgain::detail

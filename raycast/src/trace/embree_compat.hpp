@@ -19,12 +19,15 @@ struct RayQuery {
 #if RTC_VERSION_MAJOR >= 4
   RTCRayQueryContext context;
   RTCIntersectArguments arguments;
+  RTCOccludedArguments occlusion;
   explicit RayQuery(bool coherent) {
     rtcInitRayQueryContext(&context);
     rtcInitIntersectArguments(&arguments);
-    arguments.context = &context;
-    arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-    arguments.feature_mask = RTC_FEATURE_FLAG_ALL;
+    rtcInitOccludedArguments(&occlusion);
+    arguments.context = occlusion.context = &context;
+    arguments.flags = occlusion.flags =
+        coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+    arguments.feature_mask = occlusion.feature_mask = RTC_FEATURE_FLAG_ALL;
   }
 #else
   RTCIntersectContext context;
@@ -46,9 +49,6 @@ inline Query& query_of(const RTCIntersectFunctionNArguments* args) {
 }
 
 #if RTC_VERSION_MAJOR >= 4
-inline void intersect1(RTCScene s, RTCRayHit* r, RayQuery* q) {
-  rtcIntersect1(s, r, &q->arguments);
-}
 inline void intersect4(const int* valid, RTCScene s, RTCRayHit4* r, RayQuery* q) {
   rtcIntersect4(valid, s, r, &q->arguments);
 }
@@ -58,8 +58,16 @@ inline void intersect8(const int* valid, RTCScene s, RTCRayHit8* r, RayQuery* q)
 inline void intersect16(const int* valid, RTCScene s, RTCRayHit16* r, RayQuery* q) {
   rtcIntersect16(valid, s, r, &q->arguments);
 }
+inline void occluded4(const int* valid, RTCScene s, RTCRay4* r, RayQuery* q) {
+  rtcOccluded4(valid, s, r, &q->occlusion);
+}
+inline void occluded8(const int* valid, RTCScene s, RTCRay8* r, RayQuery* q) {
+  rtcOccluded8(valid, s, r, &q->occlusion);
+}
+inline void occluded16(const int* valid, RTCScene s, RTCRay16* r, RayQuery* q) {
+  rtcOccluded16(valid, s, r, &q->occlusion);
+}
 #else
-inline void intersect1(RTCScene s, RTCRayHit* r, RayQuery* q) { rtcIntersect1(s, &q->context, r); }
 inline void intersect4(const int* valid, RTCScene s, RTCRayHit4* r, RayQuery* q) {
   rtcIntersect4(valid, s, &q->context, r);
 }
@@ -68,6 +76,15 @@ inline void intersect8(const int* valid, RTCScene s, RTCRayHit8* r, RayQuery* q)
 }
 inline void intersect16(const int* valid, RTCScene s, RTCRayHit16* r, RayQuery* q) {
   rtcIntersect16(valid, s, &q->context, r);
+}
+inline void occluded4(const int* valid, RTCScene s, RTCRay4* r, RayQuery* q) {
+  rtcOccluded4(valid, s, &q->context, r);
+}
+inline void occluded8(const int* valid, RTCScene s, RTCRay8* r, RayQuery* q) {
+  rtcOccluded8(valid, s, &q->context, r);
+}
+inline void occluded16(const int* valid, RTCScene s, RTCRay16* r, RayQuery* q) {
+  rtcOccluded16(valid, s, &q->context, r);
 }
 #endif
 

@@ -162,16 +162,7 @@ ObstacleScene::ObstacleScene(const SceneData& data, Isa isa)
       workspace_{static_cast<float>(data.snapshot.dims.x), static_cast<float>(data.snapshot.dims.y),
                  static_cast<float>(data.snapshot.dims.z)} {
   const Soup soup(data);
-  RTCDevice device = shared_device(isa);
-  bvh_.reset(rtcNewScene(device));
-  rtcSetSceneBuildQuality(bvh_.get(), RTC_BUILD_QUALITY_HIGH);
-  // Without it a ray may slip between two triangles that share an edge.
-  rtcSetSceneFlags(bvh_.get(), RTC_SCENE_FLAG_ROBUST);
-  if (!soup.indices.empty()) {
-    attach_triangles(device, bvh_.get(), 0, soup.vertices.data(), soup.vertices.size() / 3,
-                     soup.indices.data(), soup.indices.size() / 3);
-  }
-  commit_scene(device, bvh_.get(), "building the obstacles");
+  triangles_.emplace(isa, soup.vertices, soup.indices, "building the obstacles");
 
   std::vector<Triangle> triangles = soup.triangles();
   if (triangles.empty()) return;
@@ -190,6 +181,22 @@ ObstacleScene::ObstacleScene(const SceneData& data, Isa isa)
   piece_count_ = boxes.size();
   pieces_ = arrays_of(boxes);
   groups_ = arrays_of(round_each(boxes, kBoxVector));
+}
+
+std::uint32_t ObstacleScene::cut(const PoseFrame& frame, const RayTile& rays, std::uint32_t lanes,
+                                 float* far) const {
+  static_assert(kTileRays == TriangleRays::kCount);
+  TriangleRays packet;
+  std::fill_n(packet.ox, kTileRays, frame.origin[0]);
+  std::fill_n(packet.oy, kTileRays, frame.origin[1]);
+  std::fill_n(packet.oz, kTileRays, frame.origin[2]);
+  std::copy_n(rays.dx, kTileRays, packet.dx);
+  std::copy_n(rays.dy, kTileRays, packet.dy);
+  std::copy_n(rays.dz, kTileRays, packet.dz);
+  std::copy_n(far, kTileRays, packet.far);
+  const std::uint32_t met = triangles_->meet(packet, lanes);
+  std::copy_n(packet.far, kTileRays, far);
+  return met;
 }
 
 std::shared_ptr<const ObstacleScene> ObstacleScene::of(const SceneData& data, Isa isa,

@@ -4,10 +4,13 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 
-#include "device.hpp"
+#include "ray_tile.hpp"
 #include "scene/scene_data.hpp"
+#include "triangle_scene.hpp"
 #include "viewgain/core/isa.hpp"
 
 namespace viewgain::detail {
@@ -25,8 +28,13 @@ class ObstacleScene {
   [[nodiscard]] static std::shared_ptr<const ObstacleScene> of(const SceneData& data, Isa isa,
                                                                const SceneData* before);
 
-  [[nodiscard]] RTCScene bvh() const { return bvh_.get(); }
-  [[nodiscard]] Isa isa() const { return isa_; }
+  /// In the scene's coordinates.
+  [[nodiscard]] const TriangleScene& triangles() const { return *triangles_; }
+  /// Shortens far[lane] [voxels] to where the tile's rays of these lanes meet an obstacle, there
+  /// too. Returns the lanes that meet one. Ranges of 0 meet nothing.
+  std::uint32_t cut(const PoseFrame& frame, const RayTile& rays, std::uint32_t lanes,
+                    float* far) const;
+
   /// Vector i of the pieces (kBoxVector of them, neighbours) lies in box i of the groups.
   [[nodiscard]] const BoxArrays& pieces() const { return pieces_; }
   [[nodiscard]] const BoxArrays& groups() const { return groups_; }
@@ -40,7 +48,7 @@ class ObstacleScene {
 
  private:
   Isa isa_;
-  ScenePtr bvh_;
+  std::optional<TriangleScene> triangles_;
   BoxArrays pieces_, groups_;
   std::size_t piece_count_ = 0;
   std::array<float, 3> workspace_;

@@ -7,14 +7,11 @@
 #include <utility>
 
 #include "cell_sweep.hpp"
-#include "obstacle_ranges.hpp"
 #include "voxel_bvh.hpp"
 
 namespace viewgain::detail {
 namespace {
 
-constexpr double kMaxPoseError = 1e-3;
-constexpr double kMendPoseError = 1e-9;
 // Embree's rays have finite ends; all of the workspace is nearer than this [voxels].
 constexpr double kRayEnd = 4 * kFarthestCamera;
 
@@ -40,10 +37,9 @@ ViewTracer::ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays>
 }
 
 std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const {
-  const double error = orthonormality_error(T_world_camera);
-  if (!(error <= kMaxPoseError)) return std::nullopt;
-  const Pose T_grid_camera =
-      T_grid_world_ * (error <= kMendPoseError ? T_world_camera : orthonormalized(T_world_camera));
+  const std::optional<Pose> T_rigid = rigid_pose(T_world_camera);
+  if (!T_rigid) return std::nullopt;
+  const Pose T_grid_camera = T_grid_world_ * *T_rigid;
   const double voxel = scene_.snapshot.voxel_size;
   const Index3& base = scene_.snapshot.min_index;
   const Eigen::Vector3d origin =
@@ -136,7 +132,7 @@ void ViewTracer::finish(const PoseFrame& frame, std::size_t tile, const Obstacle
 
 void ViewTracer::ask_first(const PoseFrame& frame, RayTile& rays) const {
   std::copy_n(rays.range, kTileRays, rays.far);
-  rays.blocked = cut_at_obstacles(*scene_.tracing->obstacles, frame, rays, rays.valid, rays.far);
+  rays.blocked = scene_.tracing->obstacles->cut(frame, rays, rays.valid, rays.far);
   rays.has_far = true;
   for (std::uint32_t left = rays.blocked; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
@@ -160,7 +156,7 @@ void ViewTracer::ask_afterwards(const PoseFrame& frame, std::size_t tile, float 
   for (int lane = 0; lane < kTileRays; ++lane) {
     far[lane] = rays.range[lane] * (1.0F + 1e-6F) + obstacles.rounding();
   }
-  const std::uint32_t met = cut_at_obstacles(obstacles, frame, rays, rays.hit, far);
+  const std::uint32_t met = obstacles.cut(frame, rays, rays.hit, far);
   for (std::uint32_t left = met; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
     if (far[lane] > rays.range[lane]) continue;

@@ -167,6 +167,23 @@ TEST(HazardCalibration, EarlierFramesFade) {
   EXPECT_GE(counted, 1U);
 }
 
+TEST(HazardCalibration, PosesThatAreALittleOffAreMended) {
+  const Sensor sensor = looking();
+  BeliefGrid mended = unknown_cube({}, {0, 0, 0}), grid = unknown_cube({}, {0, 0, 0});
+  const HazardField field(grid.snapshot(), {.object_size = 0.35});
+  Eigen::Matrix3d R = kFromFront.rotation();
+  R.col(0) += 9e-4 * R.col(1);
+  const Pose off(R, kFromFront.translation());
+  const DepthFrame frame = frame_of(sensor, 0.6F);
+  HazardCalibration(sensor).count(mended, field, frame, orthonormalized(off));
+  HazardCalibration(sensor).count(grid, field, frame, off);
+  EXPECT_EQ(grid.hazard_counters(), mended.hazard_counters());
+  EXPECT_FALSE(grid.hazard_counters().empty());
+  test::expect_error(ErrorCode::invalid_argument, "rigid", [&] {
+    HazardCalibration(sensor).count(grid, field, frame, Pose(2 * R, off.translation()));
+  });
+}
+
 TEST(HazardCalibration, WhatSaysNothing) {
   const Sensor sensor = looking();
   const HazardCalibration calibration(sensor);

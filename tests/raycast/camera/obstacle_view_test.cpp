@@ -90,6 +90,30 @@ TEST(ObstacleView, DepthsAreThoseOfTheFirstObstacle) {
   EXPECT_LT(at_edges, pixels / 5000);
 }
 
+// Neither how far off the origin is nor a rotation that is a little off makes a difference.
+TEST(ObstacleView, WhereTheOriginIsDoesNotMatter) {
+  const Sensor sensor = small();
+  const auto depths = [&](const Eigen::Vector3d& o, const Pose& pose) {
+    const Box box{{o.x() - 0.2, o.y() - 0.1, o.z()}, {o.x() - 0.1, o.y() + 0.2, o.z() + 0.2}};
+    DepthFrame frame{44, 36, std::vector<float>(44 * 36, 1.0F)};
+    ObstacleView({{box}, {}}, sensor).mark(frame, {pose.rotation(), pose.translation() + o});
+    return frame.known_depth;
+  };
+  const Pose pose = look_at({0.5, 0.4, 0.4}, {0, 0, 0.1});
+  const std::vector<float> here = depths({0, 0, 0}, pose);
+  const std::vector<float> there = depths({500'000, 4'500'000, 400}, pose);
+  std::size_t met = 0, at_edges = 0;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    met += std::isfinite(here[i]) ? 1U : 0U;
+    at_edges += here[i] != there[i] && !(std::abs(here[i] - there[i]) < 1e-5F) ? 1U : 0U;
+  }
+  EXPECT_GT(met, 60U);
+  EXPECT_LE(at_edges, 2U);
+  Pose off = pose;
+  for (const std::size_t k : {0U, 4U, 8U}) off.m[k] *= 1 + 4e-4;
+  EXPECT_EQ(depths({0, 0, 0}, off), depths({0, 0, 0}, orthonormalized(off)));
+}
+
 TEST(ObstacleView, WithoutObstaclesNothingIsKnown) {
   const Sensor sensor = small();
   DepthFrame frame{44, 36, std::vector<float>(44 * 36, 1.0F)};

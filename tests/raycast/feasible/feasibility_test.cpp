@@ -12,6 +12,7 @@
 #include "raycast/scene_makers.hpp"
 #include "solids.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/raycast/obstacle_view.hpp"
 
 namespace viewgain {
 namespace {
@@ -257,6 +258,20 @@ TEST(Feasibility, ACameraInsideARegionCollidesWhereverItsBodyIs) {
   EXPECT_EQ(at(15.9, 5.5), Infeasibility::collision);
   EXPECT_EQ(at(16, 5.5), Infeasibility::none);
   EXPECT_EQ(at(1e300, 5.5), Infeasibility::none);
+}
+
+// Its body, a metre behind it, meets nothing.
+TEST(Feasibility, ACameraInsideAnObstacleMeetsItWhereverItsBodyIs) {
+  FeasibilityConfig config;
+  config.body.T_flange_camera = Pose(Eigen::Matrix3d::Identity(), {0, 0, 1});
+  const Box box{{0.1, 0.1, 0.1}, {0.3, 0.3, 0.3}};
+  for (const Obstacles& obstacles : {Obstacles{{box}, {}}, Obstacles{{}, {mesh_of({{box}, {}})}}}) {
+    const FeasibilityChecker checker = checker_of(free_map(), config, {obstacles});
+    EXPECT_EQ(checker.check(looking_down({0.2, 0.21, 0.22})), Infeasibility::obstacle);
+    EXPECT_EQ(checker.check(looking_down({0.299, 0.11, 0.22})), Infeasibility::obstacle);
+    EXPECT_EQ(checker.check(looking_down({0.2, 0.21, 0.31})), Infeasibility::none);
+    EXPECT_EQ(checker.check(looking_down({0.301, 0.11, 0.22})), Infeasibility::none);
+  }
 }
 
 // One pose that every check refuses; the reasons appear in order as they are taken away.

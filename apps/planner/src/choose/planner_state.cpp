@@ -50,7 +50,7 @@ std::string line_of(std::string_view name, const Pose& pose) {
 Pose pose_of(const LineReader& reader) {
   Pose pose;
   for (std::size_t i = 0; i < pose.m.size(); ++i) pose.m[i] = reader.finite_number(1 + i);
-  if (!(orthonormality_error(pose) <= 1e-3)) reader.fail("the pose is not rigid");
+  if (!rigid_pose(pose)) reader.fail("the pose is not rigid");
   return pose;
 }
 

@@ -23,7 +23,7 @@ constexpr const char* kNote = "planner";  // the note of the saved map that hold
 [[noreturn]] void fail(const std::string& what) { throw Error(ErrorCode::invalid_argument, what); }
 
 void check_rigid(const Pose& pose, const char* what) {
-  if (!(orthonormality_error(pose) <= 1e-3)) {
+  if (!rigid_pose(pose)) {
     fail(std::string(what) + " is not a rigid transform of finite numbers");
   }
 }

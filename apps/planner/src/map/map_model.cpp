@@ -49,7 +49,7 @@ MapModel::MapModel(BeliefGrid grid, const Sensor& sensor, const MapModelConfig& 
 }
 
 void MapModel::check(const Measurements& measurements) const {
-  if (!(orthonormality_error(measurements.T_world_camera) <= 1e-3)) {
+  if (!rigid_pose(measurements.T_world_camera)) {
     throw Error(ErrorCode::invalid_argument,
                 "the pose of the frames is not a rigid transform of finite numbers");
   }

@@ -36,7 +36,7 @@ void check(const Pose& T_reported, const PoseSigma& sigma) {
   const auto fail = [](const std::string& what) {
     throw Error(ErrorCode::invalid_argument, "registration: " + what);
   };
-  if (!(orthonormality_error(T_reported) <= 1e-3)) {
+  if (!rigid_pose(T_reported)) {
     fail("the reported pose is not a rigid transform of finite numbers");
   }
   for (const auto& [name, value] : {std::pair("sigma_translation", sigma.translation),

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
 
 #include "viewgain/core/export.hpp"
 
@@ -78,6 +79,12 @@ static_assert(sizeof(Pose) == 96 && alignof(Pose) == 8);
 /// The nearest rotation (polar decomposition by SVD) with the same translation. Deterministic. A
 /// pose with a number that is not finite comes back as it is: never throws. In the same frame.
 [[nodiscard]] VIEWGAIN_EXPORT Pose orthonormalized(const Pose& pose);
+
+/// The pose that all who ask for a rigid transform take a given one for: itself if
+/// orthonormality_error() is at most 1e-9, orthonormalized() if it is at most kMaxPoseError, else
+/// none. Never throws. In the same frame.
+[[nodiscard]] VIEWGAIN_EXPORT std::optional<Pose> rigid_pose(const Pose& pose);
+inline constexpr double kMaxPoseError = 1e-3;  ///< [1]
 
 /// T_world_camera of a camera at `eye` [m] whose optical axis passes through `target` [m] and whose
 /// image-up direction (minus y) is as near to `up`, of whatever unit, as it can be. Where the view

@@ -32,8 +32,8 @@ class VIEWGAIN_EXPORT HazardCalibration {
   /// plane and those of the frame's known depth meet nothing, invalid ones say nothing. Nothing
   /// happens while no surface is known, where the field does not follow the counters
   /// (HazardField::follows_counters), and for a frame that passes next to no unknown space. Throws
-  /// Error(invalid_argument) as check_frame_size(), or if the hazard's voxels are not the grid's.
-  /// About 5 ms.
+  /// Error(invalid_argument) as check_frame_size(), if the pose is not rigid (rigid_pose()), or if
+  /// the hazard's voxels are not the grid's. About 5 ms.
   void count(BeliefGrid& grid, const HazardField& hazard, const DepthFrame& frame,
              const Pose& T_world_camera) const;
 

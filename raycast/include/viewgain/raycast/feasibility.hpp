@@ -35,7 +35,7 @@ enum class Infeasibility : std::uint8_t {
   unreachable,  ///< outside the reachable region
   taken,        ///< a view was taken there already
   plane,        ///< the body or the camera would touch the support plane or be under it
-  obstacle,     ///< the body would overlap a known obstacle
+  obstacle,     ///< the body would overlap a known obstacle, or the camera be in one
   collision,    ///< the body would overlap voxels that are not free, or the camera be in one
   too_near,     ///< much of the image would show what is nearer than the sensor can measure
 };

@@ -270,6 +270,37 @@ TEST_F(ViewPictureTest, SamePictureForAnyNumberOfThreads) {
   EXPECT_EQ(one, bytes());
 }
 
+TEST(Pictures, AreTheSameWhereverTheOriginIs) {
+  const auto picture = [](const Eigen::Vector3d& o) {
+    PaintedMesh scene;
+    const std::uint8_t grey = scene.add_paint({.color = {0.6, 0.6, 0.6}});
+    const std::uint8_t black = scene.add_paint({.color = {0, 0, 0}, .lit = false});
+    for (int i = 0; i < 40; ++i) {
+      add_lattice_cube(scene, Pose(Eigen::Matrix3d::Identity(), o),
+                       {i % 5 - 2.0, i * 3 % 8 - 4.0, i % 7 - 3.0}, 0.02, grey);
+    }
+    scene.add_line(o - Eigen::Vector3d(0.1, 0.1, 0), o + Eigen::Vector3d(0.1, 0.1, 0.1), 0.01,
+                   black);
+    PinholeCamera camera = picture_camera(160);
+    const Pose viewer =
+        place_viewer({o - Eigen::Vector3d::Constant(0.1), o + Eigen::Vector3d::Constant(0.1)},
+                     Eigen::Vector3d(2, 3, 1).normalized(), camera);
+    return render(scene, camera, viewer, 0.05, {}).pixels;
+  };
+  const std::vector<std::uint8_t> here = picture({0, 0, 0}), there = picture({5e5, 4.5e6, 400});
+  std::size_t other = 0, dark = 0;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    other += std::abs(here[i] - there[i]) > 12 ? 1U : 0U;
+    dark += here[i] < 40 ? 1U : 0U;
+  }
+  EXPECT_LT(other, here.size() / 200);
+  EXPECT_GT(dark, here.size() / 200);
+  PinholeCamera camera = picture_camera();
+  test::expect_error(ErrorCode::invalid_argument, "cannot show", [&] {
+    (void)place_viewer({{0, 0, 0}, {0, 2e6, 0}}, Eigen::Vector3d::UnitX(), camera);
+  });
+}
+
 TEST_F(ViewPictureTest, TheSurfaceIsShadedAndDarkerFromBehind) {
   const auto mean_grey = [](const Image& image) {
     double sum = 0;

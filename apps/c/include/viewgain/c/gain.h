@@ -234,7 +234,7 @@ enum {
   VG_INFEASIBLE_UNREACHABLE = 2, /* `reachable` says no */
   VG_INFEASIBLE_TAKEN = 3,       /* a view was taken there already */
   VG_INFEASIBLE_PLANE = 4,       /* the body would touch the support plane or be under it */
-  VG_INFEASIBLE_OBSTACLE = 5,    /* the body would overlap a known obstacle */
+  VG_INFEASIBLE_OBSTACLE = 5,    /* the body would overlap an obstacle, or the camera be in one */
   VG_INFEASIBLE_COLLISION = 6,   /* the body would overlap voxels that are not free */
   VG_INFEASIBLE_TOO_NEAR = 7     /* much of the image would be nearer than the sensor can measure */
 };

@@ -42,12 +42,14 @@ struct VIEWGAIN_EXPORT VisibilityConfig {
   std::shared_ptr<const SurfaceScene> surroundings{};  ///< which hide the object; may be null
 };
 
-/// Is a sample of the mesh seen from a pose: in the image and the range limits, unoccluded by mesh
-/// and surroundings (may be null), and at no more than an angle of incidence whose cosine is
-/// `least_cosine`? Checks nothing. Costs at most two rays.
-[[nodiscard]] VIEWGAIN_EXPORT bool sees(const SurfaceScene& scene, const SurfaceScene* surroundings,
-                                        const Sensor& sensor, const Pose& T_world_camera,
-                                        const SurfaceSample& sample, double least_cosine);
+/// Marks with 1 those of the mesh's samples that are seen from a pose: in the image and the range
+/// limits, unoccluded by mesh and surroundings (may be null), and at no more than an angle of
+/// incidence whose cosine is `least_cosine`. Samples that have a mark keep it and cost nothing;
+/// others at most two rays. As many marks as samples; checks nothing.
+VIEWGAIN_EXPORT void mark_seen(const SurfaceScene& scene, const SurfaceScene* surroundings,
+                               const Sensor& sensor, const Pose& T_world_camera,
+                               double least_cosine, std::span<const SurfaceSample> samples,
+                               std::span<std::uint8_t> seen);
 
 /// A sample is covered by a point that is within this of it [m].
 inline constexpr double kCovered = 5e-3;
