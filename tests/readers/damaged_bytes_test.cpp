@@ -446,6 +446,27 @@ TEST(DamagedMeshes, AreReadOrRefused) {
   EXPECT_GT(refused, 500U);
 }
 
+// What the fuzzers begin with, and what they found.
+TEST(FuzzedBytes, AreReadOrRefused) {
+  std::size_t read = 0, files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(VIEWGAIN_FUZZ_CORPUS)) {
+    if (!entry.is_regular_file()) continue;
+    const fs::path& path = entry.path();
+    const std::string folder = path.parent_path().filename();
+    ++files;
+    try {
+      if (folder == "pcd" || folder == "ply") (void)load_cloud(path);
+      if (folder == "octomap") (void)load_octomap(path);
+      if (folder != "pcd" && folder != "octomap") (void)read_mesh(path);
+      ++read;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_GE(read, 23U);
+  EXPECT_GE(files, 25U);
+}
+
 TEST(DamagedJson, IsReadOrRefused) {
   const std::string good =
       R"({"a": [1, -2, 18446744073709551615, 2.5e3, true, null], "b": {"c": "\u00e4 text"}})";

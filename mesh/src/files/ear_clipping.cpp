@@ -61,6 +61,7 @@ double EarClipping::flatten() {
   flat_.clear();
   for (const Vector& p : corners_) flat_.push_back({p[x], p[y]});
   no_area_ = 1e-12 * extent * extent;
+  slack_ = 1e-7 * extent * extent;
   return std::abs(normal[axis]);
 }
 
@@ -86,7 +87,7 @@ bool EarClipping::has_area() const {
 bool EarClipping::crosses_itself() const {
   const auto parts = [this](const Flat& a, const Flat& b, const Flat& c, const Flat& d) {
     const double left = turn_of(a, b, c), right = turn_of(a, b, d);
-    return (left > no_area_ && right < -no_area_) || (left < -no_area_ && right > no_area_);
+    return (left > slack_ && right < -slack_) || (left < -slack_ && right > slack_);
   };
   const std::size_t count = flat_.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -142,14 +143,14 @@ bool EarClipping::clip_all() {
     };
     // Where no ear is left, a corner in the middle of an edge, or at a spike, has no area to lose.
     if (!find([this](std::size_t i) { return is_ear_[i] != 0; }) &&
-        !find([this](std::size_t i) { return std::abs(turn_at(i)) <= no_area_; })) {
+        !find([this](std::size_t i) { return std::abs(turn_at(i)) <= slack_; })) {
       return false;
     }
     clip(at);
     at = after_[at];
   }
   triangles_.push_back({before_[at], at, after_[at]});
-  return turn_at(at) >= -no_area_;
+  return turn_at(at) >= -slack_;
 }
 
 }  // namespace viewgain::detail

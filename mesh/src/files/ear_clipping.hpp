@@ -48,7 +48,9 @@ class EarClipping {
   std::vector<Flat> flat_;                   // turning to the left
   std::vector<std::size_t> before_, after_;  // of the corners that are left
   std::vector<char> is_ear_;
-  double no_area_ = 0;  // what rounding makes of none, twice an area
+  // Twice areas: what rounding makes of none, and what a polygon may lose or cross itself by whose
+  // corners are rounded to single precision.
+  double no_area_ = 0, slack_ = 0;
   std::vector<std::array<std::size_t, 3>> triangles_;
   std::string reason_;
 };

@@ -223,6 +223,8 @@ Rows obj_rows() {
            "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\n"
            "f 1 2 3 4 1 5 6 7 8 5\n",
            8, 8, 12),
+      mesh("touching.obj", "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 -1e-10 0\nv 0 4 0\nf 1 2 3 4 5\n", 5, 3,
+           8),
       mesh("in_a_line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\n", 5, 3, 4),
       mesh("twice.obj", square + "f 1 2 2 3 4\n", 4, 3, 1),
       mesh("no_area.obj", square + "v 2 0 0\nv 3 0 0\nf 1 2 5 6\nf 1 2 3\n", 5, 3, 0.5),
