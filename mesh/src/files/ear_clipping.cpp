@@ -22,6 +22,13 @@ double turn_of(const Flat& a, const Flat& b, const Flat& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
+// How far c lies to the left of the line from a to b; 0 if that has no length.
+template <typename Flat>
+double left_of(const Flat& a, const Flat& b, const Flat& c) {
+  const double length = std::hypot(b.x - a.x, b.y - a.y);
+  return length > 0 ? turn_of(a, b, c) / length : 0;
+}
+
 }  // namespace
 
 bool EarClipping::split() {
@@ -61,7 +68,7 @@ double EarClipping::flatten() {
   flat_.clear();
   for (const Vector& p : corners_) flat_.push_back({p[x], p[y]});
   no_area_ = 1e-12 * extent * extent;
-  slack_ = 1e-7 * extent * extent;
+  slack_ = 1e-7 * extent;
   return std::abs(normal[axis]);
 }
 
@@ -86,7 +93,7 @@ bool EarClipping::has_area() const {
 
 bool EarClipping::crosses_itself() const {
   const auto parts = [this](const Flat& a, const Flat& b, const Flat& c, const Flat& d) {
-    const double left = turn_of(a, b, c), right = turn_of(a, b, d);
+    const double left = left_of(a, b, c), right = left_of(a, b, d);
     return (left > slack_ && right < -slack_) || (left < -slack_ && right > slack_);
   };
   const std::size_t count = flat_.size();
@@ -99,17 +106,20 @@ bool EarClipping::crosses_itself() const {
   return false;
 }
 
-double EarClipping::turn_at(std::size_t corner) const {
-  return turn_of(flat_[before_[corner]], flat_[corner], flat_[after_[corner]]);
+// Its height over the line between its neighbours.
+double EarClipping::height_at(std::size_t corner) const {
+  return left_of(flat_[after_[corner]], flat_[before_[corner]], flat_[corner]);
 }
 
 bool EarClipping::is_ear(std::size_t corner) const {
-  if (!(turn_at(corner) > no_area_)) return false;
   const Flat &a = flat_[before_[corner]], &b = flat_[corner], &c = flat_[after_[corner]];
+  if (!(turn_of(a, b, c) > no_area_)) return false;
   for (std::size_t i = after_[after_[corner]]; i != before_[corner]; i = after_[i]) {
     const Flat& p = flat_[i];
     if (p == a || p == b || p == c) continue;
-    if (turn_of(a, b, p) >= 0 && turn_of(b, c, p) >= 0 && turn_of(c, a, p) >= 0) return false;
+    if (left_of(a, b, p) >= -slack_ && left_of(b, c, p) >= -slack_ && left_of(c, a, p) >= -slack_) {
+      return false;
+    }
   }
   return true;
 }
@@ -143,14 +153,14 @@ bool EarClipping::clip_all() {
     };
     // Where no ear is left, a corner in the middle of an edge, or at a spike, has no area to lose.
     if (!find([this](std::size_t i) { return is_ear_[i] != 0; }) &&
-        !find([this](std::size_t i) { return std::abs(turn_at(i)) <= slack_; })) {
+        !find([this](std::size_t i) { return std::abs(height_at(i)) <= slack_; })) {
       return false;
     }
     clip(at);
     at = after_[at];
   }
   triangles_.push_back({before_[at], at, after_[at]});
-  return turn_at(at) >= -slack_;
+  return height_at(at) >= -slack_;
 }
 
 }  // namespace viewgain::detail

@@ -40,7 +40,7 @@ class EarClipping {
   [[nodiscard]] bool has_area() const;
   [[nodiscard]] bool crosses_itself() const;
   [[nodiscard]] bool is_ear(std::size_t corner) const;
-  [[nodiscard]] double turn_at(std::size_t corner) const;
+  [[nodiscard]] double height_at(std::size_t corner) const;
   void clip(std::size_t corner);
   bool clip_all();
 
@@ -48,9 +48,8 @@ class EarClipping {
   std::vector<Flat> flat_;                   // turning to the left
   std::vector<std::size_t> before_, after_;  // of the corners that are left
   std::vector<char> is_ear_;
-  // Twice areas: what rounding makes of none, and what a polygon may lose or cross itself by whose
-  // corners are rounded to single precision.
-  double no_area_ = 0, slack_ = 0;
+  double no_area_ = 0;  // what rounding makes of none, twice an area
+  double slack_ = 0;    // how deep it may cut into itself: corners are rounded to single precision
   std::vector<std::array<std::size_t, 3>> triangles_;
   std::string reason_;
 };

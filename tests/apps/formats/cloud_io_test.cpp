@@ -377,7 +377,7 @@ TEST_F(CloudFiles, ForgedPlyHeadersAreNamedByLine) {
   const std::string ascii = ply_ascii();
   expect_refused("bad.ply", "bad.ply:16: the header says 4 numbers, here are 5",
                  with(ascii, "1.5 2 7 8", "1.5 2 7 8 9"));
-  expect_refused("bad.ply", "bad.ply:16: the header says", with(ascii, "1.5 2 7 8", "1.5 9 7 8"));
+  expect_refused("bad.ply", "bad.ply:17: '2.5' is not", with(ascii, "1.5 2 7 8", "1.5 9 7 8"));
   expect_refused("bad.ply", "bad.ply:18: 'x' is not a number", with(ascii, "\n255 ", "\n255 x "));
   expect_refused("bad.ply", "negative count", with(ascii, "1.5 2 7 8", "1.5 -2 7 8"));
 }
