@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "core/temporary_folder.hpp"
+#include "mesh/files/mesh_dialects.hpp"
 #include "program/cli/json.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
@@ -103,26 +104,12 @@ void load_recording(const fs::path& folder, RecordingFormat format) {
   for (std::size_t i = 0; i < recording.frames.size(); ++i) (void)load_depth(recording, i);
 }
 
-std::string binary_stl() {
-  std::string bytes(80, ' ');
-  append(bytes, std::uint32_t{2});
-  for (int t = 0; t < 2; ++t) {
-    for (int k = 0; k < 12; ++k) append(bytes, static_cast<float>((k * 7 + t) % 5));
-    append(bytes, std::uint16_t{0});
-  }
-  return bytes;
-}
-
-std::string binary_ply(bool faces) {
-  std::string bytes =
-      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float "
-      "y\nproperty float z\n";
-  if (faces) bytes += "element face 2\nproperty list uchar int vertex_indices\n";
-  bytes += "end_header\n";
-  for (int k = 0; k < 12; ++k) append(bytes, static_cast<float>(k * k % 7));
-  for (std::int32_t f = 0; faces && f < 2; ++f) {
-    append(bytes, std::uint8_t{3});
-    for (std::int32_t k = 0; k < 3; ++k) append(bytes, f + k);
+std::string binary_ply(const std::string& order) {
+  std::string bytes = "ply\nformat binary_" + order +
+                      "_endian 1.0\nelement vertex 4\nproperty float x\nproperty float "
+                      "y\nproperty float z\nproperty list uchar short w\nend_header\n";
+  for (int k = 0; k < 4; ++k) {
+    bytes += std::string(12, static_cast<char>(k * k)) + std::string("\2abcd");
   }
   return bytes;
 }
@@ -133,6 +120,25 @@ std::string binary_pcd() {
       "1\nVIEWPOINT 0 0 1 1 0 0 0\nPOINTS 4\nDATA binary\n";
   for (int k = 0; k < 16; ++k) append(bytes, static_cast<float>(k * k % 11));
   return bytes;
+}
+
+// Compressed by liblzf: 16 points.
+std::string compressed_pcd() {
+  std::string bytes = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 16\nDATA binary_compressed\n";
+  append(bytes, std::uint32_t{39});
+  append(bytes, std::uint32_t{192});
+  return bytes + std::string(
+                     "\001\000\000\140\000\003\077\000\000\200\040\003\000\300\040\003"
+                     "\140\000\040\007\340\037\017\000\240\040\053\340\063\003\001\000"
+                     "\300\340\061\003\001\000\300",
+                     39);
+}
+
+// A free and an occupied voxel at the tree's corner.
+std::string binary_octomap() {
+  std::string bytes = "# Octomap OcTree binary file\nid OcTree\nsize 18\nres 0.1\ndata\n";
+  for (int level = 0; level < 15; ++level) bytes += std::string("\3\0", 2);
+  return bytes + std::string("\x09\0", 2);
 }
 
 std::string octomap_of_boxes() {
@@ -296,6 +302,7 @@ std::vector<Reader> frame_readers() {
 
 std::vector<Reader> cloud_and_map_readers() {
   const auto cloud = [](const fs::path& path) { (void)load_cloud(path); };
+  const auto map = [](const fs::path& path) { (void)load_octomap(path); };
   return {file_reader("ascii.pcd",
                       "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH "
                       "3\nHEIGHT 1\nVIEWPOINT 0 0 1 1 0 0 0\nPOINTS 3\nDATA ascii\n0 0 0\n1 0.5 "
@@ -306,30 +313,11 @@ std::vector<Reader> cloud_and_map_readers() {
                       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
                       "y\nproperty float z\nend_header\n0 0 0\n1 0.5 2\n0.1 0.2 0.3\n",
                       cloud),
-          file_reader("binary.ply", binary_ply(false), cloud),
-          file_reader("map.ot", octomap_of_boxes(),
-                      [](const fs::path& path) { (void)load_octomap(path); })};
-}
-
-std::vector<Reader> mesh_readers() {
-  const auto mesh = [](const fs::path& path) { (void)read_mesh(path); };
-  const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
-  return {
-      file_reader("m.off", "OFF\n4 2 0\n" + vertices + "3 0 1 2\n3 0 1 3\n", mesh),
-      file_reader("m.obj", "# obj\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1//1 2//1 4//1\n",
-                  mesh),
-      file_reader("a.stl",
-                  "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 "
-                  "0\nvertex 0 1 0\nendloop\nendfacet\nendsolid x\n",
-                  mesh),
-      file_reader("b.stl", binary_stl(), mesh),
-      file_reader("a.ply",
-                  "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float "
-                  "y\nproperty float z\nelement face 2\nproperty list uchar int "
-                  "vertex_indices\nend_header\n" +
-                      vertices + "3 0 1 2\n3 0 1 3\n",
-                  mesh),
-      file_reader("b.ply", binary_ply(true), mesh)};
+          file_reader("compressed.pcd", compressed_pcd(), cloud),
+          file_reader("little.ply", binary_ply("little"), cloud),
+          file_reader("big.ply", binary_ply("big"), cloud),
+          file_reader("map.bt", binary_octomap(), map),
+          file_reader("map.ot", octomap_of_boxes(), map)};
 }
 
 std::vector<Reader> part_readers() {
@@ -346,10 +334,38 @@ std::vector<Reader> part_readers() {
 std::vector<Reader> all_readers() {
   std::vector<Reader> all;
   for (const auto& some : {pose_readers(), settings_readers(), image_readers(), frame_readers(),
-                           cloud_and_map_readers(), mesh_readers(), part_readers()}) {
+                           cloud_and_map_readers(), part_readers()}) {
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;
+}
+
+// One of six kinds of change.
+std::string changed(std::string bytes, std::size_t kind, std::mt19937& random) {
+  const auto below = [&](std::size_t count) { return random() % count; };
+  const std::size_t at = below(bytes.size());
+  switch (kind % 6) {
+    case 0:
+      bytes[at] = static_cast<char>(bytes[at] ^ (1U << below(8)));
+      break;
+    case 1:
+      bytes[at] = static_cast<char>(below(256));
+      break;
+    case 2:
+      bytes.erase(at, 1 + below(4));
+      break;
+    case 3:
+      bytes.insert(at, 1 + below(40), "0919-e.\n \xff"[below(10)]);
+      break;
+    case 4:  // a number of four bytes, as counts and sizes are
+      for (std::size_t k = 0; k < 4 && at + k < bytes.size(); ++k) {
+        bytes[at + k] = static_cast<char>(kind % 12 == 4 ? 0xff : below(256));
+      }
+      break;
+    default:
+      bytes += bytes.substr(at);
+  }
+  return bytes;
 }
 
 class DamagedBytes : public testing::TestWithParam<Reader> {
@@ -373,7 +389,6 @@ TEST_P(DamagedBytes, AreReadOrRefused) {
   reader.write(folder_);
   ASSERT_TRUE(is_read());
   std::mt19937 random(7);
-  const auto below = [&](std::size_t count) { return random() % count; };
   for (const std::string& name : reader.damaged) {
     const std::string good = read_all(folder_.path() / name);
     ASSERT_GT(good.size(), 10U) << name;
@@ -388,32 +403,7 @@ TEST_P(DamagedBytes, AreReadOrRefused) {
       check(good.substr(0, length));
     }
     EXPECT_GT(refused, 0U) << name;
-    for (std::size_t i = 0; i < kChanges; ++i) {
-      std::string bytes = good;
-      const std::size_t at = below(bytes.size());
-      switch (i % 6) {
-        case 0:
-          bytes[at] = static_cast<char>(bytes[at] ^ (1U << below(8)));
-          break;
-        case 1:
-          bytes[at] = static_cast<char>(below(256));
-          break;
-        case 2:
-          bytes.erase(at, 1 + below(4));
-          break;
-        case 3:
-          bytes.insert(at, 1 + below(40), "0919-e.\n \xff"[below(10)]);
-          break;
-        case 4:  // a number of four bytes, as counts and sizes are
-          for (std::size_t k = 0; k < 4 && at + k < bytes.size(); ++k) {
-            bytes[at + k] = static_cast<char>(i % 12 == 4 ? 0xff : below(256));
-          }
-          break;
-        default:
-          bytes += bytes.substr(at);
-      }
-      check(bytes);
-    }
+    for (std::size_t i = 0; i < kChanges; ++i) check(changed(good, i, random));
     folder_.file(name, good);
     EXPECT_EQ(cases, (good.size() + step - 1) / step + kChanges) << name;
     ASSERT_TRUE(is_read()) << name;
@@ -426,6 +416,56 @@ INSTANTIATE_TEST_SUITE_P(Readers, DamagedBytes, testing::ValuesIn(all_readers())
                            for (char& c : name) c = std::isalnum(c) != 0 ? c : '_';
                            return name;
                          });
+
+// The table of mesh dialects, each changed once to three times.
+TEST(DamagedMeshes, AreReadOrRefused) {
+  constexpr std::size_t kFiles = 20'000;
+  const TemporaryFolder folder;
+  const std::vector<test::MeshDialect> rows = test::mesh_dialects();
+  std::mt19937 random(9);
+  std::size_t read = 0, refused = 0;
+  for (std::size_t i = 0; read + refused < kFiles; ++i) {
+    const test::MeshDialect& row = rows[i % rows.size()];
+    std::string bytes = row.bytes;
+    for (std::size_t k = i % 3; k < 3 && !bytes.empty(); ++k) {
+      bytes = changed(std::move(bytes), random() % 12, random);
+    }
+    try {
+      const TriangleMesh mesh = read_mesh(folder.file(row.file, bytes));
+      ASSERT_FALSE(mesh.triangles.empty()) << row.file;
+      for (const auto& t : mesh.triangles) {
+        for (const std::uint32_t corner : t) ASSERT_LT(corner, mesh.vertices.size()) << row.file;
+      }
+      ++read;
+    } catch (const Error& error) {
+      ASSERT_NE(std::string(error.what()).find(row.file + ":"), std::string::npos) << error.what();
+      ++refused;
+    }
+  }
+  EXPECT_GT(read, kFiles / 40);
+  EXPECT_GT(refused, kFiles / 40);
+}
+
+// What the fuzzers begin with, and what they found.
+TEST(FuzzedBytes, AreReadOrRefused) {
+  std::size_t read = 0, files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(VIEWGAIN_FUZZ_CORPUS)) {
+    if (!entry.is_regular_file()) continue;
+    const fs::path& path = entry.path();
+    const std::string folder = path.parent_path().filename();
+    ++files;
+    try {
+      if (folder == "pcd" || folder == "ply") (void)load_cloud(path);
+      if (folder == "octomap") (void)load_octomap(path);
+      if (folder != "pcd" && folder != "octomap") (void)read_mesh(path);
+      ++read;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_GE(read, 23U);
+  EXPECT_GE(files, 25U);
+}
 
 TEST(DamagedJson, IsReadOrRefused) {
   const std::string good =
@@ -448,7 +488,7 @@ TEST(DamagedJson, IsReadOrRefused) {
   EXPECT_EQ(app::Json(std::nan("")).dump(), "null");
 }
 
-TEST(DamagedBytes, EveryReaderIsHere) { EXPECT_EQ(all_readers().size(), 24U); }
+TEST(DamagedBytes, EveryReaderIsHere) { EXPECT_EQ(all_readers().size(), 21U); }
 
 }  // namespace
 }  // namespace viewgain

@@ -38,13 +38,16 @@ LineReader::LineReader(std::string name, std::string_view bytes)
     : name_(std::move(name)), rest_(bytes) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // what some editors put first
   if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  const std::size_t end = rest_.find_first_of("\r\n");
+  const bool has_return = end != std::string_view::npos && rest_[end] == '\r';
+  if (has_return && !rest_.substr(end + 1).starts_with('\n')) line_end_ = '\r';
 }
 
 bool LineReader::next() {
   words_.clear();
   if (rest_.empty()) return false;
   ++line_;
-  const std::size_t end = rest_.find('\n');
+  const std::size_t end = rest_.find(line_end_);
   const std::string_view line = rest_.substr(0, end);
   rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
   for (std::size_t i = 0; i < line.size();) {
@@ -65,17 +68,18 @@ std::string_view LineReader::word_at(std::size_t word) const {
   return words_[word];
 }
 
-double LineReader::number(std::size_t word) const {
-  const std::string_view text = word_at(word);
-  std::string_view digits = text;
+double LineReader::number(std::size_t word) const { return number_of(word_at(word)); }
+
+double LineReader::number_of(std::string_view word) const {
+  std::string_view digits = word;
   // from_chars does not take a plus sign, some writers print one.
   if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
   double value = 0;
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (code == std::errc::result_out_of_range)
-    fail("the number " + quoted(text) + " is out of range");
+    fail("the number " + quoted(word) + " is out of range");
   if (code != std::errc{} || end != digits.data() + digits.size()) {
-    fail(quoted(text) + " is not a number");
+    fail(quoted(word) + " is not a number");
   }
   return value;
 }

@@ -196,11 +196,19 @@ TEST_F(CloudFiles, EveryFormatIsReadExactly) {
   expect_points("little.ply", ply_binary(false));
   expect_points("big.ply", ply_binary(true));
   // Windows' ends of lines; no COUNT is one each; an organised cloud.
-  std::string crlf;
-  for (const char c : pcd_ascii()) crlf += c == '\n' ? "\r\n"s : std::string(1, c);
-  expect_points("crlf.pcd", crlf);
+  expect_points("crlf.pcd", replaced(pcd_ascii(), "\n", "\r\n"));
   expect_points("organised.pcd",
                 with(with(pcd_binary(), "WIDTH 50", "WIDTH 10"), "HEIGHT 1", "HEIGHT 5"));
+  // Padding as drivers have it, and fields of no numbers.
+  expect_points("padded.pcd", with(pcd_binary(), "x normal y z", "x _ y z"));
+  expect_points(
+      "count_0.pcd",
+      with(with(with(with(pcd_ascii(), "normal y z", "normal y z _ _"), "4 8 4\n", "4 8 4 1 1\n"),
+                "F F I\n", "F F I U U\n"),
+           "3 1 1\n", "3 1 1 0 0\n"));
+  expect_points("cr.pcd", replaced(pcd_ascii(), "\n", "\r"));
+  expect_points("broken.ply", replaced(ply_ascii(), " 2 5 6 ", "\n 2 5 6\n"));
+  expect_points("cr.ply", replaced(ply_ascii(), "\n", "\r"));
   // A byte order mark; comments among the points.
   for (const std::string& file : {pcd_ascii(), pcd_binary(), pcd_compressed()}) {
     expect_points("marked.pcd", "\xEF\xBB\xBF" + file);
@@ -235,6 +243,17 @@ TEST_F(CloudFiles, WhatLiblzfCompressedIsRead) {
     EXPECT_EQ(cloud.points[i],
               (std::array<double, 3>{0.5 * static_cast<double>(i % 4), 1.25, -2.0}));
   }
+}
+
+TEST_F(CloudFiles, ViewpointsWithoutARotation) {
+  const auto viewpoint = [&](const std::string& numbers) {
+    return load_cloud(folder_.file("view.pcd", with(pcd_ascii(), "1 2 3 0 1 0 0", numbers)))
+        .viewpoint;
+  };
+  EXPECT_EQ(viewpoint("0 0 0 0 0 0 0")->m, Pose().m);
+  EXPECT_EQ(viewpoint("1 2 3 0 0 0 -0.0")->translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(viewpoint("0 0 0 0 0 0 1")->m,
+            (std::array<double, 12>{-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0}));
 }
 
 TEST_F(CloudFiles, EveryCutIsRefused) {
@@ -344,6 +363,9 @@ TEST_F(CloudFiles, ForgedPlyHeadersAreNamedByLine) {
   change("the header's word 'property,'", "property float fx", "property, float fx");
   change("no line end_header", good.substr(good.find("end_header")), "");
   change("is no PLY file", "ply\n", "PLZ\n");
+  expect_refused("bad.ply", "bad.ply:10: the file goes on",
+                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                 "property float z\nend_header\n1 2 3\n\n4 5 6\n");
   // A list of 2^32 - 1 numbers, one of a negative count.
   std::string list = good;
   list.replace(good.find("end_header\n") + 11 + 14 + 13, 4, raw<std::uint32_t>(4294967295U));
@@ -355,7 +377,7 @@ TEST_F(CloudFiles, ForgedPlyHeadersAreNamedByLine) {
   const std::string ascii = ply_ascii();
   expect_refused("bad.ply", "bad.ply:16: the header says 4 numbers, here are 5",
                  with(ascii, "1.5 2 7 8", "1.5 2 7 8 9"));
-  expect_refused("bad.ply", "bad.ply:16: the header says", with(ascii, "1.5 2 7 8", "1.5 9 7 8"));
+  expect_refused("bad.ply", "bad.ply:17: '2.5' is not", with(ascii, "1.5 2 7 8", "1.5 9 7 8"));
   expect_refused("bad.ply", "bad.ply:18: 'x' is not a number", with(ascii, "\n255 ", "\n255 x "));
   expect_refused("bad.ply", "negative count", with(ascii, "1.5 2 7 8", "1.5 -2 7 8"));
 }

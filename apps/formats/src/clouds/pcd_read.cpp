@@ -59,7 +59,9 @@ Pose read_viewpoint(const LineReader& line) {
   for (std::size_t i = 0; i < 7; ++i) {
     v[i] = line.finite_number(i + 1);
   }
-  const Eigen::Quaterniond q(v[3], v[4], v[5], v[6]);
+  Eigen::Quaterniond q(v[3], v[4], v[5], v[6]);
+  // Drivers that know no rotation write zeros.
+  if (q.squaredNorm() == 0) q.setIdentity();
   if (!(std::abs(q.norm() - 1) <= kMendableNorm)) {
     line.fail("VIEWPOINT's quaternion has the norm " + short_text(q.norm()) + ", not 1");
   }

@@ -61,41 +61,58 @@ class PlyRow {
   std::vector<std::size_t> ends_;
 };
 
-/// The numbers of an ASCII file one by one; each row stands on a line of its own.
+/// The numbers of an ASCII file one by one. A row begins and ends with a line; some writers break
+/// it over several.
 class PlyAsciiNumbers {
  public:
   explicit PlyAsciiNumbers(LineReader& line) : line_(line) {}
 
   void begin_row() {
-    do {
-      if (!line_.next()) line_.fail("the file ends before its last element");
-    } while (line_.words().empty());
-    word_ = 0;
+    next_line();
+    first_line_ = line_.line();
+    numbers_ = 0;
   }
   double next(ScalarType type) {
+    if (word_ == line_.words().size()) next_line();
     const double value = line_.number(word_);
     if (type.kind != ScalarType::Kind::floating && value != std::floor(value)) {
       line_.fail(quoted(line_.words()[word_]) + " is not a whole number");
     }
     ++word_;
+    ++numbers_;
     return value;
   }
   void require(double count, ScalarType) const {
-    if (static_cast<double>(word_) + count > static_cast<double>(line_.words().size())) {
-      line_.fail("the header says that more numbers follow, here are " +
-                 std::to_string(line_.words().size()));
-    }
+    // The shortest number is a digit, and each but the last has something behind it.
+    const std::size_t most = line_.words().size() - word_ + line_.rest().size() / 2 + 1;
+    if (count > static_cast<double>(most)) line_.fail("a list's count is more than the file holds");
   }
   void end_row() const {
     if (word_ == line_.words().size()) return;
-    line_.fail("the header says " + std::to_string(word_) + " numbers, here are " +
-               std::to_string(line_.words().size()));
+    const bool is_broken = first_line_ != line_.line();
+    throw Error(ErrorCode::format,
+                line_.name() + ":" + std::to_string(first_line_) + ": the header says " +
+                    std::to_string(numbers_) + " numbers, " +
+                    (is_broken ? "which end within line " + std::to_string(line_.line())
+                               : "here are " + std::to_string(line_.words().size())));
+  }
+  void end_file() const {
+    while (line_.next()) {
+      if (!line_.words().empty()) line_.fail("the file goes on behind its last element");
+    }
   }
   [[noreturn]] void fail(const std::string& what) const { line_.fail(what); }
 
  private:
+  void next_line() {
+    do {
+      if (!line_.next()) line_.fail("the file ends before its last element");
+    } while (line_.words().empty());
+    word_ = 0;
+  }
+
   LineReader& line_;
-  std::size_t word_ = 0;
+  std::size_t word_ = 0, first_line_ = 0, numbers_ = 0;
 };
 
 class PlyBinaryNumbers {
@@ -114,6 +131,10 @@ class PlyBinaryNumbers {
     if (count * static_cast<double>(type.size) > static_cast<double>(rest_.size())) fail_short();
   }
   void end_row() const {}
+  void end_file() const {
+    if (rest_.find_first_not_of(" \t\r\n") == std::string_view::npos) return;
+    fail(std::to_string(rest_.size()) + " bytes stand behind the last element");
+  }
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(ErrorCode::format, name_ + ": " + what);
   }
@@ -140,9 +161,11 @@ class PlyFile {
 
   /// For what the caller finds wrong with the header.
   [[noreturn]] void fail(const std::string& what) const { line_.fail(what); }
+  /// Number of the line that was read last, 0 in binary files.
+  [[nodiscard]] std::size_t line() const { return format_ == Format::ascii ? line_.line() : 0; }
 
   /// Calls take(number of the element, PlyRow) for each row of the first `count` elements, in the
-  /// file's order; once.
+  /// file's order; once. If these are all, nothing may stand behind them.
   template <typename Take>
   void read(std::size_t count, Take&& take) {
     if (format_ == Format::ascii) {
@@ -244,6 +267,7 @@ class PlyFile {
         take(e, row);
       }
     }
+    if (elements == elements_.size()) numbers.end_file();
   }
 
   LineReader line_;

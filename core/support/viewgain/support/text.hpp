@@ -29,8 +29,9 @@ namespace viewgain {
 [[nodiscard]] VIEWGAIN_EXPORT std::string quoted(std::string_view word);
 
 /// The lines of a text, or of a binary file's header, from the front, cut into words at blanks. A
-/// byte order mark before the first is skipped. Failures name file and line. Thread safety: one
-/// call at a time. Cost: all of the text is gone through once.
+/// byte order mark before the first is skipped. Lines end at \n or \r\n, or all at \r if the first
+/// does. Failures name file and line. Thread safety: one call at a time. Cost: all of the text is
+/// gone through once.
 class VIEWGAIN_EXPORT LineReader {
  public:
   /// `name` is the file's, for messages; `bytes` must outlive the reader.
@@ -51,6 +52,8 @@ class VIEWGAIN_EXPORT LineReader {
   [[noreturn]] void fail(const std::string& what) const;
   /// The word as a number, NaN and infinities included; fails otherwise.
   [[nodiscard]] double number(std::size_t word) const;
+  /// As number(), of a word that need not stand in the current line.
+  [[nodiscard]] double number_of(std::string_view word) const;
   /// The word as a finite number; fails otherwise.
   [[nodiscard]] double finite_number(std::size_t word) const;
   /// The word as a whole number from 0 to `most`; fails otherwise.
@@ -63,6 +66,7 @@ class VIEWGAIN_EXPORT LineReader {
   std::string_view rest_;
   std::vector<std::string_view> words_;
   std::size_t line_ = 0;
+  char line_end_ = '\n';
 };
 
 }  // namespace viewgain

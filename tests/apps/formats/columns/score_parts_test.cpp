@@ -9,9 +9,12 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "core/expect_error.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/columns/mapped_poses.hpp"
+#include "viewgain/support/columns/npy_header.hpp"
 
 namespace viewgain {
 namespace {
@@ -191,6 +194,36 @@ TEST_F(ScoreParts, BadColumnsOfPosesAreNamed) {
     EXPECT_NE(result.err.find(name), std::string::npos) << name << ": " << result.err;
   }
   EXPECT_EQ(run(test::joined(head, {"good.npy"})).exit_code, 0);
+}
+
+// By the bytes that numpy gives its types.
+TEST_F(ScoreParts, RowsOfOtherColumns) {
+  const auto header = [&](const std::string& type) {
+    write_npy("types.npy", type, "(3,)", {});
+    return parse_npy_header("types.npy", read("types.npy"));
+  };
+  EXPECT_EQ(header("[('a', '<U4'), ('b', '|S8'), ('c', '|b1'), ('', '|V3'), ('d', '<f8')]")
+                .fields.back()
+                .offset,
+            16U + 8 + 1 + 3);
+  EXPECT_EQ(header("[('a', '<f4', (2, 3)), ('b', '<c16'), ('c', '<i2')]").row_bytes, 24U + 16 + 2);
+  for (const char* type :
+       {"'>f4'", "'|O'", "'<M8[ns]'", "'<U0'", "[('a', '>f8')]", "[('a', [('b', '<f8')])]",
+        "[(('title', 'a'), '<f8')]", "('<f8', (2,))"}) {
+    test::expect_error(ErrorCode::format, "types.npy: .npy header: ", [&] { (void)header(type); });
+  }
+  std::vector<double> pose{1, 2, 3, 0, 0, 0, 1};
+  const std::string columns = "('tx', '<f8'), ('ty', '<f8'), ('tz', '<f8'), ('qx', '<f8'), ";
+  const std::string turned = "('qy', '<f8'), ('qz', '<f8'), ('qw', '<f8')]";
+  write_npy("named.npy", "[" + columns + turned, "(1,)", pose);
+  EXPECT_EQ(MappedPoses(dir / "named.npy").size(), 1U);
+  pose.insert(pose.begin(), 5);
+  write_npy("text.npy", "[('name', '<U2'), " + columns + turned, "(1,)", pose);
+  bool mended = false;
+  EXPECT_EQ(MappedPoses(dir / "text.npy").at(0, mended).translation(), Eigen::Vector3d(1, 2, 3));
+  write("fortran.npy", test::with(read("text.npy"), "order': False", "order': True "));
+  test::expect_error(ErrorCode::format, "Fortran's order",
+                     [&] { (void)MappedPoses(dir / "fortran.npy"); });
 }
 
 TEST_F(ScoreParts, FlagsThatDoNotGoTogetherAreRefused) {

@@ -17,7 +17,8 @@ struct VIEWGAIN_EXPORT PointCloud {
   /// In file order, as they stand there, in the file's frame and in whatever unit it has; an
   /// organised cloud's pixels without a reading are NaN.
   std::vector<std::array<double, 3>> points;
-  std::optional<Pose> viewpoint;  ///< a PCD's VIEWPOINT: the sensor's pose in the points' frame
+  /// A PCD's VIEWPOINT: the sensor's pose in the points' frame, not turned if its quaternion is 0.
+  std::optional<Pose> viewpoint;
 };
 
 /// Reads a .pcd (ascii, binary, binary_compressed) or .ply (ascii, binary of either byte order),

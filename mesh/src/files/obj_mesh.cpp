@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "mesh_builder.hpp"
+#include "mesh_formats.hpp"
+#include "word_reader.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+// What a mesh does not need: other elements, names, materials, and curves.
+constexpr std::array<std::string_view, 36> kSkippedInObj{
+    "vt",       "vn",         "vp",        "l",      "p",      "g",     "s",    "o",
+    "mg",       "usemtl",     "usemap",    "mtllib", "maplib", "bevel", "lod",  "c_interp",
+    "d_interp", "shadow_obj", "trace_obj", "cstype", "deg",    "bmat",  "step", "curv",
+    "curv2",    "parm",       "trim",      "hole",   "scrv",   "sp",    "end",  "con",
+    "ctech",    "stech",      "call",      "csh"};
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view bytes, const std::string& name) : lines_(name, bytes), mesh_(name) {}
+
+  TriangleMesh read() {
+    while (next_statement()) {
+      const std::string_view keyword = words_[0];
+      if (keyword == "v") {
+        add_vertex();
+      } else if (keyword == "f") {
+        add_face();
+      } else if (keyword == "surf") {
+        lines_.fail("free-form surfaces are not read");
+      } else if (std::find(kSkippedInObj.begin(), kSkippedInObj.end(), keyword) ==
+                 kSkippedInObj.end()) {
+        lines_.fail("the word " + quoted(keyword) + " begins no line of an OBJ file");
+      }
+    }
+    return std::move(mesh_).finish();
+  }
+
+ private:
+  // The words up to a line that does not end in a backslash; false at the end.
+  bool next_statement() {
+    words_.clear();
+    for (bool goes_on = false, is_glued = false; goes_on || words_.empty();) {
+      const char* const begin = lines_.rest().data();
+      if (!lines_.next()) {
+        if (goes_on) lines_.fail("the file ends behind a backslash");
+        return false;
+      }
+      const auto& words = lines_.words();
+      if (is_glued && !words.empty() && words[0].data() == begin) {
+        lines_.fail("a backslash stands in the middle of a word");
+      }
+      const auto count = static_cast<std::ptrdiff_t>(words_before_comment(lines_));
+      words_.insert(words_.end(), words.begin(), words.begin() + count);
+      goes_on = count > 0 && words_.back().ends_with('\\');
+      if (!goes_on) continue;
+      words_.back().remove_suffix(1);
+      is_glued = !words_.back().empty();
+      if (!is_glued) words_.pop_back();
+    }
+    return true;
+  }
+
+  void add_vertex() {
+    std::array<double, 7> numbers{};
+    const std::size_t count = words_.size() - 1;
+    if (count < 3 || count == 5 || count > numbers.size()) {
+      lines_.fail("a vertex has 3 coordinates, a weight and a colour, here are " +
+                  std::to_string(count) + " numbers");
+    }
+    for (std::size_t i = 0; i < count; ++i) numbers[i] = lines_.number_of(words_[i + 1]);
+    if (count == 4 && numbers[3] != 1)
+      lines_.fail("vertices of a weight that is not 1 are not read");
+    mesh_.add_vertex({numbers[0], numbers[1], numbers[2]}, lines_.line());
+  }
+
+  // Corners are "v", "v/vt", "v//vn" or "v/vt/vn", counted from 1, or from -1 backward.
+  void add_face() {
+    for (std::size_t i = 1; i < words_.size(); ++i) {
+      std::string_view rest = words_[i];
+      for (int part = 0; part == 0 || !rest.empty(); ++part) {
+        const std::size_t end = std::min(rest.find('/'), rest.size());
+        const std::string_view word = rest.substr(0, end);
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+        const double index = part > 0 && word.empty() ? 1 : lines_.number_of(word);
+        if (index != std::floor(index) || part > 2) {
+          lines_.fail(quoted(words_[i]) + " is no corner of a face");
+        }
+        if (part > 0) continue;
+        if (index == 0) lines_.fail("index 0 is out of range");
+        const double before = index < 0 ? static_cast<double>(mesh_.vertices()) : -1;
+        mesh_.add_corner(before + index, lines_.line());
+      }
+    }
+    mesh_.end_face(lines_.line());
+  }
+
+  LineReader lines_;
+  MeshBuilder mesh_;
+  std::vector<std::string_view> words_;
+};
+
+}  // namespace
+
+TriangleMesh obj_mesh(std::string_view bytes, const std::string& name) {
+  return ObjReader(bytes, name).read();
+}
+
+}  // namespace viewgain::detail

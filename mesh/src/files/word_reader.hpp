@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+
+#include "viewgain/support/text.hpp"
+
+namespace viewgain::detail {
+
+/// How many words a line has before a comment, which '#' begins.
+inline std::size_t words_before_comment(const LineReader& lines) {
+  const auto& words = lines.words();
+  const auto comment = std::find_if(words.begin(), words.end(),
+                                    [](std::string_view word) { return word.front() == '#'; });
+  return static_cast<std::size_t>(comment - words.begin());
+}
+
+/// The words of a text one by one, whatever lines they stand on, without its comments.
+class WordReader {
+ public:
+  explicit WordReader(LineReader& lines) : lines_(lines) {}
+
+  /// Whether another word stands on this line.
+  [[nodiscard]] bool more_here() const { return at_ < count_; }
+  /// Whether another word follows; goes to its line.
+  bool more() {
+    while (!more_here()) {
+      if (!lines_.next()) return false;
+      at_ = 0;
+      count_ = words_before_comment(lines_);
+    }
+    return true;
+  }
+  /// The next word, which is taken by next() or skipped with the others of its line. They fail
+  /// where the file ends.
+  std::string_view peek() {
+    if (!more()) lines_.fail("the file ends too early");
+    return lines_.words()[at_];
+  }
+  std::string_view next() {
+    const std::string_view word = peek();
+    ++at_;
+    return word;
+  }
+  void skip_line() { at_ = count_; }
+
+  /// The next word, which must be a number.
+  double number() { return lines_.number_of(next()); }
+  double finite_number() {
+    (void)peek();
+    return lines_.finite_number(at_++);
+  }
+  double whole_number() {
+    const double value = number();
+    if (value != std::floor(value)) {
+      lines_.fail(quoted(lines_.words()[at_ - 1]) + " is not a whole number");
+    }
+    return value;
+  }
+  [[nodiscard]] std::size_t line() const { return lines_.line(); }
+
+ private:
+  LineReader& lines_;
+  std::size_t at_ = 0, count_ = 0;
+};
+
+}  // namespace viewgain::detail
