@@ -24,7 +24,7 @@ constexpr int kSamplesPerSide = 2;    // of a pixel at an edge
 constexpr int kEdgeSkyRays = 4;       // of each sample there
 constexpr int kSmoothSkyRays = 10;    // of the one sample of any other pixel
 constexpr double kAmbient = 0.62;     // share of the sky's light, the sun has the rest
-constexpr double kHidden = 0.02;      // less visible than this is not looked at any more
+constexpr double kHidden = 0.05;      // less visible than this is not looked at any more
 constexpr double kOffset = 1.5e-4;    // of the occlusion range: a ray must not hit its own start
 constexpr std::size_t kAtOnce = 128;  // pixels
 
@@ -163,7 +163,7 @@ class Renderer {
 
   // Whether two neighbours show so much the same that no edge lies between them.
   [[nodiscard]] bool is_smooth(const Sample& a, const Sample& b) const {
-    constexpr double kSameColor = 0.04, kSameSide = 0.8, kSameRange = 0.03, kSameSun = 0.1;
+    constexpr double kSameColor = 0.06, kSameSide = 0.8, kSameRange = 0.03, kSameSun = 0.1;
     if (!((a.flat - b.flat).cwiseAbs().maxCoeff() < kSameColor)) return false;
     if (!(std::abs(a.visible - b.visible) < kSameColor)) return false;
     if (a.visible == 0 && b.visible == 0) return true;
