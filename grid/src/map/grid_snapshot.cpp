@@ -15,10 +15,12 @@ namespace {
 
 using namespace detail;
 
-// Where tiles larger than a region come in their list: by the nodes of 4096³ and of 128³ voxels
+// Where tiles larger than a region come in their list: by the nodes of 2048³ and of 128³ voxels
 // that hold their lowest voxel, each by x, y, z.
 std::array<std::int32_t, 6> place_of(Index3 v) {
-  return {v.x >> 12, v.y >> 12, v.z >> 12, v.x >> 7, v.y >> 7, v.z >> 7};
+  constexpr int kUpper = static_cast<int>(CodeUpper::TOTAL),
+                kNode = static_cast<int>(CodeNode::TOTAL);
+  return {v.x >> kUpper, v.y >> kUpper, v.z >> kUpper, v.x >> kNode, v.y >> kNode, v.z >> kNode};
 }
 
 /// Makes a snapshot's lists of leaves and tiles, node by node and region by region. A map has many

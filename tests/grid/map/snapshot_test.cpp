@@ -172,7 +172,7 @@ TEST(Snapshot, AnUnknownWorkspaceIsAFewBoxes) {
   EXPECT_TRUE(snapshot.is_free({2000, 0, 0}));
 }
 
-// Nodes of 4096³ voxels without a reading are a tile each, the others thousands of tiles of 128³.
+// Nodes of 2048³ voxels without a reading are a tile each, the others thousands of tiles of 128³.
 TEST(Snapshot, AmongThousandsOfTilesItKnowsWhatIsFree) {
   BeliefGrid grid(GridConfig{0.01, {{-60, -30, -3}, {60, 45, 3}}, {}, 0.01});
   std::mt19937_64 random(5);

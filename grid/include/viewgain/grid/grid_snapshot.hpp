@@ -45,7 +45,7 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   HazardCounters hazard;             ///< what frames have said of unknown space
   std::vector<SnapshotLeaf> leaves;  ///< with a voxel that is not free, in the order of the regions
   /// Of unknown voxels, clipped to the workspace; those larger than a region first, by the nodes of
-  /// 4096³ and then 128³ voxels that they fill, each by x, y, z; then in the order of the regions.
+  /// 2048³ and then 128³ voxels that they fill, each by x, y, z; then in the order of the regions.
   std::vector<VoxelBox> tiles;
   std::vector<SnapshotRegion> regions;  ///< cubes of 32³ voxels that hold any, numbers rising
   /// Which grid it is of and when, for BeliefGrid::snapshot(before); 0: none.
