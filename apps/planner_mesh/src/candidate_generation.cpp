@@ -22,7 +22,7 @@ CandidateGeneration::CandidateGeneration(const SurfaceModel& model, const Genera
 }
 
 Proposal CandidateGeneration::generate(const Pose&) {
-  return proposer_.propose(model_.grid(), model_.scene());
+  return proposer_.propose(model_.grid(), model_.scene(), model_.tried());
 }
 
 }  // namespace viewgain
