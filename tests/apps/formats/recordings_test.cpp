@@ -283,7 +283,7 @@ TEST_F(Recordings, WhatCannotBeUsedIsDroppedAndCounted) {
   write_image("rec/depth/3.png", image_of(3, 40, 30));
   const Strings intrinsics{"--intrinsics", "60,60,23.5,17.5"};
   json result = import_json("tum", intrinsics);
-  EXPECT_EQ(result["dropped"], (json{{"no_pose", 2}, {"size", 1}}));
+  EXPECT_EQ(result["dropped"], (json{{"no_pose", 2}, {"wrong_size", 1}}));
   EXPECT_EQ(result["frames"], kFrames - 1);
   EXPECT_FALSE(fs::exists(dir / "frames/frame-000003.depth.png"));
   // Within 4.1 ms each has its pose, within 3.9 ms none.
@@ -293,7 +293,7 @@ TEST_F(Recordings, WhatCannotBeUsedIsDroppedAndCounted) {
   with_gap.back() = "0.0039";
   expect_refused(call("tum", with_gap), "7 no_pose");
   const std::string text = run_well(call("tum", intrinsics));
-  EXPECT_NE(text.find("dropped: 2 no_pose, 1 size"), std::string::npos) << text;
+  EXPECT_NE(text.find("left out: 2 no_pose, 1 wrong_size"), std::string::npos) << text;
 
   fs::remove_all(dir / "rec");
   write_bop_recording();
@@ -315,7 +315,7 @@ TEST_F(Recordings, WhatCannotBeUsedIsDroppedAndCounted) {
   write("rec/pose/4.txt", lost);
   fs::remove(dir / "rec/pose/2.txt");
   result = import_json("scannet");
-  EXPECT_EQ(result["dropped"], (json{{"lost", 2}, {"no_pose", 1}}));
+  EXPECT_EQ(result["dropped"], (json{{"lost_pose", 2}, {"no_pose", 1}}));
   EXPECT_EQ(result["frames"], 2);
 
   fs::remove_all(dir / "rec");

@@ -165,7 +165,10 @@ struct FrameWatch::Impl {
     const bool has_amplitude = !needs_amplitude || is.amplitude.is_there();
     if (!is_stable && !(missing_mask.empty() && has_amplitude)) return {};
     if (!read) return {};
-    if (read->fault.verdict != FrameVerdict::used) return {{}, read->fault};
+    if (read->fault.verdict != FrameVerdict::used) {
+      if (is_stable) open_folder();
+      return {{}, read->fault};
+    }
     try {
       for (const fs::path& file : files) {
         if (has_end(file)) continue;
@@ -176,10 +179,7 @@ struct FrameWatch::Impl {
     }
     if (!missing_mask.empty()) return {{}, {}, missing_mask};
     // What is wrong with it is no frame's fault.
-    if (!folder) {
-      folder = open_frame_folder(dir, config.sensor, config.depth_scale);
-      if (config.out_of_range) folder->out_of_range = *config.out_of_range;
-    }
+    open_folder();
     try {
       return load(number, depth, *read,
                   is_known ? std::span<const MaskFolder>() : std::span(config.masks));
@@ -188,10 +188,16 @@ struct FrameWatch::Impl {
     }
   }
 
+  void open_folder() {
+    if (folder) return;
+    folder = open_frame_folder(dir, config.sensor, config.depth_scale);
+    if (config.out_of_range) folder->out_of_range = *config.out_of_range;
+  }
+
   static BadFrame set_bad(std::uint64_t number, Entry& entry, Finding why) {
     entry.state = State::bad;
     entry.verdict = why.fault.verdict;
-    return {number, std::move(why.fault), why.T_world_camera};
+    return {number, std::move(why.fault), frame_name(number, kDepthSuffix), why.T_world_camera};
   }
 
   FolderLook look(Time now) {
@@ -264,7 +270,7 @@ std::vector<BadFrame> FrameWatch::give_up() {
   Impl& m = *impl_;
   std::vector<BadFrame> given_up;
   for (auto& [number, entry] : m.entries) {
-    if (entry.state != State::waits) continue;
+    if (entry.state != State::waits || !entry.is_judged) continue;
     const bool has_pose = !entry.missing_mask.empty();
     const fs::path image = m.dir / frame_name(number, kDepthSuffix);
     given_up.push_back(Impl::set_bad(

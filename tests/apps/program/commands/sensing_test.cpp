@@ -50,7 +50,7 @@ class Sensing : public test::ProgramTest {
     const auto frames = open_frames(dir / name, "", std::nullopt);
     std::vector<DepthFrame> result;
     for (std::size_t i = 0; i < frames.images.size(); ++i) {
-      result.push_back(load_frame(frames, i, OutOfRangeMeaning::carve));
+      result.push_back(load_frame(frames, i));
     }
     return result;
   }

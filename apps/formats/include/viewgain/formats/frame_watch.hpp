@@ -50,6 +50,7 @@ struct VIEWGAIN_EXPORT BadFrame {
   std::uint64_t number = 0;  ///< in its files' names
   /// unreadable, wrong_size, lost_pose, changed; no_pose and no_mask of give_up().
   FrameFault fault{};
+  std::string name{};                    ///< of its depth image
   std::optional<Pose> T_world_camera{};  ///< where it was taken, if that is known
 };
 
