@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/planner/suspect_frames.hpp"
 
+#include <cstdlib>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/jump_edge_filter.hpp"
 
 namespace viewgain {
 namespace {
@@ -56,7 +58,6 @@ const std::vector<Reading>& readings() {
       {"upward_camera", "the poses' camera looks along -z with y up, not along z with y down", 1,
        false, optical_of_upward},
       {"pose_millimetres", "the poses are in millimetres", 1, false, in_metres},
-      {"depth_along_ray", "the depths are along the ray, not along z", 1, true, nullptr},
       {"depth_scale", "the depth scale is 1000 times larger", 1000},
       {"depth_scale", "the depth scale is 10 times larger", 10},
       {"depth_scale", "the depth scale is 5 times larger", 5},
@@ -87,10 +88,15 @@ struct Meetings {
 class Meeting {
  public:
   Meeting(const Sensor& sensor, std::span<const DepthFrame> frames, std::span<const Pose> poses)
-      : sensor_(sensor), frames_(frames), poses_(poses), rays_(sensor.camera.ray_table()) {
+      : sensor_(sensor),
+        frames_(frames.begin(), frames.end()),
+        poses_(poses),
+        rays_(sensor.camera.ray_table()) {
+    const JumpEdgeFilter filter(sensor.camera);
+    for (DepthFrame& frame : frames_) filter.apply(frame);
     const std::size_t pixels = rays_.size();
     const std::size_t step = std::max<std::size_t>(1, pixels / (3 * kPoints));
-    for (const DepthFrame& frame : frames) {
+    for (const DepthFrame& frame : frames_) {
       std::vector<std::size_t>& own = samples_.emplace_back();
       for (std::size_t i = step / 2; i < pixels; i += step) {
         if (frame.depth[i] > 0 && std::isfinite(frame.depth[i]) && rays_[i].allFinite()) {
@@ -114,11 +120,47 @@ class Meeting {
         ++sum.points;
         const Eigen::Vector3d p_world = T_world[i] * (*z * rays_[pixel]);
         for (std::size_t j = 0; j < frames_.size(); ++j) {
-          if (j != i) meet(reading, j, T_camera[j] * p_world, sum);
+          if (j == i) continue;
+          const std::optional<double> farther = beyond(reading, j, T_camera[j] * p_world);
+          if (!farther || *farther < -1) continue;  // it looks elsewhere, or the point is hidden
+          if (*farther > 1) {
+            ++sum.seen_past;
+          } else {
+            ++sum.met;
+            sum.misses += std::abs(*farther);
+          }
         }
       }
     }
     return sum;
+  }
+
+  // Of pairs that fit either way and not equally well, the share that fits better if depths are
+  // along the ray; nothing for too few pairs.
+  [[nodiscard]] std::optional<double> share_along_ray() const {
+    const Reading along_z{"", ""}, along_ray{"", "", 1, true};
+    std::vector<Pose> T_camera;
+    for (const Pose& pose : poses_) T_camera.push_back(pose.inverse());
+    std::size_t better = 0, all = 0;
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      for (const std::size_t pixel : samples_[i]) {
+        const std::optional<double> z = depth(along_z, i, pixel), short_z = depth(along_ray, i, pixel);
+        if (!z || !short_z) continue;
+        for (std::size_t j = 0; j < frames_.size(); ++j) {
+          if (j == i) continue;
+          const Pose T = T_camera[j] * poses_[i];
+          const auto by_z = beyond(along_z, j, T * (*z * rays_[pixel]));
+          const auto by_ray = beyond(along_ray, j, T * (*short_z * rays_[pixel]));
+          if (!by_z || !by_ray) continue;
+          const double a = std::abs(*by_z), b = std::abs(*by_ray);
+          if (std::min(a, b) > 0.5 || std::abs(a - b) < 0.1) continue;
+          ++all;
+          better += b < a ? 1 : 0;
+        }
+      }
+    }
+    if (all < kLeastMeetings) return std::nullopt;
+    return static_cast<double>(better) / static_cast<double>(all);
   }
 
  private:
@@ -133,31 +175,26 @@ class Meeting {
     return z;
   }
 
-  void meet(const Reading& reading, std::size_t frame, const Eigen::Vector3d& p, Meetings& sum) const {
-    if (!(p.z() > sensor_.min_range)) return;
+  // How much farther than the point the frame sees in its direction, in gates; nothing where it does
+  // not look.
+  [[nodiscard]] std::optional<double> beyond(const Reading& reading, std::size_t frame,
+                                             const Eigen::Vector3d& p) const {
+    if (!(p.z() > 0)) return std::nullopt;
     const PinholeCamera& camera = sensor_.camera;
     const Eigen::Vector2d at = camera.project(p);
     const double u = std::round(at.x()), v = std::round(at.y());
-    if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return;
+    if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return std::nullopt;
     const std::size_t pixel =
         static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
         static_cast<std::size_t>(u);
-    if (!rays_[pixel].allFinite()) return;
+    if (!rays_[pixel].allFinite()) return std::nullopt;
     const std::optional<double> z = depth(reading, frame, pixel);
-    if (!z) return;
-    const double gate = kGate * *z + 3 * *z / camera.fx;
-    const double beyond = *z - p.z();  // the frame sees so much farther
-    if (beyond < -gate) return;        // hidden
-    if (beyond > gate) {
-      ++sum.seen_past;
-    } else {
-      ++sum.met;
-      sum.misses += std::abs(beyond) / gate;
-    }
+    if (!z) return std::nullopt;
+    return (*z - p.z()) / (kGate * *z + 3 * *z / camera.fx);
   }
 
   const Sensor& sensor_;
-  std::span<const DepthFrame> frames_;
+  std::vector<DepthFrame> frames_;
   std::span<const Pose> poses_;
   std::vector<Eigen::Vector3d> rays_;
   std::vector<std::vector<std::size_t>> samples_;  // pixels with a depth, of each frame
@@ -229,11 +266,13 @@ Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frame
   Meetings best;
   for (const Reading& reading : std::span(readings()).subspan(1)) {
     const Meetings other = meeting.under(reading);
+    if (getenv("DBG")) fprintf(stderr, "%-18s %g points %zu met %zu past %zu misfit %.3f | as %zu %zu %zu %.3f\n", reading.kind, reading.depth_factor, other.points, other.met, other.seen_past, other.misfit(), as_said.points, as_said.met, as_said.seen_past, as_said.misfit());
     if (!is_better(other, as_said)) continue;
     if (suspected != nullptr && other.misfit() >= best.misfit()) continue;
     suspected = &reading;
     best = other;
   }
+  if (getenv("DBG")) fprintf(stderr, "ray share %.3f\n", meeting.share_along_ray().value_or(-1));
   if (suspected == nullptr) return {};
   std::string what = "frames contradict each other: ";
   if (as_said.count() < kLeastMeetings) {
