@@ -46,7 +46,7 @@ def simulate(program, mesh, number, folder):
     distance = [0.45, 0.55, 0.7, 0.9][number // 4 % 4]
     views = [6, 9, 14][number % 3]
     run(program, "simulate", mesh, "--orbit", f"{views},{distance},{[20, 35, 50][number // 3 % 3]}", "--sensor", sensor,
-        "--size", 0.3 + 0.05 * (number % 3), "--recenter", "on", "--noise", "on", "--seed", number, "--out", folder)
+        "--size", 0.3 + 0.05 * (number % 3), "--recenter", "on", "--noise", "on", "--seed", number, *(["--background", 0] if number % 5 == 4 else []), "--out", folder)
     return s
 
 

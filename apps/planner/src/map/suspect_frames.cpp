@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/planner/suspect_frames.hpp"
 
-#include <cstdlib>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -70,18 +69,18 @@ const std::vector<Reading>& readings() {
 
 // What became of the readings of all frames in all others.
 struct Meetings {
-  std::size_t points = 0;      // in range
-  std::size_t met = 0;         // in another frame, within the gate
-  std::size_t seen_past = 0;   // another frame looks past them
-  double misses = 0;           // sum of |distance| / gate over met
+  std::size_t points = 0;     // in range
+  std::size_t met = 0;        // in another frame, within the gate
+  std::size_t seen_past = 0;  // another frame looks past them
 
-  [[nodiscard]] std::size_t count() const { return met + seen_past; }
-  // 0: all fit exactly, 1: none does.
-  [[nodiscard]] double misfit() const {
-    return count() == 0 ? 1 : (misses + static_cast<double>(seen_past)) / static_cast<double>(count());
-  }
   [[nodiscard]] double share_past() const {
-    return count() == 0 ? 0 : static_cast<double>(seen_past) / static_cast<double>(count());
+    const std::size_t all = met + seen_past;
+    return all == 0 ? 0 : static_cast<double>(seen_past) / static_cast<double>(all);
+  }
+  // To choose among ways that are all better: where few meet, few contradict each other.
+  [[nodiscard]] double doubt() const {
+    return (static_cast<double>(seen_past) + 0.01 * static_cast<double>(points)) /
+           static_cast<double>(met);
   }
 };
 
@@ -123,12 +122,7 @@ class Meeting {
           if (j == i) continue;
           const std::optional<double> farther = beyond(reading, j, T_camera[j] * p_world);
           if (!farther || *farther < -1) continue;  // it looks elsewhere, or the point is hidden
-          if (*farther > 1) {
-            ++sum.seen_past;
-          } else {
-            ++sum.met;
-            sum.misses += std::abs(*farther);
-          }
+          ++(*farther > 1 ? sum.seen_past : sum.met);
         }
       }
     }
@@ -242,12 +236,17 @@ Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames
                                percent(1 - best) + " if " + suspected->what};
 }
 
-// Do frames meet that did not, or meet much better?
+// Do frames meet that did not, or contradict each other far less? Right ones contradict each other
+// in up to 7 % of what they have in common, at edges. Where fewer readings would be in range, or
+// few would meet, that says nothing.
 bool is_better(const Meetings& other, const Meetings& as_said) {
-  if (other.met < kLeastMeetings || 2 * other.met < other.seen_past) return false;
+  if (20 * other.points < 19 * as_said.points || 2 * other.met < other.points ||
+      other.met < kLeastMeetings || other.share_past() > 0.15) {
+    return false;
+  }
   if (10 * as_said.met < other.met) return true;
-  return as_said.misfit() > 0.1 && other.misfit() < 0.65 * as_said.misfit() &&
-         2 * other.met > as_said.met;
+  const double now = as_said.share_past();
+  return now > 0.015 && other.share_past() < (now > 0.1 ? 0.4 : 0.1) * now;
 }
 
 }  // namespace
@@ -262,25 +261,31 @@ Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frame
   if (Suspicion range = suspect_range(sensor, frames); !range.kind.empty()) return range;
   const Meeting meeting(sensor, frames, T_world_camera);
   const Meetings as_said = meeting.under(readings().front());
+  const std::optional<double> along_ray = meeting.share_along_ray();
+  if (as_said.share_past() < 0.2 && along_ray && *along_ray >= 0.5) {
+    return {"depth_along_ray", "of the readings for which it matters " + percent(*along_ray) +
+                                   " fit the other frames better if depths are along the ray, not "
+                                   "along z"};
+  }
   const Reading* suspected = nullptr;
   Meetings best;
   for (const Reading& reading : std::span(readings()).subspan(1)) {
     const Meetings other = meeting.under(reading);
-    if (getenv("DBG")) fprintf(stderr, "%-18s %g points %zu met %zu past %zu misfit %.3f | as %zu %zu %zu %.3f\n", reading.kind, reading.depth_factor, other.points, other.met, other.seen_past, other.misfit(), as_said.points, as_said.met, as_said.seen_past, as_said.misfit());
     if (!is_better(other, as_said)) continue;
-    if (suspected != nullptr && other.misfit() >= best.misfit()) continue;
+    if (suspected != nullptr && other.doubt() >= best.doubt()) continue;
     suspected = &reading;
     best = other;
   }
-  if (getenv("DBG")) fprintf(stderr, "ray share %.3f\n", meeting.share_along_ray().value_or(-1));
-  if (suspected == nullptr) return {};
-  std::string what = "frames contradict each other: ";
-  if (as_said.count() < kLeastMeetings) {
-    what = "frames do not meet: ";
+  if (suspected != nullptr) {
+    const bool is_apart = as_said.met + as_said.seen_past < kLeastMeetings;
+    return {suspected->kind,
+            (is_apart ? "frames have nothing in common; "
+                      : percent(as_said.share_past()) +
+                            " of the readings that frames have in common lie in the free space of "
+                            "others; ") +
+                percent(best.share_past()) + " would if " + suspected->what};
   }
-  what += percent(as_said.share_past()) + " of their common readings lie in the free space of " +
-          "others, " + percent(best.share_past()) + " if " + suspected->what;
-  return {suspected->kind, what};
+  return {};
 }
 
 }  // namespace viewgain

@@ -58,10 +58,11 @@ void AskedViews::recall(const fs::path& next_json, const std::set<std::string>& 
 }
 
 void AskedViews::ask(std::vector<Pose> views, const std::set<std::string>& identities) {
+  const std::set<std::string> there = images_in(folder_), done = judged(identities);
+  // What came since an earlier asking that nobody has answered may yet be the answer.
+  if (asked_.empty()) known_ = there;
   asked_ = std::move(views);
-  known_ = images_in(folder_);
-  const std::set<std::string> done = judged(identities);
-  is_asked_ = std::includes(done.begin(), done.end(), known_.begin(), known_.end());
+  is_asked_ = std::includes(done.begin(), done.end(), there.begin(), there.end());
 }
 
 std::vector<Pose> AskedViews::answered_by(const std::string& name) {

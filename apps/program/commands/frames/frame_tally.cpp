@@ -60,9 +60,15 @@ void FrameTally::add(const IntegrationReport& counts) { readings_ += counts.read
 void FrameTally::require_any(const FrameFolder& folder) const {
   const std::string suspicion = suspicion_of(folder);
   if (counts_.empty() || is_in_map(counts_.begin()->first)) {
-    if (suspicion.empty()) return;
+    std::string warning = suspicion;
+    if (warning.empty() && count_of(counts_, FrameVerdict::used) == 0 && readings_ > 0) {
+      warning = "none of " + with_commas(readings_) +
+                " readings lies in the workspace, which frames show as free; is the scale right "
+                "(--depth-scale)?";
+    }
+    if (warning.empty()) return;
     std::fprintf(stderr, "viewgain: warning: %s: %s\n", utf8_text(folder.name()).c_str(),
-                 suspicion.c_str());
+                 warning.c_str());
     return;
   }
   std::string what =
