@@ -95,8 +95,8 @@ Proposal BoundaryGeneration::generate(const Pose&) {
     }
     return proposal;
   }
-  estimated_ = boundary_views(surface, map_.scene(), map_.grid().views(), map_.sensor(), config_,
-                              exec_);
+  estimated_ =
+      boundary_views(surface, map_.scene(), map_.grid().views(), map_.sensor(), config_, exec_);
   return {candidates_of(estimated_), {}};
 }
 

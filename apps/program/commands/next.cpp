@@ -58,9 +58,8 @@ void next(const Options& options) {
   const ExecConfig exec{options.common.threads};
   std::optional<Frames> frames;
   auto [grid, sensor] = map_of(options, exec, frames);
-  const GenerationConfig config =
-      generation_config(options.proposal, sensor, grid, options.source,
-                        frames ? frames->tried : std::vector<Pose>());
+  const GenerationConfig config = generation_config(options.proposal, sensor, grid, options.source,
+                                                    frames ? frames->tried : std::vector<Pose>());
   const SurfaceModel model = model_of(std::move(grid), sensor, options.proposal, exec);
   CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate({});

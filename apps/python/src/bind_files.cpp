@@ -209,9 +209,9 @@ OSError
 }
 
 void bind_frames(py::module_& module) {
-  auto type =
-      bound_class<FrameSequence>(module, "FrameSequence",
-                          R"(A folder of depth frames, read one by one. Made by ``read_frames``.
+  auto type = bound_class<FrameSequence>(
+      module, "FrameSequence",
+      R"(A folder of depth frames, read one by one. Made by ``read_frames``.
 
 ``len(frames)``, ``frames[i]`` and iteration give a ``Frame`` (depth, T_world_camera, amplitude): depth (height,
 width), float32, along the optical axis [m] (0: nothing known, inf: nothing up to max_range), without
@@ -268,8 +268,8 @@ OSError, Error
           "ndarray, (n, 4, 4), float64: T_world_camera")
       .def("__repr__", [](const FrameSequence& self) {
         std::ostringstream text;
-        text << "<FrameSequence of " << self.images.size() << " frames, "
-             << self.sensor.name << ">";
+        text << "<FrameSequence of " << self.images.size() << " frames, " << self.sensor.name
+             << ">";
         return text.str();
       });
 

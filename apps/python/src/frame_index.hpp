@@ -11,8 +11,7 @@
 namespace viewgain::python {
 
 /// From the end if negative. Throws py::index_error.
-[[nodiscard]] inline std::size_t frame_index(const FrameSequence& frames,
-                                             pybind11::ssize_t index) {
+[[nodiscard]] inline std::size_t frame_index(const FrameSequence& frames, pybind11::ssize_t index) {
   const auto count = static_cast<pybind11::ssize_t>(frames.images.size());
   if (index < 0) index += count;
   if (index < 0 || index >= count) throw pybind11::index_error("there is no such frame");

@@ -12,7 +12,7 @@
 namespace viewgain {
 struct FrameSequence;
 struct SurfaceMesh;
-}
+}  // namespace viewgain
 
 namespace viewgain::python {
 

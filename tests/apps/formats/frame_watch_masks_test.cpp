@@ -77,7 +77,8 @@ class WatchedMasks : public test::WatchedFolder {
   // What is said of frames at the end.
   static Counts given_up(FrameWatch& watch) {
     Counts counts;
-    for (const BadFrame& frame : watch.give_up()) ++counts[std::string(frame_verdict_name(frame.fault.verdict))];
+    for (const BadFrame& frame : watch.give_up())
+      ++counts[std::string(frame_verdict_name(frame.fault.verdict))];
     return counts;
   }
 
@@ -180,7 +181,8 @@ TEST_F(WatchedMasks, BadMasksAreCountedOnceAndTakenWhenTheyBecomeGood) {
   ASSERT_EQ(bad.size(), faults.size());
   std::size_t cases = 0;
   for (; cases < faults.size(); ++cases) {
-    EXPECT_EQ(frame_verdict_name(bad[cases].fault.verdict), faults[cases].first) << bad[cases].fault.what;
+    EXPECT_EQ(frame_verdict_name(bad[cases].fault.verdict), faults[cases].first)
+        << bad[cases].fault.what;
     const std::string file = "masks/" + name(static_cast<int>(cases), ".depth.png");
     EXPECT_NE(bad[cases].fault.what.find(file), std::string::npos) << bad[cases].fault.what;
   }

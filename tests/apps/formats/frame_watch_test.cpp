@@ -184,7 +184,8 @@ TEST_F(WatchedFolder, BadOnesAreCountedOnceAndTakenWhenTheyBecomeGood) {
   std::size_t cases = 0;
   for (; cases < faults.size(); ++cases) {
     EXPECT_EQ(bad[cases].number, cases);
-    EXPECT_EQ(frame_verdict_name(bad[cases].fault.verdict), faults[cases].reason) << bad[cases].fault.what;
+    EXPECT_EQ(frame_verdict_name(bad[cases].fault.verdict), faults[cases].reason)
+        << bad[cases].fault.what;
     const std::string file = name(static_cast<int>(cases), faults[cases].file);
     EXPECT_NE(bad[cases].fault.what.find(file), std::string::npos) << bad[cases].fault.what;
   }

@@ -332,7 +332,8 @@ TEST_F(Recordings, OneDamagedPoseOrImageIsOneFrameLess) {
     EXPECT_EQ(result["dropped"], dropped);
     EXPECT_EQ(result["frames"], kFrames - 1);
   };
-  for (const char* lost : {"1 0 0 0\n0 1 0 0\n", "1 0 0 0\n0 1 0 0\n0 0 2 0\n0 0 0 1\n", "lost\n"}) {
+  for (const char* lost :
+       {"1 0 0 0\n0 1 0 0\n", "1 0 0 0\n0 1 0 0\n0 0 2 0\n0 0 0 1\n", "lost\n"}) {
     write("rec/pose/3.txt", lost);
     expect_dropped({{"lost_pose", 1}});
   }

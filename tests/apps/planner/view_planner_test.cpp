@@ -352,10 +352,12 @@ TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
   expect_bad(FrameVerdict::nothing_in_range, planner.add(empty, scene.views[2]));
   expect_bad(FrameVerdict::outside, planner.add(frame, away));
   expect_bad(FrameVerdict::unreadable, planner.drop(FrameVerdict::unreadable, scene.views[3]));
-  const FrameCounts counts{
-      {FrameVerdict::used, 1},       {FrameVerdict::lost_pose, 2},
-      {FrameVerdict::unreadable, 1}, {FrameVerdict::wrong_size, 3},
-      {FrameVerdict::nothing_in_range, 1}, {FrameVerdict::outside, 1}};
+  const FrameCounts counts{{FrameVerdict::used, 1},
+                           {FrameVerdict::lost_pose, 2},
+                           {FrameVerdict::unreadable, 1},
+                           {FrameVerdict::wrong_size, 3},
+                           {FrameVerdict::nothing_in_range, 1},
+                           {FrameVerdict::outside, 1}};
   EXPECT_EQ(planner.frames(), counts);
   for (const Candidate& candidate : planner.propose().candidates) {
     for (const std::size_t tried : {1U, 2U, 3U}) {

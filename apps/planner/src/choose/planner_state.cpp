@@ -79,11 +79,10 @@ struct Entry {
   std::string_view name;
   std::size_t words;
 };
-constexpr std::array kEntries{Entry{"version", 2},        Entry{"seen_area", 2},
-                              Entry{"before_choice", 10}, Entry{"after_choice", 10},
-                              Entry{"frames", 3},         Entry{"reached", 13},
-                              Entry{"missed", 13},        Entry{"of_view", 2},
-                              Entry{"of_choice", 2}};
+constexpr std::array kEntries{
+    Entry{"version", 2},       Entry{"seen_area", 2}, Entry{"before_choice", 10},
+    Entry{"after_choice", 10}, Entry{"frames", 3},    Entry{"reached", 13},
+    Entry{"missed", 13},       Entry{"of_view", 2},   Entry{"of_choice", 2}};
 
 }  // namespace
 

@@ -80,7 +80,8 @@ bool MapModel::shows_workspace(const DepthFrame& frame, const Pose& T_world_came
 void MapModel::drop_known_readings(DepthFrame& frame, const Pose& T_world_camera) const {
   for (std::size_t i = 0; i < frame.depth.size(); ++i) {
     const float z = frame.depth[i];
-    if (z == DepthFrame::kInvalid || z == DepthFrame::kOutOfRange || !rays_[i].allFinite()) continue;
+    if (z == DepthFrame::kInvalid || z == DepthFrame::kOutOfRange || !rays_[i].allFinite())
+      continue;
     const auto voxel =
         grid_.index_of(T_world_camera * Eigen::Vector3d(rays_[i] * static_cast<double>(z)));
     if (voxel && grid_.belief(*voxel)) frame.depth[i] = DepthFrame::kInvalid;
@@ -154,8 +155,8 @@ MapUpdate MapModel::update(const Measurements& measurements) {
 BeliefGrid MapModel::grid_after(const Measurements& measurements) const {
   const FrameVerdict verdict = judged(measurements);
   if (verdict != FrameVerdict::used) {
-    throw Error(ErrorCode::invalid_argument, "the frames cannot be used: " +
-                                                 std::string(frame_verdict_name(verdict)));
+    throw Error(ErrorCode::invalid_argument,
+                "the frames cannot be used: " + std::string(frame_verdict_name(verdict)));
   }
   BeliefGrid grid = grid_.clone();
   FrameIntegrator integrator(sensor_, config_.integration, exec_);

@@ -18,9 +18,9 @@
 namespace viewgain {
 namespace {
 
-constexpr std::size_t kPoints = 500;   // of a frame that are looked for in the others
-constexpr double kGate = 0.04;         // of the range: farther off is another surface
-constexpr double kOffCentre = 0.2;     // of the image's side
+constexpr std::size_t kPoints = 500;  // of a frame that are looked for in the others
+constexpr double kGate = 0.04;        // of the range: farther off is another surface
+constexpr double kOffCentre = 0.2;    // of the image's side
 constexpr std::size_t kLeastMeetings = 100;
 
 // A way in which frames may have been meant.
@@ -50,7 +50,8 @@ Pose w_first(const Pose& T) {
 const std::vector<Reading>& readings() {
   static const std::vector<Reading> all{
       {"", ""},
-      {"world_to_camera", "the poses are world to camera, not camera to world", 1, false, inverse_of},
+      {"world_to_camera", "the poses are world to camera, not camera to world", 1, false,
+       inverse_of},
       {"quaternion_order", "the quaternions have w first, not last", 1, false, w_first},
       {"body_frame", "the poses are of a body frame (x forward, z up), not of the optical one", 1,
        false, optical_of_body},
@@ -138,7 +139,8 @@ class Meeting {
     std::size_t better = 0, all = 0;
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       for (const std::size_t pixel : samples_[i]) {
-        const std::optional<double> z = depth(along_z, i, pixel), short_z = depth(along_ray, i, pixel);
+        const std::optional<double> z = depth(along_z, i, pixel),
+                                    short_z = depth(along_ray, i, pixel);
         if (!z || !short_z) continue;
         for (std::size_t j = 0; j < frames_.size(); ++j) {
           if (j == i) continue;
@@ -169,8 +171,8 @@ class Meeting {
     return z;
   }
 
-  // How much farther than the point the frame sees in its direction, in gates; nothing where it does
-  // not look.
+  // How much farther than the point the frame sees in its direction, in gates; nothing where it
+  // does not look.
   [[nodiscard]] std::optional<double> beyond(const Reading& reading, std::size_t frame,
                                              const Eigen::Vector3d& p) const {
     if (!(p.z() > 0)) return std::nullopt;
@@ -178,9 +180,8 @@ class Meeting {
     const Eigen::Vector2d at = camera.project(p);
     const double u = std::round(at.x()), v = std::round(at.y());
     if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return std::nullopt;
-    const std::size_t pixel =
-        static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
-        static_cast<std::size_t>(u);
+    const std::size_t pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
+                              static_cast<std::size_t>(u);
     if (!rays_[pixel].allFinite()) return std::nullopt;
     const std::optional<double> z = depth(reading, frame, pixel);
     if (!z) return std::nullopt;
@@ -203,9 +204,10 @@ std::string percent(double share) {
 Suspicion suspect_camera(const PinholeCamera& camera) {
   const double u = camera.cx / (camera.width - 1), v = camera.cy / (camera.height - 1);
   if (std::abs(u - 0.5) < kOffCentre && std::abs(v - 0.5) < kOffCentre) return {};
-  return {"principal_point",
-          "the principal point lies at " + percent(u) + " of the image's width and " + percent(v) +
-              " of its height, far from the middle: are the intrinsics those of another resolution?"};
+  return {
+      "principal_point",
+      "the principal point lies at " + percent(u) + " of the image's width and " + percent(v) +
+          " of its height, far from the middle: are the intrinsics those of another resolution?"};
 }
 
 // Of the pixels with a depth, those within the sensor's range if depths are so many times larger.

@@ -33,7 +33,8 @@ struct FrameFolderOptions {
 /// What the flag says; nothing: the folder does.
 [[nodiscard]] std::optional<OutOfRangeMeaning> out_of_range_of(const FrameFolderOptions& options);
 
-/// --depth-scale, --out-of-range, --mask and --confidence, the same in every subcommand that reads frames.
+/// --depth-scale, --out-of-range, --mask and --confidence, the same in every subcommand that reads
+/// frames.
 void add_frame_folder_options(App& app, FrameFolderOptions& options);
 
 /// Recorded or simulated frames with their poses, and what masks leave of them.

@@ -55,7 +55,8 @@ class FollowedMap {
   /// best was not reached: it is not proposed again.
   void answer(std::span<const Pose> asked, const std::optional<Pose>& T_world_camera);
 
-  /// Nothing while no frame could be used; else the best of the views at the surface's open boundaries and of the reach region's poses.
+  /// Nothing while no frame could be used; else the best of the views at the surface's open
+  /// boundaries and of the reach region's poses.
   [[nodiscard]] NextViews next(std::size_t top);
 
   /// Why to end, as ViewPlanner::should_stop().

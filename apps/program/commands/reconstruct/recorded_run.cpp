@@ -70,11 +70,10 @@ struct Moment {
 
   Moment(const FrameMap& map, const ProposalOptions& proposal, const ExecConfig& exec)
       : model(model_of(map.model().grid().clone(), map.model().sensor(), proposal, exec)),
-        generation(
-            model,
-            generation_config(proposal, map.model().sensor(), model.grid(), map.folder().name(),
-                              map.tried()),
-            exec),
+        generation(model,
+                   generation_config(proposal, map.model().sensor(), model.grid(),
+                                     map.folder().name(), map.tried()),
+                   exec),
         evaluator(evaluator_of(proposal, model, map.model().sensor(), exec)) {}
 };
 

@@ -30,8 +30,9 @@ enum class FrameVerdict : std::uint8_t {
 
 /// Names of the verdicts, in their order.
 inline constexpr std::array<std::string_view, 13> kFrameVerdictNames{
-    "used",    "carved",      "lost_pose", "no_pose", "unreadable", "wrong_size", "nothing_in_range",
-    "outside", "contradicts", "changed",   "no_mask", "intrinsics", "depth_scale"};
+    "used",       "carved",           "lost_pose",  "no_pose",     "unreadable",
+    "wrong_size", "nothing_in_range", "outside",    "contradicts", "changed",
+    "no_mask",    "intrinsics",       "depth_scale"};
 
 /// Its name. Throws std::out_of_range for a number that is none of them.
 [[nodiscard]] constexpr std::string_view frame_verdict_name(FrameVerdict verdict) {

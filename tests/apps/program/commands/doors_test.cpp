@@ -161,8 +161,8 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
   write(image("07"), read(image("07")).substr(0, 60));
   write_png(dir / image("11"), GrayImage{10, 8, std::vector<std::uint16_t>(80, 6000)});
   write_png(dir / image("15"), GrayImage{48, 36, std::vector<std::uint16_t>(48 * 36)});
-  const json bad{{"lost_pose", 1},        {"no_pose", 1}, {"nothing_in_range", 1},
-                 {"outside", 1},          {"unreadable", 1}, {"wrong_size", 1}};
+  const json bad{{"lost_pose", 1}, {"no_pose", 1},    {"nothing_in_range", 1},
+                 {"outside", 1},   {"unreadable", 1}, {"wrong_size", 1}};
 
   const Strings quiet{"--json", "--quiet"};
   const json integrated = json::parse(run_well(test::joined(
@@ -170,10 +170,9 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
                    map_flags()),
       quiet)));
   const auto call = [&](const Strings& words) {
-    return json::parse(run_well(
-        test::joined(test::joined(test::joined(words, map_flags()),
-                                  {"--support-plane", "-0.1", "--top", "3"}),
-                     quiet)));
+    return json::parse(run_well(test::joined(
+        test::joined(test::joined(words, map_flags()), {"--support-plane", "-0.1", "--top", "3"}),
+        quiet)));
   };
   const json next = call({"next", "frames"});
   const json followed = call({"follow", "frames", "--out", "plan"});

@@ -39,11 +39,10 @@ class Sensing : public test::ProgramTest {
   }
 
   json integrate(const std::string& frames, const Strings& more = {}) const {
-    return json::parse(
-        run_well(test::joined({"integrate", frames, "--voxel", "0.02", "--workspace",
-                               "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--jump-edge-filter", "off", "--out",
-                               "map.vdb", "--json"},
-                              more)));
+    return json::parse(run_well(test::joined(
+        {"integrate", frames, "--voxel", "0.02", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+         "--jump-edge-filter", "off", "--out", "map.vdb", "--json"},
+        more)));
   }
 
   [[nodiscard]] std::vector<DepthFrame> load(const std::string& name) const {

@@ -72,7 +72,7 @@ struct VIEWGAIN_EXPORT Recording {
   /// Frames that cannot be used: no_pose, lost_pose, unreadable, wrong_size, intrinsics and
   /// depth_scale (other than the first frame's).
   FrameCounts dropped;
-  std::string fault;  ///< of the first that a file's contents are to blame for
+  std::string fault;                ///< of the first that a file's contents are to blame for
   std::size_t orthonormalized = 0;  ///< frames whose rotation was off by 1e-9 to 1e-2 and mended
 };
 

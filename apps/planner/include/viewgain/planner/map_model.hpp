@@ -45,8 +45,8 @@ struct VIEWGAIN_EXPORT MapModelConfig {
 /// What a view brought.
 struct VIEWGAIN_EXPORT MapUpdate {
   FrameVerdict verdict = FrameVerdict::used;  ///< unless is_in_map(), the map is as it was
-  IntegrationReport counts{};     ///< of all its frames together
-  std::size_t flying_pixels = 0;  ///< that the jump-edge filter took out
+  IntegrationReport counts{};                 ///< of all its frames together
+  std::size_t flying_pixels = 0;              ///< that the jump-edge filter took out
   /// New surface that its first frame showed, across the rays [m²], see RealisedArea; NaN without
   /// follow_surface.
   double new_area = std::numeric_limits<double>::quiet_NaN();

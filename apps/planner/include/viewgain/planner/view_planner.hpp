@@ -103,10 +103,11 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// Puts a frame into the map and brings the scene up to date; the last proposal is void. What
   /// became of it AddedView::update says by its verdict: a frame that cannot be used leaves the map
   /// as it was, counts as a view that brought nothing, and its pose, if it is one, is tried. Throws
-  /// Error(invalid_argument) for a pose_sigma that is none. Error(capacity) and Error(backend) are those of VoxelScene::build(): the
-  /// frame is in the map then, the scene is the one before. DepthFrame::known_depth is set anew by
-  /// the planner's obstacles. `pose_sigma` [m], [rad] is what the pose may be off beside the
-  /// sensor's own pose_sigma, after register_frame() what FrameRegistration::pose_sigma() says.
+  /// Error(invalid_argument) for a pose_sigma that is none. Error(capacity) and Error(backend) are
+  /// those of VoxelScene::build(): the frame is in the map then, the scene is the one before.
+  /// DepthFrame::known_depth is set anew by the planner's obstacles. `pose_sigma` [m], [rad] is
+  /// what the pose may be off beside the sensor's own pose_sigma, after register_frame() what
+  /// FrameRegistration::pose_sigma() says.
   AddedView add(const DepthFrame& frame, const Pose& T_world_camera,
                 const PoseSigma& pose_sigma = {});
   /// The same of several frames from one pose; there must be one.
