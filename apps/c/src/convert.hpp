@@ -37,7 +37,7 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 }
 
 /// A pose from 16 numbers, row by row; all NaN if the lowest row is off by more than 1e-3.
-[[nodiscard]] Pose pose_of(const double* matrix);
+[[nodiscard]] VIEWGAIN_EXPORT Pose pose_of(const double* matrix);
 /// As pose_of(), but throws Error(invalid_argument) for such a row.
 [[nodiscard]] VIEWGAIN_EXPORT Pose rigid_pose_of(const double* matrix);
 /// Of what C calls pose_sigma: null stands for exact poses.

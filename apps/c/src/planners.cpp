@@ -21,6 +21,8 @@
 using namespace viewgain;
 using namespace viewgain::c_api;
 
+static_assert(VG_FRAME_VERDICTS == kFrameVerdictNames.size());
+static_assert(VG_FRAME_DEPTH_SCALE == static_cast<int>(FrameVerdict::depth_scale));
 static_assert(VG_INFEASIBLE_MISSED == static_cast<int>(Infeasibility::too_near) + 1);
 
 struct vg_planner {
@@ -239,9 +241,10 @@ vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* a
     require(T_world_camera, "T_world_camera");
     if (added != nullptr) require_struct(added, "vg_planner_view");
     const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
-    const AddedView view = own.add(frame, rigid_pose_of(T_world_camera), pose_sigma_of(pose_sigma));
+    const AddedView view = own.add(frame, pose_of(T_world_camera), pose_sigma_of(pose_sigma));
     if (added == nullptr) return;
     write_struct(added, {.struct_size = 0,
+                         .verdict = static_cast<int32_t>(view.update.verdict),
                          .view = view.view,
                          .readings = view.update.counts.readings,
                          .readings_inside = view.update.counts.readings_inside,
@@ -252,6 +255,28 @@ vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* a
                          .total_entropy_removed = view.progress.entropy_removed,
                          .new_area = view.update.new_area,
                          .total_area = view.progress.surface_area});
+  });
+}
+
+vg_status vg_planner_drop(vg_planner* planner, int32_t verdict, const double T_world_camera[16]) {
+  return guarded([&] {
+    ViewPlanner& own = live(planner);
+    if (verdict < VG_FRAME_LOST_POSE || verdict >= VG_FRAME_VERDICTS) {
+      reject("verdict is " + std::to_string(verdict) + "; those of frames left out are 2 to 12");
+    }
+    std::optional<Pose> pose;
+    if (T_world_camera != nullptr) pose = pose_of(T_world_camera);
+    (void)own.drop(static_cast<FrameVerdict>(verdict), pose);
+  });
+}
+
+vg_status vg_planner_frames(const vg_planner* planner, size_t* counts, size_t verdicts) {
+  return guarded([&] {
+    const ViewPlanner& own = live(planner);
+    require_array(counts, verdicts, "counts");
+    for (std::size_t i = 0; i < verdicts; ++i) {
+      counts[i] = count_of(own.frames(), static_cast<FrameVerdict>(i));
+    }
   });
 }
 

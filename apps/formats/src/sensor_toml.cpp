@@ -179,6 +179,14 @@ Sensor sensor_of(const toml::table& root, const std::string& file) {
     const std::vector<double> sigmas = reader.numbers("pose_sigma", *node, 2);
     sensor.pose_sigma = {sigmas[0], sigmas[1]};
   }
+  if (reader.find("out_of_range") != nullptr) {
+    const std::string meaning = reader.text("out_of_range");
+    if (meaning != "carve" && meaning != "invalid") {
+      reader.fail("out_of_range", "is \"" + meaning + "\", not carve or invalid");
+    }
+    sensor.out_of_range =
+        meaning == "carve" ? OutOfRangeMeaning::carve : OutOfRangeMeaning::invalid;
+  }
   sensor.camera = read_camera(reader.table("camera"));
   sensor.noise = read_noise(reader.table("noise"));
   if (reader.find("range_calibration") != nullptr) {
@@ -230,6 +238,11 @@ std::string sensor_toml(const Sensor& sensor) {
   if (sensor.pose_sigma != PoseSigma{}) {
     text << "pose_sigma = [" << toml_float(sensor.pose_sigma.translation) << ", "
          << toml_float(sensor.pose_sigma.rotation) << "]  # of the poses of frames [m], [rad]\n";
+  }
+  if (sensor.out_of_range) {
+    text << "out_of_range = "
+         << (sensor.out_of_range == OutOfRangeMeaning::carve ? "\"carve\"" : "\"invalid\"")
+         << "  # what 65535 says in depth images\n";
   }
   const PinholeCamera& camera = sensor.camera;
   text << "\n[camera]  # pixel (0,0) has its centre at (0,0); [px]\n"

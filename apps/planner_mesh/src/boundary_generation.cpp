@@ -10,6 +10,7 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/fused_points.hpp"
+#include "viewgain/planner/pose_sets.hpp"
 #include "viewgain/planner/view_sight.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/support/text.hpp"
@@ -80,14 +81,22 @@ BoundaryGeneration::BoundaryGeneration(const SurfaceModel& model, const Boundary
 
 Proposal BoundaryGeneration::generate(const Pose&) {
   estimated_ = {};
-  if (map_.grid().views().empty()) return {};
   SurfaceMesh made;
   if (model_ == nullptr) {
     made = surface_of(fused_points(map_.grid(), {}, exec_), pooling_of(map_.scene()->snapshot()),
                       exec_);
   }
-  estimated_ = boundary_views(model_ != nullptr ? model_->surface() : made, map_.scene(),
-                              map_.grid().views(), map_.sensor(), config_, exec_);
+  const SurfaceMesh& surface = model_ != nullptr ? model_->surface() : made;
+  if (map_.grid().views().empty() || surface.triangles.empty()) {
+    PoseSet sphere = make_pose_set("sphere", around_workspace(map_.grid(), map_.sensor()));
+    Proposal proposal;
+    for (std::size_t i = 0; i < sphere.poses.size(); ++i) {
+      proposal.candidates.push_back({sphere.poses[i], sphere.generator, std::nullopt, i});
+    }
+    return proposal;
+  }
+  estimated_ =
+      boundary_views(surface, map_.scene(), map_.grid().views(), map_.sensor(), config_, exec_);
   return {candidates_of(estimated_), {}};
 }
 

@@ -22,7 +22,9 @@ CandidateGeneration::CandidateGeneration(const SurfaceModel& model, const Genera
 }
 
 Proposal CandidateGeneration::generate(const Pose&) {
-  return proposer_.propose(model_.grid(), model_.scene());
+  std::vector<Pose> tried = config_.tried;
+  tried.insert(tried.end(), model_.tried().begin(), model_.tried().end());
+  return proposer_.propose(model_.grid(), model_.scene(), tried);
 }
 
 }  // namespace viewgain

@@ -52,6 +52,7 @@ ModelProgress SurfaceModel::update(const Measurements& measurements) {
         "the first view has no reading in the workspace: the start pose looks away from it, "
         "is out of range, or something known hides it");
   }
+  if (!is_in_map(update.verdict)) tried_.push_back(measurements.T_world_camera);
   return progress_after(update);
 }
 

@@ -93,6 +93,7 @@ void candidates(const Options& options) {
   check(options.proposal);
   const ExecConfig exec = exec_of(options.common);
   SensedMap map = load_sensed_map(options.map, options.sensor);
+  require_known(map.grid, options.map);
   const Sensor sensor = with_body(std::move(map.sensor), options.proposal);
   const GenerationConfig config =
       generation_config(options.proposal, sensor, map.grid, options.map);

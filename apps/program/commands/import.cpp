@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -76,11 +77,14 @@ RecordingConfig config_of(const Options& options, RecordingFormat format,
 void print_summary(const Options& options, const Recording& recording, const ImportReport& report,
                    const std::optional<Sensor>& sensor, double seconds) {
   const PinholeCamera& camera = recording.camera;
-  const std::size_t frames = recording.frames.size();
+  const std::size_t frames = recording.frames.size() - report.unreadable;
+  FrameCounts counts = recording.dropped;
+  if (report.unreadable > 0) counts[FrameVerdict::unreadable] += report.unreadable;
+  const std::map<std::string, std::size_t> dropped = bad_frames(counts);
   if (options.common.json) {
     Json json{{"format", options.format},
               {"frames", frames},
-              {"dropped", recording.dropped},
+              {"dropped", dropped},
               {"orthonormalized_poses", recording.orthonormalized},
               {"width", camera.width},
               {"height", camera.height},
@@ -99,9 +103,7 @@ void print_summary(const Options& options, const Recording& recording, const Imp
   std::printf("%zu frames of %dx%d px, %s m per unit, %s readings: %s\n", frames, camera.width,
               camera.height, short_text(recording.depth_scale).c_str(),
               with_commas(report.readings).c_str(), options.out.c_str());
-  if (!recording.dropped.empty()) {
-    std::printf("dropped: %s\n", counts_text(recording.dropped).c_str());
-  }
+  if (!dropped.empty()) std::printf("left out: %s\n", counts_text(dropped).c_str());
   if (recording.orthonormalized > 0) {
     std::printf("rotations that were off and were orthonormalised: %zu of %zu\n",
                 recording.orthonormalized, frames);
@@ -142,8 +144,8 @@ Command add_import(App& program) {
       "A recording in another format as a folder of frames that integrate reads. tum: depth.txt, "
       "groundtruth.txt, images in 1/5000 m. bop: a scene's depth/ and scene_camera.json. scannet: "
       "depth/, pose/, intrinsic/intrinsic_depth.txt. icl-nuim: the PNGs like TUM's, depth/ and "
-      "*.gt.freiburg. Frames that cannot be used are dropped and counted by reason: no_pose, lost, "
-      "size, intrinsics, depth_scale.");
+      "*.gt.freiburg. Frames that cannot be used are left out and counted by reason: no_pose, "
+      "lost_pose, unreadable, wrong_size, intrinsics, depth_scale.");
   app->add_option("SOURCE", options->source, "folder of the recording")->required();
   one_of(*app->add_option("--format", options->format, "how it is laid out")->required(),
          recording_format_names(), "format");

@@ -20,6 +20,7 @@
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
+#include "program/commands/frames/frame_tally.hpp"
 #include "program/commands/frames/reading_source.hpp"
 #include "program/commands/map_json.hpp"
 #include "program/commands/reconstruct/registration_json.hpp"
@@ -35,25 +36,26 @@ using Options = IntegrateOptions;
 
 const char* part_name(const Options& options) { return options.clouds.empty() ? "frame" : "cloud"; }
 
-// What a wrong scale would explain.
-std::string scale_text(const ReadingSource& source) {
-  const std::optional<double> scale = source.depth_scale();
-  return scale ? " at " + short_text(*scale) + " m per unit of the depth images (--depth-scale)"
-               : "";
+std::optional<double> scale_of(const ReadingSource& source) {
+  if (source.folder() == nullptr) return std::nullopt;
+  return source.folder()->frames().depth_scale;
 }
 
 Box seen_workspace(ReadingSource& source, const Options& options, double voxel) {
+  FrameTally tally(true);
   Progress progress(std::string("bounds of ") + part_name(options), options.common.quiet);
   const std::optional<Box> seen = workspace_around(source.size(), voxel, [&](std::size_t i) {
-    source.load(i);
+    const FrameFault fault = source.load(i);
     progress.update(i + 1, source.size());
-    return source.bounds();
+    if (fault.verdict == FrameVerdict::used) return source.bounds();
+    tally.add(source.file(i), fault);
+    return std::optional<Box>();
   });
   if (seen) return *seen;
-  throw Error(
-      ErrorCode::invalid_argument,
-      (options.clouds.empty() ? options.frames.folder + ": no frame" : std::string("no cloud")) +
-          " has a reading" + scale_text(source));
+  if (source.folder() == nullptr) {
+    throw Error(ErrorCode::invalid_argument, "no cloud has a reading");
+  }
+  refuse_without_readings(*source.folder(), tally);
 }
 
 BeliefGrid new_map(ReadingSource& source, const Options& options) {
@@ -119,7 +121,10 @@ std::optional<double> median(std::vector<double> values) {
 }
 
 struct Totals {
-  IntegrationReport sum;
+  explicit Totals(bool quiet) : tally(quiet) {}
+
+  FrameTally tally;
+  IntegrationReport sum{};
   std::uint64_t masked_pixels = 0;
   std::uint64_t jump_edge_removed = 0;
   std::size_t skipped = 0;                       // frames that the map has already
@@ -128,7 +133,7 @@ struct Totals {
 };
 
 Totals integrate_all(ReadingSource& source, const Options& options, std::set<std::string>& frames) {
-  Totals totals;
+  Totals totals(options.common.quiet);
   Progress progress(part_name(options), options.common.quiet);
   for (std::size_t i = 0; i < source.size(); ++i) {
     const std::string identity = source.identity(i);
@@ -137,25 +142,36 @@ Totals integrate_all(ReadingSource& source, const Options& options, std::set<std
       progress.update(i + 1, source.size());
       continue;
     }
-    source.load(i);
-    totals.masked_pixels += source.masked_pixels();
-    if (std::optional<FrameRegistration> registration = source.register_loaded()) {
-      totals.registrations.push_back(std::move(*registration));
-      if (totals.registrations.back().status == RegistrationStatus::refused) {
-        frames.erase(identity);  // a map that has more may take it
-        progress.update(i + 1, source.size());
-        continue;
+    FrameFault fault = source.load(i);
+    if (fault.verdict == FrameVerdict::used) {
+      if (std::optional<FrameRegistration> registration = source.register_loaded()) {
+        if (registration->status == RegistrationStatus::refused) {
+          fault = {FrameVerdict::contradicts,
+                   source.file(i).string() + ": " + registration->reason};
+        }
+        totals.registrations.push_back(std::move(*registration));
       }
     }
-    const Stopwatch watch;
-    const IntegrationReport report = source.integrate();
-    totals.seconds.push_back(watch.seconds());
-    totals.jump_edge_removed += source.jump_edge_removed();
-    totals.sum.readings += report.readings;
-    totals.sum.readings_inside += report.readings_inside;
-    totals.sum.plane_readings += report.plane_readings;
-    totals.sum.out_of_range += report.out_of_range;
-    totals.sum.invalid += report.invalid;
+    if (fault.verdict == FrameVerdict::used) {
+      const Stopwatch watch;
+      const MapUpdate update = source.integrate();
+      fault.verdict = update.verdict;
+      totals.tally.add(update.counts);
+      if (is_in_map(update.verdict)) {
+        totals.seconds.push_back(watch.seconds());
+        totals.masked_pixels += source.masked_pixels();
+      }
+      totals.jump_edge_removed += update.flying_pixels;
+      const IntegrationReport& report = update.counts;
+      totals.sum.readings += report.readings;
+      totals.sum.readings_inside += report.readings_inside;
+      totals.sum.plane_readings += report.plane_readings;
+      totals.sum.out_of_range += report.out_of_range;
+      totals.sum.invalid += report.invalid;
+      totals.sum.voxels_crossed += report.voxels_crossed;
+    }
+    totals.tally.add(source.file(i), fault);
+    if (!is_in_map(fault.verdict)) frames.erase(identity);  // it may be mended
     progress.update(i + 1, source.size());
   }
   return totals;
@@ -168,8 +184,10 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   const std::size_t taken = totals.seconds.size();
   const std::optional<double> frame_seconds = median(totals.seconds);
   if (options.common.json) {
-    const std::optional<double> scale = source.depth_scale();
+    const std::optional<double> scale = scale_of(source);
     Json json = {{part_name(options) + std::string("s"), taken},
+                 {"carved", nullptr},
+                 {"bad", nullptr},
                  {"skipped", totals.skipped},
                  {"views", grid.views().size()},
                  {"readings", totals.sum.readings},
@@ -183,6 +201,8 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
                  {"registration", nullptr},
                  {"sensor", source.sensor().name},
                  {"depth_scale", scale}};
+    const Json frames = frames_json(totals.tally.counts());
+    for (const char* key : {"carved", "bad"}) json[key] = frames[key];
     if (options.registration.is_on == "on") {
       json["registration"] = registration_counts(totals.registrations);
     }
@@ -198,7 +218,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   std::printf("workspace %s m: %d x %d x %d voxels of %g m, prior sigma %g m\n",
               describe(grid.workspace()).c_str(), dims.x, dims.y, dims.z, grid.voxel_size(),
               grid.prior_sigma());
-  if (const auto scale = source.depth_scale()) {
+  if (const auto scale = scale_of(source)) {
     std::printf("depth images: %s m per unit\n", short_text(*scale).c_str());
   }
   std::printf(
@@ -206,6 +226,9 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
       taken, part_name(options), source.sensor().name.c_str(),
       with_commas(totals.sum.readings).c_str(), with_commas(totals.sum.readings_inside).c_str(),
       with_commas(totals.sum.out_of_range).c_str(), with_commas(totals.sum.invalid).c_str());
+  if (const std::string text = frames_text(totals.tally.counts()); !text.empty()) {
+    std::printf("%s\n", text.c_str());
+  }
   if (options.registration.is_on == "on") {
     std::printf("%s\n", registration_text(registration_counts(totals.registrations)).c_str());
   }
@@ -263,13 +286,17 @@ void check_flags(const Options& options, const App& app) {
   }
 }
 
-// A new map without a reading comes of a wrong scale, sensor or workspace.
+// A map without a reading comes of a wrong scale, sensor or workspace.
 void refuse_empty(const Options& options, const ReadingSource& source, const Totals& totals) {
-  if (!options.map.empty() || totals.sum.readings_inside + totals.sum.plane_readings > 0) return;
-  throw Error(ErrorCode::invalid_argument,
-              (options.clouds.empty() ? options.frames.folder : options.clouds.front()) +
-                  ": none of " + with_commas(totals.sum.readings) +
-                  " readings lies in the workspace" + scale_text(source));
+  if (totals.skipped > 0) return;
+  if (options.clouds.empty()) {
+    return totals.tally.require_any(*source.folder());
+  }
+  const IntegrationReport& sum = totals.sum;
+  if (sum.readings_inside + sum.plane_readings + sum.voxels_crossed > 0) return;
+  throw Error(ErrorCode::invalid_argument, options.clouds.front() + ": none of " +
+                                               with_commas(sum.readings) +
+                                               " readings lies in the workspace");
 }
 
 void integrate(const Options& options, const App& app) {

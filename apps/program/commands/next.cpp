@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/sensed_map.hpp"
@@ -28,9 +29,16 @@ struct Options {
   std::string out;
 };
 
-SensedMap map_of(const Options& options, const ExecConfig& exec) {
+// What a folder of frames leaves beside its map.
+struct Frames {
+  FrameCounts counts;
+  std::vector<Pose> tried;
+};
+
+SensedMap map_of(const Options& options, const ExecConfig& exec, std::optional<Frames>& frames) {
   if (options.frames.folder.folder.empty()) {
     SensedMap map = load_sensed_map(options.source, options.frames.folder.sensor);
+    require_known(map.grid, options.source);
     return {std::move(map.grid), with_body(std::move(map.sensor), options.proposal)};
   }
   FrameMap map(options.frames, options.proposal, options.common.quiet, exec);
@@ -39,7 +47,8 @@ SensedMap map_of(const Options& options, const ExecConfig& exec) {
     map.add(i);
     progress.update(i + 1, map.folder().size());
   }
-  map.require_readings();
+  map.require_frames();
+  frames = {map.counts(), map.tried()};
   return {map.model().grid().clone(), map.model().sensor()};
 }
 
@@ -47,8 +56,10 @@ void next(const Options& options) {
   const Stopwatch watch;
   check(options.proposal);
   const ExecConfig exec = exec_of(options.common);
-  auto [grid, sensor] = map_of(options, exec);
-  const GenerationConfig config = generation_config(options.proposal, sensor, grid, options.source);
+  std::optional<Frames> frames;
+  auto [grid, sensor] = map_of(options, exec, frames);
+  const GenerationConfig config = generation_config(options.proposal, sensor, grid, options.source,
+                                                    frames ? frames->tried : std::vector<Pose>());
   const SurfaceModel model = model_of(std::move(grid), sensor, options.proposal, exec);
   CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate({});
@@ -57,6 +68,7 @@ void next(const Options& options) {
   if (!options.out.empty()) write_tum(options.out, poses_of(views));
   if (options.common.json) {
     Json json{{"views", model.grid().views().size()}};
+    if (frames) json.update(frames_json(frames->counts));
     json.update(to_json(views));
     json["out"] = nullptr;
     if (!options.out.empty()) json["out"] = options.out;
@@ -66,6 +78,9 @@ void next(const Options& options) {
   }
   std::printf("%zu views so far, %s; %s\n", model.grid().views().size(), sensor.name.c_str(),
               summary_of(views).c_str());
+  if (const std::string text = frames ? frames_text(frames->counts) : ""; !text.empty()) {
+    std::printf("%s\n", text.c_str());
+  }
   std::printf("%s", text_of(views).c_str());
   if (!options.out.empty()) std::printf("poses in %s\n", options.out.c_str());
 }

@@ -13,6 +13,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "classes.hpp"
+#include "frame_index.hpp"
 #include "gil.hpp"
 #include "map/depth_images.hpp"
 #include "named.hpp"
@@ -24,12 +25,6 @@
 namespace viewgain::python {
 namespace {
 
-/// What read_frames gives.
-struct Frames {
-  FrameSequence frames;
-  OutOfRangeMeaning meaning;
-};
-
 // A preset's name or the file's.
 std::string preset_or_file(const py::object& value) {
   std::string text = file_path(value);
@@ -37,29 +32,28 @@ std::string preset_or_file(const py::object& value) {
   return text;
 }
 
-Frames read_frames(const py::object& folder, const py::object& sensor,
-                   std::optional<double> depth_scale, const std::string& out_of_range) {
-  Frames result{{}, OutOfRangeMeaning::carve};
-  if (out_of_range == "invalid") {
-    result.meaning = OutOfRangeMeaning::invalid;
-  } else if (out_of_range != "carve") {
-    throw py::value_error("out_of_range is \"" + out_of_range + "\"; valid are carve invalid");
+FrameSequence read_frames(const py::object& folder, const py::object& sensor,
+                          std::optional<double> depth_scale,
+                          const std::optional<std::string>& out_of_range) {
+  if (out_of_range && *out_of_range != "invalid" && *out_of_range != "carve") {
+    throw py::value_error("out_of_range is \"" + *out_of_range + "\"; valid are carve invalid");
   }
   const std::string given = sensor.is_none() ? std::string() : preset_or_file(sensor);
   const std::string path = file_path(folder);
   const WithoutGil without_gil;
-  result.frames = open_frames(path, given, depth_scale);
-  return result;
+  FrameSequence frames = open_frames(path, given, depth_scale);
+  if (out_of_range) {
+    frames.out_of_range =
+        *out_of_range == "carve" ? OutOfRangeMeaning::carve : OutOfRangeMeaning::invalid;
+  }
+  return frames;
 }
 
-py::object frame_at(const Frames& self, py::ssize_t index) {
-  const auto count = static_cast<py::ssize_t>(self.frames.images.size());
-  if (index < 0) index += count;
-  if (index < 0 || index >= count) throw py::index_error("there is no such frame");
-  const auto i = static_cast<std::size_t>(index);
+py::object frame_at(const FrameSequence& self, py::ssize_t index) {
+  const std::size_t i = frame_index(self, index);
   const auto loaded = [&] {
     const WithoutGil without_gil;
-    return load_frame(self.frames, i, self.meaning);
+    return load_frame(self, i);
   };
   const DepthFrame frame = loaded();
   py::object amplitude = py::none();
@@ -67,7 +61,7 @@ py::object frame_at(const Frames& self, py::ssize_t index) {
     amplitude = image_array(frame.amplitude, frame.height, frame.width);
   }
   return named("Frame", image_array(frame.depth, frame.height, frame.width),
-               to_array(self.frames.poses[i]), amplitude);
+               to_array(self.poses[i]), amplitude);
 }
 
 py::array_t<double> pose_array(std::span<const Pose> poses) {
@@ -215,13 +209,14 @@ OSError
 }
 
 void bind_frames(py::module_& module) {
-  auto type =
-      bound_class<Frames>(module, "FrameSequence",
-                          R"(A folder of depth frames, read one by one. Made by ``read_frames``.
+  auto type = bound_class<FrameSequence>(
+      module, "FrameSequence",
+      R"(A folder of depth frames, read one by one. Made by ``read_frames``.
 
 ``len(frames)``, ``frames[i]`` and iteration give a ``Frame`` (depth, T_world_camera, amplitude): depth (height,
 width), float32, along the optical axis [m] (0: nothing known, inf: nothing up to max_range), without
-the error of the sensor's range_calibration, the pose (4, 4), and the amplitude [1/m**2] or None.
+the error of the sensor's range_calibration, the pose (4, 4), not finite where it is lost or missing,
+and the amplitude [1/m**2] or None. ``ViewPlanner.add_frame`` reads and judges in one.
 
 Notes
 -----
@@ -229,12 +224,12 @@ A frame is read when it is asked for, without the GIL; many threads may read at 
 frame's pixels; ``poses`` is a copy.)");
   refuse_pickling(type);
   type.def(
-          "__len__", [](const Frames& self) { return self.frames.images.size(); },
+          "__len__", [](const FrameSequence& self) { return self.images.size(); },
           "How many frames there are.\n\nReturns\n-------\nint")
       .def(
           "__iter__",
           [](const py::object& self) {
-            (void)py::cast<const Frames&>(self);  // refuses what was never initialised
+            (void)py::cast<const FrameSequence&>(self);  // refuses what was never initialised
             return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
           },
           "The frames in their order.\n\nReturns\n-------\niterator")
@@ -263,24 +258,24 @@ IndexError
 OSError, Error
     Its image cannot be read or is wrong.)")
       .def_property_readonly(
-          "sensor", [](const Frames& self) { return self.frames.sensor; },
+          "sensor", [](const FrameSequence& self) { return self.sensor; },
           "Sensor: with the folder's own intrinsics, where it has them")
       .def_property_readonly(
-          "depth_scale", [](const Frames& self) { return self.frames.depth_scale; },
+          "depth_scale", [](const FrameSequence& self) { return self.depth_scale; },
           "float: [m] per unit of the images")
       .def_property_readonly(
-          "poses", [](const Frames& self) { return pose_array(self.frames.poses); },
+          "poses", [](const FrameSequence& self) { return pose_array(self.poses); },
           "ndarray, (n, 4, 4), float64: T_world_camera")
-      .def("__repr__", [](const Frames& self) {
+      .def("__repr__", [](const FrameSequence& self) {
         std::ostringstream text;
-        text << "<FrameSequence of " << self.frames.images.size() << " frames, "
-             << self.frames.sensor.name << ">";
+        text << "<FrameSequence of " << self.images.size() << " frames, " << self.sensor.name
+             << ">";
         return text.str();
       });
 
   module.def("read_frames", &read_frames, py::arg("folder"), py::kw_only(),
              py::arg("sensor") = py::none(), py::arg("depth_scale") = py::none(),
-             py::arg("out_of_range") = "carve", R"(Opens a folder of depth frames.
+             py::arg("out_of_range") = py::none(), R"(Opens a folder of depth frames.
 
 Reads all poses and no image, without the GIL. Cost: linear in the number of frames.
 
@@ -293,8 +288,10 @@ sensor : str or path-like, optional
     A preset's name or a .toml file; the folder's own unless given.
 depth_scale : float, optional
     [m] per unit; 1e-4 with poses.txt and sensor.toml, else 1e-3.
-out_of_range : {"carve", "invalid"}
-    What 65535 in a depth image says: nothing up to max_range, or no reading.
+out_of_range : {"carve", "invalid"}, optional
+    What 65535 in a depth image says: nothing up to max_range, or no reading. As the sensor's file
+    says unless given, else "carve" with poses.txt, as ``simulate`` writes it, and "invalid" in
+    recordings.
 
 Returns
 -------

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +17,7 @@
 #include "batch_call.hpp"
 #include "bindings.hpp"
 #include "classes.hpp"
+#include "frame_index.hpp"
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/depth_images.hpp"
@@ -24,6 +27,7 @@
 #include "planner.hpp"
 #include "planner_docs.hpp"
 #include "scene.hpp"
+#include "viewgain/formats/frames.hpp"
 #include "viewgain/planner/view_planner.hpp"
 
 namespace viewgain::python {
@@ -75,19 +79,54 @@ std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
   return std::make_unique<Planner>(sensor, loaded());
 }
 
-py::object add(Planner& self, const py::object& depth, const py::object& T_world_camera,
-               const std::array<double, 2>& pose_sigma, const py::object& amplitude) {
-  const DepthFrame frame = depth_frame(self.sensor(), depth, amplitude);
-  const Pose pose = one_pose(T_world_camera, "T_world_camera");
-  const AddedView added = self.run([&](ViewPlanner& planner) {
-    return planner.add(frame, pose, {pose_sigma[0], pose_sigma[1]});
-  });
+// A pose that may be lost, and is NaN then: numbers in the right shape.
+Pose loose_pose(const py::object& T_world_camera) {
+  constexpr const char* kName = "T_world_camera";
+  return pose_batch(doubles(T_world_camera, kName, {4, 4}), kName, false).poses.front();
+}
+
+py::object to_python(const AddedView& added) {
   const IntegrationReport& counts = added.update.counts;
   return named("AddedView", counts.readings, counts.plane_readings, counts.out_of_range,
                counts.invalid, counts.readings_inside, counts.voxels_hit, counts.voxels_crossed,
                added.view, added.entropy_removed, added.update.new_area,
                added.progress.entropy_removed, added.progress.surface_area,
-               added.progress.unknown_voxels);
+               added.progress.unknown_voxels,
+               std::string(frame_verdict_name(added.update.verdict)));
+}
+
+py::object add(Planner& self, const py::object& depth, const py::object& T_world_camera,
+               const std::array<double, 2>& pose_sigma, const py::object& amplitude) {
+  const DepthFrame frame = depth_frame(self.sensor(), depth, amplitude);
+  const Pose pose = loose_pose(T_world_camera);
+  const AddedView added = self.run([&](ViewPlanner& planner) {
+    return planner.add(frame, pose, {pose_sigma[0], pose_sigma[1]});
+  });
+  return to_python(added);
+}
+
+py::object add_frame(Planner& self, const Given<FrameSequence>& frames, py::ssize_t index) {
+  const auto i = frame_index(*frames, index);
+  return to_python(self.run([&](ViewPlanner& planner) {
+    const FrameReading read = read_frame(*frames, i);
+    const Pose& T_world_camera = frames->poses.at(i);
+    return read.fault.verdict == FrameVerdict::used
+               ? planner.add(read.frame, T_world_camera)
+               : planner.drop(read.fault.verdict, T_world_camera);
+  }));
+}
+
+py::object drop(Planner& self, const std::string& verdict, const py::object& T_world_camera) {
+  const auto& names = kFrameVerdictNames;
+  const auto found = std::find(names.begin(), names.end(), verdict);
+  if (found == names.end()) {
+    throw py::value_error("verdict is \"" + verdict + "\"; there is none of this name");
+  }
+  std::optional<Pose> pose;
+  if (!T_world_camera.is_none()) pose = loose_pose(T_world_camera);
+  return to_python(self.run([&](ViewPlanner& planner) {
+    return planner.drop(static_cast<FrameVerdict>(found - names.begin()), pose);
+  }));
 }
 
 py::object register_frame(Planner& self, const py::object& depth, const py::object& T_world_camera,
@@ -210,6 +249,20 @@ void bind_planner(py::module_& module) {
       .def("add", &add, py::arg("depth"), py::arg("T_world_camera"), py::kw_only(),
            py::arg("pose_sigma") = std::array<double, 2>{0, 0}, py::arg("amplitude") = py::none(),
            kAddDoc)
+      .def("add_frame", &add_frame, py::arg("frames"), py::arg("index"), kAddFrameDoc)
+      .def("drop", &drop, py::arg("verdict"), py::arg("T_world_camera") = py::none(), kDropDoc)
+      .def_property_readonly(
+          "frames",
+          [](Planner& self) {
+            return self.use([](ViewPlanner& planner) {
+              std::map<std::string, std::size_t> counts;
+              for (const auto& [verdict, count] : planner.frames()) {
+                counts[std::string(frame_verdict_name(verdict))] = count;
+              }
+              return counts;
+            });
+          },
+          "dict: how many frames had each verdict so far, by its name; no entry: none")
       .def("register_frame", &register_frame, py::arg("depth"), py::arg("T_world_camera"),
            py::kw_only(), py::arg("sigma_translation") = kUsualPoseSigma.translation,
            py::arg("sigma_rotation") = kUsualPoseSigma.rotation, py::arg("amplitude") = py::none(),

@@ -10,8 +10,9 @@
 #include "viewgain/core/sensor.hpp"
 
 namespace viewgain {
+struct FrameSequence;
 struct SurfaceMesh;
-}
+}  // namespace viewgain
 
 namespace viewgain::python {
 
@@ -47,6 +48,10 @@ inline constexpr const char* kArgument<SharedGrid> = "grid";
 template <>
 inline constexpr const char* kSource<SharedGrid> =
     "; BeliefGrid.from_labels makes one of an array of states, BeliefGrid.load reads a file";
+template <>
+inline constexpr const char* kArgument<FrameSequence> = "frames";
+template <>
+inline constexpr const char* kSource<FrameSequence> = "; read_frames opens a folder of them";
 template <>
 inline constexpr const char* kArgument<Scene> = "scene";
 template <>

@@ -172,15 +172,57 @@ AddedView
     The counts of ``FrameIntegrator.integrate``; view (from 0); entropy_removed [nat] and new_area
     [m**2] by this view, total_entropy_removed and total_area so far, unknown_voxels that are left.
     new_area is area across the rays, as the expected area is: surface that is seen obliquely is
-    larger. It is NaN by gain "paper".
+    larger. It is NaN by gain "paper". verdict says what became of the frame: one that cannot be
+    used, as its pose is not rigid, changes no map and counts as a view that brought nothing.
 
 Raises
 ------
 ValueError
-    A shape, a dtype, millimetres, a pose that is not rigid, or a sigma that is negative or not
-    finite. Nothing has changed then.
+    A shape, a dtype, millimetres, or a sigma that is negative or not finite. Nothing has changed
+    then.
 Error
     The scene cannot be made: the frame is in the map then.)";
+
+inline constexpr const char* kAddFrameDoc =
+    R"(Reads a frame of a folder and puts it into the map, or counts why it cannot be used. Cost: that of reading, and ``add``.
+
+Parameters
+----------
+frames : FrameSequence
+    Of ``read_frames``.
+index : int
+    From the end if negative.
+
+Returns
+-------
+AddedView
+    As ``add``.
+
+Raises
+------
+IndexError
+    There is no such frame.)";
+
+inline constexpr const char* kDropDoc =
+    R"(A view that came to nothing before there was a frame to add, or whose frame is left out. Cost: a pass over the map.
+
+It counts as a frame that cannot be used: a view that brought nothing; its pose is not proposed again.
+
+Parameters
+----------
+verdict : str
+    One of those of AddedView.verdict but "used" and "carved".
+T_world_camera : array_like, (4, 4), optional
+    Where it was taken, if that is known.
+
+Returns
+-------
+AddedView
+
+Raises
+------
+ValueError
+    No such verdict, or another shape.)";
 
 inline constexpr const char* kRegisterFrameDoc =
     R"(Where the camera was, by what the frame shows of the map so far. Changes nothing.

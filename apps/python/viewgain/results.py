@@ -157,6 +157,7 @@ class AddedView(NamedTuple):
     total_entropy_removed: Annotated[float, "So far [nat, or m**2 for trace]."]
     total_area: Annotated[float, "Sum of the new areas so far [m**2]."]
     unknown_voxels: Annotated[int, "That are left."]
+    verdict: Annotated[str, "What became of the frame: used, carved (free space alone), lost_pose, no_pose, unreadable, wrong_size, nothing_in_range, outside, contradicts."]
 
 
 @named("viewgain")

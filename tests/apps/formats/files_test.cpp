@@ -267,15 +267,29 @@ TEST_F(Files, FramesReadBackInTenthsOfAMillimetre) {
   EXPECT_EQ(list("frames"),
             (std::vector<std::string>{"frame-000000.depth.png", "frame-000001.depth.png",
                                       "poses.txt", "sensor.toml", "simulated.txt"}));
-  const FrameSequence frames = open_frames(dir / "frames", "", std::nullopt);
+  FrameSequence frames = open_frames(dir / "frames", "", std::nullopt);
   EXPECT_TRUE(equal(frames.sensor, sensor));
   EXPECT_EQ(frames.depth_scale, 1e-4);
   ASSERT_EQ(frames.poses.size(), 2U);
   const std::vector<float> expected{0.0F,    DepthFrame::kOutOfRange, 0.1234F, 0.1235F,
                                     6.5534F, DepthFrame::kOutOfRange, 0.0F,    1.0F};
-  EXPECT_EQ(load_frame(frames, 1, OutOfRangeMeaning::carve).depth, expected);
-  const DepthFrame read_back = load_frame(frames, 1, OutOfRangeMeaning::invalid);
+  EXPECT_EQ(load_frame(frames, 1).depth, expected);
+  frames.out_of_range = OutOfRangeMeaning::invalid;
+  const DepthFrame read_back = load_frame(frames, 1);
   EXPECT_EQ(read_back.depth[1], DepthFrame::kInvalid);
+
+  // Whose word counts: the sensor's, else the layout's.
+  sensor.out_of_range = OutOfRangeMeaning::invalid;
+  write_sensor_toml(dir / "frames/sensor.toml", sensor);
+  EXPECT_EQ(open_frames(dir / "frames").out_of_range, OutOfRangeMeaning::invalid);
+  std::filesystem::rename(dir / "frames/poses.txt", dir / "frames/none.txt");
+  sensor.out_of_range.reset();
+  write_sensor_toml(dir / "frames/sensor.toml", sensor);
+  EXPECT_EQ(open_frames(dir / "frames").out_of_range, OutOfRangeMeaning::invalid);
+  sensor.out_of_range = OutOfRangeMeaning::carve;
+  write_sensor_toml(dir / "frames/sensor.toml", sensor);
+  EXPECT_EQ(open_frames(dir / "frames").out_of_range, OutOfRangeMeaning::carve);
+  std::filesystem::rename(dir / "frames/none.txt", dir / "frames/poses.txt");
 
   // A run into the same folder leaves none of the old frames; one that fails changes nothing.
   {
@@ -317,8 +331,8 @@ TEST_F(Files, AmplitudesReadBackInThousandths) {
                                       "simulated.txt"}));
   const FrameSequence frames = open_frames(dir / "frames", "", std::nullopt);
   const std::vector<float> expected{0.0F, 0.010F, 0.011F, 65.535F, 65.535F, 0.0F, 0.0F, 1.0F};
-  EXPECT_EQ(load_frame(frames, 0, OutOfRangeMeaning::carve).amplitude, expected);
-  EXPECT_TRUE(load_frame(frames, 1, OutOfRangeMeaning::carve).amplitude.empty());
+  EXPECT_EQ(load_frame(frames, 0).amplitude, expected);
+  EXPECT_TRUE(load_frame(frames, 1).amplitude.empty());
 
   // A later run's frames do not inherit amplitudes.
   {

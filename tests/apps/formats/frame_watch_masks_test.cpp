@@ -77,7 +77,8 @@ class WatchedMasks : public test::WatchedFolder {
   // What is said of frames at the end.
   static Counts given_up(FrameWatch& watch) {
     Counts counts;
-    for (const BadFrame& frame : watch.give_up()) ++counts[frame.reason];
+    for (const BadFrame& frame : watch.give_up())
+      ++counts[std::string(frame_verdict_name(frame.fault.verdict))];
     return counts;
   }
 
@@ -148,8 +149,8 @@ TEST_F(WatchedMasks, AFrameNeedsItsConfidencesToo) {
   EXPECT_EQ(complete_after(watched, 3s), Numbers{});
   const std::vector<BadFrame> given_up = watched.give_up();
   ASSERT_EQ(given_up.size(), 1U);
-  EXPECT_NE(given_up[0].what.find("sure/frame-000001.depth.png"), std::string::npos)
-      << given_up[0].what;
+  EXPECT_NE(given_up[0].fault.what.find("sure/frame-000001.depth.png"), std::string::npos)
+      << given_up[0].fault.what;
 }
 
 TEST_F(WatchedMasks, BadMasksAreCountedOnceAndTakenWhenTheyBecomeGood) {
@@ -158,13 +159,13 @@ TEST_F(WatchedMasks, BadMasksAreCountedOnceAndTakenWhenTheyBecomeGood) {
   write_png(elsewhere.path() / "rgb.png",
             RgbImage{8, 6, std::vector<std::uint8_t>(std::size_t{8 * 6 * 3})});
   const std::vector<std::pair<std::string, std::string>> faults{
-      {"truncated", left.substr(0, left.size() - 1)},
-      {"truncated", ""},
-      {"image", damaged},
-      {"image", png(500)},  // 16 bits: a depth image
-      {"image", read_all(elsewhere.path() / "rgb.png")},
-      {"size", gray8({0, 1}, 9, 6)},
-      {"size", gray8({0, 1}, 6, 8)}};
+      {"unreadable", left.substr(0, left.size() - 1)},
+      {"unreadable", ""},
+      {"unreadable", damaged},
+      {"unreadable", png(500)},  // 16 bits: a depth image
+      {"unreadable", read_all(elsewhere.path() / "rgb.png")},
+      {"wrong_size", gray8({0, 1}, 9, 6)},
+      {"wrong_size", gray8({0, 1}, 6, 8)}};
   Counts expected;
   for (std::size_t i = 0; i < faults.size(); ++i) {
     put_frame(static_cast<int>(i));
@@ -180,9 +181,10 @@ TEST_F(WatchedMasks, BadMasksAreCountedOnceAndTakenWhenTheyBecomeGood) {
   ASSERT_EQ(bad.size(), faults.size());
   std::size_t cases = 0;
   for (; cases < faults.size(); ++cases) {
-    EXPECT_EQ(bad[cases].reason, faults[cases].first) << bad[cases].what;
+    EXPECT_EQ(frame_verdict_name(bad[cases].fault.verdict), faults[cases].first)
+        << bad[cases].fault.what;
     const std::string file = "masks/" + name(static_cast<int>(cases), ".depth.png");
-    EXPECT_NE(bad[cases].what.find(file), std::string::npos) << bad[cases].what;
+    EXPECT_NE(bad[cases].fault.what.find(file), std::string::npos) << bad[cases].fault.what;
   }
   EXPECT_EQ(cases, 7U);
   EXPECT_EQ(watched.bad(), expected);
@@ -206,21 +208,22 @@ TEST_F(WatchedMasks, WhatNeverComesIsBadInTheEnd) {
   EXPECT_TRUE(given_up(watched).empty());  // somebody may be writing yet
   now += 1ms;
   EXPECT_EQ(complete(watched), Numbers{});
-  EXPECT_EQ(watched.bad(), (Counts{{"truncated", 1}}));
+  EXPECT_EQ(watched.bad(), (Counts{{"unreadable", 1}}));
   EXPECT_EQ(watched.waiting(), 2U);
   EXPECT_TRUE(watched.is_settled());
   const std::vector<BadFrame> given_up_now = watched.give_up();
-  ASSERT_EQ(given_up_now.size(), 1U);
+  ASSERT_EQ(given_up_now.size(), 2U);
+  EXPECT_EQ(given_up_now[1].fault.verdict, FrameVerdict::no_pose);
   EXPECT_EQ(given_up_now[0].number, 1U);
-  EXPECT_EQ(given_up_now[0].reason, "no_mask");
-  EXPECT_NE(given_up_now[0].what.find("masks/frame-000001.depth.png"), std::string::npos);
-  EXPECT_EQ(watched.bad(), (Counts{{"no_mask", 1}, {"truncated", 1}}));
-  EXPECT_EQ(watched.waiting(), 1U);
+  EXPECT_EQ(frame_verdict_name(given_up_now[0].fault.verdict), "no_mask");
+  EXPECT_NE(given_up_now[0].fault.what.find("masks/frame-000001.depth.png"), std::string::npos);
+  EXPECT_EQ(watched.bad(), (Counts{{"no_mask", 1}, {"no_pose", 1}, {"unreadable", 1}}));
+  EXPECT_EQ(watched.waiting(), 0U);
   EXPECT_TRUE(watched.give_up().empty());
   EXPECT_EQ(complete_after(watched, 1h), Numbers{});
   put_mask(1, left);
   EXPECT_EQ(complete(watched), Numbers{1});
-  EXPECT_EQ(watched.bad(), (Counts{{"truncated", 1}}));
+  EXPECT_EQ(watched.bad(), (Counts{{"no_pose", 1}, {"unreadable", 1}}));
 }
 
 // Masks are no part of what a frame is known by.
@@ -255,7 +258,7 @@ TEST_F(WatchedMasks, ARefusedFrameIsLookedAtAgainWithAnotherMask) {
   FrameWatch watched = masked_watch();
   const FolderLook look = watched.look(now);
   ASSERT_TRUE(look.frame);
-  watched.refuse(*look.frame, "outside");
+  watched.refuse(*look.frame, FrameVerdict::outside);
   EXPECT_EQ(complete_after(watched, 3s), Numbers{});
   put_mask(0, gray8({0}));
   EXPECT_EQ(complete(watched), Numbers{0});

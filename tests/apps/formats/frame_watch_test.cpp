@@ -127,7 +127,7 @@ TEST_F(WatchedFolder, WhatNeverEndsIsTakenOrBadAfterAWhile) {
   EXPECT_EQ(watched.waiting(), 4U);
   now += 1ms;
   EXPECT_EQ(complete(watched), Numbers{0});
-  EXPECT_EQ(watched.bad(), (Counts{{"pose", 1}, {"truncated", 1}}));
+  EXPECT_EQ(watched.bad(), (Counts{{"lost_pose", 1}, {"unreadable", 1}}));
   // The one without a pose waits for as long as it takes.
   EXPECT_EQ(watched.waiting(), 1U);
   EXPECT_TRUE(watched.is_settled());
@@ -152,17 +152,17 @@ TEST_F(WatchedFolder, BadOnesAreCountedOnceAndTakenWhenTheyBecomeGood) {
     std::string reason, file, bytes;
   };
   const std::vector<Fault> faults{
-      {"truncated", ".depth.png", whole.substr(0, whole.size() - 1)},
-      {"truncated", ".depth.png", ""},
-      {"truncated", ".amplitude.png", whole.substr(0, 30)},
-      {"image", ".depth.png", damaged},
-      {"image", ".depth.png", whole.substr(whole.size() - 12)},
-      {"size", ".depth.png", png(500, 9, 6)},
-      {"size", ".depth.png", png(500, 6, 8)},
-      {"size", ".amplitude.png", png(500, 4, 3)},
-      {"pose", ".pose.txt", not_rigid},
-      {"pose", ".pose.txt", nan},
-      {"pose", ".pose.txt", "no pose\n"},
+      {"unreadable", ".depth.png", whole.substr(0, whole.size() - 1)},
+      {"unreadable", ".depth.png", ""},
+      {"unreadable", ".amplitude.png", whole.substr(0, 30)},
+      {"unreadable", ".depth.png", damaged},
+      {"unreadable", ".depth.png", whole.substr(whole.size() - 12)},
+      {"wrong_size", ".depth.png", png(500, 9, 6)},
+      {"wrong_size", ".depth.png", png(500, 6, 8)},
+      {"wrong_size", ".amplitude.png", png(500, 4, 3)},
+      {"lost_pose", ".pose.txt", not_rigid},
+      {"lost_pose", ".pose.txt", nan},
+      {"lost_pose", ".pose.txt", "no pose\n"},
   };
   Counts expected;
   for (std::size_t i = 0; i < faults.size(); ++i) {
@@ -184,9 +184,10 @@ TEST_F(WatchedFolder, BadOnesAreCountedOnceAndTakenWhenTheyBecomeGood) {
   std::size_t cases = 0;
   for (; cases < faults.size(); ++cases) {
     EXPECT_EQ(bad[cases].number, cases);
-    EXPECT_EQ(bad[cases].reason, faults[cases].reason) << bad[cases].what;
+    EXPECT_EQ(frame_verdict_name(bad[cases].fault.verdict), faults[cases].reason)
+        << bad[cases].fault.what;
     const std::string file = name(static_cast<int>(cases), faults[cases].file);
-    EXPECT_NE(bad[cases].what.find(file), std::string::npos) << bad[cases].what;
+    EXPECT_NE(bad[cases].fault.what.find(file), std::string::npos) << bad[cases].fault.what;
   }
   EXPECT_EQ(cases, 11U);
   EXPECT_EQ(watched.bad(), expected);
@@ -210,14 +211,14 @@ TEST_F(WatchedFolder, ABadLineIsOneFramesAlone) {
   FrameWatch watched = watch();
   EXPECT_EQ(complete(watched), (Numbers{0, 2}));
   EXPECT_EQ(complete_after(watched, 2s), Numbers{});
-  EXPECT_EQ(watched.bad(), (Counts{{"pose", 2}}));
+  EXPECT_EQ(watched.bad(), (Counts{{"lost_pose", 2}}));
   ASSERT_EQ(bad.size(), 2U);
-  EXPECT_NE(bad[0].what.find("poses.txt:4"), std::string::npos) << bad[0].what;
+  EXPECT_NE(bad[0].fault.what.find("poses.txt:4"), std::string::npos) << bad[0].fault.what;
   // More lines change nothing for the frames before them.
   put("frame-000004.depth.png", png(500));
   put("poses.txt", read_all(dir.path() / "poses.txt") + "4 0.5 0 0.4 0 0 0 1\n");
   EXPECT_EQ(complete(watched), Numbers{4});
-  EXPECT_EQ(watched.bad(), (Counts{{"pose", 2}}));
+  EXPECT_EQ(watched.bad(), (Counts{{"lost_pose", 2}}));
 }
 
 TEST_F(WatchedFolder, ATakenFrameStaysTaken) {
@@ -273,7 +274,7 @@ TEST_F(WatchedFolder, RefusedOnesAreBadUntilTheyChange) {
   FrameWatch watched = watch();
   const FolderLook look = watched.look(now);
   ASSERT_TRUE(look.frame);
-  watched.refuse(*look.frame, "outside");
+  watched.refuse(*look.frame, FrameVerdict::outside);
   EXPECT_EQ(complete_after(watched, 3s), Numbers{});
   EXPECT_EQ(watched.bad(), (Counts{{"outside", 1}}));
   EXPECT_TRUE(watched.taken().empty());

@@ -283,7 +283,7 @@ TEST_F(Recordings, WhatCannotBeUsedIsDroppedAndCounted) {
   write_image("rec/depth/3.png", image_of(3, 40, 30));
   const Strings intrinsics{"--intrinsics", "60,60,23.5,17.5"};
   json result = import_json("tum", intrinsics);
-  EXPECT_EQ(result["dropped"], (json{{"no_pose", 2}, {"size", 1}}));
+  EXPECT_EQ(result["dropped"], (json{{"no_pose", 2}, {"wrong_size", 1}}));
   EXPECT_EQ(result["frames"], kFrames - 1);
   EXPECT_FALSE(fs::exists(dir / "frames/frame-000003.depth.png"));
   // Within 4.1 ms each has its pose, within 3.9 ms none.
@@ -293,7 +293,7 @@ TEST_F(Recordings, WhatCannotBeUsedIsDroppedAndCounted) {
   with_gap.back() = "0.0039";
   expect_refused(call("tum", with_gap), "7 no_pose");
   const std::string text = run_well(call("tum", intrinsics));
-  EXPECT_NE(text.find("dropped: 2 no_pose, 1 size"), std::string::npos) << text;
+  EXPECT_NE(text.find("left out: 2 no_pose, 1 wrong_size"), std::string::npos) << text;
 
   fs::remove_all(dir / "rec");
   write_bop_recording();
@@ -315,13 +315,33 @@ TEST_F(Recordings, WhatCannotBeUsedIsDroppedAndCounted) {
   write("rec/pose/4.txt", lost);
   fs::remove(dir / "rec/pose/2.txt");
   result = import_json("scannet");
-  EXPECT_EQ(result["dropped"], (json{{"lost", 2}, {"no_pose", 1}}));
+  EXPECT_EQ(result["dropped"], (json{{"lost_pose", 2}, {"no_pose", 1}}));
   EXPECT_EQ(result["frames"], 2);
 
   fs::remove_all(dir / "rec");
   write_icl_recording();
   write_image("rec/depth/77.png", image_of(0));
   EXPECT_EQ(import_json("icl-nuim", intrinsics)["dropped"], (json{{"no_pose", 1}}));
+}
+
+TEST_F(Recordings, OneDamagedPoseOrImageIsOneFrameLess) {
+  write_scannet_recording();
+  const std::string pose = read("rec/pose/3.txt"), image = read("rec/depth/1.png");
+  const auto expect_dropped = [&](const json& dropped) {
+    const json result = import_json("scannet");
+    EXPECT_EQ(result["dropped"], dropped);
+    EXPECT_EQ(result["frames"], kFrames - 1);
+  };
+  for (const char* lost :
+       {"1 0 0 0\n0 1 0 0\n", "1 0 0 0\n0 1 0 0\n0 0 2 0\n0 0 0 1\n", "lost\n"}) {
+    write("rec/pose/3.txt", lost);
+    expect_dropped({{"lost_pose", 1}});
+  }
+  write("rec/pose/3.txt", pose);
+  for (const std::string& damaged : {std::string("no picture"), std::string(), cut_png()}) {
+    write("rec/depth/1.png", damaged);
+    expect_dropped({{"unreadable", 1}});
+  }
 }
 
 TEST_F(Recordings, RotationsThatAreOffAreMendedAndCounted) {
@@ -479,8 +499,11 @@ TEST_F(Recordings, OnlyAnEarlierImportIsReplaced) {
 TEST_F(Recordings, AMapIsMadeOfWhatIsImported) {
   write_scannet_recording();
   (void)import_json("scannet", {"--sensor", "small.toml"});
-  const json map = json::parse(
-      run_well({"integrate", "frames", "--voxel", "0.1", "--out", "map.vdb", "--json"}));
+  // The images are of no scene, which is said; a map is a map.
+  const test::ProgramResult made =
+      run({"integrate", "frames", "--voxel", "0.1", "--out", "map.vdb", "--json"});
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  const json map = json::parse(made.out);
   EXPECT_EQ(map["frames"], kFrames);
   EXPECT_EQ(map["depth_scale"], 1e-3);
   EXPECT_GT(map["occupied"], 10);
@@ -511,16 +534,14 @@ TEST_F(Recordings, FlagsThatDoNotFitAreRefused) {
 
 TEST_F(Recordings, DamagedTumIsNamed) {
   write_tum_recording();
-  const std::string list = read("rec/depth.txt"), poses = read("rec/groundtruth.txt");
+  const std::string list = read("rec/depth.txt");
   expect_damage_named([this] { write_tum_recording(); }, call("tum", {"--sensor", "small.toml"}),
                       {{"depth.txt", "", "names no image"},
                        {"depth.txt", list + "101.5\n", ":8: "},
                        {"depth.txt", list + "soon depth/0.png\n", "'soon'"},
                        {"depth.txt", {}, "", true},
-                       {"groundtruth.txt", poses + "101 0 0 0\n", "expected 8 numbers"},
-                       {"groundtruth.txt", poses + "101 0 0 0 0 0 0 1.1\n", "norm"},
-                       {"depth/2.png", {}, "", true},
-                       {"depth/4.png", cut_png(), "not a usable image"}});
+                       {"groundtruth.txt", "101 0 0 0\n", "expected 8 numbers"},
+                       {"groundtruth.txt", "101 0 0 0 0 0 0 1.1\n", "norm"}});
 }
 
 TEST_F(Recordings, DamagedBopIsNamed) {
@@ -537,10 +558,7 @@ TEST_F(Recordings, DamagedBopIsNamed) {
                        {file, "[1, 2]", "object"},
                        {file, with("cam_K", {60, 0, 23.5}), "frame 20: cam_K"},
                        {file, with("cam_K", {60, 1, 23.5, 0, 60, 17.5, 0, 0, 1}), "no skew"},
-                       {file, with("cam_R_w2c", {1, 0, 0, 0, 1, 0, 0, 0, -1}), "not a rotation"},
-                       {file, with("cam_t_w2c", {1, 2, "three"}), "cam_t_w2c"},
-                       {file, with("depth_scale", 0), "depth_scale"},
-                       {"depth/000030.png", cut_png(), "not a usable image"}});
+                       {file, with("depth_scale", 0), "depth_scale"}});
 }
 
 TEST_F(Recordings, DamagedScanNetIsNamed) {
@@ -551,10 +569,7 @@ TEST_F(Recordings, DamagedScanNetIsNamed) {
                        {intrinsics, "60 0 23.5 0\n0 sixty 17.5 0\n0 0 1 0\n0 0 0 1\n", "'sixty'"},
                        {intrinsics, "0 0 23.5 0\n0 60 17.5 0\n0 0 1 0\n0 0 0 1\n", "fx"},
                        {intrinsics, {}, "", true},
-                       {"pose/3.txt", "1 0 0 0\n0 1 0 0\n", "found 8"},
-                       {"pose/3.txt", "1 0 0 0\n0 1 0 0\n0 0 2 0\n0 0 0 1\n", "rigid"},
-                       {"depth/03.png", bytes_of(image_of(0)), "same number"},
-                       {"depth/1.png", "no picture", "not a PNG"}});
+                       {"depth/03.png", bytes_of(image_of(0)), "same number"}});
 }
 
 TEST_F(Recordings, DamagedIclNuimIsNamed) {
@@ -562,12 +577,7 @@ TEST_F(Recordings, DamagedIclNuimIsNamed) {
   const std::string file = "traj0.gt.freiburg", poses = read("rec/traj0.gt.freiburg");
   expect_damage_named([this] { write_icl_recording(); }, call("icl-nuim"),
                       {{file, "", "no pose"},
-                       {file, poses + "5 0 0\n", "expected 8 numbers"},
-                       {file, poses + "5 0 0 inf 0 0 0 1\n", "not finite"},
-                       {file, poses + "5 0 0 0 0 0 0 0\n", "norm"},
                        {"traj1.gt.freiburg", poses, "second"},
-                       {"depth/3.png", cut_png(), "not a usable image"},
-                       {"depth/0.png", "", "not a PNG"},
                        {"depth/000.png", bytes_of(image_of(0)), "same number"}});
 }
 

@@ -197,8 +197,18 @@ TEST(CPlanner, RefusesWrongUse) {
   refused(vg_planner_add(planner, nullptr, nullptr, pose.data(), nullptr, nullptr), "depth");
   std::vector<double> bad = pose;
   bad[3] = kNan;
-  refused(vg_planner_add(planner, frame.depth.data(), nullptr, bad.data(), nullptr, nullptr),
-          "rigid");
+  vg_planner_view lost;
+  vg_planner_view_init(&lost, sizeof lost);
+  EXPECT_EQ(vg_planner_add(planner, frame.depth.data(), nullptr, bad.data(), nullptr, &lost), VG_OK);
+  EXPECT_EQ(lost.verdict, VG_FRAME_LOST_POSE);
+  EXPECT_EQ(vg_planner_drop(planner, VG_FRAME_UNREADABLE, pose.data()), VG_OK);
+  refused(vg_planner_drop(planner, VG_FRAME_CARVED, nullptr), "verdict is 1");
+  std::array<size_t, VG_FRAME_VERDICTS> counts{}, expected{};
+  expected[VG_FRAME_LOST_POSE] = expected[VG_FRAME_UNREADABLE] = 1;
+  EXPECT_EQ(vg_planner_frames(planner, counts.data(), counts.size()), VG_OK);
+  EXPECT_EQ(counts, expected);
+  size_t none = 0;
+  refused(vg_planner_propose(planner, &none, nullptr, 0), "1 lost_pose, 1 unreadable");
   bad = pose;
   bad[15] = 2;
   refused(vg_planner_tried(planner, bad.data(), 1), "lowest row");

@@ -63,9 +63,18 @@ class Entry {
     return camera_of_matrix(numbers<9>("cam_K"), name_ + ": cam_K");
   }
 
-  // Camera to world; nothing where the data set keeps it to itself.
-  [[nodiscard]] std::optional<Pose> pose(bool& mended) const {
-    if (!has("cam_R_w2c") || !has("cam_t_w2c")) return std::nullopt;
+  // Camera to world; no_pose where the data set keeps it to itself.
+  [[nodiscard]] ReadPose pose() const {
+    if (!has("cam_R_w2c") || !has("cam_t_w2c")) return unknown_pose(FrameVerdict::no_pose, {});
+    try {
+      return read_pose();
+    } catch (const Error& error) {
+      return unknown_pose(FrameVerdict::lost_pose, error.what());
+    }
+  }
+
+ private:
+  [[nodiscard]] ReadPose read_pose() const {
     const std::array<double, 9> r = numbers<9>("cam_R_w2c");
     const std::array<double, 3> t = numbers<3>("cam_t_w2c");
     Pose T_camera_world;
@@ -75,11 +84,10 @@ class Entry {
     }
     const double error = orthonormality_error(T_camera_world);
     if (!(error <= kMendableRotation)) fail(name_ + ": cam_R_w2c is not a rotation");
-    mended = error > kUnnoticedRotation;
-    return (mended ? orthonormalized(T_camera_world) : T_camera_world).inverse();
+    const bool is_mended = error > kUnnoticedRotation;
+    return {(is_mended ? orthonormalized(T_camera_world) : T_camera_world).inverse(), is_mended};
   }
 
- private:
   [[nodiscard]] double number(const json& value, const char* key) const {
     if (!value.is_number() || !std::isfinite(value.get<double>())) {
       fail(name_ + ": " + key + " must be of finite numbers");
@@ -102,29 +110,23 @@ Recording open_bop(const fs::path& source, const RecordingConfig& config) {
     const std::string key = std::to_string(number);
     const auto found = cameras.find(key);
     if (found == cameras.end()) {
-      ++recording.dropped["no_pose"];
+      drop_frame(recording, {FrameVerdict::no_pose});
       continue;
     }
     const Entry entry(*found, file.string() + ": frame " + key);
     const PinholeCamera camera = entry.camera();
     const double scale = entry.depth_scale();
-    bool mended = false;
-    const std::optional<Pose> pose = entry.pose(mended);
-    if (!pose) {
-      ++recording.dropped["no_pose"];
-      continue;
-    }
-    if (recording.frames.empty()) {
+    const ReadPose pose = entry.pose();
+    if (pose.fault.verdict == FrameVerdict::used && recording.frames.empty()) {
       recording.camera = camera;
       recording.depth_scale = scale;
     }
-    if (camera != recording.camera) {
-      ++recording.dropped["intrinsics"];
-    } else if (scale != recording.depth_scale) {
-      ++recording.dropped["depth_scale"];
+    if (pose.fault.verdict == FrameVerdict::used && camera != recording.camera) {
+      drop_frame(recording, {FrameVerdict::intrinsics});
+    } else if (pose.fault.verdict == FrameVerdict::used && scale != recording.depth_scale) {
+      drop_frame(recording, {FrameVerdict::depth_scale});
     } else {
-      recording.frames.push_back({number, image, *pose});
-      recording.orthonormalized += mended ? 1 : 0;
+      add_frame(recording, number, image, pose);
     }
   }
   return recording;

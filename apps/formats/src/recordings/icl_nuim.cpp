@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <string>
@@ -40,8 +41,8 @@ fs::path poses_file(const fs::path& source) {
 Recording open_icl_nuim(const fs::path& source, const RecordingConfig& config) {
   const TimedPoses poses = read_timed_poses(poses_file(source));
   std::map<double, std::size_t> of_number;
-  for (std::size_t i = 0; i < poses.list.timestamps.size(); ++i) {
-    of_number.emplace(poses.list.timestamps[i], i);
+  for (std::size_t i = 0; i < poses.times.size(); ++i) {
+    if (std::isfinite(poses.times[i])) of_number.emplace(poses.times[i], i);
   }
   Recording recording;
   recording.camera = config.camera.value_or(published_camera());
@@ -49,11 +50,10 @@ Recording open_icl_nuim(const fs::path& source, const RecordingConfig& config) {
   for (const auto& [number, image] : numbered_images(source / "depth")) {
     const auto pose = of_number.find(static_cast<double>(number));
     if (pose == of_number.end()) {
-      ++recording.dropped["no_pose"];
+      drop_frame(recording, {FrameVerdict::no_pose});
       continue;
     }
-    recording.frames.push_back({number, image, poses.list.poses[pose->second]});
-    recording.orthonormalized += poses.mended[pose->second] ? 1 : 0;
+    add_frame(recording, number, image, poses.poses[pose->second]);
   }
   return recording;
 }

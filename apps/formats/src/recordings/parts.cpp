@@ -8,23 +8,34 @@
 
 #include "folders.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/file_bytes.hpp"
-#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 
 namespace fs = std::filesystem;
 
 TimedPoses read_timed_poses(const fs::path& path) {
-  TimedPoses poses{read_tum(path), {}};
-  const std::string bytes = file_bytes(path);
-  for (LineReader line(path.string(), bytes); line.next();) {
-    if (line.words().empty() || line.words().front().front() == '#') continue;
-    double square = 0;  // of the quaternion's norm
-    for (std::size_t i = 4; i < 8; ++i) square += line.number(i) * line.number(i);
-    poses.mended.push_back(std::abs(std::sqrt(square) - 1) > kUnnoticedRotation);
+  TimedPoses read;
+  read.poses = read_pose_lines(path, false, &read.times);
+  const bool has_any = std::any_of(read.poses.begin(), read.poses.end(), [](const ReadPose& pose) {
+    return pose.fault.verdict == FrameVerdict::used;
+  });
+  if (!has_any) {
+    throw Error(ErrorCode::format, read.poses.empty() ? path.string() + ": holds no pose"
+                                                      : read.poses.front().fault.what);
   }
-  return poses;
+  return read;
+}
+
+void drop_frame(Recording& recording, const FrameFault& why) {
+  ++recording.dropped[why.verdict];
+  if (recording.fault.empty()) recording.fault = why.what;
+}
+
+void add_frame(Recording& recording, std::uint64_t number, const fs::path& image,
+               const ReadPose& pose) {
+  if (pose.fault.verdict != FrameVerdict::used) return drop_frame(recording, pose.fault);
+  recording.frames.push_back({number, image, pose.T_world_camera});
+  recording.orthonormalized += pose.is_mended ? 1 : 0;
 }
 
 std::map<std::uint64_t, fs::path> numbered_images(const fs::path& folder) {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "viewgain/core/pose_io.hpp"
+#include "frames/frame_poses.hpp"
 #include "viewgain/formats/recordings.hpp"
 
 namespace viewgain {
@@ -34,13 +34,19 @@ inline constexpr double kUnnoticedRotation = 1e-9;
 /// The depth images of TUM and of what is like it [m per unit].
 inline constexpr double kTumDepthUnit = 1.0 / 5000;
 
-/// A TUM file's poses, and which of them were mended.
+/// A TUM file's poses, the lost ones among them.
 struct TimedPoses {
-  PoseList list;
-  std::vector<bool> mended;
+  std::vector<ReadPose> poses;
+  std::vector<double> times;  ///< one a pose [s]; NaN: the line has none
 };
-/// Throws as read_tum().
+/// Throws as read_tum() unless one of them can be used.
 [[nodiscard]] TimedPoses read_timed_poses(const std::filesystem::path& path);
+
+/// Puts a frame that has this pose into the recording, or counts it among the dropped.
+void add_frame(Recording& recording, std::uint64_t number, const std::filesystem::path& image,
+               const ReadPose& pose);
+/// Counts a frame among the dropped.
+void drop_frame(Recording& recording, const FrameFault& why);
 
 /// The folder's images that are called NUMBER.png, by number. Throws Error(io) if there are none
 /// and Error(format), naming the file, for two of one number.

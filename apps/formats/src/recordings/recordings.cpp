@@ -47,7 +47,14 @@ void keep_one_size(Recording& recording) {
   PinholeCamera& camera = recording.camera;
   std::vector<RecordedFrame> kept;
   for (RecordedFrame& frame : recording.frames) {
-    const auto [width, height] = png_size(frame.image);
+    int width = 0, height = 0;
+    try {
+      const std::array<int, 2> size = png_size(frame.image);
+      width = size[0], height = size[1];
+    } catch (const Error& error) {
+      drop_frame(recording, {FrameVerdict::unreadable, error.what()});
+      continue;
+    }
     if (kept.empty()) {
       if (camera.width != 0 && (camera.width != width || camera.height != height)) {
         throw Error(ErrorCode::format, frame.image.string() + ": the image has " +
@@ -57,7 +64,7 @@ void keep_one_size(Recording& recording) {
       camera.width = width, camera.height = height;
     }
     if (width != camera.width || height != camera.height) {
-      ++recording.dropped["size"];
+      drop_frame(recording, {FrameVerdict::wrong_size});
     } else {
       kept.push_back(std::move(frame));
     }
@@ -124,14 +131,15 @@ Recording open_recording(const fs::path& source, RecordingFormat format,
     throw Error(ErrorCode::io, source.string() + ": no such folder");
   }
   Recording recording = opened(source, format, config);
+  keep_one_size(recording);
   if (recording.frames.empty()) {
     std::string reasons;
-    for (const auto& [reason, count] : recording.dropped) {
+    for (const auto& [reason, count] : bad_frames(recording.dropped)) {
       reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + ' ' + reason;
     }
+    if (!recording.fault.empty()) reasons += "; " + recording.fault;
     throw Error(ErrorCode::format, source.string() + ": no frame can be used (" + reasons + ")");
   }
-  keep_one_size(recording);
   if (recording.camera.fy < 0) turn_camera(recording);
   try {
     recording.camera.validate();
@@ -173,7 +181,14 @@ ImportReport import_recording(const Recording& recording, const fs::path& out,
   ImportReport report;
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
     const RecordedFrame& frame = recording.frames[i];
-    GrayImage depth = load_depth(recording, i);
+    GrayImage depth;
+    try {
+      depth = load_depth(recording, i);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::io && error.code() != ErrorCode::format) throw;
+      ++report.unreadable;
+      continue;
+    }
     bool is_masked = false;
     for (const MaskFolder& folder : folders) {
       std::optional<Gray8Image> mask = folder.mask_of(frame.image, depth.width, depth.height);
@@ -189,6 +204,10 @@ ImportReport import_recording(const Recording& recording, const fs::path& out,
     report.amplitudes += amplitude ? 1 : 0;
     writer.write_frame(frame.number, depth, frame.T_world_camera, amplitude);
     if (config.progress) config.progress(i + 1, recording.frames.size());
+  }
+  if (report.unreadable == recording.frames.size()) {
+    throw Error(ErrorCode::format, recording.frames.front().image.string() +
+                                       ": cannot be read, nor can any other image");
   }
   writer.commit(recording.camera, recording.depth_scale, config.sensor);
   return report;

@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
 
-#include "folders.hpp"
 #include "recordings/parts.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/file_bytes.hpp"
@@ -35,14 +33,6 @@ PinholeCamera read_camera(const fs::path& path) {
   return camera_of_matrix({m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, path.string());
 }
 
-// Where tracking was lost all numbers are -inf.
-bool is_lost(const fs::path& path) {
-  for (const double value : numbers_of(path)) {
-    if (!std::isfinite(value)) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 Recording open_scannet(const fs::path& source, const RecordingConfig& config) {
@@ -52,15 +42,7 @@ Recording open_scannet(const fs::path& source, const RecordingConfig& config) {
   recording.depth_scale = kMillimetre;
   for (const auto& [number, image] : numbered_images(source / "depth")) {
     const fs::path pose = source / "pose" / (image.stem().string() + ".txt");
-    if (!is_there(pose)) {
-      ++recording.dropped["no_pose"];
-    } else if (is_lost(pose)) {
-      ++recording.dropped["lost"];
-    } else {
-      bool mended = false;
-      recording.frames.push_back({number, image, read_pose_matrix(pose, &mended)});
-      recording.orthonormalized += mended ? 1 : 0;
-    }
+    add_frame(recording, number, image, read_pose_file(pose));
   }
   return recording;
 }

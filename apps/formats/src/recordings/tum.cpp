@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,9 +18,10 @@ namespace {
 // Poses in the order of their times, whatever order the file has.
 class PosesInTime {
  public:
-  explicit PosesInTime(const TimedPoses& poses) : times_(poses.list.timestamps) {
-    order_.resize(times_.size());
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
+  explicit PosesInTime(const TimedPoses& poses) : times_(poses.times) {
+    for (std::size_t i = 0; i < times_.size(); ++i) {
+      if (std::isfinite(times_[i])) order_.push_back(i);
+    }
     std::stable_sort(order_.begin(), order_.end(),
                      [this](std::size_t a, std::size_t b) { return times_[a] < times_[b]; });
   }
@@ -69,10 +69,9 @@ Recording open_tum(const std::filesystem::path& source, const RecordingConfig& c
     }
     const auto pose = in_time.nearest(line.finite_number(0), config.max_time_gap);
     if (pose) {
-      recording.frames.push_back({number, source / line.words()[1], poses.list.poses[*pose]});
-      recording.orthonormalized += poses.mended[*pose] ? 1 : 0;
+      add_frame(recording, number, source / line.words()[1], poses.poses[*pose]);
     } else {
-      ++recording.dropped["no_pose"];
+      drop_frame(recording, {FrameVerdict::no_pose});
     }
     ++number;
   }

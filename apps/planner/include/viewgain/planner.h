@@ -78,9 +78,29 @@ VG_API void vg_planner_release(vg_planner* planner);
 /* Candidates that are proposed from the next vg_planner_propose() on, 16 doubles each. */
 VG_API vg_status vg_planner_add_poses(vg_planner* planner, const double* poses, size_t count);
 
+/* What became of a frame, as C++'s FrameVerdict: in the map, with readings or free space alone, or
+   why not. How many verdicts there are. */
+enum {
+  VG_FRAME_USED = 0,
+  VG_FRAME_CARVED = 1,
+  VG_FRAME_LOST_POSE = 2,
+  VG_FRAME_NO_POSE = 3,
+  VG_FRAME_UNREADABLE = 4,
+  VG_FRAME_WRONG_SIZE = 5,
+  VG_FRAME_NOTHING_IN_RANGE = 6,
+  VG_FRAME_OUTSIDE = 7,
+  VG_FRAME_CONTRADICTS = 8,
+  VG_FRAME_CHANGED = 9,
+  VG_FRAME_NO_MASK = 10,
+  VG_FRAME_INTRINSICS = 11,
+  VG_FRAME_DEPTH_SCALE = 12,
+  VG_FRAME_VERDICTS = 13
+};
+
 /* What a view brought. */
 typedef struct vg_planner_view {
   size_t struct_size;                            /* as _init() sets it */
+  int32_t verdict;                               /* VG_FRAME_ */
   uint64_t view;                                 /* from 0 */
   uint64_t readings, readings_inside;            /* pixels; those in the workspace */
   uint64_t voxels_hit, voxels_crossed;           /* by it */
@@ -93,10 +113,20 @@ typedef struct vg_planner_view {
 VG_API void vg_planner_view_init(vg_planner_view* view, size_t struct_size);
 
 /* Puts a frame into the map, as vg_integrate(); `pose_sigma`, after vg_planner_register() what it
-   found, or null; `added` or null. */
+   found, or null; `added` or null. A frame that cannot be used (a pose that is not rigid, too)
+   leaves the map as it was, counts as a view that brought nothing, and is VG_OK: its verdict says
+   why. */
 VG_API vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* amplitude,
                                 const double T_world_camera[16], const double pose_sigma[2],
                                 vg_planner_view* added);
+
+/* A view that came to nothing before there was a frame to add, or whose frame is left out, counts
+   as one that cannot be used. `verdict`: from VG_FRAME_LOST_POSE on; T_world_camera: where it was
+   taken, or null. */
+VG_API vg_status vg_planner_drop(vg_planner* planner, int32_t verdict,
+                                 const double T_world_camera[16]);
+/* How many frames had each verdict so far: counts[verdict], `verdicts` of them. */
+VG_API vg_status vg_planner_frames(const vg_planner* planner, size_t* counts, size_t verdicts);
 
 /* What became of a frame that was registered. */
 enum {

@@ -72,6 +72,20 @@ const std::vector<std::string>& generator_names() {
   return names;
 }
 
+PoseSetRequest around_workspace(const BeliefGrid& grid, const Sensor& sensor) {
+  const Box box = grid.workspace();
+  Eigen::Vector3d center;
+  double longest = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    center[static_cast<Eigen::Index>(a)] = 0.5 * (box.min[a] + box.max[a]);
+    longest = std::max(longest, box.max[a] - box.min[a]);
+  }
+  PoseSetRequest request;
+  request.center = grid.T_world_grid() * center;
+  request.distance = filling_distance(sensor, 0.5 * longest * 0.35 / 0.4);
+  return request;
+}
+
 PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request) {
   PoseSet set{std::string(generator), {}};
   const std::size_t count = request.count.value_or(generator == "rings" ? 48 : 500);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "choose/planner_state.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -66,15 +67,22 @@ StopReason reason_of(const LineReader& reader) {
   reader.fail(quoted(reader.words()[1]) + " is no reason to stop");
 }
 
+FrameVerdict verdict_of(const LineReader& reader) {
+  const auto& names = kFrameVerdictNames;
+  const auto found = std::find(names.begin(), names.end(), reader.words()[1]);
+  if (found == names.end()) reader.fail(quoted(reader.words()[1]) + " is no verdict");
+  return static_cast<FrameVerdict>(found - names.begin());
+}
+
 // What a line is and how many words it has.
 struct Entry {
   std::string_view name;
   std::size_t words;
 };
-constexpr std::array kEntries{Entry{"version", 2},        Entry{"seen_area", 2},
-                              Entry{"before_choice", 10}, Entry{"after_choice", 10},
-                              Entry{"reached", 13},       Entry{"missed", 13},
-                              Entry{"of_view", 2},        Entry{"of_choice", 2}};
+constexpr std::array kEntries{
+    Entry{"version", 2},       Entry{"seen_area", 2}, Entry{"before_choice", 10},
+    Entry{"after_choice", 10}, Entry{"frames", 3},    Entry{"reached", 13},
+    Entry{"missed", 13},       Entry{"of_view", 2},   Entry{"of_choice", 2}};
 
 }  // namespace
 
@@ -84,6 +92,10 @@ std::string text_of(const PlannerState& state) {
   text.append("seen_area ").append(short_text(state.seen_area)).append("\n");
   text += line_of("before_choice", state.before_choice);
   text += line_of("after_choice", state.after_choice);
+  for (const auto& [verdict, count] : state.frames) {
+    text.append("frames ").append(frame_verdict_name(verdict)).append(" ");
+    text.append(std::to_string(count)).append("\n");
+  }
   for (const Pose& pose : state.reached) text += line_of("reached", pose);
   for (const Pose& pose : state.missed) text += line_of("missed", pose);
   text += line_of("of_view", state.of_view);
@@ -114,6 +126,8 @@ PlannerState state_of(const std::string& name, std::string_view text) {
       state.before_choice = memory_of(reader);
     } else if (key == "after_choice") {
       state.after_choice = memory_of(reader);
+    } else if (key == "frames") {
+      state.frames[verdict_of(reader)] = static_cast<std::size_t>(reader.count(2, kMost));
     } else if (key == "reached") {
       state.reached.push_back(pose_of(reader));
     } else if (key == "missed") {

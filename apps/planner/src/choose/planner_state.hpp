@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "viewgain/core/frame_verdict.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/stop_rules.hpp"
@@ -16,6 +17,7 @@ namespace viewgain::detail {
 /// What a planner remembers beside its map. A value type.
 struct PlannerState {
   double seen_area = 0;                 ///< the sum of what the views showed of new surface [m²]
+  FrameCounts frames;                   ///< that were added or dropped
   std::vector<Pose> reached;            ///< commanded, and the camera got there
   std::vector<Pose> missed;             ///< commanded, and it did not
   StopMemory before_choice;             ///< of the rules, as the last view left them

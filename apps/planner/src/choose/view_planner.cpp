@@ -98,6 +98,41 @@ struct ViewPlanner::Impl {
     return *evaluator;
   }
 
+  // What a view that is over came to.
+  AddedView counted(MapUpdate update, const std::optional<Pose>& T_world_camera) {
+    AddedView added;
+    added.view = state.after_choice.views;
+    const double before = state.after_choice.entropy_removed;
+    added.update = std::move(update);
+    added.progress = map.progress();
+    ++state.frames[added.update.verdict];
+    if (is_in_map(added.update.verdict)) {
+      // Without follow_surface nobody asks for the area.
+      if (!std::isnan(added.update.new_area)) state.seen_area += added.update.new_area;
+    } else if (T_world_camera && orthonormality_error(*T_world_camera) <= 1e-3) {
+      state.reached.push_back(*T_world_camera);
+    }
+    added.progress.surface_area = state.seen_area;
+    added.entropy_removed = added.progress.entropy_removed - before;
+    seconds = added.update.seconds;
+    proposal.reset();
+    StopRules rules(planning, state.after_choice);
+    state.of_view = rules.after_view(added.progress);
+    state.of_choice.reset();
+    state.before_choice = state.after_choice = rules.memory();
+    return added;
+  }
+
+  void require_a_usable_frame() const {
+    if (state.frames.empty() || is_in_map(state.frames.begin()->first)) return;
+    std::string counts;
+    for (const auto& [reason, count] : bad_frames(state.frames)) {
+      counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
+    }
+    fail("no view can be proposed: of no frame so far could anything be used (" + counts +
+         "); poses that are world to camera, other units or another workspace would explain that");
+  }
+
   // After a choice, which takes the place of an earlier one of the same view.
   void remember(const std::optional<Decision>& decision, const Proposal& from) {
     StopRules rules(planning, state.before_choice);
@@ -107,6 +142,7 @@ struct ViewPlanner::Impl {
 
   Ranking rank(std::span<const Pose> poses, std::size_t k, const RankConfig& rank_config,
                const BatchControl& control, const Proposal* from) {
+    require_a_usable_frame();
     const Stopwatch watch;
     const std::vector<Pose>& views = map.grid().views();
     std::optional<Eigen::Vector3d> here;
@@ -171,26 +207,22 @@ AddedView ViewPlanner::add(std::span<const DepthFrame> frames, const Pose& T_wor
                            const PoseSigma& pose_sigma) {
   Impl& m = *impl_;
   if (frames.empty()) fail("a view without a frame");
-  AddedView added;
-  added.view = m.state.after_choice.views;
-  const double before = m.state.after_choice.entropy_removed;
-  added.update = m.map.update({T_world_camera, {frames.begin(), frames.end()}, pose_sigma});
-  added.progress = m.map.progress();
-  // Without follow_surface nobody asks for the area.
-  if (!std::isnan(added.update.new_area)) m.state.seen_area += added.update.new_area;
-  added.progress.surface_area = m.state.seen_area;
-  added.entropy_removed = added.progress.entropy_removed - before;
-  m.seconds = added.update.seconds;
-  m.proposal.reset();
-  StopRules rules(m.planning, m.state.after_choice);
-  m.state.of_view = rules.after_view(added.progress);
-  m.state.of_choice.reset();
-  m.state.before_choice = m.state.after_choice = rules.memory();
-  return added;
+  return m.counted(m.map.update({T_world_camera, {frames.begin(), frames.end()}, pose_sigma}),
+                   T_world_camera);
 }
+
+AddedView ViewPlanner::drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera) {
+  if (is_in_map(verdict)) fail("a frame that is dropped is not in the map");
+  MapUpdate nothing;
+  nothing.verdict = verdict;
+  return impl_->counted(std::move(nothing), T_world_camera);
+}
+
+const FrameCounts& ViewPlanner::frames() const noexcept { return impl_->state.frames; }
 
 const Proposal& ViewPlanner::propose() {
   Impl& m = *impl_;
+  m.require_a_usable_frame();
   const Stopwatch watch;
   Proposal proposal =
       m.proposer.propose(m.map.grid(), m.map.scene(), m.state.reached, m.state.missed);

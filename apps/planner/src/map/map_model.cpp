@@ -3,6 +3,7 @@
 #include "viewgain/planner/map_model.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -39,6 +40,7 @@ MapModel::MapModel(BeliefGrid grid, const Sensor& sensor, const MapModelConfig& 
       config_(with_plane(config)),
       exec_(exec),
       grid_(std::move(grid)),
+      rays_(sensor.camera.ray_table()),
       obstacles_(config.surroundings.obstacles, sensor, exec),
       integrator_(sensor, config_.integration, exec),
       new_surface_(sensor, config.surroundings.support_plane),
@@ -48,27 +50,40 @@ MapModel::MapModel(BeliefGrid grid, const Sensor& sensor, const MapModelConfig& 
   if (config.jump_edges) filter_.emplace(sensor.camera, *config.jump_edges);
 }
 
-void MapModel::check(const Measurements& measurements) const {
-  if (!rigid_pose(measurements.T_world_camera)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the pose of the frames is not a rigid transform of finite numbers");
-  }
+FrameVerdict MapModel::judged(const Measurements& measurements) const {
   for (const double sigma :
        {measurements.pose_sigma.translation, measurements.pose_sigma.rotation}) {
     if (std::isfinite(sigma) && sigma >= 0) continue;
     throw Error(ErrorCode::invalid_argument,
                 "the sigma " + short_text(sigma) + " of a pose is negative or not finite");
   }
-  for (const DepthFrame& frame : measurements.frames) check_frame_size(frame, sensor_.camera);
+  if (!rigid_pose(measurements.T_world_camera)) return FrameVerdict::lost_pose;
+  try {
+    for (const DepthFrame& frame : measurements.frames) check_frame_size(frame, sensor_.camera);
+  } catch (const Error&) {
+    return FrameVerdict::wrong_size;
+  }
+  return FrameVerdict::used;
+}
+
+bool MapModel::shows_workspace(const DepthFrame& frame, const Pose& T_world_camera) const {
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    const Eigen::Vector3d p = static_cast<double>(frame.depth[i]) * rays_[i];
+    const double range = p.norm();
+    // False for pixels without a depth and without a ray.
+    if (!(range >= sensor_.min_range && range <= sensor_.max_range)) continue;
+    if (!frame.shows_known(i) && grid_.index_of(T_world_camera * p)) return true;
+  }
+  return false;
 }
 
 void MapModel::drop_known_readings(DepthFrame& frame, const Pose& T_world_camera) const {
-  const std::vector<Eigen::Vector3d> rays = sensor_.camera.ray_table();
   for (std::size_t i = 0; i < frame.depth.size(); ++i) {
     const float z = frame.depth[i];
-    if (z == DepthFrame::kInvalid || z == DepthFrame::kOutOfRange || !rays[i].allFinite()) continue;
+    if (z == DepthFrame::kInvalid || z == DepthFrame::kOutOfRange || !rays_[i].allFinite())
+      continue;
     const auto voxel =
-        grid_.index_of(T_world_camera * Eigen::Vector3d(rays[i] * static_cast<double>(z)));
+        grid_.index_of(T_world_camera * Eigen::Vector3d(rays_[i] * static_cast<double>(z)));
     if (voxel && grid_.belief(*voxel)) frame.depth[i] = DepthFrame::kInvalid;
   }
 }
@@ -85,28 +100,52 @@ std::vector<DepthFrame> MapModel::filtered(const Measurements& measurements,
   return frames;
 }
 
-MapUpdate MapModel::update(const Measurements& measurements) {
-  check(measurements);
-  MapUpdate update;
-  const Stopwatch watch;
+void MapModel::integrate(BeliefGrid& grid, const std::vector<DepthFrame>& frames,
+                         const Measurements& measurements, MapUpdate& update) {
   const Pose& T_world_camera = measurements.T_world_camera;
-  const std::vector<DepthFrame> frames = filtered(measurements, &update.flying_pixels);
   if (config_.follow_surface) {
     update.new_area = 0;
     if (!frames.empty()) {
       const DepthFrame& first = frames.front();
       std::optional<HazardField> own;
-      if (!scene_) own.emplace(grid_.snapshot(), config_.hazard);
+      if (!scene_) own.emplace(grid.snapshot(), config_.hazard);
       const HazardField& hazard = scene_ ? scene_->hazard() : *own;
-      update.new_area = new_surface_.of(first, T_world_camera, grid_, &hazard);
-      calibration_.count(grid_, hazard, first, T_world_camera);
+      update.new_area = new_surface_.of(first, T_world_camera, grid, &hazard);
+      calibration_.count(grid, hazard, first, T_world_camera);
     }
   }
   for (const DepthFrame& frame : frames) {
-    add(update.counts,
-        integrator_.integrate(grid_, frame, T_world_camera, measurements.pose_sigma));
+    add(update.counts, integrator_.integrate(grid, frame, T_world_camera, measurements.pose_sigma));
+  }
+}
+
+MapUpdate MapModel::update(const Measurements& measurements) {
+  MapUpdate update;
+  update.verdict = judged(measurements);
+  if (update.verdict != FrameVerdict::used) return update;
+  const Stopwatch watch;
+  const std::vector<DepthFrame> frames = filtered(measurements, &update.flying_pixels);
+  const bool has_readings = std::any_of(frames.begin(), frames.end(), [&](const DepthFrame& frame) {
+    return shows_workspace(frame, measurements.T_world_camera);
+  });
+  if (has_readings) {
+    integrate(grid_, frames, measurements, update);
+    if (update.counts.readings_inside == 0) update.verdict = FrameVerdict::carved;
+  } else {
+    // What carves nothing either leaves no trace, which only carving can tell.
+    BeliefGrid carved = grid_.clone();
+    integrate(carved, frames, measurements, update);
+    const IntegrationReport& counts = update.counts;
+    if (counts.voxels_crossed + counts.voxels_hit > 0) {
+      update.verdict = FrameVerdict::carved;
+      grid_ = std::move(carved);
+    } else {
+      const bool says_something = counts.readings + counts.plane_readings + counts.out_of_range > 0;
+      update.verdict = says_something ? FrameVerdict::outside : FrameVerdict::nothing_in_range;
+    }
   }
   update.seconds["integrate"] = watch.seconds();
+  if (!is_in_map(update.verdict)) return update;
   const Stopwatch scene_watch;
   if (scene_) scene_ = VoxelScene::update(scene_, grid_, exec_);
   update.seconds["snapshot"] = scene_watch.seconds();
@@ -114,7 +153,11 @@ MapUpdate MapModel::update(const Measurements& measurements) {
 }
 
 BeliefGrid MapModel::grid_after(const Measurements& measurements) const {
-  check(measurements);
+  const FrameVerdict verdict = judged(measurements);
+  if (verdict != FrameVerdict::used) {
+    throw Error(ErrorCode::invalid_argument,
+                "the frames cannot be used: " + std::string(frame_verdict_name(verdict)));
+  }
   BeliefGrid grid = grid_.clone();
   FrameIntegrator integrator(sensor_, config_.integration, exec_);
   for (const DepthFrame& frame : filtered(measurements, nullptr)) {

@@ -14,7 +14,9 @@ namespace {
 FrameSequence frames_of(const FrameFolderOptions& options) {
   if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
   try {
-    return open_frames(options.folder, options.sensor, options.depth_scale);
+    FrameSequence frames = open_frames(options.folder, options.sensor, options.depth_scale);
+    if (const auto meaning = out_of_range_of(options)) frames.out_of_range = *meaning;
+    return frames;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::invalid_argument || !options.sensor.empty()) throw;
     throw Error(error.code(), std::string(error.what()) + " (--sensor)");
@@ -23,16 +25,22 @@ FrameSequence frames_of(const FrameFolderOptions& options) {
 
 }  // namespace
 
+std::optional<OutOfRangeMeaning> out_of_range_of(const FrameFolderOptions& options) {
+  if (options.out_of_range.empty()) return std::nullopt;
+  return options.out_of_range == "carve" ? OutOfRangeMeaning::carve : OutOfRangeMeaning::invalid;
+}
+
 void add_frame_folder_options(App& app, FrameFolderOptions& options) {
   app.add_option(
       "--depth-scale", options.depth_scale,
       "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
       "sensor.toml), else 1e-3");
-  one_of(*app.add_option(
-                 "--out-of-range", options.out_of_range,
-                 "what 65535 says: carve (nothing up to the maximal range) or invalid (no reading)")
-              ->capture_default_str(),
-         {"carve", "invalid"}, "meaning");
+  one_of(
+      *app.add_option("--out-of-range", options.out_of_range,
+                      "what 65535 says: carve (nothing up to the maximal range) or invalid (no "
+                      "reading); default: as the sensor's file says, else carve for what simulate "
+                      "writes (poses.txt), invalid for recorded frames"),
+      {"carve", "invalid"}, "meaning");
   app.add_option("--mask", options.mask, kMaskHelp);
   app.add_option("--confidence", options.confidence, kConfidenceHelp);
   app.add_option("--least-confidence", options.least_confidence, kLeastConfidenceHelp)
@@ -54,19 +62,7 @@ std::vector<MaskFolder> mask_folders(const FrameFolderOptions& options,
 FrameFolder::FrameFolder(const FrameFolderOptions& options)
     : name_(options.folder),
       frames_(frames_of(options)),
-      meaning_(options.out_of_range == "carve" ? OutOfRangeMeaning::carve
-                                               : OutOfRangeMeaning::invalid),
       masks_(mask_folders(options, frames_.images)) {}
-
-FrameFolder::MaskedFrame FrameFolder::load(std::size_t index) const {
-  MaskedFrame loaded{load_frame(frames_, index, meaning_)};
-  DepthFrame& frame = loaded.frame;
-  for (const MaskFolder& masks : masks_) {
-    const auto mask = masks.mask_of(frames_.images[index], frame.width, frame.height);
-    if (mask) loaded.masked_pixels += apply_mask(*mask, frame);
-  }
-  return loaded;
-}
 
 std::optional<Box> workspace_around(std::size_t count, double voxel,
                                     const std::function<std::optional<Box>(std::size_t)>& bounds) {

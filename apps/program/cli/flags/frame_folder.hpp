@@ -27,10 +27,14 @@ struct FrameFolderOptions {
   std::string mask;                     ///< --mask; empty: none
   std::string confidence;               ///< --confidence; empty: none
   int least_confidence = 1;             ///< --least-confidence
-  std::string out_of_range = "carve";   ///< --out-of-range
+  std::string out_of_range;             ///< --out-of-range; empty: the folder's
 };
 
-/// --depth-scale, --mask and --confidence, the same in every subcommand that reads frames.
+/// What the flag says; nothing: the folder does.
+[[nodiscard]] std::optional<OutOfRangeMeaning> out_of_range_of(const FrameFolderOptions& options);
+
+/// --depth-scale, --out-of-range, --mask and --confidence, the same in every subcommand that reads
+/// frames.
 void add_frame_folder_options(App& app, FrameFolderOptions& options);
 
 /// Recorded or simulated frames with their poses, and what masks leave of them.
@@ -46,17 +50,14 @@ class FrameFolder {
   [[nodiscard]] std::size_t size() const noexcept { return frames_.images.size(); }
   [[nodiscard]] const Pose& T_world_camera(std::size_t index) const { return frames_.poses[index]; }
 
-  struct MaskedFrame {
-    DepthFrame frame;
-    std::uint64_t masked_pixels = 0;  ///< with a depth that masks took
-  };
-  /// Throws Error as load_frame() and MaskFolder::mask_of().
-  [[nodiscard]] MaskedFrame load(std::size_t index) const;
+  /// Throws nothing that a frame is to blame for.
+  [[nodiscard]] FrameReading load(std::size_t index) const {
+    return read_frame(frames_, index, masks_);
+  }
 
  private:
   std::string name_;
   FrameSequence frames_;
-  OutOfRangeMeaning meaning_;
   std::vector<MaskFolder> masks_;
 };
 

@@ -42,4 +42,12 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
   return {std::move(map.grid), asked ? std::move(*asked) : std::move(*map.sensor)};
 }
 
+void require_known(const BeliefGrid& grid, const std::string& path) {
+  if (grid.statistics().unknown < grid.voxel_count()) return;
+  throw Error(ErrorCode::invalid_argument,
+              path +
+                  ": all of it is unknown, no reading is in it; was it made with the wrong "
+                  "workspace, scale or poses (world to camera)?");
+}
+
 }  // namespace viewgain::app

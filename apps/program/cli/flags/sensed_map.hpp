@@ -26,4 +26,8 @@ struct SensedMap {
 /// Warns on stderr, and returns true, if a map's readings come from another sensor than `sensor`.
 bool warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const Sensor& sensor);
 
+/// Throws Error(invalid_argument) if all of the map is unknown: nothing can be said by it. `path`
+/// names it. Costs a pass over the map's blocks.
+void require_known(const BeliefGrid& grid, const std::string& path);
+
 }  // namespace viewgain::app

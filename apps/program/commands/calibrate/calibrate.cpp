@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,7 @@ FrameSequence open_wall_frames(const Options& options) {
 Calibrated measure(const Options& options) {
   FrameSequence frames = open_wall_frames(options);
   frames.sensor.range_calibration = {};  // readings are to be as the camera gives them
+  frames.out_of_range = OutOfRangeMeaning::invalid;
   std::optional<Wall> wall;
   if (!options.wall.empty()) wall = parse_wall(options.wall);
   std::vector<std::optional<double>> distances;
@@ -95,11 +97,14 @@ Calibrated measure(const Options& options) {
       ++calibrated.dropped["no_distance"];
       continue;
     }
-    DepthFrame frame = load_frame(frames, i, OutOfRangeMeaning::invalid);
-    if (masks) {
-      const auto mask = masks->mask_of(frames.images[i], frame.width, frame.height);
-      if (mask) calibrated.masked_pixels += apply_mask(*mask, frame);
+    const FrameReading reading =
+        read_frame(frames, i, masks ? std::span(&*masks, 1) : std::span<const MaskFolder>());
+    if (reading.fault.verdict != FrameVerdict::used) {
+      ++calibrated.dropped[std::string(frame_verdict_name(reading.fault.verdict))];
+      continue;
     }
+    calibrated.masked_pixels += reading.masked_pixels;
+    const DepthFrame& frame = reading.frame;
     const std::string name = frames.images[i].string();
     if (wall) {
       const Pose& T_world_camera = frames.poses[i];

@@ -24,8 +24,10 @@
 #include "program/cli/interrupt.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
+#include "program/commands/follow/asked_views.hpp"
 #include "program/commands/follow/folder_lock.hpp"
 #include "program/commands/follow/followed_map.hpp"
+#include "program/commands/frames/frame_tally.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frame_watch.hpp"
@@ -99,7 +101,7 @@ FrameWatch watch_of(const FrameFolderOptions& options, const std::optional<Saved
   FrameWatchConfig config;
   config.sensor = options.sensor;
   config.depth_scale = options.depth_scale;
-  if (options.out_of_range == "invalid") config.out_of_range = OutOfRangeMeaning::invalid;
+  config.out_of_range = out_of_range_of(options);
   if (!options.mask.empty()) {
     config.masks.push_back(mask_folder("--mask", options.mask, options.folder));
   }
@@ -129,7 +131,8 @@ class Following {
         config_(planner_config(options)),
         sigma_(registration_sigma(options.registration)),
         frames_(options.frames.folder),
-        out_(options.out) {
+        out_(options.out),
+        views_(frames_) {
     if (!options.frames.sensor.empty()) (void)load_sensor(options.frames.sensor);
     if (!options.body.empty()) body_ = parse_size("--body", options.body);
     std::error_code ignored;
@@ -138,15 +141,19 @@ class Following {
     }
     lock_.emplace(out_);
     saved_ = saved_frames(out_ / "state.vdb");
-    if (!saved_) check_folder(out_);
+    if (saved_) {
+      views_.recall(out_ / "next.json", saved_->frames);
+    } else {
+      check_folder(out_);
+    }
     watch_.emplace(watch_of(options_.frames, saved_));
   }
 
   // One frame at most; returns whether another look is due at once.
   bool step() {
     const FolderLook look = watch_->look(std::chrono::steady_clock::now());
-    say(look.bad);
     if (!map_ && watch_->folder()) open_map();
+    leave_out(look.bad);
     if (look.frame) take(*look.frame);
     const bool is_due =
         !look.frame || !since_written_ || since_written_->seconds() > kLeastInterval;
@@ -160,7 +167,7 @@ class Following {
 
   // What is not there by now will not come, if all is done.
   void finish(bool is_done) {
-    if (is_done) say(watch_->give_up());
+    if (is_done) leave_out(watch_->give_up());
     if (map_ && has_news_) write();
     write_new_counts();
   }
@@ -185,8 +192,8 @@ class Following {
     }
     std::printf("%zu frames in the map, %zu of them new; %zu wait\n", count(), added_,
                 watch_->waiting());
-    for (const auto& [reason, number] : watch_->bad()) {
-      std::printf("left out: %zu %s\n", number, reason.c_str());
+    if (const std::string text = frames_text(carved(), watch_->bad()); !text.empty()) {
+      std::printf("%s\n", text.c_str());
     }
     if (has_masks()) {
       std::printf("pixels taken away by masks: %s\n", with_commas(masked_pixels_).c_str());
@@ -205,8 +212,21 @@ class Following {
     if (!options_.common.quiet) std::fprintf(stderr, "viewgain: %s\n", text.c_str());
   }
 
-  void say(const std::vector<BadFrame>& frames) const {
-    for (const BadFrame& bad : frames) say(bad.what + " (" + bad.reason + "); left out");
+  [[nodiscard]] std::size_t carved() const {
+    return map_ ? count_of(map_->frames(), FrameVerdict::carved) : 0;
+  }
+
+  void leave_out(const std::vector<BadFrame>& frames) {
+    for (const BadFrame& bad : frames) {
+      say(bad.fault.what + " (" + std::string(frame_verdict_name(bad.fault.verdict)) +
+          "); left out");
+      // One that was taken is in the map, whatever has become of its files.
+      if (!map_ || bad.fault.verdict == FrameVerdict::changed) continue;
+      if (!views_.leave_out(bad.name)) continue;  // it was counted
+      map_->answer(views_.answered_by(bad.name), bad.T_world_camera);
+      map_->drop(bad.fault.verdict, bad.T_world_camera);
+      has_news_ = true;
+    }
   }
 
   [[nodiscard]] bool has_masks() const {
@@ -226,23 +246,31 @@ class Following {
   }
 
   void take(const WatchedFrame& frame) {
-    if (!map_->shows_workspace(frame)) {
-      watch_->refuse(frame, "outside");
-      return say(frame.image.string() + ": no reading" +
-                 (frame.masked_pixels > 0 ? " that masks leave" : "") +
-                 " lies in the workspace (outside); left out");
-    }
+    const std::string name = frame.image.filename().string();
     const std::optional<FrameRegistration> registration = map_->register_in(frame);
+    FrameVerdict verdict = FrameVerdict::contradicts;
+    std::string why = frame.image.string();
+    AddedView added;
     if (registration && registration->status == RegistrationStatus::refused) {
-      watch_->refuse(frame, "contradicts");
-      return say(frame.image.string() + ": " + registration->reason + " (contradicts); left out");
+      why += ": " + registration->reason;
+    } else {
+      added = map_->add(frame, registration);
+      verdict = added.update.verdict;
     }
-    const AddedView added = map_->add(frame, registration);
-    ++added_;
-    masked_pixels_ += frame.masked_pixels;
+    if (!is_in_map(verdict)) {
+      watch_->refuse(frame, verdict);
+      say(why + " (" + std::string(frame_verdict_name(verdict)) + "); left out");
+      if (!views_.leave_out(name)) return;
+      if (verdict == FrameVerdict::contradicts) map_->drop(verdict, frame.T_world_camera);
+    } else {
+      views_.take(name);
+      ++added_;
+      masked_pixels_ += frame.masked_pixels;
+    }
+    map_->answer(views_.answered_by(name), frame.T_world_camera);
     has_news_ = true;
-    if (options_.common.quiet) return;
-    std::fprintf(stderr, "%s: %.4g cm^2 of new surface, %.4g nat\n", frame.image.filename().c_str(),
+    if (options_.common.quiet || !is_in_map(verdict)) return;
+    std::fprintf(stderr, "%s: %.4g cm^2 of new surface, %.4g nat\n", name.c_str(),
                  1e4 * added.update.new_area, added.entropy_removed);
   }
 
@@ -250,6 +278,7 @@ class Following {
   void write() {
     map_->save(watch_->taken());
     next_ = map_->next(options_.top);
+    views_.ask(poses_of(next_), watch_->taken());
     write_tum(out_ / "next.txt", poses_of(next_));
     write_json();
     has_news_ = false;
@@ -266,6 +295,7 @@ class Following {
 
   [[nodiscard]] Json counts() const {
     Json json{{"frames", count()},
+              {"carved", carved()},
               {"waiting", watch_->waiting()},
               {"bad", watch_->bad()},
               {"stop_reason", nullptr}};
@@ -275,12 +305,13 @@ class Following {
 
   // Not before the state is there, which says whose these files are.
   void write_new_counts() {
-    if (map_ && !has_news_ && count() > 0 && said_ != counts()) write_json();
+    if (map_ && !has_news_ && since_written_ && said_ != counts()) write_json();
   }
 
   void write_json() {
     said_ = counts();
     Json json = said_;
+    json.update(views_.json());
     json.update(to_json(next_));
     write_file_atomically(out_ / "next.json", json_text(json));
   }
@@ -290,6 +321,7 @@ class Following {
   std::optional<PoseSigma> sigma_;  // of the poses, if frames are registered
   std::optional<std::array<double, 3>> body_;
   fs::path frames_, out_;
+  AskedViews views_;
   std::optional<FolderLock> lock_;
   std::optional<SavedFrames> saved_;
   std::optional<FrameWatch> watch_;

@@ -51,29 +51,10 @@ FollowedMap::FollowedMap(const Sensor& sensor, std::optional<std::array<double, 
     : sensor_(sensor),
       model_(config.gain.model),
       state_(std::move(state)),
-      rays_(sensor.camera.ray_table()),
       planner_(planner_of(sensor, body, config, state_, saved, exec)),
       sigma_(sigma) {
   const BoundaryViewsConfig boundary = default_boundary(sensor, planner_.grid().voxel_size());
   planner_.add_generation(std::make_shared<BoundaryGeneration>(planner_.map(), boundary, exec));
-}
-
-bool FollowedMap::shows_workspace(const WatchedFrame& frame) const {
-  const Box box = planner_.grid().workspace();
-  for (std::size_t i = 0; i < rays_.size(); ++i) {
-    const Eigen::Vector3d p_camera = static_cast<double>(frame.frame.depth[i]) * rays_[i];
-    const double range = p_camera.norm();
-    // False for pixels without a depth.
-    if (!(range >= sensor_.min_range && range <= sensor_.max_range)) continue;
-    const Eigen::Vector3d p_world = frame.T_world_camera * p_camera;
-    bool is_inside = true;
-    for (int k = 0; k < 3; ++k) {
-      const auto axis = static_cast<std::size_t>(k);
-      is_inside = is_inside && p_world[k] >= box.min[axis] && p_world[k] < box.max[axis];
-    }
-    if (is_inside) return true;
-  }
-  return false;
 }
 
 std::optional<FrameRegistration> FollowedMap::register_in(const WatchedFrame& frame) const {
@@ -87,7 +68,23 @@ AddedView FollowedMap::add(const WatchedFrame& frame,
   return planner_.add(frame.frame, registration->T_world_camera, registration->pose_sigma());
 }
 
+void FollowedMap::drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera) {
+  (void)planner_.drop(verdict, T_world_camera);
+}
+
+void FollowedMap::answer(std::span<const Pose> asked, const std::optional<Pose>& T_world_camera) {
+  if (asked.empty()) return;
+  if (T_world_camera && is_among(*T_world_camera, asked, PoseTolerance{})) return;
+  planner_.tried(asked.front(), false);
+}
+
 NextViews FollowedMap::next(std::size_t top) {
+  const FrameCounts& frames = planner_.frames();
+  if (frames.empty() || !is_in_map(frames.begin()->first)) {
+    NextViews none;
+    none.model = model_;
+    return none;
+  }
   const Proposal& proposal = planner_.propose();
   return next_views(planner_.rank(top), proposal, model_);
 }

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
-#include <vector>
 
 #include "program/cli/flags/next_views.hpp"
 #include "viewgain/core/exec_config.hpp"
@@ -43,16 +42,21 @@ class FollowedMap {
               const std::optional<SavedFrames>& saved, const std::optional<PoseSigma>& sigma,
               const ExecConfig& exec);
 
-  /// Does any reading of the frame lie in the workspace?
-  [[nodiscard]] bool shows_workspace(const WatchedFrame& frame) const;
-
   /// What registering the frame against the map comes to; nothing without sigmas.
   [[nodiscard]] std::optional<FrameRegistration> register_in(const WatchedFrame& frame) const;
 
   /// At its own pose, or at the one that registering it came to.
   AddedView add(const WatchedFrame& frame, const std::optional<FrameRegistration>& registration);
 
-  /// The best of the views at the surface's open boundaries and of the reach region's poses.
+  /// A frame is left out; `T_world_camera`: where it was taken, if that is known.
+  void drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera);
+
+  /// A frame came after these views were asked for, best first. Where it is of none of them the
+  /// best was not reached: it is not proposed again.
+  void answer(std::span<const Pose> asked, const std::optional<Pose>& T_world_camera);
+
+  /// Nothing while no frame could be used; else the best of the views at the surface's open
+  /// boundaries and of the reach region's poses.
   [[nodiscard]] NextViews next(std::size_t top);
 
   /// Why to end, as ViewPlanner::should_stop().
@@ -61,13 +65,13 @@ class FollowedMap {
   /// Writes the file: map, planner and the names of the frames that are in, all at once.
   void save(const std::set<std::string>& frames) const;
 
+  [[nodiscard]] const FrameCounts& frames() const { return planner_.frames(); }
   [[nodiscard]] const BeliefGrid& grid() const { return planner_.grid(); }
 
  private:
   Sensor sensor_;  // with its own body
   GainModel model_;
   std::filesystem::path state_;
-  std::vector<Eigen::Vector3d> rays_;  // of the pixels, (x, y, 1)
   ViewPlanner planner_;
   std::optional<PoseSigma> sigma_;  // of the poses, if frames are registered
 };

@@ -3,22 +3,31 @@
 #include "program/commands/frames/aligned_frames.hpp"
 
 #include <cstddef>
+#include <vector>
 
 #include "program/cli/progress.hpp"
 #include "viewgain/planner/align_frames.hpp"
 
 namespace viewgain::app {
 
-std::vector<FrameRegistration> align_folder(const FrameMap& map, const PoseSigma& sigma, bool quiet,
-                                            const ExecConfig& exec) {
+std::map<std::size_t, FrameRegistration> align_folder(const FrameMap& map, const PoseSigma& sigma,
+                                                      bool quiet, const ExecConfig& exec) {
   FrameAlignment alignment(map.model().sensor(), map.config(), exec);
   Progress progress("alignment of frame", quiet);
   const FrameFolder& folder = map.folder();
+  std::vector<std::size_t> aligned;
   for (std::size_t i = 0; i < folder.size(); ++i) {
-    alignment.add(folder.load(i).frame, folder.T_world_camera(i), sigma);
+    const FrameReading reading = folder.load(i);
     progress.update(i + 1, folder.size());
+    if (reading.fault.verdict != FrameVerdict::used) continue;
+    alignment.add(reading.frame, folder.T_world_camera(i), sigma);
+    aligned.push_back(i);
   }
-  return alignment.registrations();
+  std::map<std::size_t, FrameRegistration> registrations;
+  for (std::size_t k = 0; k < aligned.size(); ++k) {
+    registrations.emplace(aligned[k], alignment.registrations()[k]);
+  }
+  return registrations;
 }
 
 }  // namespace viewgain::app

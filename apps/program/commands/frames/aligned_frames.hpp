@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <vector>
+#include <cstddef>
+#include <map>
 
 #include "program/commands/frames/frame_map.hpp"
 #include "viewgain/core/exec_config.hpp"
@@ -11,10 +12,11 @@
 namespace viewgain::app {
 
 /// Aligns all frames of the folder with one another (FrameAlignment), for a map into which none has
-/// gone yet. `sigma`: by how much each reported pose may be off. One result a frame, in the
-/// folder's order, each as known in the end. Throws as FrameFolder::load() and FrameAlignment.
-[[nodiscard]] std::vector<FrameRegistration> align_folder(const FrameMap& map,
-                                                          const PoseSigma& sigma, bool quiet,
-                                                          const ExecConfig& exec);
+/// gone yet. `sigma`: by how much each reported pose may be off. By the frame's index, those that
+/// cannot be read left out, each as known in the end. Throws as FrameAlignment.
+[[nodiscard]] std::map<std::size_t, FrameRegistration> align_folder(const FrameMap& map,
+                                                                    const PoseSigma& sigma,
+                                                                    bool quiet,
+                                                                    const ExecConfig& exec);
 
 }  // namespace viewgain::app

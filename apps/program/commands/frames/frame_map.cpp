@@ -18,28 +18,27 @@
 namespace viewgain::app {
 namespace {
 
-// What a wrong scale would explain.
-std::string scale_text(const FrameFolder& folder) {
-  return " at " + short_text(folder.frames().depth_scale) +
-         " m per unit of the depth images (--depth-scale)";
-}
-
 Box seen_workspace(const FrameFolder& folder, const Sensor& sensor, const MapModelConfig& config,
                    bool quiet) {
   std::optional<JumpEdgeFilter> filter;
   if (config.jump_edges) filter.emplace(sensor.camera, *config.jump_edges);
   Progress progress("bounds of frame", quiet);
+  FrameTally tally(true);
   const auto bounds = [&](std::size_t i) {
-    DepthFrame frame = folder.load(i).frame;
-    if (filter) filter->apply(frame);
+    FrameReading reading = folder.load(i);
     progress.update(i + 1, folder.size());
+    if (reading.fault.verdict != FrameVerdict::used) {
+      tally.add(folder.frames().images[i], reading.fault);
+      return std::optional<Box>();
+    }
+    DepthFrame& frame = reading.frame;
+    if (filter) filter->apply(frame);
     return reading_bounds(sensor, frame, folder.T_world_camera(i), {},
                           config.surroundings.support_plane);
   };
   const std::optional<Box> seen = workspace_around(folder.size(), config.grid.voxel_size, bounds);
   if (seen) return *seen;
-  throw Error(ErrorCode::invalid_argument,
-              folder.name() + ": no frame has a reading" + scale_text(folder));
+  refuse_without_readings(folder, tally);
 }
 
 MapModelConfig config_of(const FrameFolder& folder, const FrameMapOptions& options,
@@ -79,25 +78,34 @@ FrameMap::FrameMap(const FrameMapOptions& options, const ProposalOptions& propos
                    const ExecConfig& exec)
     : folder_(options.folder),
       config_(config_of(folder_, options, proposal, with_body(folder_.sensor(), proposal), quiet)),
-      model_(with_body(folder_.sensor(), proposal), config_, exec) {}
+      model_(with_body(folder_.sensor(), proposal), config_, exec),
+      tally_(quiet) {}
+
+MapUpdate FrameMap::add(std::size_t index) { return add(index, folder_.T_world_camera(index)); }
 
 MapUpdate FrameMap::add(std::size_t index, const Pose& T_world_camera,
                         const PoseSigma& pose_sigma) {
-  FrameFolder::MaskedFrame loaded = folder_.load(index);
-  masked_pixels_ += loaded.masked_pixels;
-  Measurements measurements{T_world_camera, {}, pose_sigma};
-  measurements.frames.push_back(std::move(loaded.frame));
-  const MapUpdate update = model_.update(measurements);
-  readings_ += update.counts.readings;
-  readings_used_ += update.counts.readings_inside + update.counts.plane_readings;
+  FrameReading reading = folder_.load(index);
+  MapUpdate update;
+  if (reading.fault.verdict == FrameVerdict::used) {
+    Measurements measurements{T_world_camera, {}, pose_sigma};
+    measurements.frames.push_back(std::move(reading.frame));
+    update = model_.update(measurements);
+    reading.fault.verdict = update.verdict;
+    if (is_in_map(update.verdict)) masked_pixels_ += reading.masked_pixels;
+    tally_.add(update.counts);
+  }
+  update.verdict = reading.fault.verdict;
+  count(index, reading.fault);
   return update;
 }
 
-void FrameMap::require_readings() const {
-  if (readings_used_ > 0) return;
-  throw Error(ErrorCode::invalid_argument, folder_.name() + ": none of " + with_commas(readings_) +
-                                               " readings lies in the workspace" +
-                                               scale_text(folder_));
+void FrameMap::count(std::size_t index, const FrameFault& fault) {
+  tally_.add(folder_.frames().images[index], fault);
+  const Pose& T_world_camera = folder_.T_world_camera(index);
+  if (!is_in_map(fault.verdict) && orthonormality_error(T_world_camera) <= 1e-3) {
+    tried_.push_back(T_world_camera);
+  }
 }
 
 }  // namespace viewgain::app

@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "program/cli/app.hpp"
 #include "program/cli/flags/frame_folder.hpp"
+#include "program/commands/frames/frame_tally.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/planner/map_model.hpp"
@@ -39,26 +41,33 @@ class FrameMap {
   FrameMap(const FrameMapOptions& options, const ProposalOptions& proposal, bool quiet,
            const ExecConfig& exec);
 
-  /// At the pose that the folder says, or at another that may be off by `pose_sigma`. Throws as
-  /// FrameFolder::load() and MapModel::update().
-  MapUpdate add(std::size_t index) { return add(index, folder_.T_world_camera(index)); }
+  /// At the pose that the folder says, or at another that may be off by `pose_sigma`; what became
+  /// of the frame is in MapUpdate::verdict and counted.
+  MapUpdate add(std::size_t index);
   MapUpdate add(std::size_t index, const Pose& T_world_camera, const PoseSigma& pose_sigma = {});
+  /// The frame is left out for another reason.
+  void drop(std::size_t index, const FrameFault& fault) { count(index, fault); }
 
-  /// Throws Error(invalid_argument), naming the folder and the scale, if frames were added and none
-  /// had a reading in the workspace: that comes of a wrong scale, sensor or workspace.
-  void require_readings() const;
+  /// Throws as FrameTally::require_any().
+  void require_frames() const { tally_.require_any(folder_); }
 
+  [[nodiscard]] const FrameCounts& counts() const noexcept { return tally_.counts(); }
+  /// Where frames were taken that brought nothing, as the folder says.
+  [[nodiscard]] const std::vector<Pose>& tried() const noexcept { return tried_; }
   [[nodiscard]] const FrameFolder& folder() const noexcept { return folder_; }
   [[nodiscard]] const MapModelConfig& config() const noexcept { return config_; }
   [[nodiscard]] const MapModel& model() const noexcept { return model_; }
   [[nodiscard]] std::uint64_t masked_pixels() const noexcept { return masked_pixels_; }
 
  private:
+  void count(std::size_t index, const FrameFault& fault);
+
   FrameFolder folder_;
   MapModelConfig config_;
   MapModel model_;
+  FrameTally tally_;
+  std::vector<Pose> tried_;
   std::uint64_t masked_pixels_ = 0;
-  std::uint64_t readings_ = 0, readings_used_ = 0;
 };
 
 }  // namespace viewgain::app

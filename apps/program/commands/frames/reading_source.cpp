@@ -56,10 +56,14 @@ class FrameSource : public ReadingSource {
     return frame_identity(folder_.frames(), index);
   }
 
-  void load(std::size_t index) override {
+  FrameFault load(std::size_t index) override {
     loaded_ = folder_.load(index);
     T_world_camera_ = folder_.T_world_camera(index);
     pose_sigma_ = {};
+    return loaded_.fault;
+  }
+  [[nodiscard]] std::filesystem::path file(std::size_t index) const override {
+    return folder_.frames().images[index];
   }
   [[nodiscard]] std::optional<Box> bounds() const override {
     DepthFrame frame = loaded_.frame;
@@ -79,16 +83,11 @@ class FrameSource : public ReadingSource {
     pose_sigma_ = result.pose_sigma();
     return result;
   }
-  IntegrationReport integrate() override {
-    const MapUpdate update = map_->update({T_world_camera_, {loaded_.frame}, pose_sigma_});
-    removed_ = update.flying_pixels;
-    return update.counts;
+  MapUpdate integrate() override {
+    return map_->update({T_world_camera_, {loaded_.frame}, pose_sigma_});
   }
   [[nodiscard]] std::uint64_t masked_pixels() const override { return loaded_.masked_pixels; }
-  [[nodiscard]] std::uint64_t jump_edge_removed() const override { return removed_; }
-  [[nodiscard]] std::optional<double> depth_scale() const override {
-    return folder_.frames().depth_scale;
-  }
+  [[nodiscard]] const FrameFolder* folder() const override { return &folder_; }
 
  private:
   FrameFolder folder_;
@@ -98,10 +97,9 @@ class FrameSource : public ReadingSource {
   std::optional<PoseSigma> reported_sigma_;  // if frames are registered
   std::optional<FrameAlignment> registration_;
   std::optional<MapModel> map_;  // once it has started
-  FrameFolder::MaskedFrame loaded_;
+  FrameReading loaded_;
   Pose T_world_camera_;
   PoseSigma pose_sigma_;  // by which it may be off
-  std::uint64_t removed_ = 0;
 };
 
 Sensor sensor_of(const IntegrateOptions& options) {
@@ -137,7 +135,10 @@ class CloudSource : public ReadingSource {
   [[nodiscard]] std::size_t size() const override { return files_.size(); }
   [[nodiscard]] std::size_t orthonormalized() const override { return poses_.orthonormalized; }
 
-  void load(std::size_t index) override {
+  [[nodiscard]] std::filesystem::path file(std::size_t index) const override {
+    return files_[index];
+  }
+  FrameFault load(std::size_t index) override {
     cloud_ = load_cloud(files_[index]);
     if (!poses_.poses.empty()) {
       T_world_sensor_ = poses_.poses[index];
@@ -153,14 +154,18 @@ class CloudSource : public ReadingSource {
       throw Error(ErrorCode::invalid_argument,
                   files_[index] + ": has no VIEWPOINT, so --origin or --poses is needed");
     }
+    return {};
   }
   [[nodiscard]] std::optional<Box> bounds() const override {
     return reading_bounds(sensor_, cloud_.points, T_world_sensor_, {}, support_plane_);
   }
   void start(BeliefGrid grid) override { grid_.emplace(std::move(grid)); }
   [[nodiscard]] const BeliefGrid& grid() const override { return *grid_; }
-  IntegrationReport integrate() override {
-    return integrator_.integrate(*grid_, cloud_.points, T_world_sensor_);
+  MapUpdate integrate() override {
+    MapUpdate update;
+    update.counts = integrator_.integrate(*grid_, cloud_.points, T_world_sensor_);
+    if (update.counts.readings_inside == 0) update.verdict = FrameVerdict::carved;
+    return update;
   }
 
  private:

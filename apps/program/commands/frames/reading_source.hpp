@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,9 +13,11 @@
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/registration_options.hpp"
+#include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/register_frame.hpp"
 
 namespace viewgain::app {
@@ -63,7 +66,8 @@ class ReadingSource {
   /// By name and content, for the map to remember; empty: it is not remembered.
   [[nodiscard]] virtual std::string identity(std::size_t /*index*/) const { return {}; }
 
-  virtual void load(std::size_t index) = 0;
+  /// Says what is wrong with a frame that cannot be used; a cloud is read or throws.
+  virtual FrameFault load(std::size_t index) = 0;
   /// Of the part's readings, world frame [m].
   [[nodiscard]] virtual std::optional<Box> bounds() const = 0;
   /// The map that the readings go into.
@@ -73,13 +77,14 @@ class ReadingSource {
   /// What registering the loaded part against the map came to, from whose pose it is then
   /// integrated; nothing without --register on.
   virtual std::optional<FrameRegistration> register_loaded() { return {}; }
-  virtual IntegrationReport integrate() = 0;
+  /// The part that was loaded, into the map unless the verdict says otherwise.
+  virtual MapUpdate integrate() = 0;
   /// Pixels of the loaded part with a depth that its mask took.
   [[nodiscard]] virtual std::uint64_t masked_pixels() const { return 0; }
-  /// Readings of the part integrated last that the jump-edge filter took.
-  [[nodiscard]] virtual std::uint64_t jump_edge_removed() const { return 0; }
-  /// Metres per unit of depth images; nothing for clouds.
-  [[nodiscard]] virtual std::optional<double> depth_scale() const { return std::nullopt; }
+  /// Its file.
+  [[nodiscard]] virtual std::filesystem::path file(std::size_t index) const = 0;
+  /// Of depth images; null for clouds.
+  [[nodiscard]] virtual const FrameFolder* folder() const { return nullptr; }
 };
 
 /// Throws Error for what is wrong with flags or files.

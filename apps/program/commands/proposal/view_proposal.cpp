@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/commands/proposal/view_proposal.hpp"
 
-#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -20,23 +19,20 @@
 namespace viewgain::app {
 namespace {
 
-Eigen::Vector3d center_of(const ProposalOptions& options, const BeliefGrid& grid) {
-  if (!options.center.empty()) return parse_point("--center", options.center);
-  const Box box = grid.workspace();
-  return grid.T_world_grid() * Eigen::Vector3d(0.5 * (box.min[0] + box.max[0]),
-                                               0.5 * (box.min[1] + box.max[1]),
-                                               0.5 * (box.min[2] + box.max[2]));
+bool is_at_boundaries(const ProposalOptions& options) {
+  return options.generator.empty() || options.generator == "boundary";
 }
 
-double distance_of(const ProposalOptions& options, const Sensor& sensor, const BeliefGrid& grid) {
-  if (options.distance) return *options.distance;
-  const Box box = grid.workspace();
-  double longest = 0;
-  for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.max[a] - box.min[a]);
-  return filling_distance(sensor, 0.5 * longest * 0.35 / 0.4);  // the object in its workspace
+PoseSetRequest request_of(const ProposalOptions& options, const Sensor& sensor,
+                          const BeliefGrid& grid) {
+  PoseSetRequest request = around_workspace(grid, sensor);
+  if (!options.center.empty()) request.center = parse_point("--center", options.center);
+  if (options.distance) request.distance = *options.distance;
+  request.count = options.count;
+  request.seed = options.seed;
+  return request;
 }
 
-// As in a room: all views so far were taken from inside of the workspace.
 }  // namespace
 
 void add_proposal_options(App& app, ProposalOptions& o) {
@@ -70,8 +66,8 @@ void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
   o.gain = default_gain();
   one_of(*app.add_option("--generator", o.generator,
                          "where views come from: boundary (open boundaries of the surface in the "
-                         "map), sphere, dome, rings, shell or sequence")
-              ->capture_default_str(),
+                         "map), sphere, dome, rings, shell or sequence; default: boundary, and a "
+                         "sphere round the workspace of a map without a surface or views"),
          generator_names(), "generator");
   add_proposal_options(app, o);
   one_of(*app.add_option("--gain", o.gain, "paper, surface or combined, as in score")
@@ -83,10 +79,11 @@ void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
 }
 
 void check(const ProposalOptions& options) {
-  const bool boundary = options.generator == "boundary", sequence = options.generator == "sequence";
+  const bool boundary = is_at_boundaries(options), sequence = options.generator == "sequence";
   if (options.count && (boundary || sequence)) {
     throw Error(ErrorCode::invalid_argument,
-                "--count goes with sets of poses, not with --generator " + options.generator);
+                "--count goes with sets of poses, not with --generator " +
+                    (boundary ? "boundary" : options.generator));
   }
   if (boundary && !options.center.empty()) {
     throw Error(ErrorCode::invalid_argument,
@@ -122,21 +119,21 @@ SurfaceModel model_of(BeliefGrid grid, const Sensor& sensor, const ProposalOptio
 }
 
 GenerationConfig generation_config(const ProposalOptions& options, const Sensor& sensor,
-                                   const BeliefGrid& grid, const std::string& map) {
+                                   const BeliefGrid& grid, const std::string& map,
+                                   const std::vector<Pose>& tried) {
   GenerationConfig config = default_generation(sensor, grid.voxel_size());
-  config.at_boundaries = options.generator == "boundary";
+  config.tried = tried;
+  config.at_boundaries = is_at_boundaries(options);
   if (options.distance) config.boundary.working_distance = *options.distance;
   if (options.overlap) config.boundary.estimator.overlap = *options.overlap;
   if (options.region_depth) config.boundary.estimator.region_depth = *options.region_depth;
   if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
-  if (config.at_boundaries && grid.views().empty()) {
+  if (options.generator == "boundary" && grid.views().empty()) {
     throw Error(ErrorCode::invalid_argument,
-                map + ": has no views, which boundary candidates need");
+                map + ": has no views, which boundary candidates need; try --generator sphere");
   }
   if (!config.at_boundaries) {
-    config.sets.push_back(make_pose_set(
-        options.generator, {center_of(options, grid), distance_of(options, sensor, grid),
-                            options.count, options.seed, std::nullopt}));
+    config.sets.push_back(make_pose_set(options.generator, request_of(options, sensor, grid)));
   }
   return config;
 }

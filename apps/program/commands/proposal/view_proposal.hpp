@@ -21,7 +21,7 @@ namespace viewgain::app {
 
 /// How views for a map are proposed and ranked.
 struct ProposalOptions {
-  std::string generator = "boundary";
+  std::string generator;  ///< empty: boundary, or a sphere where the map has no surface or views
   std::optional<std::size_t> count{};
   std::optional<double> distance{};
   std::string center;
@@ -55,11 +55,13 @@ void check(const ProposalOptions& options);
                                     const ProposalOptions& options, const ExecConfig& exec);
 
 /// Without --reach the views at boundaries stay inside of the workspace where all views so far
-/// were, as in a room. `map`: what errors call it. Throws Error(invalid_argument) where boundaries
-/// are asked for of a map without views, and as read_reach_toml().
+/// were, as in a room. `map`: what errors call it; `tried`: views that
+/// brought nothing. Throws Error(invalid_argument) where boundaries
+/// are asked for by name of a map without views, and as read_reach_toml().
 [[nodiscard]] GenerationConfig generation_config(const ProposalOptions& options,
                                                  const Sensor& sensor, const BeliefGrid& grid,
-                                                 const std::string& map);
+                                                 const std::string& map,
+                                                 const std::vector<Pose>& tried = {});
 
 /// Scores views on the model's scene by --gain, which must be given.
 [[nodiscard]] GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& model,

@@ -70,10 +70,10 @@ struct Moment {
 
   Moment(const FrameMap& map, const ProposalOptions& proposal, const ExecConfig& exec)
       : model(model_of(map.model().grid().clone(), map.model().sensor(), proposal, exec)),
-        generation(
-            model,
-            generation_config(proposal, map.model().sensor(), model.grid(), map.folder().name()),
-            exec),
+        generation(model,
+                   generation_config(proposal, map.model().sensor(), model.grid(),
+                                     map.folder().name(), map.tried()),
+                   exec),
         evaluator(evaluator_of(proposal, model, map.model().sensor(), exec)) {}
 };
 
@@ -106,12 +106,12 @@ class Recording {
         save_vdb(map_->model().grid(), folder.map(i), noting_sensor(sensor()));
       }
       const bool last = i + 1 == map_->folder().size();
-      if (options_.outputs.draws() && shown.count(i) > 0 && !last) {
+      if (options_.outputs.draws() && shown.count(i) > 0 && !last && !views_->empty()) {
         show(folder, Moment(*map_, proposal_, exec_));
       }
       progress.update(i + 1, map_->folder().size());
     }
-    map_->require_readings();
+    map_->require_frames();
   }
 
   // Surface, next views, report; what run.json holds.
@@ -145,6 +145,7 @@ class Recording {
   }
 
   [[nodiscard]] const NextViews& next() const { return next_; }
+  [[nodiscard]] const FrameCounts& counts() const { return map_->counts(); }
   [[nodiscard]] const Sensor& sensor() const { return map_->model().sensor(); }
 
  private:
@@ -174,7 +175,7 @@ class Recording {
         {"refine", options_.refine == "on"},
         {"register", sigma_.has_value()},
         {"pose_sigma", sigma_ ? pose_sigma_json(*sigma_) : Json()},
-        {"generator", proposal_.generator},
+        {"generator", proposal_.generator.empty() ? "boundary" : proposal_.generator},
         {"gain", proposal_.gain},
         {"reach", Json::or_null(proposal_.reach)},
         {"obstacles", proposal_.obstacles},
@@ -191,11 +192,15 @@ class Recording {
   NextViews next_;
 };
 
-void print(const Options& options, const Json& run, const NextViews& next) {
+void print(const Options& options, const Json& run, const FrameCounts& counts,
+           const NextViews& next) {
   std::printf("%zu frames, %s readings, %s of them in the workspace\n",
-              run["views"].get<std::size_t>(),
+              run["frames"].get<std::size_t>(),
               with_commas(run["readings"].get<std::uint64_t>()).c_str(),
               with_commas(run["readings_inside"].get<std::uint64_t>()).c_str());
+  if (const std::string text = frames_text(counts); !text.empty()) {
+    std::printf("%s\n", text.c_str());
+  }
   if (run.contains("registration")) {
     std::printf("%s\n", registration_text(run["registration"]).c_str());
   }
@@ -220,7 +225,7 @@ void reconstruct(Options& options, const App& app) {
                         config_text(app, {"out", "json", "quiet", "threads"}));
   folder.commit();
   if (options.common.json) return print_json(run);
-  print(options, run, recording.next());
+  print(options, run, recording.counts(), recording.next());
 }
 
 }  // namespace

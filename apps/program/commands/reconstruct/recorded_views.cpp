@@ -21,28 +21,42 @@ double sum_of(const StageSeconds& seconds) {
 
 }  // namespace
 
-RecordedViews::RecordedViews(FrameMap& map, std::vector<FrameRegistration> registrations)
+RecordedViews::RecordedViews(FrameMap& map,
+                             std::optional<std::map<std::size_t, FrameRegistration>> registrations)
     : map_(map), registrations_(std::move(registrations)) {}
 
+const FrameRegistration* RecordedViews::registration(std::size_t index) const {
+  if (!registrations_) return nullptr;
+  const auto found = registrations_->find(index);
+  return found == registrations_->end() ? nullptr : &found->second;
+}
+
 bool RecordedViews::is_refused(std::size_t index) const {
-  return is_aligned() && registrations_[index].status == RegistrationStatus::refused;
+  const FrameRegistration* found = registration(index);
+  return found != nullptr && found->status == RegistrationStatus::refused;
 }
 
 void RecordedViews::add(std::size_t index) {
+  ++asked_;
+  const FrameRegistration* registered = registration(index);
   ViewRecord record;
   record.index = index;
   record.T_world_camera =
-      is_aligned() ? registrations_[index].T_world_camera : map_.folder().T_world_camera(index);
+      registered != nullptr ? registered->T_world_camera : map_.folder().T_world_camera(index);
   MapUpdate update;
-  if (!is_refused(index)) {
+  if (is_refused(index)) {
+    map_.drop(index, {FrameVerdict::contradicts,
+                      map_.folder().frames().images[index].string() + ": " + registered->reason});
+  } else {
     const Stopwatch watch;
     update = map_.add(index, record.T_world_camera,
-                      is_aligned() ? registrations_[index].pose_sigma() : PoseSigma{});
+                      registered != nullptr ? registered->pose_sigma() : PoseSigma{});
     readings_.readings += update.counts.readings;
     readings_.readings_inside += update.counts.readings_inside;
     flying_pixels_ += update.flying_pixels;
     for (const auto& [stage, value] : update.seconds) add_seconds(stage, value);
     add_seconds("read", watch.seconds() - sum_of(update.seconds));
+    if (!is_in_map(update.verdict)) return;
   }
   record.progress = map_.model().progress();
   record.realised_gain = record.progress.entropy_removed;
@@ -80,16 +94,21 @@ Json RecordedViews::entry_json(std::size_t index) const {
             {"unknown_voxels", record.progress.unknown_voxels},
             {"travelled", record.travelled},
             {"seconds", seconds_json(record.seconds)}};
-  if (is_aligned()) json["registration"] = app::to_json(registrations_[record.index]);
+  if (const FrameRegistration* found = registration(record.index)) {
+    json["registration"] = app::to_json(*found);
+  }
   return json;
 }
 
 Json RecordedViews::json(const SurfaceModel& model, const NextViews& next) const {
   const ViewRecord& last = records_.back();
-  const bool is_whole = records_.size() == map_.folder().size();
+  const bool is_whole = asked_ == map_.folder().size();
   Json run{{"map_hash", model.grid().content_hash()},
            {"stop_reason", is_whole ? "no_frames" : "interrupted"},
            {"views", records_.size()},
+           {"frames", nullptr},
+           {"carved", nullptr},
+           {"bad", nullptr},
            {"readings", readings_.readings},
            {"readings_inside", readings_.readings_inside},
            {"masked_pixels", map_.masked_pixels()},
@@ -101,7 +120,12 @@ Json RecordedViews::json(const SurfaceModel& model, const NextViews& next) const
            {"triangles", model.surface().triangles.size()},
            {"surface_area", mesh_area(model.surface())},
            {"travelled", last.travelled}};
-  if (is_aligned()) run["registration"] = registration_counts(registrations_);
+  run.update(frames_json(map_.counts()));
+  if (registrations_) {
+    std::vector<FrameRegistration> all;
+    for (const auto& [index, one] : *registrations_) all.push_back(one);
+    run["registration"] = registration_counts(all);
+  }
   run.update(app::to_json(next));
   run["seconds"] = seconds_json(seconds_);
   run["per_view"] = Json::array();

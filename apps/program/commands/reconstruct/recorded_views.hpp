@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -19,16 +21,18 @@ namespace viewgain::app {
 /// Recorded frames as they go into a map, and what each brought.
 class RecordedViews {
  public:
-  /// The map must outlive it. `registrations`: one a frame, or none where the poses are taken as
-  /// the folder says them.
-  explicit RecordedViews(FrameMap& map, std::vector<FrameRegistration> registrations = {});
+  /// The map must outlive it. `registrations`: by the frame's index, or nothing where the poses are
+  /// taken as the folder says them.
+  explicit RecordedViews(
+      FrameMap& map, std::optional<std::map<std::size_t, FrameRegistration>> registrations = {});
 
-  /// Puts a frame into the map, in order; one that was refused stays out of it. Throws as
-  /// FrameMap::add().
+  /// Puts a frame into the map, in order; one that was refused stays out of it, and one that cannot
+  /// be used is no view either. Throws as FrameMap::add().
   void add(std::size_t index);
+  [[nodiscard]] bool empty() const noexcept { return records_.empty(); }
   void add_seconds(const std::string& stage, double seconds) { seconds_[stage] += seconds; }
 
-  /// For what is chosen after it.
+  /// For what is chosen after it; there must be one.
   [[nodiscard]] ViewRecord& last() noexcept { return records_.back(); }
   /// Those in the map, as its file notes them.
   [[nodiscard]] std::set<std::string> identities() const;
@@ -36,12 +40,14 @@ class RecordedViews {
   [[nodiscard]] Json json(const SurfaceModel& model, const NextViews& next) const;
 
  private:
-  [[nodiscard]] bool is_aligned() const { return !registrations_.empty(); }
+  /// Null without one.
+  [[nodiscard]] const FrameRegistration* registration(std::size_t index) const;
   [[nodiscard]] bool is_refused(std::size_t index) const;
   [[nodiscard]] Json entry_json(std::size_t index) const;
 
   FrameMap& map_;
-  std::vector<FrameRegistration> registrations_;
+  std::optional<std::map<std::size_t, FrameRegistration>> registrations_;
+  std::size_t asked_ = 0;  ///< frames, whatever became of them
   std::vector<ViewRecord> records_;
   std::vector<double> new_areas_;  ///< one a record [m²]
   IntegrationReport readings_{};   ///< of all frames

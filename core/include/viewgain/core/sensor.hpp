@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +26,12 @@ struct VIEWGAIN_EXPORT PoseSigma {
   bool operator==(const PoseSigma&) const = default;
 };
 
+/// What the value 65535 of a depth image says.
+enum class OutOfRangeMeaning : std::uint8_t {
+  carve,    ///< nothing up to max_range
+  invalid,  ///< no reading
+};
+
 /// A depth camera: intrinsics, range limits along the ray, noise; by default the preset sr4000. A
 /// value type; unless they say otherwise members check nothing.
 struct VIEWGAIN_EXPORT Sensor {
@@ -43,6 +50,8 @@ struct VIEWGAIN_EXPORT Sensor {
   RangeCalibration range_calibration{};
 
   PoseSigma pose_sigma{};  ///< zero: poses are exact
+  /// In its depth images; nothing: as the folder's layout has it (FrameSequence).
+  std::optional<OutOfRangeMeaning> out_of_range{};
 
   /// Standard deviations of a reading at range t [m], whose cosine of incidence is cos_incidence,
   /// in the camera's frame; see sigmas() in noise.hpp.

@@ -45,11 +45,12 @@ class Calibrate : public test::ProgramTest {
 
   // The readings of the frames are off by A sin(4 phase), as of a camera whose light is no sine.
   void spoil(const std::string& frames_dir, const std::string& sensor) const {
-    const FrameSequence frames = open_frames(dir / frames_dir);
+    FrameSequence frames = open_frames(dir / frames_dir);
+    frames.out_of_range = OutOfRangeMeaning::invalid;
     const std::vector<Eigen::Vector3d> rays = frames.sensor.camera.ray_table();
     const double period = unambiguous_range(frames.sensor.noise);
     for (std::size_t f = 0; f < frames.images.size(); ++f) {
-      const DepthFrame frame = load_frame(frames, f, OutOfRangeMeaning::invalid);
+      const DepthFrame frame = load_frame(frames, f);
       GrayImage image{frame.width, frame.height, {}};
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const double range = frame.depth[i] * rays[i].norm();
@@ -64,12 +65,13 @@ class Calibrate : public test::ProgramTest {
 
   // How far readings are off along their rays, RMS.
   [[nodiscard]] double off(const std::string& frames_dir, const std::string& sensor) const {
-    const FrameSequence frames = open_frames(dir / frames_dir, (dir / sensor).string());
+    FrameSequence frames = open_frames(dir / frames_dir, (dir / sensor).string());
+    frames.out_of_range = OutOfRangeMeaning::invalid;
     const std::vector<Eigen::Vector3d> rays = frames.sensor.camera.ray_table();
     double squares = 0;
     int readings = 0;
     for (std::size_t f = 0; f < frames.images.size(); ++f) {
-      const DepthFrame frame = load_frame(frames, f, OutOfRangeMeaning::invalid);
+      const DepthFrame frame = load_frame(frames, f);
       const Pose& T_world_camera = frames.poses[f];
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const double along = (T_world_camera.rotation() * rays[i]).z();

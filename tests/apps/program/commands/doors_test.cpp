@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/png.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/planner/view_planner.hpp"
 #include "viewgain/planner_mesh/boundary_generation.hpp"
@@ -136,6 +138,72 @@ TEST_F(Doors, AgreeWithObstaclePlaneAndAReachableBox) {
 }
 
 TEST_F(Doors, AgreeOnAListOfPoses) { EXPECT_FALSE(expect_the_same("poses.toml").empty()); }
+
+// 30 frames, six of which cannot be used, each for a reason of its own.
+TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
+  fs::remove_all(dir / "frames");
+  run_well({"simulate", "cube.off", "--orbit", "30,0.5,30", "--sensor", "small.toml", "--size",
+            "0.2", "--recenter", "on", "--support-plane", "-0.1", "--out", "frames"});
+  write("frames/done", "");
+  const auto image = [](const char* number) {
+    return "frames/frame-0000" + std::string(number) + ".depth.png";
+  };
+  std::vector<std::string> lines;
+  std::istringstream poses(read("frames/poses.txt"));
+  for (std::string line; std::getline(poses, line);) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 31U);  // and a comment
+  lines[1 + 3] = "3 nan nan nan 0 0 0 0";
+  lines[1 + 19] = "19 90 0 0 0 0 0 1";
+  lines.pop_back();
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  write("frames/poses.txt", text);
+  write(image("07"), read(image("07")).substr(0, 60));
+  write_png(dir / image("11"), GrayImage{10, 8, std::vector<std::uint16_t>(80, 6000)});
+  write_png(dir / image("15"), GrayImage{48, 36, std::vector<std::uint16_t>(48 * 36)});
+  const json bad{{"lost_pose", 1}, {"no_pose", 1},    {"nothing_in_range", 1},
+                 {"outside", 1},   {"unreadable", 1}, {"wrong_size", 1}};
+
+  const Strings quiet{"--json", "--quiet"};
+  const json integrated = json::parse(run_well(test::joined(
+      test::joined({"integrate", "frames", "--out", "map.vdb", "--support-plane", "-0.1"},
+                   map_flags()),
+      quiet)));
+  const auto call = [&](const Strings& words) {
+    return json::parse(run_well(test::joined(
+        test::joined(test::joined(words, map_flags()), {"--support-plane", "-0.1", "--top", "3"}),
+        quiet)));
+  };
+  const json next = call({"next", "frames"});
+  const json followed = call({"follow", "frames", "--out", "plan"});
+  const json run = call({"reconstruct", "frames", "--pictures", "off", "--out", "run"});
+  const std::string hash = hash_of("map.vdb");
+  for (const json* said : {&integrated, &next, &followed, &run}) {
+    EXPECT_EQ((*said)["bad"], bad);
+    EXPECT_EQ((*said)["frames"], 24);
+    EXPECT_EQ((*said)["carved"], 0);
+  }
+  EXPECT_EQ(hash_of("plan/state.vdb"), hash);
+  EXPECT_EQ(hash_of("run/map.vdb"), hash);
+  const json there = json::parse(read("plan/next.json"));
+  EXPECT_EQ(named(next), named(there));
+  EXPECT_EQ(named(next), named(run));
+  EXPECT_EQ(next["dropped"], there["dropped"]);
+
+  const FrameSequence frames = open_frames(dir / "frames");
+  PlannerConfig config = planner_config("");
+  config.surroundings.obstacles = {};
+  ViewPlanner planner(frames.sensor, config, {1});
+  for (std::size_t i = 0; i < frames.images.size(); ++i) {
+    const FrameReading reading = read_frame(frames, i);
+    reading.fault.verdict == FrameVerdict::used
+        ? planner.add(reading.frame, frames.poses[i])
+        : planner.drop(reading.fault.verdict, frames.poses[i]);
+  }
+  EXPECT_EQ(json(bad_frames(planner.frames())), bad);
+  EXPECT_EQ(count_of(planner.frames(), FrameVerdict::used), 24U);
+  EXPECT_EQ(planner.grid().content_hash(), hash);
+}
 
 }  // namespace
 }  // namespace viewgain

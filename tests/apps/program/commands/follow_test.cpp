@@ -266,7 +266,7 @@ TEST_F(Follow, TakesEachGoodFrameOnceThroughKills) {
     const json next = json::parse(read("plan/next.json"));
     EXPECT_EQ(next["frames"], kGood);
     EXPECT_EQ(next["waiting"], 0);
-    EXPECT_EQ(next["bad"], (json{{"truncated", 1}, {"size", 1}, {"pose", 1}}));
+    EXPECT_EQ(next["bad"], (json{{"lost_pose", 1}, {"unreadable", 1}, {"wrong_size", 1}}));
     EXPECT_EQ(next["stop_reason"], "max_views");
     EXPECT_EQ(list("plan"), (Strings{"next.json", "next.txt", "state.vdb"}));
     expect_each_once(kGood);
@@ -315,14 +315,50 @@ TEST_F(Follow, SaysWhereToLookNext) {
   EXPECT_EQ(read("plan/next.json"), before);
 }
 
-TEST_F(Follow, AWrongScaleIsOutside) {
-  write("live/depth-scale.txt", "1e-3\n");
+TEST_F(Follow, WithoutAFrameThatCanBeUsedItEndsWithTheReasons) {
   put(0);
+  write(name(0) + ".pose.txt", "1 0 0 90\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   write("live/done", "");
   const test::ProgramResult result = run(follow());
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.err.find("1 outside"), std::string::npos) << result.err;
-  EXPECT_FALSE(fs::exists(dir / "plan"));
+}
+
+// An arm that misses, sees nothing or writes garbage, for 50 steps.
+TEST_F(Follow, NoViewIsProposedTwiceToAnArmThatFails) {
+  const auto nothing = GrayImage{48, 36, std::vector<std::uint16_t>(48 * 36)};
+  write_png(dir / "dark.png", nothing);
+  const std::string dark = read("dark.png");
+  for (const std::string kind : {"misses", "sees nothing", "garbage"}) {
+    fs::remove_all(dir / "live");
+    fs::remove_all(dir / "plan");
+    write("live/sensor.toml", read("small.toml"));
+    write("live/depth-scale.txt", "1e-4\n");
+    put(0);
+    write("live/done", "");
+    std::vector<Pose> asked;
+    json next;
+    std::size_t first_reason = 0;
+    for (std::size_t step = 1; step <= 50; ++step) {
+      run_well(follow({"--top", "1"}));
+      next = json::parse(read("plan/next.json"));
+      if (first_reason == 0 && next["stop_reason"] != nullptr) first_reason = step;
+      if (next["next"].size() == 0) break;
+      Pose best;
+      for (std::size_t k = 0; k < 12; ++k) {
+        best.m[k] = next["next"][0]["T_world_camera"][k / 4][k % 4].get<double>();
+      }
+      EXPECT_FALSE(is_among(best, asked, PoseTolerance{})) << kind << " " << step;
+      asked.push_back(best);
+      write(name(step) + ".depth.png", kind == "misses" ? images[0] : dark);
+      write(name(step) + ".pose.txt", kind == "misses"         ? poses[0]
+                                      : kind == "sees nothing" ? matrix_text(best)
+                                                               : "-inf nan 7\n");
+      if (first_reason > 0 && step > first_reason + 3) break;
+    }
+    EXPECT_GT(first_reason, 0U) << kind;
+    EXPECT_LE(first_reason, 20U) << kind;  // --max-views
+  }
 }
 
 TEST_F(Follow, WhatContradictsTheMapIsLeftOut) {
@@ -352,12 +388,12 @@ TEST_F(Follow, EachBadFrameIsALine) {
   std::size_t lines = 0;
   std::istringstream said(result.err);
   for (std::string line; std::getline(said, line);) {
-    if (line.find("truncated") == std::string::npos) continue;
+    if (line.find("unreadable") == std::string::npos) continue;
     ++lines;
     EXPECT_NE(line.find("live/frame-000001.depth.png"), std::string::npos) << line;
   }
   EXPECT_EQ(lines, 1U);
-  EXPECT_NE(result.out.find("left out: 1 truncated"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("left out: 1 unreadable"), std::string::npos) << result.out;
 }
 
 TEST_F(Follow, RefusesWhatItCannotGoOnWith) {

@@ -39,18 +39,17 @@ class Sensing : public test::ProgramTest {
   }
 
   json integrate(const std::string& frames, const Strings& more = {}) const {
-    return json::parse(
-        run_well(test::joined({"integrate", frames, "--voxel", "0.02", "--workspace",
-                               "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--jump-edge-filter", "off", "--out",
-                               "map.vdb", "--json"},
-                              more)));
+    return json::parse(run_well(test::joined(
+        {"integrate", frames, "--voxel", "0.02", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+         "--jump-edge-filter", "off", "--out", "map.vdb", "--json"},
+        more)));
   }
 
   [[nodiscard]] std::vector<DepthFrame> load(const std::string& name) const {
     const auto frames = open_frames(dir / name, "", std::nullopt);
     std::vector<DepthFrame> result;
     for (std::size_t i = 0; i < frames.images.size(); ++i) {
-      result.push_back(load_frame(frames, i, OutOfRangeMeaning::carve));
+      result.push_back(load_frame(frames, i));
     }
     return result;
   }

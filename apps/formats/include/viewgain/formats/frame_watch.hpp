@@ -23,9 +23,9 @@ namespace viewgain {
 
 /// How a folder is watched.
 struct VIEWGAIN_EXPORT FrameWatchConfig {
-  std::string sensor{};                                       ///< as of open_frames()
-  std::optional<double> depth_scale{};                        ///< likewise [m per unit]
-  OutOfRangeMeaning out_of_range = OutOfRangeMeaning::carve;  ///< likewise
+  std::string sensor{};                             ///< as of open_frames()
+  std::optional<double> depth_scale{};              ///< likewise [m per unit]
+  std::optional<OutOfRangeMeaning> out_of_range{};  ///< nothing: the folder's own
   /// Each frame needs its mask in every one of them, in any order; somebody may be writing into
   /// these, too.
   std::vector<MaskFolder> masks{};
@@ -48,11 +48,10 @@ struct VIEWGAIN_EXPORT WatchedFrame {
 /// A frame that cannot be used as its files are.
 struct VIEWGAIN_EXPORT BadFrame {
   std::uint64_t number = 0;  ///< in its files' names
-  /// truncated (an image or a mask without an end), image (damaged, or of another kind), size
-  /// (another one than the sensor's), pose (no rigid transform of finite numbers), changed (its
-  /// number was taken with other contents), no_mask (of give_up()).
-  std::string reason;
-  std::string what;  ///< names the file
+  /// unreadable, wrong_size, lost_pose, changed; no_pose and no_mask of give_up().
+  FrameFault fault{};
+  std::string name{};                    ///< of its depth image
+  std::optional<Pose> T_world_camera{};  ///< where it was taken, if that is known
 };
 
 /// What a look at the folder found.
@@ -91,14 +90,14 @@ class VIEWGAIN_EXPORT FrameWatch {
   /// first complete frame as open_frames() for what holds for all. Takes some µs a file.
   [[nodiscard]] FolderLook look(Time now);
 
-  /// Nobody writes any more: frames that nothing but a mask was missing of, for
-  /// FrameWatchConfig::settle, are bad (no_mask), as long as their files do not change. These,
-  /// numbers rising. O(frames); files are not looked at.
+  /// Nobody writes any more: frames that wait for a pose, a mask or, where poses.txt has a line
+  /// for one, an image, are bad (no_pose, no_mask, unreadable), as long as their files do not
+  /// change. These, numbers rising by what is missing. O(frames); files are not looked at.
   [[nodiscard]] std::vector<BadFrame> give_up();
 
   /// The caller has no use for the frame that the last look gave out: it is bad for this reason, as
   /// long as its files do not change.
-  void refuse(const WatchedFrame& frame, const std::string& reason);
+  void refuse(const WatchedFrame& frame, FrameVerdict verdict);
 
   /// Sensor, scale and layout, without images and poses; nothing before the first complete frame.
   [[nodiscard]] const std::optional<FrameSequence>& folder() const noexcept;
@@ -106,7 +105,7 @@ class VIEWGAIN_EXPORT FrameWatch {
   [[nodiscard]] std::set<std::string> taken() const;
   /// Frames in the folder of which something is missing or may still be written.
   [[nodiscard]] std::size_t waiting() const;
-  /// Bad frames in the folder: reason -> count.
+  /// Bad frames in the folder: verdict's name -> count.
   [[nodiscard]] std::map<std::string, std::size_t> bad() const;
   /// Did the last look find that nothing has changed, for FrameWatchConfig::settle, of the frames
   /// that wait?

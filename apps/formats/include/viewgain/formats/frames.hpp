@@ -8,14 +8,17 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/export.hpp"
+#include "viewgain/core/frame_verdict.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/range_corrector.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/staged_folder.hpp"
 
@@ -30,10 +33,10 @@ inline constexpr double kDepthUnit = 1e-4;          ///< of our own depth images
 inline constexpr double kRecordedDepthUnit = 1e-3;  ///< of recorded ones, unless said otherwise [m]
 inline constexpr double kAmplitudeUnit = 1e-3;      ///< of amplitude images [m⁻²]
 
-/// What the value 65535 of a depth image says.
-enum class VIEWGAIN_EXPORT OutOfRangeMeaning {
-  carve,    ///< nothing up to max_range
-  invalid,  ///< no reading
+/// Why a frame cannot be used.
+struct VIEWGAIN_EXPORT FrameFault {
+  FrameVerdict verdict = FrameVerdict::used;  ///< used: nothing is against it
+  std::string what{};                         ///< names the file
 };
 
 /// A folder of depth frames, opened but not read.
@@ -42,7 +45,12 @@ struct VIEWGAIN_EXPORT FrameSequence {
   double depth_scale = 0;  ///< [m] per unit
   bool recorded = false;   ///< a pose file a frame, instead of poses.txt
   std::vector<std::filesystem::path> images;  ///< depth images, in their order
-  std::vector<Pose> poses;          ///< T_world_camera, one an image; none of open_depth_images()
+  /// T_world_camera, one an image, not finite where there is none; none of open_depth_images().
+  std::vector<Pose> poses;
+  std::vector<FrameFault> pose_faults;  ///< one a pose: lost_pose, no_pose, or nothing against it
+  /// What 65535 says in the images: by the sensor's own word, else carve in our own layout and
+  /// invalid in the recorded one. May be set before frames are loaded.
+  OutOfRangeMeaning out_of_range = OutOfRangeMeaning::carve;
   std::size_t orthonormalized = 0;  ///< rotations that were a little off
   /// Of the sensor as the folder was opened with it, null if that has no table: spares load_frame()
   /// the rays of the sensor's camera. Where the sensor has been changed it does not count.
@@ -51,10 +59,11 @@ struct VIEWGAIN_EXPORT FrameSequence {
 
 /// Opens either layout: poses.txt + frame-NNNNNN.depth.png (line i is frame i) + sensor.toml, or
 /// frame-NNNNNN.depth.png + frame-NNNNNN.pose.txt + camera-intrinsics.txt, whose numbers may have
-/// gaps. The scale is, unless given, what depth-scale.txt says [m per unit], without one 1e-4 where
-/// there are poses.txt and sensor.toml, else 1e-3. Beside a depth image there may be a
+/// gaps. A pose that is lost (not finite, not rigid, no pose at all) or missing is that frame's
+/// fault alone. The scale is, unless given, what depth-scale.txt says [m per unit], without one
+/// 1e-4 where there are poses.txt and sensor.toml, else 1e-3. Beside a depth image there may be a
 /// frame-NNNNNN.amplitude.png. `sensor`: preset or .toml file, empty for the folder's own. Throws
-/// Error naming the file that is missing or wrong.
+/// Error, naming the file, for what is missing or wrong of all frames.
 [[nodiscard]] VIEWGAIN_EXPORT FrameSequence open_frames(const std::filesystem::path& dir,
                                                         const std::string& sensor = {},
                                                         std::optional<double> depth_scale = {});
@@ -71,9 +80,22 @@ open_depth_images(const std::filesystem::path& dir, const std::string& sensor = 
 /// (RangeCalibration::correct()). Throws Error(io) or Error(format), naming the file, and
 /// Error(invalid_argument) for an index that is not less than the count of images. May be called
 /// from many threads.
-[[nodiscard]] VIEWGAIN_EXPORT DepthFrame
-load_frame(const FrameSequence& frames, std::size_t index,
-           OutOfRangeMeaning meaning = OutOfRangeMeaning::carve);
+[[nodiscard]] VIEWGAIN_EXPORT DepthFrame load_frame(const FrameSequence& frames, std::size_t index);
+
+/// A frame as it was read, or why it cannot be used.
+struct VIEWGAIN_EXPORT FrameReading {
+  DepthFrame frame{};               ///< as load_frame() has it, without what masks take
+  FrameFault fault{};               ///< lost_pose, no_pose, wrong_size, unreadable, or none
+  std::uint64_t masked_pixels = 0;  ///< with a depth, that masks took
+};
+
+/// load_frame() and its pose's fault, for folders in which some frames are bad: what is wrong with
+/// the frame, or with its mask where a folder has one, is said and not thrown. Throws
+/// Error(invalid_argument) for an index that is not less than the count of images. May be called
+/// from many threads.
+[[nodiscard]] VIEWGAIN_EXPORT FrameReading read_frame(const FrameSequence& frames,
+                                                      std::size_t index,
+                                                      std::span<const MaskFolder> masks = {});
 
 /// A frame by name and content, "HASH NAME": 16 hexadecimal digits, a blank and the depth image's
 /// file name. The hash is of the bytes of its images and of its pose; folder, sensor and scale do

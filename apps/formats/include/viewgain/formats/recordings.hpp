@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +13,7 @@
 
 #include "viewgain/core/camera.hpp"
 #include "viewgain/core/export.hpp"
+#include "viewgain/core/frame_verdict.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/png.hpp"
@@ -69,9 +69,10 @@ struct VIEWGAIN_EXPORT Recording {
   /// load_depth() fit the poses, and world coordinates stay those of the recording, mirrored as it
   /// has them.
   bool rows_reversed = false;
-  /// Frames that cannot be used, by reason: no_pose, lost (scannet: the pose is not finite), size,
-  /// intrinsics, depth_scale (other than the first frame's).
-  std::map<std::string, std::size_t> dropped;
+  /// Frames that cannot be used: no_pose, lost_pose, unreadable, wrong_size, intrinsics and
+  /// depth_scale (other than the first frame's).
+  FrameCounts dropped;
+  std::string fault;                ///< of the first that a file's contents are to blame for
   std::size_t orthonormalized = 0;  ///< frames whose rotation was off by 1e-9 to 1e-2 and mended
 };
 
@@ -111,6 +112,7 @@ struct VIEWGAIN_EXPORT ImportReport {
   std::uint64_t masked_pixels = 0;  ///< with a depth, taken away by masks or confidences
   std::size_t masks = 0;            ///< frames that have one or the other
   std::size_t amplitudes = 0;       ///< frames that have an amplitude image
+  std::size_t unreadable = 0;       ///< frames that are left out since their image is damaged
 };
 
 /// Writes a recording's frames into a folder that open_frames() reads (RecordedFramesWriter), which

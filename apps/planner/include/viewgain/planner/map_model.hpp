@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/core/export.hpp"
+#include "viewgain/core/frame_verdict.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -42,8 +44,9 @@ struct VIEWGAIN_EXPORT MapModelConfig {
 
 /// What a view brought.
 struct VIEWGAIN_EXPORT MapUpdate {
-  IntegrationReport counts{};     ///< of all its frames together
-  std::size_t flying_pixels = 0;  ///< that the jump-edge filter took out
+  FrameVerdict verdict = FrameVerdict::used;  ///< unless is_in_map(), the map is as it was
+  IntegrationReport counts{};                 ///< of all its frames together
+  std::size_t flying_pixels = 0;              ///< that the jump-edge filter took out
   /// New surface that its first frame showed, across the rays [m²], see RealisedArea; NaN without
   /// follow_surface.
   double new_area = std::numeric_limits<double>::quiet_NaN();
@@ -66,15 +69,19 @@ class VIEWGAIN_EXPORT MapModel {
   MapModel(BeliefGrid grid, const Sensor& sensor, const MapModelConfig& config,
            const ExecConfig& exec = {});
 
-  /// Filters the frames, integrates them and brings the scene up to date. Throws
-  /// Error(invalid_argument) if a frame has another size than the sensor's images or the pose is
-  /// not rigid (1e-3); nothing has changed then. Error(capacity) and Error(backend) are those of
-  /// VoxelScene::build(): the frames are in the map then. Known depths of the frames are set anew
-  /// by the obstacles.
+  /// Filters the frames, integrates them and brings the scene up to date, unless they cannot be
+  /// used: the one place that says which can. lost_pose: the pose is not rigid (1e-3);
+  /// wrong_size: a frame has another size than the sensor's images; nothing_in_range: no pixel
+  /// says anything; outside: no voxel of the workspace would be hit or carved. Throws
+  /// Error(invalid_argument) for a sigma that is negative or not finite; nothing has changed then.
+  /// Error(capacity) and Error(backend) are those of VoxelScene::build(): the frames are in the map
+  /// then. Known depths of the frames are set anew by the obstacles. Frames without a reading in
+  /// the workspace cost a copy of the map.
   MapUpdate update(const Measurements& measurements);
 
-  /// The grid as it would be after these measurements, which do not change it. Throws as update().
-  /// Costs a copy of it, and the integration.
+  /// The grid as it would be after these measurements, which do not change it. Throws
+  /// Error(invalid_argument) for a pose, a size or a sigma that update() would not take. Costs a
+  /// copy of it, and the integration.
   [[nodiscard]] BeliefGrid grid_after(const Measurements& measurements) const;
 
   /// The map.
@@ -87,7 +94,12 @@ class VIEWGAIN_EXPORT MapModel {
   [[nodiscard]] ModelProgress progress() const;
 
  private:
-  void check(const Measurements& measurements) const;
+  /// What is wrong with them before anybody looks at the pixels, else `used`.
+  [[nodiscard]] FrameVerdict judged(const Measurements& measurements) const;
+  [[nodiscard]] bool shows_workspace(const DepthFrame& frame, const Pose& T_world_camera) const;
+  /// The filtered frames into `grid`, which is grid_ or a copy of it.
+  void integrate(BeliefGrid& grid, const std::vector<DepthFrame>& frames,
+                 const Measurements& measurements, MapUpdate& update);
   /// The frames as they go into the map.
   [[nodiscard]] std::vector<DepthFrame> filtered(const Measurements& measurements,
                                                  std::size_t* flying_pixels) const;
@@ -98,6 +110,7 @@ class VIEWGAIN_EXPORT MapModel {
   ExecConfig exec_;
   BeliefGrid grid_;
   std::optional<JumpEdgeFilter> filter_;
+  std::vector<Eigen::Vector3d> rays_;  // of the pixels, (x, y, 1); not finite: the lens has none
   ObstacleView obstacles_;
   FrameIntegrator integrator_;
   RealisedArea new_surface_;

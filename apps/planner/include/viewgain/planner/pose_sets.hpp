@@ -13,6 +13,7 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain {
 
@@ -38,6 +39,11 @@ struct VIEWGAIN_EXPORT PoseSetRequest {
   /// each as far as can be from the start's direction and those before it, ties to the lower index.
   bool spread_out = false;
 };
+
+/// The workspace's centre, and the distance from which an object that the workspace has room for
+/// fills the image. Costs constant time.
+[[nodiscard]] VIEWGAIN_EXPORT PoseSetRequest around_workspace(const BeliefGrid& grid,
+                                                              const Sensor& sensor);
 
 /// The set of a generator other than boundary. Shell: between 0.8 and 1.25 times the distance.
 /// Sequence: eight views on the start's circle of latitude, in steps of 45°, then one from above.

@@ -12,6 +12,7 @@
 
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
+#include "viewgain/core/frame_verdict.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/pose.hpp"
@@ -57,7 +58,7 @@ struct VIEWGAIN_EXPORT PlannerConfig {
 
 /// What a view brought.
 struct VIEWGAIN_EXPORT AddedView {
-  std::size_t view = 0;        ///< from 0
+  std::size_t view = 0;        ///< from 0; those that brought nothing count
   MapUpdate update{};          ///< of the map
   ModelProgress progress{};    ///< after it; surface_area: the sum of new areas so far [m²]
   double entropy_removed = 0;  ///< by this view [nat, or m² for trace]
@@ -99,21 +100,32 @@ class VIEWGAIN_EXPORT ViewPlanner {
   [[nodiscard]] FrameRegistration register_frame(const DepthFrame& frame, const Pose& T_reported,
                                                  const PoseSigma& sigma = kUsualPoseSigma) const;
 
-  /// Puts a frame into the map and brings the scene up to date; the last proposal is void. Throws
-  /// Error(invalid_argument) for a frame of another size than the sensor's images and a pose that
-  /// is not rigid (1e-3). Error(capacity) and Error(backend) are those of VoxelScene::build(): the
-  /// frame is in the map then, the scene is the one before. DepthFrame::known_depth is set anew by
-  /// the planner's obstacles. `pose_sigma` [m], [rad] is what the pose may be off beside the
-  /// sensor's own pose_sigma, after register_frame() what FrameRegistration::pose_sigma() says.
+  /// Puts a frame into the map and brings the scene up to date; the last proposal is void. What
+  /// became of it AddedView::update says by its verdict: a frame that cannot be used leaves the map
+  /// as it was, counts as a view that brought nothing, and its pose, if it is one, is tried. Throws
+  /// Error(invalid_argument) for a pose_sigma that is none. Error(capacity) and Error(backend) are
+  /// those of VoxelScene::build(): the frame is in the map then, the scene is the one before.
+  /// DepthFrame::known_depth is set anew by the planner's obstacles. `pose_sigma` [m], [rad] is
+  /// what the pose may be off beside the sensor's own pose_sigma, after register_frame() what
+  /// FrameRegistration::pose_sigma() says.
   AddedView add(const DepthFrame& frame, const Pose& T_world_camera,
                 const PoseSigma& pose_sigma = {});
   /// The same of several frames from one pose; there must be one.
   AddedView add(std::span<const DepthFrame> frames, const Pose& T_world_camera,
                 const PoseSigma& pose_sigma = {});
 
+  /// A view that came to nothing before there was a frame to add, or whose frame is left out: it
+  /// counts as add() counts one that cannot be used. `T_world_camera`: where it was taken, if that
+  /// is known. Throws Error(invalid_argument) for a verdict of frames in the map.
+  AddedView drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera = {});
+  /// What became of the frames so far.
+  [[nodiscard]] const FrameCounts& frames() const noexcept;
+
   /// The candidates of the reach region's poses, the sets and the generations, in this order, that
   /// are possible now by the rules of ViewProposer, and how many are not and why. Valid until the
-  /// next add() or propose(). An earlier ranking since the last view is void.
+  /// next add() or propose(). An earlier ranking since the last view is void. Throws
+  /// Error(invalid_argument), as rank() does, if there were frames and none could be used: the
+  /// map says nothing, and what is wrong with the set-up would not be noticed.
   const Proposal& propose();
   /// Behind the last proposal, in the order of the candidates, and valid as long.
   [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept;

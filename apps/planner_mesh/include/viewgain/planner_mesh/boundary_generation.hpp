@@ -50,7 +50,8 @@ boundary_views(const SurfaceMesh& surface, const std::shared_ptr<const VoxelScen
 
 /// VIEWPOINTSGENERATION at the boundaries of the surface in a map, made anew for each proposal:
 /// what ViewPlanner::add_generation() takes. Nothing is dropped; the planner looks what is
-/// possible. A map without views proposes nothing. Thread safety: one call at a time. Cost: the
+/// possible. Where the map has no surface yet, or no views (as an OctoMap), a sphere round the
+/// workspace is proposed. Thread safety: one call at a time. Cost: the
 /// surface is made anew, fused_points() and reconstruct_surface(), and estimate_views().
 class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
  public:

@@ -22,6 +22,7 @@ struct VIEWGAIN_EXPORT GenerationConfig {
   bool at_boundaries = true;        ///< candidates at the surface's open boundaries
   BoundaryViewsConfig boundary{};   ///< views at the surface's open boundaries
   std::vector<PoseSet> sets{};      ///< fixed poses, in the order of proposal
+  std::vector<Pose> tried{};        ///< views that brought nothing, beside the model's
   FeasibilityConfig feasibility{};  ///< what is possible
 };
 

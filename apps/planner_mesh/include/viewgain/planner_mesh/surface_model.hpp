@@ -89,6 +89,8 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   /// New surface that the last view's first frame showed [m²]; see RealisedArea.
   [[nodiscard]] double realised_area() const noexcept { return realised_area_; }
   /// One a view, where there is a truth, in their order.
+  /// Poses of views that brought nothing and are not among the map's.
+  [[nodiscard]] const std::vector<Pose>& tried() const noexcept { return tried_; }
   [[nodiscard]] const std::vector<QualityFigures>& quality() const noexcept { return quality_; }
 
  private:
@@ -103,6 +105,7 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   SurfaceMesh surface_;
   double realised_area_ = 0;
   std::vector<QualityFigures> quality_;
+  std::vector<Pose> tried_;
 };
 
 }  // namespace viewgain

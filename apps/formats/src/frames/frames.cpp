@@ -10,8 +10,9 @@
 #include <utility>
 
 #include "folders.hpp"
-#include "frame_folder.hpp"
-#include "frame_names.hpp"
+#include "frames/frame_folder.hpp"
+#include "frames/frame_names.hpp"
+#include "frames/frame_poses.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/png.hpp"
@@ -86,35 +87,45 @@ void correct_ranges(const FrameSequence& frames, DepthFrame& frame) {
   }
 }
 
+void add_frame(FrameSequence& frames, fs::path image, ReadPose pose) {
+  frames.images.push_back(std::move(image));
+  frames.poses.push_back(pose.T_world_camera);
+  frames.pose_faults.push_back(std::move(pose.fault));
+  frames.orthonormalized += pose.is_mended ? 1 : 0;
+}
+
+// A line a frame, and the images beyond the last line.
 void list_own_layout(const fs::path& dir, FrameSequence& frames) {
-  PoseList list = read_tum(dir / kPoses);
-  const auto on_disk = list_frames(names_in(dir));
-  if (on_disk.size() > list.poses.size()) {
-    throw Error(ErrorCode::format, (dir / kPoses).string() + ": has " +
-                                       std::to_string(list.poses.size()) + " poses for " +
-                                       std::to_string(on_disk.size()) + " frames");
+  std::vector<ReadPose> poses = read_pose_lines(dir / kPoses);
+  const std::size_t count = poses.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    add_frame(frames, dir / frame_name(i, kDepthSuffix), std::move(poses[i]));
   }
-  for (std::size_t i = 0; i < list.poses.size(); ++i) {
-    frames.images.push_back(dir / frame_name(i, kDepthSuffix));
-    if (!is_there(frames.images.back())) {
-      throw Error(ErrorCode::io, frames.images.back().string() + ": no such file, poses.txt has " +
-                                     std::to_string(list.poses.size()) + " poses");
-    }
+  for (const auto& [number, name] : list_frames(names_in(dir))) {
+    if (number < count) continue;
+    add_frame(frames, dir / (name + std::string(kDepthSuffix)),
+              unknown_pose(FrameVerdict::no_pose, (dir / kPoses).string() + ": has " +
+                                                      std::to_string(count) + " poses, none for " +
+                                                      name));
   }
-  frames.poses = std::move(list.poses);
-  frames.orthonormalized = list.orthonormalized;
 }
 
 void list_recorded_layout(const fs::path& dir, FrameSequence& frames) {
   for (const auto& [number, name] : list_frames(names_in(dir))) {
-    bool mended = false;
-    frames.images.push_back(dir / (name + std::string(kDepthSuffix)));
-    frames.poses.push_back(read_pose_matrix(dir / (name + std::string(kPoseSuffix)), &mended));
-    frames.orthonormalized += mended ? 1 : 0;
+    add_frame(frames, dir / (name + std::string(kDepthSuffix)),
+              read_pose_file(dir / (name + std::string(kPoseSuffix))));
   }
-  if (frames.images.empty()) {
-    throw Error(ErrorCode::io, dir.string() + ": no poses.txt and no frame-NNNNNN.depth.png");
-  }
+}
+
+FrameFault size_fault(const fs::path& image, const PinholeCamera& camera) {
+  const auto size_text = [](int width, int height) {
+    return std::to_string(width) + " x " + std::to_string(height);
+  };
+  const auto [width, height] = png_size(image);
+  if (width == camera.width && height == camera.height) return {};
+  return {FrameVerdict::wrong_size, image.string() + ": has " + size_text(width, height) +
+                                        " pixels, the sensor " +
+                                        size_text(camera.width, camera.height)};
 }
 
 }  // namespace
@@ -143,6 +154,8 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
   if (frames.recorded && is_there(dir / kIntrinsics)) {
     apply_intrinsics_file(dir / kIntrinsics, frames.sensor.camera);
   }
+  frames.out_of_range = frames.sensor.out_of_range.value_or(
+      frames.recorded ? OutOfRangeMeaning::invalid : OutOfRangeMeaning::carve);
   if (!frames.sensor.range_calibration.table.empty()) {
     frames.corrector = std::make_shared<const RangeCorrector>(frames.sensor.camera,
                                                               frames.sensor.range_calibration);
@@ -157,6 +170,9 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
     list_recorded_layout(dir, frames);
   } else {
     list_own_layout(dir, frames);
+  }
+  if (frames.images.empty()) {
+    throw Error(ErrorCode::io, dir.string() + ": no poses.txt and no frame-NNNNNN.depth.png");
   }
   return frames;
 }
@@ -173,12 +189,13 @@ FrameSequence open_depth_images(const fs::path& dir, const std::string& sensor,
   return frames;
 }
 
-DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRangeMeaning meaning) {
+DepthFrame load_frame(const FrameSequence& frames, std::size_t index) {
   check_index(index, frames.images.size());
   const PinholeCamera& camera = frames.sensor.camera;
   const GrayImage image = read_gray_png(frames.images[index], camera.width, camera.height);
-  const float out_of_range =
-      meaning == OutOfRangeMeaning::carve ? DepthFrame::kOutOfRange : DepthFrame::kInvalid;
+  const float out_of_range = frames.out_of_range == OutOfRangeMeaning::carve
+                                 ? DepthFrame::kOutOfRange
+                                 : DepthFrame::kInvalid;
   DepthFrame frame{image.width, image.height, {}};
   frame.depth.reserve(image.pixels.size());
   for (const std::uint16_t value : image.pixels) {
@@ -192,6 +209,35 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index, OutOfRange
     frame.amplitude.push_back(static_cast<float>(value * kAmplitudeUnit));
   }
   return frame;
+}
+
+FrameReading read_frame(const FrameSequence& frames, std::size_t index,
+                        std::span<const MaskFolder> masks) {
+  check_index(index, frames.images.size());
+  FrameReading reading;
+  if (index < frames.pose_faults.size()) reading.fault = frames.pose_faults[index];
+  if (reading.fault.verdict != FrameVerdict::used) return reading;
+  const fs::path& image = frames.images[index];
+  const PinholeCamera& camera = frames.sensor.camera;
+  try {
+    std::vector<fs::path> files{image};
+    if (is_there(amplitude_path(image))) files.push_back(amplitude_path(image));
+    for (const MaskFolder& folder : masks) {
+      if (is_there(folder.file_of(image))) files.push_back(folder.file_of(image));
+    }
+    for (const fs::path& file : files) {
+      reading.fault = size_fault(file, camera);
+      if (reading.fault.verdict != FrameVerdict::used) return reading;
+    }
+    reading.frame = load_frame(frames, index);
+    for (const MaskFolder& folder : masks) {
+      const auto mask = folder.mask_of(image, camera.width, camera.height);
+      if (mask) reading.masked_pixels += apply_mask(*mask, reading.frame);
+    }
+  } catch (const Error& error) {
+    reading.fault = {FrameVerdict::unreadable, error.what()};
+  }
+  return reading;
 }
 
 std::string frame_identity(const FrameSequence& frames, std::size_t index) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "frame_names.hpp"
+#include "frames/frame_names.hpp"
 
 #include <algorithm>
 #include <cctype>

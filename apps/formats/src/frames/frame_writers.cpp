@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "folders.hpp"
-#include "frame_names.hpp"
+#include "frames/frame_names.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"

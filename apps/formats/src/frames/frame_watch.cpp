@@ -5,19 +5,17 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <array>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "folders.hpp"
-#include "frame_folder.hpp"
-#include "frame_names.hpp"
+#include "frames/frame_folder.hpp"
+#include "frames/frame_names.hpp"
+#include "frames/frame_poses.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/pose_io.hpp"
-#include "viewgain/formats/png.hpp"
 #include "viewgain/support/file_bytes.hpp"
-#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -40,15 +38,6 @@ FileStamp stamp_of(const fs::path& path) {
           status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
 }
 
-// A pose of a file that may still grow.
-struct ReadPose {
-  Pose T_world_camera;
-  bool is_mended = false;
-  std::string fault{};  // empty: it is a pose
-
-  bool operator==(const ReadPose&) const = default;
-};
-
 // What a frame's files are like. A line of poses.txt counts, and not the file, which grows.
 struct Signature {
   FileStamp depth, amplitude, pose_file;
@@ -67,51 +56,26 @@ struct Entry {
   bool is_judged = false;    // likewise, when nobody was writing any more
   fs::path missing_mask{};   // when it was judged: all that it waits for
   State state = State::waits;
-  std::string reason{};  // of a bad one
+  FrameVerdict verdict = FrameVerdict::used;  // of a bad one
 };
 
-// What came of looking into a frame's files; neither a frame nor a reason: something is missing.
-struct Verdict {
+// What came of looking into a frame's files; neither a frame nor a fault: something is missing.
+struct Finding {
   std::optional<WatchedFrame> frame{};
-  std::string reason{};
-  std::string what{};
-  fs::path missing_mask{};  // where nothing else is missing
+  FrameFault fault{};
+  fs::path missing_mask{};               // where nothing else is missing
+  std::optional<Pose> T_world_camera{};  // of a fault that is not the pose's
 };
 
-Verdict fault(const char* reason, std::string what) { return {{}, reason, std::move(what)}; }
+Finding fault(FrameVerdict verdict, std::string what) { return {{}, {verdict, std::move(what)}}; }
 
-// The poses of lines that have their end.
+// The poses of lines that have their end; none of a file that is being replaced.
 std::vector<ReadPose> poses_of_lines(const fs::path& path) {
-  std::string text;
   try {
-    text = file_bytes(path);
-  } catch (const Error&) {  // it is being replaced
+    return read_pose_lines(path, true);
+  } catch (const Error&) {
     return {};
   }
-  text.resize(text.rfind('\n') + 1);  // none: 0
-  std::vector<ReadPose> poses;
-  for (LineReader line(path.string(), text); line.next();) {
-    if (line.words().empty() || line.words().front().front() == '#') continue;
-    ReadPose& read = poses.emplace_back();
-    try {
-      read.T_world_camera = tum_line_pose(line, &read.is_mended);
-    } catch (const Error& error) {
-      read.fault = error.what();
-    }
-  }
-  return poses;
-}
-
-std::string size_text(int width, int height) {
-  return std::to_string(width) + " x " + std::to_string(height);
-}
-
-// A reason, or none, of an image of any kind.
-Verdict size_fault(const fs::path& image, const PinholeCamera& camera) {
-  const auto [width, height] = png_size(image);
-  if (width == camera.width && height == camera.height) return {};
-  return fault("size", image.string() + ": has " + size_text(width, height) +
-                           " pixels, the sensor " + size_text(camera.width, camera.height));
 }
 
 bool has_end(const fs::path& png) {
@@ -151,48 +115,44 @@ struct FrameWatch::Impl {
                                              bool is_stable) const {
     if (!is.pose_file.is_there()) return is.line;
     const fs::path path = dir / (name + std::string(kPoseSuffix));
-    ReadPose read;
     try {
       if (!is_stable && !file_bytes(path).ends_with('\n')) return std::nullopt;
-      read.T_world_camera = read_pose_matrix(path, &read.is_mended);
-    } catch (const Error& error) {
-      read.fault = error.what();
+    } catch (const Error&) {  // read_pose_file() says why
     }
-    return read;
+    return read_pose_file(path);
   }
 
-  // Of images that have their end.
-  [[nodiscard]] Verdict load(std::uint64_t number, const std::vector<fs::path>& images,
-                             const ReadPose& pose) const {
-    for (const fs::path& image : images) {
-      Verdict wrong = size_fault(image, folder->sensor.camera);
-      if (!wrong.reason.empty()) return wrong;
-    }
+  // Of files that are there and have their end, without what its masks take.
+  [[nodiscard]] Finding load(std::uint64_t number, const fs::path& image, const ReadPose& pose,
+                             std::span<const MaskFolder> masks) const {
     FrameSequence one = *folder;
-    one.images = {images.front()};
+    one.images = {image};
     one.poses = {pose.T_world_camera};
-    return {WatchedFrame{number, images.front(), frame_identity(one, 0),
-                         load_frame(one, 0, config.out_of_range), pose.T_world_camera}};
+    one.pose_faults = {pose.fault};
+    FrameReading read = read_frame(one, 0, masks);
+    if (read.fault.verdict != FrameVerdict::used) return {{}, std::move(read.fault)};
+    return {WatchedFrame{number, image, frame_identity(one, 0), std::move(read.frame),
+                         pose.T_world_camera, read.masked_pixels}};
   }
 
-  // Without what its masks take, which are there and have their end.
-  [[nodiscard]] Verdict masked(WatchedFrame frame) const {
-    for (const MaskFolder& masks : config.masks) {
-      Verdict wrong = size_fault(masks.file_of(frame.image), folder->sensor.camera);
-      if (!wrong.reason.empty()) return wrong;
-      const auto mask = masks.mask_of(frame.image, frame.frame.width, frame.frame.height);
-      if (!mask) return {};  // gone meanwhile
-      frame.masked_pixels += apply_mask(*mask, frame.frame);
-    }
-    return {std::move(frame)};
-  }
-
-  [[nodiscard]] Verdict examine(std::uint64_t number, const std::string& name, const Signature& is,
+  [[nodiscard]] Finding examine(std::uint64_t number, const std::string& name, const Signature& is,
                                 bool needs_amplitude, bool is_stable) {
+    const std::optional<ReadPose> read = pose(is, name, is_stable);
+    Finding finding = examine(number, name, is, needs_amplitude, is_stable, read);
+    if (read && read->fault.verdict == FrameVerdict::used) {
+      finding.T_world_camera = read->T_world_camera;
+    }
+    return finding;
+  }
+
+  [[nodiscard]] Finding examine(std::uint64_t number, const std::string& name, const Signature& is,
+                                bool needs_amplitude, bool is_stable,
+                                const std::optional<ReadPose>& read) {
     const fs::path depth = dir / (name + std::string(kDepthSuffix));
     // One that was taken is known without its masks.
     const bool is_known = taken.contains(depth.filename().string());
-    std::vector<fs::path> files;  // of which each needs its end
+    std::vector<fs::path> files{depth};  // of which each needs its end
+    if (is.amplitude.is_there()) files.push_back(amplitude_path(depth));
     fs::path missing_mask;
     for (std::size_t i = 0; i < is.masks.size() && !is_known; ++i) {
       const fs::path mask = config.masks[i].file_of(depth);
@@ -204,29 +164,40 @@ struct FrameWatch::Impl {
     }
     const bool has_amplitude = !needs_amplitude || is.amplitude.is_there();
     if (!is_stable && !(missing_mask.empty() && has_amplitude)) return {};
-    const std::optional<ReadPose> read = pose(is, name, is_stable);
     if (!read) return {};
-    if (!read->fault.empty()) return fault("pose", read->fault);
-    std::vector<fs::path> images{depth};
-    if (is.amplitude.is_there()) images.push_back(amplitude_path(images.front()));
+    if (read->fault.verdict != FrameVerdict::used) {
+      if (is_stable) open_folder();
+      return {{}, read->fault};
+    }
     try {
-      files.insert(files.begin(), images.begin(), images.end());
-      for (const fs::path& image : files) {
-        if (!has_end(image)) return fault("truncated", image.string() + ": the image has no end");
+      for (const fs::path& file : files) {
+        if (has_end(file)) continue;
+        return fault(FrameVerdict::unreadable, file.string() + ": the image has no end");
       }
     } catch (const Error& error) {
-      return fault("image", error.what());
+      return fault(FrameVerdict::unreadable, error.what());
     }
-    if (!missing_mask.empty()) return {{}, {}, {}, missing_mask};
+    if (!missing_mask.empty()) return {{}, {}, missing_mask};
     // What is wrong with it is no frame's fault.
-    if (!folder) folder = open_frame_folder(dir, config.sensor, config.depth_scale);
+    open_folder();
     try {
-      Verdict loaded = load(number, images, *read);
-      if (is_known || !loaded.frame) return loaded;
-      return masked(std::move(*loaded.frame));
+      return load(number, depth, *read,
+                  is_known ? std::span<const MaskFolder>() : std::span(config.masks));
     } catch (const Error& error) {
-      return fault("image", error.what());
+      return fault(FrameVerdict::unreadable, error.what());
     }
+  }
+
+  void open_folder() {
+    if (folder) return;
+    folder = open_frame_folder(dir, config.sensor, config.depth_scale);
+    if (config.out_of_range) folder->out_of_range = *config.out_of_range;
+  }
+
+  static BadFrame set_bad(std::uint64_t number, Entry& entry, Finding why) {
+    entry.state = State::bad;
+    entry.verdict = why.fault.verdict;
+    return {number, std::move(why.fault), frame_name(number, kDepthSuffix), why.T_world_camera};
   }
 
   FolderLook look(Time now) {
@@ -256,28 +227,27 @@ struct FrameWatch::Impl {
       const bool is_stable = now - entry.since >= config.settle;
       if (entry.state != State::waits || (is_stable ? entry.is_judged : entry.is_examined))
         continue;
-      Verdict verdict = examine(number, name, is, needs_amplitude, is_stable);
+      Finding finding = examine(number, name, is, needs_amplitude, is_stable);
       entry.is_examined = true;
       entry.is_judged = is_stable;
       // What was written meanwhile is for the next look.
       if (signature(number, name, is_recorded) != is) continue;
-      entry.missing_mask = verdict.missing_mask;
-      if (verdict.frame) {
+      entry.missing_mask = finding.missing_mask;
+      if (finding.frame) {
         const auto [known, is_new] =
-            taken.emplace(verdict.frame->image.filename().string(), verdict.frame->identity);
-        if (is_new || known->second == verdict.frame->identity) entry.state = State::taken;
+            taken.emplace(finding.frame->image.filename().string(), finding.frame->identity);
+        if (is_new || known->second == finding.frame->identity) entry.state = State::taken;
         if (is_new) {
-          found.frame = std::move(verdict.frame);
+          found.frame = std::move(finding.frame);
           return found;
         }
         if (entry.state == State::taken) continue;
-        verdict = fault("changed", verdict.frame->image.string() +
-                                       ": was taken with other contents; a number is one frame's");
+        finding = fault(FrameVerdict::changed,
+                        finding.frame->image.string() +
+                            ": was taken with other contents; a number is one frame's");
       }
-      if (verdict.reason.empty() || !is_stable) continue;
-      entry.state = State::bad;
-      entry.reason = verdict.reason;
-      found.bad.push_back({number, std::move(verdict.reason), std::move(verdict.what)});
+      if (finding.fault.verdict == FrameVerdict::used || !is_stable) continue;
+      found.bad.push_back(set_bad(number, entry, std::move(finding)));
     }
     return found;
   }
@@ -297,20 +267,32 @@ FrameWatch& FrameWatch::operator=(FrameWatch&&) noexcept = default;
 FolderLook FrameWatch::look(Time now) { return impl_->look(now); }
 
 std::vector<BadFrame> FrameWatch::give_up() {
+  Impl& m = *impl_;
   std::vector<BadFrame> given_up;
-  for (auto& [number, entry] : impl_->entries) {
-    if (entry.state != State::waits || entry.missing_mask.empty()) continue;
-    entry.state = State::bad;
-    entry.reason = "no_mask";
-    given_up.push_back({number, entry.reason, entry.missing_mask.string() + ": no such mask"});
+  for (auto& [number, entry] : m.entries) {
+    if (entry.state != State::waits || !entry.is_judged) continue;
+    const bool has_pose = !entry.missing_mask.empty();
+    const fs::path image = m.dir / frame_name(number, kDepthSuffix);
+    given_up.push_back(Impl::set_bad(
+        number, entry,
+        has_pose ? fault(FrameVerdict::no_mask, entry.missing_mask.string() + ": no such mask")
+                 : fault(FrameVerdict::no_pose, image.string() + ": has no pose")));
+  }
+  for (std::uint64_t i = 0; i < m.poses.size(); ++i) {
+    const fs::path image = m.dir / frame_name(i, kDepthSuffix);
+    if (m.folder && m.folder->recorded) break;
+    const auto [entry, is_new] = m.entries.try_emplace(i);
+    if (!is_new) continue;
+    given_up.push_back(Impl::set_bad(
+        i, entry->second, fault(FrameVerdict::unreadable, image.string() + ": no such file")));
   }
   return given_up;
 }
 
-void FrameWatch::refuse(const WatchedFrame& frame, const std::string& reason) {
+void FrameWatch::refuse(const WatchedFrame& frame, FrameVerdict verdict) {
   Entry& entry = impl_->entries.at(frame.number);
   entry.state = State::bad;
-  entry.reason = reason;
+  entry.verdict = verdict;
   impl_->taken.erase(frame.image.filename().string());
 }
 
@@ -329,11 +311,11 @@ std::size_t FrameWatch::waiting() const {
 }
 
 std::map<std::string, std::size_t> FrameWatch::bad() const {
-  std::map<std::string, std::size_t> counts;
+  FrameCounts counts;
   for (const auto& [number, entry] : impl_->entries) {
-    if (entry.state == State::bad) ++counts[entry.reason];
+    if (entry.state == State::bad) ++counts[entry.verdict];
   }
-  return counts;
+  return bad_frames(counts);
 }
 
 bool FrameWatch::is_settled() const {

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/commands/frames/frame_tally.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "program/cli/values.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/planner/suspect_frames.hpp"
+
+namespace viewgain::app {
+
+Json frames_json(const FrameCounts& counts) {
+  const std::size_t carved = count_of(counts, FrameVerdict::carved);
+  return {{"frames", count_of(counts, FrameVerdict::used) + carved},
+          {"carved", carved},
+          {"bad", bad_frames(counts)}};
+}
+
+std::string frames_text(std::size_t carved, const std::map<std::string, std::size_t>& bad) {
+  std::string text;
+  if (carved > 0) text = with_commas(carved) + " frames show free space alone";
+  if (bad.empty()) return text;
+  return text + (text.empty() ? "left out: " : "; left out: ") + counts_text(bad);
+}
+
+std::string frames_text(const FrameCounts& counts) {
+  return frames_text(count_of(counts, FrameVerdict::carved), bad_frames(counts));
+}
+
+std::string suspicion_of(const FrameFolder& folder) {
+  constexpr std::size_t kFrames = 12;
+  std::vector<DepthFrame> frames;
+  std::vector<Pose> poses;
+  const std::size_t step = std::max<std::size_t>(1, folder.size() / kFrames);
+  for (std::size_t i = 0; i < folder.size() && frames.size() < kFrames; i += step) {
+    FrameReading reading = folder.load(i);
+    if (reading.fault.verdict != FrameVerdict::used) continue;
+    frames.push_back(std::move(reading.frame));
+    poses.push_back(folder.T_world_camera(i));
+  }
+  return suspect_frames(folder.sensor(), frames, poses).what;
+}
+
+void FrameTally::add(const std::filesystem::path& image, const FrameFault& fault) {
+  const bool is_first = counts_[fault.verdict]++ == 0;
+  if (is_in_map(fault.verdict)) return;
+  if (first_fault_.empty()) first_fault_ = fault.what;
+  if (!is_first || quiet_) return;
+  const std::string what = fault.what.empty() ? image.string() : fault.what;
+  std::fprintf(stderr, "viewgain: %s (%s); left out\n", utf8_text(what).c_str(),
+               frame_verdict_name(fault.verdict).data());
+}
+
+void FrameTally::add(const IntegrationReport& counts) { readings_ += counts.readings; }
+
+void FrameTally::require_any(const FrameFolder& folder) const {
+  const std::string suspicion = suspicion_of(folder);
+  if (counts_.empty() || is_in_map(counts_.begin()->first)) {
+    std::string warning = suspicion;
+    if (warning.empty() && count_of(counts_, FrameVerdict::used) == 0 && readings_ > 0) {
+      warning = "none of " + with_commas(readings_) +
+                " readings lies in the workspace, which frames show as free; is the scale right "
+                "(--depth-scale)?";
+    }
+    if (warning.empty()) return;
+    std::fprintf(stderr, "viewgain: warning: %s: %s\n", utf8_text(folder.name()).c_str(),
+                 warning.c_str());
+    return;
+  }
+  std::string what =
+      folder.name() + ": no frame can be used (" + counts_text(bad_frames(counts_)) + ")";
+  if (count_of(counts_, FrameVerdict::outside) > 0) {
+    what += "; none of " + with_commas(readings_) + " readings lies in the workspace at " +
+            short_text(folder.frames().depth_scale) +
+            " m per unit of the depth images (--depth-scale)";
+  }
+  if (!suspicion.empty()) {
+    what += "; " + suspicion;
+  } else if (!first_fault_.empty()) {
+    what += "; " + first_fault_;
+  }
+  throw Error(ErrorCode::invalid_argument, what);
+}
+
+void refuse_without_readings(const FrameFolder& folder, const FrameTally& bad) {
+  std::string what = folder.name() + ": no frame has a reading at " +
+                     short_text(folder.frames().depth_scale) +
+                     " m per unit of the depth images (--depth-scale)";
+  const auto reasons = bad_frames(bad.counts());
+  if (!reasons.empty()) what += "; left out: " + counts_text(reasons) + "; " + bad.first_fault();
+  const std::string suspicion = suspicion_of(folder);
+  if (!suspicion.empty()) what += "; " + suspicion;
+  throw Error(ErrorCode::invalid_argument, what);
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "program/cli/flags/frame_folder.hpp"
+#include "program/cli/json.hpp"
+#include "viewgain/core/frame_verdict.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/grid/integrate.hpp"
+
+namespace viewgain::app {
+
+/// frames (in the map), carved (of these, those that have shown free space alone), bad (the
+/// others: reason -> count).
+[[nodiscard]] Json frames_json(const FrameCounts& counts);
+/// "2 frames show free space alone; left out: 1 lost_pose, 2 outside", or nothing.
+[[nodiscard]] std::string frames_text(const FrameCounts& counts);
+[[nodiscard]] std::string frames_text(std::size_t carved,
+                                      const std::map<std::string, std::size_t>& bad);
+
+/// What is probably wrong with the frames of the folder (suspect_frames()); empty: nothing. Reads a
+/// dozen of them.
+[[nodiscard]] std::string suspicion_of(const FrameFolder& folder);
+
+/// What became of the frames of a folder, and what is said of it.
+class FrameTally {
+ public:
+  /// Quiet: the first frame of each kind that is left out is not named on stderr.
+  explicit FrameTally(bool quiet) : quiet_(quiet) {}
+
+  void add(const std::filesystem::path& image, const FrameFault& fault);
+  /// Pixels of a frame that went into the map, or did not.
+  void add(const IntegrationReport& counts);
+  /// Throws Error(invalid_argument) if there were frames and none is in the map, with the reasons
+  /// and suspicion_of(); else that is a warning.
+  void require_any(const FrameFolder& folder) const;
+
+  [[nodiscard]] const FrameCounts& counts() const noexcept { return counts_; }
+  /// Of the first frame that was left out.
+  [[nodiscard]] const std::string& first_fault() const noexcept { return first_fault_; }
+
+ private:
+  bool quiet_;
+  FrameCounts counts_;
+  std::string first_fault_;
+  std::uint64_t readings_ = 0;
+};
+
+/// No frame has a reading that a workspace could be made round: throws Error(invalid_argument) with
+/// the frames that are bad and what is suspected.
+[[noreturn]] void refuse_without_readings(const FrameFolder& folder, const FrameTally& bad);
+
+}  // namespace viewgain::app
