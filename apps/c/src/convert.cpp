@@ -50,6 +50,22 @@ std::vector<Pose> poses_of(const double* matrices, std::size_t count) {
   return poses;
 }
 
+void write_outcomes(const GainEvaluator& evaluator, const double* T_world_camera,
+                    vg_ray_outcomes* outcomes) {
+  require(T_world_camera, "T_world_camera");
+  require_struct(outcomes, "vg_ray_outcomes");
+  const RayOutcomes of = evaluator.outcomes(rigid_pose_of(T_world_camera));
+  if (of.rays == 0) reject("the pose is not a rigid transform of finite numbers");
+  write_struct(outcomes, {.struct_size = 0,
+                          .rays = of.rays,
+                          .too_near = of.too_near,
+                          .unknown = of.unknown,
+                          .known_surface = of.known_surface,
+                          .obstacle = of.obstacle,
+                          .out_of_range = of.out_of_range,
+                          .out_of_map = of.out_of_map});
+}
+
 void write_pose(const Pose& pose, double* matrix) {
   std::copy(pose.m.begin(), pose.m.end(), matrix);
   std::fill_n(matrix + 12, 3, 0.0);

@@ -18,6 +18,7 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::c_api {
 
@@ -47,6 +48,11 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 VIEWGAIN_EXPORT void write_pose(const Pose& pose, double* matrix);
 VIEWGAIN_EXPORT void write_poses(std::span<const Pose> poses, double* matrices);
+
+/// Fills what its _init has seen; throws Error(invalid_argument) for null, another size or a pose
+/// that is not rigid (1e-3).
+VIEWGAIN_EXPORT void write_outcomes(const GainEvaluator& evaluator, const double* T_world_camera,
+                                    vg_ray_outcomes* outcomes);
 
 /// Throws Error(invalid_argument) for null, another size, or a noise model that does not exist.
 [[nodiscard]] VIEWGAIN_EXPORT Sensor sensor_of(const vg_sensor* given);

@@ -249,6 +249,18 @@ vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_world_cam
   });
 }
 
+void vg_ray_outcomes_init(vg_ray_outcomes* outcomes, size_t struct_size) {
+  initialise(outcomes, struct_size);
+}
+
+vg_status vg_outcomes(const vg_evaluator* evaluator, const double T_world_camera[16],
+                      vg_ray_outcomes* outcomes) {
+  return guarded([&] {
+    require(evaluator, "evaluator");
+    write_outcomes(evaluator->evaluator, T_world_camera, outcomes);
+  });
+}
+
 vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_camera[16],
                            vg_contribution* contributions, size_t contribution_size,
                            size_t capacity, size_t* found) {

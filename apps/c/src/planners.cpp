@@ -353,6 +353,11 @@ vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses, size_t
   });
 }
 
+vg_status vg_planner_outcomes(vg_planner* planner, const double T_world_camera[16],
+                              vg_ray_outcomes* outcomes) {
+  return guarded([&] { write_outcomes(live(planner).evaluator(), T_world_camera, outcomes); });
+}
+
 vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16], int32_t reached) {
   return guarded([&] {
     ViewPlanner& own = live(planner);

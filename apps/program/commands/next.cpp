@@ -27,6 +27,7 @@ struct Options {
   ProposalOptions proposal;
   std::size_t top = 10;
   std::string out;
+  bool explain = false;
 };
 
 // What a folder of frames leaves beside its map.
@@ -64,7 +65,8 @@ void next(const Options& options) {
   CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate({});
   const GainEvaluator evaluator = evaluator_of(options.proposal, model, sensor, exec);
-  const NextViews views = best_views(evaluator, proposal, options.top);
+  NextViews views = best_views(evaluator, proposal, options.top);
+  if (options.explain) explain(views, proposal, evaluator);
   if (!options.out.empty()) write_tum(options.out, poses_of(views));
   if (options.common.json) {
     Json json{{"views", model.grid().views().size()}};
@@ -88,6 +90,9 @@ void next(const Options& options) {
 void add_options(App& app, Options& o) {
   add_next_view_options(app, o.proposal, o.top);
   app.add_option("--out", o.out, "TUM file of camera-to-world poses to write, best first");
+  app.add_flag("--explain", o.explain,
+               "say of each view what becomes of its rays: how many come to unknown space, end in "
+               "known surface, leave the map, ...; where no view gains, of all candidates'");
   add_trace_option(app, o.common);
   add_common_options(app, o.common);
 }

@@ -17,6 +17,7 @@
 #include "batch_call.hpp"
 #include "bindings.hpp"
 #include "classes.hpp"
+#include "evaluator.hpp"
 #include "frame_index.hpp"
 #include "gil.hpp"
 #include "given.hpp"
@@ -271,6 +272,25 @@ void bind_planner(py::module_& module) {
       .def("rank", &rank, py::arg("k") = 1, py::kw_only(), py::arg("poses") = py::none(),
            py::arg("costs") = py::none(), py::arg("cost_per_metre") = 0.0, py::arg("exact") = false,
            py::arg("control") = py::none(), kRankDoc)
+      .def(
+          "outcomes",
+          [](Planner& self, const py::object& T_world_camera) {
+            const Pose pose = one_pose(T_world_camera, "T_world_camera");
+            return named_outcomes(
+                self.use([&](ViewPlanner& planner) { return planner.evaluator().outcomes(pose); }));
+          },
+          py::arg("T_world_camera"),
+          R"(Why a pose's gain is what it is on the map as it stands: what becomes of its rays.
+
+Cost: two traces of the pose.
+
+Parameters
+----------
+T_world_camera : array_like, (4, 4)
+
+Returns
+-------
+RayOutcomes)")
       .def(
           "tried",
           [](Planner& self, const py::object& T_world_camera, bool reached) {

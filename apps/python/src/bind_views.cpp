@@ -92,6 +92,14 @@ py::array_t<ContributionRow> contributions(const Evaluator& self,
   return to_array_1d<ContributionRow>(rows);
 }
 
+py::object outcomes(const Evaluator& self, const py::object& T_world_camera) {
+  const Pose pose = one_pose(T_world_camera, "T_world_camera");
+  return named_outcomes([&] {
+    const WithoutGil without_gil;
+    return self.evaluator.outcomes(pose);
+  }());
+}
+
 // A Python callable as a gain; takes the GIL for each view.
 class PythonMeasure : public ViewMeasure {
  public:
@@ -186,6 +194,18 @@ ndarray, (n,), structured
     voxel (int32, 3; on the lattice, minus the grid's ``min_index`` for arrays), state, rays that end
     in it, expected_rays (by the surface and the combined gain: the sum of their chances to end there),
     gain, in the unit of ``evaluate``. Largest gain first; the gains add up to that of the view.)")
+      .def(
+          "outcomes", &outcomes, py::arg("T_world_camera"),
+          R"(Why a view's gain is what it is: what becomes of its rays. Cost: twice that of ``trace``.
+
+Parameters
+----------
+T_world_camera : array_like, (4, 4)
+
+Returns
+-------
+RayOutcomes
+    Counts that add up to its ``rays``.)")
       .def("evaluate_own", &evaluate_own, py::arg("T_world_camera"), py::arg("measure"),
            py::kw_only(), py::arg("control") = py::none(),
            R"(A gain of your own: a number for what a view would see.

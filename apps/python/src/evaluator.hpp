@@ -7,10 +7,17 @@
 #include <optional>
 #include <string>
 
+#include "named.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::python {
+
+/// Needs the GIL.
+[[nodiscard]] inline pybind11::object named_outcomes(const RayOutcomes& of) {
+  return named("RayOutcomes", of.rays, of.unknown, of.known_surface, of.obstacle, of.too_near,
+               of.out_of_range, of.out_of_map);
+}
 
 /// Python's GainEvaluator.
 struct Evaluator {

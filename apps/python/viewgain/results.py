@@ -57,6 +57,19 @@ class IntegrationReport(NamedTuple):
 
 
 @named("viewgain")
+class RayOutcomes(NamedTuple):
+    """What becomes of a view's rays, of ``GainEvaluator.outcomes`` and ``ViewPlanner.outcomes``."""
+
+    rays: Annotated[int, "Of the view."]
+    unknown: Annotated[int, "Come to unknown space: what may be new."]
+    known_surface: Annotated[int, "End in known surface, with free space before it."]
+    obstacle: Annotated[int, "End at an obstacle or on the support plane."]
+    too_near: Annotated[int, "Meet surface or an obstacle before the sensor's min_range."]
+    out_of_range: Annotated[int, "Are in known free space to max_range."]
+    out_of_map: Annotated[int, "Leave the workspace, or never come into it."]
+
+
+@named("viewgain")
 class GridStatistics(NamedTuple):
     """Voxels and progress of a map, of ``BeliefGrid.statistics``."""
 

@@ -129,6 +129,15 @@ TEST(CPlanner, SaysWhatTheOtherSays) {
       vg_grid_release(grid);
       EXPECT_EQ(hash, own.grid().content_hash());
 
+      vg_ray_outcomes rays;
+      vg_ray_outcomes_init(&rays, sizeof rays);
+      ASSERT_EQ(vg_planner_outcomes(planner, numbers_of({pose}).data(), &rays), VG_OK);
+      const RayOutcomes outcomes = own.evaluator().outcomes(pose);
+      EXPECT_EQ(rays.unknown, outcomes.unknown);
+      EXPECT_EQ(rays.out_of_map, outcomes.out_of_map);
+      EXPECT_EQ(rays.rays, rays.too_near + rays.unknown + rays.known_surface + rays.obstacle +
+                               rays.out_of_range + rays.out_of_map);
+
       size_t candidates = 0;
       std::array<size_t, 12> dropped{};
       ASSERT_EQ(vg_planner_propose(planner, &candidates, dropped.data(), dropped.size()), VG_OK);
@@ -199,7 +208,8 @@ TEST(CPlanner, RefusesWrongUse) {
   bad[3] = kNan;
   vg_planner_view lost;
   vg_planner_view_init(&lost, sizeof lost);
-  EXPECT_EQ(vg_planner_add(planner, frame.depth.data(), nullptr, bad.data(), nullptr, &lost), VG_OK);
+  EXPECT_EQ(vg_planner_add(planner, frame.depth.data(), nullptr, bad.data(), nullptr, &lost),
+            VG_OK);
   EXPECT_EQ(lost.verdict, VG_FRAME_LOST_POSE);
   EXPECT_EQ(vg_planner_drop(planner, VG_FRAME_UNREADABLE, pose.data()), VG_OK);
   refused(vg_planner_drop(planner, VG_FRAME_CARVED, nullptr), "verdict is 1");

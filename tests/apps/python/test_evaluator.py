@@ -174,6 +174,10 @@ def test_images_of_a_view(evaluator, poses, sensor):
     assert 100 < np.count_nonzero(seen) < depth.size
     assert np.count_nonzero(np.isin(hits["kind"], (1, 2))) == evaluator.evaluate_detailed(
         poses[20])["hits"]
+    rays = evaluator.outcomes(poses[20])
+    assert isinstance(rays, viewgain.RayOutcomes) and rays.rays == depth.size == sum(rays) - rays.rays
+    assert (rays.unknown, rays.known_surface) == tuple(
+        np.count_nonzero(hits["kind"] == viewgain.HIT_KIND_NAMES.index(kind)) for kind in ("unknown", "occupied"))
 
 
 def test_contributions_say_why(evaluator, poses, labels, grid):

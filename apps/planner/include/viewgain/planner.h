@@ -188,6 +188,10 @@ VG_API vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses,
                                        double cost_per_metre, vg_ranked_view* views,
                                        size_t view_size, size_t* found, const vg_watch* watch);
 
+/* Why a pose's gain is what it is on the map as it stands: what becomes of its rays. */
+VG_API vg_status vg_planner_outcomes(vg_planner* planner, const double T_world_camera[16],
+                                     vg_ray_outcomes* outcomes);
+
 /* The pose was commanded: it is not proposed again, whether the camera got there (nonzero) or not,
    and goes out of the proposal as it stands. */
 VG_API vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16],

@@ -109,7 +109,7 @@ struct ViewPlanner::Impl {
     if (is_in_map(added.update.verdict)) {
       // Without follow_surface nobody asks for the area.
       if (!std::isnan(added.update.new_area)) state.seen_area += added.update.new_area;
-    } else if (T_world_camera && orthonormality_error(*T_world_camera) <= 1e-3) {
+    } else if (T_world_camera && rigid_pose(*T_world_camera)) {
       state.reached.push_back(*T_world_camera);
     }
     added.progress.surface_area = state.seen_area;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program/cli/flags/next_views.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -22,6 +23,48 @@ std::string why(const NextView& view) {
   return text;
 }
 
+// What becomes of rays: its name in JSON and in words.
+struct Outcome {
+  const char* key;
+  const char* words;
+  std::uint32_t RayOutcomes::*count;
+};
+constexpr std::array kOutcomes{
+    Outcome{"unknown", "come to unknown space", &RayOutcomes::unknown},
+    Outcome{"known_surface", "end in known surface", &RayOutcomes::known_surface},
+    Outcome{"obstacle", "end at obstacles", &RayOutcomes::obstacle},
+    Outcome{"too_near", "meet something too near", &RayOutcomes::too_near},
+    Outcome{"out_of_range", "see free space to the range limit", &RayOutcomes::out_of_range},
+    Outcome{"out_of_map", "leave the map", &RayOutcomes::out_of_map}};
+
+Json to_json(const std::optional<RayOutcomes>& rays) {
+  if (!rays) return {};
+  Json json{{"rays", rays->rays}};
+  for (const Outcome& outcome : kOutcomes) json[outcome.key] = (*rays).*outcome.count;
+  return json;
+}
+
+// "of 25,344 rays 61 % come to unknown space, 39 % end in known surface"
+std::string text_of(const RayOutcomes& rays) {
+  std::string text = "of " + with_commas(rays.rays) + " rays";
+  const char* between = " ";
+  for (const Outcome& outcome : kOutcomes) {
+    const std::uint32_t count = rays.*outcome.count;
+    if (count == 0) continue;
+    std::array<char, 80> part{};
+    std::snprintf(part.data(), part.size(), "%s%.3g %% %s", between, 100.0 * count / rays.rays,
+                  outcome.words);
+    text += part.data();
+    between = ", ";
+  }
+  return text;
+}
+
+void add(const RayOutcomes& from, RayOutcomes& to) {
+  to.rays += from.rays;
+  for (const Outcome& outcome : kOutcomes) to.*outcome.count += from.*outcome.count;
+}
+
 }  // namespace
 
 NextViews next_views(const Ranking& ranking, const Proposal& proposal, GainModel model) {
@@ -34,12 +77,24 @@ NextViews next_views(const Ranking& ranking, const Proposal& proposal, GainModel
   return next;
 }
 
+void explain(NextViews& next, const Proposal& proposal, const GainEvaluator& evaluator) {
+  for (NextView& view : next.views) view.rays = evaluator.outcomes(view.T_world_camera);
+  if (!next.views.empty() || proposal.candidates.empty()) return;
+  constexpr std::size_t kMost = 32;
+  const std::size_t all = proposal.candidates.size(), count = std::min(all, kMost);
+  next.no_gain.emplace();
+  for (std::size_t i = 0; i < count; ++i) {
+    add(evaluator.outcomes(proposal.candidates[i * all / count].T_world_camera), *next.no_gain);
+  }
+}
+
 Json to_json(const NextViews& next) {
   Json json{{"gain_model", gain_model_name(next.model)},
             {"gain_unit", gain_unit(next.model, kCriterion)},
             {"candidates", next.candidates},
             {"dropped", next.dropped},
             {"next", Json::array()}};
+  if (next.no_gain) json["no_gain"] = to_json(next.no_gain);
   for (const NextView& view : next.views) {
     const auto& of = view.boundary_class;
     json["next"].push_back({{"gain", view.gain.gain},  // a NaN becomes null
@@ -47,6 +102,7 @@ Json to_json(const NextViews& next) {
                             {"generator", view.generator},
                             {"class", of ? Json(boundary_class_name(*of)) : Json()},
                             {"T_world_camera", to_json(view.T_world_camera)}});
+    if (view.rays) json["next"].back()["rays"] = to_json(view.rays);
   }
   return json;
 }
@@ -61,6 +117,7 @@ std::string summary_of(const NextViews& next) {
 }
 
 std::string text_of(const NextViews& next) {
+  if (next.no_gain) return "none of the candidates gains: " + text_of(*next.no_gain) + "\n";
   if (next.views.empty()) return {};
   const bool has_area = next.model != GainModel::paper;
   std::array<char, 160> line{};
@@ -81,6 +138,7 @@ std::string text_of(const NextViews& next) {
     std::snprintf(line.data(), line.size(), "  %8.3f %8.3f %8.3f %7.3f %7.3f %7.3f  ", eye.x(),
                   eye.y(), eye.z(), axis.x(), axis.y(), axis.z());
     text.append(line.data()).append(why(view)).append("\n");
+    if (view.rays) text.append("     ").append(text_of(*view.rays)).append("\n");
   }
   return text;
 }

@@ -24,6 +24,7 @@ struct NextView {
   ViewGain gain;
   std::string generator;
   std::optional<BoundaryClass> boundary_class{};  ///< of the boundary that it looks beyond
+  std::optional<RayOutcomes> rays{};              ///< what becomes of them, by explain()
 };
 
 /// Where a camera should look next.
@@ -32,11 +33,16 @@ struct NextViews {
   std::size_t candidates = 0;                  ///< that were possible; `views` are the best of them
   std::map<std::string, std::size_t> dropped;  ///< the impossible ones: reason -> count
   GainModel model = kDefaultGain;              ///< of the gains
+  std::optional<RayOutcomes> no_gain{};        ///< by explain(): candidates' rays, if none gains
 };
 
 /// Of a ranking of a proposal's candidates.
 [[nodiscard]] NextViews next_views(const Ranking& ranking, const Proposal& proposal,
                                    GainModel model);
+
+/// Adds what becomes of the views' rays; where no candidate gains, of the rays of at most 32 of
+/// them, evenly chosen. Costs two traces a view.
+void explain(NextViews& next, const Proposal& proposal, const GainEvaluator& evaluator);
 
 /// gain_model, gain_unit, candidates, dropped, next; apps/docs/reference/json.md names the keys of
 /// a view.
@@ -45,7 +51,8 @@ struct NextViews {
 /// "12 of 480 possible views; dropped: 3 collision"
 [[nodiscard]] std::string summary_of(const NextViews& next);
 
-/// A table for people, one line a view; empty without views.
+/// A table for people, one line a view, and one more where it is explained; empty without views
+/// that are not.
 [[nodiscard]] std::string text_of(const NextViews& next);
 
 [[nodiscard]] std::vector<Pose> poses_of(const NextViews& next);

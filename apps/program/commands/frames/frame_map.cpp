@@ -103,7 +103,7 @@ MapUpdate FrameMap::add(std::size_t index, const Pose& T_world_camera,
 void FrameMap::count(std::size_t index, const FrameFault& fault) {
   tally_.add(folder_.frames().images[index], fault);
   const Pose& T_world_camera = folder_.T_world_camera(index);
-  if (!is_in_map(fault.verdict) && orthonormality_error(T_world_camera) <= 1e-3) {
+  if (!is_in_map(fault.verdict) && rigid_pose(T_world_camera)) {
     tried_.push_back(T_world_camera);
   }
 }

@@ -127,14 +127,21 @@ std::vector<BeliefRow> belief_rows(const BeliefGrid& grid) {
   return rows;
 }
 
-std::vector<PointRow> point_rows(const BeliefGrid& grid, const FusedPointsConfig& config,
-                                 const ExecConfig& exec) {
+py::array points_of(const SharedGrid& grid, std::uint32_t min_hits, int num_threads) {
+  FusedPointsConfig config;
+  config.min_hits = min_hits;
+  const auto points =
+      grid.read([&](const BeliefGrid& g) { return fused_points(g, config, {num_threads}); });
   std::vector<PointRow> rows;
-  for (const FusedPoint& p : fused_points(grid, config, exec)) {
+  for (const FusedPoint& p : points) {
     const SymmetricMatrix3& c = p.covariance;
     rows.push_back({p.position, {c.xx, c.yy, c.zz, c.xy, c.xz, c.yz}, p.toward_free, p.hits});
   }
-  return rows;
+  return to_array_1d<PointRow>(rows);
+}
+
+double pooling_length_of(const SharedGrid& grid) {
+  return grid.read([](const BeliefGrid& g) { return pooling_of(g.snapshot()).length; });
 }
 
 py::object statistics_of(const SharedGrid& grid, const std::string& criterion) {
@@ -328,18 +335,8 @@ Returns
 ndarray, (n,), structured
     voxel (int32, 3; on the lattice, minus ``min_index`` for arrays), hits (a count), information (float32, 6:
     xx yy zz xy xz yz [1/m**2]), information_vector (float32, 3 [1/m], about the voxel's centre).)")
-      .def(
-          "points",
-          [](const SharedGrid& grid, std::uint32_t min_hits, int num_threads) {
-            FusedPointsConfig config;
-            config.min_hits = min_hits;
-            const auto rows = grid.read([&](const BeliefGrid& g) {
-              return point_rows(g, config, ExecConfig{num_threads});
-            });
-            return to_array_1d<PointRow>(rows);
-          },
-          py::kw_only(), py::arg("min_hits") = 2, py::arg("num_threads") = 0,
-          R"(The points of the surface as the map knows it.
+      .def("points", &points_of, py::kw_only(), py::arg("min_hits") = 2, py::arg("num_threads") = 0,
+           R"(The points of the surface as the map knows it.
 
 Cost: linear in the voxels that were ever hit, some µs each, 0.25 s for 40,000 occupied ones on two
 threads.
@@ -362,10 +359,7 @@ Raises
 ValueError
     num_threads is out of its bounds.)")
       .def(
-          "pooling_length",
-          [](const SharedGrid& grid) {
-            return grid.read([](const BeliefGrid& g) { return pooling_of(g.snapshot()).length; });
-          },
+          "pooling_length", &pooling_length_of,
           R"(How far apart the map's points are [m]: the voxel size, or the sensor's footprint where that is longer.
 
 Cost: of a snapshot, some ms.)")

@@ -175,6 +175,12 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
         quiet)));
   };
   const json next = call({"next", "frames"});
+  for (const json& view : call({"next", "frames", "--explain"})["next"]) {
+    std::size_t sum = 0;
+    for (const auto& [key, count] : view["rays"].items()) sum += count.get<std::size_t>();
+    EXPECT_EQ(sum, 2 * view["rays"]["rays"].get<std::size_t>());
+    EXPECT_GT(view["rays"]["unknown"], 0);  // else it would not gain
+  }
   const json followed = call({"follow", "frames", "--out", "plan"});
   const json run = call({"reconstruct", "frames", "--pictures", "off", "--out", "run"});
   const std::string hash = hash_of("map.vdb");

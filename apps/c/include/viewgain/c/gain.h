@@ -221,6 +221,24 @@ VG_API vg_status vg_contributions(const vg_evaluator* evaluator, const double T_
                                   vg_contribution* contributions, size_t contribution_size,
                                   size_t capacity, size_t* found);
 
+/* What becomes of a view's rays, for asking why its gain is what it is; the counts below `rays` add
+   up to it. */
+typedef struct vg_ray_outcomes {
+  size_t struct_size;     /* as _init() sets it */
+  uint32_t rays;          /* of the view */
+  uint32_t too_near;      /* meet surface or an obstacle before the sensor's min_range */
+  uint32_t unknown;       /* come to unknown space: what may be new */
+  uint32_t known_surface; /* end in known surface, with free space before it */
+  uint32_t obstacle;      /* end at an obstacle or on the support plane */
+  uint32_t out_of_range;  /* are in known free space to max_range */
+  uint32_t out_of_map;    /* leave the workspace, or never come into it */
+} vg_ray_outcomes;
+/* Makes `outcomes` ready for a call. */
+VG_API void vg_ray_outcomes_init(vg_ray_outcomes* outcomes, size_t struct_size);
+/* Of one pose. A bad pose is VG_INVALID_ARGUMENT. Costs two traces of the pose. */
+VG_API vg_status vg_outcomes(const vg_evaluator* evaluator, const double T_world_camera[16],
+                             vg_ray_outcomes* outcomes);
+
 /* ---- Which poses are possible ---- */
 
 /* Says which poses are possible in a scene. Calls that take it as const may run from many threads
