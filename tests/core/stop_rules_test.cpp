@@ -30,6 +30,7 @@ TEST(StopRules, GoOnFromWhatTheyRemember) {
       Decision decision;
       if (chance(0.7)) decision.gain_per_voxel = value();
       if (chance(0.7)) decision.best_area = 0.3 * value();
+      if (chance(0.7)) decision.worth = value() - 0.1;
       const auto a = whole.after_view(progress);
       parts = StopRules(config, parts.memory());
       const auto b = parts.after_view(progress);

@@ -128,6 +128,8 @@ std::int32_t code_of(std::optional<StopReason> reason) {
       return VG_STOP_UNREACHABLE;
     case StopReason::idle:
       return VG_STOP_IDLE;
+    case StopReason::cost:
+      return VG_STOP_COST;
     case StopReason::max_views:
     case StopReason::coverage:     // never a planner's
     case StopReason::interrupted:  // likewise

@@ -82,6 +82,11 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
       std::isnan(gain.area) ? expected_area(candidates[*chosen].T_world_camera) : gain.area;
   // A fixed order of views does not stop because one of them promises little.
   if (!by_gain) return decision;
+  if (config_.travel_cost > 0) {
+    const Eigen::Vector3d way =
+        candidates[*chosen].T_world_camera.translation() - T_world_camera.translation();
+    decision.worth = gain.gain - config_.travel_cost * way.norm();
+  }
   if (config_.model == GainModel::paper) {
     decision.gain_per_voxel = touched > 0 ? gain.gain / touched : 0.0;
   } else {

@@ -321,6 +321,6 @@ Returns
 -------
 str or None
     After ``add`` max_views or idle; after ``propose`` no_candidates or unreachable; after ``rank`` of
-    the proposal gain or area.)";
+    the proposal gain, area or, with costs, cost: no view is worth its way.)";
 
 }  // namespace viewgain::python

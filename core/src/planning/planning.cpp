@@ -94,6 +94,8 @@ std::string_view stop_reason_name(StopReason reason) {
       return "gain";
     case StopReason::area:
       return "area";
+    case StopReason::cost:
+      return "cost";
     case StopReason::no_candidates:
       return "no_candidates";
     case StopReason::unreachable:

@@ -99,6 +99,7 @@ std::optional<StopReason> StopRules::after_decision(const std::optional<Decision
   const bool little_area = stops_for_area(decision->best_area / surface_area);
   if (stops_for_gain(decision->gain_per_voxel)) return StopReason::gain;
   if (little_area) return StopReason::area;
+  if (decision->worth <= 0) return StopReason::cost;
   return std::nullopt;
 }
 

@@ -177,6 +177,18 @@ TEST(ViewPlanner, CostsAreSubtracted) {
   }
   EXPECT_EQ(cases, count);
   EXPECT_NE(paid.views.front().index, free.views.front().index);
+  // The dearest way that the best is worth, and a little more.
+  EXPECT_EQ(planner.should_stop(), std::nullopt);
+  std::vector<double> dear(count);
+  double dearest = 0;
+  for (const RankedView& view : free.views) dearest = std::max(dearest, view.gain.gain);
+  for (const double factor : {0.999, 1.0, 1.001}) {
+    std::fill(dear.begin(), dear.end(), factor * dearest);
+    (void)planner.rank(1, {.costs = dear});
+    EXPECT_EQ(planner.should_stop(), factor < 1 ? std::nullopt : std::optional(StopReason::cost));
+  }
+  (void)planner.rank(1);
+  EXPECT_EQ(planner.should_stop(), std::nullopt);
 }
 
 TEST(ViewPlanner, SaysWhyToEnd) {

@@ -31,7 +31,8 @@ enum {
   VG_STOP_NO_CANDIDATES = 3, /* nothing is left to look at */
   VG_STOP_UNREACHABLE = 4,   /* candidates are left, all of them out of reach */
   VG_STOP_IDLE = 5,          /* views in a row brought nothing new */
-  VG_STOP_MAX_VIEWS = 6
+  VG_STOP_MAX_VIEWS = 6,
+  VG_STOP_COST = 7 /* going to the best candidate costs more than it promises */
 };
 
 /* What a planner is set up with; fields are as in C++'s PlannerConfig. */

@@ -14,8 +14,9 @@ namespace {
 
 constexpr std::uint64_t kVersion = 1;
 constexpr std::uint64_t kMost = std::uint64_t{1} << 53;
-constexpr std::array kReasons{StopReason::gain,        StopReason::area, StopReason::no_candidates,
-                              StopReason::unreachable, StopReason::idle, StopReason::max_views};
+constexpr std::array kReasons{StopReason::gain,          StopReason::area,        StopReason::cost,
+                              StopReason::no_candidates, StopReason::unreachable, StopReason::idle,
+                              StopReason::max_views};
 
 std::string line_of(std::string_view name, const StopMemory& memory) {
   std::string line(name);

@@ -39,12 +39,13 @@ std::string layout_text(const BeliefGrid& grid) {
 }
 
 // What the stopping rules want to know of a ranking.
-Decision decision_of(const Ranking& ranking, GainModel model) {
+Decision decision_of(const Ranking& ranking, GainModel model, bool has_costs) {
   Decision decision;
   const ViewGain& best = ranking.views.front().gain;
   decision.candidate = ranking.views.front().index;
   decision.gain = best.gain;
   decision.area = best.area;
+  if (has_costs) decision.worth = ranking.views.front().worth;
   if (std::isnan(best.gain)) return decision;  // bad poses, or a measure of the user's own
   if (model == GainModel::paper) {
     const std::uint32_t touched = best.unknown_voxels + best.occupied_voxels;
@@ -153,7 +154,8 @@ struct ViewPlanner::Impl {
         rank_views(by, poses, std::max<std::size_t>(k, 1), rank_config, here, control);
     if (from != nullptr && ranking.complete) {
       std::optional<Decision> decision;
-      if (!ranking.views.empty()) decision = decision_of(ranking, by.model());
+      const bool has_costs = !rank_config.costs.empty() || rank_config.cost_per_metre > 0;
+      if (!ranking.views.empty()) decision = decision_of(ranking, by.model(), has_costs);
       remember(decision, *from);
     }
     if (from != nullptr) leave_out_gainless(ranking, rank_config);

@@ -184,9 +184,10 @@ Notes
 -----
 Cost: properties take constant time; surface and map are not copied.)");
   refuse_pickling(type);
-  type.def_readonly("reason", &Reconstruction::reason,
-                    "str: why it ended: gain, area, no_candidates, unreachable, idle, max_views, "
-                    "interrupted")
+  type.def_readonly(
+          "reason", &Reconstruction::reason,
+          "str: why it ended: gain, area, cost, no_candidates, unreachable, idle, max_views, "
+          "interrupted")
       .def_readonly("views", &Reconstruction::views, "list of ViewRecord: one per view")
       .def_readonly("grid", &Reconstruction::grid, "viewgain.BeliefGrid: the map")
       .def_readonly("surface", &Reconstruction::surface, "Surface: of the whole map")

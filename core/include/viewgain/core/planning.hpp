@@ -101,6 +101,9 @@ struct VIEWGAIN_EXPORT Decision {
   /// The most that any of the candidates that were looked at closely is expected to show [m²], held
   /// against PlanningConfig::stop_area; NaN: not known, and never stops for it.
   double best_area = std::numeric_limits<double>::quiet_NaN();
+  /// Its gain less what it costs to go there, in the gain's unit; NaN: nothing has a cost, and it
+  /// never stops for it.
+  double worth = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// DECISIONMAKER: picks x_{i+1}. Returns nothing if none of the candidates will do.
@@ -150,6 +153,7 @@ struct VIEWGAIN_EXPORT PlanningConfig {
 enum class StopReason : std::uint8_t {
   gain,           ///< the best candidate promises too little
   area,           ///< no candidate promises enough new surface
+  cost,           ///< going to the best candidate costs more than it promises
   no_candidates,  ///< nothing is left to look at
   unreachable,    ///< candidates are left, all of them out of reach
   idle,           ///< views in a row brought nothing new
@@ -172,7 +176,7 @@ struct VIEWGAIN_EXPORT ViewRecord {
   ModelProgress progress;                                            ///< after it
   double travelled = 0;  ///< distance between camera centres so far [m]
   Proposal proposal{};   ///< for the next view; empty if the run ended before it was asked for
-  /// The next view; empty if there was none. With StopReason::gain and area it is the one
+  /// The next view; empty if there was none. With StopReason::gain, area and cost it is the one
   /// that promised too little and is not taken.
   std::optional<Decision> decision{};
   /// What the turn's steps took: acquire; the update's own stages, or, where it names none, update;
@@ -193,7 +197,7 @@ struct VIEWGAIN_EXPORT PlanningResult {
 ///
 /// Order of the rules after each view: interrupted; coverage; max_views; idle; then, with the
 /// candidates, no_candidates or unreachable (none left, or the decision maker took none, and some
-/// were dropped as unreachable); gain; area.
+/// were dropped as unreachable); gain; area; cost.
 [[nodiscard]] VIEWGAIN_EXPORT PlanningResult active_view_planning(
     const Pose& x_0, DataAcquisition& acquisition, RepresentationUpdate& representation,
     ViewpointGeneration& generation, DecisionMaking& decision, const PlanningConfig& config = {},

@@ -41,7 +41,7 @@ class VIEWGAIN_EXPORT StopRules {
   [[nodiscard]] std::optional<StopReason> after_view(const ModelProgress& progress);
 
   /// After a choice among the candidates that are left: no_candidates or unreachable if none was
-  /// made, else gain or area. `surface_area` [m²]: as ModelProgress has it.
+  /// made, else gain, area or cost. `surface_area` [m²]: as ModelProgress has it.
   [[nodiscard]] std::optional<StopReason> after_decision(const std::optional<Decision>& decision,
                                                          const Proposal& proposal,
                                                          double surface_area);

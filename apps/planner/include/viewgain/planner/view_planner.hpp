@@ -149,9 +149,8 @@ class VIEWGAIN_EXPORT ViewPlanner {
   void tried(const Pose& T_world_camera, bool reached);
 
   /// Why to end, if there is a reason: after add() max_views or idle; after propose() no_candidates
-  /// or unreachable; after rank() of the proposal gain or area, the last ranking of a view. Costs
-  /// do not matter here: a best worth of 0 or less says that the way costs more than the view
-  /// brings.
+  /// or unreachable; after rank() of the proposal gain, area or, with costs, cost: no view is worth
+  /// its way. The last ranking of a view counts.
   [[nodiscard]] std::optional<StopReason> should_stop() const noexcept;
 
   /// The whole state in one file: a map that every program reads, with the rest in its notes. Left
