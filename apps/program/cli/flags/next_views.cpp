@@ -71,8 +71,8 @@ NextViews next_views(const Ranking& ranking, const Proposal& proposal, GainModel
   NextViews next{{}, proposal.candidates.size(), proposal.dropped, model};
   for (const RankedView& view : ranking.views) {
     const Candidate& candidate = proposal.candidates[view.index];
-    next.views.push_back({view.T_world_camera, view.index, view.gain, candidate.generator,
-                          candidate.boundary_class});
+    next.views.push_back({view.T_world_camera, view.index, view.gain, view.worth,
+                          candidate.generator, candidate.boundary_class});
   }
   return next;
 }
@@ -98,6 +98,7 @@ Json to_json(const NextViews& next) {
   for (const NextView& view : next.views) {
     const auto& of = view.boundary_class;
     json["next"].push_back({{"gain", view.gain.gain},  // a NaN becomes null
+                            {"worth", view.worth},
                             {"area", view.gain.area},
                             {"generator", view.generator},
                             {"class", of ? Json(boundary_class_name(*of)) : Json()},
@@ -140,6 +141,7 @@ std::string text_of(const NextViews& next) {
     text.append(line.data()).append(why(view)).append("\n");
     if (view.rays) text.append("     ").append(text_of(*view.rays)).append("\n");
   }
+  if (next.views.front().worth <= 0) text += "no view is worth its way\n";
   return text;
 }
 

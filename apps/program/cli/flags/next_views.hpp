@@ -22,6 +22,7 @@ struct NextView {
   Pose T_world_camera;
   std::size_t index = 0;  ///< of the candidate in its proposal
   ViewGain gain;
+  double worth = 0;  ///< its gain less its cost
   std::string generator;
   std::optional<BoundaryClass> boundary_class{};  ///< of the boundary that it looks beyond
   std::optional<RayOutcomes> rays{};              ///< what becomes of them, by explain()

@@ -10,17 +10,54 @@
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/hazard_source.hpp"
 #include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/flags/pose_source.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/planner/pose_sets.hpp"
 #include "viewgain/planner/rank_views.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::app {
 namespace {
 
+constexpr const char* kGivenPoses = "poses";  // the generator's name of --poses
+
 bool is_at_boundaries(const ProposalOptions& options) {
-  return options.generator.empty() || options.generator == "boundary";
+  if (options.generator.empty()) return options.poses.empty();
+  return options.generator == "boundary";
+}
+
+// One number a line, blank lines and comments aside.
+std::vector<double> costs_in(const std::string& file) {
+  const std::string bytes = file_bytes(file);
+  LineReader reader(file, bytes);
+  std::vector<double> costs;
+  while (reader.next()) {
+    if (reader.words().empty() || reader.words()[0].front() == '#') continue;
+    if (reader.words().size() > 1) reader.fail("a line has one cost");
+    costs.push_back(reader.finite_number(0));
+    if (costs.back() < 0) reader.fail("a cost must not be negative");
+  }
+  return costs;
+}
+
+// What each candidate costs; empty without --costs.
+std::vector<double> costs_of(const ProposalOptions& options, const Proposal& proposal) {
+  if (options.costs.empty()) return {};
+  const std::vector<double> given = costs_in(options.costs);
+  const std::size_t poses = make_poses({.file = options.poses}, 0).poses.size();
+  if (given.size() != poses) {
+    throw Error(ErrorCode::invalid_argument,
+                options.costs + ": has " + std::to_string(given.size()) + " costs for the " +
+                    std::to_string(poses) + " poses in " + options.poses);
+  }
+  std::vector<double> costs;
+  for (const Candidate& candidate : proposal.candidates) {
+    costs.push_back(candidate.generator == kGivenPoses ? given[candidate.number.value()] : 0);
+  }
+  return costs;
 }
 
 PoseSetRequest request_of(const ProposalOptions& options, const Sensor& sensor,
@@ -69,6 +106,17 @@ void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
                          "map), sphere, dome, rings, shell or sequence; default: boundary, and a "
                          "sphere round the workspace of a map without a surface or views"),
          generator_names(), "generator");
+  app.add_option(
+      "--poses", o.poses,
+      "TUM or .npy file of camera-to-world poses to choose among; with --generator beside "
+      "what that proposes, else alone");
+  app.add_option(
+      "--costs", o.costs,
+      "file of one number for each of --poses, which is subtracted from its gain, in the "
+      "gain's unit");
+  app.add_option("--cost-per-metre", o.cost_per_metre,
+                 "subtracted for each metre of the way from the last view, in the gain's unit")
+      ->capture_default_str();
   add_proposal_options(app, o);
   one_of(*app.add_option("--gain", o.gain, "paper, surface or combined, as in score")
               ->capture_default_str(),
@@ -96,6 +144,10 @@ void check(const ProposalOptions& options) {
   if (options.overlap) check_inside_0_1("--overlap", *options.overlap);
   if (options.region_depth) check_positive("--region-depth", *options.region_depth);
   if (options.distance) check_positive("--distance", *options.distance);
+  check_at_least_0("--cost-per-metre", options.cost_per_metre);
+  if (!options.costs.empty() && options.poses.empty()) {
+    throw Error(ErrorCode::invalid_argument, "--costs goes with --poses");
+  }
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
   const bool by_hazard =
       !options.gain.empty() && parse_gain_model(options.gain) != GainModel::paper;
@@ -132,7 +184,10 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
     throw Error(ErrorCode::invalid_argument,
                 map + ": has no views, which boundary candidates need; try --generator sphere");
   }
-  if (!config.at_boundaries) {
+  if (!options.poses.empty()) {
+    config.sets.push_back({kGivenPoses, make_poses({.file = options.poses}, 0).poses});
+  }
+  if (!config.at_boundaries && !options.generator.empty()) {
     config.sets.push_back(make_pose_set(options.generator, request_of(options, sensor, grid)));
   }
   return config;
@@ -145,9 +200,13 @@ GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& m
   return {model.scene(), sensor, config, exec};
 }
 
-NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal, std::size_t top) {
-  const RankConfig config;
-  Ranking ranking = rank_views(evaluator, poses_of(proposal.candidates), top, config, std::nullopt);
+NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
+                     const ProposalOptions& options, const BeliefGrid& grid, std::size_t top) {
+  const std::vector<double> costs = costs_of(options, proposal);
+  const RankConfig config{.costs = costs, .cost_per_metre = options.cost_per_metre};
+  std::optional<Eigen::Vector3d> here;
+  if (!grid.views().empty()) here = grid.views().back().translation();
+  Ranking ranking = rank_views(evaluator, poses_of(proposal.candidates), top, config, here);
   leave_out_gainless(ranking, config);
   return next_views(ranking, proposal, evaluator.model());
 }

@@ -31,6 +31,9 @@ struct ProposalOptions {
   std::vector<std::string> obstacles;
   std::optional<double> overlap{};
   std::optional<double> region_depth{};
+  std::string poses;  ///< file of candidates of the user's own; they alone unless `generator` is set
+  std::string costs;  ///< file of one number for each of these
+  double cost_per_metre = 0;
   std::string gain;  ///< empty: they are not ranked
   std::optional<double> object_size{};
   std::string hazard;
@@ -40,7 +43,7 @@ struct ProposalOptions {
 /// The flags, but for --generator and --gain: what these do by default is not the same everywhere.
 void add_proposal_options(App& app, ProposalOptions& options);
 
-/// With --generator and --gain of the best views, which --top limits.
+/// With --generator, --poses, costs and --gain of the best views, which --top limits.
 void add_next_view_options(App& app, ProposalOptions& options, std::size_t& top);
 
 /// Throws Error(invalid_argument), naming the flag: also for what a generator or a gain has no use
@@ -67,9 +70,12 @@ void check(const ProposalOptions& options);
 [[nodiscard]] GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& model,
                                          const Sensor& sensor, const ExecConfig& exec);
 
-/// The candidates that gain most, at most `top` of them, by the paper's gain all scored in full, by
-/// the others in two stages (GainEvaluator::race()). Those that gain nothing are not among them.
+/// The candidates of most worth, which is their gain less --costs and --cost-per-metre of the way
+/// from the map's last view, at most `top` of them, by the paper's gain all scored in full, by the
+/// others in two stages (GainEvaluator::race()). Those that gain nothing are not among them. Throws
+/// Error(invalid_argument), naming the file and the line, for costs that are not one a pose.
 [[nodiscard]] NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
+                                   const ProposalOptions& options, const BeliefGrid& grid,
                                    std::size_t top);
 
 }  // namespace viewgain::app

@@ -124,7 +124,8 @@ class Recording {
     last.proposal = moment.generation.generate(last.T_world_camera);
     views_->add_seconds("candidates", watch.seconds());
     watch = {};
-    next_ = best_views(moment.evaluator, last.proposal, options_.top);
+    next_ =
+        best_views(moment.evaluator, last.proposal, proposal_, moment.model.grid(), options_.top);
     views_->add_seconds("score", watch.seconds());
     if (!next_.views.empty()) last.decision = Decision{next_.views.front().index};
     show(folder, moment);
