@@ -264,7 +264,8 @@ Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frame
   const Meeting meeting(sensor, frames, T_world_camera);
   const Meetings as_said = meeting.under(readings().front());
   const std::optional<double> along_ray = meeting.share_along_ray();
-  if (as_said.share_past() < 0.2 && along_ray && *along_ray >= 0.5) {
+  if (2 * as_said.met > as_said.points && as_said.share_past() < 0.2 && along_ray &&
+      *along_ray >= 0.5) {
     return {"depth_along_ray", "of the readings for which it matters " + percent(*along_ray) +
                                    " fit the other frames better if depths are along the ray, not "
                                    "along z"};

@@ -47,12 +47,9 @@ std::string suspicion_of(const FrameFolder& folder) {
 
 void FrameTally::add(const std::filesystem::path& image, const FrameFault& fault) {
   const bool is_first = counts_[fault.verdict]++ == 0;
-  if (is_in_map(fault.verdict)) return;
-  if (first_fault_.empty()) first_fault_ = fault.what;
-  if (!is_first || quiet_) return;
-  const std::string what = fault.what.empty() ? image.string() : fault.what;
-  std::fprintf(stderr, "viewgain: %s (%s); left out\n", utf8_text(what).c_str(),
-               frame_verdict_name(fault.verdict).data());
+  if (!is_first || is_in_map(fault.verdict)) return;
+  faults_.push_back((fault.what.empty() ? image.string() : fault.what) + " (" +
+                    std::string(frame_verdict_name(fault.verdict)) + ")");
 }
 
 void FrameTally::add(const IntegrationReport& counts) { readings_ += counts.readings; }
@@ -60,6 +57,11 @@ void FrameTally::add(const IntegrationReport& counts) { readings_ += counts.read
 void FrameTally::require_any(const FrameFolder& folder) const {
   const std::string suspicion = suspicion_of(folder);
   if (counts_.empty() || is_in_map(counts_.begin()->first)) {
+    for (const std::string& fault : faults_) {
+      if (!quiet_) {
+        std::fprintf(stderr, "viewgain: %s; left out\n", utf8_text(fault).c_str());
+      }
+    }
     std::string warning = suspicion;
     if (warning.empty() && count_of(counts_, FrameVerdict::used) == 0 && readings_ > 0) {
       warning = "none of " + with_commas(readings_) +
@@ -78,11 +80,8 @@ void FrameTally::require_any(const FrameFolder& folder) const {
             short_text(folder.frames().depth_scale) +
             " m per unit of the depth images (--depth-scale)";
   }
-  if (!suspicion.empty()) {
-    what += "; " + suspicion;
-  } else if (!first_fault_.empty()) {
-    what += "; " + first_fault_;
-  }
+  what += "; " + faults_.front();
+  if (!suspicion.empty()) what += "; " + suspicion;
   throw Error(ErrorCode::invalid_argument, what);
 }
 
@@ -91,7 +90,7 @@ void refuse_without_readings(const FrameFolder& folder, const FrameTally& bad) {
                      short_text(folder.frames().depth_scale) +
                      " m per unit of the depth images (--depth-scale)";
   const auto reasons = bad_frames(bad.counts());
-  if (!reasons.empty()) what += "; left out: " + counts_text(reasons) + "; " + bad.first_fault();
+  if (!reasons.empty()) what += "; left out: " + counts_text(reasons) + "; " + bad.faults().front();
   const std::string suspicion = suspicion_of(folder);
   if (!suspicion.empty()) what += "; " + suspicion;
   throw Error(ErrorCode::invalid_argument, what);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/json.hpp"
@@ -31,24 +32,24 @@ namespace viewgain::app {
 /// What became of the frames of a folder, and what is said of it.
 class FrameTally {
  public:
-  /// Quiet: the first frame of each kind that is left out is not named on stderr.
   explicit FrameTally(bool quiet) : quiet_(quiet) {}
 
   void add(const std::filesystem::path& image, const FrameFault& fault);
   /// Pixels of a frame that went into the map, or did not.
   void add(const IntegrationReport& counts);
   /// Throws Error(invalid_argument) if there were frames and none is in the map, with the reasons
-  /// and suspicion_of(); else that is a warning.
+  /// and suspicion_of(); else names the first of each kind that was left out, unless quiet, and
+  /// warns of what is suspected.
   void require_any(const FrameFolder& folder) const;
 
   [[nodiscard]] const FrameCounts& counts() const noexcept { return counts_; }
-  /// Of the first frame that was left out.
-  [[nodiscard]] const std::string& first_fault() const noexcept { return first_fault_; }
+  /// Of the first frame of each kind that was left out.
+  [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }
 
  private:
   bool quiet_;
   FrameCounts counts_;
-  std::string first_fault_;
+  std::vector<std::string> faults_;
   std::uint64_t readings_ = 0;
 };
 

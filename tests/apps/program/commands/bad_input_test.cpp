@@ -140,7 +140,7 @@ TEST_F(BadInputTest, Frames) {
        {integrate({"--voxel", "0.02", "--prior-sigma", "-1"}), "prior"},
        {integrate({"--voxel", "0.02", "--depth-scale", "0"}), "--depth-scale"},
        {integrate({"--voxel", "0.02", "--carve", "boxes"}), "--carve"},
-       {integrate({"--voxel", "0.02", "--sensor", "sr4000"}), "48x36"},
+       {integrate({"--voxel", "0.02", "--sensor", "sr4000"}), "48 x 36"},
        {integrate({"--voxel", "0.02"}, "nowhere"), "nowhere"},
        {integrate({"--voxel", "0.02", "--sensor", "small.toml"}, "empty_dir"), "empty_dir"},
        {integrate({"--voxel", "0.02"}, "cut"), "frame-000000.depth.png"},
