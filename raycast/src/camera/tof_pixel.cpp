@@ -35,9 +35,14 @@ double TofPixel::folded(double range) const {
   return range - unambiguous_range_ * std::floor(range / unambiguous_range_);
 }
 
+double TofPixel::sigma_at(double range, double cos_incidence) const {
+  return config_.noise ? sensor_.noise_sigmas(range, cos_incidence).axial : 0.0;
+}
+
 PixelReading TofPixel::single(const RayReturn& hit) const {
   if (!std::isfinite(hit.range)) return {hit.range, 0, 0};
-  return {folded(hit.range), std::min(1.0, hit.cos_incidence), amplitude_of(hit)};
+  const double cos_incidence = std::min(1.0, hit.cos_incidence);
+  return {folded(hit.range), cos_incidence, amplitude_of(hit), sigma_at(hit.range, cos_incidence)};
 }
 
 PixelReading TofPixel::mixed(std::span<const RayReturn> hits) const {
@@ -54,15 +59,16 @@ PixelReading TofPixel::mixed(std::span<const RayReturn> hits) const {
     real += amplitude * std::cos(phase);
     imaginary += amplitude * std::sin(phase);
   }
-  const double range = folded(first->range + std::atan2(imaginary, real) / per_metre);
+  const double way = first->range + std::atan2(imaginary, real) / per_metre;
+  const double range = folded(way);
   const double amplitude = std::hypot(real, imaginary) / static_cast<double>(hits.size());
-  return {range, std::min(1.0, amplitude * range * range), amplitude};
+  return {range, std::min(1.0, amplitude * range * range), amplitude,
+          sigma_at(way, std::min(1.0, amplitude * way * way))};
 }
 
 PixelReading TofPixel::disturbed(PixelReading reading, const PixelRandom& random) const {
-  const double true_range = reading.range;
   if (config_.noise) {
-    const double sigma = sensor_.noise_sigmas(true_range, reading.cos_incidence).axial;
+    const double sigma = reading.sigma;
     reading.range += sigma * random.normal(RandomStream::axial);
     // Phase and amplitude come from the same four samples: relative to the amplitude its noise is
     // what the phase's is in radians.

@@ -16,6 +16,7 @@ struct PixelReading {
   double range = 0;          ///< [m]
   double cos_incidence = 0;  ///< as the amplitude tells it, in [0, 1]
   double amplitude = 0;      ///< [m⁻²]
+  double sigma = 0;          ///< of the noise along the ray, by where the light comes from [m]
 };
 
 /// The sensor's view of the returns in a pixel: mixing, ambiguity, errors.
@@ -43,6 +44,8 @@ class TofPixel {
 
  private:
   [[nodiscard]] double folded(double range) const;
+  /// Of the noise; 0 without.
+  [[nodiscard]] double sigma_at(double range, double cos_incidence) const;
 
   const Sensor& sensor_;
   const SimulationConfig& config_;

@@ -65,6 +65,23 @@ TEST(TofNoise, LateralNoiseReadsBesideTheRay) {
   }
 }
 
+// The phase of what lies beyond the unambiguous range wraps, and its light is as faint as ever.
+TEST(TofNoise, WhatIsFoldedIsAsNoisyAsItsWayIsLong) {
+  constexpr int kFrames = 4000;
+  Sensor sensor = one_pixel(sensor_preset("sr4000").noise);
+  const double way = 1.3 * unambiguous_range(sensor.noise);
+  const double sigma = sensor.noise_sigmas(way, 1.0).axial;
+  ASSERT_GT(sigma, 10 * sensor.noise_sigmas(0.3 / 1.3 * way, 1.0).axial);
+  for (const int sub_rays : {1, 3}) {
+    const SimulatedSensor camera(
+        tilted_plane(way, 0), sensor,
+        {.noise = true, .seed = 4, .sub_rays = sub_rays, .ambiguity = true});
+    const auto [mean, seen] = moments(camera, kFrames);
+    EXPECT_NEAR(mean, 0.3 / 1.3 * way, 5 * sigma / std::sqrt(kFrames)) << sub_rays;
+    EXPECT_NEAR(seen, sigma, 5 * sigma / std::sqrt(2.0 * kFrames)) << sub_rays;
+  }
+}
+
 // At the edge of a board: a pixel whose centre is 1 px off it sees the board when its rays are
 // displaced by more than that, in each direction of the image. Sigma is a footprint, 1/fx a metre.
 TEST(TofNoise, LateralNoiseMovesRaysOverAnEdge) {

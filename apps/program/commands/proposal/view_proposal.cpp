@@ -29,6 +29,12 @@ bool is_at_boundaries(const ProposalOptions& options) {
   return options.generator == "boundary";
 }
 
+std::vector<Pose> poses_in(const std::string& file) {
+  PoseOptions options;
+  options.file = file;
+  return make_poses(options, 0).poses;
+}
+
 // One number a line, blank lines and comments aside.
 std::vector<double> costs_in(const std::string& file) {
   const std::string bytes = file_bytes(file);
@@ -47,7 +53,7 @@ std::vector<double> costs_in(const std::string& file) {
 std::vector<double> costs_of(const ProposalOptions& options, const Proposal& proposal) {
   if (options.costs.empty()) return {};
   const std::vector<double> given = costs_in(options.costs);
-  const std::size_t poses = make_poses({.file = options.poses}, 0).poses.size();
+  const std::size_t poses = poses_in(options.poses).size();
   if (given.size() != poses) {
     throw Error(ErrorCode::invalid_argument,
                 options.costs + ": has " + std::to_string(given.size()) + " costs for the " +
@@ -185,7 +191,7 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
                 map + ": has no views, which boundary candidates need; try --generator sphere");
   }
   if (!options.poses.empty()) {
-    config.sets.push_back({kGivenPoses, make_poses({.file = options.poses}, 0).poses});
+    config.sets.push_back({kGivenPoses, poses_in(options.poses)});
   }
   if (!config.at_boundaries && !options.generator.empty()) {
     config.sets.push_back(make_pose_set(options.generator, request_of(options, sensor, grid)));

@@ -130,12 +130,11 @@ std::vector<BeliefRow> belief_rows(const BeliefGrid& grid) {
 py::array points_of(const SharedGrid& grid, std::uint32_t min_hits, int num_threads) {
   FusedPointsConfig config;
   config.min_hits = min_hits;
-  const auto points =
-      grid.read([&](const BeliefGrid& g) { return fused_points(g, config, {num_threads}); });
   std::vector<PointRow> rows;
-  for (const FusedPoint& p : points) {
-    const SymmetricMatrix3& c = p.covariance;
-    rows.push_back({p.position, {c.xx, c.yy, c.zz, c.xy, c.xz, c.yz}, p.toward_free, p.hits});
+  for (const FusedPoint& p :
+       grid.read([&](const BeliefGrid& g) { return fused_points(g, config, {num_threads}); })) {
+    const auto& [xx, yy, zz, xy, xz, yz] = p.covariance;
+    rows.push_back({p.position, {xx, yy, zz, xy, xz, yz}, p.toward_free, p.hits});
   }
   return to_array_1d<PointRow>(rows);
 }
@@ -358,11 +357,13 @@ Raises
 ------
 ValueError
     num_threads is out of its bounds.)")
-      .def(
-          "pooling_length", &pooling_length_of,
-          R"(How far apart the map's points are [m]: the voxel size, or the sensor's footprint where that is longer.
+      .def("pooling_length", &pooling_length_of,
+           R"(How far apart the map's points are. Cost: that of a snapshot.
 
-Cost: of a snapshot, some ms.)")
+Returns
+-------
+float
+    The voxel size, or the sensor's footprint where that is longer [m].)")
       .def("statistics", &statistics_of, py::arg("criterion") = "log_diagonal",
            R"(Voxel counts and progress.
 
