@@ -289,9 +289,8 @@ void check_flags(const Options& options, const App& app) {
 // A map without a reading comes of a wrong scale, sensor or workspace.
 void refuse_empty(const Options& options, const ReadingSource& source, const Totals& totals) {
   if (totals.skipped > 0) return;
-  if (options.clouds.empty()) {
-    return totals.tally.require_any(*source.folder());
-  }
+  if (options.clouds.empty()) return totals.tally.require_any(*source.folder());
+  if (!options.map.empty()) return;
   const IntegrationReport& sum = totals.sum;
   if (sum.readings_inside + sum.plane_readings + sum.voxels_crossed > 0) return;
   throw Error(ErrorCode::invalid_argument, options.clouds.front() + ": none of " +

@@ -102,7 +102,7 @@ def test_results_of_several_things_are_named_tuples(grid, sensor, evaluator, pos
                evaluator.best_set(poses, 2, return_gains=True), viewgain.load_cloud(tmp_path / "cloud.ply"),
                viewgain.read_poses(tmp_path / "poses.txt", return_timestamps=True),
                viewgain.SimulatedSensor(*box_mesh([-0.1] * 3, [0.1] * 3), sensor).acquire(poses[0]),
-               planner.add(np.full((144, 176), 0.5), poses[0]), planner.propose(), planner.rank(2)]
+               planner.add(np.full((144, 176), 0.5), poses[0]), planner.propose(), planner.rank(2), evaluator.outcomes(poses[0])]
     fields = 0
     for result in results:
         kind = type(result)
@@ -117,7 +117,7 @@ def test_results_of_several_things_are_named_tuples(grid, sensor, evaluator, pos
         with pytest.raises(KeyError):
             result["count_of_nothing"]
         assert result[0] is next(iter(result)) and len(result[:1]) == 1
-    assert len(results) == 12 and fields == 2 * 7 + 5 + 2 + 2 + 2 + 2 + 2 + 2 + 13 + 3 + 6
+    assert len(results) == 13 and fields == 2 * 7 + 5 + 2 + 2 + 2 + 2 + 2 + 2 + 14 + 3 + 6 + 7
     assert frames.readings + frames.out_of_range + frames.invalid + frames.plane_readings == 144 * 176
     assert clouds.readings == 1 and results[7].timestamps.tolist() == [0.5, 1.5]
 

@@ -55,7 +55,7 @@ def test_types_say_what_matters():
     assert [(one["return_gains"], one["return"]) for one in types["GainEvaluator.best_set"]] == [
         ("Literal[False]", "NDArray[np.int64]"), ("Literal[True]", "ChosenViews")]
     assert [one["return"] for one in types[".read_poses"]] == [floats, "TimedPoses"]
-    assert types[".read_frames"][0]["out_of_range"] == "Literal['carve', 'invalid']"
+    assert types[".read_frames"][0]["out_of_range"] == "Literal['carve', 'invalid'] | None"
     assert types["BeliefGrid.statistics"][0]["criterion"] == "Literal['log_diagonal', 'log_determinant', 'trace']"
     assert types["BeliefGrid.states"][0]["return"] == "NDArray[np.uint8]"
     assert types["Sensor.T_flange_camera"][0]["return"] == f"{floats} | None"

@@ -203,10 +203,17 @@ def test_refused(sensor, camera, poses):
     nan = poses[0].copy()
     nan[0, 3] = np.nan
     for bad in (nan, np.eye(3), 2 * np.eye(4)):
-        for call in (lambda: planner.add(depth, bad), lambda: planner.tried(bad, True),
-                     lambda: planner.add_poses([bad])):
+        for call in (lambda: planner.tried(bad, True), lambda: planner.add_poses([bad])):
             with pytest.raises(ValueError):
                 call()
+    with pytest.raises(ValueError):
+        planner.add(depth, np.eye(3))
+    # A pose that is lost costs a frame, no call.
+    lost = make(sensor)
+    assert [lost.add(depth, bad).verdict for bad in (nan, 2 * np.eye(4))] == ["lost_pose"] * 2
+    assert lost.frames == {"lost_pose": 2}
+    with pytest.raises(ValueError, match="2 lost_pose"):
+        lost.propose()
     for frame in (depth[:-1], np.ones((48, 64), int), 1000 * depth):
         with pytest.raises((ValueError, TypeError)):
             planner.add(frame, poses[0])

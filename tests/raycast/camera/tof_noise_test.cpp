@@ -71,7 +71,7 @@ TEST(TofNoise, WhatIsFoldedIsAsNoisyAsItsWayIsLong) {
   Sensor sensor = one_pixel(sensor_preset("sr4000").noise);
   const double way = 1.3 * unambiguous_range(sensor.noise);
   const double sigma = sensor.noise_sigmas(way, 1.0).axial;
-  ASSERT_GT(sigma, 10 * sensor.noise_sigmas(0.3 / 1.3 * way, 1.0).axial);
+  ASSERT_GT(sigma, 3 * sensor.noise_sigmas(0.3 / 1.3 * way, 1.0).axial);
   for (const int sub_rays : {1, 3}) {
     const SimulatedSensor camera(
         tilted_plane(way, 0), sensor,

@@ -89,6 +89,7 @@ Calibrated measure(const Options& options) {
   }
 
   Calibrated calibrated;
+  std::string fault;  // of the first frame that cannot be used
   WallCalibration calibration(frames.sensor);
   Progress progress("frame", options.common.quiet);
   for (std::size_t i = 0; i < frames.images.size(); ++i) {
@@ -101,6 +102,7 @@ Calibrated measure(const Options& options) {
         read_frame(frames, i, masks ? std::span(&*masks, 1) : std::span<const MaskFolder>());
     if (reading.fault.verdict != FrameVerdict::used) {
       ++calibrated.dropped[std::string(frame_verdict_name(reading.fault.verdict))];
+      if (fault.empty()) fault = reading.fault.what;
       continue;
     }
     calibrated.masked_pixels += reading.masked_pixels;
@@ -114,7 +116,12 @@ Calibrated measure(const Options& options) {
       calibration.add(frame, *distances[i], name);
     }
   }
-  calibrated.result = calibration.solve();
+  try {
+    calibrated.result = calibration.solve();
+  } catch (const Error& error) {
+    if (fault.empty()) throw;
+    throw Error(error.code(), std::string(error.what()) + "; " + fault);
+  }
   calibrated.depth_scale = frames.depth_scale;
   calibrated.sensor = frames.sensor;
   calibrated.sensor.range_calibration = calibrated.result.calibration;

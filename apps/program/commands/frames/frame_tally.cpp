@@ -54,6 +54,12 @@ void FrameTally::add(const std::filesystem::path& image, const FrameFault& fault
 
 void FrameTally::add(const IntegrationReport& counts) { readings_ += counts.readings; }
 
+std::string FrameTally::none_inside(const FrameFolder& folder) const {
+  return "none of " + with_commas(readings_) + " readings lies in the workspace at " +
+         short_text(folder.frames().depth_scale) +
+         " m per unit of the depth images (--depth-scale)";
+}
+
 void FrameTally::require_any(const FrameFolder& folder) const {
   const std::string suspicion = suspicion_of(folder);
   if (counts_.empty() || is_in_map(counts_.begin()->first)) {
@@ -63,10 +69,10 @@ void FrameTally::require_any(const FrameFolder& folder) const {
       }
     }
     std::string warning = suspicion;
-    if (warning.empty() && count_of(counts_, FrameVerdict::used) == 0 && readings_ > 0) {
-      warning = "none of " + with_commas(readings_) +
-                " readings lies in the workspace, which frames show as free; is the scale right "
-                "(--depth-scale)?";
+    if (count_of(counts_, FrameVerdict::used) == 0 && readings_ > 0) {
+      warning = none_inside(folder) + (suspicion.empty() ? "" : "; " + suspicion);
+      if (!suspicion.empty())
+        throw Error(ErrorCode::invalid_argument, folder.name() + ": " + warning);
     }
     if (warning.empty()) return;
     std::fprintf(stderr, "viewgain: warning: %s: %s\n", utf8_text(folder.name()).c_str(),
@@ -76,9 +82,7 @@ void FrameTally::require_any(const FrameFolder& folder) const {
   std::string what =
       folder.name() + ": no frame can be used (" + counts_text(bad_frames(counts_)) + ")";
   if (count_of(counts_, FrameVerdict::outside) > 0) {
-    what += "; none of " + with_commas(readings_) + " readings lies in the workspace at " +
-            short_text(folder.frames().depth_scale) +
-            " m per unit of the depth images (--depth-scale)";
+    what += "; " + none_inside(folder);
   }
   what += "; " + faults_.front();
   if (!suspicion.empty()) what += "; " + suspicion;

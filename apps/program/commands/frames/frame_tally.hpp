@@ -37,9 +37,9 @@ class FrameTally {
   void add(const std::filesystem::path& image, const FrameFault& fault);
   /// Pixels of a frame that went into the map, or did not.
   void add(const IntegrationReport& counts);
-  /// Throws Error(invalid_argument) if there were frames and none is in the map, with the reasons
-  /// and suspicion_of(); else names the first of each kind that was left out, unless quiet, and
-  /// warns of what is suspected.
+  /// Throws Error(invalid_argument) if there were frames and none is in the map, or none has a
+  /// reading in the workspace and something is suspected, with the reasons and suspicion_of(); else
+  /// names the first of each kind that was left out, unless quiet, and warns of what is suspected.
   void require_any(const FrameFolder& folder) const;
 
   [[nodiscard]] const FrameCounts& counts() const noexcept { return counts_; }
@@ -47,6 +47,8 @@ class FrameTally {
   [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }
 
  private:
+  [[nodiscard]] std::string none_inside(const FrameFolder& folder) const;
+
   bool quiet_;
   FrameCounts counts_;
   std::vector<std::string> faults_;

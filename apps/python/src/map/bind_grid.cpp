@@ -43,7 +43,6 @@ struct PointRow {
 };
 
 namespace {
-
 using Labels = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>;
 
 // Names the labels that are no states.

@@ -167,6 +167,10 @@ TEST_F(Calibrate, WhatCannotBeIsRefusedInOneLine) {
   const auto with = [](const std::string& frames, const std::string& distances) {
     return Strings{"calibrate", frames, "--distances", distances, "--out", "new.toml"};
   };
+  // An image that cannot be read costs its frame alone.
+  const json left = json::parse(run_well(
+      {"calibrate", "damaged", "--distances", "good.txt", "--out", "damaged.toml", "--json"}));
+  EXPECT_EQ(left["dropped"], json({{"unreadable", 1}}));
   const auto before_wall = [](const std::string& wall) {
     return Strings{"calibrate", "wall", "--wall", wall, "--out", "new.toml"};
   };
@@ -186,7 +190,6 @@ TEST_F(Calibrate, WhatCannotBeIsRefusedInOneLine) {
        {with("wall", "millimetres.txt"), "frame-000000.depth.png: reads the wall at"},
        {with("wall", "one.txt"), "not 1 in all"},
        {with("cube", "cube.txt"), "frame-000000.depth.png: "},
-       {with("damaged", "good.txt"), "damaged/frame-000001.depth.png"},
        {with("nowhere", "good.txt"), "nowhere"},
        {test::joined(with("wall", "good.txt"), {"--sensor", "broken.toml"}), "broken.toml: "},
        {test::joined(with("wall", "good.txt"), {"--mask", "cube"}), "frame-000000.depth.png"},

@@ -175,7 +175,8 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
         quiet)));
   };
   const json next = call({"next", "frames"});
-  for (const json& view : call({"next", "frames", "--explain"})["next"]) {
+  const json explained = call({"next", "frames", "--explain"});
+  for (const json& view : explained["next"]) {
     std::size_t sum = 0;
     for (const auto& [key, count] : view["rays"].items()) sum += count.get<std::size_t>();
     EXPECT_EQ(sum, 2 * view["rays"]["rays"].get<std::size_t>());

@@ -154,7 +154,7 @@ TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
   // are there where there are any.
   const std::set<std::string> elsewhere{
       "help", "json",     "threads", "out",    "save_maps",   "pictures", "seed",
-      "body", "obstacle", "quiet",   "config", "save_config", "report"};
+      "body", "obstacle", "quiet",   "config", "save_config", "report",   "trace"};
   const std::string both = run_well({"reconstruct", "--help"});
   std::istringstream help(both.substr(0, both.rfind("Usage: ")));  // the other is of frames
   std::size_t flags = 0;

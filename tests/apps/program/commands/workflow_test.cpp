@@ -287,7 +287,7 @@ TEST_F(Workflow, FramesThatAMapHasAreSkipped) {
   // Another image of the same name is another frame, and so is one from another pose.
   write("frames/" + names(1), read("frames/" + names(4)));
   std::string moved = poses;
-  moved.replace(moved.rfind("\n", moved.size() - 2) + 1, std::string::npos, "5 0 0 -1 0 0 0 1\n");
+  moved.replace(moved.rfind("\n", moved.size() - 2) + 1, std::string::npos, "5 0 0 -0.6 0 0 0 1\n");
   write("frames/poses.txt", moved);
   grown = grow({"--map", "map.vdb", "--out", "new.vdb"});
   EXPECT_EQ(grown["frames"], 2);
@@ -302,10 +302,13 @@ TEST_F(Workflow, FramesThatContradictTheMapAreLeftOut) {
   run_well({"simulate", "cube.off", "--size", "0.2", "--recenter", "on", "--orbit", "12,0.6,27",
             "--sensor", "sr4000", "--out", "whole"});
   const auto integrated = [this](const std::string& folder, const Strings& more) {
-    return json::parse(
-        run_well(test::joined({"integrate", folder, "--voxel", "0.01", "--workspace",
-                               "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--json", "--out", "map.vdb"},
-                              more)));
+    const test::ProgramResult result =
+        run(test::joined({"integrate", folder, "--voxel", "0.01", "--workspace",
+                          "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--json", "--out", "map.vdb"},
+                         more));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err.find("(contradicts); left out") != std::string::npos, folder == "bad");
+    return json::parse(result.out);
   };
   const Strings registered{"--register", "on"};
   const json good = integrated("whole", registered);
@@ -336,8 +339,9 @@ TEST_F(Workflow, FramesThatContradictTheMapAreLeftOut) {
   EXPECT_EQ(left_out["hash"], integrated("without", registered)["hash"]);
   // Fed again it is tried again; the others are skipped.
   (void)integrated("bad", registered);
-  const json again = json::parse(run_well(
-      {"integrate", "bad", "--map", "map.vdb", "--register", "on", "--json", "--out", "map.vdb"}));
+  const json again = json::parse(run({"integrate", "bad", "--map", "map.vdb", "--register", "on",
+                                      "--json", "--out", "map.vdb"})
+                                     .out);
   EXPECT_EQ(again["skipped"], 11);
   EXPECT_EQ(again["registration"]["refused"], 1);
   EXPECT_EQ(again["hash"], left_out["hash"]);

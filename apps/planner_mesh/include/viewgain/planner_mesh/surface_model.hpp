@@ -88,9 +88,9 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
   /// New surface that the last view's first frame showed [m²]; see RealisedArea.
   [[nodiscard]] double realised_area() const noexcept { return realised_area_; }
-  /// One a view, where there is a truth, in their order.
   /// Poses of views that brought nothing and are not among the map's.
   [[nodiscard]] const std::vector<Pose>& tried() const noexcept { return tried_; }
+  /// One a view, where there is a truth, in their order.
   [[nodiscard]] const std::vector<QualityFigures>& quality() const noexcept { return quality_; }
 
  private:
