@@ -55,8 +55,8 @@ struct GridRay {
   double taper = 0;           ///< see miss_weight()
 };
 
-/// Walks the voxels of the workspace along the ray and marks those in which it has a stretch of positive length and which it
-/// enters before `reach`. The weight is that of the entry point.
+/// Walks the voxels of the workspace along the ray and marks those in which it has a stretch of
+/// positive length and which it enters before `reach`. The weight is that of the entry point.
 void walk_line(const BlockLattice& lattice, double voxel_size, const GridRay& ray,
                LineMarks& marks);
 

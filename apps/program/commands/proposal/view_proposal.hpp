@@ -31,7 +31,8 @@ struct ProposalOptions {
   std::vector<std::string> obstacles;
   std::optional<double> overlap{};
   std::optional<double> region_depth{};
-  std::string poses;  ///< file of candidates of the user's own; they alone unless `generator` is set
+  std::string
+      poses;  ///< file of candidates of the user's own; they alone unless `generator` is set
   std::string costs;  ///< file of one number for each of these
   double cost_per_metre = 0;
   std::string gain;  ///< empty: they are not ranked
