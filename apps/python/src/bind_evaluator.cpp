@@ -23,6 +23,7 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "named.hpp"
+#include "python_measure.hpp"
 #include "scene.hpp"
 
 namespace viewgain::python {
@@ -138,20 +139,49 @@ py::object chosen(const BestViews& best, bool return_gains) {
   return named("ChosenViews", indices, to_array_1d<ViewGain>(best.gains));
 }
 
+// What best() and race() may subtract and ask instead of the gain.
+struct Worth {
+  std::vector<double> costs{};
+  std::optional<PythonMeasure> measure{};
+
+  Worth(const py::object& costs_or_none, const py::object& measure_or_none, bool return_gains)
+      : measure(python::measure_or_none(measure_or_none)) {
+    if (measure && return_gains) {
+      throw py::value_error(
+          "return_gains does not go with measure, whose numbers evaluate_own gives");
+    }
+    if (costs_or_none.is_none()) return;
+    const Doubles given = doubles(costs_or_none, "costs", {-1});
+    costs.assign(given.data(), given.data() + given.size());
+    if (costs.empty()) throw py::value_error("costs is empty: one a pose is needed");
+  }
+  void into(BestConfig& config) const {
+    config.costs = costs;
+    if (measure) config.measure = &*measure;
+  }
+};
+
 py::object best(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
-                bool return_gains, const GivenOrNone<Control>& control) {
+                const py::object& costs, const py::object& measure, bool return_gains,
+                const GivenOrNone<Control>& control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const Worth worth(costs, measure, return_gains);
+  BestConfig config;
+  worth.into(config);
   BestViews result;
   run_batch(control, [&](const BatchControl& watched) {
-    result = self.evaluator.best(batch.poses, k, {}, watched);
+    result = self.evaluator.best(batch.poses, k, config, watched);
   });
   return chosen(result, return_gains);
 }
 
 py::object race(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
-                std::uint64_t seed, bool return_gains, const GivenOrNone<Control>& control) {
+                std::uint64_t seed, const py::object& costs, const py::object& measure,
+                bool return_gains, const GivenOrNone<Control>& control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
-  const BestConfig config{.seed = seed};
+  const Worth worth(costs, measure, return_gains);
+  BestConfig config{.seed = seed};
+  worth.into(config);
   BestViews result;
   run_batch(control, [&](const BatchControl& watched) {
     result = self.evaluator.race(batch.poses, k, config, watched);
@@ -237,9 +267,11 @@ void bind_evaluator(py::module_& module) {
       .def("evaluate_detailed", &evaluate_detailed, py::arg("T_world_camera"), py::kw_only(),
            py::arg("strict") = false, py::arg("control") = py::none(), kEvaluateDetailedDoc)
       .def("best", &best, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
+           py::arg("costs") = py::none(), py::arg("measure") = py::none(),
            py::arg("return_gains") = false, py::arg("control") = py::none(), kBestDoc)
       .def("race", &race, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
-           py::arg("seed") = race_defaults.seed, py::arg("return_gains") = false,
+           py::arg("seed") = race_defaults.seed, py::arg("costs") = py::none(),
+           py::arg("measure") = py::none(), py::arg("return_gains") = false,
            py::arg("control") = py::none(), kRaceDoc)
       .def("race_until", &race_until, py::arg("T_world_camera"), py::arg("seconds"),
            py::arg("k") = 1, py::kw_only(), py::arg("seed") = race_defaults.seed,

@@ -27,6 +27,7 @@
 #include "named.hpp"
 #include "planner.hpp"
 #include "planner_docs.hpp"
+#include "python_measure.hpp"
 #include "scene.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/planner/view_planner.hpp"
@@ -160,8 +161,11 @@ py::object propose(Planner& self) {
 }
 
 py::object rank(Planner& self, std::size_t k, const py::object& poses, const py::object& costs,
-                double cost_per_metre, bool exact, const GivenOrNone<Control>& control) {
+                double cost_per_metre, bool exact, const py::object& measure,
+                const GivenOrNone<Control>& control) {
+  const std::optional<PythonMeasure> own = measure_or_none(measure);
   RankConfig config;
+  if (own) config.measure = &*own;
   config.cost_per_metre = cost_per_metre;
   config.exact = exact;
   std::vector<double> own_costs;
@@ -271,7 +275,7 @@ void bind_planner(py::module_& module) {
       .def("propose", &propose, kProposeDoc)
       .def("rank", &rank, py::arg("k") = 1, py::kw_only(), py::arg("poses") = py::none(),
            py::arg("costs") = py::none(), py::arg("cost_per_metre") = 0.0, py::arg("exact") = false,
-           py::arg("control") = py::none(), kRankDoc)
+           py::arg("measure") = py::none(), py::arg("control") = py::none(), kRankDoc)
       .def(
           "outcomes",
           [](Planner& self, const py::object& T_world_camera) {

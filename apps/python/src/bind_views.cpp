@@ -15,7 +15,7 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/depth_images.hpp"
-#include "python_call.hpp"
+#include "python_measure.hpp"
 #include "viewgain/raycast/depth_image.hpp"
 
 namespace viewgain::python {
@@ -34,17 +34,6 @@ struct ContributionRow {
   std::uint32_t rays;
   double gain;
   double expected_rays;
-};
-
-/// What a gain of the user's own sees of a ray.
-struct OwnHitRow {
-  std::array<std::int32_t, 3> voxel;
-  std::uint8_t state;
-  std::uint32_t readings;
-  std::array<float, 6> information;
-  std::int64_t ray;
-  double range;
-  std::array<double, 3> direction;
 };
 
 namespace {
@@ -100,41 +89,8 @@ py::object outcomes(const Evaluator& self, const py::object& T_world_camera) {
   }());
 }
 
-// A Python callable as a gain; takes the GIL for each view.
-class PythonMeasure : public ViewMeasure {
- public:
-  explicit PythonMeasure(py::object callable) : call_(std::move(callable)) {}
-
-  double measure(const Pose& T_world_camera, std::span<const ViewHit> hits) const override {
-    return with_gil([&] { return asked(T_world_camera, hits); });
-  }
-
- private:
-  double asked(const Pose& T_world_camera, std::span<const ViewHit> hits) const {
-    py::array_t<OwnHitRow> rows(static_cast<py::ssize_t>(hits.size()));
-    std::transform(hits.begin(), hits.end(), rows.mutable_data(), [](const ViewHit& hit) {
-      OwnHitRow row{{hit.voxel.x, hit.voxel.y, hit.voxel.z},
-                    static_cast<std::uint8_t>(hit.state),
-                    0,
-                    {},
-                    static_cast<std::int64_t>(hit.ray),
-                    hit.range,
-                    hit.direction};
-      if (hit.belief != nullptr) {
-        row.readings = hit.belief->hits;
-        row.information = hit.belief->information;
-      }
-      return row;
-    });
-    return number(call_(to_array(T_world_camera), rows), "what measure returns");
-  }
-
-  PythonCall call_;
-};
-
 py::object evaluate_own(const Evaluator& self, const py::object& T_world_camera,
                         const py::object& measure, const GivenOrNone<Control>& control) {
-  if (PyCallable_Check(measure.ptr()) == 0) throw py::type_error("measure must be callable");
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
   const PythonMeasure own(measure);
   py::array_t<double> gains(batch.shape);

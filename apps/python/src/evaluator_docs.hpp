@@ -128,7 +128,12 @@ Parameters
 ----------
 T_world_camera : array_like, (..., 4, 4)
 k : int
+costs : array_like, (n,), optional
+    Subtracted from the gains, in their unit.
+measure : callable, optional
+    A gain of your own in the evaluator's place, as of ``evaluate_own``; asked for one view after the other.
 return_gains : bool
+    Not with measure.
 control : BatchControl, optional
     After a stop the result is what is best of those scored so far.
 
@@ -148,8 +153,8 @@ and more, the less the larger the images.
 
 Parameters
 ----------
-T_world_camera, k, return_gains, control
-    As ``best``.
+T_world_camera, k, costs, measure, return_gains, control
+    As ``best``; the measure is asked about few rays first.
 seed : int
     Which rays, by the paper's gain; by the others they are in the middle.
 

@@ -286,6 +286,8 @@ cost_per_metre : float
     and so should this.
 exact : bool
     Score all in full. Else, but by gain "paper", in two stages: see ``GainEvaluator.race``.
+measure : callable, optional
+    A gain of your own in the planner's place, as of ``GainEvaluator.evaluate_own``; gain and area are NaN then.
 control : BatchControl, optional
 
 Returns

@@ -218,6 +218,21 @@ def test_a_gain_of_ones_own(evaluator, poses):
     with pytest.raises(TypeError):
         evaluator.evaluate_own(poses, 3)
 
+    # Chosen by it: of few poses race, too, measures all by all of their rays.
+    values = evaluator.evaluate_own(poses, unknown)
+    costs = np.arange(60) * 2.0
+    for chosen, worth in ((evaluator.best(poses, 5, measure=unknown), values),
+                          (evaluator.best(poses, 5, measure=unknown, costs=costs), values - costs),
+                          (evaluator.race(poses[:20], 5, measure=unknown), values[:20]),
+                          (evaluator.best(poses, 5, costs=costs), evaluator.evaluate(poses) - costs)):
+        assert np.array_equal(chosen, np.argsort(-worth, kind="stable")[:5])
+    with pytest.raises(KeyError, match="mine"):
+        evaluator.race(poses, measure=broken)
+    with pytest.raises(ValueError, match="return_gains"):
+        evaluator.best(poses, measure=unknown, return_gains=True)
+    with pytest.raises(ValueError, match="costs"):
+        evaluator.best(poses, costs=costs[:3])
+
 
 def test_weights_ranges_and_prior(grid, sensor, poses):
     scene = viewgain.VoxelScene(grid)

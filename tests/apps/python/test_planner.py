@@ -99,6 +99,10 @@ def test_says_what_the_parts_say(gain, sensor, camera, poses):
     paid = planner.rank(2, costs=costs, exact=True)
     assert paid["index"][0] == np.argmax(gains - costs)
     assert np.allclose(paid["worth"], paid["gain"] - costs[paid["index"]])
+    own = planner.rank(2, measure=lambda pose, hits: -float(pose[2, 3]), exact=True)
+    lowest = np.argsort(proposal["T_world_camera"][:, 2, 3], kind="stable")[:2]
+    assert own.index.tolist() == lowest.tolist() and np.isnan(own.gain).all()
+    assert np.allclose(own.worth, -proposal["T_world_camera"][lowest, 2, 3])
     assert set(planner.seconds) == {"integrate", "snapshot", "candidates", "score"}
 
 
