@@ -11,12 +11,13 @@
 namespace viewgain::app {
 
 std::map<std::size_t, FrameRegistration> align_folder(const FrameMap& map, const PoseSigma& sigma,
-                                                      bool quiet, const ExecConfig& exec) {
+                                                      bool quiet, const ExecConfig& exec,
+                                                      const std::stop_token& stop) {
   FrameAlignment alignment(map.model().sensor(), map.config(), exec);
   Progress progress("alignment of frame", quiet);
   const FrameFolder& folder = map.folder();
   std::vector<std::size_t> aligned;
-  for (std::size_t i = 0; i < folder.size(); ++i) {
+  for (std::size_t i = 0; i < folder.size() && !stop.stop_requested(); ++i) {
     const FrameReading reading = folder.load(i);
     progress.update(i + 1, folder.size());
     if (reading.fault.verdict != FrameVerdict::used) continue;

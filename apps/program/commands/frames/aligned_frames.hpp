@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <map>
+#include <stop_token>
 
 #include "program/commands/frames/frame_map.hpp"
 #include "viewgain/core/exec_config.hpp"
@@ -13,10 +14,12 @@ namespace viewgain::app {
 
 /// Aligns all frames of the folder with one another (FrameAlignment), for a map into which none has
 /// gone yet. `sigma`: by how much each reported pose may be off. By the frame's index, those that
-/// cannot be read left out, each as known in the end. Throws as FrameAlignment.
+/// cannot be read left out, each as known in the end; after a stop those so far. Throws as
+/// FrameAlignment.
 [[nodiscard]] std::map<std::size_t, FrameRegistration> align_folder(const FrameMap& map,
                                                                     const PoseSigma& sigma,
                                                                     bool quiet,
-                                                                    const ExecConfig& exec);
+                                                                    const ExecConfig& exec,
+                                                                    const std::stop_token& stop);
 
 }  // namespace viewgain::app

@@ -79,14 +79,16 @@ struct Moment {
 
 class Recording {
  public:
-  explicit Recording(const Options& options)
+  Recording(const Options& options, const std::stop_token& stop)
       : options_(options), proposal_(options.proposal), exec_(exec_of(options.common)) {
     check(proposal_);
     map_.emplace(options.frames, proposal_, options.common.quiet, exec_);
     sigma_ = registration_sigma(options.registration);
     if (sigma_) {
       const Stopwatch watch;
-      views_.emplace(*map_, align_folder(*map_, *sigma_, options.common.quiet, exec_));
+      auto aligned = align_folder(*map_, *sigma_, options.common.quiet, exec_, stop);
+      if (!aligned.empty()) aligned_until_ = aligned.rbegin()->first + 1;
+      views_.emplace(*map_, std::move(aligned));
       views_->add_seconds("register", watch.seconds());
     } else {
       views_.emplace(*map_);
@@ -96,11 +98,12 @@ class Recording {
                   nullptr);
   }
 
-  // The frames, until all are in or `stop` is asked for.
+  // The frames, until all are in or `stop` is asked for; those that are aligned by then are kept.
   void add_frames(RunFolder& folder, const std::stop_token& stop) {
     const std::set<std::size_t> shown = shown_frames(map_->folder().size());
     Progress progress("frame", options_.common.quiet);
-    for (std::size_t i = 0; i < map_->folder().size() && !stop.stop_requested(); ++i) {
+    for (std::size_t i = 0; i < map_->folder().size(); ++i) {
+      if (stop.stop_requested() && i >= aligned_until_) break;
       views_->add(i);
       if (options_.outputs.saves_maps()) {
         save_vdb(map_->model().grid(), folder.map(i), noting_sensor(sensor()));
@@ -189,6 +192,7 @@ class Recording {
   std::optional<FrameMap> map_;
   std::optional<RunPage> page_;
   std::optional<PoseSigma> sigma_;  // of the poses, where frames are aligned
+  std::size_t aligned_until_ = 0;   // frames, where they are
   std::optional<RecordedViews> views_;
   NextViews next_;
 };
@@ -218,7 +222,7 @@ void reconstruct(Options& options, const App& app) {
   options.frames.refine = options.refine == "on";
   if (options.outputs.with_report()) check_report_page("--report");
   const InterruptGuard interrupt;
-  Recording recording(options);
+  Recording recording(options, interrupt.token());
   RunFolder folder(options.outputs.out);
   recording.add_frames(folder, interrupt.token());
   const Json run = recording.finish(folder);

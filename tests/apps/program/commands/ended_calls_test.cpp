@@ -8,7 +8,9 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <thread>
@@ -100,6 +102,33 @@ TEST_F(EndedCalls, AClosedTerminalEndsARunAfterTheViewAtHand) {
     EXPECT_EQ(json::parse(read(run + "/run.json"))["stop_reason"], "interrupted") << signal;
     EXPECT_TRUE(hidden(".").empty());
   }
+}
+
+// Frames are aligned before any goes into the map, which takes most of such a call's time.
+TEST_F(EndedCalls, FramesThatWereAlignedByThenAreKept) {
+  run_well({"simulate", "cube.off", "--orbit", "24,0.6,27,0,9", "--sensor", "tof.toml", "--size",
+            "0.2", "--recenter", "on", "--noise", "on", "--out", "frames"});
+  const pid_t child = start({"reconstruct", "frames", "--voxel", "0.01", "--workspace",
+                             "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--register", "on", "--pictures", "off",
+                             "--report", "off", "--threads", "1", "--out", "run", "--json"});
+  // Some frames' time of the processor, however busy the machine is.
+  const auto ticks = [child] {
+    std::ifstream file("/proc/" + std::to_string(child) + "/stat");
+    std::string word;
+    for (int i = 0; i < 14; ++i) file >> word;
+    return std::atol(word.c_str());
+  };
+  while (ticks() < ::sysconf(_SC_CLK_TCK)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  EXPECT_EQ(::kill(child, SIGINT), 0);
+  int status = 0;
+  EXPECT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  const json run = json::parse(read("run/run.json"));
+  EXPECT_EQ(run["stop_reason"], "interrupted");
+  EXPECT_GE(run["frames"], 1);
+  EXPECT_LT(run["frames"], 24);
 }
 
 TEST_F(EndedCalls, AKilledRunLeavesTheOneBeforeWhole) {
