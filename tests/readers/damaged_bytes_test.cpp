@@ -283,7 +283,10 @@ std::vector<Reader> frame_readers() {
        {"frames/frame-000001.depth.png", "frames/poses.txt", "frames/sensor.toml"},
        [](const fs::path& folder) {
          const FrameSequence frames = open_frames(folder / "frames");
-         for (std::size_t i = 0; i < frames.images.size(); ++i) (void)load_frame(frames, i);
+         for (std::size_t i = 0; i < frames.images.size(); ++i) {
+           const FrameFault fault = read_frame(frames, i).fault;
+           if (fault.verdict != FrameVerdict::used) throw Error(ErrorCode::format, fault.what);
+         }
        }},
       {"tum",
        write_tum_recording,
