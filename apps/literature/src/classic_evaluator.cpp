@@ -186,7 +186,8 @@ ClassicGainEvaluator::ClassicGainEvaluator(std::shared_ptr<const ClassicMap> map
                                            const Sensor& sensor, const ClassicConfig& config,
                                            const ExecConfig& exec) {
   map = checked(std::move(map), checked(config));
-  GainEvaluator rays(ClassicAccess::data(*map).scene, sensor, rays_of(config), exec);
+  GainEvaluator rays(ClassicAccess::data(*map).scene, sensor, rays_of(config),
+                     {exec.num_threads});  // whose rays the walker leads: no tracer is asked
   impl_ =
       std::make_unique<Impl>(Impl{config, std::move(map), VoxelValues(config), std::move(rays)});
 }

@@ -95,7 +95,8 @@ std::shared_ptr<const ClassicMap> ClassicMap::build(std::shared_ptr<const VoxelS
   if (acquisition && !grid.views().empty()) {
     data->occlusion = OcclusionKnown::yes;
     data->occlusion_depth = acquisition->occlusion_depth / grid.voxel_size();
-    const GainEvaluator rays(data->scene, acquisition->sensor, {.model = GainModel::paper}, exec);
+    const GainEvaluator rays(data->scene, acquisition->sensor, {.model = GainModel::paper},
+                             {exec.num_threads});
     const OcclusionConsumer consumer(data->table, data->occlusion_depth);
     for_each_view_rays(rays, grid.views(), /*from_occupied=*/true, consumer);
     data->table.add(consumer.all());

@@ -24,7 +24,8 @@ struct Control {
 /// work is done on a thread of its own (and the pool's), and the caller, with the GIL, looks every
 /// 50 ms for signals and calls the progress function, which is told the end in any case. An
 /// exception of either stops the call and passes through. `control` may be null. Takes about 50 µs
-/// more than the call itself. Call with the GIL; `work` must not touch Python.
+/// more than the call itself. Call with the GIL; `work` must not touch Python
+/// but by with_gil().
 void run_batch(Control* control, const std::function<void(const BatchControl&)>& work);
 
 }  // namespace viewgain::python

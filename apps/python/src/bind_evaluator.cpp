@@ -83,8 +83,12 @@ std::unique_ptr<Evaluator> make_evaluator(
   const Sensor& sensor = *of;
   const GainConfig config = gain_config(gain, criterion, pixel_stride, prior_sigma, min_range,
                                         max_range, weights, refinement_weight, posterior_entropy);
-  return held(scene, sensor, criterion, pixel_stride,
-              GainEvaluator(scene.scene, sensor, config, {num_threads, parse_tracer(tracer)}));
+  const ExecConfig exec{num_threads, parse_tracer(tracer)};
+  const auto made = [&] {
+    const WithoutGil without_gil;
+    return GainEvaluator(scene.scene, sensor, config, exec);
+  };
+  return held(scene, sensor, criterion, pixel_stride, made());
 }
 
 std::unique_ptr<Evaluator> with_scene(const Evaluator& self, const Given<Scene>& given) {

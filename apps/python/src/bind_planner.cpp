@@ -281,7 +281,7 @@ void bind_planner(py::module_& module) {
           [](Planner& self, const py::object& T_world_camera) {
             const Pose pose = one_pose(T_world_camera, "T_world_camera");
             return named_outcomes(
-                self.use([&](ViewPlanner& planner) { return planner.evaluator().outcomes(pose); }));
+                self.run([&](ViewPlanner& planner) { return planner.evaluator().outcomes(pose); }));
           },
           py::arg("T_world_camera"),
           R"(Why a pose's gain is what it is on the map as it stands: what becomes of its rays.

@@ -53,7 +53,7 @@ Notes
 -----
 Methods may run in many threads at once and leave the GIL while they work; Ctrl-C ends a batch. They raise
 ValueError for poses of another shape, without real numbers or with masked entries; those of a single view
-(``trace``, ``depth``, ``contributions``) for a bad pose, too.
+(``trace``, ``depth``, ``contributions``, ``outcomes``) for a bad pose, too.
 
 Cost: linear in poses and rays per pose; some 120 million rays a second on two threads for a map of 128**3
 voxels by the paper's gain, which is 4,800 images of 176x144 pixels; a quarter of that by the surface gain,

@@ -47,19 +47,24 @@ PixelReading TofPixel::single(const RayReturn& hit) const {
 
 PixelReading TofPixel::mixed(std::span<const RayReturn> hits) const {
   const double per_metre = kTwoPi / unambiguous_range_;
-  // Phases relative to that of the first return: they are small, which is faster and loses less.
-  const auto first = std::find_if(hits.begin(), hits.end(),
-                                  [](const RayReturn& hit) { return std::isfinite(hit.range); });
-  if (first == hits.end()) return single(RayReturn{});
+  // Phases relative to that of the strongest return: they are small, which is faster and loses
+  // less, and the sum's way is that of most of the light.
+  const auto strongest =
+      std::max_element(hits.begin(), hits.end(), [](const RayReturn& a, const RayReturn& b) {
+        if (!std::isfinite(a.range) || !std::isfinite(b.range))
+          return std::isfinite(b.range) && !std::isfinite(a.range);
+        return amplitude_of(a) < amplitude_of(b);
+      });
+  if (strongest == hits.end() || !std::isfinite(strongest->range)) return single(RayReturn{});
   double real = 0, imaginary = 0;
-  for (auto hit = first; hit != hits.end(); ++hit) {
-    if (!std::isfinite(hit->range)) continue;
-    const double phase = per_metre * (hit->range - first->range);
-    const double amplitude = amplitude_of(*hit);
+  for (const RayReturn& hit : hits) {
+    if (!std::isfinite(hit.range)) continue;
+    const double phase = per_metre * (hit.range - strongest->range);
+    const double amplitude = amplitude_of(hit);
     real += amplitude * std::cos(phase);
     imaginary += amplitude * std::sin(phase);
   }
-  const double way = first->range + std::atan2(imaginary, real) / per_metre;
+  const double way = strongest->range + std::atan2(imaginary, real) / per_metre;
   const double range = folded(way);
   const double amplitude = std::hypot(real, imaginary) / static_cast<double>(hits.size());
   return {range, std::min(1.0, amplitude * range * range), amplitude,

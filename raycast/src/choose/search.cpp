@@ -32,6 +32,8 @@ constexpr double kCoarseRays = 400;
 constexpr double kInFull = 0.016, kInFullByPaper = 0.05;
 // Of the time until the deadline is the first stage's at most.
 constexpr double kFirstStage = 0.5;
+// And until then what brings measures of few rays to the scale of all.
+constexpr double kScaled = 0.75;
 // So many poses say how a measure of few rays compares with that of all.
 constexpr std::size_t kAnchors = 8;
 
@@ -158,7 +160,10 @@ class Search {
         driver_, open_.size(), control, [&](std::size_t j, ViewDriver::Lease& lease) {
           const Pose& pose = poses_[open_[j]];
           if (by_gain_) gains[j] = driver_.evaluate(pose, lease);
-          worth[j] = by_gain_ ? gains[j].gain : measured(driver_, pose, lease);
+          const double known = full_.empty() ? kNone : full_[open_[j]];
+          worth[j] = by_gain_            ? gains[j].gain
+                     : std::isnan(known) ? measured(driver_, pose, lease)
+                                         : known;
           if (!config_.costs.empty()) worth[j] -= config_.costs[open_[j]];
           is_scored[j] = 1;
         });
@@ -206,14 +211,20 @@ class Search {
     return was_cancelled_ || control_.stop.stop_requested();
   }
 
-  // The median ratio of the measure by all rays to that by few.
+  // The median ratio of the measure by all rays to that by few, of poses that have the latter.
   [[nodiscard]] double scale_of(std::span<const double> coarse) {
-    const std::size_t step = std::max<std::size_t>(1, poses_.size() / kAnchors);
-    std::vector<double> ratios((poses_.size() + step - 1) / step, kNone);
+    std::vector<std::size_t> known;
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+      if (std::isfinite(coarse[i])) known.push_back(i);
+    }
+    std::vector<double> ratios(std::min(known.size(), kAnchors), kNone);
     std::atomic<std::size_t> done{0};
-    detail::for_each(driver_, ratios.size(), until(1),
+    full_.assign(poses_.size(), kNone);
+    detail::for_each(driver_, ratios.size(), until(kScaled),
                      [&](std::size_t j, ViewDriver::Lease& lease) {
-                       ratios[j] = measured(driver_, poses_[j * step], lease) / coarse[j * step];
+                       const std::size_t i = known[j * known.size() / ratios.size()];
+                       full_[i] = measured(driver_, poses_[i], lease);
+                       ratios[j] = full_[i] / coarse[i];
                        ++done;
                      });
     best_.rays_traced += done * std::uint64_t{driver_.core()->ray_count};
@@ -233,6 +244,7 @@ class Search {
   Stopwatch watch_;
   bool was_cancelled_ = false;
   std::vector<std::size_t> open_;  // poses that may be the best, the most promising first
+  std::vector<double> full_;       // a measure by all rays of those that said the scale, else NaN
   BestViews best_;
 };
 
@@ -256,6 +268,7 @@ BestViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t 
                               const BestConfig& config, const BatchControl& control) const {
   Search search(*impl_->scene, impl_->driver, T_world_camera, config, control);
   if (k == 0 || T_world_camera.empty()) return {};
+  k = std::min(k, T_world_camera.size());
   const bool by_paper = impl_->driver.surface() == nullptr && config.measure == nullptr &&
                         config.run_measure == nullptr;
   const double share =

@@ -3,27 +3,36 @@
 #include "viewgain/raycast/ray_outcomes.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "gain_evaluator_impl.hpp"
+#include "trace/ordered_walk.hpp"
 
 namespace viewgain {
 namespace {
 
 using detail::ViewTracer;
 
-// What each ray of a view meets within the frame's limits.
-std::vector<RayHit::Kind> met(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
-                              detail::ViewSweep& sweep) {
+struct Meeting {
+  RayHit::Kind kind = RayHit::Kind::none;
+  float range = std::numeric_limits<float>::infinity();  // [voxels]
+};
+
+// What each ray of a view meets within the frame's limits, the support plane aside.
+std::vector<Meeting> met(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
+                         detail::ViewSweep& sweep) {
   const ViewTracer& tracer = driver.tracer();
-  std::vector<RayHit::Kind> kinds(tracer.table().ray_count(), RayHit::Kind::none);
+  std::vector<Meeting> meetings(tracer.table().ray_count());
   tracer.prepare(frame, sweep, ViewTracer::Asked::everywhere);
   tracer.trace<ViewTracer::Asked::everywhere>(
       frame, sweep, [&](std::size_t number, const detail::RayTile& tile) {
         detail::for_each_lane(tile.hit | tile.blocked, [&](int lane) {
           if (tile.range[lane] > frame.max_range) return;  // an obstacle that is too far
-          RayHit::Kind& kind = kinds[tracer.table().ray_index(number, lane)];
+          auto& [kind, range] = meetings[tracer.table().ray_index(number, lane)];
+          range = tile.range[lane];
           if ((tile.blocked >> lane & 1U) != 0) {
             kind = RayHit::Kind::obstacle;
           } else if (driver.scene().occupied_leaf(tile.primitive[lane], tile.offset[lane])) {
@@ -33,8 +42,29 @@ std::vector<RayHit::Kind> met(const detail::ViewDriver& driver, const detail::Po
           }
         });
       });
-  return kinds;
+  return meetings;
 }
+
+// Where a ray comes down on the support plane [voxels]; infinity: nowhere, or not by this gain.
+class PlaneRange {
+ public:
+  PlaneRange(const detail::ViewDriver& driver, const detail::PoseFrame& frame)
+      : limits_(detail::walk_limits(driver.scene(), frame)),
+        above_(Eigen::Vector3f(limits_.normal.data()).dot(Eigen::Vector3f(frame.origin.data())) -
+               limits_.height) {
+    ends_rays_ =
+        limits_.has_plane && above_ >= 0 && driver.core()->config.model != GainModel::paper;
+  }
+  [[nodiscard]] float along(const Eigen::Vector3f& direction) const {
+    const float down = -Eigen::Vector3f(limits_.normal.data()).dot(direction);
+    return ends_rays_ && down > 0 ? above_ / down : std::numeric_limits<float>::infinity();
+  }
+
+ private:
+  detail::WalkLimits limits_;
+  float above_;
+  bool ends_rays_ = false;
+};
 
 }  // namespace
 
@@ -46,11 +76,12 @@ RayOutcomes GainEvaluator::outcomes(const Pose& T_world_camera) const {
   if (!frame) return counts;
   detail::ViewDriver::Lease lease(driver);
   detail::ViewSweep& sweep = lease.workspace().sweep;
-  const std::vector<RayHit::Kind> hits = met(driver, *frame, sweep);
+  const std::vector<Meeting> hits = met(driver, *frame, sweep);
   detail::PoseFrame before = *frame;
   before.min_range = 0;
   before.max_range = frame->min_range;
-  const std::vector<RayHit::Kind> near = met(driver, before, sweep);
+  const std::vector<Meeting> near = met(driver, before, sweep);
+  const PlaneRange plane(driver, *frame);
 
   const detail::EvaluatorCore& core = *driver.core();
   const GridSnapshot& snapshot = driver.scene().snapshot;
@@ -63,31 +94,34 @@ RayOutcomes GainEvaluator::outcomes(const Pose& T_world_camera) const {
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R(frame->rotation.data());
   const Eigen::Vector3f origin(frame->origin.data());
   const float end = static_cast<float>(core.max_range / snapshot.voxel_size);  // [voxels]
-  const auto ends_in_workspace = [&](const Eigen::Vector3d& ray) {
-    const Eigen::Vector3f p = origin + R * ray.normalized().cast<float>() * end;
+  const auto ends_in_workspace = [&](const Eigen::Vector3f& direction) {
+    const Eigen::Vector3f p = origin + direction * end;
     const Index3& dims = snapshot.dims;
     return p.minCoeff() >= 0 && p.x() < static_cast<float>(dims.x) &&
            p.y() < static_cast<float>(dims.y) && p.z() < static_cast<float>(dims.z);
   };
   for (std::size_t i = 0; i < hits.size(); ++i) {
+    const Eigen::Vector3d ray = ray_of(i);
+    if (!ray.allFinite()) continue;  // the lens has none there
     ++counts.rays;
-    if (near[i] == RayHit::Kind::occupied || near[i] == RayHit::Kind::obstacle) {
+    const Eigen::Vector3f direction = R * ray.normalized().cast<float>();
+    const float on_plane = plane.along(direction);
+    const RayHit::Kind before_range = near[i].kind;
+    if (before_range == RayHit::Kind::occupied || before_range == RayHit::Kind::obstacle ||
+        on_plane < frame->min_range) {
       ++counts.too_near;
-    } else if (hits[i] == RayHit::Kind::unknown) {
-      ++counts.unknown;
-    } else if (hits[i] == RayHit::Kind::occupied) {
-      ++counts.known_surface;
-    } else if (hits[i] == RayHit::Kind::obstacle) {
+    } else if (on_plane <= std::min(hits[i].range, end)) {
       ++counts.obstacle;
+    } else if (hits[i].kind == RayHit::Kind::unknown) {
+      ++counts.unknown;
+    } else if (hits[i].kind == RayHit::Kind::occupied) {
+      ++counts.known_surface;
+    } else if (hits[i].kind == RayHit::Kind::obstacle) {
+      ++counts.obstacle;
+    } else if (ends_in_workspace(direction)) {
+      ++counts.out_of_range;
     } else {
-      const Eigen::Vector3d ray = ray_of(i);
-      if (!ray.allFinite()) {
-        --counts.rays;  // the lens has none there
-      } else if (ends_in_workspace(ray)) {
-        ++counts.out_of_range;
-      } else {
-        ++counts.out_of_map;
-      }
+      ++counts.out_of_map;
     }
   }
   return counts;

@@ -36,7 +36,7 @@ struct MeasureConsumer {
           {.voxel = scene.voxel_index(primitive, offset),
            .state = leaf != nullptr ? VoxelState::occupied : VoxelState::unknown,
            .belief = leaf != nullptr && leaf->beliefs ? leaf->beliefs->find(offset) : nullptr,
-           .ray = driver.tracer().table().ray_index(number, lane),
+           .ray = driver.tracer().table().image_ray_index(number, lane),
            .range = static_cast<double>(tile.range[lane]) * scene.snapshot.voxel_size,
            .direction = {d.x(), d.y(), d.z()}});
     });
@@ -65,7 +65,7 @@ void list_runs(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
             const Eigen::Vector3d d =
                 R_world_grid *
                 Eigen::Vector3d(rays.dx[lane], rays.dy[lane], rays.dz[lane]).normalized();
-            run.ray = driver.tracer().table().ray_index(number, lane);
+            run.ray = driver.tracer().table().image_ray_index(number, lane);
             run.direction = {d.x(), d.y(), d.z()};
           }
           const bool occupied = visit->state == detail::BrickTable::kOccupiedVoxel;

@@ -40,6 +40,7 @@ void TileTable::fill(const RayAt& ray_at) {
 
 TileTable::TileTable(const PinholeCamera& camera, int pixel_stride)
     : columns(strided(camera.width, pixel_stride)), rows(strided(camera.height, pixel_stride)) {
+  image_columns_ = columns;
   const std::vector<Eigen::Vector3d> table = camera.ray_table();
   const std::vector<double> angles = camera.solid_angles(table);
   const double pixels = static_cast<double>(pixel_stride) * pixel_stride;  // that a ray stands for
@@ -60,7 +61,9 @@ TileTable::TileTable(const PinholeCamera& camera, int pixel_stride)
 
 TileTable::TileTable(const TileTable& full, const RayLattice& lattice)
     : columns(strided(full.columns - lattice.column, lattice.step)),
-      rows(strided(full.rows - lattice.row, lattice.step)) {
+      rows(strided(full.rows - lattice.row, lattice.step)),
+      part_(lattice),
+      image_columns_(full.columns) {
   const auto tile_columns = static_cast<int>(full.tile_columns());
   const auto pixels = static_cast<float>(lattice.step * lattice.step);
   fill([&](int column, int row) -> Ray {

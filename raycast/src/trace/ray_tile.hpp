@@ -56,6 +56,14 @@ struct TileTable {
            static_cast<std::size_t>(lane / kTileEdge) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(lane % kTileEdge);
   }
+  /// The same among all rays of the image, where these are some of them.
+  [[nodiscard]] std::size_t image_ray_index(std::size_t tile, int lane) const {
+    const auto own = static_cast<std::size_t>(columns), step = static_cast<std::size_t>(part_.step);
+    const std::size_t index = ray_index(tile, lane);
+    return (static_cast<std::size_t>(part_.row) + index / own * step) *
+               static_cast<std::size_t>(image_columns_) +
+           static_cast<std::size_t>(part_.column) + index % own * step;
+  }
 
  private:
   struct Ray {
@@ -65,6 +73,9 @@ struct TileTable {
   };
   template <typename RayAt>
   void fill(const RayAt& ray_at);
+
+  RayLattice part_{};
+  int image_columns_ = 0;
 };
 
 /// Cameras farther than this from the workspace's lowest corner [voxels] see nothing: single

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "voxel_bvh.hpp"
+
 namespace viewgain::detail {
 namespace {
 
@@ -74,8 +76,8 @@ std::uint32_t block_in(RTCScene scene, const TriangleRays& rays, std::uint32_t l
 
 TriangleScene::TriangleScene(Isa isa, std::span<const float> vertices,
                              std::span<const unsigned> indices, const std::string& what)
-    : isa_(isa) {
-  RTCDevice device = shared_device(isa);
+    : isa_(packet_isa(isa)) {
+  RTCDevice device = shared_device(isa_);
   bvh_.reset(rtcNewScene(device));
   rtcSetSceneBuildQuality(bvh_.get(), RTC_BUILD_QUALITY_HIGH);
   // Without it a ray may slip between two triangles that share an edge.

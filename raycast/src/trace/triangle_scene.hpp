@@ -24,8 +24,8 @@ struct alignas(64) TriangleRays {
 /// thread safe.
 class TriangleScene {
  public:
-  /// Three numbers a vertex, three indices a triangle; copies them. Throws Error(backend),
-  /// Error(capacity), of which `what` says what was being built.
+  /// Three numbers a vertex, three indices a triangle; copies them. Throws Error(backend), also
+  /// where Embree has no ray packets, and Error(capacity); `what` says what was being built.
   TriangleScene(Isa isa, std::span<const float> vertices, std::span<const unsigned> indices,
                 const std::string& what);
 

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -80,6 +81,28 @@ TEST(TofNoise, WhatIsFoldedIsAsNoisyAsItsWayIsLong) {
     EXPECT_NEAR(mean, 0.3 / 1.3 * way, 5 * sigma / std::sqrt(kFrames)) << sub_rays;
     EXPECT_NEAR(seen, sigma, 5 * sigma / std::sqrt(2.0 * kFrames)) << sub_rays;
   }
+}
+
+// Two thirds of a pixel see a board at 1 m, the others a wall at 4.4 m, on whichever side.
+TEST(TofNoise, OfMixedReturnsIsTheSameFromBothSides) {
+  constexpr int kFrames = 4000;
+  const Sensor sensor = one_pixel(sensor_preset("sr4000").noise);
+  std::array<double, 2> sigmas{};
+  for (const int side : {-1, 1}) {
+    TriangleMesh mesh = test::square(20, 4.4);
+    const double edge = side / 6e5;  // a sixth of a pixel beside the middle
+    for (const auto& [x, y] :
+         {std::pair{edge, -9.0}, {edge, 9.0}, {-9.0 * side, 9.0}, {-9.0 * side, -9.0}}) {
+      mesh.vertices.push_back({x, y, 1.0});
+    }
+    mesh.triangles.push_back({4, 5, 6});
+    mesh.triangles.push_back({4, 6, 7});
+    const SimulatedSensor camera(std::make_shared<const SurfaceScene>(std::move(mesh)), sensor,
+                                 {.noise = true, .seed = 5, .sub_rays = 3});
+    sigmas.at(side < 0 ? 0 : 1) = moments(camera, kFrames).second;
+  }
+  EXPECT_GT(sigmas[0], 0);
+  EXPECT_NEAR(sigmas[1] / sigmas[0], 1, 5 * std::sqrt(1.0 / kFrames));
 }
 
 // At the edge of a board: a pixel whose centre is 1 px off it sees the board when its rays are

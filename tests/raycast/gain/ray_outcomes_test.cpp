@@ -11,6 +11,7 @@
 
 #include "oracle/rays.hpp"
 #include "raycast/scene_makers.hpp"
+#include "viewgain/core/pose.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain {
@@ -95,6 +96,30 @@ TEST(RayOutcomes, AreThoseOfTheOraclesRays) {
                                     seen.out_of_range, seen.out_of_map}) {
     EXPECT_GT(count, rays / 500);
   }
+}
+
+// Free space and a plane across it: by the surface gains rays end there, by the paper's they leave.
+TEST(RayOutcomes, TheSupportPlaneEndsRaysOfTheSurfaceGains) {
+  BeliefGrid grid({0.1, {{-2, -2, 0}, {2, 2, 3}}, {}, 0.05});
+  for (std::int32_t i = 0; i < 40 * 40 * 30; ++i) {
+    const std::int32_t z = i % 30;
+    if (z >= 2) grid.set({i / 1200 - 20, i / 30 % 40 - 20, z}, -1.0F);
+  }
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.min_range = 0.2;
+  const Pose down = look_at({0.02, 0.03, 1.5}, {0.02, 0.03, 0}, Eigen::Vector3d::UnitX());
+  const auto count = [&](GainModel model, double plane, double min_range) {
+    GainConfig config;
+    config.model = model;
+    config.min_range = min_range;
+    return GainEvaluator(VoxelScene::build(grid, {{}, plane}), sensor, config).outcomes(down);
+  };
+  const RayOutcomes seen = count(GainModel::combined, 0.5, 0.2);
+  EXPECT_EQ(seen.obstacle, seen.rays);
+  EXPECT_EQ(count(GainModel::combined, 0.5, 1.6).too_near, seen.rays);
+  EXPECT_EQ(count(GainModel::paper, 0.5, 0.2).unknown, seen.rays);  // the layers below
+  EXPECT_EQ(count(GainModel::surface, 0.1, 0.2).unknown, seen.rays);
+  EXPECT_EQ(count(GainModel::surface, 2.0, 0.2).unknown, seen.rays);  // it is above the camera
 }
 
 TEST(RayOutcomes, OfABadPoseAreNone) {

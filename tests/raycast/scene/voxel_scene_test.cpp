@@ -93,6 +93,10 @@ TEST(VoxelScene, NeedsRayPacketsOnlyForObstaclesAndTheTracerEmbree) {
   });
   test::expect_error(ErrorCode::backend, "no ray packets",
                      [&] { (void)VoxelScene::build(grid, {obstacles}); });
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  test::expect_error(ErrorCode::backend, "no ray packets", [&] { SurfaceScene surface(mesh); });
   has_ray_packets = true;
   EXPECT_TRUE(test::same_bits(
       GainEvaluator(scene, sensor, test::kPaper, {1, Tracer::embree}).evaluate(poses), expected));

@@ -133,6 +133,13 @@ const ScoredViews& scored_in_full(const Scores& scores) {
   return none;
 }
 
+// Poses that a gain is known of, by some of their rays or by all; fewer than there are where a
+// deadline ended the call.
+std::size_t looked_at(const Scores& scores) {
+  if (std::holds_alternative<JointViews>(scores.found)) return scores.candidates;
+  return std::max(scores.estimated, scored_in_full(scores).gains.size());
+}
+
 }  // namespace
 
 std::optional<std::size_t> Scores::winner() const {
@@ -169,7 +176,7 @@ Json ScoreReport::summary() const {
           {"prior_sigma", evaluator.prior_sigma()},
           {"orthonormalized_poses", source.orthonormalized},
           {"seconds", seconds},
-          {"poses_per_second", static_cast<double>(scores.candidates) / seconds},
+          {"poses_per_second", static_cast<double>(looked_at(scores)) / seconds},
           {"rays_per_second", static_cast<double>(scores.rays_traced) / seconds}};
 }
 
@@ -210,7 +217,7 @@ void ScoreReport::print_table() const {
   const int threads = evaluator.num_threads();
   std::printf(
       "%s poses in %.3f s: %.0f poses/s, %s rays/s, %s rays per pose, %s voxels, %d %s, %s\n",
-      with_commas(poses).c_str(), seconds, static_cast<double>(poses) / seconds,
+      with_commas(poses).c_str(), seconds, static_cast<double>(looked_at(scores)) / seconds,
       with_unit(static_cast<double>(scores.rays_traced) / seconds).c_str(),
       with_commas(evaluator.rays_per_pose()).c_str(), with_commas(grid.voxel_count()).c_str(),
       threads, threads == 1 ? "thread" : "threads", std::string(evaluator.scene().isa()).c_str());

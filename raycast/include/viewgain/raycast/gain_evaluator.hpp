@@ -191,8 +191,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
 
   /// Why a view's gain is what it is: what becomes of each of the rays that evaluate() uses. A
   /// camera in an occupied voxel sees from there. All counts are 0 for a bad pose: nothing is
-  /// thrown for it. Costs two traces of the pose and a PinholeCamera::ray() for each ray that meets
-  /// nothing.
+  /// thrown for it. Costs two traces of the pose and a PinholeCamera::ray() for each ray.
   [[nodiscard]] RayOutcomes outcomes(const Pose& T_world_camera) const;
 
   /// The k best poses: best_indices() of evaluate()'s results and those results, ties to the lower

@@ -39,7 +39,7 @@ struct VIEWGAIN_EXPORT BestViews {
   std::size_t estimated = 0;                ///< poses that were scored by some of their rays
   std::vector<std::size_t> scored_indices;  ///< poses that were scored in full, ascending
   std::vector<ViewGain> scored_gains;       ///< of those; empty with a measure
-  std::uint64_t rays_traced = 0;            ///< of both stages
+  std::uint64_t rays_traced = 0;            ///< of both stages, those of bad poses among them
 };
 
 /// Views that are good together, in the order of their choice; see GainEvaluator::best_set().

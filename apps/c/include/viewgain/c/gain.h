@@ -226,10 +226,10 @@ VG_API vg_status vg_contributions(const vg_evaluator* evaluator, const double T_
 typedef struct vg_ray_outcomes {
   size_t struct_size;     /* as _init() sets it */
   uint32_t rays;          /* of the view */
-  uint32_t too_near;      /* meet surface or an obstacle before the sensor's min_range */
+  uint32_t too_near;      /* meet surface or an obstacle before min_range, in free space */
   uint32_t unknown;       /* come to unknown space: what may be new */
   uint32_t known_surface; /* end in known surface, with free space before it */
-  uint32_t obstacle;      /* end at an obstacle or on the support plane */
+  uint32_t obstacle;      /* end at an obstacle or, but by VG_GAIN_PAPER, on the support plane */
   uint32_t out_of_range;  /* are in known free space to max_range */
   uint32_t out_of_map;    /* leave the workspace, or never come into it */
 } vg_ray_outcomes;

@@ -131,7 +131,8 @@ class VIEWGAIN_EXPORT ClassicMap {
 /// several rays pass counts with each of them, unless its gain says distinct.
 ///
 /// Rays are in single precision, as the tracer's: some in a hundred thousand go by the other side
-/// of a voxel's edge. Else gains agree with sums in double precision to 1e-5. Thread safety: const
+/// of a voxel's edge. Else gains agree with sums in double precision to 1e-5, counts of rays
+/// to 5e-4 and unknown_volume to 1e-3 (README.md). Thread safety: const
 /// members may run from many threads at once. Determinism: the same bits for any number of threads.
 ///
 /// Cost of evaluate(): all ten gains together take some 20 times the time of the paper's gain
