@@ -136,13 +136,20 @@ Totals integrate_all(ReadingSource& source, const Options& options, std::set<std
   Totals totals(options.common.quiet);
   Progress progress(part_name(options), options.common.quiet);
   for (std::size_t i = 0; i < source.size(); ++i) {
-    const std::string identity = source.identity(i);
+    std::string identity;
+    FrameFault fault;
+    try {
+      identity = source.identity(i);
+    } catch (const Error& error) {
+      if (source.folder() == nullptr) throw;
+      fault = {FrameVerdict::unreadable, error.what()};
+    }
     if (!identity.empty() && !frames.insert(identity).second) {
       ++totals.skipped;
       progress.update(i + 1, source.size());
       continue;
     }
-    FrameFault fault = source.load(i);
+    if (fault.verdict == FrameVerdict::used) fault = source.load(i);
     if (fault.verdict == FrameVerdict::used) {
       if (std::optional<FrameRegistration> registration = source.register_loaded()) {
         if (registration->status == RegistrationStatus::refused) {
@@ -288,7 +295,7 @@ void check_flags(const Options& options, const App& app) {
 
 // A map without a reading comes of a wrong scale, sensor or workspace.
 void refuse_empty(const Options& options, const ReadingSource& source, const Totals& totals) {
-  if (totals.skipped > 0) return;
+  if (totals.skipped > 0) return totals.tally.name_left_out();
   if (options.clouds.empty()) return totals.tally.require_any(*source.folder());
   if (!options.map.empty()) return;
   const IntegrationReport& sum = totals.sum;

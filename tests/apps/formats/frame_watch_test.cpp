@@ -221,6 +221,23 @@ TEST_F(WatchedFolder, ABadLineIsOneFramesAlone) {
   EXPECT_EQ(watched.bad(), (Counts{{"lost_pose", 2}}));
 }
 
+TEST_F(WatchedFolder, LinesOfPosesThatNobodyWritesAnyMore) {
+  const std::string line = " 0.5 0 0.4 0 0 0 1";
+  for (const int number : {0, 1}) put(name(number, ".depth.png"), png(500));
+  put("poses.txt", "0" + line + "\n1" + line);
+  FrameWatch watched = watch();
+  EXPECT_EQ(complete(watched), Numbers{0});  // the other line has no end yet
+  EXPECT_EQ(complete_after(watched, 2s), Numbers{1});
+  // What was taken is nobody's fault when it is gone.
+  for (const int number : {0, 1}) fs::remove(dir.path() / name(number, ".depth.png"));
+  EXPECT_EQ(complete_after(watched, 2s), Numbers{});
+  EXPECT_TRUE(watched.give_up().empty());
+  // A heading would give each image the pose of the one before.
+  put("poses.txt", "timestamp tx ty tz qx qy qz qw\n0" + line + "\n");
+  expect_error(ErrorCode::format, "poses.txt:1", [&] { (void)watched.look(now); });
+  expect_error(ErrorCode::format, "poses.txt:1", [&] { (void)open_frames(dir.path()); });
+}
+
 TEST_F(WatchedFolder, ATakenFrameStaysTaken) {
   put_frame(0);
   put_frame(1);

@@ -204,6 +204,14 @@ TEST(ViewPlanner, SaysWhyToEnd) {
 
   config.max_views = 20;
   config.idle_views = 2;
+  // Before the first frame that is of use nothing is idle.
+  ViewPlanner late(scene.sensor, config, {1});
+  for (int i = 0; i < 5; ++i) {
+    (void)late.drop(FrameVerdict::lost_pose, std::nullopt);
+    EXPECT_FALSE(late.should_stop()) << i;
+  }
+  late.add(scene.see(scene.views[0]), scene.views[0]);
+  EXPECT_FALSE(late.should_stop());
   ViewPlanner idle(scene.sensor, config, {1});
   DepthFrame nothing = scene.see(scene.views[0]);
   std::fill(nothing.depth.begin(), nothing.depth.end(), DepthFrame::kInvalid);

@@ -36,6 +36,14 @@ std::vector<ReadPose> read_pose_lines(const fs::path& path, bool whole_lines_alo
       } catch (const Error&) {  // the pose has no time then
       }
     }
+    if (times == nullptr && poses.empty()) {
+      // As a lost pose it would give every image the pose of the one before.
+      try {
+        (void)line.number(0);
+      } catch (const Error&) {
+        line.fail("is no pose; a heading begins with '#'");
+      }
+    }
     try {
       ReadPose read;
       read.T_world_camera = tum_line_pose(line, &read.is_mended);

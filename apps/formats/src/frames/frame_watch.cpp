@@ -55,6 +55,7 @@ struct Entry {
   bool is_examined = false;  // since then
   bool is_judged = false;    // likewise, when nobody was writing any more
   fs::path missing_mask{};   // when it was judged: all that it waits for
+  std::string name{};        // of the depth image
   State state = State::waits;
   FrameVerdict verdict = FrameVerdict::used;  // of a bad one
 };
@@ -69,11 +70,13 @@ struct Finding {
 
 Finding fault(FrameVerdict verdict, std::string what) { return {{}, {verdict, std::move(what)}}; }
 
-// The poses of lines that have their end; none of a file that is being replaced.
-std::vector<ReadPose> poses_of_lines(const fs::path& path) {
+// The poses of lines, of those that have their end if someone may be writing; none of a file that
+// is being replaced.
+std::vector<ReadPose> poses_of_lines(const fs::path& path, bool whole_lines_alone) {
   try {
-    return read_pose_lines(path, true);
-  } catch (const Error&) {
+    return read_pose_lines(path, whole_lines_alone);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::format) throw;
     return {};
   }
 }
@@ -93,6 +96,8 @@ struct FrameWatch::Impl {
   std::map<std::uint64_t, Entry> entries;
   Time looked{};  // when it was looked at last
   FileStamp poses_stamp;
+  Time poses_since{};           // when it became like this
+  bool has_all_poses = false;   // the last line, too, whether it has an end or not
   std::vector<ReadPose> poses;  // of poses.txt
 
   [[nodiscard]] Signature signature(std::uint64_t number, const std::string& name,
@@ -165,10 +170,8 @@ struct FrameWatch::Impl {
     const bool has_amplitude = !needs_amplitude || is.amplitude.is_there();
     if (!is_stable && !(missing_mask.empty() && has_amplitude)) return {};
     if (!read) return {};
-    if (read->fault.verdict != FrameVerdict::used) {
-      if (is_stable) open_folder();
-      return {{}, read->fault};
-    }
+    if (is_stable) open_folder();  // whoever is told of a fault has to know the folder
+    if (read->fault.verdict != FrameVerdict::used) return {{}, read->fault};
     try {
       for (const fs::path& file : files) {
         if (has_end(file)) continue;
@@ -197,7 +200,8 @@ struct FrameWatch::Impl {
   static BadFrame set_bad(std::uint64_t number, Entry& entry, Finding why) {
     entry.state = State::bad;
     entry.verdict = why.fault.verdict;
-    return {number, std::move(why.fault), frame_name(number, kDepthSuffix), why.T_world_camera};
+    return {number, std::move(why.fault),
+            entry.name.empty() ? frame_name(number, kDepthSuffix) : entry.name, why.T_world_camera};
   }
 
   FolderLook look(Time now) {
@@ -215,7 +219,12 @@ struct FrameWatch::Impl {
     const bool is_recorded = folder ? folder->recorded : !has_poses;
     if (const FileStamp stamp = stamp_of(dir / kPoses); stamp != poses_stamp) {
       poses_stamp = stamp;
-      poses = poses_of_lines(dir / kPoses);
+      poses_since = now;
+      has_all_poses = false;
+      poses = poses_of_lines(dir / kPoses, true);
+    } else if (!has_all_poses && now - poses_since >= config.settle) {
+      has_all_poses = true;
+      poses = poses_of_lines(dir / kPoses, false);
     }
     std::erase_if(entries, [&](const auto& entry) { return !frames.contains(entry.first); });
     FolderLook found;
@@ -224,6 +233,7 @@ struct FrameWatch::Impl {
       const Signature is = signature(number, name, is_recorded);
       if (!is.depth.is_there()) continue;  // since the folder was listed
       if (is != entry.signature) entry = {is, now};
+      entry.name = name + std::string(kDepthSuffix);
       const bool is_stable = now - entry.since >= config.settle;
       if (entry.state != State::waits || (is_stable ? entry.is_judged : entry.is_examined))
         continue;
@@ -272,7 +282,7 @@ std::vector<BadFrame> FrameWatch::give_up() {
   for (auto& [number, entry] : m.entries) {
     if (entry.state != State::waits || !entry.is_judged) continue;
     const bool has_pose = !entry.missing_mask.empty();
-    const fs::path image = m.dir / frame_name(number, kDepthSuffix);
+    const fs::path image = m.dir / entry.name;
     given_up.push_back(Impl::set_bad(
         number, entry,
         has_pose ? fault(FrameVerdict::no_mask, entry.missing_mask.string() + ": no such mask")
@@ -281,6 +291,7 @@ std::vector<BadFrame> FrameWatch::give_up() {
   for (std::uint64_t i = 0; i < m.poses.size(); ++i) {
     const fs::path image = m.dir / frame_name(i, kDepthSuffix);
     if (m.folder && m.folder->recorded) break;
+    if (m.taken.contains(image.filename().string())) continue;  // and gone since
     const auto [entry, is_new] = m.entries.try_emplace(i);
     if (!is_new) continue;
     given_up.push_back(Impl::set_bad(

@@ -121,6 +121,10 @@ struct ViewPlanner::Impl {
     state.of_view = rules.after_view(added.progress);
     state.of_choice.reset();
     state.before_choice = state.after_choice = rules.memory();
+    if (!is_in_map(state.frames.begin()->first)) {  // it has not begun
+      if (state.of_view == StopReason::idle) state.of_view.reset();
+      state.before_choice.idle_views = state.after_choice.idle_views = 0;
+    }
     return added;
   }
 

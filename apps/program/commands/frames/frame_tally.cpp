@@ -54,6 +54,13 @@ void FrameTally::add(const std::filesystem::path& image, const FrameFault& fault
 
 void FrameTally::add(const IntegrationReport& counts) { readings_ += counts.readings; }
 
+void FrameTally::name_left_out() const {
+  if (quiet_) return;
+  for (const std::string& fault : faults_) {
+    std::fprintf(stderr, "viewgain: %s; left out\n", utf8_text(fault).c_str());
+  }
+}
+
 std::string FrameTally::none_inside(const FrameFolder& folder) const {
   return "none of " + with_commas(readings_) + " readings lies in the workspace at " +
          short_text(folder.frames().depth_scale) +
@@ -63,11 +70,7 @@ std::string FrameTally::none_inside(const FrameFolder& folder) const {
 void FrameTally::require_any(const FrameFolder& folder) const {
   const std::string suspicion = suspicion_of(folder);
   if (counts_.empty() || is_in_map(counts_.begin()->first)) {
-    for (const std::string& fault : faults_) {
-      if (!quiet_) {
-        std::fprintf(stderr, "viewgain: %s; left out\n", utf8_text(fault).c_str());
-      }
-    }
+    name_left_out();
     std::string warning = suspicion;
     if (count_of(counts_, FrameVerdict::used) == 0 && readings_ > 0) {
       warning = none_inside(folder) + (suspicion.empty() ? "" : "; " + suspicion);

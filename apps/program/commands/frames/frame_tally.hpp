@@ -42,6 +42,9 @@ class FrameTally {
   /// names the first of each kind that was left out, unless quiet, and warns of what is suspected.
   void require_any(const FrameFolder& folder) const;
 
+  /// Names the first of each kind that was left out, unless quiet.
+  void name_left_out() const;
+
   [[nodiscard]] const FrameCounts& counts() const noexcept { return counts_; }
   /// Of the first frame of each kind that was left out.
   [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }

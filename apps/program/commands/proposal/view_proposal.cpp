@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/commands/proposal/view_proposal.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -151,6 +152,11 @@ void check(const ProposalOptions& options) {
   if (options.region_depth) check_positive("--region-depth", *options.region_depth);
   if (options.distance) check_positive("--distance", *options.distance);
   check_at_least_0("--cost-per-metre", options.cost_per_metre);
+  if (!options.poses.empty() && options.generator.empty() &&
+      (options.count || options.distance || !options.center.empty())) {
+    throw Error(ErrorCode::invalid_argument,
+                "--count, --distance and --center go with --generator, not with --poses alone");
+  }
   if (!options.costs.empty() && options.poses.empty()) {
     throw Error(ErrorCode::invalid_argument, "--costs goes with --poses");
   }
@@ -212,8 +218,12 @@ NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
   const RankConfig config{.costs = costs, .cost_per_metre = options.cost_per_metre};
   std::optional<Eigen::Vector3d> here;
   if (!grid.views().empty()) here = grid.views().back().translation();
-  Ranking ranking = rank_views(evaluator, poses_of(proposal.candidates), top, config, here);
+  // With costs, views that gain nothing may be worth more than ones that gain.
+  const bool has_costs = !costs.empty() || options.cost_per_metre > 0;
+  Ranking ranking = rank_views(evaluator, poses_of(proposal.candidates),
+                               has_costs ? proposal.candidates.size() : top, config, here);
   leave_out_gainless(ranking, config);
+  ranking.views.resize(std::min(ranking.views.size(), top));
   return next_views(ranking, proposal, evaluator.model());
 }
 

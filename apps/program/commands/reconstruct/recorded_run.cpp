@@ -114,6 +114,10 @@ class Recording {
       }
       progress.update(i + 1, map_->folder().size());
     }
+    if (views_->empty() && stop.stop_requested()) {
+      throw Error(ErrorCode::invalid_argument,
+                  map_->folder().name() + ": interrupted before a frame was in the map");
+    }
     map_->require_frames();
   }
 

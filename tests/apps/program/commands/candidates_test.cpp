@@ -173,6 +173,7 @@ TEST_F(Candidates, NextChoosesAmongGivenPosesByTheirWorth) {
                       {{{"--costs", "costs.txt"}, "--poses"},
                        {{"--poses", "mine.txt", "--costs", "few.txt"}, "2 costs for the 30 poses"},
                        {{"--poses", "mine.txt", "--costs", "word.txt"}, "word.txt:2"},
+                       {{"--poses", "mine.txt", "--count", "7"}, "--generator"},
                        {{"--cost-per-metre", "-1"}, "--cost-per-metre -1"}});
 }
 
