@@ -41,7 +41,7 @@ bool EarClipping::split() {
     return false;
   }
   reason_ = "crosses itself";
-  return twice_area > no_area_ && !crosses_itself() && clip_all();
+  return twice_area > no_area_ && !winds_ && !crosses_itself() && clip_all();
 }
 
 // Drops the axis along which the normal is longest: what lies inside stays inside.
@@ -72,14 +72,21 @@ double EarClipping::flatten() {
   return std::abs(normal[axis]);
 }
 
-// True if the fan of the first corner fills the polygon, or that is a line.
+// True if the fan of the first corner fills the polygon, or that is a line. It does not where the
+// others go round the first one more than once.
 bool EarClipping::add_fan() {
-  bool fills = true;
+  bool turns_left = true, is_back = false, was_beyond = false;
+  winds_ = false;
   for (std::size_t i = 2; i < flat_.size(); ++i) {
     triangles_.push_back({0, i - 1, i});
-    fills = fills && turn_of(flat_[0], flat_[i - 1], flat_[i]) > no_area_;
+    const double side = turn_of(flat_[0], flat_[1], flat_[i]);
+    turns_left = turns_left && turn_of(flat_[0], flat_[i - 1], flat_[i]) > no_area_;
+    is_back = is_back || (was_beyond && side > no_area_);
+    winds_ = winds_ || (was_beyond && left_of(flat_[0], flat_[1], flat_[i]) > slack_);
+    was_beyond = was_beyond || side < 0;
   }
-  return fills || !has_area();
+  winds_ = winds_ && turns_left;
+  return (turns_left && !is_back) || !has_area();
 }
 
 bool EarClipping::has_area() const {

@@ -50,6 +50,7 @@ class EarClipping {
   std::vector<char> is_ear_;
   double no_area_ = 0;  // what rounding makes of none, twice an area
   double slack_ = 0;    // how deep it may cut into itself: corners are rounded to single precision
+  bool winds_ = false;  // round its first corner more than once: it may cross itself at a corner
   std::vector<std::array<std::size_t, 3>> triangles_;
   std::string reason_;
 };

@@ -16,7 +16,8 @@ namespace viewgain::detail {
 /// words, whatever lines they stand on, as the header says and nothing else.
 [[nodiscard]] TriangleMesh off_mesh(std::string_view bytes, const std::string& name);
 
-/// Of v and f; lines that go on behind a backslash are joined. Free-form surfaces are refused.
+/// Of v and f; lines that go on behind a backslash are joined. Free-form surfaces and calls of
+/// other files are refused.
 [[nodiscard]] TriangleMesh obj_mesh(std::string_view bytes, const std::string& name);
 
 /// ASCII, words in any case, or binary; equal points are one vertex.

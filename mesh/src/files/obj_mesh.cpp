@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,12 +15,12 @@ namespace viewgain::detail {
 namespace {
 
 // What a mesh does not need: other elements, names, materials, and curves.
-constexpr std::array<std::string_view, 36> kSkippedInObj{
-    "vt",       "vn",         "vp",        "l",      "p",      "g",     "s",    "o",
-    "mg",       "usemtl",     "usemap",    "mtllib", "maplib", "bevel", "lod",  "c_interp",
-    "d_interp", "shadow_obj", "trace_obj", "cstype", "deg",    "bmat",  "step", "curv",
-    "curv2",    "parm",       "trim",      "hole",   "scrv",   "sp",    "end",  "con",
-    "ctech",    "stech",      "call",      "csh"};
+constexpr std::array<std::string_view, 34> kSkippedInObj{
+    "vt",   "vn",       "vp",       "l",          "p",         "g",      "s",
+    "o",    "mg",       "usemtl",   "usemap",     "mtllib",    "maplib", "bevel",
+    "lod",  "c_interp", "d_interp", "shadow_obj", "trace_obj", "cstype", "deg",
+    "bmat", "step",     "curv",     "curv2",      "parm",      "trim",   "hole",
+    "scrv", "sp",       "end",      "con",        "ctech",     "stech"};
 
 class ObjReader {
  public:
@@ -34,6 +35,8 @@ class ObjReader {
         add_face();
       } else if (keyword == "surf") {
         lines_.fail("free-form surfaces are not read");
+      } else if (keyword == "call" || keyword == "csh") {
+        lines_.fail("what other files and commands add is not read");
       } else if (std::find(kSkippedInObj.begin(), kSkippedInObj.end(), keyword) ==
                  kSkippedInObj.end()) {
         lines_.fail("the word " + quoted(keyword) + " begins no line of an OBJ file");
@@ -75,8 +78,10 @@ class ObjReader {
                   std::to_string(count) + " numbers");
     }
     for (std::size_t i = 0; i < count; ++i) numbers[i] = lines_.number_of(words_[i + 1]);
-    if (count == 4 && numbers[3] != 1)
-      lines_.fail("vertices of a weight that is not 1 are not read");
+    if ((count == 4 || count == 7) && numbers[3] != 1) {
+      lines_.fail("vertices of a weight, the fourth of " + std::to_string(count) +
+                  " numbers, that is not 1 are not read");
+    }
     mesh_.add_vertex({numbers[0], numbers[1], numbers[2]}, lines_.line());
   }
 
@@ -109,7 +114,8 @@ class ObjReader {
 }  // namespace
 
 TriangleMesh obj_mesh(std::string_view bytes, const std::string& name) {
-  return ObjReader(bytes, name).read();
+  std::string copy;
+  return ObjReader(with_one_line_end(bytes, copy), name).read();
 }
 
 }  // namespace viewgain::detail

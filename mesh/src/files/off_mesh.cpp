@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "mesh_builder.hpp"
@@ -146,8 +147,13 @@ class OffReader {
       return value;
     };
     const auto integer = [&] { return next(ScalarType::Kind::signed_integer); };
-    vertices_ = integer();
-    faces_ = integer();
+    const auto count_of = [&](const char* what) {
+      const double count = integer();
+      if (count < 0) lines_.fail(std::string("the count of ") + what + " is negative");
+      return count;
+    };
+    vertices_ = count_of("vertices");
+    faces_ = count_of("faces");
     (void)integer();
     for (double i = 0; i < vertices_; ++i) {
       std::array<double, 3> p{};
@@ -156,9 +162,9 @@ class OffReader {
       for (std::size_t k = 3; k < vertex_numbers_; ++k) (void)integer();
     }
     for (double i = 0; i < faces_; ++i) {
-      for (double corners = integer(); corners > 0; --corners) mesh_.add_corner(integer(), 0);
+      for (double k = count_of("a face's corners"); k > 0; --k) mesh_.add_corner(integer(), 0);
       mesh_.end_face(0);
-      for (double components = integer(); components > 0; --components) (void)integer();
+      for (double k = count_of("a colour's components"); k > 0; --k) (void)integer();
     }
     if (!rest.empty()) lines_.fail("the file goes on behind its last face");
   }

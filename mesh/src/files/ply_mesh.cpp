@@ -16,10 +16,12 @@ namespace {
 std::optional<std::size_t> find_element(const PlyFile& file, std::string_view name,
                                         std::string_view other_name) {
   const auto& elements = file.elements();
-  const auto found = std::find_if(elements.begin(), elements.end(), [&](const PlyElement& e) {
-    return e.name == name || e.name == other_name;
-  });
+  const auto is_it = [&](const PlyElement& e) { return e.name == name || e.name == other_name; };
+  const auto found = std::find_if(elements.begin(), elements.end(), is_it);
   if (found == elements.end()) return std::nullopt;
+  if (std::any_of(found + 1, elements.end(), is_it)) {
+    file.fail("there is more than one element " + quoted(name));
+  }
   return static_cast<std::size_t>(found - elements.begin());
 }
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cctype>
 #include <cstdint>
+#include <string>
 #include <unordered_map>
 #include <utility>
 
@@ -65,7 +66,10 @@ class StlText {
       } else if (is_next("solid")) {
         skip_name();
       } else if (is_end("solid")) {
-        words_.skip_line();
+        // Some files have the next solid in the same line.
+        while (words_.more_here() && !is_facet() && !is_stl_word(words_.peek(), "solid")) {
+          (void)words_.next();
+        }
       } else {
         fail_at("facet");
       }
@@ -87,9 +91,15 @@ class StlText {
   bool is_end(const std::string& what) {
     return is_next("end" + what) || (is_next("end") && (is_next(what) || (fail_at(what), false)));
   }
+  // Whether a facet begins here; a name may have the word.
+  bool is_facet() {
+    const std::string_view second = words_.second_here();
+    return is_stl_word(words_.peek(), "facet") &&
+           (is_stl_word(second, "normal") || is_stl_word(second, "outer"));
+  }
   // A name has any words; some files have all of them in one line.
   void skip_name() {
-    while (words_.more_here() && !is_stl_word(words_.peek(), "facet")) (void)words_.next();
+    while (words_.more_here() && !is_facet()) (void)words_.next();
   }
 
   void read_facet() {
@@ -129,12 +139,19 @@ TriangleMesh binary_stl_mesh(std::string_view bytes, std::uint64_t count, const 
 }
 
 // Files of both kinds begin with "solid"; no text has the size that its bytes 80 to 83 would say.
-bool is_stl_text(std::string_view bytes, std::uint64_t promised) {
+bool is_stl_text(std::string_view bytes, std::uint64_t promised, bool has_nul) {
   if (bytes.size() == kStlBody + kStlTriangle * promised) return false;
-  bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
+  const auto skip_to = [&bytes](std::size_t place) {
+    bytes.remove_prefix(std::min(place, bytes.size()));
+  };
+  skip_to(bytes.find_first_not_of(" \t\r\n"));
+  while (bytes.starts_with('#')) {
+    skip_to(bytes.find_first_of("\r\n"));
+    skip_to(bytes.find_first_not_of(" \t\r\n"));
+  }
   const bool has_word =
       is_stl_word(bytes.substr(0, 5), "solid") || is_stl_word(bytes.substr(0, 5), "facet");
-  return has_word && bytes.find('\0') == std::string_view::npos;
+  return has_word && !has_nul;
 }
 
 }  // namespace
@@ -145,7 +162,11 @@ TriangleMesh stl_mesh(std::string_view bytes, const std::string& name) {
     constexpr ScalarType kCount{ScalarType::Kind::unsigned_integer, 4};
     promised = static_cast<std::uint64_t>(decode(bytes.data() + kStlHeader, kCount));
   }
-  if (is_stl_text(bytes, promised)) return StlText(bytes, name).read();
+  const bool has_nul = bytes.find('\0') != std::string_view::npos;
+  if (is_stl_text(bytes, promised, has_nul)) {
+    std::string copy;
+    return StlText(with_one_line_end(bytes, copy), name).read();
+  }
   const auto fail = [&](const std::string& what) {
     throw Error(ErrorCode::format, name + ": " + what);
   };
@@ -153,6 +174,7 @@ TriangleMesh stl_mesh(std::string_view bytes, const std::string& name) {
     fail("neither text that begins with \"solid\" nor long enough for a binary STL file");
   // Fewer bytes than a triangle's may follow.
   const std::uint64_t held = (bytes.size() - kStlBody) / kStlTriangle;
+  if (promised != held && !has_nul) fail("neither text that begins with \"solid\" nor binary");
   if (promised != held) {
     fail("the header promises " + std::to_string(promised) + " triangles, the file holds " +
          std::to_string(held));

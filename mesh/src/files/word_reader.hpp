@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 #include "viewgain/support/text.hpp"
@@ -17,6 +18,26 @@ inline std::size_t words_before_comment(const LineReader& lines) {
   const auto comment = std::find_if(words.begin(), words.end(),
                                     [](std::string_view word) { return word.front() == '#'; });
   return static_cast<std::size_t>(comment - words.begin());
+}
+
+/// The text, or where its lines end in more than one way, a copy of it in which they all end at \n:
+/// else one that a comment or a name stands before would be lost.
+inline std::string_view with_one_line_end(std::string_view text, std::string& copy) {
+  const auto is_return_alone = [text](std::size_t i) {
+    return text[i] == '\r' && !text.substr(i + 1).starts_with('\n');
+  };
+  std::size_t i = 0;
+  while (i < text.size() && !is_return_alone(i)) ++i;
+  if (i == text.size() || text.find('\n') == std::string_view::npos) return text;
+  copy.clear();
+  for (i = 0; i < text.size(); ++i) {
+    if (text[i] != '\r') {
+      copy += text[i];
+    } else if (is_return_alone(i) && !text.substr(i + 1).starts_with('\r')) {
+      copy += '\n';
+    }
+  }
+  return copy;
 }
 
 /// The words of a text one by one, whatever lines they stand on, without its comments.
@@ -35,8 +56,11 @@ class WordReader {
     }
     return true;
   }
-  /// The next word, which is taken by next() or skipped with the others of its line. They fail
-  /// where the file ends.
+  /// The word behind the next one; empty if that is the last of its line.
+  [[nodiscard]] std::string_view second_here() const {
+    return at_ + 1 < count_ ? lines_.words()[at_ + 1] : std::string_view();
+  }
+  /// The next word, which is taken by next(). They fail where the file ends.
   std::string_view peek() {
     if (!more()) lines_.fail("the file ends too early");
     return lines_.words()[at_];
@@ -46,7 +70,6 @@ class WordReader {
     ++at_;
     return word;
   }
-  void skip_line() { at_ = count_; }
 
   /// The next word, which must be a number.
   double number() { return lines_.number_of(next()); }
