@@ -78,7 +78,9 @@ class ObjReader {
                   std::to_string(count) + " numbers");
     }
     for (std::size_t i = 0; i < count; ++i) numbers[i] = lines_.number_of(words_[i + 1]);
-    if ((count == 4 || count == 7) && numbers[3] != 1) {
+    // Seven are x y z w r g b or x y z r g b a, which is told by the weight or the alpha of 1.
+    const bool has_weight = count == 4 || (count == 7 && numbers[6] != 1);
+    if (has_weight && numbers[3] != 1) {
       lines_.fail("vertices of a weight, the fourth of " + std::to_string(count) +
                   " numbers, that is not 1 are not read");
     }

@@ -219,6 +219,7 @@ Rows obj_rows() {
       box("mark.obj", "\xEF\xBB\xBF" + v + f),
       box("colours.obj", framed(v, "", " 0.5 0.5 0.5") + f),
       box("weights_and_colours.obj", framed(v, "", " 1 0.5 0.5 0.5") + f),
+      box("colours_alpha.obj", framed(v, "", " 0.5 0.5 0.5 1") + f),
       box("weights.obj", framed(v, "", " 1.0") + f),
       box("comment_behind.obj", framed(v + f, "", " # x")),
       box("exponents.obj", change("v 2 3 5", "v +2e0 3.0E+0 0.5e1")),
@@ -276,8 +277,8 @@ Rows obj_rows() {
       refused("weight_and_colour.obj", ":2: vertices of a weight",
               change("v 2 0 0", "v 2 0 0 2 1 1 1")),
       // Or that is a weight and a colour.
-      refused("colour_alpha.obj", ":2: vertices of a weight",
-              change("v 2 0 0", "v 2 0 0 0.5 0.5 0.5 1")),
+      refused("weight_and_colour.obj", ":2: vertices of a weight",
+              change("v 2 0 0", "v 2 0 0 0.5 0.5 0.5 0.7")),
       refused("call.obj", ":15: what other files", v + f + "call other.obj\n"),
       refused("csh.obj", ":15: what other files", v + f + "csh -cat other.obj\n"),
       refused("surface.obj", ":15: free-form surfaces", v + f + "surf 0 1 0 1 1 2 3 4\n"),

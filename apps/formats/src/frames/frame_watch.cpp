@@ -264,8 +264,8 @@ struct FrameWatch::Impl {
 };
 
 FrameWatch::FrameWatch(fs::path dir, FrameWatchConfig config)
-    : impl_(
-          std::make_unique<Impl>(Impl{std::move(dir), std::move(config), {}, {}, {}, {}, {}, {}})) {
+    : impl_(std::make_unique<Impl>(
+          Impl{std::move(dir), std::move(config), {}, {}, {}, {}, {}, {}, {}, {}})) {
   for (const std::string& identity : impl_->config.taken) {
     impl_->taken.emplace(identity.substr(identity.find(' ') + 1), identity);
   }
