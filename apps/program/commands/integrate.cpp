@@ -136,14 +136,8 @@ Totals integrate_all(ReadingSource& source, const Options& options, std::set<std
   Totals totals(options.common.quiet);
   Progress progress(part_name(options), options.common.quiet);
   for (std::size_t i = 0; i < source.size(); ++i) {
-    std::string identity;
     FrameFault fault;
-    try {
-      identity = source.identity(i);
-    } catch (const Error& error) {
-      if (source.folder() == nullptr) throw;
-      fault = {FrameVerdict::unreadable, error.what()};
-    }
+    const std::string identity = source.identity(i, fault);
     if (!identity.empty() && !frames.insert(identity).second) {
       ++totals.skipped;
       progress.update(i + 1, source.size());

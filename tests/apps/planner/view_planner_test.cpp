@@ -204,7 +204,7 @@ TEST(ViewPlanner, SaysWhyToEnd) {
 
   config.max_views = 20;
   config.idle_views = 2;
-  // Before the first frame that is of use nothing is idle.
+  // Before the first pose that is known nothing is idle.
   ViewPlanner late(scene.sensor, config, {1});
   for (int i = 0; i < 5; ++i) {
     (void)late.drop(FrameVerdict::lost_pose, std::nullopt);

@@ -275,9 +275,6 @@ Rows obj_rows() {
       refused("five.obj", ":2: a vertex has 3 coordinates", change("v 2 0 0", "v 2 0 0 1 1")),
       refused("weight.obj", ":2: vertices of a weight", change("v 2 0 0", "v 2 0 0 2")),
       refused("weight_and_colour.obj", ":2: vertices of a weight",
-              change("v 2 0 0", "v 2 0 0 2 1 1 1")),
-      // Or that is a weight and a colour.
-      refused("weight_and_colour.obj", ":2: vertices of a weight",
               change("v 2 0 0", "v 2 0 0 0.5 0.5 0.5 0.7")),
       refused("call.obj", ":15: what other files", v + f + "call other.obj\n"),
       refused("csh.obj", ":15: what other files", v + f + "csh -cat other.obj\n"),

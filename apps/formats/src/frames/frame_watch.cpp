@@ -70,11 +70,10 @@ struct Finding {
 
 Finding fault(FrameVerdict verdict, std::string what) { return {{}, {verdict, std::move(what)}}; }
 
-// The poses of lines, of those that have their end if someone may be writing; none of a file that
-// is being replaced.
-std::vector<ReadPose> poses_of_lines(const fs::path& path, bool whole_lines_alone) {
+// The poses of lines that have their end; none of a file that is being replaced.
+std::vector<ReadPose> poses_of_lines(const fs::path& path) {
   try {
-    return read_pose_lines(path, whole_lines_alone);
+    return read_pose_lines(path, true);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::format) throw;
     return {};
@@ -96,8 +95,6 @@ struct FrameWatch::Impl {
   std::map<std::uint64_t, Entry> entries;
   Time looked{};  // when it was looked at last
   FileStamp poses_stamp;
-  Time poses_since{};           // when it became like this
-  bool has_all_poses = false;   // the last line, too, whether it has an end or not
   std::vector<ReadPose> poses;  // of poses.txt
 
   [[nodiscard]] Signature signature(std::uint64_t number, const std::string& name,
@@ -170,15 +167,19 @@ struct FrameWatch::Impl {
     const bool has_amplitude = !needs_amplitude || is.amplitude.is_there();
     if (!is_stable && !(missing_mask.empty() && has_amplitude)) return {};
     if (!read) return {};
-    if (is_stable) open_folder();  // whoever is told of a fault has to know the folder
-    if (read->fault.verdict != FrameVerdict::used) return {{}, read->fault};
+    // Whoever is told of a fault has to know the folder.
+    const auto no_frame = [&](FrameFault found) -> Finding {
+      if (is_stable) open_folder();
+      return {{}, std::move(found)};
+    };
+    if (read->fault.verdict != FrameVerdict::used) return no_frame(read->fault);
     try {
       for (const fs::path& file : files) {
         if (has_end(file)) continue;
-        return fault(FrameVerdict::unreadable, file.string() + ": the image has no end");
+        return no_frame({FrameVerdict::unreadable, file.string() + ": the image has no end"});
       }
     } catch (const Error& error) {
-      return fault(FrameVerdict::unreadable, error.what());
+      return no_frame({FrameVerdict::unreadable, error.what()});
     }
     if (!missing_mask.empty()) return {{}, {}, missing_mask};
     // What is wrong with it is no frame's fault.
@@ -219,12 +220,7 @@ struct FrameWatch::Impl {
     const bool is_recorded = folder ? folder->recorded : !has_poses;
     if (const FileStamp stamp = stamp_of(dir / kPoses); stamp != poses_stamp) {
       poses_stamp = stamp;
-      poses_since = now;
-      has_all_poses = false;
-      poses = poses_of_lines(dir / kPoses, true);
-    } else if (!has_all_poses && now - poses_since >= config.settle) {
-      has_all_poses = true;
-      poses = poses_of_lines(dir / kPoses, false);
+      poses = poses_of_lines(dir / kPoses);
     }
     std::erase_if(entries, [&](const auto& entry) { return !frames.contains(entry.first); });
     FolderLook found;
@@ -264,8 +260,8 @@ struct FrameWatch::Impl {
 };
 
 FrameWatch::FrameWatch(fs::path dir, FrameWatchConfig config)
-    : impl_(std::make_unique<Impl>(
-          Impl{std::move(dir), std::move(config), {}, {}, {}, {}, {}, {}, {}, {}})) {
+    : impl_(
+          std::make_unique<Impl>(Impl{std::move(dir), std::move(config), {}, {}, {}, {}, {}, {}})) {
   for (const std::string& identity : impl_->config.taken) {
     impl_->taken.emplace(identity.substr(identity.find(' ') + 1), identity);
   }

@@ -121,7 +121,12 @@ struct ViewPlanner::Impl {
     state.of_view = rules.after_view(added.progress);
     state.of_choice.reset();
     state.before_choice = state.after_choice = rules.memory();
-    if (!is_in_map(state.frames.begin()->first)) {  // it has not begun
+    // Where nobody knew yet where the camera was, it has not begun.
+    const bool has_pose =
+        std::any_of(state.frames.begin(), state.frames.end(), [](const auto& counted) {
+          return counted.first != FrameVerdict::lost_pose && counted.first != FrameVerdict::no_pose;
+        });
+    if (!has_pose) {
       if (state.of_view == StopReason::idle) state.of_view.reset();
       state.before_choice.idle_views = state.after_choice.idle_views = 0;
     }

@@ -52,8 +52,13 @@ class FrameSource : public ReadingSource {
     return folder_.frames().orthonormalized;
   }
 
-  [[nodiscard]] std::string identity(std::size_t index) const override {
-    return frame_identity(folder_.frames(), index);
+  [[nodiscard]] std::string identity(std::size_t index, FrameFault& fault) const override {
+    try {
+      return frame_identity(folder_.frames(), index);
+    } catch (const Error& error) {
+      fault = {FrameVerdict::unreadable, error.what()};
+      return {};
+    }
   }
 
   FrameFault load(std::size_t index) override {

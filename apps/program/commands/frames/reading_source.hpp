@@ -63,8 +63,11 @@ class ReadingSource {
   /// Poses that were off and were mended.
   [[nodiscard]] virtual std::size_t orthonormalized() const = 0;
 
-  /// By name and content, for the map to remember; empty: it is not remembered.
-  [[nodiscard]] virtual std::string identity(std::size_t /*index*/) const { return {}; }
+  /// By name and content, for the map to remember; empty: it is not remembered, or cannot be read,
+  /// as `fault` then says.
+  [[nodiscard]] virtual std::string identity(std::size_t /*index*/, FrameFault& /*fault*/) const {
+    return {};
+  }
 
   /// Says what is wrong with a frame that cannot be used; a cloud is read or throws.
   virtual FrameFault load(std::size_t index) = 0;
