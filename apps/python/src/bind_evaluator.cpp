@@ -148,16 +148,12 @@ struct Worth {
   std::vector<double> costs{};
   std::optional<PythonMeasure> measure{};
 
-  Worth(const py::object& costs_or_none, const py::object& measure_or_none, bool return_gains)
-      : measure(python::measure_or_none(measure_or_none)) {
+  Worth(const py::object& given_costs, const py::object& given_measure, bool return_gains)
+      : costs(costs_or_none(given_costs)), measure(measure_or_none(given_measure)) {
     if (measure && return_gains) {
       throw py::value_error(
           "return_gains does not go with measure, whose numbers evaluate_own gives");
     }
-    if (costs_or_none.is_none()) return;
-    const Doubles given = doubles(costs_or_none, "costs", {-1});
-    costs.assign(given.data(), given.data() + given.size());
-    if (costs.empty()) throw py::value_error("costs is empty: one a pose is needed");
   }
   void into(BestConfig& config) const {
     config.costs = costs;

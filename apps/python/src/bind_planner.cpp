@@ -168,13 +168,8 @@ py::object rank(Planner& self, std::size_t k, const py::object& poses, const py:
   if (own) config.measure = &*own;
   config.cost_per_metre = cost_per_metre;
   config.exact = exact;
-  std::vector<double> own_costs;
-  if (!costs.is_none()) {
-    const Doubles given = doubles(costs, "costs", {-1});
-    own_costs.assign(given.data(), given.data() + given.size());
-    if (own_costs.empty()) throw py::value_error("costs is empty: one a pose is needed");
-    config.costs = own_costs;
-  }
+  const std::vector<double> own_costs = costs_or_none(costs);
+  config.costs = own_costs;
   std::vector<Pose> asked;
   if (!poses.is_none()) asked = pose_batch(poses, "poses", false).poses;
   Ranking ranking;

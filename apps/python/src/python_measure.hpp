@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "arrays.hpp"
 #include "gil.hpp"
@@ -72,6 +73,14 @@ class PythonMeasure : public ViewMeasure {
 [[nodiscard]] inline std::optional<PythonMeasure> measure_or_none(const pybind11::object& measure) {
   if (measure.is_none()) return std::nullopt;
   return std::optional<PythonMeasure>(std::in_place, measure);
+}
+
+/// Costs of a keyword that may be None, then empty. Throws ValueError for none at all.
+[[nodiscard]] inline std::vector<double> costs_or_none(const pybind11::object& costs) {
+  if (costs.is_none()) return {};
+  const Doubles given = doubles(costs, "costs", {-1});
+  if (given.size() == 0) throw pybind11::value_error("costs is empty: one a pose is needed");
+  return {given.data(), given.data() + given.size()};
 }
 
 }  // namespace viewgain::python
