@@ -31,14 +31,9 @@ struct RayHitConsumer {
     detail::for_each_lane(tile.hit | tile.blocked, [&](int lane) {
       RayHit& hit = hits[table.ray_index(number, lane)];
       hit.range = static_cast<double>(tile.range[lane]) * scene.snapshot.voxel_size;
-      if ((tile.blocked >> lane & 1U) != 0) {
-        hit.kind = RayHit::Kind::obstacle;
-        return;
-      }
-      const std::uint32_t primitive = tile.primitive[lane], offset = tile.offset[lane];
-      hit.kind = scene.occupied_leaf(primitive, offset) != nullptr ? RayHit::Kind::occupied
-                                                                   : RayHit::Kind::unknown;
-      hit.voxel = scene.voxel_index(primitive, offset);
+      hit.kind = detail::kind_of_end(scene, tile, lane);
+      if (hit.kind == RayHit::Kind::obstacle) return;
+      hit.voxel = scene.voxel_index(tile.primitive[lane], tile.offset[lane]);
     });
   }
   void finish(ViewGain&) {}

@@ -9,6 +9,19 @@
 
 namespace viewgain {
 
+namespace detail {
+
+/// What a lane ends in, which must be one that is hit or blocked.
+[[nodiscard]] inline RayHit::Kind kind_of_end(const SceneData& scene, const RayTile& tile,
+                                              int lane) {
+  if ((tile.blocked >> lane & 1U) != 0) return RayHit::Kind::obstacle;
+  return scene.occupied_leaf(tile.primitive[lane], tile.offset[lane]) != nullptr
+             ? RayHit::Kind::occupied
+             : RayHit::Kind::unknown;
+}
+
+}  // namespace detail
+
 struct GainEvaluator::Impl {
   std::shared_ptr<const VoxelScene> scene;
   detail::ViewDriver driver;

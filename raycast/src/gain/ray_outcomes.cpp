@@ -33,13 +33,7 @@ std::vector<Meeting> met(const detail::ViewDriver& driver, const detail::PoseFra
           if (tile.range[lane] > frame.max_range) return;  // an obstacle that is too far
           auto& [kind, range] = meetings[tracer.table().ray_index(number, lane)];
           range = tile.range[lane];
-          if ((tile.blocked >> lane & 1U) != 0) {
-            kind = RayHit::Kind::obstacle;
-          } else if (driver.scene().occupied_leaf(tile.primitive[lane], tile.offset[lane])) {
-            kind = RayHit::Kind::occupied;
-          } else {
-            kind = RayHit::Kind::unknown;
-          }
+          kind = detail::kind_of_end(driver.scene(), tile, lane);
         });
       });
   return meetings;
