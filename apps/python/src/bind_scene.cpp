@@ -12,6 +12,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "classes.hpp"
+#include "gil.hpp"
 #include "given.hpp"
 #include "map/shared_grid.hpp"
 #include "scene.hpp"
@@ -48,6 +49,7 @@ HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_si
       py::hasattr(hazard, "__fspath__")) {
     const std::string file = file_path(hazard);
     require_file(file);
+    const WithoutGil without_gil;
     config.volume = std::make_shared<const HazardVolume>(load_hazard_vdb(file, grid));
     return config;
   }
