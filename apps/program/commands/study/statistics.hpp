@@ -24,8 +24,8 @@ struct MeanWithError {
 /// `clusters`, a number a value, says which belong together, as runs on one object do. The error is
 /// the cluster-robust one, CR1: its square is G / (G - 1) times the sum over the G clusters of
 /// their squared sums of deviations, by the squared count (Cameron and Miller, A Practitioner's
-/// Guide to Cluster-Robust Inference, Journal of Human Resources 50, 2015). Of one cluster, or
-/// where none is given, values count as independent.
+/// Guide to Cluster-Robust Inference, Journal of Human Resources 50, 2015). Where all are of
+/// one cluster, or none is given, values count as independent.
 [[nodiscard]] MeanWithError mean_of(std::span<const double> values,
                                     std::span<const std::size_t> clusters = {});
 

@@ -88,6 +88,8 @@ TEST(Statistics, ErrorsByClusterInClosedForm) {
   // Of two sizes: the sums of deviations are -4 and 4. What is not finite does not count.
   EXPECT_DOUBLE_EQ(app::mean_of(std::vector<double>{1, 3, kNaN, 8}, Clusters{0, 0, 1, 1}).error,
                    std::sqrt(2.0 / 1 * (16 + 16)) / 3);
+  // Of two clusters one alone says nothing of others.
+  EXPECT_TRUE(std::isnan(app::mean_of(std::vector<double>{1, 3, kNaN}, Clusters{0, 0, 1}).error));
   // Each by itself, or all together: as if they were independent.
   for (const Clusters& clusters : {Clusters{0, 1, 2, 3, 4, 5}, Clusters(6, 2)}) {
     EXPECT_DOUBLE_EQ(app::mean_of(values, clusters).error, app::mean_of(values).error);
