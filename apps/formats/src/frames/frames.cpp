@@ -61,6 +61,8 @@ void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
   }
 }
 
+constexpr const char* kUnitsPerMetre = " is over 1 m per unit: is it units per metre?";
+
 // Metres per unit of the images, where the folder says so.
 std::optional<double> said_scale(const fs::path& dir) {
   const fs::path path = dir / kScale;
@@ -72,6 +74,7 @@ std::optional<double> said_scale(const fs::path& dir) {
   }
   const double scale = line.finite_number(0);
   if (!(scale > 0)) line.fail("the scale " + short_text(scale) + " is not positive");
+  if (scale > 1) line.fail("the scale " + short_text(scale) + kUnitsPerMetre);
   return scale;
 }
 
@@ -145,6 +148,10 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
   if (!(frames.depth_scale > 0) || !std::isfinite(frames.depth_scale)) {
     throw Error(ErrorCode::invalid_argument, "the depth scale " + short_text(frames.depth_scale) +
                                                  " must be positive and finite");
+  }
+  if (frames.depth_scale > 1) {
+    throw Error(ErrorCode::invalid_argument,
+                "the depth scale " + short_text(frames.depth_scale) + kUnitsPerMetre);
   }
   if (sensor.empty() && !has_sensor) {
     throw Error(ErrorCode::invalid_argument,

@@ -67,9 +67,13 @@ Recording open_tum(const std::filesystem::path& source, const RecordingConfig& c
       line.fail("expected a timestamp and an image, found " + std::to_string(line.words().size()) +
                 " words");
     }
+    const std::filesystem::path image(line.words()[1]);
+    if (image.is_absolute() || std::find(image.begin(), image.end(), "..") != image.end()) {
+      line.fail("the image " + quoted(line.words()[1]) + " is outside of the recording");
+    }
     const auto pose = in_time.nearest(line.finite_number(0), config.max_time_gap);
     if (pose) {
-      add_frame(recording, number, source / line.words()[1], poses.poses[*pose]);
+      add_frame(recording, number, source / image, poses.poses[*pose]);
     } else {
       drop_frame(recording, {FrameVerdict::no_pose});
     }

@@ -136,8 +136,8 @@ class Meeting {
     return sum;
   }
 
-  // Of pairs that fit either way and not equally well, the share that fits better if depths are
-  // along the ray; nothing for too few pairs.
+  // Of pairs that fit either way and not equally well, where the surface is not steep, the share
+  // that fits better if depths are along the ray; nothing for too few pairs.
   [[nodiscard]] std::optional<double> share_along_ray() const {
     const Reading along_z{"", ""}, along_ray{"", "", 1, true};
     std::vector<Pose> T_camera;
@@ -151,8 +151,8 @@ class Meeting {
         for (std::size_t j = 0; j < frames_.size(); ++j) {
           if (j == i) continue;
           const Pose T = T_camera[j] * poses_[i];
-          const auto by_z = beyond(along_z, j, T * (*z * rays_[pixel]));
-          const auto by_ray = beyond(along_ray, j, T * (*short_z * rays_[pixel]));
+          const auto by_z = beyond(along_z, j, T * (*z * rays_[pixel]), true);
+          const auto by_ray = beyond(along_ray, j, T * (*short_z * rays_[pixel]), true);
           if (!by_z || !by_ray) continue;
           const double a = std::abs(*by_z), b = std::abs(*by_ray);
           if (std::min(a, b) > 0.5 || std::abs(a - b) < 0.1) continue;
@@ -177,10 +177,10 @@ class Meeting {
     return z;
   }
 
-  // Between the four pixels round a place of the image, of the nearest one where they do not make
-  // one surface.
+  // Between the four pixels round a place of the image. Where they do not make one surface: of the
+  // nearest one, or nothing if it is to be flat.
   [[nodiscard]] std::optional<double> depth(const Reading& reading, std::size_t frame, double u,
-                                            double v) const {
+                                            double v, bool is_flat) const {
     const int width = sensor_.camera.width, height = sensor_.camera.height;
     const auto at = [&](double x, double y) -> std::optional<double> {
       if (!(x >= 0 && y >= 0 && x < width && y < height)) return std::nullopt;
@@ -192,10 +192,11 @@ class Meeting {
     const std::optional<double> nearest = at(std::round(u), std::round(v));
     if (!nearest) return std::nullopt;
     const double x = std::floor(u), y = std::floor(v);
+    const double gate = *nearest * (is_flat ? 2 / sensor_.camera.fx : kGate);
     double z = 0;
     for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
       const std::optional<double> corner = at(x + dx, y + dy);
-      if (!corner || std::abs(*corner - *nearest) > kGate * *nearest) return nearest;
+      if (!corner || std::abs(*corner - *nearest) > gate) return is_flat ? std::nullopt : nearest;
       z += *corner * (dx == 0 ? 1 - (u - x) : u - x) * (dy == 0 ? 1 - (v - y) : v - y);
     }
     return z;
@@ -204,11 +205,11 @@ class Meeting {
   // How much farther than the point the frame sees in its direction, in gates; nothing where it
   // does not look.
   [[nodiscard]] std::optional<double> beyond(const Reading& reading, std::size_t frame,
-                                             const Eigen::Vector3d& p) const {
+                                             const Eigen::Vector3d& p, bool is_flat = false) const {
     if (!(p.z() > 0)) return std::nullopt;
     const PinholeCamera& camera = sensor_.camera;
     const Eigen::Vector2d at = camera.project(p);
-    const std::optional<double> z = depth(reading, frame, at.x(), at.y());
+    const std::optional<double> z = depth(reading, frame, at.x(), at.y(), is_flat);
     if (!z) return std::nullopt;
     return (*z - p.z()) / (kGate * *z + 3 * *z / camera.fx);
   }
@@ -227,6 +228,15 @@ std::string percent(double share) {
 }
 
 Suspicion suspect_camera(const PinholeCamera& camera) {
+  const std::vector<Eigen::Vector3d> rays = camera.ray_table();
+  const auto lost = std::count_if(rays.begin(), rays.end(),
+                                  [](const Eigen::Vector3d& ray) { return !ray.allFinite(); });
+  if (const double share = static_cast<double>(lost) / static_cast<double>(rays.size());
+      share > 0.5) {
+    return {"distortion", percent(share) +
+                              " of the image's pixels have no ray by the lens's distortion: are k1 "
+                              "k2 p1 p2 k3 those of this camera?"};
+  }
   const double u = camera.cx / (camera.width - 1), v = camera.cy / (camera.height - 1);
   if (std::abs(u - 0.5) < kOffCentre && std::abs(v - 0.5) < kOffCentre) return {};
   return {
@@ -298,7 +308,7 @@ Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frame
     best = other;
   }
   const std::optional<double> along_ray = meeting.share_along_ray();
-  if (along_ray && *along_ray >= 0.5 && as_said.has_overlap() && as_said.share_past() < 0.15 &&
+  if (along_ray && *along_ray >= 0.45 && as_said.has_overlap() && as_said.share_past() < 0.15 &&
       meeting.under({"", "", 1, true}).share_close() > best.share_close()) {
     return {"depth_along_ray", "of the readings for which it matters " + percent(*along_ray) +
                                    " fit the other frames better if depths are along the ray, not "
