@@ -514,6 +514,8 @@ TEST_F(Recordings, AMapIsMadeOfWhatIsImported) {
     expect_refused({"integrate", "frames", "--voxel", "0.1", "--out", "new.vdb"},
                    "depth-scale.txt");
   }
+  write("frames/depth-scale.txt", "1000");
+  expect_refused({"integrate", "frames", "--voxel", "0.1", "--out", "new.vdb"}, "units per metre");
 }
 
 TEST_F(Recordings, FlagsThatDoNotFitAreRefused) {

@@ -61,8 +61,6 @@ void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
   }
 }
 
-constexpr const char* kUnitsPerMetre = " is over 1 m per unit: is it units per metre?";
-
 // Metres per unit of the images, where the folder says so.
 std::optional<double> said_scale(const fs::path& dir) {
   const fs::path path = dir / kScale;
@@ -74,7 +72,6 @@ std::optional<double> said_scale(const fs::path& dir) {
   }
   const double scale = line.finite_number(0);
   if (!(scale > 0)) line.fail("the scale " + short_text(scale) + " is not positive");
-  if (scale > 1) line.fail("the scale " + short_text(scale) + kUnitsPerMetre);
   return scale;
 }
 
@@ -150,8 +147,9 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
                                                  " must be positive and finite");
   }
   if (frames.depth_scale > 1) {
-    throw Error(ErrorCode::invalid_argument,
-                "the depth scale " + short_text(frames.depth_scale) + kUnitsPerMetre);
+    throw Error(ErrorCode::format, dir.string() + ": the depth scale " +
+                                       short_text(frames.depth_scale) +
+                                       " is over 1 m per unit: is it units per metre?");
   }
   if (sensor.empty() && !has_sensor) {
     throw Error(ErrorCode::invalid_argument,
