@@ -316,12 +316,13 @@ Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frame
   }
   if (suspected != nullptr) {
     const bool is_apart = as_said.met + as_said.seen_past < kLeastMeetings;
-    return {suspected->kind,
-            (is_apart ? "frames have nothing in common; "
-                      : percent(as_said.share_past()) +
-                            " of the readings that frames have in common lie in the free space of "
-                            "others; ") +
-                percent(best.share_past()) + " would if " + suspected->what};
+    const std::string now = is_apart
+                                ? "frames from different places have nothing in common; they"
+                                : percent(as_said.share_past()) +
+                                      " of the readings that frames have in common lie in the free "
+                                      "space of others; " +
+                                      percent(best.share_past());
+    return {suspected->kind, now + " would if " + suspected->what};
   }
   return {};
 }
