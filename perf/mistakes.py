@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""mistakes.py VIEWGAIN MESH... [--folders N] [--right N]: how often the program notices natural mistakes.
+"""mistakes.py VIEWGAIN MESH... [--folders N] [--right N] [--first N]: how often the program notices natural mistakes.
 
 Simulates folders of frames (objects, sensors, distances, seeds in turn), puts one mistake into each, calls
 `integrate` and prints how many were noticed (a suspicion is said, whether the call is refused or not), and how
@@ -159,22 +159,23 @@ def main():
     parser.add_argument("meshes", nargs="+")
     parser.add_argument("--folders", type=int, default=20)
     parser.add_argument("--right", type=int, default=200)
+    parser.add_argument("--first", type=int, default=0, help="number of the first folder: its seed and settings")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         root = pathlib.Path(temporary)
         said = {name: [0, 0] for name in MISTAKES}
         alarms = 0
-        for number in range(max(options.folders, options.right)):
+        for number in range(options.first, options.first + max(options.folders, options.right)):
             right = root / "right"
             shutil.rmtree(right, ignore_errors=True)
             s = simulate(options.program, options.meshes[number % len(options.meshes)], number, right)
             call = ["integrate", "FOLDER", "--voxel", 0.02, "--workspace=-0.3,-0.3,-0.3,0.3,0.3,0.3", "--out", root / "map.vdb"]
-            if number < options.right:
+            if number < options.first + options.right:
                 result = run(options.program, call[0], right, *call[2:])
                 if result.returncode or result.stderr:
                     alarms += 1
                     print("false alarm:", number, result.stderr.strip())
-            if number >= options.folders:
+            if number >= options.first + options.folders:
                 continue
             for name, (make, words) in MISTAKES.items():
                 wrong = root / "wrong"

@@ -293,6 +293,7 @@ void refuse_empty(const Options& options, const ReadingSource& source, const Tot
   if (options.clouds.empty()) return totals.tally.require_any(*source.folder());
   if (!options.map.empty()) return;
   const IntegrationReport& sum = totals.sum;
+  warn_if_out_of_range(options.clouds.front(), sum);
   if (sum.readings_inside + sum.plane_readings + sum.voxels_crossed > 0) return;
   throw Error(ErrorCode::invalid_argument, options.clouds.front() + ": none of " +
                                                with_commas(sum.readings) +

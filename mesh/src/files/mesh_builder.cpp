@@ -10,6 +10,8 @@
 
 namespace viewgain::detail {
 
+constexpr double kBeyond = 1e30;  // single precision has room for it
+
 void MeshBuilder::fail(std::size_t line, const std::string& what) const {
   throw Error(ErrorCode::format,
               name_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " + what);
@@ -17,8 +19,9 @@ void MeshBuilder::fail(std::size_t line, const std::string& what) const {
 
 void MeshBuilder::add_vertex(const std::array<double, 3>& p, std::size_t line) {
   for (const double x : p) {
-    if (std::isfinite(x)) continue;
-    fail(line, "a coordinate of vertex " + std::to_string(vertices()) + " is not finite");
+    if (std::abs(x) < kBeyond) continue;
+    fail(line, "a coordinate of vertex " + std::to_string(vertices()) +
+                   " is not finite, or 1e30 and more");
   }
   mesh_.vertices.push_back(p);
 }

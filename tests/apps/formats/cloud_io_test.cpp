@@ -303,6 +303,7 @@ TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
   change("SIZE that its TYPE", "SIZE 2 4", "SIZE 0 4");
   change("is too large", "SIZE 2 4", "SIZE 2 9");
   change("no line SIZE", "SIZE 2 4 4 8 4", "# none");
+  change("the field 'x' stands there twice", "intensity x normal y z", "x x normal y z");
   change("FIELDS must come first", "FIELDS intensity x normal y z\n", "");
   change("FIELDS stands there twice", "VERSION 0.7", "FIELDS x y z");
   change("FIELDS needs", "FIELDS intensity x normal y z", "FIELDS");
@@ -316,6 +317,7 @@ TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
   const std::string ascii = pcd_ascii();
   expect_refused("bad.pcd", "bad.pcd:12: a point has 7 words, here are 6",
                  with(ascii, "\n12 ", "\n"));
+  expect_refused("bad.pcd", "the file goes on behind its last point", ascii + "1 2 3 4 5 6 7\n");
   expect_refused("bad.pcd", "bad.pcd:12: 'zero", with(ascii, " 0 0 1 ", " 0 0 1 zero"));
   const std::string packed = pcd_compressed();
   const std::size_t at = packed.find("binary_compressed\n") + 18;
@@ -351,6 +353,7 @@ TEST_F(CloudFiles, ForgedPlyHeadersAreNamedByLine) {
   change("the file ends", "camera 2", "camera 4294967295");
   change("no element \"vertex\"", "element vertex", "element points");
   change("no property 'x'", "float x", "float u");
+  change("bad.ply:10: the property 'x' stands there twice", "double y", "double x");
   change("no property 'z'", "int z", "list uchar int z");
   change("bad.ply:2: the format 'binary'", "binary_little_endian", "binary");
   change("no line format", "format binary_little_endian 1.0", "comment");

@@ -81,9 +81,12 @@ void lay_out(const LineReader& line, Header& header) {
   }
   constexpr std::array<std::string_view, 3> kNames{"x", "y", "z"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto found = std::find_if(header.fields.begin(), header.fields.end(),
-                                    [&](const Field& f) { return f.name == kNames[axis]; });
+    const auto is_axis = [&](const Field& f) { return f.name == kNames[axis]; };
+    const auto found = std::find_if(header.fields.begin(), header.fields.end(), is_axis);
     if (found == header.fields.end()) line.fail("there is no field " + quoted(kNames[axis]));
+    if (std::any_of(found + 1, header.fields.end(), is_axis)) {
+      line.fail("the field " + quoted(kNames[axis]) + " stands there twice");
+    }
     if (found->count != 1) line.fail("field " + quoted(kNames[axis]) + " must have COUNT 1");
     header.xyz[axis] = static_cast<std::size_t>(found - header.fields.begin());
   }
@@ -176,6 +179,10 @@ void read_ascii(LineReader& line, const Header& header,
     for (std::size_t a = 0; a < 3; ++a) {
       point[a] = line.number(header.fields[header.xyz[a]].word);
     }
+  }
+  while (line.next()) {
+    if (line.words().empty() || line.words()[0].front() == '#') continue;
+    line.fail("the file goes on behind its last point");
   }
 }
 

@@ -146,6 +146,11 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
     throw Error(ErrorCode::invalid_argument, "the depth scale " + short_text(frames.depth_scale) +
                                                  " must be positive and finite");
   }
+  if (frames.depth_scale > 1) {
+    throw Error(ErrorCode::format, dir.string() + ": the depth scale " +
+                                       short_text(frames.depth_scale) +
+                                       " is over 1 m per unit: is it units per metre?");
+  }
   if (sensor.empty() && !has_sensor) {
     throw Error(ErrorCode::invalid_argument,
                 dir.string() + ": has no sensor.toml, so a sensor is needed");

@@ -179,6 +179,7 @@ ImportReport import_recording(const Recording& recording, const fs::path& out,
   }
   RecordedFramesWriter writer(out);
   ImportReport report;
+  std::string first_fault;
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
     const RecordedFrame& frame = recording.frames[i];
     GrayImage depth;
@@ -186,7 +187,7 @@ ImportReport import_recording(const Recording& recording, const fs::path& out,
       depth = load_depth(recording, i);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::io && error.code() != ErrorCode::format) throw;
-      ++report.unreadable;
+      if (report.unreadable++ == 0) first_fault = error.what();
       continue;
     }
     bool is_masked = false;
@@ -206,8 +207,7 @@ ImportReport import_recording(const Recording& recording, const fs::path& out,
     if (config.progress) config.progress(i + 1, recording.frames.size());
   }
   if (report.unreadable == recording.frames.size()) {
-    throw Error(ErrorCode::format, recording.frames.front().image.string() +
-                                       ": cannot be read, nor can any other image");
+    throw Error(ErrorCode::format, first_fault + "; nor can any other image be read");
   }
   writer.commit(recording.camera, recording.depth_scale, config.sensor);
   return report;

@@ -69,7 +69,9 @@ Recording open_tum(const std::filesystem::path& source, const RecordingConfig& c
     }
     // A recording may be of anybody, and names no files of elsewhere.
     const auto image = std::filesystem::path(line.words()[1]).lexically_normal();
-    if (image.is_absolute() || *image.begin() == "..") line.fail("the image is outside the folder");
+    if (image.is_absolute() || *image.begin() == "..") {
+      line.fail("the image " + quoted(line.words()[1]) + " is outside of the recording");
+    }
     const auto pose = in_time.nearest(line.finite_number(0), config.max_time_gap);
     if (pose) {
       add_frame(recording, number, source / image, poses.poses[*pose]);

@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::size_t kPoints = 500;  // of a frame that are looked for in the others
 constexpr double kGate = 0.04;        // of the range: farther off is another surface
+constexpr double kParallax = 0.05;    // of the range: frames that are nearer tell nothing of poses
 constexpr double kOffCentre = 0.2;    // of the image's side
 constexpr std::size_t kLeastMeetings = 100;
 
@@ -72,17 +73,19 @@ const std::vector<Reading>& readings() {
 struct Meetings {
   std::size_t points = 0;     // in range
   std::size_t met = 0;        // in another frame, within the gate
+  std::size_t close = 0;      // of these, within a quarter of it
   std::size_t seen_past = 0;  // another frame looks past them
 
   [[nodiscard]] double share_past() const {
     const std::size_t all = met + seen_past;
     return all == 0 ? 0 : static_cast<double>(seen_past) / static_cast<double>(all);
   }
-  // To choose among ways that are all better: where few meet, few contradict each other.
-  [[nodiscard]] double doubt() const {
-    return (static_cast<double>(seen_past) + 0.01 * static_cast<double>(points)) /
-           static_cast<double>(met);
+  [[nodiscard]] double share_close() const {
+    const std::size_t all = met + seen_past;
+    return all == 0 ? 0 : static_cast<double>(close) / static_cast<double>(all);
   }
+  // Enough have a counterpart to tell by.
+  [[nodiscard]] bool has_overlap() const { return met >= kLeastMeetings && 5 * met >= 2 * points; }
 };
 
 class Meeting {
@@ -120,18 +123,21 @@ class Meeting {
         ++sum.points;
         const Eigen::Vector3d p_world = T_world[i] * (*z * rays_[pixel]);
         for (std::size_t j = 0; j < frames_.size(); ++j) {
-          if (j == i) continue;
+          // Frames from one place agree however the poses are read.
+          const double baseline = (T_world[j].translation() - T_world[i].translation()).norm();
+          if (!(baseline > kParallax * *z)) continue;
           const std::optional<double> farther = beyond(reading, j, T_camera[j] * p_world);
           if (!farther || *farther < -1) continue;  // it looks elsewhere, or the point is hidden
           ++(*farther > 1 ? sum.seen_past : sum.met);
+          sum.close += std::abs(*farther) < 0.25 ? 1 : 0;
         }
       }
     }
     return sum;
   }
 
-  // Of pairs that fit either way and not equally well, the share that fits better if depths are
-  // along the ray; nothing for too few pairs.
+  // Of pairs that fit either way and not equally well, where the surface is not steep, the share
+  // that fits better if depths are along the ray; nothing for too few pairs.
   [[nodiscard]] std::optional<double> share_along_ray() const {
     const Reading along_z{"", ""}, along_ray{"", "", 1, true};
     std::vector<Pose> T_camera;
@@ -145,8 +151,8 @@ class Meeting {
         for (std::size_t j = 0; j < frames_.size(); ++j) {
           if (j == i) continue;
           const Pose T = T_camera[j] * poses_[i];
-          const auto by_z = beyond(along_z, j, T * (*z * rays_[pixel]));
-          const auto by_ray = beyond(along_ray, j, T * (*short_z * rays_[pixel]));
+          const auto by_z = beyond(along_z, j, T * (*z * rays_[pixel]), true);
+          const auto by_ray = beyond(along_ray, j, T * (*short_z * rays_[pixel]), true);
           if (!by_z || !by_ray) continue;
           const double a = std::abs(*by_z), b = std::abs(*by_ray);
           if (std::min(a, b) > 0.5 || std::abs(a - b) < 0.1) continue;
@@ -171,19 +177,39 @@ class Meeting {
     return z;
   }
 
+  // Between the four pixels round a place of the image. Where they do not make one surface: of the
+  // nearest one, or nothing if it is to be flat.
+  [[nodiscard]] std::optional<double> depth(const Reading& reading, std::size_t frame, double u,
+                                            double v, bool is_flat) const {
+    const int width = sensor_.camera.width, height = sensor_.camera.height;
+    const auto at = [&](double x, double y) -> std::optional<double> {
+      if (!(x >= 0 && y >= 0 && x < width && y < height)) return std::nullopt;
+      const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                         static_cast<std::size_t>(x);
+      if (!rays_[pixel].allFinite()) return std::nullopt;
+      return depth(reading, frame, pixel);
+    };
+    const std::optional<double> nearest = at(std::round(u), std::round(v));
+    if (!nearest) return std::nullopt;
+    const double x = std::floor(u), y = std::floor(v);
+    const double gate = *nearest * (is_flat ? 2 / sensor_.camera.fx : kGate);
+    double z = 0;
+    for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
+      const std::optional<double> corner = at(x + dx, y + dy);
+      if (!corner || std::abs(*corner - *nearest) > gate) return is_flat ? std::nullopt : nearest;
+      z += *corner * (dx == 0 ? 1 - (u - x) : u - x) * (dy == 0 ? 1 - (v - y) : v - y);
+    }
+    return z;
+  }
+
   // How much farther than the point the frame sees in its direction, in gates; nothing where it
   // does not look.
   [[nodiscard]] std::optional<double> beyond(const Reading& reading, std::size_t frame,
-                                             const Eigen::Vector3d& p) const {
+                                             const Eigen::Vector3d& p, bool is_flat = false) const {
     if (!(p.z() > 0)) return std::nullopt;
     const PinholeCamera& camera = sensor_.camera;
     const Eigen::Vector2d at = camera.project(p);
-    const double u = std::round(at.x()), v = std::round(at.y());
-    if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return std::nullopt;
-    const std::size_t pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
-                              static_cast<std::size_t>(u);
-    if (!rays_[pixel].allFinite()) return std::nullopt;
-    const std::optional<double> z = depth(reading, frame, pixel);
+    const std::optional<double> z = depth(reading, frame, at.x(), at.y(), is_flat);
     if (!z) return std::nullopt;
     return (*z - p.z()) / (kGate * *z + 3 * *z / camera.fx);
   }
@@ -202,6 +228,15 @@ std::string percent(double share) {
 }
 
 Suspicion suspect_camera(const PinholeCamera& camera) {
+  const std::vector<Eigen::Vector3d> rays = camera.ray_table();
+  const auto lost = std::count_if(rays.begin(), rays.end(),
+                                  [](const Eigen::Vector3d& ray) { return !ray.allFinite(); });
+  if (const double share = static_cast<double>(lost) / static_cast<double>(rays.size());
+      share > 0.5) {
+    return {"distortion", percent(share) +
+                              " of the image's pixels have no ray by the lens's distortion: are k1 "
+                              "k2 p1 p2 k3 those of this camera?"};
+  }
   const double u = camera.cx / (camera.width - 1), v = camera.cy / (camera.height - 1);
   if (std::abs(u - 0.5) < kOffCentre && std::abs(v - 0.5) < kOffCentre) return {};
   return {
@@ -238,17 +273,17 @@ Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames
                                percent(1 - best) + " if " + suspected->what};
 }
 
-// Do frames meet that did not, or contradict each other far less? Right ones contradict each other
-// in up to 7 % of what they have in common, at edges. Where fewer readings would be in range, or
-// few would meet, that says nothing.
+// Do frames meet that did not, or contradict each other less and lie closer? Where fewer readings
+// would be in range, or few would meet, that says nothing. Right frames contradict each other in up
+// to 7 % of what they have in common, at edges.
 bool is_better(const Meetings& other, const Meetings& as_said) {
-  if (20 * other.points < 19 * as_said.points || 2 * other.met < other.points ||
-      other.met < kLeastMeetings || other.share_past() > 0.15) {
+  if (20 * other.points < 19 * as_said.points || !other.has_overlap() ||
+      other.share_past() > 0.15) {
     return false;
   }
   if (10 * as_said.met < other.met) return true;
-  const double now = as_said.share_past();
-  return now > 0.015 && other.share_past() < (now > 0.1 ? 0.4 : 0.1) * now;
+  return as_said.share_past() > 0.015 && other.share_past() < 0.6 * as_said.share_past() &&
+         other.share_close() > as_said.share_close();
 }
 
 }  // namespace
@@ -263,30 +298,31 @@ Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frame
   if (Suspicion range = suspect_range(sensor, frames); !range.kind.empty()) return range;
   const Meeting meeting(sensor, frames, T_world_camera);
   const Meetings as_said = meeting.under(readings().front());
-  const std::optional<double> along_ray = meeting.share_along_ray();
-  if (2 * as_said.met > as_said.points && as_said.share_past() < 0.2 && along_ray &&
-      *along_ray >= 0.5) {
-    return {"depth_along_ray", "of the readings for which it matters " + percent(*along_ray) +
-                                   " fit the other frames better if depths are along the ray, not "
-                                   "along z"};
-  }
   const Reading* suspected = nullptr;
   Meetings best;
   for (const Reading& reading : std::span(readings()).subspan(1)) {
     const Meetings other = meeting.under(reading);
     if (!is_better(other, as_said)) continue;
-    if (suspected != nullptr && other.doubt() >= best.doubt()) continue;
+    if (suspected != nullptr && other.share_close() <= best.share_close()) continue;
     suspected = &reading;
     best = other;
   }
+  const std::optional<double> along_ray = meeting.share_along_ray();
+  if (along_ray && *along_ray >= 0.45 && as_said.has_overlap() && as_said.share_past() < 0.15 &&
+      meeting.under({"", "", 1, true}).share_close() > best.share_close()) {
+    return {"depth_along_ray", "of the readings for which it matters " + percent(*along_ray) +
+                                   " fit the other frames better if depths are along the ray, not "
+                                   "along z"};
+  }
   if (suspected != nullptr) {
     const bool is_apart = as_said.met + as_said.seen_past < kLeastMeetings;
-    return {suspected->kind,
-            (is_apart ? "frames have nothing in common; "
-                      : percent(as_said.share_past()) +
-                            " of the readings that frames have in common lie in the free space of "
-                            "others; ") +
-                percent(best.share_past()) + " would if " + suspected->what};
+    const std::string now = is_apart
+                                ? "frames from different places have nothing in common; they"
+                                : percent(as_said.share_past()) +
+                                      " of the readings that frames have in common lie in the free "
+                                      "space of others; " +
+                                      percent(best.share_past());
+    return {suspected->kind, now + " would if " + suspected->what};
   }
   return {};
 }

@@ -45,6 +45,14 @@ std::string suspicion_of(const FrameFolder& folder) {
   return suspect_frames(folder.sensor(), frames, poses).what;
 }
 
+void warn_if_out_of_range(const std::string& cloud, const IntegrationReport& sum) {
+  if (sum.readings > 0 || sum.out_of_range == 0) return;
+  std::fprintf(stderr,
+               "viewgain: warning: %s: none of %s points is in the sensor's range: are they in "
+               "metres?\n",
+               utf8_text(cloud).c_str(), with_commas(sum.out_of_range).c_str());
+}
+
 void FrameTally::add(const std::filesystem::path& image, const FrameFault& fault) {
   const bool is_first = counts_[fault.verdict]++ == 0;
   if (!is_first || is_in_map(fault.verdict)) return;

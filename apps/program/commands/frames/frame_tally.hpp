@@ -29,6 +29,9 @@ namespace viewgain::app {
 /// dozen of them.
 [[nodiscard]] std::string suspicion_of(const FrameFolder& folder);
 
+/// Warns where clouds have points and none is in the sensor's range, as in millimetres.
+void warn_if_out_of_range(const std::string& cloud, const IntegrationReport& sum);
+
 /// What became of the frames of a folder, and what is said of it.
 class FrameTally {
  public:

@@ -195,7 +195,12 @@ class PlyFile {
             {words[1], line_.count(2, std::numeric_limits<std::uint32_t>::max()), {}});
       } else if (words[0] == "property") {
         if (elements_.empty()) fail("a property stands before the first element");
-        elements_.back().properties.push_back(read_property());
+        std::vector<PlyProperty>& all = elements_.back().properties;
+        all.push_back(read_property());
+        if (std::any_of(all.begin(), all.end() - 1,
+                        [&](const PlyProperty& p) { return p.name == all.back().name; })) {
+          fail("the property " + quoted(all.back().name) + " stands there twice");
+        }
       } else {
         fail("the header's word " + quoted(words[0]) + " is unknown");
       }

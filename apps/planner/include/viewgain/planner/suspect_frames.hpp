@@ -14,8 +14,8 @@ namespace viewgain {
 
 /// What is probably wrong with frames or poses.
 struct VIEWGAIN_EXPORT Suspicion {
-  /// Empty: nothing. principal_point, depth_scale, world_to_camera, quaternion_order, body_frame,
-  /// upward_camera, pose_millimetres or depth_along_ray.
+  /// Empty: nothing. distortion, principal_point, depth_scale, world_to_camera, quaternion_order,
+  /// body_frame, upward_camera, pose_millimetres or depth_along_ray.
   std::string kind{};
   std::string what{};  ///< a sentence with the figure that made it suspicious
 };

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/planner/suspect_frames.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/planner/registration_scene.hpp"
+#include "core/expect_error.hpp"
+#include "viewgain/core/generators.hpp"
+#include "viewgain/raycast/simulated_sensor.hpp"
+
+namespace viewgain {
+namespace {
+
+Pose turned(const Pose& pose, const Eigen::Quaterniond& turn) {
+  return {pose.rotation() * turn.toRotationMatrix(), pose.translation()};
+}
+
+Pose w_first(const Pose& pose) {
+  const Eigen::Quaterniond q(pose.rotation());
+  return {Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()).toRotationMatrix(), pose.translation()};
+}
+
+// An orbit round a lumpy ball, of which all sides look alike from afar.
+class SuspectFrames : public testing::Test {
+ protected:
+  SuspectFrames() {
+    sensor_.camera = {64, 48, 60, 60, 31.5, 23.5};
+    sensor_.noise = ConstantNoise{0.002, 0.002};
+    see(orbit_poses(6, 0.5, 0.6));
+  }
+
+  void see(const std::vector<Pose>& poses) {
+    static const auto ball = std::make_shared<const SurfaceScene>(test::bumpy_sphere(0.12, 0.008));
+    const SimulatedSensor camera(ball, sensor_, {}, {1});
+    poses_ = poses;
+    frames_.clear();
+    for (const Pose& pose : poses) frames_.push_back(camera.acquire(pose, frames_.size()));
+  }
+
+  [[nodiscard]] std::string kind(const std::function<Pose(const Pose&)>& change = {}) const {
+    std::vector<Pose> poses = poses_;
+    if (change) {
+      for (Pose& pose : poses) pose = change(pose);
+    }
+    return suspect_frames(sensor_, frames_, poses).kind;
+  }
+
+  // Each depth times a factor and a power of the ray's length at depth 1.
+  void scale(double factor, double power) {
+    const auto rays = sensor_.camera.ray_table();
+    for (DepthFrame& frame : frames_) {
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        frame.depth[i] *= static_cast<float>(factor * std::pow(rays[i].norm(), power));
+      }
+    }
+  }
+
+  Sensor sensor_ = sensor_preset("sr4000");
+  std::vector<Pose> poses_;
+  std::vector<DepthFrame> frames_;
+};
+
+TEST_F(SuspectFrames, PosesOfOtherConventions) {
+  for (const std::size_t views : {6, 9, 14}) {
+    see(orbit_poses(views, 0.5, 0.6));
+    SCOPED_TRACE(views);
+    EXPECT_EQ(kind(), "");
+    EXPECT_EQ(kind([](const Pose& T) { return T.inverse(); }), "world_to_camera");
+    EXPECT_EQ(kind(w_first), "quaternion_order");
+    EXPECT_EQ(kind([](const Pose& T) { return turned(T, {0.5, 0.5, -0.5, 0.5}); }), "body_frame");
+    EXPECT_EQ(kind([](const Pose& T) { return turned(T, {0, 1, 0, 0}); }), "upward_camera");
+    EXPECT_EQ(kind([](const Pose& T) {
+                return Pose{T.rotation(), 1000 * T.translation()};
+              }),
+              "pose_millimetres");
+  }
+}
+
+TEST_F(SuspectFrames, DepthsInOtherUnits) {
+  scale(1000, 0);
+  EXPECT_EQ(kind(), "depth_scale");
+  scale(1e-2, 0);
+  EXPECT_EQ(kind(), "depth_scale");
+}
+
+TEST_F(SuspectFrames, DepthsAlongTheRay) {
+  scale(1, 1);
+  EXPECT_EQ(kind(), "depth_along_ray");
+}
+
+TEST_F(SuspectFrames, IntrinsicsOfHalfTheResolution) {
+  sensor_.camera.cx /= 2, sensor_.camera.cy /= 2;
+  EXPECT_EQ(kind(), "principal_point");
+}
+
+TEST_F(SuspectFrames, DistortionThatLeavesFewPixels) {
+  sensor_.camera.distortion = {-5, 0, 0, 0, 0};
+  EXPECT_EQ(kind(), "distortion");
+}
+
+// From one place frames agree however poses are read; that is for no reading and against none.
+TEST_F(SuspectFrames, CamerasInOnePlaceSayNothing) {
+  std::vector<Pose> poses;
+  for (int i = -4; i <= 4; ++i) {
+    const Eigen::AngleAxisd pan(0.05 * i, Eigen::Vector3d::UnitY());
+    poses.push_back(turned(poses_.front(), Eigen::Quaterniond(pan)));
+  }
+  see(poses);
+  EXPECT_EQ(kind(), "");
+}
+
+TEST_F(SuspectFrames, OnePoseAFrame) {
+  poses_.pop_back();
+  test::expect_error(ErrorCode::invalid_argument, "one pose a frame", [&] { (void)kind(); });
+}
+
+}  // namespace
+}  // namespace viewgain
