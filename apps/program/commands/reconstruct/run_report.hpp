@@ -19,9 +19,8 @@ class RunReport {
  public:
   explicit RunReport(const PolicyConfig& policy);
 
-  /// To be called once a view, in order. `realised_area` is SurfaceModel's [m²], `seconds` are the
-  /// totals so far.
-  void add_view(const ViewRecord& record, const QualityFigures& quality, double realised_area,
+  /// To be called once a view, in order. `seconds` are the totals so far.
+  void add_view(const ViewRecord& record, const QualityFigures& quality,
                 const StageSeconds& seconds);
 
   /// One line about the last view.
@@ -43,7 +42,6 @@ class RunReport {
   struct Entry {
     ViewRecord record;
     QualityFigures quality;
-    double realised_area;  ///< [m²]
     StageSeconds seconds;  ///< of this view alone
   };
   [[nodiscard]] Json entry_json(std::size_t index) const;
