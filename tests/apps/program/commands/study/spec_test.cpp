@@ -74,11 +74,11 @@ TEST_F(StudySpecTest, ListsAreCrossed) {
   EXPECT_EQ(hashes.size(), spec.runs.size());
   EXPECT_EQ(app::name_of(spec, spec.runs[2]),
             "cube, gain:rear_side_voxel:shipped, seed 3, sr4000, voxel 0.01");
-  EXPECT_EQ(
-      app::reconstruct_words(spec, spec.runs[2]),
-      (Strings{"--sensor=sr4000", "--voxel=0.01", "--seed=3", "--max-views=5", "--policy=gain",
-               "--out=unused", "--gain=rear_side_voxel", "--semantics=shipped", "--stop-gain=0",
-               "--stop-area=0", "--stop-idle=0", "--up=y", "--", (dir / "cube.off").string()}));
+  EXPECT_EQ(app::reconstruct_words(spec, spec.runs[2]),
+            (Strings{"--sensor=sr4000", "--voxel=0.01", "--seed=3", "--max-views=5",
+                     "--policy=gain", "--out=unused", "--gain=rear_side_voxel",
+                     "--semantics=shipped", "--stop-gain=0", "--stop-area=0", "--stop-idle=0",
+                     "--stop-promises=0", "--up=y", "--", (dir / "cube.off").string()}));
 }
 
 TEST_F(StudySpecTest, HashesFollowWhatCanChangeAResult) {
