@@ -73,14 +73,14 @@ class PythonAcquisition : public DataAcquisition {
 };
 
 // One turn of the loop.
-py::object to_python(const ViewRecord& record, double realised_area) {
+py::object to_python(const ViewRecord& record) {
   const bool of_boundary = record.chosen_as && record.chosen_as->boundary_class;
   return named_in("viewgain.mesh.results", "ViewRecord", record.index,
                   to_array(record.T_world_camera),
                   record.chosen_as ? record.chosen_as->generator : "start",
                   of_boundary ? boundary_class_name(*record.chosen_as->boundary_class) : "",
                   record.predicted_gain, record.realised_gain, record.progress.entropy_removed,
-                  record.progress.unknown_voxels, record.predicted_area, realised_area,
+                  record.progress.unknown_voxels, record.predicted_area, record.progress.new_area,
                   record.progress.surface_area, record.travelled, record.proposal.candidates.size(),
                   record.proposal.dropped);
 }
