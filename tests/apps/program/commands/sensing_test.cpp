@@ -199,9 +199,10 @@ TEST_F(Sensing, AMeshIsPlacedInTheWorld) {
   write_tum(dir / "home.txt", home);
   write_tum(dir / "there.txt", there);
   const auto frames = [this](const std::string& poses, const Strings& more) {
-    run_well(test::joined({"simulate", "cube.off", "--poses", poses, "--sensor", "small.toml",
-                           "--size", "0.3", "--recenter", "on", "--out", "placed"},
-                          more));
+    run_well(
+        test::joined({"simulate", "cube.off", "--poses", poses, "--sensor", "small.toml", "--size",
+                      "0.3", "--recenter", "on", "--background", "0", "--out", "placed"},
+                     more));
     std::vector<GrayImage> images;
     for (const char* i : {"0", "1", "2", "3", "4"}) {
       images.push_back(
