@@ -199,6 +199,16 @@ def test_why_to_end(sensor, camera, poses):
     for _ in range(2):
         idle.add(np.zeros((48, 64)), poses[0])
     assert idle.should_stop() == "idle"
+    # Where the best view is said to be nothing is seen.
+    for broken_promises, reason in (2, "promises"), (0, None):
+        planner = make(sensor, idle_views=0, stop_area=0, broken_promises=broken_promises)
+        planner.add_poses(poses)
+        planner.add(camera.acquire(poses[0], 0)[0], poses[0])
+        for _ in range(2):
+            assert planner.should_stop() is None
+            planner.propose()
+            planner.add(np.zeros((48, 64)), planner.rank().T_world_camera[0])
+        assert planner.should_stop() == reason
 
 
 def test_refused(sensor, camera, poses):
