@@ -220,7 +220,8 @@ Command add_simulate(App& program) {
   app->add_option(
       "--place", options->place,
       "x,y,z[,YAW_DEG] or tx,ty,tz,qx,qy,qz,qw: mesh to world, after --size, --recenter "
-      "and --up [m, degrees round +z]; default: where it is");
+      "and --up [m, degrees round +z]; default: where it is. A room round it stays where it "
+      "was (--background)");
   add_sensing_options(*app, options->sensing);
   app->add_option("--frames-per-view", options->frames_per_view,
                   "frames from each pose, numbered on; poses.txt repeats the pose")

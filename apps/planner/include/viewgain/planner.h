@@ -64,8 +64,8 @@ typedef struct vg_planner_config {
   void* user;                       /* handed to reachable */
   /* 20, 3 and 3; idle_views or broken_promises 0: never */
   uint64_t max_views, idle_views, broken_promises;
-  double stop_gain, stop_area;      /* NaN: the defaults of the gain; 0: never */
-  int32_t tracer;                   /* VG_TRACER_AUTOMATIC; never changes a result */
+  double stop_gain, stop_area; /* NaN: the defaults of the gain; 0: never */
+  int32_t tracer;              /* VG_TRACER_AUTOMATIC; never changes a result */
 } vg_planner_config;
 /* The defaults. */
 VG_API void vg_planner_config_init(vg_planner_config* config, size_t struct_size);

@@ -121,6 +121,15 @@ TEST_F(Candidates, AShellIsRoundTheReach) {
     EXPECT_EQ(behind > 10U, reach == "boxes.toml") << behind;
     EXPECT_EQ(candidates("shell", {"--reach", reach, "--count", "200"}), result);
   }
+  // A list of poses is among the candidates of every generator.
+  const std::vector<Pose> listed = sphere_poses(20, 0.6);
+  write_tum(dir / "listed.txt", listed);
+  write("list.toml", "poses = \"listed.txt\"\n");
+  for (const std::string generator : {"shell", "sequence", "boundary"}) {
+    const json result = candidates(generator, {"--reach", "list.toml"});
+    ASSERT_GT(result["candidates"].get<int>(), 5) << generator;
+    for (const json& one : result["per_candidate"]) EXPECT_EQ(one["generator"], "reach");
+  }
   // A distance that is asked for holds.
   EXPECT_GT(
       candidates("shell", {"--reach", "arm.toml", "--distance", "0.6"})["dropped"]["unreachable"],
