@@ -23,11 +23,14 @@ TEST(StopRules, GoOnFromWhatTheyRemember) {
     config.stop_gain = chance(0.5) ? 0.2 : 0.05;
     config.stop_gain_is_relative = chance(0.5);
     config.stop_area = chance(0.5) ? 0.2 : 0.0;
+    config.broken_promises = 2;
     StopRules whole(config), parts(config);
-    ModelProgress progress{0, 1000, {}, 1.0, {}};
+    ModelProgress progress{0, 1000, {}, 1.0};
     for (;;) {
       if (chance(0.8)) progress.entropy_removed += value(), progress.unknown_voxels -= 5;
+      progress.new_area = chance(0.8) ? 0.1 * value() : std::numeric_limits<double>::quiet_NaN();
       Decision decision;
+      decision.area = decision.gain = 0.4 * value();
       if (chance(0.7)) decision.gain_per_voxel = value();
       if (chance(0.7)) decision.best_area = 0.3 * value();
       if (chance(0.7)) decision.worth = value() - 0.1;

@@ -98,6 +98,7 @@ PlannerConfig settings_of(const vg_planner_config& config) {
   settings.reach.predicate = predicate_of(config.reachable, config.user);
   settings.max_views = static_cast<std::size_t>(config.max_views);
   settings.idle_views = static_cast<std::size_t>(config.idle_views);
+  settings.broken_promises = static_cast<std::size_t>(config.broken_promises);
   settings.stop_gain = given(config.stop_gain);
   settings.stop_area = given(config.stop_area);
   return settings;
@@ -115,28 +116,12 @@ vg_status make_planner(vg_planner** planner, const Make& make) {
   return known;
 }
 
+// In the order of StopReason; a planner has none of those after max_views.
 std::int32_t code_of(std::optional<StopReason> reason) {
-  if (!reason) return VG_GO_ON;
-  switch (*reason) {
-    case StopReason::gain:
-      return VG_STOP_GAIN;
-    case StopReason::area:
-      return VG_STOP_AREA;
-    case StopReason::no_candidates:
-      return VG_STOP_NO_CANDIDATES;
-    case StopReason::unreachable:
-      return VG_STOP_UNREACHABLE;
-    case StopReason::idle:
-      return VG_STOP_IDLE;
-    case StopReason::cost:
-      return VG_STOP_COST;
-    case StopReason::max_views:
-    case StopReason::coverage:     // never a planner's
-    case StopReason::interrupted:  // likewise
-      break;
-  }
-  return VG_STOP_MAX_VIEWS;
+  return reason ? static_cast<std::int32_t>(*reason) + 1 : VG_GO_ON;
 }
+static_assert(static_cast<int>(StopReason::gain) + 1 == VG_STOP_GAIN);
+static_assert(static_cast<int>(StopReason::max_views) + 1 == VG_STOP_MAX_VIEWS);
 
 // "" for what is none.
 std::string_view reason_name(std::size_t reason) {
@@ -203,6 +188,7 @@ vg_planner_config viewgain::c_api::defaults() noexcept {
   config.clearance = own.clearance;
   config.max_views = own.max_views;
   config.idle_views = own.idle_views;
+  config.broken_promises = own.broken_promises;
   config.stop_gain = config.stop_area = kNone;
   return config;
 }

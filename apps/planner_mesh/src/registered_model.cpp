@@ -28,6 +28,8 @@ ModelProgress RegisteredModel::update(const Measurements& measurements) {
   }
   const double seconds = watch.seconds();
   ModelProgress progress = views_.size() == 1 ? model_.update(kept.front()) : model_.rebuild(kept);
+  // What the last view brought, not the last that was kept.
+  if (registrations().back().status == RegistrationStatus::refused) progress.new_area = 0;
   progress.seconds["register"] = seconds;
   return progress;
 }

@@ -68,7 +68,6 @@ ModelProgress SurfaceModel::rebuild(std::span<const Measurements> measurements) 
 }
 
 ModelProgress SurfaceModel::progress_after(const MapUpdate& update) {
-  realised_area_ = update.new_area;
   StageSeconds seconds = update.seconds;
   const Stopwatch surface_watch;
   derive_surface();
@@ -80,6 +79,7 @@ ModelProgress SurfaceModel::progress_after(const MapUpdate& update) {
   }
   ModelProgress progress = map_.progress();
   progress.surface_area = mesh_area(surface_);
+  progress.new_area = is_in_map(update.verdict) ? update.new_area : 0.0;
   if (truth_) progress.coverage = quality_.back().coverage_visible;
   progress.seconds = std::move(seconds);
   return progress;

@@ -48,20 +48,20 @@ struct FileOption {
   Kind kind;
 };
 constexpr std::array kFileOptions{
-    FileOption{"--config", Kind::input},    FileOption{"MESH", Kind::input},
-    FileOption{"MAP", Kind::input},         FileOption{"IN", Kind::input},
-    FileOption{"--map", Kind::input},       FileOption{"--cloud", Kind::input},
-    FileOption{"--poses", Kind::input},     FileOption{"--sensor", Kind::input},
-    FileOption{"--reach", Kind::reach},     FileOption{"--hazard", Kind::input},
-    FileOption{"--obstacle", Kind::input},  FileOption{"FRAMES_DIR", Kind::frames},
-    FileOption{"OUT", Kind::output},        FileOption{"--picture", Kind::picture},
-    FileOption{"--out", Kind::output},      FileOption{"--save-config", Kind::output},
-    FileOption{"INPUT", Kind::run},         FileOption{"--report", Kind::page},
-    FileOption{"SPEC", Kind::input},        FileOption{"--truth", Kind::input},
-    FileOption{"--points", Kind::output},   FileOption{"SOURCE", Kind::folder},
-    FileOption{"--mask", Kind::folder},     FileOption{"--confidence", Kind::folder},
-    FileOption{"--distances", Kind::input}, FileOption{"PART", Kind::input},
-    FileOption{"--amplitude", Kind::folder}};
+    FileOption{"--config", Kind::input},     FileOption{"MESH", Kind::input},
+    FileOption{"MAP", Kind::input},          FileOption{"IN", Kind::input},
+    FileOption{"--map", Kind::input},        FileOption{"--cloud", Kind::input},
+    FileOption{"--poses", Kind::input},      FileOption{"--sensor", Kind::input},
+    FileOption{"--reach", Kind::reach},      FileOption{"--hazard", Kind::input},
+    FileOption{"--obstacle", Kind::input},   FileOption{"FRAMES_DIR", Kind::frames},
+    FileOption{"OUT", Kind::output},         FileOption{"--picture", Kind::picture},
+    FileOption{"--out", Kind::output},       FileOption{"--save-config", Kind::output},
+    FileOption{"INPUT", Kind::run},          FileOption{"--report", Kind::page},
+    FileOption{"SPEC", Kind::input},         FileOption{"--truth", Kind::input},
+    FileOption{"--points", Kind::output},    FileOption{"SOURCE", Kind::folder},
+    FileOption{"--mask", Kind::folder},      FileOption{"--confidence", Kind::folder},
+    FileOption{"--distances", Kind::input},  FileOption{"PART", Kind::input},
+    FileOption{"--amplitude", Kind::folder}, FileOption{"--costs", Kind::input}};
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 

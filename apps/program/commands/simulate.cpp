@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <variant>
@@ -38,6 +40,7 @@ struct Options {
   std::optional<double> size;
   std::string recenter = "off";
   std::string up = "z";
+  std::string place;
   SensingOptions sensing;
   std::size_t frames_per_view = 1;
   std::string amplitude;
@@ -73,6 +76,22 @@ MeshPlacement placement_of(const Options& options) {
   return placement;
 }
 
+// Where the mesh's frame is in the world.
+Pose parse_place(const std::string& text) {
+  const std::vector<double> n = parse_numbers("--place", text, 3, 7);
+  if (n.size() > 4) return parse_pose("--place", text);
+  const double yaw = n.size() > 3 ? n[3] * std::numbers::pi / 180 : 0;
+  return {Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
+          Eigen::Vector3d(n[0], n[1], n[2])};
+}
+
+void place(const Pose& T_world_mesh, TriangleMesh& mesh) {
+  for (auto& v : mesh.vertices) {
+    const Eigen::Vector3d p = T_world_mesh * Eigen::Vector3d(v.data());
+    v = {p.x(), p.y(), p.z()};
+  }
+}
+
 // Whether a pixel looks at the mesh, and not all of them at the room alone.
 bool sees_mesh(const SurfaceScene& scene, const Sensor& sensor,
                const std::vector<Eigen::Vector3d>& rays, const Pose& T_world_camera) {
@@ -98,7 +117,7 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
     }
     throw Error(ErrorCode::invalid_argument,
                 options.mesh + ": no pose has the mesh in view and in range, which lies in " +
-                    describe(box) + " m (--size, --recenter)");
+                    describe(box) + " m (--size, --recenter, --place)");
   }
 }
 
@@ -109,7 +128,10 @@ void simulate(const Options& options) {
   sensor.range_calibration = {};  // the frames have no such error
   if (options.size) check_positive("--size", *options.size);
   const PoseSource source = make_poses(options.poses, options.sensing.seed);
+  std::optional<Pose> T_world_mesh;
+  if (!options.place.empty()) T_world_mesh = parse_place(options.place);
   TriangleMesh mesh = read_mesh(options.mesh, placement_of(options));
+  if (T_world_mesh) place(*T_world_mesh, mesh);
   const std::size_t triangles = mesh.triangles.size();
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
   check_view(options, *scene, sensor, source.poses);
@@ -195,6 +217,11 @@ Command add_simulate(App& program) {
   one_of(*app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
               ->capture_default_str(),
          {"x", "y", "z"}, "axis");
+  app->add_option(
+      "--place", options->place,
+      "x,y,z[,YAW_DEG] or tx,ty,tz,qx,qy,qz,qw: mesh to world, after --size, --recenter "
+      "and --up [m, degrees round +z]; default: where it is. A room round it stays where it "
+      "was (--background)");
   add_sensing_options(*app, options->sensing);
   app->add_option("--frames-per-view", options->frames_per_view,
                   "frames from each pose, numbered on; poses.txt repeats the pose")

@@ -35,17 +35,15 @@
 namespace viewgain::python {
 namespace {
 
-std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
-                              const py::object& workspace, const py::object& T_world_grid,
-                              std::optional<double> prior_sigma,
-                              std::optional<double> support_plane, const py::object& boxes,
-                              const py::iterable& meshes, const std::string& gain,
-                              const std::string& criterion, std::optional<double> object_size,
-                              const GivenOrNone<ReachRegion>& reach, const py::object& body_size,
-                              double clearance, bool jump_edges, bool check_feasibility,
-                              std::size_t max_views, std::size_t idle_views,
-                              std::optional<double> stop_gain, std::optional<double> stop_area,
-                              const py::object& state, const std::string& tracer, int num_threads) {
+std::unique_ptr<Planner> make(
+    const Given<Sensor>& of, double voxel_size, const py::object& workspace,
+    const py::object& T_world_grid, std::optional<double> prior_sigma,
+    std::optional<double> support_plane, const py::object& boxes, const py::iterable& meshes,
+    const std::string& gain, const std::string& criterion, std::optional<double> object_size,
+    const GivenOrNone<ReachRegion>& reach, const py::object& body_size, double clearance,
+    bool jump_edges, bool check_feasibility, std::size_t max_views, std::size_t idle_views,
+    std::size_t broken_promises, std::optional<double> stop_gain, std::optional<double> stop_area,
+    const py::object& state, const std::string& tracer, int num_threads) {
   Sensor sensor = *of;
   PlannerConfig config;
   config.grid.voxel_size = voxel_size;
@@ -66,6 +64,7 @@ std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
   config.check_feasibility = check_feasibility;
   config.max_views = max_views;
   config.idle_views = idle_views;
+  config.broken_promises = broken_promises;
   config.stop_gain = stop_gain;
   config.stop_area = stop_area;
   const ExecConfig exec{num_threads, parse_tracer(tracer)};
@@ -210,9 +209,9 @@ void bind_planner(py::module_& module) {
            py::arg("body_size") = py::none(), py::arg("clearance") = defaults.clearance,
            py::arg("jump_edges") = true, py::arg("check_feasibility") = true,
            py::arg("max_views") = defaults.max_views, py::arg("idle_views") = defaults.idle_views,
-           py::arg("stop_gain") = py::none(), py::arg("stop_area") = py::none(),
-           py::arg("state") = py::none(), py::arg("tracer") = "automatic",
-           py::arg("num_threads") = 0)
+           py::arg("broken_promises") = defaults.broken_promises, py::arg("stop_gain") = py::none(),
+           py::arg("stop_area") = py::none(), py::arg("state") = py::none(),
+           py::arg("tracer") = "automatic", py::arg("num_threads") = 0)
       .def_static(
           "load",
           [](const py::object& path, const py::args& args, const py::kwargs& settings) {

@@ -50,6 +50,9 @@ check_feasibility : bool
 max_views, idle_views : int
     End after so many views; after so many in a row that changed entropy and unknown voxels by less
     than 0.1 % (0: never).
+broken_promises : int
+    End after so many views in a row, taken where the best of the last ranking was, that brought
+    less than a fifth of the new surface (by gain "paper" the entropy) that was promised; 0: never.
 stop_gain : float, optional
     By gain "paper": end when the best candidate promises less than this per touched voxel [nat, m**2 for
     trace]. Default: 1.2; for trace 0.01 of the first ranking's.
@@ -87,7 +90,7 @@ Parameters
 path : path-like
 sensor, **settings
     Those of the constructor, as before, which is not looked at but for the map's layout; candidates
-    are added and proposed anew, too. ``max_views`` and ``idle_views`` count at once: a planner that
+    are added and proposed anew, too. ``max_views``, ``idle_views`` and ``broken_promises`` count at once: a planner that
     had ended may go on with more.
 
 Returns
@@ -322,7 +325,7 @@ inline constexpr const char* kShouldStopDoc =
 Returns
 -------
 str or None
-    After ``add`` max_views or idle; after ``propose`` no_candidates or unreachable; after ``rank`` of
+    After ``add`` max_views, idle or promises; after ``propose`` no_candidates or unreachable; after ``rank`` of
     the proposal gain, area or, with costs, cost: no view is worth its way.)";
 
 }  // namespace viewgain::python

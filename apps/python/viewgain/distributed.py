@@ -36,7 +36,7 @@ except ImportError as error:
 import viewgain
 
 from . import _rows
-from ._viewgain import _part_head, _pose_matrices, _write_part
+from ._viewgain import _part_head, _pose_matrices, _pose_rows, _POSE_COLUMNS, _write_part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -149,12 +149,15 @@ def _score_chunk(job: _Job, begin: int, poses: NDArray) -> tuple[int, NDArray, f
     """First row, rows, and how long scoring took [s]."""
     evaluator = _evaluator(job)
     start = time.perf_counter()
-    gains = evaluator.evaluate_detailed(_pose_matrices(poses) if poses.dtype.names else poses)
+    matrices = _pose_matrices(poses) if poses.dtype.names else poses
+    gains = evaluator.evaluate_detailed(matrices)
     seconds = time.perf_counter() - start
     rows = np.empty(len(poses), job.dtype)
     rows["index"] = np.arange(begin, begin + len(poses))
-    for name in rows.dtype.names[1:]:
+    for name in rows.dtype.names[1:-len(_POSE_COLUMNS)]:
         rows[name] = gains[name]
+    for name, column in zip(_POSE_COLUMNS, _pose_rows(matrices).T):
+        rows[name] = column
     return begin, rows, seconds
 
 
@@ -165,8 +168,8 @@ class Scores:
     """What score() came to."""
 
     best: NDArray
-    """(top,), structured: the best rows, best first, as in the parts: index, gain, ..., status, of
-    ``GainEvaluator.evaluate_detailed`` [nat, m**2]."""
+    """(top,), structured: the best rows, best first, as in the parts: index; gain, ..., status, of
+    ``GainEvaluator.evaluate_detailed`` [nat, m**2]; tx, ..., qw of the pose."""
     parts: list[pathlib.Path]
     """The files, by rows; ``viewgain merge`` puts them together."""
     isa: str

@@ -102,6 +102,8 @@ std::string_view stop_reason_name(StopReason reason) {
       return "unreachable";
     case StopReason::idle:
       return "idle";
+    case StopReason::promises:
+      return "promises";
     case StopReason::max_views:
       return "max_views";
     case StopReason::coverage:

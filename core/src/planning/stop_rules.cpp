@@ -56,8 +56,21 @@ bool StopRules::brought_nothing(const ModelProgress& now) const {
                     config_.idle_fraction);
 }
 
+// A view that nobody promised anything of, or nobody knows what it brought, says nothing.
+void StopRules::hold_against_promise(const ModelProgress& now) {
+  double promised = memory_.promised_area, came = now.new_area;
+  if (std::isnan(promised) || std::isnan(came)) {
+    promised = memory_.promised_gain;
+    came = now.entropy_removed - memory_.entropy_removed;
+  }
+  memory_.promised_area = memory_.promised_gain = std::numeric_limits<double>::quiet_NaN();
+  if (std::isnan(promised)) return;
+  memory_.broken_promises = came < kKeptShare * promised ? memory_.broken_promises + 1 : 0;
+}
+
 std::optional<StopReason> StopRules::after_view(const ModelProgress& progress) {
   memory_.idle_views = brought_nothing(progress) ? memory_.idle_views + 1 : 0;
+  hold_against_promise(progress);
   memory_.entropy_removed = progress.entropy_removed;
   memory_.unknown_voxels = progress.unknown_voxels;
   ++memory_.views;
@@ -67,6 +80,9 @@ std::optional<StopReason> StopRules::after_view(const ModelProgress& progress) {
   }
   if (memory_.views >= config_.max_views) return StopReason::max_views;
   if (config_.idle_views > 0 && memory_.idle_views >= config_.idle_views) return StopReason::idle;
+  if (config_.broken_promises > 0 && memory_.broken_promises >= config_.broken_promises) {
+    return StopReason::promises;
+  }
   return std::nullopt;
 }
 
@@ -96,6 +112,9 @@ bool StopRules::stops_for_area(double share) {
 std::optional<StopReason> StopRules::after_decision(const std::optional<Decision>& decision,
                                                     const Proposal& proposal, double surface_area) {
   if (!decision) return nowhere_to_go(proposal);
+  // A policy that never stops for them promises nothing.
+  if (!std::isnan(decision->best_area)) memory_.promised_area = decision->area;
+  if (!std::isnan(decision->gain_per_voxel)) memory_.promised_gain = decision->gain;
   const bool little_area = stops_for_area(decision->best_area / surface_area);
   if (stops_for_gain(decision->gain_per_voxel)) return StopReason::gain;
   if (little_area) return StopReason::area;

@@ -307,6 +307,26 @@ TEST_F(Files, FramesReadBackInTenthsOfAMillimetre) {
   EXPECT_EQ(list(), std::vector<std::string>{"frames"});
 }
 
+// Line i is the image of number i, of however many digits; two images of a number are refused.
+TEST_F(Files, FramesHaveNumbersOfAnyLength) {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera.width = 4, sensor.camera.height = 2;
+  const DepthFrame frame{4, 2, std::vector<float>(8, 0.5F)};
+  FramesWriter writer(dir / "frames");
+  for (std::size_t i = 0; i < 3; ++i) writer.write_frame(i, frame);
+  writer.commit(std::vector<Pose>(3), sensor);
+  const fs::path folder = dir / "frames";
+  fs::rename(folder / "frame-000001.depth.png", folder / "frame-1.depth.png");
+  fs::rename(folder / "frame-000002.depth.png", folder / "frame-0000002.depth.png");
+  const FrameSequence frames = open_frames(folder);
+  ASSERT_EQ(frames.images.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(read_frame(frames, i).fault.verdict, FrameVerdict::used) << frames.images[i];
+  }
+  fs::copy(folder / "frame-1.depth.png", folder / "frame-01.depth.png");
+  expect_error(ErrorCode::format, "are of one number", [&] { (void)open_frames(folder); });
+}
+
 TEST_F(Files, AmplitudesReadBackInThousandths) {
   Sensor sensor = sensor_preset("sr4000");
   sensor.camera.width = 4;

@@ -99,6 +99,34 @@ TEST(SavedPlanner, LimitsAreThoseOfTheConfigurationItIsLoadedWith) {
   }
 }
 
+// What was promised, and how often it was not kept, is in the file.
+TEST(SavedPlanner, RemembersPromises) {
+  const BinScene scene;
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "planner.vdb";
+  PlannerConfig config = scene.config(GainModel::combined);
+  config.idle_views = 0;
+  config.stop_area = 0;
+  ViewPlanner planner(scene.sensor, config, {1});
+  planner.add(scene.see(scene.views[0]), scene.views[0]);
+  for (int view = 0; view < 3; ++view) {
+    EXPECT_EQ(planner.should_stop(), std::nullopt) << view;
+    planner.add_poses({"dome", scene.views});
+    (void)planner.propose();
+    const Pose next = planner.rank(1).views.front().T_world_camera;
+    planner.save(path);
+    planner = ViewPlanner::load(path, scene.sensor, config, {1});
+    DepthFrame nothing = scene.see(next);
+    std::fill(nothing.depth.begin(), nothing.depth.end(), DepthFrame::kInvalid);
+    (void)planner.add(nothing, next);
+    planner.save(path);
+    planner = ViewPlanner::load(path, scene.sensor, config, {1});
+  }
+  EXPECT_EQ(planner.should_stop(), StopReason::promises);
+  config.broken_promises = 4;
+  EXPECT_EQ(ViewPlanner::load(path, scene.sensor, config).should_stop(), std::nullopt);
+}
+
 TEST(SavedPlanner, KeepsNotesBesideItsOwn) {
   const BinScene scene;
   const test::TemporaryFolder folder;

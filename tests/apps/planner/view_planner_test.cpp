@@ -275,6 +275,35 @@ TEST(ViewPlanner, SaysWhyToEnd) {
   EXPECT_EQ(views, 3);
 }
 
+// Frames that say nothing where the best view is: what was promised does not come. Views from
+// elsewhere, or that nobody ranked, break no promise.
+TEST(ViewPlanner, EndsForPromisesThatAreNotKept) {
+  const BinScene scene;
+  for (const char* how : {"there", "elsewhere", "unranked", "never"}) {
+    PlannerConfig config = scene.config(GainModel::combined);
+    config.idle_views = 0;
+    config.stop_area = 0;
+    if (*how == 'n') config.broken_promises = 0;
+    ViewPlanner planner(scene.sensor, config, {1});
+    planner.add_poses({"dome", scene.views});
+    planner.add(scene.see(scene.views[0]), scene.views[0]);
+    for (std::size_t view = 1; view <= 3; ++view) {
+      EXPECT_EQ(planner.should_stop(), std::nullopt) << how << view;
+      (void)planner.propose();
+      Pose next = scene.views[3 * view];
+      if (*how != 'u') next = planner.rank(1).views.front().T_world_camera;
+      if (*how == 'e')
+        next = Pose(next.rotation(), next.translation() + Eigen::Vector3d(0, 0, 0.02));
+      DepthFrame nothing = scene.see(next);
+      std::fill(nothing.depth.begin(), nothing.depth.end(), DepthFrame::kInvalid);
+      (void)planner.add(nothing, next);
+    }
+    EXPECT_EQ(planner.should_stop(),
+              *how == 't' ? std::optional(StopReason::promises) : std::nullopt)
+        << how;
+  }
+}
+
 // Proposes one pose, and says that it has dropped two.
 class OneMore : public ViewpointGeneration {
  public:

@@ -126,8 +126,12 @@ def rows_of(found):
 def check_rows(rows, evaluator, poses):
     assert rows["index"].tolist() == list(range(len(poses)))  # all, none twice
     gains = evaluator.evaluate_detailed(poses)
-    for name in rows.dtype.names[1:]:
+    for name in rows.dtype.names[1:-7]:
         assert rows[name].tobytes() == gains[name].tobytes(), name
+    assert rows.dtype.names[-7:] == ("tx", "ty", "tz", "qx", "qy", "qz", "qw")
+    again = native._pose_matrices(rows)
+    assert np.allclose(again, poses, rtol=0, atol=1e-14, equal_nan=True) or np.isnan(poses).any()
+    assert np.array_equal(np.isnan(again).any((1, 2)), np.isnan(poses).any((1, 2)))
 
 
 def test_scores_are_those_of_one_process(client, grid, sensor, tmp_path):

@@ -35,6 +35,12 @@ std::optional<Pose> pose_of_row(const std::array<double, kPoseColumns.size()>& n
   return Pose(q.toRotationMatrix(), Eigen::Vector3d(numbers[0], numbers[1], numbers[2]));
 }
 
+std::array<double, kPoseColumns.size()> row_of_pose(const Pose& pose) {
+  const Eigen::Quaterniond q = Eigen::Quaterniond(pose.rotation()).normalized();
+  const Eigen::Vector3d t = pose.translation();
+  return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+}
+
 MappedPoses::MappedPoses(const std::filesystem::path& path) : name_(path.string()) {
   const std::size_t head_bytes = npy_header_bytes(name_, file_head(path, 12));
   const NpyHeader header = parse_npy_header(name_, file_head(path, head_bytes));

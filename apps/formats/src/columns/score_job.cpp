@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/columns/mapped_poses.hpp"
 #include "viewgain/support/hash64.hpp"
 #include "viewgain/version.hpp"
 
@@ -71,6 +72,11 @@ std::vector<Column> gain_columns(GainModel model) {
   if (model == GainModel::paper) return columns;
   columns.push_back({"area", ColumnType::real});
   columns.push_back({"refinement_saturated", ColumnType::real});
+  return columns;
+}
+
+std::vector<Column> with_pose_columns(std::vector<Column> columns) {
+  for (const char* name : kPoseColumns) columns.push_back({name, ColumnType::real});
   return columns;
 }
 

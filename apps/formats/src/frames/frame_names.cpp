@@ -7,6 +7,8 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "viewgain/core/error.hpp"
+
 namespace viewgain {
 
 std::string frame_name(std::uint64_t index, std::string_view suffix) {
@@ -31,7 +33,10 @@ std::map<std::uint64_t, std::string> list_frames(const std::vector<std::filesyst
   std::map<std::uint64_t, std::string> frames;
   for (const std::filesystem::path& name : names) {
     if (const auto digits = frame_number(name.string(), kDepthSuffix)) {
-      frames.emplace(std::stoull(*digits), std::string(kFramePrefix) + *digits);
+      const std::string frame = std::string(kFramePrefix) + *digits;
+      const auto [other, is_new] = frames.emplace(std::stoull(*digits), frame);
+      if (is_new) continue;
+      throw Error(ErrorCode::format, frame + " and " + other->second + " are of one number");
     }
   }
   return frames;

@@ -34,7 +34,8 @@ inline constexpr std::array kNames{kPoses, kSensor, kIntrinsics, kSimulated, kSc
 [[nodiscard]] std::optional<std::string> frame_number(const std::string& name,
                                                       std::string_view suffix);
 
-/// The depth images among the names in a folder by their number, as "frame-NNNNNN".
+/// The depth images among the names in a folder by their number, as "frame-NNNNNN", of however many
+/// digits. Throws Error(format) for two of one number.
 [[nodiscard]] std::map<std::uint64_t, std::string> list_frames(
     const std::vector<std::filesystem::path>& names);
 

@@ -94,19 +94,18 @@ void add_frame(FrameSequence& frames, fs::path image, ReadPose pose) {
   frames.orthonormalized += pose.is_mended ? 1 : 0;
 }
 
-// A line a frame, and the images beyond the last line.
+// A line a frame, whether its image is there or not, and the images beyond the last line.
 void list_own_layout(const fs::path& dir, FrameSequence& frames) {
   std::vector<ReadPose> poses = read_pose_lines(dir / kPoses);
-  const std::size_t count = poses.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    add_frame(frames, dir / frame_name(i, kDepthSuffix), std::move(poses[i]));
-  }
-  for (const auto& [number, name] : list_frames(names_in(dir))) {
-    if (number < count) continue;
-    add_frame(frames, dir / (name + std::string(kDepthSuffix)),
-              unknown_pose(FrameVerdict::no_pose, (dir / kPoses).string() + ": has " +
-                                                      std::to_string(count) + " poses, none for " +
-                                                      name));
+  std::map<std::uint64_t, std::string> names = list_frames(names_in(dir));
+  for (std::size_t i = 0; i < poses.size(); ++i) names.try_emplace(i, frame_name(i, ""));
+  for (const auto& [number, name] : names) {
+    ReadPose pose = number < poses.size()
+                        ? std::move(poses[number])
+                        : unknown_pose(FrameVerdict::no_pose, (dir / kPoses).string() + ": has " +
+                                                                  std::to_string(poses.size()) +
+                                                                  " poses, none for " + name);
+    add_frame(frames, dir / (name + std::string(kDepthSuffix)), std::move(pose));
   }
 }
 

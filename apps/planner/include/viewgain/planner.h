@@ -26,11 +26,12 @@ enum {
   VG_GO_ON = 0,
   VG_STOP_GAIN = 1,          /* the best candidate promises too little */
   VG_STOP_AREA = 2,          /* no candidate promises enough new surface */
-  VG_STOP_NO_CANDIDATES = 3, /* nothing is left to look at */
-  VG_STOP_UNREACHABLE = 4,   /* candidates are left, all of them out of reach */
-  VG_STOP_IDLE = 5,          /* views in a row brought nothing new */
-  VG_STOP_MAX_VIEWS = 6,
-  VG_STOP_COST = 7 /* going to the best candidate costs more than it promises */
+  VG_STOP_COST = 3,          /* going to the best candidate costs more than it promises */
+  VG_STOP_NO_CANDIDATES = 4, /* nothing is left to look at */
+  VG_STOP_UNREACHABLE = 5,   /* candidates are left, all of them out of reach */
+  VG_STOP_IDLE = 6,          /* views in a row brought nothing new */
+  VG_STOP_PROMISES = 7,      /* views in a row brought far less than they promised */
+  VG_STOP_MAX_VIEWS = 8
 };
 
 /* What a planner is set up with; fields are as in C++'s PlannerConfig. */
@@ -61,9 +62,10 @@ typedef struct vg_planner_config {
   int32_t (*reachable)(const double T_world_camera[16],
                        void* user); /* may the camera be there? null: anywhere */
   void* user;                       /* handed to reachable */
-  uint64_t max_views, idle_views;   /* 20 and 3; idle_views 0: never */
-  double stop_gain, stop_area;      /* NaN: the defaults of the gain; 0: never */
-  int32_t tracer;                   /* VG_TRACER_AUTOMATIC; never changes a result */
+  /* 20, 3 and 3; idle_views or broken_promises 0: never */
+  uint64_t max_views, idle_views, broken_promises;
+  double stop_gain, stop_area; /* NaN: the defaults of the gain; 0: never */
+  int32_t tracer;              /* VG_TRACER_AUTOMATIC; never changes a result */
 } vg_planner_config;
 /* The defaults. */
 VG_API void vg_planner_config_init(vg_planner_config* config, size_t struct_size);

@@ -64,6 +64,43 @@ std::vector<Pose> spread_out(const std::vector<Pose>& poses, const PoseSetReques
   return ordered;
 }
 
+// The shells, or else those round the boxes.
+std::vector<Shell> shells_of(const ReachRegion& reach) {
+  if (!reach.shells.empty()) return reach.shells;
+  std::vector<Shell> shells;
+  for (const Box& box : reach.boxes) {
+    const Eigen::Vector3d low(box.min.data()), high(box.max.data());
+    shells.push_back({0.5 * (low + high), 0, 0.5 * (high - low).norm()});
+  }
+  return shells;
+}
+
+// Where the robot can put the camera, in equal numbers for each of its shells if these have room.
+std::vector<Pose> poses_in_reach(const std::vector<Shell>& shells, std::size_t count,
+                                 const PoseSetRequest& request) {
+  constexpr std::size_t kMostDrawn = 1'000'000;  // of a shell
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < shells.size(); ++i) {
+    const Shell& shell = shells[i];
+    const std::size_t wanted = count * (i + 1) / shells.size();
+    const double least = std::max(shell.min_radius, 1e-6 * shell.max_radius);
+    // More of them begin with the same ones.
+    std::vector<Pose> found;
+    for (std::size_t drawn = count; drawn <= kMostDrawn; drawn *= 2) {
+      found.clear();
+      for (const Pose& pose :
+           shell_poses(drawn, least, shell.max_radius, request.seed + i, shell.center)) {
+        if (poses.size() + found.size() == wanted) break;
+        const Pose looking = look_at(pose.translation(), request.center);
+        if (request.reach.contains(looking)) found.push_back(looking);
+      }
+      if (poses.size() + found.size() == wanted) break;
+    }
+    poses.insert(poses.end(), found.begin(), found.end());
+  }
+  return poses;
+}
+
 }  // namespace
 
 const std::vector<std::string>& generator_names() {
@@ -96,8 +133,11 @@ PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request)
   } else if (generator == "rings") {
     set.poses = literature_ring_poses(count, request.distance, request.center);
   } else if (generator == "shell") {
-    set.poses = shell_poses(count, 0.8 * request.distance, 1.25 * request.distance, request.seed,
-                            request.center);
+    const std::vector<Shell> shells = shells_of(request.reach);
+    set.poses = shells.empty() || !request.reach.poses.empty()
+                    ? shell_poses(count, 0.8 * request.distance, 1.25 * request.distance,
+                                  request.seed, request.center)
+                    : poses_in_reach(shells, count, request);
   } else if (generator == "sequence") {
     set.poses = sequence_poses(request);
   } else {

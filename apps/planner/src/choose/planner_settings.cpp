@@ -30,6 +30,7 @@ PlanningConfig planning_config(const PlannerConfig& config) {
   PlanningConfig planning;
   planning.max_views = config.max_views;
   planning.idle_views = config.idle_views;
+  planning.broken_promises = config.broken_promises;
   set_stop_rules(planning, config.gain.model, config.gain.criterion, config.stop_gain,
                  config.stop_area);
   return planning;

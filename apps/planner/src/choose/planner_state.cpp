@@ -16,16 +16,18 @@ constexpr std::uint64_t kVersion = 1;
 constexpr std::uint64_t kMost = std::uint64_t{1} << 53;
 constexpr std::array kReasons{StopReason::gain,          StopReason::area,        StopReason::cost,
                               StopReason::no_candidates, StopReason::unreachable, StopReason::idle,
-                              StopReason::max_views};
+                              StopReason::promises,      StopReason::max_views};
 
 std::string line_of(std::string_view name, const StopMemory& memory) {
   std::string line(name);
-  for (const std::uint64_t count : {std::uint64_t{memory.views}, std::uint64_t{memory.idle_views},
-                                    memory.unknown_voxels, std::uint64_t{memory.decisions}}) {
+  for (const std::uint64_t count :
+       {std::uint64_t{memory.views}, std::uint64_t{memory.idle_views}, memory.unknown_voxels,
+        std::uint64_t{memory.decisions}, std::uint64_t{memory.broken_promises}}) {
     line.append(" ").append(std::to_string(count));
   }
-  for (const double value : {memory.entropy_removed, memory.first_gain_per_voxel,
-                             memory.area_shares[0], memory.area_shares[1], memory.area_shares[2]}) {
+  for (const double value :
+       {memory.entropy_removed, memory.first_gain_per_voxel, memory.area_shares[0],
+        memory.area_shares[1], memory.area_shares[2], memory.promised_area, memory.promised_gain}) {
     line.append(" ").append(short_text(value));
   }
   return line.append("\n");
@@ -37,9 +39,12 @@ StopMemory memory_of(const LineReader& reader) {
   memory.idle_views = static_cast<std::size_t>(reader.count(2, kMost));
   memory.unknown_voxels = reader.count(3, kMost);
   memory.decisions = static_cast<std::size_t>(reader.count(4, kMost));
-  memory.entropy_removed = reader.number(5);
-  memory.first_gain_per_voxel = reader.number(6);
-  for (std::size_t i = 0; i < 3; ++i) memory.area_shares[i] = reader.number(7 + i);
+  memory.broken_promises = static_cast<std::size_t>(reader.count(5, kMost));
+  memory.entropy_removed = reader.number(6);
+  memory.first_gain_per_voxel = reader.number(7);
+  for (std::size_t i = 0; i < 3; ++i) memory.area_shares[i] = reader.number(8 + i);
+  memory.promised_area = reader.number(11);
+  memory.promised_gain = reader.number(12);
   return memory;
 }
 
@@ -80,10 +85,11 @@ struct Entry {
   std::string_view name;
   std::size_t words;
 };
-constexpr std::array kEntries{
-    Entry{"version", 2},       Entry{"seen_area", 2}, Entry{"before_choice", 10},
-    Entry{"after_choice", 10}, Entry{"frames", 3},    Entry{"reached", 13},
-    Entry{"missed", 13},       Entry{"of_view", 2},   Entry{"of_choice", 2}};
+constexpr std::array kEntries{Entry{"version", 2},        Entry{"seen_area", 2},
+                              Entry{"before_choice", 13}, Entry{"after_choice", 13},
+                              Entry{"frames", 3},         Entry{"reached", 13},
+                              Entry{"missed", 13},        Entry{"promised", 13},
+                              Entry{"of_view", 2},        Entry{"of_choice", 2}};
 
 }  // namespace
 
@@ -99,6 +105,7 @@ std::string text_of(const PlannerState& state) {
   }
   for (const Pose& pose : state.reached) text += line_of("reached", pose);
   for (const Pose& pose : state.missed) text += line_of("missed", pose);
+  if (state.promised) text += line_of("promised", *state.promised);
   text += line_of("of_view", state.of_view);
   text += line_of("of_choice", state.of_choice);
   return text;
@@ -133,6 +140,8 @@ PlannerState state_of(const std::string& name, std::string_view text) {
       state.reached.push_back(pose_of(reader));
     } else if (key == "missed") {
       state.missed.push_back(pose_of(reader));
+    } else if (key == "promised") {
+      state.promised = pose_of(reader);
     } else if (key == "of_view") {
       state.of_view = reason_of(reader);
     } else if (key == "of_choice") {

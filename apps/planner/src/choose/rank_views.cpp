@@ -10,10 +10,9 @@
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
-namespace {
 
-std::vector<double> costs_of(std::span<const Pose> poses, const RankConfig& config,
-                             const std::optional<Eigen::Vector3d>& here) {
+std::vector<double> view_costs(std::span<const Pose> poses, const RankConfig& config,
+                               const std::optional<Eigen::Vector3d>& here) {
   if (!std::isfinite(config.cost_per_metre) || config.cost_per_metre < 0) {
     throw Error(ErrorCode::invalid_argument, "cost_per_metre " + short_text(config.cost_per_metre) +
                                                  " must be at least 0 and finite");
@@ -30,12 +29,10 @@ std::vector<double> costs_of(std::span<const Pose> poses, const RankConfig& conf
   return costs;
 }
 
-}  // namespace
-
 Ranking rank_views(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
                    std::size_t k, const RankConfig& config,
                    const std::optional<Eigen::Vector3d>& here, const BatchControl& control) {
-  const std::vector<double> costs = costs_of(T_world_camera, config, here);
+  const std::vector<double> costs = view_costs(T_world_camera, config, here);
   const BestConfig best_by{
       .costs = costs, .measure = config.measure, .run_measure = config.run_measure};
   // Of all of them where all are scored, since the rule of area asks for the most that any

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <utility>
 
@@ -63,7 +64,9 @@ std::optional<StopReason> limit_reached(const PlanningConfig& limits, const Stop
   if (memory.views == 0) return std::nullopt;
   if (memory.views >= limits.max_views) return StopReason::max_views;
   if (limits.idle_views > 0 && memory.idle_views >= limits.idle_views) return StopReason::idle;
-  return std::nullopt;
+  const bool is_broken =
+      limits.broken_promises > 0 && memory.broken_promises >= limits.broken_promises;
+  return is_broken ? std::optional(StopReason::promises) : std::nullopt;
 }
 
 }  // namespace
@@ -114,9 +117,11 @@ struct ViewPlanner::Impl {
       state.reached.push_back(*T_world_camera);
     }
     added.progress.surface_area = state.seen_area;
+    added.progress.new_area = is_in_map(added.update.verdict) ? added.update.new_area : 0.0;
     added.entropy_removed = added.progress.entropy_removed - before;
     seconds = added.update.seconds;
     proposal.reset();
+    forget_promise_unless_kept_at(T_world_camera);
     StopRules rules(planning, state.after_choice);
     state.of_view = rules.after_view(added.progress);
     state.of_choice.reset();
@@ -131,6 +136,17 @@ struct ViewPlanner::Impl {
       state.before_choice.idle_views = state.after_choice.idle_views = 0;
     }
     return added;
+  }
+
+  // A view from elsewhere was not what promised.
+  void forget_promise_unless_kept_at(const std::optional<Pose>& T_world_camera) {
+    const bool is_there =
+        state.promised && T_world_camera &&
+        is_among(*T_world_camera, std::span(&*state.promised, 1), config.taken_tolerance);
+    state.promised.reset();
+    if (is_there) return;
+    state.after_choice.promised_area = state.after_choice.promised_gain =
+        std::numeric_limits<double>::quiet_NaN();
   }
 
   void require_a_usable_frame() const {
@@ -164,7 +180,11 @@ struct ViewPlanner::Impl {
     if (from != nullptr && ranking.complete) {
       std::optional<Decision> decision;
       const bool has_costs = !rank_config.costs.empty() || rank_config.cost_per_metre > 0;
-      if (!ranking.views.empty()) decision = decision_of(ranking, by.model(), has_costs);
+      state.promised.reset();
+      if (!ranking.views.empty()) {
+        decision = decision_of(ranking, by.model(), has_costs);
+        state.promised = ranking.views.front().T_world_camera;
+      }
       remember(decision, *from);
     }
     if (from != nullptr) leave_out_gainless(ranking, rank_config);
@@ -239,6 +259,7 @@ const Proposal& ViewPlanner::propose() {
       m.proposer.propose(m.map.grid(), m.map.scene(), m.state.reached, m.state.missed);
   m.state.of_choice.reset();
   m.state.after_choice = m.state.before_choice;
+  m.state.promised.reset();
   if (proposal.candidates.empty()) m.state.of_choice = nowhere_to_go(proposal);
   m.seconds["candidates"] += watch.seconds();
   return m.proposal.emplace(std::move(proposal));

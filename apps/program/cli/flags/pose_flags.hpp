@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "program/cli/app.hpp"
 #include "program/cli/flags/pose_source.hpp"
 
@@ -30,6 +32,17 @@ inline void add_pose_options(App& app, PoseOptions& options, bool needed = true)
   poses->require_option(needed ? 1 : 0, 1);
   app.add_option("--center", options.center,
                  "x,y,z that the sets of poses look at, world [m]; default: the origin");
+}
+
+/// The flags of CostOptions; `of`: whose costs a file has.
+inline void add_cost_options(App& app, CostOptions& options, const std::string& of) {
+  app.add_option("--costs", options.file,
+                 "file of one number for each of " + of +
+                     ", which is subtracted from its gain, in the gain's unit");
+  app.add_option("--cost-per-metre", options.per_metre,
+                 "subtracted for each metre of the way from the map's last view, in the gain's "
+                 "unit")
+      ->capture_default_str();
 }
 
 }  // namespace viewgain::app

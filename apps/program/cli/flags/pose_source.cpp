@@ -15,6 +15,8 @@
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/support/columns/mapped_poses.hpp"
 #include "viewgain/support/columns/part_reader.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -109,6 +111,21 @@ Shard parse_shard(const std::string& text) {
     refuse("--shard", text, "i must be below n, from 0, and n at most 10,000,000");
   }
   return shard;
+}
+
+std::vector<double> read_costs(const std::string& file, std::size_t poses) {
+  const std::string bytes = file_bytes(file);
+  LineReader reader(file, bytes);
+  std::vector<double> costs;
+  while (reader.next()) {
+    if (reader.words().empty() || reader.words()[0].front() == '#') continue;
+    if (reader.words().size() > 1) reader.fail("a line has one cost");
+    costs.push_back(reader.finite_number(0));
+    if (costs.back() < 0) reader.fail("a cost must not be negative");
+  }
+  if (costs.size() == poses) return costs;
+  throw Error(ErrorCode::invalid_argument, file + ": has " + std::to_string(costs.size()) +
+                                               " costs for " + std::to_string(poses) + " poses");
 }
 
 PoseSource make_poses(const PoseOptions& options, std::uint64_t seed, const Shard& shard) {

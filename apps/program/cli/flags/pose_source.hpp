@@ -32,8 +32,14 @@ struct PoseSource {
   /// Of their number and the numbers of all, by which parts of different lists are told apart.
   std::string hash;
 
+  std::vector<double> costs{};  ///< of each, in the gain's unit; empty: none
+
   /// The pose of a row among all.
   [[nodiscard]] const Pose& at(std::size_t row) const { return poses.at(row - rows.begin); }
+  /// Its gain less its cost.
+  [[nodiscard]] double worth(std::size_t row, double gain) const {
+    return costs.empty() ? gain : gain - costs.at(row - rows.begin);
+  }
 };
 
 /// The options of which one must be given, and what the sets among them look at; empty: not given.
@@ -52,6 +58,18 @@ struct PoseOptions {
            orbit.empty();
   }
 };
+
+/// What is subtracted from gains, in their unit.
+struct CostOptions {
+  std::string file;      ///< --costs: one number a pose
+  double per_metre = 0;  ///< --cost-per-metre of the way from the map's last view
+
+  [[nodiscard]] bool none() const { return file.empty() && per_metre == 0; }
+};
+
+/// Of a file with one number a line, blank lines and comments aside. Throws Error that names the
+/// file, and the line or how many `poses` there are.
+[[nodiscard]] std::vector<double> read_costs(const std::string& file, std::size_t poses);
 
 /// `seed`: of the shell. A .npy is read once for the hash, and the rows asked for are kept; sets
 /// and TUM files are made whole, and rows taken from them. Throws Error(invalid_argument), naming

@@ -168,6 +168,7 @@ class Following {
   // What is not there by now will not come, if all is done.
   void finish(bool is_done) {
     if (is_done) leave_out(watch_->give_up());
+    if (map_) warn(map_->last_suspicion());
     if (map_ && has_news_) write();
     write_new_counts();
   }
@@ -195,21 +196,24 @@ class Following {
     if (const std::string text = frames_text(carved(), watch_->bad()); !text.empty()) {
       std::printf("%s\n", text.c_str());
     }
-    if (has_masks()) {
+    if (!options_.frames.mask.empty() || !options_.frames.confidence.empty()) {
       std::printf("pixels taken away by masks: %s\n", with_commas(masked_pixels_).c_str());
     }
-    if (map_ && map_->should_stop()) {
-      std::printf("enough: %s\n", stop_reason_name(*map_->should_stop()).data());
+    if (!map_) return;
+    if (const auto reason = map_->should_stop()) {
+      std::printf("enough: %s\n", stop_reason_name(*reason).data());
     }
-    if (map_) {
-      std::printf("%s: state.vdb (hash %s), next.txt, next.json\n", options_.out.c_str(),
-                  map_->grid().content_hash().c_str());
-    }
+    std::printf("%s: state.vdb (hash %s), next.txt, next.json\n", options_.out.c_str(),
+                map_->grid().content_hash().c_str());
   }
 
  private:
   void say(const std::string& text) const {
     if (!options_.common.quiet) std::fprintf(stderr, "viewgain: %s\n", text.c_str());
+  }
+
+  void warn(const std::string& what) const {
+    if (!what.empty()) std::fprintf(stderr, "viewgain: warning: %s\n", what.c_str());
   }
 
   [[nodiscard]] std::size_t carved() const {
@@ -229,10 +233,6 @@ class Following {
     }
   }
 
-  [[nodiscard]] bool has_masks() const {
-    return !options_.frames.mask.empty() || !options_.frames.confidence.empty();
-  }
-
   [[nodiscard]] std::size_t count() const { return watch_->taken().size(); }
 
   void open_map() {
@@ -247,6 +247,7 @@ class Following {
 
   void take(const WatchedFrame& frame) {
     const std::string name = frame.image.filename().string();
+    warn(map_->suspicion_with(frame));
     const std::optional<FrameRegistration> registration = map_->register_in(frame);
     FrameVerdict verdict = FrameVerdict::contradicts;
     std::string why = frame.image.string();

@@ -10,6 +10,7 @@
 #include "program/cli/flags/sensed_map.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
+#include "viewgain/planner/suspect_frames.hpp"
 #include "viewgain/planner_mesh/boundary_generation.hpp"
 
 namespace viewgain::app {
@@ -55,6 +56,22 @@ FollowedMap::FollowedMap(const Sensor& sensor, std::optional<std::array<double, 
       sigma_(sigma) {
   const BoundaryViewsConfig boundary = default_boundary(sensor, planner_.grid().voxel_size());
   planner_.add_generation(std::make_shared<BoundaryGeneration>(planner_.map(), boundary, exec));
+}
+
+std::string FollowedMap::suspicion_with(const WatchedFrame& frame) {
+  constexpr std::size_t kEnough = 12;
+  if (is_suspected_ || first_.size() >= kEnough) return {};
+  first_.push_back(frame.frame);
+  first_poses_.push_back(frame.T_world_camera);
+  return 2 * first_.size() == kEnough || first_.size() == kEnough ? last_suspicion()
+                                                                  : std::string();
+}
+
+std::string FollowedMap::last_suspicion() {
+  if (is_suspected_) return {};
+  std::string what = suspect_frames(sensor_, first_, first_poses_).what;
+  is_suspected_ = !what.empty();
+  return what;
 }
 
 std::optional<FrameRegistration> FollowedMap::register_in(const WatchedFrame& frame) const {

@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "program/cli/flags/next_views.hpp"
 #include "viewgain/core/exec_config.hpp"
@@ -42,6 +43,11 @@ class FollowedMap {
               const std::optional<SavedFrames>& saved, const std::optional<PoseSigma>& sigma,
               const ExecConfig& exec);
 
+  /// What is probably wrong with the frames that came (suspect_frames()), said once: after six and
+  /// after twelve of them, whether they can be used or not, or in the end.
+  [[nodiscard]] std::string suspicion_with(const WatchedFrame& frame);
+  [[nodiscard]] std::string last_suspicion();
+
   /// What registering the frame against the map comes to; nothing without sigmas.
   [[nodiscard]] std::optional<FrameRegistration> register_in(const WatchedFrame& frame) const;
 
@@ -74,6 +80,9 @@ class FollowedMap {
   std::filesystem::path state_;
   ViewPlanner planner_;
   std::optional<PoseSigma> sigma_;  // of the poses, if frames are registered
+  std::vector<DepthFrame> first_;   // frames, until something was suspected
+  std::vector<Pose> first_poses_;
+  bool is_suspected_ = false;
 };
 
 }  // namespace viewgain::app

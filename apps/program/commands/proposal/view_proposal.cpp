@@ -11,13 +11,12 @@
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/hazard_source.hpp"
 #include "program/cli/flags/obstacle_source.hpp"
-#include "program/cli/flags/pose_source.hpp"
+#include "program/cli/flags/pose_flags.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/planner/pose_sets.hpp"
 #include "viewgain/planner/rank_views.hpp"
-#include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::app {
@@ -36,30 +35,10 @@ std::vector<Pose> poses_in(const std::string& file) {
   return make_poses(options, 0).poses;
 }
 
-// One number a line, blank lines and comments aside.
-std::vector<double> costs_in(const std::string& file) {
-  const std::string bytes = file_bytes(file);
-  LineReader reader(file, bytes);
-  std::vector<double> costs;
-  while (reader.next()) {
-    if (reader.words().empty() || reader.words()[0].front() == '#') continue;
-    if (reader.words().size() > 1) reader.fail("a line has one cost");
-    costs.push_back(reader.finite_number(0));
-    if (costs.back() < 0) reader.fail("a cost must not be negative");
-  }
-  return costs;
-}
-
 // What each candidate costs; empty without --costs.
 std::vector<double> costs_of(const ProposalOptions& options, const Proposal& proposal) {
-  if (options.costs.empty()) return {};
-  const std::vector<double> given = costs_in(options.costs);
-  const std::size_t poses = poses_in(options.poses).size();
-  if (given.size() != poses) {
-    throw Error(ErrorCode::invalid_argument,
-                options.costs + ": has " + std::to_string(given.size()) + " costs for the " +
-                    std::to_string(poses) + " poses in " + options.poses);
-  }
+  if (options.costs.file.empty()) return {};
+  const std::vector<double> given = read_costs(options.costs.file, poses_in(options.poses).size());
   std::vector<double> costs;
   for (const Candidate& candidate : proposal.candidates) {
     costs.push_back(candidate.generator == kGivenPoses ? given[candidate.number.value()] : 0);
@@ -68,10 +47,14 @@ std::vector<double> costs_of(const ProposalOptions& options, const Proposal& pro
 }
 
 PoseSetRequest request_of(const ProposalOptions& options, const Sensor& sensor,
-                          const BeliefGrid& grid) {
+                          const BeliefGrid& grid, const ReachRegion& reach) {
   PoseSetRequest request = around_workspace(grid, sensor);
   if (!options.center.empty()) request.center = parse_point("--center", options.center);
-  if (options.distance) request.distance = *options.distance;
+  if (options.distance) {
+    request.distance = *options.distance;
+  } else {
+    request.reach = reach;
+  }
   request.count = options.count;
   request.seed = options.seed;
   return request;
@@ -87,7 +70,8 @@ void add_proposal_options(App& app, ProposalOptions& o) {
       ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
   app.add_option("--distance", o.distance,
                  "boundary: from the surface; else from the centre [m]; default: the sensor's "
-                 "working distance; the workspace fills the view");
+                 "working distance; the workspace fills the view, and a shell fills the shells or "
+                 "boxes of --reach");
   app.add_option("--center", o.center,
                  "x,y,z that poses look at, world [m]; default: the workspace's centre");
   app.add_option(
@@ -117,13 +101,7 @@ void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
       "--poses", o.poses,
       "TUM or .npy file of camera-to-world poses to choose among; with --generator beside "
       "what that proposes, else alone");
-  app.add_option(
-      "--costs", o.costs,
-      "file of one number for each of --poses, which is subtracted from its gain, in the "
-      "gain's unit");
-  app.add_option("--cost-per-metre", o.cost_per_metre,
-                 "subtracted for each metre of the way from the last view, in the gain's unit")
-      ->capture_default_str();
+  add_cost_options(app, o.costs, "--poses");
   add_proposal_options(app, o);
   one_of(*app.add_option("--gain", o.gain, "paper, surface or combined, as in score")
               ->capture_default_str(),
@@ -151,13 +129,13 @@ void check(const ProposalOptions& options) {
   if (options.overlap) check_inside_0_1("--overlap", *options.overlap);
   if (options.region_depth) check_positive("--region-depth", *options.region_depth);
   if (options.distance) check_positive("--distance", *options.distance);
-  check_at_least_0("--cost-per-metre", options.cost_per_metre);
+  check_at_least_0("--cost-per-metre", options.costs.per_metre);
   if (!options.poses.empty() && options.generator.empty() &&
       (options.count || options.distance || !options.center.empty())) {
     throw Error(ErrorCode::invalid_argument,
                 "--count, --distance and --center go with --generator, not with --poses alone");
   }
-  if (!options.costs.empty() && options.poses.empty()) {
+  if (!options.costs.file.empty() && options.poses.empty()) {
     throw Error(ErrorCode::invalid_argument, "--costs goes with --poses");
   }
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
@@ -200,7 +178,8 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
     config.sets.push_back({kGivenPoses, poses_in(options.poses)});
   }
   if (!config.at_boundaries && !options.generator.empty()) {
-    config.sets.push_back(make_pose_set(options.generator, request_of(options, sensor, grid)));
+    config.sets.push_back(make_pose_set(
+        options.generator, request_of(options, sensor, grid, config.feasibility.reach)));
   }
   return config;
 }
@@ -215,13 +194,13 @@ GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& m
 NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
                      const ProposalOptions& options, const BeliefGrid& grid, std::size_t top) {
   const std::vector<double> costs = costs_of(options, proposal);
-  const RankConfig config{.costs = costs, .cost_per_metre = options.cost_per_metre};
+  const RankConfig config{.costs = costs, .cost_per_metre = options.costs.per_metre};
   std::optional<Eigen::Vector3d> here;
   if (!grid.views().empty()) here = grid.views().back().translation();
   // With costs, views that gain nothing may be worth more than ones that gain.
-  const bool has_costs = !costs.empty() || options.cost_per_metre > 0;
-  Ranking ranking = rank_views(evaluator, poses_of(proposal.candidates),
-                               has_costs ? proposal.candidates.size() : top, config, here);
+  Ranking ranking =
+      rank_views(evaluator, poses_of(proposal.candidates),
+                 options.costs.none() ? top : proposal.candidates.size(), config, here);
   leave_out_gainless(ranking, config);
   ranking.views.resize(std::min(ranking.views.size(), top));
   return next_views(ranking, proposal, evaluator.model());

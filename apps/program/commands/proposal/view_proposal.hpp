@@ -10,6 +10,7 @@
 
 #include "program/cli/app.hpp"
 #include "program/cli/flags/next_views.hpp"
+#include "program/cli/flags/pose_source.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -33,9 +34,8 @@ struct ProposalOptions {
   std::optional<double> region_depth{};
   std::string
       poses;  ///< file of candidates of the user's own; they alone unless `generator` is set
-  std::string costs;  ///< file of one number for each of these
-  double cost_per_metre = 0;
-  std::string gain;  ///< empty: they are not ranked
+  CostOptions costs;  ///< of these, and of the way
+  std::string gain;   ///< empty: they are not ranked
   std::optional<double> object_size{};
   std::string hazard;
   std::uint64_t seed = 1;

@@ -99,7 +99,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
     if (outputs.with_pictures() && !frame.amplitude.empty()) {
       write_amplitude_picture(folder.view(record.index, ".amplitude.png"), frame);
     }
-    report.add_view(record, model.quality().back(), model.realised_area(), seconds);
+    report.add_view(record, model.quality().back(), seconds);
     progress.wipe();
     if (!options.common.quiet) std::fprintf(stderr, "%s\n", report.progress_line().c_str());
     progress.update(views.size(), options.max_views);

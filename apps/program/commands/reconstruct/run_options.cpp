@@ -63,7 +63,8 @@ void describe(Options& o, Visitor& visit) {
                as_it_is);
   visit.option("distance", "--distance", o.distance,
                "of the start and of poses round the object from its centre [m]; default: the "
-               "object fills the view, at least the sensor's working distance",
+               "object fills the view, at least the sensor's working distance, and a shell fills "
+               "the shells or boxes of --reach",
                as_it_is);
   visit.option("policy", "--policy", o.policy,
                "gain, kriegel (left, right, top, bottom), sequence (turntable of 8, then top), "
@@ -113,6 +114,10 @@ void describe(Options& o, Visitor& visit) {
   visit.option("stop_idle", "--stop-idle", o.stop_idle,
                "stop after so many views in a row that change entropy and unknown voxels by "
                "less than 0.1 %; 0: never",
+               counted_with_default(0, kMaxCount));
+  visit.option("stop_promises", "--stop-promises", o.stop_promises,
+               "of --policy gain: stop after so many views in a row that bring less than a fifth "
+               "of what they promised, new surface, by the paper's gain entropy; 0: never",
                counted_with_default(0, kMaxCount));
   visit.option("stop_coverage", "--stop-coverage", o.stop_coverage,
                "stop at this coverage of the visible surface, 0..1", as_it_is);

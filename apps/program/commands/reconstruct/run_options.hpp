@@ -55,6 +55,7 @@ struct ReconstructOptions {
   std::optional<double> stop_gain;
   std::optional<double> stop_area;
   std::size_t stop_idle = PlanningConfig{}.idle_views;
+  std::size_t stop_promises = PlanningConfig{}.broken_promises;
   std::optional<double> stop_coverage;
   double tolerance = kCovered;
   double travel_cost = 0;

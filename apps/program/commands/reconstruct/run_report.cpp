@@ -66,14 +66,14 @@ RunReport::RunReport(const PolicyConfig& policy, double tolerance)
 }
 
 void RunReport::add_view(const ViewRecord& record, const QualityFigures& quality,
-                         double realised_area, const StageSeconds& seconds) {
+                         const StageSeconds& seconds) {
   StageSeconds own = seconds;
   for (auto& [stage, value] : own) {
     const auto before = totals_.find(stage);
     if (before != totals_.end()) value -= before->second;
   }
   totals_ = seconds;
-  views_.push_back({record, quality, realised_area, std::move(own)});
+  views_.push_back({record, quality, std::move(own)});
 }
 
 void RunReport::set_registrations(std::vector<FrameRegistration> registrations) {
@@ -87,7 +87,7 @@ std::string RunReport::progress_line() const {
       100 * e.quality.coverage_visible, 1e3 * tolerance_, 1e3 * e.quality.surface_error.rms,
       with_commas(e.record.progress.unknown_voxels).c_str(), e.record.realised_gain,
       entropy_unit_.data());
-  text += formatted(", new %.0f cm^2", 1e4 * e.realised_area);
+  text += formatted(", new %.0f cm^2", 1e4 * e.record.progress.new_area);
   if (!std::isnan(e.record.predicted_area)) {
     text += formatted(" of %.0f predicted", 1e4 * e.record.predicted_area);
   }
@@ -119,7 +119,7 @@ Json RunReport::entry_json(std::size_t index) const {
   json["predicted_gain"] = e.record.predicted_gain;
   json["realised_gain"] = e.record.realised_gain;
   json["predicted_area"] = e.record.predicted_area;
-  json["realised_area"] = e.realised_area;
+  json["realised_area"] = e.record.progress.new_area;
   json["true_new_area"] =
       e.quality.covered_area - (index > 0 ? views_[index - 1].quality.covered_area : 0.0);
   // What the stopping rules look at: the best view there is now.

@@ -20,9 +20,8 @@ class RunReport {
   /// `tolerance`: of coverage [m].
   RunReport(const PolicyConfig& policy, double tolerance);
 
-  /// To be called once a view, in order. `realised_area` is SurfaceModel's [m²], `seconds` are the
-  /// totals so far.
-  void add_view(const ViewRecord& record, const QualityFigures& quality, double realised_area,
+  /// To be called once a view, in order. `seconds` are the totals so far.
+  void add_view(const ViewRecord& record, const QualityFigures& quality,
                 const StageSeconds& seconds);
 
   /// One line about the last view.
@@ -44,7 +43,6 @@ class RunReport {
   struct Entry {
     ViewRecord record;
     QualityFigures quality;
-    double realised_area;  ///< [m²]
     StageSeconds seconds;  ///< of this view alone
   };
   [[nodiscard]] Json entry_json(std::size_t index) const;

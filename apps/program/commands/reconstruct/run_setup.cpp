@@ -124,6 +124,7 @@ GenerationConfig generation_config(const ReconstructOptions& options, const RunS
   const bool spread_out = setup.policy.policy == Policy::fibonacci;
   PoseSetRequest request{setup.stage.center,   setup.distance, options.count,
                          options.sensing.seed, setup.start,    spread_out};
+  if (!options.distance) request.reach = setup.reach;
   for (const std::string& name : generators(options, setup.policy.policy)) {
     if (name == "boundary") {
       config.at_boundaries = true;
@@ -141,6 +142,7 @@ PlanningConfig planning_config(const ReconstructOptions& options, const PolicyCo
   PlanningConfig config;
   config.max_views = options.max_views;
   config.idle_views = options.stop_idle;
+  config.broken_promises = options.stop_promises;
   config.stop_coverage = options.stop_coverage;
   set_stop_rules(config, policy, options.stop_gain, options.stop_area);
   return config;

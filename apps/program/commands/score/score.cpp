@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,12 +23,14 @@
 #include "program/commands/score/score_options.hpp"
 #include "program/commands/score/score_part.hpp"
 #include "program/commands/score/score_report.hpp"
+#include "program/commands/score/score_views.hpp"
 #include "show/pictures/score_picture.hpp"
 #include "show/report/page.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/planner/rank_views.hpp"
 #include "viewgain/planner/view_proposer.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -47,6 +48,10 @@ void check_feasibility(const Options& options) {
     throw Error(ErrorCode::invalid_argument, "--body goes with --feasible on");
   }
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
+  check_at_least_0("--cost-per-metre", options.costs.per_metre);
+  if (options.set && !options.costs.none()) {
+    throw Error(ErrorCode::invalid_argument, "--costs and --cost-per-metre do not go with --set");
+  }
 }
 
 GainConfig gain_config(const Options& options) {
@@ -109,6 +114,21 @@ void check_left(const FeasiblePoses& candidates, const Options& options) {
               "no pose is left to score; dropped: " + counts_text(candidates.dropped));
 }
 
+// What the poses cost, whichever of them are possible.
+std::vector<double> costs_of(const Options& options, const PoseSource& source,
+                             const BeliefGrid& grid) {
+  std::vector<double> costs;
+  if (!options.costs.file.empty()) {
+    const std::vector<double> all = read_costs(options.costs.file, source.total);
+    costs = {all.begin() + static_cast<std::ptrdiff_t>(source.rows.begin),
+             all.begin() + static_cast<std::ptrdiff_t>(source.rows.end)};
+  }
+  std::optional<Eigen::Vector3d> here;
+  if (!grid.views().empty()) here = grid.views().back().translation();
+  return view_costs(source.poses, {.costs = costs, .cost_per_metre = options.costs.per_metre},
+                    here);
+}
+
 // Calls work(control), which shows how far it is. Returns how long it took [s].
 template <typename Work>
 double timed(const Options& options, const Work& work) {
@@ -151,62 +171,6 @@ void warn_of_prior(const GainEvaluator& evaluator, const Sensor& sensor) {
       "viewgain: warning: the prior sigma, %.3g m, is below the sensor's along the ray, %.3g "
       "m at %g m: what is unknown counts as surer than a reading (--prior-sigma)\n",
       evaluator.prior_sigma(), axial, sensor.working_distance);
-}
-
-Scores scored(const Options& options, const GainEvaluator& evaluator,
-              const std::vector<Pose>& poses, const BatchControl& control) {
-  Ranking ranking;
-  ranking.scored.gains.resize(poses.size());
-  evaluator.evaluate(poses, ranking.scored.gains, control);
-  ranking.scored.indices.resize(poses.size());
-  std::iota(ranking.scored.indices.begin(), ranking.scored.indices.end(), std::size_t{0});
-  ranking.best.indices = best_indices(ranking.scored.gains, options.top);
-  for (const std::size_t i : ranking.best.indices)
-    ranking.best.gains.push_back(ranking.scored.gains[i]);
-  std::uint64_t rays = 0;
-  for (const ViewGain& gain : ranking.scored.gains) rays += gain.rays;
-  return {std::move(ranking), rays};
-}
-
-Scores raced(const Options& options, const GainEvaluator& evaluator, const std::vector<Pose>& poses,
-             const BatchControl& control) {
-  BestConfig config{.seed = options.seed};
-  config.deadline = options.deadline.value_or(config.deadline);
-  BestViews views = evaluator.race(poses, options.top, config, control);
-  return {Ranking{{std::move(views.scored_indices), std::move(views.scored_gains)},
-                  {std::move(views.indices), std::move(views.gains)}},
-          views.rays_traced, views.estimated};
-}
-
-Scores chosen_together(const Options& options, const GainEvaluator& evaluator,
-                       const std::vector<Pose>& poses, const BatchControl& control) {
-  ViewSet set = evaluator.best_set(poses, *options.set, control);
-  return {JointViews{{std::move(set.indices), std::move(set.marginal)}, set.gain},
-          set.evaluations * evaluator.rays_per_pose()};
-}
-
-Scores estimated(const Options& options, const GainEvaluator& evaluator,
-                 const std::vector<Pose>& poses, const BatchControl& control) {
-  const ApproximateConfig config{.share = *options.approximate, .seed = options.seed};
-  Estimates estimates;
-  estimates.gains.resize(poses.size());
-  evaluator.approximate(poses, estimates.gains, config, control);
-  std::vector<ViewGain> ranked(poses.size());
-  std::uint64_t rays = 0;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    ranked[i].gain = estimates.gains[i].gain;
-    rays += estimates.gains[i].rays;
-  }
-  estimates.best = best_indices(ranked, options.top);
-  return {std::move(estimates), rays, poses.size()};
-}
-
-Scores make_scores(const Options& options, const GainEvaluator& evaluator,
-                   const std::vector<Pose>& poses, const BatchControl& control) {
-  if (options.race) return raced(options, evaluator, poses, control);
-  if (options.set) return chosen_together(options, evaluator, poses, control);
-  if (options.approximate) return estimated(options, evaluator, poses, control);
-  return scored(options, evaluator, poses, control);
 }
 
 void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gains) {
@@ -255,21 +219,26 @@ void score(const Options& options) {
   const ExecConfig exec = exec_of(options.common);
   const GainConfig config = gain_config(options);
   const Shard shard = shard_of(options);
-  const PoseSource source = make_poses(options.poses, options.seed, shard);
+  PoseSource source = make_poses(options.poses, options.seed, shard);
   const SensedMap map = load_sensed_map(options.map, options.sensor);
   const BeliefGrid& grid = map.grid;
   const Sensor& sensor = map.sensor;
+  source.costs = costs_of(options, source, grid);
   const HazardConfig hazard = hazard_source(options.hazard, options.object_size, grid);
   const auto scene = VoxelScene::build(
       grid, {obstacles_of(options.obstacles), options.support_plane}, exec, hazard);
   const GainEvaluator evaluator(scene, sensor, config, exec);
   FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
   check_left(candidates, options);
+  std::vector<double> costs;  // of the candidates
+  for (const std::size_t i : candidates.numbers) {
+    if (!source.costs.empty()) costs.push_back(source.costs[i]);
+  }
   name_by_input(candidates, source);
 
   Scores scores;
   const double seconds = timed(options, [&](const BatchControl& control) {
-    scores = make_scores(options, evaluator, candidates.poses, control);
+    scores = make_scores(options, evaluator, candidates.poses, costs, control);
   });
   name_by_input(scores, candidates);
   warn_of_prior(evaluator, sensor);
@@ -353,6 +322,7 @@ Command add_score(App& program) {
                   "sigma of an unknown voxel [m]; default: the map's");
   app->add_option("--min-range", options->min_range, "along the ray [m]; default: the sensor's");
   app->add_option("--max-range", options->max_range, "along the ray [m]; default: the sensor's");
+  add_cost_options(*app, options->costs, "the poses");
   app->add_option("--top", options->top, "how many of the best to print")
       ->range(std::size_t{0}, std::size_t{1'000'000'000}, "count")
       ->capture_default_str();

@@ -20,7 +20,7 @@ namespace {
 
 // What there is no such thing of for classic gains.
 void check_classic(const ScoreOptions& options) {
-  const std::array<std::pair<const char*, bool>, 12> given{
+  const std::array<std::pair<const char*, bool>, 13> given{
       {{"--race", options.race},
        {"--trace", options.common.trace != CommonOptions{}.trace},
        {"--approximate", options.approximate.has_value()},
@@ -32,6 +32,7 @@ void check_classic(const ScoreOptions& options) {
        {"--hazard", !options.hazard.empty()},
        {"--criterion", options.criterion != "log_diagonal"},
        {"--weight", !options.weights.empty()},
+       {"--costs or --cost-per-metre", !options.costs.none()},
        {"--prior-sigma", options.prior_sigma.has_value()}}};
   for (const auto& [flag, is_given] : given) {
     if (!is_given) continue;

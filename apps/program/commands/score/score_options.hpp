@@ -30,6 +30,7 @@ struct ScoreOptions {
   int stride = 1;
   std::vector<std::string> weights;
   std::optional<double> prior_sigma, min_range, max_range;
+  CostOptions costs;
   std::size_t top = 10;
   bool race = false;
   std::optional<double> deadline;     // of the race [s]

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program/commands/score/score_part.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "program/cli/flags/obstacle_source.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/support/columns/mapped_poses.hpp"
 #include "viewgain/support/columns/part_reader.hpp"
 #include "viewgain/support/columns/part_writer.hpp"
 #include "viewgain/support/columns/score_job.hpp"
@@ -37,6 +39,10 @@ ScoreSettings settings_of(const ScoreOptions& options, const GainConfig& config)
   if (options.deadline) further["deadline"] = {exact_text(*options.deadline)};
   if (options.set) further["set"] = {std::to_string(*options.set)};
   if (!options.body.empty()) further["body"] = {options.body};
+  if (options.costs.per_metre > 0) {
+    further["cost_per_metre"] = {exact_text(options.costs.per_metre)};
+  }
+  if (!options.costs.file.empty()) further["costs"] = {hash_of_file(options.costs.file)};
   for (const std::string& obstacle : options.obstacles) {
     further["obstacle"].push_back(is_obstacle_file(obstacle) ? hash_of_file(obstacle) : obstacle);
   }
@@ -51,6 +57,23 @@ ScoreSettings settings_of(const ScoreOptions& options, const GainConfig& config)
     }
   }
   return settings;
+}
+
+Table whole_rows(const Table& table, const PoseSource& source) {
+  const bool has_costs = !source.costs.empty();
+  Table whole{with_pose_columns(table.columns)};
+  if (has_costs) whole.columns.insert(whole.columns.begin() + 1, {"worth", ColumnType::real});
+  const std::size_t bytes = row_bytes(table.columns), index_bytes = sizeof(std::int64_t);
+  whole.bytes.reserve(table.size() * row_bytes(whole.columns));
+  for (std::size_t at = 0; at < table.bytes.size(); at += bytes) {
+    const std::string_view row = std::string_view(table.bytes).substr(at, bytes);
+    const auto index = static_cast<std::size_t>(value_at<std::int64_t>(row.data()));
+    whole.bytes.append(row.substr(0, index_bytes));
+    if (has_costs) whole.add(source.worth(index, value_at<double>(row.data() + index_bytes)));
+    whole.bytes.append(row.substr(index_bytes));
+    for (const double number : row_of_pose(source.at(index))) whole.add(number);
+  }
+  return whole;
 }
 
 }  // namespace
@@ -81,7 +104,7 @@ void write_scores(const ScoreOptions& options, const GainConfig& config, const T
     head->rows = source.rows;
     head->scored = table.size();
   }
-  write_table(options.out, table, head);
+  write_table(options.out, whole_rows(table, source), head);
 }
 
 }  // namespace viewgain::app

@@ -18,10 +18,10 @@ namespace viewgain::app {
 /// that do not go with a part.
 [[nodiscard]] Shard shard_of(const ScoreOptions& options);
 
-/// Writes --out. Parts and .npy files say what they are: flags that change a gain, files among them
-/// by their contents; a CSV file of all poses holds the columns alone. `config`: what the flags say
-/// of the gain, or of the literature's. `isa`: that scored. Throws
-/// Error(io).
+/// Writes --out: each row with its pose and, where poses have costs, its worth before its gain, so
+/// that this ranks. Parts and .npy files say what they are: flags that change a gain, files among
+/// them by their contents; a CSV file of all poses holds the columns alone. `config`: what the
+/// flags say of the gain, or of the literature's. `isa`: that scored. Throws Error(io).
 void write_scores(const ScoreOptions& options, const GainConfig& config, const Table& table,
                   const BeliefGrid& grid, const Sensor& sensor, const PoseSource& source,
                   std::string_view isa);

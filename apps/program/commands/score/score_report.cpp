@@ -64,6 +64,7 @@ Json entries(const ScoredViews& views, const PoseSource& poses, GainModel model)
     const ViewGain& r = views.gains[rank];
     list.push_back({{"index", views.indices[rank]},
                     {"gain", r.gain},  // a NaN becomes null
+                    {"worth", poses.worth(views.indices[rank], r.gain)},
                     {"exploration", r.exploration},
                     {"refinement", r.refinement},
                     {"posterior_entropy", r.posterior_entropy},
@@ -84,6 +85,7 @@ Json entries(const Estimates& estimates, const PoseSource& poses) {
   for (const std::size_t i : estimates.best) {
     list.push_back({{"index", estimates.indices[i]},
                     {"gain", estimates.gains[i].gain},
+                    {"worth", poses.worth(estimates.indices[i], estimates.gains[i].gain)},
                     {"standard_error", estimates.gains[i].standard_error},
                     {"T_world_camera", to_json(poses.at(estimates.indices[i]))}});
   }
@@ -93,7 +95,9 @@ Json entries(const Estimates& estimates, const PoseSource& poses) {
 // What a gain has not, the columns do not show.
 void print_rows(const ScoredViews& views, const PoseSource& poses, GainModel model) {
   const bool by_paper = model == GainModel::paper, refines = model == GainModel::combined;
+  const bool has_costs = !poses.costs.empty();
   std::printf("%4s %8s %12s", "rank", "index", "gain");
+  if (has_costs) std::printf(" %12s", "worth");
   if (by_paper) std::printf(" %12s %12s", "exploration", "refinement");
   if (!by_paper) std::printf(" %12s", "area [m^2]");
   if (refines) std::printf(" %12s", "refinement");
@@ -107,6 +111,7 @@ void print_rows(const ScoredViews& views, const PoseSource& poses, GainModel mod
     std::array<char, 80> position{};
     std::snprintf(position.data(), position.size(), "%8.3f %8.3f %8.3f", eye.x(), eye.y(), eye.z());
     std::printf("%4zu %8zu %12.6g", rank + 1, i, r.gain);
+    if (has_costs) std::printf(" %12.6g", poses.worth(i, r.gain));
     if (by_paper) std::printf(" %12.6g %12.6g", r.exploration, r.refinement);
     if (!by_paper) std::printf(" %12.6g", r.area);
     if (refines) std::printf(" %12.6g", r.refinement_saturated);
@@ -241,9 +246,11 @@ Json ScoreReport::page(const std::string& title, RgbImage picture) const {
   const bool by_area = model != GainModel::paper && estimates == nullptr;
   const bool by_paper = model == GainModel::paper && estimates == nullptr;
   std::vector<double> gains, areas;
-  for (const ViewGain& gain : ranked) {
-    gains.push_back(gain.gain);
-    if (by_area) areas.push_back(gain.area);
+  std::vector<ViewGain> by_worth = ranked;
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    gains.push_back(ranked[i].gain);
+    by_worth[i].gain = source.worth(i, ranked[i].gain);
+    if (by_area) areas.push_back(ranked[i].area);
   }
   Json columns{"pose", "gain"}, rows = Json::array();
   if (by_area) columns.push_back("area");
@@ -251,8 +258,9 @@ Json ScoreReport::page(const std::string& title, RgbImage picture) const {
   if (by_paper) columns.push_back("unknown");
   if (by_paper) columns.push_back("occupied");
   std::vector<std::size_t> shown;
-  const std::vector<std::size_t> order =
-      std::holds_alternative<JointViews>(scores.found) ? full.indices : best_indices(ranked, kRows);
+  const std::vector<std::size_t> order = std::holds_alternative<JointViews>(scores.found)
+                                             ? full.indices
+                                             : best_indices(by_worth, kRows);
   for (const std::size_t i : order) {
     const ViewGain& r = ranked[i];
     if (std::isnan(r.gain)) break;

@@ -325,7 +325,7 @@ std::vector<std::string> reconstruct_words(const StudySpec& spec, const StudyRun
   if (!policy.semantics.empty()) words.push_back("--semantics=" + policy.semantics);
   if (run.size) words.push_back("--size=" + short_text(*run.size));
   // Every policy has the whole budget, unless the spec says otherwise.
-  for (const char* rule : {"--stop-gain", "--stop-area", "--stop-idle"}) {
+  for (const char* rule : {"--stop-gain", "--stop-area", "--stop-idle", "--stop-promises"}) {
     const bool is_given = std::any_of(
         spec.flags.begin(), spec.flags.end(),
         [&](const std::string& flag) { return flag.substr(0, flag.find('=')) == rule; });

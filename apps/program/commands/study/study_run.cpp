@@ -103,7 +103,7 @@ std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& stud
   StageSeconds seconds;
   const PlanningResult planned = run.go([&](const ViewRecord& record) {
     for (const auto& [stage, value] : record.seconds) seconds[stage] += value;
-    report.add_view(record, run.model().quality().back(), run.model().realised_area(), seconds);
+    report.add_view(record, run.model().quality().back(), seconds);
     const bool is_asked = std::find(views.begin(), views.end(), record.index + 1) != views.end();
     if (scorers.empty() || !is_asked || stop.stop_requested()) return;
     const Stopwatch watch;

@@ -73,14 +73,14 @@ class PythonAcquisition : public DataAcquisition {
 };
 
 // One turn of the loop.
-py::object to_python(const ViewRecord& record, double realised_area) {
+py::object to_python(const ViewRecord& record) {
   const bool of_boundary = record.chosen_as && record.chosen_as->boundary_class;
   return named_in("viewgain.mesh.results", "ViewRecord", record.index,
                   to_array(record.T_world_camera),
                   record.chosen_as ? record.chosen_as->generator : "start",
                   of_boundary ? boundary_class_name(*record.chosen_as->boundary_class) : "",
                   record.predicted_gain, record.realised_gain, record.progress.entropy_removed,
-                  record.progress.unknown_voxels, record.predicted_area, realised_area,
+                  record.progress.unknown_voxels, record.predicted_area, record.progress.new_area,
                   record.progress.surface_area, record.travelled, record.proposal.candidates.size(),
                   record.proposal.dropped);
 }
@@ -111,8 +111,8 @@ Reconstruction reconstruct(const py::object& acquire, const Given<Sensor>& of,
                            std::optional<double> support_plane, bool jump_edges,
                            std::size_t max_views, std::optional<double> stop_gain,
                            std::optional<double> stop_area, std::size_t idle_views,
-                           const py::object& observer, const GivenOrNone<Control>& control,
-                           int num_threads) {
+                           std::size_t broken_promises, const py::object& observer,
+                           const GivenOrNone<Control>& control, int num_threads) {
   if (PyCallable_Check(acquire.ptr()) == 0) throw py::type_error("acquire must be callable");
   if (!observer.is_none() && PyCallable_Check(observer.ptr()) == 0) {
     throw py::type_error("observer must be callable");
@@ -146,6 +146,7 @@ Reconstruction reconstruct(const py::object& acquire, const Given<Sensor>& of,
   planning.max_views = max_views;
   set_stop_rules(planning, policy_config, stop_gain, stop_area);
   planning.idle_views = idle_views;
+  planning.broken_promises = broken_promises;
   if (control.value != nullptr) planning.stop = control.value->stop.get_token();
 
   PythonAcquisition acquisition(acquire, sensor);
@@ -156,7 +157,7 @@ Reconstruction reconstruct(const py::object& acquire, const Given<Sensor>& of,
   const auto watch = [&](const ViewRecord& record) {
     with_gil([&] {
       check_signals();
-      const py::object view = to_python(record, model.realised_area());
+      const py::object view = to_python(record);
       result.views.append(view);
       if (!observer.is_none()) call_python(observer, view);
     });
@@ -184,10 +185,10 @@ Notes
 -----
 Cost: properties take constant time; surface and map are not copied.)");
   refuse_pickling(type);
-  type.def_readonly(
-          "reason", &Reconstruction::reason,
-          "str: why it ended: gain, area, cost, no_candidates, unreachable, idle, max_views, "
-          "interrupted")
+  type.def_readonly("reason", &Reconstruction::reason,
+                    "str: why it ended: gain, area, cost, no_candidates, unreachable, idle, "
+                    "promises, max_views, "
+                    "interrupted")
       .def_readonly("views", &Reconstruction::views, "list of ViewRecord: one per view")
       .def_readonly("grid", &Reconstruction::grid, "viewgain.BeliefGrid: the map")
       .def_readonly("surface", &Reconstruction::surface, "Surface: of the whole map")
@@ -205,6 +206,7 @@ Cost: properties take constant time; surface and map are not copied.)");
              py::arg("support_plane") = py::none(), py::arg("jump_edges") = true,
              py::arg("max_views") = defaults.max_views, py::arg("stop_gain") = py::none(),
              py::arg("stop_area") = py::none(), py::arg("idle_views") = defaults.idle_views,
+             py::arg("broken_promises") = defaults.broken_promises,
              py::arg("observer") = py::none(), py::arg("control") = py::none(),
              py::arg("num_threads") = 0,
              R"(The whole loop: measure, update map and surface, propose views, rank them, go on.
@@ -255,6 +257,9 @@ stop_area : float, optional
     program's ``reconstruct``.
 idle_views : int
     End after so many views in a row that brought nothing; 0: never.
+broken_promises : int
+    Of policy "gain": end after so many views in a row that brought less than a fifth of the new
+    surface (by gain "paper" the entropy) that they promised; 0: never.
 observer : callable, optional
     Given the ViewRecord of each view, when the next one has been chosen.
 control : viewgain.BatchControl, optional

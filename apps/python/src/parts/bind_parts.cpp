@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -82,9 +83,13 @@ std::string part_head(const std::string& map_hash, const Sensor& sensor, const p
   return head_text(head_of_job(map_hash, sensor, settings_of(settings), isa, numbers.rows(), hash));
 }
 
+std::vector<Column> columns_of(const std::string& gain) {
+  return with_pose_columns(gain_columns(parse_gain_model(gain)));
+}
+
 py::list part_columns(const std::string& gain) {
   py::list columns;
-  for (const Column& column : gain_columns(parse_gain_model(gain))) {
+  for (const Column& column : columns_of(gain)) {
     columns.append(py::make_tuple(column.name, std::string(npy_type(column.type))));
   }
   return columns;
@@ -93,7 +98,7 @@ py::list part_columns(const std::string& gain) {
 void write_part(const py::object& path, const std::string& head, const std::string& gain,
                 const py::bytes& rows) {
   const std::string_view bytes = rows;
-  Table table{gain_columns(parse_gain_model(gain)), std::string(bytes)};
+  Table table{columns_of(gain), std::string(bytes)};
   PartHead said = parse_head("the job", head);
   said.scored = table.size();
   if (said.scored > 0) said.rows.begin = value_at<std::uint64_t>(table.bytes.data());
@@ -105,7 +110,7 @@ py::bytes read_part(const py::object& path, const std::string& head, const std::
   const std::string file = file_path(path);
   PartReader part(file);
   const std::string differs = difference(part.head(), parse_head("the job", head), "this job");
-  const std::vector<Column> columns = gain_columns(parse_gain_model(gain));
+  const std::vector<Column> columns = columns_of(gain);
   if (!differs.empty() || part.columns() != columns) {
     throw Error(ErrorCode::invalid_argument,
                 file + ": is of another job (" + differs + "); name a new folder");
@@ -136,6 +141,18 @@ py::array_t<double> pose_matrices(const py::array& poses) {
   return to_array(found, {static_cast<py::ssize_t>(found.size())});
 }
 
+// Mended as the program mends what it reads.
+py::array_t<double> pose_rows(const py::array& T_world_camera) {
+  const std::vector<Pose> poses = pose_batch(T_world_camera, "poses", false).poses;
+  py::array_t<double> rows({poses.size(), kPoseColumns.size()});
+  double* at = rows.mutable_data();
+  for (const Pose& pose : poses) {
+    const auto row = row_of_pose(rigid_pose(pose).value_or(pose));
+    at = std::copy(row.begin(), row.end(), at);
+  }
+  return rows;
+}
+
 }  // namespace
 
 void bind_parts(py::module_& module) {
@@ -144,6 +161,7 @@ void bind_parts(py::module_& module) {
   module.def("_write_part", &write_part, "Rows one after the other, as their indices say.");
   module.def("_read_part", &read_part, "The rows of a part of this job.");
   module.def("_pose_matrices", &pose_matrices, "(n, 4, 4) of rows with a pose's columns.");
+  module.def("_pose_rows", &pose_rows, "(n, 7), a pose's columns of (n, 4, 4).");
   module.attr("_POSE_COLUMNS") = py::tuple(py::cast(kPoseColumns));
 }
 

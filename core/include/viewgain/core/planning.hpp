@@ -52,7 +52,9 @@ struct VIEWGAIN_EXPORT ModelProgress {
   std::uint64_t unknown_voxels = 0;  ///< of the workspace
   std::optional<double> coverage{};  ///< in [0, 1], where a ground truth is known
   double surface_area = 0;           ///< of the model's surface [m²]
-  StageSeconds seconds{};            ///< what the update's stages took; may be empty
+  /// New surface that the last view showed, to be held against Decision::area [m²]; NaN: not known.
+  double new_area = std::numeric_limits<double>::quiet_NaN();
+  StageSeconds seconds{};  ///< what the update's stages took; may be empty
 };
 
 /// UPDATEREPRESENTATIONS: the model and the occupancy grid (the paper's M and O).
@@ -127,6 +129,9 @@ inline constexpr double kStopGainShare = 0.01;
 /// where the camel stops by it.
 inline constexpr double kStopArea = 1.6e-3;
 
+/// A view that brings less than this share of what was promised breaks the promise.
+inline constexpr double kKeptShare = 0.2;
+
 /// When to stop.
 struct VIEWGAIN_EXPORT PlanningConfig {
   std::size_t max_views = 20;  ///< budget, the first one included
@@ -143,6 +148,12 @@ struct VIEWGAIN_EXPORT PlanningConfig {
   /// Nothing: the view adds less than this share to entropy_removed and takes less than this share
   /// off the unknown voxels (or nothing at all). The first view is never idle.
   double idle_fraction = 1e-3;
+  /// Stop after so many views in a row that brought less than kKeptShare of what was promised; 0:
+  /// never. Promised is the chosen view's Decision::area, against which ModelProgress::new_area is
+  /// held; where one of them is not known, and there is a gain per voxel, its gain, against which
+  /// the growth of ModelProgress::entropy_removed is held. Other views neither count nor break the
+  /// row.
+  std::size_t broken_promises = 3;
   std::optional<double> stop_coverage{};  ///< stop at this coverage, in [0, 1]
   /// Asked after each step but the acquisition: what was measured goes into the model. Ends with
   /// `interrupted`.
@@ -157,6 +168,7 @@ enum class StopReason : std::uint8_t {
   no_candidates,  ///< nothing is left to look at
   unreachable,    ///< candidates are left, all of them out of reach
   idle,           ///< views in a row brought nothing new
+  promises,       ///< views in a row brought far less than was promised
   max_views,
   coverage,
   interrupted,
@@ -195,9 +207,9 @@ struct VIEWGAIN_EXPORT PlanningResult {
 /// parts pass through. Throws Error(invalid_argument) if max_views is 0, a limit is not finite, or
 /// a decision names a candidate that is not there.
 ///
-/// Order of the rules after each view: interrupted; coverage; max_views; idle; then, with the
-/// candidates, no_candidates or unreachable (none left, or the decision maker took none, and some
-/// were dropped as unreachable); gain; area; cost.
+/// Order of the rules after each view: interrupted; coverage; max_views; idle; promises; then, with
+/// the candidates, no_candidates or unreachable (none left, or the decision maker took none, and
+/// some were dropped as unreachable); gain; area; cost.
 [[nodiscard]] VIEWGAIN_EXPORT PlanningResult active_view_planning(
     const Pose& x_0, DataAcquisition& acquisition, RepresentationUpdate& representation,
     ViewpointGeneration& generation, DecisionMaking& decision, const PlanningConfig& config = {},

@@ -26,6 +26,9 @@ struct VIEWGAIN_EXPORT StopMemory {
   /// Decision::best_area as a share of the surface in the last three decisions, in the order i % 3
   /// of decision i.
   std::array<double, 3> area_shares{};
+  double promised_area = std::numeric_limits<double>::quiet_NaN();  ///< of the view to come [m²]
+  double promised_gain = std::numeric_limits<double>::quiet_NaN();  ///< likewise [nat, m²]
+  std::size_t broken_promises = 0;                                  ///< the last ones in a row
 };
 
 /// The stopping rules of PlanningConfig, step by step: what active_view_planning() asks, for loops
@@ -37,7 +40,8 @@ class VIEWGAIN_EXPORT StopRules {
   /// is not finite.
   explicit StopRules(const PlanningConfig& config, const StopMemory& memory = {});
 
-  /// After a view went into the model: coverage, max_views or idle, the first that holds.
+  /// After a view went into the model: coverage, max_views, idle or promises, the first that
+  /// holds.
   [[nodiscard]] std::optional<StopReason> after_view(const ModelProgress& progress);
 
   /// After a choice among the candidates that are left: no_candidates or unreachable if none was
@@ -51,6 +55,7 @@ class VIEWGAIN_EXPORT StopRules {
 
  private:
   [[nodiscard]] bool brought_nothing(const ModelProgress& now) const;
+  void hold_against_promise(const ModelProgress& now);
   [[nodiscard]] bool stops_for_gain(double gain_per_voxel);
   [[nodiscard]] bool stops_for_area(double share);
 

@@ -95,6 +95,47 @@ TEST_F(Candidates, AreRankedByAGain) {
   }
 }
 
+// A robot beside the object: a shell is where it can put the camera, and looks at the object.
+TEST_F(Candidates, AShellIsRoundTheReach) {
+  write("arm.toml",
+        "[[shell]]\ncenter = [0.9, 0, 0]\nmin_radius = 0.3\nmax_radius = 0.8\n"
+        "[[half_space]]\nnormal = [0, 0, 1]\noffset = 0.1\n");
+  write("boxes.toml",
+        "[[box]]\nmin = [0.4, -0.1, 0.2]\nmax = [0.9, 0.1, 0.3]\n"
+        "[[box]]\nmin = [-0.9, -0.1, 0.2]\nmax = [-0.4, 0.1, 0.3]\n");
+  const BeliefGrid grid = load_map((dir / "run/map.vdb").string());
+  const Box box = grid.workspace();
+  const Eigen::Vector3d middle =
+      0.5 * (Eigen::Vector3d(box.min.data()) + Eigen::Vector3d(box.max.data()));
+  for (const std::string reach : {"arm.toml", "boxes.toml"}) {
+    const json result = candidates("shell", {"--reach", reach, "--count", "200"});
+    EXPECT_EQ(result["dropped"].value("unreachable", 0), 0) << reach;
+    const std::vector<Pose> poses = read_tum(dir / "poses.txt").poses;
+    ASSERT_GT(poses.size(), 30U);
+    std::size_t behind = 0;
+    for (const Pose& pose : poses) {
+      const Eigen::Vector3d sight = (middle - pose.translation()).normalized();
+      EXPECT_NEAR(pose.rotation().col(2).dot(sight), 1, 1e-9);
+      behind += pose.translation().x() < 0 ? 1 : 0;
+    }
+    EXPECT_EQ(behind > 10U, reach == "boxes.toml") << behind;
+    EXPECT_EQ(candidates("shell", {"--reach", reach, "--count", "200"}), result);
+  }
+  // A list of poses is among the candidates of every generator.
+  const std::vector<Pose> listed = sphere_poses(20, 0.6);
+  write_tum(dir / "listed.txt", listed);
+  write("list.toml", "poses = \"listed.txt\"\n");
+  for (const std::string generator : {"shell", "sequence", "boundary"}) {
+    const json result = candidates(generator, {"--reach", "list.toml"});
+    ASSERT_GT(result["candidates"].get<int>(), 5) << generator;
+    for (const json& one : result["per_candidate"]) EXPECT_EQ(one["generator"], "reach");
+  }
+  // A distance that is asked for holds.
+  EXPECT_GT(
+      candidates("shell", {"--reach", "arm.toml", "--distance", "0.6"})["dropped"]["unreachable"],
+      300);
+}
+
 TEST_F(Candidates, OverlapAndRegionsMoveBoundaryCandidates) {
   const json usual = candidates("boundary");
   EXPECT_EQ(candidates("boundary", {"--overlap", "0.25", "--region-depth", "0.08"}), usual);
@@ -171,7 +212,7 @@ TEST_F(Candidates, NextChoosesAmongGivenPosesByTheirWorth) {
   write("word.txt", "1\ncheap\n");
   expect_refused_with({"next", "run/map.vdb", "--sensor", "tof.toml"},
                       {{{"--costs", "costs.txt"}, "--poses"},
-                       {{"--poses", "mine.txt", "--costs", "few.txt"}, "2 costs for the 30 poses"},
+                       {{"--poses", "mine.txt", "--costs", "few.txt"}, "2 costs for 30 poses"},
                        {{"--poses", "mine.txt", "--costs", "word.txt"}, "word.txt:2"},
                        {{"--poses", "mine.txt", "--count", "7"}, "--generator"},
                        {{"--cost-per-metre", "-1"}, "--cost-per-metre -1"}});

@@ -34,10 +34,29 @@ class EndedCalls : public test::ProgramTest {
         "0.2",      "--recenter", "on",      "--out",    out,        "--frames-per-view", frames};
   }
   static Strings reconstruct(const std::string& out, const std::string& views) {
-    return {"reconstruct", "cube.off",    "--sensor", "tof.toml",   "--voxel", "0.00625",
-            "--size",      "0.2",         "--out",    out,          "--json",  "--max-views",
-            views,         "--save-maps", "on",       "--pictures", "off",     "--stop-gain",
-            "0",           "--stop-idle", "0"};
+    return {"reconstruct",
+            "cube.off",
+            "--sensor",
+            "tof.toml",
+            "--voxel",
+            "0.00625",
+            "--size",
+            "0.2",
+            "--out",
+            out,
+            "--json",
+            "--max-views",
+            views,
+            "--save-maps",
+            "on",
+            "--pictures",
+            "off",
+            "--stop-gain",
+            "0",
+            "--stop-idle",
+            "0",
+            "--stop-promises",
+            "0"};
   }
 
   // The hidden folder of a call that is writing; empty if there is none.

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Which poses `score` scores, and among which obstacles: against the library's own answers.
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <sstream>
 #include <string>
@@ -10,11 +13,13 @@
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/core/reach.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/columns/mapped_poses.hpp"
 
 namespace viewgain {
 namespace {
@@ -114,6 +119,62 @@ TEST_F(ScoreCandidates, PosesOutOfReachAreDroppedAndTheOthersKeepTheirNumbers) {
     EXPECT_EQ(best.at("T_world_camera"), scores.at("best")[0].at("T_world_camera"));
   }
   EXPECT_EQ(score({}).at("dropped"), json::object());
+}
+
+// The gain less a pose's own cost and that of the way ranks, whatever way of scoring finds it, and
+// a row of the file has the pose.
+TEST_F(ScoreCandidates, CostsRankAndRowsHavePoses) {
+  BeliefGrid map = load_vdb(dir / "map.vdb");
+  map.append_view(poses[7]);
+  save_vdb(map, dir / "map.vdb");
+  const auto free = gains(score({}));
+  std::string text = "# one a pose\n";
+  std::vector<double> worth;
+  for (std::size_t i = 0; i < 40; ++i) {
+    text += std::to_string(3 * i) + "\n";
+    const double way = (poses[i].translation() - poses[7].translation()).norm();
+    worth.push_back(free.at(i) - 3.0 * static_cast<double>(i) - 200 * way);
+  }
+  write("costs.txt", text);
+  const Strings costs{"--costs", "costs.txt", "--cost-per-metre", "200"};
+  const auto best =
+      static_cast<std::size_t>(std::max_element(worth.begin(), worth.end()) - worth.begin());
+  ASSERT_NE(best, score({})["best"][0]["index"]);
+  for (const Strings& way : {Strings{}, Strings{"--race"}, Strings{"--approximate", "1"}}) {
+    const json view = score(test::joined(costs, way))["best"][0];
+    EXPECT_EQ(view["index"], best);
+    EXPECT_NEAR(view["worth"].get<double>(), worth[best], 1e-6 * std::abs(worth[best]));
+  }
+  (void)score(test::joined(costs, {"--out", "all.csv"}));
+  std::istringstream rows(read("all.csv"));
+  std::string line;
+  std::getline(rows, line);
+  EXPECT_EQ(line.substr(0, 18), "index,worth,gain,e");
+  EXPECT_EQ(line.substr(line.find(",tx")), ",tx,ty,tz,qx,qy,qz,qw");
+  for (std::size_t i = 0; i < 40; ++i) {
+    ASSERT_TRUE(std::getline(rows, line));
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::vector<std::string> words;
+    std::istringstream in(line);
+    for (std::string word; in >> word;) words.push_back(word);
+    EXPECT_NEAR(std::stod(words[1]), worth[i], 1e-6);
+    std::array<double, 7> numbers{};
+    for (std::size_t k = 0; k < 7; ++k) numbers[k] = std::stod(words[words.size() - 7 + k]);
+    EXPECT_TRUE(is_among(pose_of_row(numbers).value(), std::span(&poses[i], 1), {1e-12, 1e-9}));
+  }
+  // Parts are ranked by it, too.
+  for (const char* part : {"0", "1"}) {
+    (void)score(test::joined(
+        costs, {"--shard", part + std::string("/2"), "--out", std::string(part) + ".csv"}));
+  }
+  const json merged =
+      json::parse(run_well({"merge", "0.csv", "1.csv", "--out", "m.csv", "--json"}));
+  EXPECT_EQ(merged["best"][0]["index"], best);
+  write("few.txt", "1\n2\n");
+  expect_refused_with(arguments({}), {{{"--costs", "few.txt"}, "2 costs for 40 poses"},
+                                      {{"--cost-per-metre", "-1"}, "--cost-per-metre -1"},
+                                      {{"--cost-per-metre", "1", "--set", "2"}, "--set"},
+                                      {{"--costs", "costs.txt", "--out", "costs.txt"}, "--costs"}});
 }
 
 TEST_F(ScoreCandidates, InfeasiblePosesAreDroppedByReason) {

@@ -81,10 +81,10 @@ TEST_F(ScoreClassic, AllGainsAreTheLibrarys) {
     std::istringstream csv(read("all.csv"));
     std::string line;
     std::getline(csv, line);
-    EXPECT_EQ(line, "index," + names + ",status");
+    EXPECT_EQ(line, "index," + names + ",status,tx,ty,tz,qx,qy,qz,qw");
     std::size_t rows = 0;
     for (; std::getline(csv, line); ++rows) {
-      EXPECT_EQ(std::count(line.begin(), line.end(), ','), 11);
+      EXPECT_EQ(std::count(line.begin(), line.end(), ','), 18);
       EXPECT_TRUE(line.starts_with(std::to_string(rows) + ",")) << line;
     }
     EXPECT_EQ(rows, 40U);

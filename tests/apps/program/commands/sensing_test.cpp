@@ -3,15 +3,21 @@
 
 // What disturbs the simulated time-of-flight camera, and what integrate does about it.
 
+#include <Eigen/Geometry>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
+#include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -180,6 +186,49 @@ TEST_F(Sensing, ReportedPosesAreOffButForTheFirst) {
                     "--out", "refused", "--pose-noise", noise},
                    "--pose-noise");
   }
+}
+
+// The cube at a place, seen from a pose, is the cube at home, seen from the pose carried back.
+TEST_F(Sensing, AMeshIsPlacedInTheWorld) {
+  const Pose T_world_mesh(
+      Eigen::AngleAxisd(std::numbers::pi / 6, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
+      Eigen::Vector3d(1.5, -0.25, 0.75));
+  const std::vector<Pose> home = sphere_poses(5, 0.7);
+  std::vector<Pose> there;
+  for (const Pose& pose : home) there.push_back(T_world_mesh * pose);
+  write_tum(dir / "home.txt", home);
+  write_tum(dir / "there.txt", there);
+  const auto frames = [this](const std::string& poses, const Strings& more) {
+    run_well(
+        test::joined({"simulate", "cube.off", "--poses", poses, "--sensor", "small.toml", "--size",
+                      "0.3", "--recenter", "on", "--background", "0", "--out", "placed"},
+                     more));
+    std::vector<GrayImage> images;
+    for (const char* i : {"0", "1", "2", "3", "4"}) {
+      images.push_back(
+          read_gray_png(dir / ("placed/frame-00000" + std::string(i) + ".depth.png"), 48, 36));
+    }
+    return images;
+  };
+  const std::vector<GrayImage> expected = frames("home.txt", {});
+  const Eigen::Quaterniond q(T_world_mesh.rotation());
+  const std::string full = "1.5,-0.25,0.75,0,0," + exact_text(q.z()) + "," + exact_text(q.w());
+  for (const std::string& place : {std::string("1.5,-0.25,0.75,30"), full}) {
+    const std::vector<GrayImage> found = frames("there.txt", {"--place", place});
+    std::size_t differ = 0, all = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      for (std::size_t k = 0; k < found[i].pixels.size(); ++k, ++all) {
+        differ += std::abs(found[i].pixels[k] - expected[i].pixels[k]) > 1 ? 1 : 0;  // 0.1 mm
+      }
+    }
+    EXPECT_LT(200 * differ, all) << place;  // rays along edges
+  }
+  expect_refused_with(
+      {"simulate", "cube.off", "--poses", "there.txt", "--sensor", "small.toml", "--out", "none"},
+      {{{"--place", "1,2"}, "--place 1,2"},
+       {{"--place", "1,2,3,4,5"}, "--place"},
+       {{"--place", "0,0,0,0,0,0,2"}, "norm"},
+       {{"--place", "90,0,0"}, "no pose has the mesh in view"}});
 }
 
 }  // namespace

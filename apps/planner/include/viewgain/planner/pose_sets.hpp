@@ -12,6 +12,7 @@
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/core/reach.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
@@ -38,6 +39,7 @@ struct VIEWGAIN_EXPORT PoseSetRequest {
   /// Puts the set's poses into an order in which any number of the first ones are spread evenly:
   /// each as far as can be from the start's direction and those before it, ties to the lower index.
   bool spread_out = false;
+  ReachRegion reach{};  ///< of the robot (shell); a list of poses says nothing here
 };
 
 /// The workspace's centre, and the distance from which an object that the workspace has room for
@@ -45,7 +47,9 @@ struct VIEWGAIN_EXPORT PoseSetRequest {
 [[nodiscard]] VIEWGAIN_EXPORT PoseSetRequest around_workspace(const BeliefGrid& grid,
                                                               const Sensor& sensor);
 
-/// The set of a generator other than boundary. Shell: between 0.8 and 1.25 times the distance.
+/// The set of a generator other than boundary. Shell: where the reach has shells
+/// or boxes at random in these, looking at the centre, fewer than asked for where few of a million
+/// lie in all that limits the reach; else between 0.8 and 1.25 times the distance.
 /// Sequence: eight views on the start's circle of latitude, in steps of 45°, then one from above.
 /// Throws Error(invalid_argument) for an unknown name, a count that the generator has not, and more
 /// than 20,000 poses to spread out.

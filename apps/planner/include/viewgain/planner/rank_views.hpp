@@ -49,6 +49,12 @@ struct VIEWGAIN_EXPORT Ranking {
   std::vector<ViewGain> scored_gains{};  ///< of these, in their order
 };
 
+/// What each pose costs by `config`, the way from `here` included; empty: nothing costs. Throws
+/// Error(invalid_argument) for a cost_per_metre that is negative or not finite.
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<double> view_costs(
+    std::span<const Pose> T_world_camera, const RankConfig& config,
+    const std::optional<Eigen::Vector3d>& here);
+
 /// The k best of the poses, at least one of them wanted, whether they are possible or not. Ties go
 /// to the earlier one; bad poses are last, with NaN. `here` is where the camera is, from which
 /// cost_per_metre counts; nothing: it does not. Throws Error(invalid_argument) for a cost that is

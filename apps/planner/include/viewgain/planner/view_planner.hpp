@@ -51,6 +51,8 @@ struct VIEWGAIN_EXPORT PlannerConfig {
   /// The rules of PlanningConfig; there is no coverage, and nobody asks its stop token.
   std::size_t max_views = PlanningConfig{}.max_views;
   std::size_t idle_views = PlanningConfig{}.idle_views;  ///< PlanningConfig's
+  /// PlanningConfig's, of views that were taken from where the best of the last ranking was.
+  std::size_t broken_promises = PlanningConfig{}.broken_promises;
   std::optional<double> stop_gain{};  ///< [nat, m² for trace]; set_stop_rules() has both defaults
   /// A share of the surface so far: of the sum of what the views showed of new surface.
   std::optional<double> stop_area{};
@@ -148,9 +150,9 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// Error(invalid_argument) for a pose that is not rigid (1e-3).
   void tried(const Pose& T_world_camera, bool reached);
 
-  /// Why to end, if there is a reason: after add() max_views or idle; after propose() no_candidates
-  /// or unreachable; after rank() of the proposal gain, area or, with costs, cost: no view is worth
-  /// its way. The last ranking of a view counts.
+  /// Why to end, if there is a reason: after add() max_views, idle or promises; after propose()
+  /// no_candidates or unreachable; after rank() of the proposal gain, area or, with costs, cost: no
+  /// view is worth its way. The last ranking of a view counts.
   [[nodiscard]] std::optional<StopReason> should_stop() const noexcept;
 
   /// The whole state in one file: a map that every program reads, with the rest in its notes. Left

@@ -86,8 +86,6 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   [[nodiscard]] const std::vector<FusedPoint>& points() const noexcept { return points_; }
   /// The surface through the points of the last update.
   [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
-  /// New surface that the last view's first frame showed [m²]; see RealisedArea.
-  [[nodiscard]] double realised_area() const noexcept { return realised_area_; }
   /// Poses of views that brought nothing and are not among the map's.
   [[nodiscard]] const std::vector<Pose>& tried() const noexcept { return tried_; }
   /// One a view, where there is a truth, in their order.
@@ -103,7 +101,6 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   MapModel map_;
   std::vector<FusedPoint> points_;
   SurfaceMesh surface_;
-  double realised_area_ = 0;
   std::vector<QualityFigures> quality_;
   std::vector<Pose> tried_;
 };

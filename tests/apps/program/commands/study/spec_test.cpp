@@ -78,7 +78,7 @@ TEST_F(StudySpecTest, ListsAreCrossed) {
             (Strings{"--sensor=sr4000", "--voxel=0.01", "--seed=3", "--max-views=5",
                      "--tolerance=0.005", "--policy=gain", "--out=unused", "--gain=rear_side_voxel",
                      "--semantics=shipped", "--stop-gain=0", "--stop-area=0", "--stop-idle=0",
-                     "--up=y", "--", (dir / "cube.off").string()}));
+                     "--stop-promises=0", "--up=y", "--", (dir / "cube.off").string()}));
 }
 
 TEST_F(StudySpecTest, HashesFollowWhatCanChangeAResult) {

@@ -101,11 +101,11 @@ TEST_F(Study, LeavesWhatItSays) {
   }
   // A run by itself is the same run.
   const json alone = json::parse(
-      run_well({"reconstruct", "cube.off", "--sensor",    "tof.toml", "--voxel",     "0.0125",
-                "--size",      "0.15",     "--max-views", "3",        "--seed",      "2",
-                "--tolerance", "0.0125",   "--policy",    "frontier", "--stop-gain", "0",
-                "--stop-area", "0",        "--stop-idle", "0",        "--pictures",  "off",
-                "--quiet",     "--json",   "--out",       "alone"}));
+      run_well({"reconstruct", "cube.off", "--sensor",    "tof.toml", "--voxel",         "0.0125",
+                "--size",      "0.15",     "--max-views", "3",        "--seed",          "2",
+                "--tolerance", "0.0125",   "--policy",    "frontier", "--stop-gain",     "0",
+                "--stop-area", "0",        "--stop-idle", "0",        "--stop-promises", "0",
+                "--pictures",  "off",      "--quiet",     "--json",   "--out",           "alone"}));
   EXPECT_EQ(printed[4]["policy"], "frontier");
   EXPECT_EQ(printed[4]["seed"], 2);
   for (const char* key : {"coverage_visible", "rms_error", "consistency", "travelled"}) {

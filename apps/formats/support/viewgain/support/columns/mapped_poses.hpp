@@ -18,6 +18,9 @@ namespace viewgain {
 /// The columns of a pose's row: tx, ty, tz [m], qx, qy, qz, qw of T_world_camera.
 inline constexpr std::array kPoseColumns{"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
 
+/// These numbers of a pose; NaN for one that is not finite.
+[[nodiscard]] VIEWGAIN_EXPORT std::array<double, kPoseColumns.size()> row_of_pose(const Pose& pose);
+
 /// Names a list of poses, 16 digits, by how many there are and all numbers of their rows:
 /// number(row, column).
 template <typename Number>

@@ -35,5 +35,7 @@ struct ScoreSettings {
 
 /// Index and all of a ViewGain that the model has.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Column> gain_columns(GainModel model);
+/// With kPoseColumns behind them, so that a row stands by itself.
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<Column> with_pose_columns(std::vector<Column> columns);
 
 }  // namespace viewgain
