@@ -9,11 +9,10 @@
 #include <string>
 #include <string_view>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "convert.hpp"
-#include "handles.hpp"
-#include "surroundings.hpp"
 #include "viewgain/planner.h"
 #include "viewgain/planner/view_planner.hpp"
 #include "watcher.hpp"
@@ -44,7 +43,7 @@ class LivePlanners {
     return live_.erase(planner) > 0;
   }
   void require_live(const vg_planner* planner) {
-    require(planner, "planner");
+    require("planner", planner);
     const std::lock_guard lock(mutex_);
     if (!live_.contains(planner)) reject("planner was released, or is no planner");
   }
@@ -117,25 +116,17 @@ vg_status make_planner(vg_planner** planner, const Make& make) {
 
 std::int32_t code_of(std::optional<StopReason> reason) {
   if (!reason) return VG_GO_ON;
-  switch (*reason) {
-    case StopReason::gain:
-      return VG_STOP_GAIN;
-    case StopReason::area:
-      return VG_STOP_AREA;
-    case StopReason::no_candidates:
-      return VG_STOP_NO_CANDIDATES;
-    case StopReason::unreachable:
-      return VG_STOP_UNREACHABLE;
-    case StopReason::idle:
-      return VG_STOP_IDLE;
-    case StopReason::cost:
-      return VG_STOP_COST;
-    case StopReason::max_views:
-    case StopReason::coverage:     // never a planner's
-    case StopReason::interrupted:  // likewise
-      break;
+  constexpr std::pair<StopReason, std::int32_t> kCodes[] = {
+      {StopReason::gain, VG_STOP_GAIN},
+      {StopReason::area, VG_STOP_AREA},
+      {StopReason::no_candidates, VG_STOP_NO_CANDIDATES},
+      {StopReason::unreachable, VG_STOP_UNREACHABLE},
+      {StopReason::idle, VG_STOP_IDLE},
+      {StopReason::cost, VG_STOP_COST}};
+  for (const auto& [own, code] : kCodes) {
+    if (own == *reason) return code;
   }
-  return VG_STOP_MAX_VIEWS;
+  return VG_STOP_MAX_VIEWS;  // the others are never a planner's
 }
 
 // "" for what is none.
@@ -169,7 +160,7 @@ struct RankCall {
   void check() const {
     require_array(costs, cost_count, "costs");
     require_array(views, k, "views");
-    require(found, "found");
+    require("found", found);
     require_size<vg_ranked_view>(view_size, "vg_ranked_view (view_size)");
     *found = 0;
   }
@@ -239,8 +230,7 @@ vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* a
                          vg_planner_view* added) {
   return guarded([&] {
     ViewPlanner& own = live(planner);
-    require(depth, "depth");
-    require(T_world_camera, "T_world_camera");
+    require("depth T_world_camera", depth, T_world_camera);
     if (added != nullptr) require_struct(added, "vg_planner_view");
     const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
     const AddedView view = own.add(frame, pose_of(T_world_camera), pose_sigma_of(pose_sigma));
@@ -287,9 +277,7 @@ vg_status vg_planner_register(vg_planner* planner, const float* depth, const flo
                               double sigma_rotation, vg_registration* found) {
   return guarded([&] {
     const ViewPlanner& own = live(planner);
-    require(depth, "depth");
-    require(T_reported, "T_reported");
-    require(found, "found");
+    require("depth T_reported found", depth, T_reported, found);
     require_struct(found, "vg_registration");
     const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
     const FrameRegistration own_found =
@@ -316,7 +304,7 @@ vg_status vg_planner_propose(vg_planner* planner, size_t* candidates, size_t* dr
                              size_t reasons) {
   return guarded([&] {
     ViewPlanner& own = live(planner);
-    require(candidates, "candidates");
+    require("candidates", candidates);
     require_array(dropped, reasons, "dropped");
     const Proposal& proposal = own.propose();
     *candidates = proposal.candidates.size();
@@ -363,7 +351,7 @@ vg_status vg_planner_outcomes(vg_planner* planner, const double T_world_camera[1
 vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16], int32_t reached) {
   return guarded([&] {
     ViewPlanner& own = live(planner);
-    require(T_world_camera, "T_world_camera");
+    require("T_world_camera", T_world_camera);
     own.tried(rigid_pose_of(T_world_camera), reached != 0);
   });
 }
@@ -371,7 +359,7 @@ vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16],
 vg_status vg_planner_should_stop(const vg_planner* planner, int32_t* reason) {
   return guarded([&] {
     const ViewPlanner& own = live(planner);
-    require(reason, "reason");
+    require("reason", reason);
     *reason = code_of(own.should_stop());
   });
 }
@@ -379,7 +367,7 @@ vg_status vg_planner_should_stop(const vg_planner* planner, int32_t* reason) {
 vg_status vg_planner_save(const vg_planner* planner, const char* path) {
   return guarded([&] {
     const ViewPlanner& own = live(planner);
-    require(path, "path");
+    require("path", path);
     own.save(path);
   });
 }
@@ -387,7 +375,7 @@ vg_status vg_planner_save(const vg_planner* planner, const char* path) {
 vg_status vg_planner_load(const char* path, const vg_sensor* sensor,
                           const vg_planner_config* config, vg_planner** planner) {
   return make_planner(planner, [&] {
-    require(path, "path");
+    require("path", path);
     const vg_planner_config chosen = read_struct(config, "vg_planner_config");
     return ViewPlanner::load(path, sensor_with_body(sensor, chosen), settings_of(chosen),
                              exec_of(chosen.num_threads, chosen.tracer));
