@@ -40,8 +40,8 @@ class DistinctVoxels {
     if (!node) node = std::make_unique<Node>();
     const std::uint32_t brick = place >> 9U;
     if (node->is_touched[brick] == 0) {
+      touched_.push_back({number, brick});  // first: where it throws, nothing is marked for ever
       node->is_touched[brick] = 1;
-      touched_.push_back({number, brick});
     }
     std::uint64_t& bits = node->bits[place >> 6U];
     // No branch: whether another ray was here before cannot be foretold.

@@ -46,7 +46,7 @@ std::vector<std::size_t> OracleChoice::uncovered_in_view(
   const std::vector<double> distances = truth.distances_to(model_.surface().vertices);
   std::vector<SurfaceSample> uncovered;
   for (std::size_t i = 0; i < distances.size(); ++i) {
-    if (!(distances[i] <= kCovered)) uncovered.push_back(truth.samples()[i]);
+    if (!(distances[i] <= object_.truth->tolerance())) uncovered.push_back(truth.samples()[i]);
   }
   std::vector<std::size_t> counts(candidates.size());
   ThreadPool pool(exec_.num_threads);
@@ -71,8 +71,9 @@ std::size_t OracleChoice::covered() const { return covered_by(model_.points()); 
 std::size_t OracleChoice::covered_by(const std::vector<FusedPoint>& points) const {
   const std::vector<double> distances =
       object_.truth->ground_truth().distances_to(arrays_of(points).positions);
-  return static_cast<std::size_t>(
-      std::count_if(distances.begin(), distances.end(), [](double d) { return d <= kCovered; }));
+  return static_cast<std::size_t>(std::count_if(distances.begin(), distances.end(), [&](double d) {
+    return d <= object_.truth->tolerance();
+  }));
 }
 
 std::size_t OracleChoice::next(std::span<const Candidate> candidates) const {

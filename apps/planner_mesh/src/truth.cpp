@@ -113,7 +113,8 @@ void mark_seen(const SurfaceScene& scene, const SurfaceScene* surroundings, cons
 Truth::Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
              const VisibilityConfig& config, const ExecConfig& exec)
     : truth_(scene->mesh(), kSamples, kSeed, exec),
-      area_per_sample_(mesh_area(scene->mesh()) / static_cast<double>(kSamples)) {
+      area_per_sample_(mesh_area(scene->mesh()) / static_cast<double>(kSamples)),
+      tolerance_(config.tolerance) {
   const std::vector<Pose> poses = looking_poses(config, sensor, scene->mesh());
   const std::vector<SurfaceSample>& samples = truth_.samples();
   visible_.resize(samples.size());
@@ -132,12 +133,12 @@ QualityFigures Truth::figures(const SurfaceMesh& surface,
   const PointArrays arrays = arrays_of(points);
   const std::vector<double> distances = truth_.distances_to(surface.vertices);
   QualityFigures figures;
-  figures.coverage = coverage(distances, kCovered);
-  figures.coverage_visible = coverage(distances, kCovered, visible_);
+  figures.coverage = coverage(distances, tolerance_);
+  figures.coverage_visible = coverage(distances, tolerance_, visible_);
   figures.coverage_2_5mm = coverage(distances, kNearer);
   std::size_t covered = 0;
   for (std::size_t i = 0; i < distances.size(); ++i) {
-    if (visible_[i] != 0 && distances[i] <= kCovered) ++covered;
+    if (visible_[i] != 0 && distances[i] <= tolerance_) ++covered;
   }
   figures.covered_area = static_cast<double>(covered) * area_per_sample_;
   figures.surface_error = truth_.error(surface.vertices);

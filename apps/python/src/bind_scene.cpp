@@ -11,6 +11,7 @@
 #include "arrays.hpp"
 #include "classes.hpp"
 #include "evaluator.hpp"
+#include "gil.hpp"
 #include "given.hpp"
 #include "map/shared_grid.hpp"
 #include "viewgain/grid/vdb_io.hpp"
@@ -45,6 +46,7 @@ HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_si
   if (py::isinstance<py::str>(hazard) || py::isinstance<py::bytes>(hazard) ||
       py::hasattr(hazard, "__fspath__")) {
     const std::string file = readable_file(hazard);
+    const WithoutGil without_gil;
     config.volume = std::make_shared<const HazardVolume>(load_hazard_vdb(file, grid));
     return config;
   }

@@ -41,6 +41,7 @@ sensors = ["sr4000"]
 voxels = [0.02]
 sizes = [0.35]
 max_views = 2
+tolerance = 0.02
 [prediction]
 views = [1]
 candidates = 4

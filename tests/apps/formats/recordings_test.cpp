@@ -539,6 +539,8 @@ TEST_F(Recordings, DamagedTumIsNamed) {
                       {{"depth.txt", "", "names no image"},
                        {"depth.txt", list + "101.5\n", ":8: "},
                        {"depth.txt", list + "soon depth/0.png\n", "'soon'"},
+                       {"depth.txt", list + "100 /depth/0.png\n", "outside"},
+                       {"depth.txt", list + "100 depth/../../rec/depth/0.png\n", "outside"},
                        {"depth.txt", {}, "", true},
                        {"groundtruth.txt", "101 0 0 0\n", "expected 8 numbers"},
                        {"groundtruth.txt", "101 0 0 0 0 0 0 1.1\n", "norm"}});

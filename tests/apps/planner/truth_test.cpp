@@ -54,11 +54,16 @@ TEST(Truth, ShellsThatLeaveOutTheWorkingDistanceShowWhatTheyShow) {
 
 TEST(Truth, CoveredAreaIsThatOfTheMesh) {
   const auto scene = std::make_shared<const SurfaceScene>(test::box_mesh(kHalf));
-  const Truth truth(scene, sensor_preset("sr4000"), from_the_side({}), {});
-  // A face, and 5 mm of the four beside it.
+  VisibilityConfig config = from_the_side({});
   const double edge = 2 * kHalf;
-  EXPECT_NEAR(truth.figures(seen_face(), {}).covered_area, edge * edge + 4 * edge * 5e-3, 1e-3);
-  EXPECT_EQ(truth.figures({}, {}).covered_area, 0);
+  for (const double tolerance : {kCovered, 0.015}) {
+    config.tolerance = tolerance;
+    const Truth truth(scene, sensor_preset("sr4000"), config, {});
+    // A face, and a strip of the four beside it.
+    EXPECT_NEAR(truth.figures(seen_face(), {}).covered_area, edge * edge + 4 * edge * tolerance,
+                1e-3);
+    EXPECT_EQ(truth.figures({}, {}).covered_area, 0);
+  }
 }
 
 TEST(Truth, HalfSpacesLeaveOutTheOtherSide) {

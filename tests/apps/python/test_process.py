@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
 """What happens to the process: exit after a fork, exit beside a call, memory that is not there."""
+import os
 import subprocess
 import sys
 
@@ -78,6 +79,26 @@ sys.exit(0)
 """
     ends = [run(program) for _ in range(4)]
     assert ends == [(0, "end\n", "")] * 4
+
+
+def test_other_threads_run_while_a_file_of_rates_is_read(tmp_path):
+    os.mkfifo(tmp_path / "rates.vdb")
+    program = f"""
+def read():
+    try:
+        viewgain.VoxelScene(grid, hazard={str(tmp_path / "rates.vdb")!r})
+    except (OSError, viewgain.Error):
+        print("no rates")
+
+thread = threading.Thread(target=read)
+thread.start()
+while thread.is_alive():  # it waits for somebody who writes
+    try:
+        os.close(os.open({str(tmp_path / "rates.vdb")!r}, os.O_WRONLY | os.O_NONBLOCK))
+    except OSError:
+        time.sleep(0.01)
+"""
+    assert run(program) == (0, "no rates\n", "")
 
 
 def test_memory_that_is_not_there_is_memory_error():

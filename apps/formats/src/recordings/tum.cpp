@@ -117,9 +117,12 @@ Recording open_tum(const std::filesystem::path& source, const RecordingConfig& c
       line.fail("expected a timestamp and an image, found " + std::to_string(line.words().size()) +
                 " words");
     }
+    // A recording may be of anybody, and names no files of elsewhere.
+    const auto image = std::filesystem::path(line.words()[1]).lexically_normal();
+    if (image.is_absolute() || *image.begin() == "..") line.fail("the image is outside the folder");
     const auto pose = in_time.nearest(line.finite_number(0), config.max_time_gap);
     if (pose) {
-      add_frame(recording, number, source / line.words()[1], poses.poses[*pose]);
+      add_frame(recording, number, source / image, poses.poses[*pose]);
     } else {
       drop_frame(recording, {FrameVerdict::no_pose});
     }

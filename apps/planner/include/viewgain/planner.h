@@ -18,12 +18,10 @@ extern "C" {
 /* A planner: a map, what was tried, and how to choose. */
 typedef struct vg_planner vg_planner;
 
-/* A candidate that was commanded and not reached, beside VG_INFEASIBLE_; how many there are. */
-/* Further reason: the pose was tried and not reached. How many reasons there are. */
+/* Beside VG_INFEASIBLE_: the pose was tried and not reached. How many reasons there are. */
 enum { VG_INFEASIBLE_MISSED = 8, VG_PLANNER_REASONS = 9 };
 
 /* Why to end. */
-/* Why to stop. */
 enum {
   VG_GO_ON = 0,
   VG_STOP_GAIN = 1,          /* the best candidate promises too little */

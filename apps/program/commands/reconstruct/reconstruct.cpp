@@ -79,7 +79,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
 
   RunFolder folder(outputs.out);
   const PolicyConfig& policy = setup.policy;
-  RunReport report(policy);
+  RunReport report(policy, setup.visibility.tolerance);
   RunPage page(run_title(options, setup), setup.sensor,
                std::string(criterion_name(policy.criterion)), loop.truth());
   std::vector<Pose> views;

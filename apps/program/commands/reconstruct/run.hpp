@@ -41,7 +41,6 @@ class Run {
   [[nodiscard]] const SurfaceModel& model() const noexcept { return model_; }
   [[nodiscard]] const CandidateGeneration& generation() const noexcept { return generation_; }
   [[nodiscard]] CandidateGeneration& generation() noexcept { return generation_; }
-  [[nodiscard]] PolicyDecision& decision() noexcept { return decision_; }
 
  private:
   RunSetup setup_;

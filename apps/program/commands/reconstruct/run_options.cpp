@@ -116,6 +116,9 @@ void describe(Options& o, Visitor& visit) {
                counted_with_default(0, kMaxCount));
   visit.option("stop_coverage", "--stop-coverage", o.stop_coverage,
                "stop at this coverage of the visible surface, 0..1", as_it_is);
+  visit.option("tolerance", "--tolerance", o.tolerance,
+               "a point of the mesh counts as covered where the surface is within this of it [m]",
+               shows_default);
   visit.option("travel_cost", "--travel-cost", o.travel_cost,
                "rank by gain - L * distance [nat/m, surface: m^2/m]", shows_default);
   visit.option("reach", "--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach",
@@ -186,6 +189,7 @@ void check(const ReconstructOptions& options) {
                                                  " goes with a gain of the literature (--gain " +
                                                  classic.front() + ", ...)");
   }
+  check_positive("--tolerance", options.tolerance);
   check_at_least_0("--travel-cost", options.travel_cost);
   if (options.distance) check_positive("--distance", *options.distance);
   if (options.sensing.support_plane) {

@@ -13,6 +13,7 @@
 #include "program/cli/json.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner_mesh/boundary_generation.hpp"
+#include "viewgain/planner_mesh/truth.hpp"
 
 namespace viewgain::app {
 
@@ -55,6 +56,7 @@ struct ReconstructOptions {
   std::optional<double> stop_area;
   std::size_t stop_idle = PlanningConfig{}.idle_views;
   std::optional<double> stop_coverage;
+  double tolerance = kCovered;
   double travel_cost = 0;
   std::string reach;
   std::vector<std::string> obstacles;

@@ -51,8 +51,9 @@ std::size_t total(const std::map<std::string, std::size_t>& counts) {
 
 }  // namespace
 
-RunReport::RunReport(const PolicyConfig& policy)
-    : entropy_unit_(gain_unit(GainModel::paper, criterion_name(policy.criterion))) {
+RunReport::RunReport(const PolicyConfig& policy, double tolerance)
+    : entropy_unit_(gain_unit(GainModel::paper, criterion_name(policy.criterion))),
+      tolerance_(tolerance) {
   gain_unit_ = entropy_unit_;  // what a policy without a gain foretells is the paper's
   if (policy.policy != Policy::gain) return;
   if (policy.classic) {
@@ -81,11 +82,11 @@ void RunReport::set_registrations(std::vector<FrameRegistration> registrations) 
 
 std::string RunReport::progress_line() const {
   const Entry& e = views_.back();
-  std::string text =
-      formatted("view %2zu  %6.2f %% visible at 5 mm, RMS %.2f mm, unknown %s, +%.4g %s",
-                e.record.index, 100 * e.quality.coverage_visible, 1e3 * e.quality.surface_error.rms,
-                with_commas(e.record.progress.unknown_voxels).c_str(), e.record.realised_gain,
-                entropy_unit_.data());
+  std::string text = formatted(
+      "view %2zu  %6.2f %% visible at %g mm, RMS %.2f mm, unknown %s, +%.4g %s", e.record.index,
+      100 * e.quality.coverage_visible, 1e3 * tolerance_, 1e3 * e.quality.surface_error.rms,
+      with_commas(e.record.progress.unknown_voxels).c_str(), e.record.realised_gain,
+      entropy_unit_.data());
   text += formatted(", new %.0f cm^2", 1e4 * e.realised_area);
   if (!std::isnan(e.record.predicted_area)) {
     text += formatted(" of %.0f predicted", 1e4 * e.record.predicted_area);
@@ -168,8 +169,9 @@ std::string RunReport::text(StopReason reason) const {
     text += formatted("last candidates: %zu feasible; dropped: %s\n",
                       last.record.proposal.candidates.size(), counts_text(dropped).c_str());
   }
-  text += formatted("coverage at 5 mm %.2f %% of all, %.2f %% of the visible; at 2.5 mm %.2f %%\n",
-                    100 * q.coverage, 100 * q.coverage_visible, 100 * q.coverage_2_5mm);
+  text += formatted("coverage at %g mm %.2f %% of all, %.2f %% of the visible; at 2.5 mm %.2f %%\n",
+                    1e3 * tolerance_, 100 * q.coverage, 100 * q.coverage_visible,
+                    100 * q.coverage_2_5mm);
   text += formatted(
       "error of the surface: RMS %.2f mm, 95 %% under %.2f mm; of the points: %.2f, %.2f\n",
       1e3 * q.surface_error.rms, 1e3 * q.surface_error.p95, 1e3 * q.points_error.rms,

@@ -17,7 +17,8 @@ namespace viewgain::app {
 /// What a run came to, for run.json, --json and people. apps/docs/reference/json.md names the keys.
 class RunReport {
  public:
-  explicit RunReport(const PolicyConfig& policy);
+  /// `tolerance`: of coverage [m].
+  RunReport(const PolicyConfig& policy, double tolerance);
 
   /// To be called once a view, in order. `realised_area` is SurfaceModel's [m²], `seconds` are the
   /// totals so far.
@@ -50,6 +51,7 @@ class RunReport {
 
   std::string_view ranked_by_;  ///< the gain; empty: the policy ranks by another thing
   std::string_view gain_unit_, entropy_unit_;
+  double tolerance_;  ///< of coverage [m]
   std::vector<Entry> views_;
   std::vector<FrameRegistration> registrations_;
   StageSeconds totals_;

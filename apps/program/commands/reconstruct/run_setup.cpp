@@ -154,17 +154,6 @@ StageConfig stage_config(const ReconstructOptions& options) {
   return config;
 }
 
-void set_gain(const ReconstructOptions& options, PolicyConfig& policy) {
-  if (options.gain.empty()) return;
-  const std::vector<std::string>& classic = classic_gain_names();
-  if (std::find(classic.begin(), classic.end(), options.gain) == classic.end()) {
-    policy.model = parse_gain_model(options.gain);
-    return;
-  }
-  policy.classic = {parse_classic_gain(options.gain),
-                    parse_gain_semantics(options.semantics.empty() ? "paper" : options.semantics)};
-}
-
 Json resolved_settings(const ReconstructOptions& options, const RunSetup& setup) {
   Json generators = Json::array();
   if (setup.generation.at_boundaries) generators.push_back("boundary");
@@ -191,15 +180,31 @@ Json resolved_settings(const ReconstructOptions& options, const RunSetup& setup)
 
 }  // namespace
 
+PolicyConfig policy_config(const ReconstructOptions& options) {
+  PolicyConfig policy;
+  policy.policy = parse_policy(options.policy);
+  policy.criterion = parse_criterion(options.criterion);
+  policy.travel_cost = options.travel_cost;
+  policy.seed = options.sensing.seed;
+  if (options.gain.empty()) return policy;
+  const std::vector<std::string>& classic = classic_gain_names();
+  if (std::find(classic.begin(), classic.end(), options.gain) == classic.end()) {
+    policy.model = parse_gain_model(options.gain);
+  } else {
+    policy.classic = {
+        parse_classic_gain(options.gain),
+        parse_gain_semantics(options.semantics.empty() ? "paper" : options.semantics)};
+  }
+  return policy;
+}
+
 RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   check(options);
   RunSetup setup;
   setup.sensor = load_sensor(options.sensor);
   if (!options.body.empty()) setup.sensor.body_size = parse_size("--body", options.body);
   setup.sensor.validate();
-  setup.policy.policy = parse_policy(options.policy);
-  setup.policy.travel_cost = options.travel_cost;
-  setup.policy.seed = options.sensing.seed;
+  setup.policy = policy_config(options);
   if (!options.reach.empty()) setup.reach = read_reach_toml(options.reach);
   setup.stage = set_stage(stage_config(options), exec);
   check_voxel(options, setup.stage);
@@ -212,7 +217,8 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
                       setup.start,
                       setup.reach,
                       options.sensing.support_plane,
-                      nullptr};
+                      nullptr,
+                      options.tolerance};
   setup.simulation = simulation_config(options.sensing, setup.sensor);
   setup.pose_noise = parse_pose_sigma("--pose-noise", options.sensing.pose_noise);
   setup.registration = registration_sigma(options.registration, setup.pose_noise);
@@ -220,8 +226,6 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   check_start(options, setup, exec);
   setup.visibility.surroundings = setup.simulation.surroundings =
       surroundings_of(setup.model.map.surroundings.obstacles, exec);
-  setup.policy.criterion = setup.model.map.criterion;
-  set_gain(options, setup.policy);
   setup.generation = generation_config(options, setup);
   setup.planning = planning_config(options, setup.policy);
   setup.settings = settings_json(options, resolved_settings(options, setup));

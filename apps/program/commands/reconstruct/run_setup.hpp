@@ -38,6 +38,9 @@ struct RunSetup {
   Json settings;  ///< of run.json
 };
 
+/// How the options say that views are chosen; of the oracle without its object. Throws Error.
+[[nodiscard]] PolicyConfig policy_config(const ReconstructOptions& options);
+
 /// Reads the files that the options name and checks everything. Throws Error.
 [[nodiscard]] RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program/commands/study/markdown.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -22,6 +23,14 @@ std::string fixed(double value, int digits) {
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), "%.*f", digits, value);
   return text.data();
+}
+
+// "0.81 ± 0.02"
+std::string with_error(const std::vector<double>& values, const std::vector<std::size_t>& objects,
+                       int digits) {
+  const MeanWithError mean = mean_of(values, objects);
+  if (mean.count == 0) return "-";
+  return fixed(mean.mean, digits) + " ± " + fixed(mean.error, digits);
 }
 
 std::vector<double> figures(const Rows& rows, const Figure& figure) {
@@ -51,41 +60,60 @@ struct Group {
   }
 };
 
-std::string cell(const MeanWithError& value, int digits) { return fixed(value.mean, digits); }
+std::string mean_text(const Rows& rows, const Figure& figure, int digits) {
+  return fixed(mean_of(figures(rows, figure)).mean, digits);
+}
+
+// Whose runs belong together.
+std::vector<std::size_t> objects_of(const Rows& rows) {
+  std::vector<std::size_t> objects;
+  for (const ResultRow* row : rows) objects.push_back(row->run->object);
+  return objects;
+}
+
+// Mean / median / runs that never got there, which are beyond all others and make of the mean a
+// lower bound.
+std::string counts(const Rows& rows, std::size_t goal) {
+  std::vector<double> views;
+  std::size_t never = 0;
+  for (const ResultRow* row : rows) {
+    never += row->views_to[goal] ? 0 : 1;
+    views.push_back(row->views_to[goal] ? row->counted_views_to(goal) : HUGE_VAL);
+  }
+  const double median = median_of(std::move(views));
+  std::string text = never > 0 ? "≥ " : "";
+  text.append(mean_text(rows, views_to(goal), 2)).append(" / ");
+  text.append(median == HUGE_VAL ? "never" : fixed(median, 1)).append(" / ");
+  return text + std::to_string(never);
+}
 
 std::string means(const Group& group) {
   std::string text =
-      "| policy | to 80 % | to 90 % | to 95 % | not to 90 % | AUC | in the end | RMS [mm] | "
-      "consistency | way [m] | time [s] |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "| policy | to 80 % ↓ | to 90 % ↓ | to 95 % ↓ | AUC ↑ | in the end ↑ | RMS [mm] ↓ | "
+      "consistency | way [m] ↓ | time [s] ↓ |\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (std::size_t policy = 0; policy < group.spec.policies.size(); ++policy) {
     const Rows rows = group.of(policy);
-    std::size_t missed = 0;
-    for (const ResultRow* row : rows) missed += row->views_to[1] ? 0 : 1;
+    const auto add = [&](const Figure& figure, int digits, const char* unit = "") {
+      text.append(" | ").append(mean_text(rows, figure, digits)).append(unit);
+    };
     text.append("| ").append(group.spec.policies[policy].name);
     for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
-      text.append(" | ").append(cell(mean_of(figures(rows, views_to(goal))), 2));
+      text.append(" | ").append(counts(rows, goal));
     }
-    text.append(" | ")
-        .append(std::to_string(missed))
-        .append(" of ")
-        .append(std::to_string(rows.size()));
-    text.append(" | ").append(cell(mean_of(figures(rows, auc)), 3));
-    const auto in_the_end = [](const ResultRow& row) { return 100 * row.coverage_visible; };
-    text.append(" | ").append(cell(mean_of(figures(rows, in_the_end)), 1)).append(" %");
-    text.append(" | ").append(cell(mean_of(figures(rows, rms_mm)), 2));
-    const auto member = [](double ResultRow::*m) {
-      return [m](const ResultRow& row) { return row.*m; };
-    };
-    text.append(" | ").append(cell(mean_of(figures(rows, member(&ResultRow::consistency))), 2));
-    text.append(" | ").append(cell(mean_of(figures(rows, member(&ResultRow::travelled))), 1));
-    text.append(" | ")
-        .append(cell(mean_of(figures(rows, member(&ResultRow::seconds))), 1))
-        .append(" |\n");
+    add(auc, 3);
+    add([](const ResultRow& row) { return 100 * row.coverage_visible; }, 1, " %");
+    add(rms_mm, 2);
+    add(&ResultRow::consistency, 2);
+    add(&ResultRow::travelled, 1);
+    add(&ResultRow::seconds, 1);
+    text += " |\n";
   }
   return text;
 }
 
-// Mean difference ± standard error (wins-ties-losses); both lists run by run.
+std::string probability(double p) { return p < 0.001 ? "<0.001" : fixed(p, 3); }
+
+// Mean difference ± standard error (wins-ties-losses; p of both tests); both lists run by run.
 std::string difference(const Rows& of, const Rows& against, const Figure& figure, int digits,
                        bool more_is_better) {
   const std::vector<double> a = figures(of, figure), b = figures(against, figure);
@@ -98,19 +126,20 @@ std::string difference(const Rows& of, const Rows& against, const Figure& figure
     const double better = more_is_better ? d : -d;
     ++count[better > 0 ? 0 : better < 0 ? 2 : 1];
   }
-  const MeanWithError mean = mean_of(differences);
-  std::string text = fixed(mean.mean, digits);
-  text.append(" ± ").append(fixed(mean.error, digits)).append(" (");
+  std::string text = with_error(differences, objects_of(of), digits) + " (";
   text.append(std::to_string(count[0])).append("-").append(std::to_string(count[1]));
-  return text.append("-").append(std::to_string(count[2])).append(")");
+  text.append("-").append(std::to_string(count[2])).append("; ");
+  text.append(probability(sign_test(differences))).append(", ");
+  return text.append(probability(signed_rank_test(differences))).append(")");
 }
 
 std::string pairs(const Group& group) {
   const StudySpec& spec = group.spec;
   if (spec.policies.size() < 2) return "";
   std::string text = "\nPaired with " + spec.policies[spec.against].name +
-                     ": mean difference ± standard error (wins-ties-losses)\n\n"
-                     "| policy | to 80 % | to 90 % | to 95 % | AUC | RMS [mm] |\n"
+                     ": mean difference ± standard error (wins-ties-losses; p of the sign test, of "
+                     "Wilcoxon's signed-rank test)\n\n"
+                     "| policy | to 80 % ↓ | to 90 % ↓ | to 95 % ↓ | AUC ↑ | RMS [mm] ↓ |\n"
                      "|---|---|---|---|---|---|\n";
   const Rows against = group.of(spec.against);
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
@@ -140,17 +169,11 @@ std::string by_object(const Group& group) {
     for (std::size_t object = 0; object < spec.objects.size(); ++object) {
       Rows rows = group.of(policy);
       std::erase_if(rows, [&](const ResultRow* row) { return row->run->object != object; });
-      text.append(" ").append(cell(mean_of(figures(rows, auc)), 3)).append(" |");
+      text.append(" ").append(mean_text(rows, auc, 3)).append(" |");
     }
     text += "\n";
   }
   return text;
-}
-
-// "0.81 ± 0.02"
-std::string with_error(const std::vector<double>& values) {
-  const MeanWithError mean = mean_of(values);
-  return mean.count == 0 ? "-" : fixed(mean.mean, 2).append(" ± ").append(fixed(mean.error, 2));
 }
 
 // What a run's predictions say after so many views, or after any if `view` is 0.
@@ -166,12 +189,16 @@ std::vector<double> prediction_figures(const ResultRow& row, const char* key, st
 std::string prediction(const Group& group) {
   const StudySpec& spec = group.spec;
   if (spec.prediction.views.empty()) return "";
+  const std::string whose = spec.prediction.maps
+                                ? "the maps of " + spec.policies[*spec.prediction.maps].name
+                                : "the maps of each policy's own runs";
   std::string text =
-      "\nWhat scores say of candidates, " + std::to_string(spec.prediction.candidates) +
+      "\nWhat scores say of candidates on " + whose + ", " +
+      std::to_string(spec.prediction.candidates) +
       " each time: Spearman's rank correlation with the truly new samples after so many views, "
       "the mean of these, that with the entropy truly removed, and the favourite's share of what "
-      "the best candidate brings; ± standard errors over runs. Where all scores are equal there is "
-      "no figure; the means are over the others\n\n| policy |";
+      "the best candidate brings, all ↑. Where all scores are equal there is no figure; the means "
+      "are over the others\n\n| policy |";
   std::string line = "|---|";
   for (const std::size_t view : spec.prediction.views) {
     text.append(" ").append(std::to_string(view)).append(" |");
@@ -180,22 +207,24 @@ std::string prediction(const Group& group) {
   text += " all | entropy | favourite |\n" + line + "---|---|---|\n";
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
     const Rows rows = group.of(policy);
-    const auto values = [&](const char* key, std::size_t view) {  // a figure a run; view 0: all
-      std::vector<double> found;
+    if (std::all_of(rows.begin(), rows.end(),
+                    [](const ResultRow* row) { return row->prediction.size() == 0; })) {
+      continue;
+    }
+    text.append("| ").append(spec.policies[policy].name);
+    const auto add = [&](const char* key, std::size_t view) {  // view 0: all
+      std::vector<double> values;
       for (const ResultRow* row : rows) {
         // Views of one run are not independent: they count as one.
-        found.push_back(mean_of(prediction_figures(*row, key, view)).mean);
+        values.push_back(mean_of(prediction_figures(*row, key, view)).mean);
       }
-      return found;
+      text.append(" | ").append(with_error(values, objects_of(rows), 2));
     };
-    if (mean_of(values("spearman_area", 0)).count == 0) continue;
-    text.append("| ").append(spec.policies[policy].name);
-    for (const std::size_t view : spec.prediction.views) {
-      text.append(" | ").append(with_error(values("spearman_area", view)));
-    }
-    text.append(" | ").append(with_error(values("spearman_area", 0)));
-    text.append(" | ").append(with_error(values("spearman_entropy", 0)));
-    text.append(" | ").append(with_error(values("top1_share", 0))).append(" |\n");
+    for (const std::size_t view : spec.prediction.views) add("spearman_area", view);
+    add("spearman_area", 0);
+    add("spearman_entropy", 0);
+    add("top1_share", 0);
+    text += " |\n";
   }
   return text;
 }
@@ -213,12 +242,21 @@ std::string results_markdown(const StudySpec& spec, const std::vector<ResultRow>
   for (const StudyObject& object : spec.objects) objects.push_back(object.name);
   std::set<std::uint64_t> seeds;
   for (const StudyRun& run : spec.runs) seeds.insert(run.seed);
-  std::string text = std::to_string(rows.size()) + " runs: " + joined(objects) + "; " +
-                     std::to_string(seeds.size()) + " seeds; " + std::to_string(spec.max_views) +
-                     " views. Views to a share of the visible surface (5 mm), means; a run that "
-                     "never gets there counts as " +
-                     std::to_string(spec.max_views + 1) +
-                     ". AUC: mean coverage over the views. RMS of the surface.\n";
+  const std::string never = std::to_string(spec.max_views + 1);
+  std::string text =
+      std::to_string(rows.size()) + " runs: " + joined(objects) + "; " +
+      std::to_string(seeds.size()) + " seeds; " + std::to_string(spec.max_views) +
+      " views.\n\n- ↓ less is better, ↑ more is.\n"
+      "- Views to a share of the visible surface (within " +
+      short_text(1e3 * spec.tolerance) +
+      " mm): mean / median / runs that never got there. These count as " + never +
+      " in means, also of differences; a mean with such runs is at least (≥) that.\n"
+      "- AUC: mean coverage over the views. RMS: error of the surface. Consistency: the points' "
+      "squared errors by their own sigmas, 1 if these are honest, above if too small.\n- ±: " +
+      (objects.size() > 1
+           ? "standard errors by object, for runs on one object are not independent; p is of these "
+             "objects, by runs.\n"
+           : "standard errors over the runs on the one object, which say nothing of others.\n");
   // The runs come sorted by sensor, voxel and size.
   for (std::size_t first = 0, last = 0; first < rows.size(); first = last) {
     Group group{spec, {}};

@@ -33,8 +33,15 @@ def group_of(run):
 
 
 def mean_and_error(values):
-    error = statistics.stdev(values) / math.sqrt(len(values)) if len(values) > 1 else 0.0
-    return statistics.fmean(values), error
+    """Of pairs (object, value): the mean, and its standard error as in table.md, by object where there are several."""
+    mean = statistics.fmean(value for _, value in values)
+    one = len({of for of, _ in values}) == 1
+    sums = collections.Counter()
+    for i, (of, value) in enumerate(values):
+        sums[i if one else of] += value - mean
+    groups = len(sums)
+    squares = math.fsum(s * s for s in sums.values())
+    return mean, math.sqrt(groups / (groups - 1) * squares) / len(values) if groups > 1 else 0.0
 
 
 def style(i):
@@ -62,8 +69,9 @@ def coverage(runs, groups, names, path):
     figure, axes = panels(groups)
     for one, group in zip(axes, groups):
         for i, name in enumerate(names):
-            curves = [run["coverage_by_view"] for run in runs if group_of(run) == group and name_of(run) == name]
-            points = [mean_and_error([100 * c for c in view]) for view in zip(*curves)]
+            curves = [[(run["object"], 100 * c) for c in run["coverage_by_view"]] for run in runs
+                      if group_of(run) == group and name_of(run) == name]
+            points = [mean_and_error(view) for view in zip(*curves)]
             views = range(1, len(points) + 1)
             one.plot(views, [m for m, _ in points], label=name, **style(i))
             one.fill_between(views, [m - e for m, e in points], [m + e for m, e in points], alpha=0.15, linewidth=0,
@@ -83,7 +91,7 @@ def prediction(runs, groups, names, path):
                 if group_of(run) == group and name_of(run) == name:
                     for entry in run["prediction"]:
                         if entry["spearman_area"] is not None:
-                            values[entry["view"]].append(entry["spearman_area"])
+                            values[entry["view"]].append((run["object"], entry["spearman_area"]))
             if values:
                 points = [(view, *mean_and_error(v)) for view, v in sorted(values.items())]
                 one.errorbar(*zip(*points), label=name, marker="o", markersize=3, capsize=2, **style(i))
@@ -98,13 +106,13 @@ def calibration(rows, groups, names, path):
     most = 0.0
     for one, group in zip(axes, groups):
         for i, name in enumerate(names):
-            pairs = sorted((1e4 * float(row["predicted_area"]), 1e4 * float(row["new_area"])) for row in rows
+            pairs = sorted((1e4 * float(row["predicted_area"]), row["object"], 1e4 * float(row["new_area"])) for row in rows
                            if group_of(row) == group and name_of(row) == name and row["predicted_area"] != "nan")
             if len(pairs) < 2 * BINS:
                 continue
             edges = [len(pairs) * k // BINS for k in range(BINS + 1)]
             bins = [pairs[a:b] for a, b in zip(edges, edges[1:])]
-            points = [(statistics.fmean([p for p, _ in b]), *mean_and_error([t for _, t in b])) for b in bins]
+            points = [(statistics.fmean([p for p, *_ in b]), *mean_and_error([pair[1:] for pair in b])) for b in bins]
             one.errorbar(*zip(*points), label=name, marker="o", markersize=3, capsize=2, **style(i))
             most = max([most] + [max(p, t) for p, t, _ in points])
         one.set_xlabel("expected new surface [cm²]")

@@ -51,47 +51,55 @@ std::vector<double> column(const std::vector<CandidateOutcome>& outcomes,
   return values;
 }
 
-}  // namespace
-
-PredictionQuality predict(Run& run, const ViewRecord& record, std::size_t count,
-                          const ExecConfig& exec, const std::stop_token& stop) {
-  PredictionQuality quality;
-  quality.view = record.index + 1;
-  const std::vector<Candidate> candidates = candidates_of(run, record, count);
-  const std::optional<CandidateScores> scores = run.decision().scores(candidates);
-  if (!scores) return quality;
-  const RunSetup& setup = run.setup();
-  const OracleChoice oracle(run.model(), setup.sensor,
-                            {setup.stage.scene, run.truth(), setup.simulation}, exec);
-  const auto covered = static_cast<double>(oracle.covered());
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (stop.stop_requested()) {
-      quality.outcomes.clear();
-      return quality;
-    }
-    const TrueOutcome outcome = oracle.outcome_of(candidates[i].T_world_camera);
-    const double new_samples = static_cast<double>(outcome.covered) - covered;
-    quality.outcomes.push_back({candidates[i], scores->score[i], scores->area[i], new_samples,
-                                new_samples * run.truth()->area_per_sample(),
-                                outcome.entropy_removed - record.progress.entropy_removed});
-  }
-  const std::vector<double> score = column(quality.outcomes, &CandidateOutcome::score),
-                            added = column(quality.outcomes, &CandidateOutcome::new_samples);
-  quality.spearman_area = spearman(score, added);
-  quality.spearman_entropy =
-      spearman(score, column(quality.outcomes, &CandidateOutcome::entropy_removed));
-  // Ties go to the lower index, as in the loop; NaN is never the favourite. A score that is the
-  // same for all has none.
+// Ties go to the lower index, as in the loop; NaN is never the favourite. A score that is the same
+// for all has none.
+double top1_share(const std::vector<double>& score, const std::vector<double>& added) {
   std::size_t favourite = 0;
   for (std::size_t i = 1; i < score.size(); ++i) {
     if (score[i] > score[favourite] || std::isnan(score[favourite])) favourite = i;
   }
-  const double most = added.empty() ? 0 : *std::max_element(added.begin(), added.end());
+  const double most = *std::max_element(added.begin(), added.end());
   const bool has_favourite = std::any_of(score.begin(), score.end(), [&](double value) {
     return std::isfinite(value) && value != score[favourite];
   });
-  quality.top1_share = has_favourite && most > 0 ? added[favourite] / most : std::nan("");
-  return quality;
+  return has_favourite && most > 0 ? added[favourite] / most : std::nan("");
+}
+
+}  // namespace
+
+Prediction predict(Run& run, const ViewRecord& record, Scorers& scorers, std::size_t count,
+                   const ExecConfig& exec, const std::stop_token& stop) {
+  Prediction prediction;
+  prediction.view = record.index + 1;
+  const std::vector<Candidate> candidates = candidates_of(run, record, count);
+  if (candidates.empty()) return prediction;
+  std::vector<PredictionQuality> by_policy;
+  for (auto& [policy, scorer] : scorers) {
+    if (auto scores = scorer.scores(candidates)) by_policy.push_back({policy, std::move(*scores)});
+  }
+  if (by_policy.empty()) return prediction;
+  const RunSetup& setup = run.setup();
+  const OracleChoice oracle(run.model(), setup.sensor,
+                            {setup.stage.scene, run.truth(), setup.simulation}, exec);
+  const auto covered = static_cast<double>(oracle.covered());
+  std::vector<CandidateOutcome> outcomes;
+  for (const Candidate& candidate : candidates) {
+    if (stop.stop_requested()) return prediction;
+    const TrueOutcome outcome = oracle.outcome_of(candidate.T_world_camera);
+    const double new_samples = static_cast<double>(outcome.covered) - covered;
+    outcomes.push_back({candidate, new_samples, new_samples * run.truth()->area_per_sample(),
+                        outcome.entropy_removed - record.progress.entropy_removed});
+  }
+  const std::vector<double> added = column(outcomes, &CandidateOutcome::new_samples),
+                            removed = column(outcomes, &CandidateOutcome::entropy_removed);
+  for (PredictionQuality& quality : by_policy) {
+    quality.spearman_area = spearman(quality.scores.score, added);
+    quality.spearman_entropy = spearman(quality.scores.score, removed);
+    quality.top1_share = top1_share(quality.scores.score, added);
+  }
+  prediction.outcomes = std::move(outcomes);
+  prediction.by_policy = std::move(by_policy);
+  return prediction;
 }
 
 }  // namespace viewgain::app

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "program/commands/study/statistics.hpp"
 #include "viewgain/support/text.hpp"
@@ -35,7 +36,7 @@ double ResultRow::counted_views_to(std::size_t goal) const {
   return static_cast<double>(views_to[goal].value_or(coverage_by_view.size() + 1));
 }
 
-ResultRow row_of(const StudySpec& spec, const StudyRun& run, const Json& json) {
+ResultRow row_of(const StudySpec& spec, const StudyRun& run, const Json& json, const Json& maps) {
   ResultRow row;
   row.run = &run;
   row.views = json.at("views").get<std::size_t>();
@@ -59,7 +60,12 @@ ResultRow row_of(const StudySpec& spec, const StudyRun& run, const Json& json) {
   row.outliers = number_of(json.at("outliers"));
   row.travelled = number_of(json.at("travelled"));
   row.seconds = number_of(json.at("seconds").at("total"));
-  row.prediction = json.at("prediction");
+  row.prediction = Json::array();
+  for (Json entry : maps.at("prediction")) {
+    if (entry.at("policy") != Json(spec.policies[run.policy].name)) continue;
+    entry.erase("policy");
+    row.prediction.push_back(std::move(entry));
+  }
   row.isa = json.at("isa").get<std::string>();
   return row;
 }

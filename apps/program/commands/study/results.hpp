@@ -13,7 +13,7 @@
 
 namespace viewgain::app {
 
-/// Shares of the visible surface (5 mm) to which views are counted.
+/// Shares of the visible surface to which views are counted.
 inline constexpr std::array<double, 3> kGoals{0.80, 0.90, 0.95};
 
 /// What a study compares of a run.
@@ -34,12 +34,14 @@ struct ResultRow {
   double seconds = 0;
   Json prediction;  ///< as in results.json
 
-  /// Views to a goal as tables count them: one more than the budget where it was never reached.
+  /// Views to a goal as means count them: one more than the budget where it was never reached.
   [[nodiscard]] double counted_views_to(std::size_t goal) const;
 };
 
-/// From a run's run.json. Throws JsonError where something is missing in it.
-[[nodiscard]] ResultRow row_of(const StudySpec& spec, const StudyRun& run, const Json& json);
+/// From a run's run.json and that of the run on whose maps its scores are looked at, which may be
+/// the same. Throws JsonError where something is missing in them.
+[[nodiscard]] ResultRow row_of(const StudySpec& spec, const StudyRun& run, const Json& json,
+                               const Json& maps);
 
 /// A text as CSV has it: with a comma, a quote or a line's end in quotes (RFC 4180).
 [[nodiscard]] std::string csv_text(const std::string& text);

@@ -33,8 +33,10 @@ class StudyFolder {
   [[nodiscard]] bool has(const StudyRun& run) const;
   /// run.json. Throws Error(format) that names the file if it is not that of this run.
   [[nodiscard]] Json read(const StudyRun& run) const;
-  /// prediction.csv without its head. Throws Error(io), Error(format).
-  [[nodiscard]] std::string prediction_rows(const StudyRun& run) const;
+  /// The rows of prediction.csv of a policy's scores, by kPredictionColumns. Throws Error(io),
+  /// Error(format).
+  [[nodiscard]] std::vector<std::string> prediction_rows(const StudyRun& run,
+                                                         const std::string& policy) const;
   void write(const StudyRun& run, const StudyResult& result) const;
   [[nodiscard]] std::filesystem::path runs() const { return dir_ / "runs"; }
   [[nodiscard]] std::filesystem::path file(const StudyRun& run, const char* name) const;

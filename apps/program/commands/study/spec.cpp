@@ -3,6 +3,7 @@
 #include "program/commands/study/spec.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -25,7 +26,7 @@ namespace viewgain::app {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kRunFormat = 2;  // of run.json and prediction.csv; grows when one changes
+constexpr int kRunFormat = 3;  // of run.json and prediction.csv; grows when one changes
 constexpr std::size_t kMostRuns = 1'000'000;
 constexpr std::int64_t kMostViews = 1000, kMostCandidates = 100'000;
 
@@ -36,15 +37,21 @@ const toml::array& list_of(TableReader& reader, const char* key) {
   return *list;
 }
 
+template <typename Value>
+void add_once(TableReader& reader, const char* key, std::vector<Value>& values, const Value& value,
+              const std::string& said) {
+  if (std::find(values.begin(), values.end(), value) != values.end()) {
+    reader.fail(key, "holds " + said + " twice");
+  }
+  values.push_back(value);
+}
+
 std::vector<std::string> texts(TableReader& reader, const char* key) {
   std::vector<std::string> values;
   for (const toml::node& node : list_of(reader, key)) {
     const auto* text = node.as_string();
     if (text == nullptr || text->get().empty()) reader.fail(key, "must be a list of texts");
-    if (std::find(values.begin(), values.end(), text->get()) != values.end()) {
-      reader.fail(key, "holds \"" + text->get() + "\" twice");
-    }
-    values.push_back(text->get());
+    add_once(reader, key, values, text->get(), "\"" + text->get() + "\"");
   }
   return values;
 }
@@ -54,39 +61,26 @@ std::vector<double> lengths(TableReader& reader, const char* key) {
   for (const toml::node& node : list_of(reader, key)) {
     const double value = reader.number_of(node, key);
     if (!(value > 0)) reader.fail(key, "must be a list of positive numbers [m]");
-    if (std::find(values.begin(), values.end(), value) != values.end()) {
-      reader.fail(key, "holds a number twice");
-    }
-    values.push_back(value);
+    add_once(reader, key, values, value, "a number");
   }
   return values;
+}
+
+std::int64_t whole_number(TableReader& reader, const toml::node& node, const char* key,
+                          std::int64_t least, std::int64_t most) {
+  const auto* number = node.as_integer();
+  if (number != nullptr && number->get() >= least && number->get() <= most) return number->get();
+  reader.fail(key, "must be whole, in " + std::to_string(least) + ".." + std::to_string(most));
 }
 
 std::vector<std::int64_t> whole_numbers(TableReader& reader, const char* key, std::int64_t least,
                                         std::int64_t most) {
   std::vector<std::int64_t> values;
   for (const toml::node& node : list_of(reader, key)) {
-    const auto* number = node.as_integer();
-    if (number == nullptr || number->get() < least || number->get() > most) {
-      reader.fail(key, "must be a list of whole numbers in " + std::to_string(least) + ".." +
-                           std::to_string(most));
-    }
-    if (std::find(values.begin(), values.end(), number->get()) != values.end()) {
-      reader.fail(key, "holds " + std::to_string(number->get()) + " twice");
-    }
-    values.push_back(number->get());
+    const std::int64_t value = whole_number(reader, node, key, least, most);
+    add_once(reader, key, values, value, std::to_string(value));
   }
   return values;
-}
-
-std::int64_t whole_number(TableReader& reader, const char* key, std::int64_t least,
-                          std::int64_t most) {
-  const auto* number = reader.require(key).as_integer();
-  if (number == nullptr || number->get() < least || number->get() > most) {
-    reader.fail(key,
-                "must be a whole number in " + std::to_string(least) + ".." + std::to_string(most));
-  }
-  return number->get();
 }
 
 // "gain:GAIN:SEMANTICS", "gain:GAIN" or another policy. `reconstruct` knows which names there are.
@@ -101,6 +95,11 @@ StudyPolicy policy_of(TableReader& reader, const std::string& name) {
     }
   }
   const bool by_gain = policy.policy == "gain";
+  const std::vector<std::string> gains = all_gain_names();
+  if (std::find(gains.begin(), gains.end(), policy.policy) != gains.end()) {
+    reader.fail("policies",
+                "holds \"" + name + "\", a gain; as a policy it is \"gain:" + name + "\"");
+  }
   if (by_gain == policy.gain.empty() || name.ends_with(':')) {
     reader.fail("policies", "holds \"" + name +
                                 "\"; a policy is \"gain:NAME\" (\"gain:combined\") or another one "
@@ -108,7 +107,7 @@ StudyPolicy policy_of(TableReader& reader, const std::string& name) {
   }
   if (by_gain) {
     try {
-      check_one_of("--gain", policy.gain, all_gain_names(), "gain");
+      check_one_of("--gain", policy.gain, gains, "gain");
     } catch (const Error& error) {
       reader.fail("policies", "holds \"" + name + "\": " + error.what());
     }
@@ -140,9 +139,9 @@ std::vector<StudyObject> objects_of(TableReader& reader, const fs::path& folder)
 // What a run is asked by the study itself.
 const std::set<std::string>& own_flags() {
   static const std::set<std::string> flags{
-      "--sensor",    "--voxel", "--size",      "--seed",     "--policy",     "--gain",
-      "--semantics", "--out",   "--max-views", "--pictures", "--report",     "--save-maps",
-      "--threads",   "--json",  "--quiet",     "--config",   "--save-config"};
+      "--sensor",    "--voxel", "--size",      "--seed",     "--policy",      "--gain",
+      "--semantics", "--out",   "--max-views", "--pictures", "--report",      "--save-maps",
+      "--threads",   "--json",  "--quiet",     "--config",   "--save-config", "--tolerance"};
   return flags;
 }
 
@@ -180,19 +179,35 @@ std::string identity_of_flag(const std::string& flag) {
   return is_file ? name + "=" + identity_of(value) : flag;
 }
 
-StudyPrediction prediction_of(TableReader& root, std::size_t max_views) {
+// The policy that a key names.
+std::size_t policy_at(TableReader& reader, const char* key, const StudySpec& spec) {
+  const std::string name = reader.text(key);
+  const auto found = std::find_if(spec.policies.begin(), spec.policies.end(),
+                                  [&](const StudyPolicy& policy) { return policy.name == name; });
+  if (found == spec.policies.end()) reader.fail(key, "is none of the policies");
+  return static_cast<std::size_t>(found - spec.policies.begin());
+}
+
+Json names_of(const StudySpec& spec, const std::vector<std::size_t>& policies) {
+  Json names = Json::array();
+  for (const std::size_t policy : policies) names.push_back(spec.policies[policy].name);
+  return names;
+}
+
+StudyPrediction prediction_of(TableReader& root, const StudySpec& spec) {
   StudyPrediction prediction;
   if (root.find("prediction") == nullptr) return prediction;
   TableReader reader = root.table("prediction");
-  const auto most = static_cast<std::int64_t>(max_views);
+  const auto most = static_cast<std::int64_t>(spec.max_views);
   for (const std::int64_t view : whole_numbers(reader, "views", 1, most)) {
     prediction.views.push_back(static_cast<std::size_t>(view));
   }
   std::sort(prediction.views.begin(), prediction.views.end());
   if (reader.find("candidates") != nullptr) {
-    prediction.candidates =
-        static_cast<std::size_t>(whole_number(reader, "candidates", 3, kMostCandidates));
+    prediction.candidates = static_cast<std::size_t>(
+        whole_number(reader, reader.require("candidates"), "candidates", 3, kMostCandidates));
   }
+  if (reader.find("maps") != nullptr) prediction.maps = policy_at(reader, "maps", spec);
   reader.refuse_unknown_keys();
   return prediction;
 }
@@ -230,16 +245,15 @@ StudySpec read_study_spec(const fs::path& path) {
   } else {
     sizes.emplace_back();
   }
-  spec.max_views = static_cast<std::size_t>(whole_number(reader, "max_views", 1, kMostViews));
+  spec.max_views = static_cast<std::size_t>(
+      whole_number(reader, reader.require("max_views"), "max_views", 1, kMostViews));
   spec.flags = flags_of(reader);
-  if (reader.find("against") != nullptr) {
-    const std::string name = reader.text("against");
-    const auto found = std::find_if(spec.policies.begin(), spec.policies.end(),
-                                    [&](const StudyPolicy& policy) { return policy.name == name; });
-    if (found == spec.policies.end()) reader.fail("against", "is none of the policies");
-    spec.against = static_cast<std::size_t>(found - spec.policies.begin());
+  if (reader.find("tolerance") != nullptr) {
+    spec.tolerance = reader.number("tolerance");
+    if (!(spec.tolerance > 0)) reader.fail("tolerance", "must be a positive number [m]");
   }
-  spec.prediction = prediction_of(reader, spec.max_views);
+  if (reader.find("against") != nullptr) spec.against = policy_at(reader, "against", spec);
+  spec.prediction = prediction_of(reader, spec);
   reader.refuse_unknown_keys();
 
   const std::size_t count = spec.objects.size() * spec.policies.size() * seeds.size() *
@@ -258,8 +272,11 @@ StudySpec read_study_spec(const fs::path& path) {
         for (std::size_t object = 0; object < spec.objects.size(); ++object) {
           for (const std::int64_t seed : seeds) {
             for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
-              StudyRun run{object, policy, static_cast<std::uint64_t>(seed), sensor, voxel, size,
-                           {},     {}};
+              const std::size_t maps =
+                  spec.runs.size() - policy + spec.prediction.maps.value_or(policy);
+              StudyRun run{object, policy, static_cast<std::uint64_t>(seed),
+                           sensor, voxel,  size,
+                           maps,   {},     {}};
               run.configuration = {
                   {"version", VIEWGAIN_VERSION},
                   {"format", kRunFormat},
@@ -271,9 +288,11 @@ StudySpec read_study_spec(const fs::path& path) {
                   {"voxel", voxel},
                   {"size", size},
                   {"max_views", spec.max_views},
+                  {"tolerance", spec.tolerance},
                   {"flags", flags},
                   {"prediction_views", spec.prediction.views},
-                  {"prediction_candidates", spec.prediction.candidates}};
+                  {"prediction_candidates", spec.prediction.candidates},
+                  {"prediction_policies", names_of(spec, scored_policies(spec, run))}};
               run.hash = hash_of(run.configuration.dump());
               spec.runs.push_back(std::move(run));
             }
@@ -285,12 +304,21 @@ StudySpec read_study_spec(const fs::path& path) {
   return spec;
 }
 
+std::vector<std::size_t> scored_policies(const StudySpec& spec, const StudyRun& run) {
+  if (spec.prediction.views.empty()) return {};
+  if (!spec.prediction.maps) return {run.policy};
+  std::vector<std::size_t> all(*spec.prediction.maps == run.policy ? spec.policies.size() : 0);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
 std::vector<std::string> reconstruct_words(const StudySpec& spec, const StudyRun& run) {
   const StudyPolicy& policy = spec.policies[run.policy];
   std::vector<std::string> words{"--sensor=" + run.sensor,
                                  "--voxel=" + short_text(run.voxel),
                                  "--seed=" + std::to_string(run.seed),
                                  "--max-views=" + std::to_string(spec.max_views),
+                                 "--tolerance=" + short_text(spec.tolerance),
                                  "--policy=" + policy.policy,
                                  "--out=unused"};
   if (!policy.gain.empty()) words.push_back("--gain=" + policy.gain);

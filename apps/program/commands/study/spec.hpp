@@ -25,6 +25,9 @@ struct StudyPolicy {
 struct StudyPrediction {
   std::vector<std::size_t> views;  ///< after so many views, rising; empty: nowhere
   std::size_t candidates = 100;    ///< at most so many each time
+  /// Index of the policy on whose runs' maps all policies' scores are held against that; none: each
+  /// on those of its own runs.
+  std::optional<std::size_t> maps;
 };
 
 /// One run of a study.
@@ -34,6 +37,7 @@ struct StudyRun {
   std::string sensor;          ///< preset or file, as in the spec
   double voxel = 0;            ///< [m]
   std::optional<double> size;  ///< longest side [m]; none: the file's own
+  std::size_t maps = 0;        ///< index of the run on whose maps its scores are looked at
   Json configuration;          ///< all that can change its result
   std::string hash;            ///< of that: the name of the run's folder
 };
@@ -49,6 +53,7 @@ struct StudySpec {
   std::vector<StudyObject> objects;
   std::vector<StudyPolicy> policies;
   std::size_t max_views = 0;
+  double tolerance = 5e-3;         ///< a point is covered where the surface is within this [m]
   std::size_t against = 0;         ///< index of the policy that the others are paired with
   std::vector<std::string> flags;  ///< further ones of `reconstruct`, for all runs
   StudyPrediction prediction;
@@ -58,6 +63,9 @@ struct StudySpec {
 /// Reads a spec; paths in it are relative to its folder. Throws Error(io) for files that cannot be
 /// read, Error(format), naming file, line and key, for whatever is not as it should be.
 [[nodiscard]] StudySpec read_study_spec(const std::filesystem::path& path);
+
+/// Indices of the policies whose scores are looked at on a run's maps.
+[[nodiscard]] std::vector<std::size_t> scored_policies(const StudySpec& spec, const StudyRun& run);
 
 /// The command line of a run, after `reconstruct`.
 [[nodiscard]] std::vector<std::string> reconstruct_words(const StudySpec& spec,

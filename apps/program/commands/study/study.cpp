@@ -73,16 +73,14 @@ void print_progress(const StudySpec& spec, const StudyProgress& progress, double
                name_of(spec, *progress.run).c_str(), progress.seconds, time_text(left).c_str());
 }
 
-// All runs' prediction.csv in one, each row with what its run was.
+// All runs' prediction.csv in one, each row with what the run was whose score it has.
 std::string predictions_csv(const StudySpec& spec, const StudyFolder& folder) {
   std::string csv = std::string(kRunColumns) + "," + kPredictionColumns + "\n";
   for (const StudyRun& run : spec.runs) {
     const std::string head = run_columns(spec, run);
-    const std::string rows = folder.prediction_rows(run);
-    for (std::size_t begin = 0; begin < rows.size();) {
-      const std::size_t end = rows.find('\n', begin) + 1;
-      csv.append(head).append(",").append(rows, begin, end - begin);
-      begin = end;
+    const std::string& policy = spec.policies[run.policy].name;
+    for (const std::string& row : folder.prediction_rows(spec.runs[run.maps], policy)) {
+      csv.append(head).append(",").append(row).append("\n");
     }
   }
   return csv;
@@ -103,12 +101,24 @@ void check_folder(const std::filesystem::path& dir, const std::filesystem::path&
 
 ResultRow row_in(const StudyFolder& folder, const StudySpec& spec, const StudyRun& run) {
   const Json json = folder.read(run);
+  const StudyRun& maps = spec.runs[run.maps];
   try {
-    return row_of(spec, run, json);
+    return row_of(spec, run, json, &maps == &run ? json : folder.read(maps));
   } catch (const JsonError& error) {
     throw Error(ErrorCode::format, folder.file(run, "run.json").string() + ": " + error.what() +
                                        "; a run whose folder is removed is made again");
   }
+}
+
+// Coverage that is finer than the voxels says more of these than of the views.
+void warn_of_tolerance(const StudySpec& spec) {
+  double voxel = 0;
+  for (const StudyRun& run : spec.runs) voxel = std::max(voxel, run.voxel);
+  if (voxel <= spec.tolerance) return;
+  std::fprintf(stderr,
+               "viewgain: warning: coverage is counted to %g mm, finer than voxels of %g mm "
+               "(tolerance = %g in the spec)\n",
+               1e3 * spec.tolerance, 1e3 * voxel, voxel);
 }
 
 void study(const Options& options) {
@@ -116,6 +126,7 @@ void study(const Options& options) {
   check_runs(spec, options.spec);
   const std::filesystem::path dir = options.out;
   check_folder(dir, options.spec);
+  warn_of_tolerance(spec);
   const StudyFolder folder(dir);
   const std::size_t threads = options.common.threads > 0
                                   ? static_cast<std::size_t>(options.common.threads)

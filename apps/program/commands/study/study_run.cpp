@@ -3,6 +3,7 @@
 #include "program/commands/study/study_run.hpp"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "program/cli/app.hpp"
@@ -39,33 +40,52 @@ auto named(const StudySpec& spec, const StudyRun& run, Work&& work) {
   }
 }
 
-Json prediction_json(const PredictionQuality& quality) {
-  return {{"view", quality.view},
-          {"candidates", quality.outcomes.size()},
-          {"spearman_area", quality.spearman_area},
-          {"spearman_entropy", quality.spearman_entropy},
-          {"top1_share", quality.top1_share}};
+std::string csv_row(const CandidateOutcome& outcome, double score, double predicted_area) {
+  std::string row;
+  for (const double value :
+       {score, predicted_area, outcome.new_samples, outcome.new_area, outcome.entropy_removed}) {
+    row.append(",").append(exact_text(value));
+  }
+  const Pose& T_world_camera = outcome.candidate.T_world_camera;
+  const Eigen::Vector3d t = T_world_camera.translation();
+  const Eigen::Quaterniond q(T_world_camera.rotation());
+  row.append(",").append(csv_text(outcome.candidate.generator));
+  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
+    row.append(",").append(exact_text(value));
+  }
+  return row + "\n";
 }
 
-std::string rows_of(const PredictionQuality& quality) {
-  std::string rows;
-  for (std::size_t i = 0; i < quality.outcomes.size(); ++i) {
-    const CandidateOutcome& outcome = quality.outcomes[i];
-    rows += std::to_string(quality.view) + "," + std::to_string(i);
-    for (const double value : {outcome.score, outcome.predicted_area, outcome.new_samples,
-                               outcome.new_area, outcome.entropy_removed}) {
-      rows.append(",").append(exact_text(value));
+void add_to(StudyResult& result, const StudySpec& spec, const Prediction& prediction) {
+  const std::string view = std::to_string(prediction.view);
+  for (const PredictionQuality& quality : prediction.by_policy) {
+    const std::string& policy = spec.policies[quality.policy].name;
+    result.run["prediction"].push_back({{"policy", policy},
+                                        {"view", prediction.view},
+                                        {"candidates", prediction.outcomes.size()},
+                                        {"spearman_area", quality.spearman_area},
+                                        {"spearman_entropy", quality.spearman_entropy},
+                                        {"top1_share", quality.top1_share}});
+    for (std::size_t i = 0; i < prediction.outcomes.size(); ++i) {
+      result.prediction_rows +=
+          policy + "," + view + "," + std::to_string(i) +
+          csv_row(prediction.outcomes[i], quality.scores.score[i], quality.scores.area[i]);
     }
-    const Pose& T_world_camera = outcome.candidate.T_world_camera;
-    const Eigen::Vector3d t = T_world_camera.translation();
-    const Eigen::Quaterniond q(T_world_camera.rotation());
-    rows.append(",").append(csv_text(outcome.candidate.generator));
-    for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
-      rows.append(",").append(exact_text(value));
-    }
-    rows += "\n";
   }
-  return rows;
+}
+
+// What ranks by the policies whose scores are looked at on a run's maps.
+Scorers scorers_of(const StudySpec& spec, const StudyRun& study_run, const Run& run,
+                   const ExecConfig& exec) {
+  Scorers scorers;
+  for (const std::size_t policy : scored_policies(spec, study_run)) {
+    StudyRun other = study_run;
+    other.policy = policy;
+    PolicyConfig config = policy_config(options_of(spec, other));
+    config.object = {run.setup().stage.scene, run.truth(), run.setup().simulation};
+    scorers.try_emplace(policy, run.model(), run.generation(), run.setup().sensor, config, exec);
+  }
+  return scorers;
 }
 
 std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& study_run, int threads,
@@ -75,27 +95,24 @@ std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& stud
   RunSetup setup = set_up(options, exec);
   setup.planning.stop = stop;
   Run run(std::move(setup), options.frames_per_view, exec);
-  RunReport report(run.setup().policy);
+  RunReport report(run.setup().policy, spec.tolerance);
   StudyResult result;
-  Json prediction = Json::array();
+  result.run = {{"prediction", Json::array()}};
+  Scorers scorers = scorers_of(spec, study_run, run, exec);
   const std::vector<std::size_t>& views = spec.prediction.views;
   StageSeconds seconds;
   const PlanningResult planned = run.go([&](const ViewRecord& record) {
     for (const auto& [stage, value] : record.seconds) seconds[stage] += value;
     report.add_view(record, run.model().quality().back(), run.model().realised_area(), seconds);
     const bool is_asked = std::find(views.begin(), views.end(), record.index + 1) != views.end();
-    if (!is_asked || stop.stop_requested()) return;
+    if (scorers.empty() || !is_asked || stop.stop_requested()) return;
     const Stopwatch watch;
-    const PredictionQuality quality = predict(run, record, spec.prediction.candidates, exec, stop);
+    add_to(result, spec, predict(run, record, scorers, spec.prediction.candidates, exec, stop));
     seconds["prediction"] += watch.seconds();
-    if (quality.outcomes.empty()) return;
-    prediction.push_back(prediction_json(quality));
-    result.prediction_rows += rows_of(quality);
   });
   if (stop.stop_requested() || planned.reason == StopReason::interrupted) return std::nullopt;
-  result.run = {{"configuration", study_run.configuration}};
+  result.run["configuration"] = study_run.configuration;
   result.run.update(report.json(planned.reason));
-  result.run["prediction"] = prediction;
   result.run["isa"] = isa_name(select_isa());
   return result;
 }

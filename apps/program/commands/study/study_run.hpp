@@ -14,10 +14,10 @@ namespace viewgain::app {
 /// What a run leaves in the study's folder.
 struct StudyResult {
   Json run;                     ///< run.json: configuration, figures, those of each view, seconds
-  std::string prediction_rows;  ///< prediction.csv without its head: a row a candidate
+  std::string prediction_rows;  ///< prediction.csv without its head: a row a score of a candidate
 };
 
-/// The columns of prediction.csv.
+/// The columns of prediction.csv after `policy`, whose score it is.
 inline constexpr const char* kPredictionColumns =
     "view,candidate,score,predicted_area,new_samples,new_area,entropy_removed,"
     "generator,tx,ty,tz,qx,qy,qz,qw";

@@ -127,7 +127,7 @@ VG_API vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info);
 /* The dense array of states; count must be dims[0] * dims[1] * dims[2]. */
 VG_API vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count);
 
-/* The index, in all three places, of no voxel. */
+/* In all three places of an index where there is no voxel. */
 enum { VG_NO_VOXEL = INT32_MIN };
 
 /* The voxels that hold points of the world, 3 numbers each [m]: 3 indices each, on the lattice

@@ -44,20 +44,18 @@ class VIEWGAIN_EXPORT OracleChoice {
                const ExecConfig& exec);
 
   /// Of the candidates, whose order matters for ties only, the 8 that see most samples of the mesh
-  /// that the surface does not cover yet (within 5 mm), unoccluded and at under 72°, are simulated
-  /// without noise, one frame each into a copy of the map; the index of the one after which the
-  /// map's points cover most samples. Ties go to the lower index, in the ranking too. There must be
-  /// a candidate, which is not checked; throws as outcome_of(). Takes some seconds for a thousand
-  /// candidates.
+  /// that the surface does not cover yet, unoccluded and at under 72°, are simulated without noise,
+  /// one frame each into a copy of the map; the index of the one after which the map's points cover
+  /// most samples. Ties go to the lower index, in the ranking too. There must be a candidate, which
+  /// is not checked; throws as outcome_of(). Takes some seconds for a thousand candidates.
   [[nodiscard]] std::size_t next(std::span<const Candidate> candidates) const;
 
   /// How many of the samples that the surface does not cover yet each candidate sees, in their
   /// order. Costs up to two rays a sample and candidate.
   [[nodiscard]] std::vector<std::size_t> uncovered_in_view(
       std::span<const Candidate> candidates) const;
-  /// How many samples the map's points cover (within 5 mm), and what the map would know, after a
-  /// frame from there. Throws as SimulatedSensor::acquire(). Costs a simulated frame and a copy of
-  /// the map.
+  /// How many samples the map's points cover, and what the map would know, after a frame from
+  /// there. Throws as SimulatedSensor::acquire(). Costs a simulated frame and a copy of the map.
   [[nodiscard]] TrueOutcome outcome_of(const Pose& T_world_camera) const;
   /// How many samples the map's points cover as it stands.
   [[nodiscard]] std::size_t covered() const;

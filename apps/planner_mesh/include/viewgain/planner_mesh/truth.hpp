@@ -21,18 +21,21 @@
 
 namespace viewgain {
 
+/// A sample is covered by a point that is within this of it, unless a run says otherwise [m].
+inline constexpr double kCovered = 5e-3;
+
 /// How good one model is, against a ground truth. Lengths in [m].
 struct VIEWGAIN_EXPORT QualityFigures {
-  double coverage = 0;              ///< share of all samples, 5 mm, surface
-  double coverage_visible = 0;      ///< share of the visible ones, 5 mm, surface
+  double coverage = 0;              ///< share of all samples that the surface covers
+  double coverage_visible = 0;      ///< share of the visible ones
   double coverage_2_5mm = 0;        ///< share of all samples, 2.5 mm, surface
-  double covered_area = 0;          ///< of the mesh, where visible samples are covered, 5 mm [m²]
+  double covered_area = 0;          ///< of the mesh, where visible samples are covered [m²]
   ErrorStatistics surface_error{};  ///< of surface.ply
   ErrorStatistics points_error{};   ///< of points.ply
   Consistency consistency{};        ///< of the points
 };
 
-/// From where the visible samples are looked for.
+/// From where the visible samples are looked for, and when they are covered.
 struct VIEWGAIN_EXPORT VisibilityConfig {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< what the poses look at, world [m]
   double distance = 0;                               ///< of the 2,562 poses from the centre [m]
@@ -40,6 +43,7 @@ struct VIEWGAIN_EXPORT VisibilityConfig {
   ReachRegion reach{};                    ///< from where it may be seen
   std::optional<double> support_plane{};  ///< nothing is seen from under it; world z [m]
   std::shared_ptr<const SurfaceScene> surroundings{};  ///< which hide the object; may be null
+  double tolerance = kCovered;  ///< a sample is covered by a point within this of it [m]
 };
 
 /// Marks with 1 those of the mesh's samples that are seen from a pose: in the image and the range
@@ -50,9 +54,6 @@ VIEWGAIN_EXPORT void mark_seen(const SurfaceScene& scene, const SurfaceScene* su
                                const Sensor& sensor, const Pose& T_world_camera,
                                double least_cosine, std::span<const SurfaceSample> samples,
                                std::span<std::uint8_t> seen);
-
-/// A sample is covered by a point that is within this of it [m].
-inline constexpr double kCovered = 5e-3;
 
 /// A ground-truth mesh and which of its samples a camera can see: unoccluded, inside the image and
 /// the range limits, at under 80°, from the start or one of 2,562 Fibonacci poses. A pose that is
@@ -75,12 +76,15 @@ class VIEWGAIN_EXPORT Truth {
 
   /// What a sample stands for [m²].
   [[nodiscard]] double area_per_sample() const noexcept { return area_per_sample_; }
+  /// A sample is covered by a point that is within this of it [m].
+  [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
   /// The samples, 10,000 of them.
   [[nodiscard]] const GroundTruth& ground_truth() const noexcept { return truth_; }
 
  private:
   GroundTruth truth_;
   double area_per_sample_;  // [m²]
+  double tolerance_;        // [m]
   std::vector<std::uint8_t> visible_;
 };
 

@@ -74,21 +74,22 @@ TEST_F(StudySpecTest, ListsAreCrossed) {
   EXPECT_EQ(hashes.size(), spec.runs.size());
   EXPECT_EQ(app::name_of(spec, spec.runs[2]),
             "cube, gain:rear_side_voxel:shipped, seed 3, sr4000, voxel 0.01");
-  EXPECT_EQ(
-      app::reconstruct_words(spec, spec.runs[2]),
-      (Strings{"--sensor=sr4000", "--voxel=0.01", "--seed=3", "--max-views=5", "--policy=gain",
-               "--out=unused", "--gain=rear_side_voxel", "--semantics=shipped", "--stop-gain=0",
-               "--stop-area=0", "--stop-idle=0", "--up=y", "--", (dir / "cube.off").string()}));
+  EXPECT_EQ(app::reconstruct_words(spec, spec.runs[2]),
+            (Strings{"--sensor=sr4000", "--voxel=0.01", "--seed=3", "--max-views=5",
+                     "--tolerance=0.005", "--policy=gain", "--out=unused", "--gain=rear_side_voxel",
+                     "--semantics=shipped", "--stop-gain=0", "--stop-area=0", "--stop-idle=0",
+                     "--up=y", "--", (dir / "cube.off").string()}));
 }
 
 TEST_F(StudySpecTest, HashesFollowWhatCanChangeAResult) {
   const std::string before = spec_of(kSpec).runs.back().hash;  // ball, tof.toml, 0.005, seed 1
   std::size_t cases = 0;
-  for (const auto& [from, to] :
-       std::vector<std::pair<std::string, std::string>>{{"max_views = 5", "max_views = 6"},
-                                                        {"--up=y", "--up=x"},
-                                                        {"candidates = 7", "candidates = 8"},
-                                                        {"[4, 1]", "[1]"}}) {
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"max_views = 5", "max_views = 6"},
+           {"max_views", "tolerance = 0.01\nmax_views"},
+           {"--up=y", "--up=x"},
+           {"candidates = 7", "candidates = 8"},
+           {"[4, 1]", "[1]"}}) {
     EXPECT_NE(spec_of(with(from, to)).runs.back().hash, before) << to;
     ++cases;
   }
@@ -108,7 +109,7 @@ TEST_F(StudySpecTest, HashesFollowWhatCanChangeAResult) {
   write("poses.txt", "2");
   EXPECT_NE(spec_of(with_reach).runs.back().hash, by_poses);
   ++cases;
-  EXPECT_EQ(cases, 7U);
+  EXPECT_EQ(cases, 8U);
   // A value that is none is not looked for on the disk.
   const std::string box = with("--up=y", "--body=" + reach), box_before = spec_of(box).runs[0].hash;
   write("reach.toml", "# changed\n");
@@ -147,7 +148,10 @@ TEST_F(StudySpecTest, WhatIsWrongIsNamedWithItsLine) {
       {"\"frontier\", ",
        "\"gain:unknown_count\", \"gain:unknown_count:paper\", ",
        {"line 2", "unknown_count:paper", "twice"}},
+      {"\"frontier\", ", "\"unknown_count\", ", {"line 2", "is \"gain:unknown_count\""}},
+      {"max_views", "tolerance = 0\nmax_views", {"line 7", "tolerance", "positive"}},
       {"candidates = 7", "candidates = 2", {"line 11", "candidates"}},
+      {"candidates = 7", "maps = \"random\"", {"line 11", "maps", "none of the policies"}},
       {"candidates = 7", "canddates = 7", {"line 11", "canddates", "candidates"}},
       {"max_views", "max_view", {"max_view"}},
   };
@@ -160,7 +164,7 @@ TEST_F(StudySpecTest, WhatIsWrongIsNamedWithItsLine) {
 }
 
 // A run of these coverages; the rest of its figures follow from the first.
-ordered_json run_json(const std::vector<double>& coverage) {
+ordered_json run_json(const std::vector<double>& coverage, const char* policy = "gain:combined") {
   ordered_json json{{"stop_reason", "max_views"}, {"views", coverage.size()}};
   json["per_view"] = ordered_json::array();
   for (const double c : coverage) json["per_view"].push_back({{"coverage_visible", c}});
@@ -173,7 +177,8 @@ ordered_json run_json(const std::vector<double>& coverage) {
   json["seconds"] = {{"total", 4.0}};
   json["prediction"] = ordered_json::array();
   for (const int view : {1, 4}) {
-    json["prediction"].push_back({{"view", view},
+    json["prediction"].push_back({{"policy", policy},
+                                  {"view", view},
                                   {"candidates", 7},
                                   {"spearman_area", 0.1 * view},
                                   {"spearman_entropy", nullptr},
@@ -185,7 +190,10 @@ ordered_json run_json(const std::vector<double>& coverage) {
 TEST_F(StudySpecTest, FiguresOfARun) {
   const app::StudySpec spec = spec_of(kSpec);
   // Falls under a goal again: the first time counts. Ends early: keeps its last.
-  const app::ResultRow row = app::row_of(spec, spec.runs[0], run_json({0.5, 0.85, 0.79, 0.9}));
+  const ordered_json run = run_json({0.5, 0.85, 0.79, 0.9});
+  const app::ResultRow row = app::row_of(spec, spec.runs[0], run, run);
+  EXPECT_EQ(app::row_of(spec, spec.runs[0], run, run_json({0.5}, "frontier")).prediction.size(),
+            0U);
   EXPECT_EQ(row.coverage_by_view, (std::vector<double>{0.5, 0.85, 0.79, 0.9, 0.9}));
   EXPECT_EQ(row.views_to[0], 2U);
   EXPECT_EQ(row.views_to[1], 4U);
@@ -209,22 +217,45 @@ TEST_F(StudySpecTest, FiguresOfARun) {
 }
 
 TEST_F(StudySpecTest, TheTableIsThatByHand) {
-  const app::StudySpec spec = spec_of(
+  const std::string text =
       "objects = [\"cube.off\"]\npolicies = [\"gain:combined\", \"frontier\"]\nagainst = "
-      "\"frontier\"\nseeds = [1, 2]\nsensors = [\"sr4000\"]\nvoxels = [0.01]\nmax_views = 2\n");
+      "\"frontier\"\nseeds = [1, 2]\nsensors = [\"sr4000\"]\nvoxels = [0.01]\nmax_views = 2\n";
+  const auto table_of = [&](const std::string& spec_text,
+                            const std::vector<std::vector<double>>& coverages) {
+    const app::StudySpec spec = spec_of(spec_text);
+    std::vector<app::ResultRow> rows;
+    for (std::size_t i = 0; i < coverages.size(); ++i) {
+      const ordered_json run = run_json(coverages[i]);
+      rows.push_back(app::row_of(spec, spec.runs[i], run, run));
+    }
+    return app::results_markdown(spec, rows);
+  };
   // Seed 1: combined 2 and 2 views to 80 and 90 %, frontier never; seed 2 the same for both.
-  const std::vector<app::ResultRow> rows{app::row_of(spec, spec.runs[0], run_json({0.6, 0.9})),
-                                         app::row_of(spec, spec.runs[1], run_json({0.4, 0.7})),
-                                         app::row_of(spec, spec.runs[2], run_json({0.8, 0.8})),
-                                         app::row_of(spec, spec.runs[3], run_json({0.8, 0.8}))};
-  const std::string table = app::results_markdown(spec, rows);
+  const std::string table = table_of(text, {{0.6, 0.9}, {0.4, 0.7}, {0.8, 0.8}, {0.8, 0.8}});
   for (const char* line :
-       {"4 runs: cube; 2 seeds; 2 views.",
-        "| gain:combined | 1.50 | 2.50 | 3.00 | 1 of 2 | 0.775 | 85.0 % | 0.70 | - | 1.5 | 4.0 |",
-        "| frontier | 2.00 | 3.00 | 3.00 | 2 of 2 | 0.675 | 75.0 % | 0.60 | - | 1.5 | 4.0 |",
-        "| gain:combined | -0.50 ± 0.50 (1-1-0) | -0.50 ± 0.50 (1-1-0) | 0.00 ± 0.00 (0-2-0) | "
-        "0.100 ± 0.100 (1-1-0) | 0.10 ± 0.10 (0-1-1) |"}) {
+       {"4 runs: cube; 2 seeds; 2 views.", "(within 5 mm)", "the one object",
+        "| gain:combined | 1.50 / 1.5 / 0 | ≥ 2.50 / never / 1 | ≥ 3.00 / never / 2 | 0.775 | "
+        "85.0 % | 0.70 | - | 1.5 | 4.0 |",
+        "| frontier | ≥ 2.00 / never / 1 | ≥ 3.00 / never / 2 | ≥ 3.00 / never / 2 | 0.675 | "
+        "75.0 % | 0.60 | - | 1.5 | 4.0 |",
+        "| gain:combined | -0.50 ± 0.50 (1-1-0; 1.000, 1.000) | -0.50 ± 0.50 (1-1-0; 1.000, 1.000) "
+        "| 0.00 ± 0.00 (0-2-0; 1.000, 1.000) | 0.100 ± 0.100 (1-1-0; 1.000, 1.000) | 0.10 ± 0.10 "
+        "(0-1-1; 1.000, 1.000) |"}) {
     EXPECT_NE(table.find(line), std::string::npos) << line << "\n" << table;
+  }
+  // Differences of 0.1 on one object, of 0.3 on the other: as of two, not of four runs.
+  std::string two = text;
+  two.replace(two.find("\"cube.off\""), 10, "\"cube.off\", \"more/ball.off\"");
+  const std::string clustered = table_of(two, {{0.6, 0.6},
+                                               {0.5, 0.5},
+                                               {0.6, 0.6},
+                                               {0.5, 0.5},  // cube
+                                               {0.8, 0.8},
+                                               {0.5, 0.5},
+                                               {0.8, 0.8},
+                                               {0.5, 0.5}});  // ball
+  for (const char* line : {"errors by object", "0.200 ± 0.100 (4-0-0; 0.125, 0.125)"}) {
+    EXPECT_NE(clustered.find(line), std::string::npos) << line << "\n" << clustered;
   }
 }
 

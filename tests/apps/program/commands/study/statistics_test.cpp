@@ -80,5 +80,83 @@ TEST(Statistics, MeanAndItsError) {
   EXPECT_TRUE(std::isnan(app::mean_of({}).mean));
 }
 
+TEST(Statistics, ErrorsByClusterInClosedForm) {
+  using Clusters = std::vector<std::size_t>;
+  // Of clusters of one size: the error of the mean of their means, 2, 5 and 8.
+  const std::vector<double> values{1, 3, 5, 5, 9, 7};
+  EXPECT_DOUBLE_EQ(app::mean_of(values, Clusters{4, 4, 0, 0, 7, 7}).error, std::sqrt(18.0 / 2 / 3));
+  // Of two sizes: the sums of deviations are -4 and 4. What is not finite does not count.
+  EXPECT_DOUBLE_EQ(app::mean_of(std::vector<double>{1, 3, kNaN, 8}, Clusters{0, 0, 1, 1}).error,
+                   std::sqrt(2.0 / 1 * (16 + 16)) / 3);
+  // Of two clusters one alone says nothing of others.
+  EXPECT_TRUE(std::isnan(app::mean_of(std::vector<double>{1, 3, kNaN}, Clusters{0, 0, 1}).error));
+  // Each by itself, or all together: as if they were independent.
+  for (const Clusters& clusters : {Clusters{0, 1, 2, 3, 4, 5}, Clusters(6, 2)}) {
+    EXPECT_DOUBLE_EQ(app::mean_of(values, clusters).error, app::mean_of(values).error);
+  }
+}
+
+TEST(Statistics, MediansAreInTheMiddle) {
+  EXPECT_EQ(app::median_of({3, HUGE_VAL, 1}), 3);
+  EXPECT_EQ(app::median_of({4, 1, 3, HUGE_VAL}), 3.5);
+  EXPECT_EQ(app::median_of({4, HUGE_VAL}), HUGE_VAL);
+  EXPECT_TRUE(std::isnan(app::median_of({})));
+}
+
+// By definition: of all ways to give the differences signs, the share that is as far from the
+// middle.
+std::pair<double, double> p_by_counting(std::vector<double> differences) {
+  std::erase_if(differences, [](double d) { return d == 0; });
+  const std::size_t n = differences.size();
+  std::vector<double> sizes;
+  for (const double d : differences) sizes.push_back(std::abs(d));
+  const auto off = [&](auto&& is_positive) {
+    double signs = -0.5 * static_cast<double>(n);
+    double sum = -0.25 * static_cast<double>(n * (n + 1));
+    for (std::size_t i = 0; i < n; ++i) {
+      if (is_positive(i)) signs += 1, sum += rank_by_counting(sizes, i);
+    }
+    return std::pair(std::abs(signs), std::abs(sum));
+  };
+  const auto found = off([&](std::size_t i) { return differences[i] > 0; });
+  double signs = 0, sums = 0;
+  for (std::size_t bits = 0; bits < std::size_t{1} << n; ++bits) {
+    const auto [by_sign, by_sum] = off([&](std::size_t i) { return (bits >> i & 1U) != 0; });
+    signs += by_sign >= found.first ? 1 : 0;
+    sums += by_sum >= found.second ? 1 : 0;
+  }
+  return {std::ldexp(signs, -static_cast<int>(n)), std::ldexp(sums, -static_cast<int>(n))};
+}
+
+TEST(Statistics, PairedTestsAreThoseByCounting) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> few(-3, 5);  // with ties and zeros
+  std::normal_distribution<double> any(0.5);
+  for (int n = 0; n < 12; ++n) {
+    for (const bool has_ties : {false, true}) {
+      std::vector<double> differences;
+      for (int i = 0; i < n; ++i) differences.push_back(has_ties ? few(random) : any(random));
+      const auto [signs, sums] = p_by_counting(differences);
+      EXPECT_NEAR(app::sign_test(differences), signs, 1e-12) << n << has_ties;
+      EXPECT_NEAR(app::signed_rank_test(differences), sums, 1e-12) << n << has_ties;
+    }
+  }
+}
+
+TEST(Statistics, ManyPairsFollowTheNormalDistribution) {
+  // 200 sizes, without ties and each twice; the variance is n (n + 1) (2 n + 1) / 24, less
+  // (t³ - t) / 48 for t equal ones. The largest 60 are positive.
+  const double n = 200;
+  for (const int twice : {1, 2}) {
+    std::vector<double> differences;
+    for (int i = 0; i < 200; ++i) differences.push_back((i < 140 ? -1 : 1) * (1 + i / twice));
+    const double sum = (n * (n + 1) - 140 * 141) / 2, ties = twice == 2 ? 100 * 6.0 / 48 : 0;
+    const double z = (sum - n * (n + 1) / 4) / std::sqrt(n * (n + 1) * (2 * n + 1) / 24 - ties);
+    EXPECT_NEAR(app::signed_rank_test(differences), std::erfc(std::abs(z) / std::sqrt(2)), 1e-12);
+    EXPECT_NEAR(app::sign_test(differences), 1.507061557352612e-8,
+                1e-20);  // Σ C(200, k ≤ 60) / 2¹⁹⁹
+  }
+}
+
 }  // namespace
 }  // namespace viewgain

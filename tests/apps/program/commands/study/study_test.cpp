@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -34,6 +35,7 @@ sensors = ["tof.toml"]
 voxels = [0.0125]
 sizes = [0.15]
 max_views = 3
+tolerance = 0.0125
 [prediction]
 views = [1, 3]
 candidates = 8
@@ -42,6 +44,26 @@ candidates = 8
 
   static Strings study(const std::string& out, const Strings& more = {}) {
     return test::joined({"study", "spec.toml", "--out", out, "--quiet"}, more);
+  }
+
+  // The cells of predictions.csv by policy, seed and view: "frontier1/3".
+  [[nodiscard]] std::map<std::string, std::vector<Strings>> predictions(
+      const std::string& out) const {
+    std::map<std::string, std::vector<Strings>> found;
+    std::istringstream lines(read(out + "/predictions.csv"));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line,
+              "object,policy,gain,semantics,seed,sensor,voxel,size,view,candidate,score,"
+              "predicted_area,new_samples,new_area,entropy_removed,generator,tx,ty,tz,qx,qy,qz,qw");
+    while (std::getline(lines, line)) {
+      std::istringstream in(line);
+      Strings cells;
+      for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+      EXPECT_EQ(cells.size(), 23U);
+      found[cells.at(1) + cells.at(4) + "/" + cells.at(8)].push_back(cells);
+    }
+    return found;
   }
 
   // The lines without their last column, seconds.
@@ -81,9 +103,9 @@ TEST_F(Study, LeavesWhatItSays) {
   const json alone = json::parse(
       run_well({"reconstruct", "cube.off", "--sensor",    "tof.toml", "--voxel",     "0.0125",
                 "--size",      "0.15",     "--max-views", "3",        "--seed",      "2",
-                "--policy",    "frontier", "--stop-gain", "0",        "--stop-area", "0",
-                "--stop-idle", "0",        "--pictures",  "off",      "--quiet",     "--json",
-                "--out",       "alone"}));
+                "--tolerance", "0.0125",   "--policy",    "frontier", "--stop-gain", "0",
+                "--stop-area", "0",        "--stop-idle", "0",        "--pictures",  "off",
+                "--quiet",     "--json",   "--out",       "alone"}));
   EXPECT_EQ(printed[4]["policy"], "frontier");
   EXPECT_EQ(printed[4]["seed"], 2);
   for (const char* key : {"coverage_visible", "rms_error", "consistency", "travelled"}) {
@@ -95,24 +117,16 @@ TEST_F(Study, PredictionIsThatOfItsRows) {
   const json results = json::parse(run_well(study("out", {"--json", "--plots", "off"})));
   // By policy, seed and view: score, new samples, entropy.
   std::map<std::string, std::vector<std::vector<double>>> columns;
-  std::istringstream lines(read("out/predictions.csv"));
-  std::string line;
-  std::getline(lines, line);
-  EXPECT_EQ(line,
-            "object,policy,gain,semantics,seed,sensor,voxel,size,view,candidate,score,"
-            "predicted_area,new_samples,new_area,entropy_removed,generator,tx,ty,tz,qx,qy,qz,qw");
-  while (std::getline(lines, line)) {
-    std::istringstream in(line);
-    Strings cells;
-    for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
-    ASSERT_EQ(cells.size(), 23U);
-    auto& column = columns[cells[1] + cells[4] + "/" + cells[8]];
+  for (const auto& [key, rows] : predictions("out")) {
+    auto& column = columns[key];
     column.resize(3);
-    column[0].push_back(std::stod(cells[10]));
-    column[1].push_back(std::stod(cells[12]));
-    column[2].push_back(std::stod(cells[14]));
-    EXPECT_EQ(cells[11] == "nan", cells[1] == "frontier");
-    EXPECT_GE(std::stod(cells[13]) * std::stod(cells[12]), 0);
+    for (const Strings& cells : rows) {
+      column[0].push_back(std::stod(cells[10]));
+      column[1].push_back(std::stod(cells[12]));
+      column[2].push_back(std::stod(cells[14]));
+      EXPECT_EQ(cells[11] == "nan", cells[1] == "frontier");
+      EXPECT_GE(std::stod(cells[13]) * std::stod(cells[12]), 0);
+    }
   }
   std::size_t cases = 0;
   for (const json& run : results) {
@@ -144,6 +158,45 @@ TEST_F(Study, PredictionIsThatOfItsRows) {
   EXPECT_EQ(cases, 8U);
   // Early on the expected new surface says where there is some.
   EXPECT_GT(results[0]["prediction"][0]["spearman_area"].get<double>(), 0.4);
+}
+
+TEST_F(Study, ScoresAreHeldAgainstTheMapsOfOnePolicy) {
+  run_well(study("own", {"--plots", "off"}));
+  write("spec.toml", read("spec.toml") + "maps = \"frontier\"\n");
+  const json results = json::parse(run_well(study("out", {"--json", "--plots", "off"})));
+  EXPECT_NE(read("out/table.md").find("on the maps of frontier"), std::string::npos);
+  const auto of_own = predictions("own"), same = predictions("out");
+  EXPECT_EQ(same.size(), 8U);
+  for (const char* seed : {"1", "2"}) {
+    const auto at = [&](const auto& rows, const char* policy, const char* view) {
+      return rows.at(std::string(policy) + seed + "/" + view);
+    };
+    // All runs begin alike, and those of frontier are what they were.
+    EXPECT_EQ(at(same, "gain", "1"), at(of_own, "gain", "1"));
+    EXPECT_EQ(at(same, "frontier", "1"), at(of_own, "frontier", "1"));
+    EXPECT_EQ(at(same, "frontier", "3"), at(of_own, "frontier", "3"));
+    // Other scores of the same candidates.
+    const auto gain = at(same, "gain", "3"), frontier = at(same, "frontier", "3");
+    ASSERT_EQ(gain.size(), frontier.size());
+    for (std::size_t i = 0; i < gain.size(); ++i) {
+      EXPECT_NE(gain[i][10], frontier[i][10]);
+      EXPECT_TRUE(std::equal(gain[i].begin() + 12, gain[i].end(), frontier[i].begin() + 12));
+    }
+  }
+  for (const json& run : results) {
+    EXPECT_EQ(run["prediction"].size(), run["policy"] == "random" ? 0U : 2U);
+  }
+}
+
+TEST_F(Study, VoxelsLargerThanTheToleranceAreSaid) {
+  std::string spec = read("spec.toml");
+  spec.replace(spec.find("tolerance = 0.0125"), 18, "");
+  write("spec.toml", spec.substr(0, spec.find("[prediction]")));
+  const test::ProgramResult result = run(study("out", {"--plots", "off"}));
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.err.find("warning: coverage is counted to 5 mm, finer than voxels of 12.5 mm"),
+            std::string::npos)
+      << result.err;
 }
 
 TEST_F(Study, KilledItGoesOn) {
@@ -237,7 +290,8 @@ TEST_F(Study, AFolderOfOtherThingsIsRefused) {
   // The spec may lie there, and stays as it is.
   write("home/my.toml",
         "objects = [\"../cube.off\"]\npolicies = [\"random\"]\nseeds = [1]\n"
-        "sensors = [\"../tof.toml\"]\nvoxels = [0.0125]\nsizes = [0.15]\nmax_views = 1\n");
+        "sensors = [\"../tof.toml\"]\nvoxels = [0.0125]\nsizes = [0.15]\nmax_views = 1\n"
+        "tolerance = 0.02\n");
   const std::string spec = read("home/my.toml");
   // What draws the plots can be stopped: it does not inherit the signals that the program blocks.
   write("bin/python3",

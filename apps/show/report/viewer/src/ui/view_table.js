@@ -23,7 +23,7 @@ const columns = [
   { name: "View", title: "Number of the view", number: true, value: (row) => row.id, cell: (row) => String(row.id) },
   { name: "Class", title: "Class of the boundary it was chosen for", value: ({ f }) => f.class ?? f.generator,
     cell: ({ f }) => (f.class ? classCell(f.class) : words(f.generator ?? none)) },
-  number("Cover %", "Coverage of the visible surface at 5 mm [%]", scaled("coverage_visible", 100), (v) => fixed(v, 1)),
+  number("Cover %", "Coverage of the visible surface [%]", scaled("coverage_visible", 100), (v) => fixed(v, 1)),
   number("RMS mm", "RMS error of the surface [mm]", scaled("rms_error", 1e3), (v) => fixed(v, 2)),
   number("New", "Area of new surface that the view showed [cm²]", scaled("realised_area", 1e4), short),
   number("Pred.", "Area of new surface that was predicted [cm²]", scaled("predicted_area", 1e4), short),
