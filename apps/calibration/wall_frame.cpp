@@ -3,13 +3,10 @@
 #include "calibration/wall_frame.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdio>
 #include <utility>
 
-#include "calibration/wall_statistics.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/noise.hpp"
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,6 +14,20 @@
 #include "viewgain/core/sensor.hpp"
 
 namespace viewgain::detail {
+
+/// A Gaussian's standard deviation by its median amount.
+inline constexpr double kSigmaByMedian = 1.4826;
+
+/// The standard deviation of the median of n Gaussian values, times √n, by theirs.
+inline constexpr double kMedianSigma = 1.2533;
+
+/// The value in the middle, of an even count the mean of both; there is at least one.
+[[nodiscard]] inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
 
 /// A plane that does not hold the camera's centre, camera frame: inverse_depth · p = 1 [1/m]. The
 /// ray (x, y, 1) meets it at the depth 1 / (inverse_depth · ray), so that z⁻¹ is linear in x and y.

@@ -36,8 +36,7 @@
 #include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/support/columns/mapped_poses.hpp"
 #include "viewgain/support/columns/npy_header.hpp"
-#include "viewgain/support/columns/part_reader.hpp"
-#include "viewgain/support/columns/part_writer.hpp"
+#include "viewgain/support/columns/parts.hpp"
 
 namespace viewgain {
 namespace {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "viewgain/core/generators.hpp"
+
 namespace viewgain::c_api {
 namespace {
 
@@ -52,7 +54,7 @@ std::vector<Pose> poses_of(const double* matrices, std::size_t count) {
 
 void write_outcomes(const GainEvaluator& evaluator, const double* T_world_camera,
                     vg_ray_outcomes* outcomes) {
-  require(T_world_camera, "T_world_camera");
+  require("T_world_camera", T_world_camera);
   require_struct(outcomes, "vg_ray_outcomes");
   const RayOutcomes of = evaluator.outcomes(rigid_pose_of(T_world_camera));
   if (of.rays == 0) reject("the pose is not a rigid transform of finite numbers");
@@ -77,3 +79,29 @@ void write_poses(std::span<const Pose> poses, double* matrices) {
 }
 
 }  // namespace viewgain::c_api
+
+using namespace viewgain;
+using namespace viewgain::c_api;
+
+vg_status vg_sphere_poses(size_t count, double radius, const double center[3], double* poses) {
+  return guarded([&] {
+    require("center poses", center, poses);
+    write_poses(sphere_poses(count, radius, vector_of(center)), poses);
+  });
+}
+
+vg_status vg_dome_poses(size_t count, double radius, const double center[3], double* poses) {
+  return guarded([&] {
+    require("center poses", center, poses);
+    write_poses(dome_poses(count, radius, vector_of(center)), poses);
+  });
+}
+
+vg_status vg_look_at(const double eye[3], const double target[3], const double up[3],
+                     double T_world_camera[16]) {
+  return guarded([&] {
+    require("eye target T_world_camera", eye, target, T_world_camera);
+    const Eigen::Vector3d upwards = up != nullptr ? vector_of(up) : Eigen::Vector3d::UnitZ();
+    write_pose(look_at(vector_of(eye), vector_of(target), upwards), T_world_camera);
+  });
+}

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "convert.hpp"
-#include "handles.hpp"
 #include "viewgain/raycast/depth_image.hpp"
 #include "viewgain/support/text.hpp"
 #include "watcher.hpp"
@@ -73,9 +71,9 @@ vg_view_gain written(const ViewGain& view) {
 
 void require_choice(const vg_evaluator* evaluator, std::size_t k, const std::size_t* indices,
                     const std::size_t* found) {
-  require(evaluator, "evaluator");
+  require("evaluator", evaluator);
   require_array(indices, k, "indices");
-  require(found, "found");
+  require("found", found);
 }
 
 /// Hands over chosen views; `gains` may be null.
@@ -108,7 +106,7 @@ void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_size) {
 vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
                               const vg_evaluator_config* config, vg_evaluator** evaluator) {
   return make_handle(evaluator, "evaluator", [&] {
-    require(scene, "scene");
+    require("scene", scene);
     const vg_evaluator_config chosen = read_config(config, "vg_evaluator_config");
     return GainEvaluator(scene->scene, sensor_of(sensor), settings_of(chosen),
                          exec_of(chosen.num_threads, chosen.tracer));
@@ -118,8 +116,7 @@ vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
 vg_status vg_evaluator_with_scene(const vg_evaluator* evaluator, const vg_scene* scene,
                                   vg_evaluator** following) {
   return make_handle(following, "following", [&] {
-    require(evaluator, "evaluator");
-    require(scene, "scene");
+    require("evaluator scene", evaluator, scene);
     return evaluator->evaluator.with_scene(scene->scene);
   });
 }
@@ -132,7 +129,7 @@ void vg_evaluator_info_init(vg_evaluator_info* info, size_t struct_size) {
 
 vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluator_info* info) {
   return guarded([&] {
-    require(evaluator, "evaluator");
+    require("evaluator", evaluator);
     require_struct(info, "vg_evaluator_info");
     const GainEvaluator& own = evaluator->evaluator;
     const PinholeCamera& camera = own.camera();
@@ -149,7 +146,7 @@ vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluator_info
 vg_status vg_evaluate(const vg_evaluator* evaluator, const double* poses, size_t count,
                       double* gains, const vg_watch* watch) {
   return guarded([&] {
-    require(evaluator, "evaluator");
+    require("evaluator", evaluator);
     require_array(gains, count, "gains");
     Watcher watcher(watch, count);
     const std::vector<Pose> candidates = poses_of(poses, count);
@@ -164,7 +161,7 @@ vg_status vg_evaluate(const vg_evaluator* evaluator, const double* poses, size_t
 vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* poses, size_t count,
                             vg_view_gain* views, size_t view_size, const vg_watch* watch) {
   return guarded([&] {
-    require(evaluator, "evaluator");
+    require("evaluator", evaluator);
     require_array(views, count, "views");
     require_size<vg_view_gain>(view_size, "vg_view_gain (view_size)");
     Watcher watcher(watch, count);
@@ -233,9 +230,7 @@ vg_status vg_best_set(const vg_evaluator* evaluator, const double* poses, size_t
 vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_world_camera[16],
                          float* depth, uint8_t* labels, size_t count) {
   return guarded([&] {
-    require(evaluator, "evaluator");
-    require(T_world_camera, "T_world_camera");
-    require(depth, "depth");
+    require("evaluator T_world_camera depth", evaluator, T_world_camera, depth);
     const std::size_t pixels = evaluator->evaluator.rays_per_pose();
     if (count != pixels) {
       reject("room for " + std::to_string(count) + " pixels, but the image has " +
@@ -256,7 +251,7 @@ void vg_ray_outcomes_init(vg_ray_outcomes* outcomes, size_t struct_size) {
 vg_status vg_outcomes(const vg_evaluator* evaluator, const double T_world_camera[16],
                       vg_ray_outcomes* outcomes) {
   return guarded([&] {
-    require(evaluator, "evaluator");
+    require("evaluator", evaluator);
     write_outcomes(evaluator->evaluator, T_world_camera, outcomes);
   });
 }
@@ -265,10 +260,9 @@ vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_c
                            vg_contribution* contributions, size_t contribution_size,
                            size_t capacity, size_t* found) {
   return guarded([&] {
-    require(evaluator, "evaluator");
-    require(T_world_camera, "T_world_camera");
+    require("evaluator T_world_camera", evaluator, T_world_camera);
     require_array(contributions, capacity, "contributions");
-    require(found, "found");
+    require("found", found);
     require_size<vg_contribution>(contribution_size, "vg_contribution (contribution_size)");
     const Pose pose = rigid_pose_of(T_world_camera);
     const std::vector<VoxelContribution> own = evaluator->evaluator.contributions(pose);

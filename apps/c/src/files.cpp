@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "convert.hpp"
-#include "handles.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats.h"
 #include "viewgain/formats/octomap_io.hpp"
@@ -16,7 +15,7 @@ using namespace viewgain::c_api;
 
 vg_status vg_sensor_load(const char* preset_or_file, vg_sensor* sensor) {
   return guarded([&] {
-    require(preset_or_file, "preset_or_file");
+    require("preset_or_file", preset_or_file);
     require_struct(sensor, "vg_sensor");
     write_sensor(load_sensor(preset_or_file), sensor);
   });
@@ -24,7 +23,7 @@ vg_status vg_sensor_load(const char* preset_or_file, vg_sensor* sensor) {
 
 vg_status vg_sensor_save(const vg_sensor* sensor, const char* path) {
   return guarded([&] {
-    require(path, "path");
+    require("path", path);
     write_sensor_toml(path, sensor_of(sensor));
   });
 }
@@ -32,7 +31,7 @@ vg_status vg_sensor_save(const vg_sensor* sensor, const char* path) {
 vg_status vg_range_calibration_load(const char* preset_or_file,
                                     vg_range_calibration** calibration) {
   return make_handle(calibration, "calibration", [&] {
-    require(preset_or_file, "preset_or_file");
+    require("preset_or_file", preset_or_file);
     const Sensor sensor = load_sensor(preset_or_file);
     return RangeCorrector(sensor.camera, sensor.range_calibration);
   });
@@ -41,8 +40,7 @@ vg_status vg_range_calibration_load(const char* preset_or_file,
 vg_status vg_poses_load(const char* path, double* T_world_camera, double* timestamps,
                         size_t capacity, size_t* found) {
   return guarded([&] {
-    require(path, "path");
-    require(found, "found");
+    require("path found", path, found);
     const PoseList list = read_tum(path);
     const std::size_t count = std::min(capacity, list.poses.size());
     if (T_world_camera != nullptr) {
@@ -56,7 +54,7 @@ vg_status vg_poses_load(const char* path, double* T_world_camera, double* timest
 vg_status vg_poses_save(const char* path, const double* T_world_camera, const double* timestamps,
                         size_t count) {
   return guarded([&] {
-    require(path, "path");
+    require("path", path);
     if (count == 0) reject("count is 0: a file of poses has at least one");
     const std::vector<Pose> poses = poses_of(T_world_camera, count);
     if (timestamps == nullptr) {
@@ -69,7 +67,7 @@ vg_status vg_poses_save(const char* path, const double* T_world_camera, const do
 
 vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** grid) {
   return make_handle(grid, "grid", [&] {
-    require(path, "path");
+    require("path", path);
     OctomapConfig config;
     if (prior_sigma != 0) config.prior_sigma = prior_sigma;
     return load_octomap(path, config);
@@ -78,8 +76,7 @@ vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** g
 
 vg_status vg_grid_save_octomap(const vg_grid* grid, const char* path) {
   return guarded([&] {
-    require(grid, "grid");
-    require(path, "path");
+    require("grid path", grid, path);
     save_octomap(grid->grid, path);
   });
 }

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "convert.hpp"
-#include "handles.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 using namespace viewgain;
@@ -45,9 +44,7 @@ vg_status vg_grid_create(const vg_grid_config* config, vg_grid** grid) {
 vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3], const double origin[3],
                               double voxel_size, double prior_sigma, vg_grid** grid) {
   return make_handle(grid, "grid", [&] {
-    require(labels, "labels");
-    require(dims, "dims");
-    require(origin, "origin");
+    require("labels dims origin", labels, dims, origin);
     GridConfig config{.voxel_size = voxel_size,
                       .workspace = {},
                       .T_world_grid = {Eigen::Matrix3d::Identity(), vector_of(origin)},
@@ -69,22 +66,21 @@ vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3], cons
 
 vg_status vg_grid_load(const char* path, vg_grid** grid) {
   return make_handle(grid, "grid", [&] {
-    require(path, "path");
+    require("path", path);
     return load_vdb(path);
   });
 }
 
 vg_status vg_grid_save(const vg_grid* grid, const char* path) {
   return guarded([&] {
-    require(grid, "grid");
-    require(path, "path");
+    require("grid path", grid, path);
     save_vdb(grid->grid, path);
   });
 }
 
 vg_status vg_grid_clone(const vg_grid* grid, vg_grid** copy) {
   return make_handle(copy, "copy", [&] {
-    require(grid, "grid");
+    require("grid", grid);
     return grid->grid.clone();
   });
 }
@@ -95,7 +91,7 @@ void vg_grid_info_init(vg_grid_info* info, size_t struct_size) { initialise(info
 
 vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info) {
   return guarded([&] {
-    require(grid, "grid");
+    require("grid", grid);
     require_struct(info, "vg_grid_info");
     const BeliefGrid& map = grid->grid;
     const GridStatistics statistics = map.statistics();
@@ -124,8 +120,7 @@ vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info) {
 
 vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count) {
   return guarded([&] {
-    require(grid, "grid");
-    require(states, "states");
+    require("grid states", grid, states);
     if (count != grid->grid.voxel_count()) {
       reject("room for " + std::to_string(count) + " states, but the grid has " +
              std::to_string(grid->grid.voxel_count()) + " voxels");
@@ -137,7 +132,7 @@ vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count) {
 vg_status vg_grid_index_of(const vg_grid* grid, const double* points, size_t count,
                            int32_t* voxels) {
   return guarded([&] {
-    require(grid, "grid");
+    require("grid", grid);
     require_array(points, count, "points");
     require_array(voxels, count, "voxels");
     for (std::size_t i = 0; i < 3 * count; i += 3) {
@@ -151,7 +146,7 @@ vg_status vg_grid_index_of(const vg_grid* grid, const double* points, size_t cou
 vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size_t count,
                          double* centers) {
   return guarded([&] {
-    require(grid, "grid");
+    require("grid", grid);
     require_array(voxels, count, "voxels");
     require_array(centers, count, "centers");
     for (std::size_t i = 0; i < 3 * count; i += 3) {
@@ -163,7 +158,7 @@ vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size_t coun
 
 vg_status vg_grid_set(vg_grid* grid, const int32_t* voxels, const float* log_odds, size_t count) {
   return guarded([&] {
-    require(grid, "grid");
+    require("grid", grid);
     require_array(voxels, count, "voxels");
     require_array(log_odds, count, "log_odds");
     std::vector<VoxelValue> changes(count);
@@ -178,9 +173,7 @@ vg_status vg_grid_set(vg_grid* grid, const int32_t* voxels, const float* log_odd
 vg_status vg_grid_forget(vg_grid* grid, const double min[3], const double max[3],
                          uint64_t* forgotten) {
   return guarded([&] {
-    require(grid, "grid");
-    require(min, "min");
-    require(max, "max");
+    require("grid min max", grid, min, max);
     const std::uint64_t count =
         grid->grid.forget({{min[0], min[1], min[2]}, {max[0], max[1], max[2]}});
     if (forgotten != nullptr) *forgotten = count;
@@ -190,9 +183,9 @@ vg_status vg_grid_forget(vg_grid* grid, const double min[3], const double max[3]
 vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds, size_t capacity,
                            size_t* found) {
   return guarded([&] {
-    require(grid, "grid");
+    require("grid", grid);
     require_array(voxels, capacity, "voxels");
-    require(found, "found");
+    require("found", found);
     std::size_t count = 0;
     grid->grid.for_each_occupied([&](const OccupiedVoxel& one) {
       const std::size_t i = count++;
@@ -206,8 +199,7 @@ vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds
 
 vg_status vg_grid_hash(const vg_grid* grid, char hash[17]) {
   return guarded([&] {
-    require(grid, "grid");
-    require(hash, "hash");
+    require("grid hash", grid, hash);
     const std::string digits = grid->grid.content_hash();
     std::copy_n(digits.c_str(), 17, hash);
   });
@@ -246,10 +238,7 @@ vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* de
                        const float* amplitude, const double T_world_camera[16],
                        const double pose_sigma[2], vg_integration_report* report) {
   return guarded([&] {
-    require(integrator, "integrator");
-    require(grid, "grid");
-    require(depth, "depth");
-    require(T_world_camera, "T_world_camera");
+    require("integrator grid depth T_world_camera", integrator, grid, depth, T_world_camera);
     if (report != nullptr) require_struct(report, "vg_integration_report");
     const DepthFrame frame = frame_of(integrator->camera, depth, amplitude);
     const IntegrationReport counts = integrator->integrator.integrate(

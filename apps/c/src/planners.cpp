@@ -9,11 +9,10 @@
 #include <string>
 #include <string_view>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "convert.hpp"
-#include "handles.hpp"
-#include "surroundings.hpp"
 #include "viewgain/planner.h"
 #include "viewgain/planner/view_planner.hpp"
 #include "watcher.hpp"
@@ -44,7 +43,7 @@ class LivePlanners {
     return live_.erase(planner) > 0;
   }
   void require_live(const vg_planner* planner) {
-    require(planner, "planner");
+    require("planner", planner);
     const std::lock_guard lock(mutex_);
     if (!live_.contains(planner)) reject("planner was released, or is no planner");
   }
@@ -154,7 +153,7 @@ struct RankCall {
   void check() const {
     require_array(costs, cost_count, "costs");
     require_array(views, k, "views");
-    require(found, "found");
+    require("found", found);
     require_size<vg_ranked_view>(view_size, "vg_ranked_view (view_size)");
     *found = 0;
   }
@@ -225,8 +224,7 @@ vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* a
                          vg_planner_view* added) {
   return guarded([&] {
     ViewPlanner& own = live(planner);
-    require(depth, "depth");
-    require(T_world_camera, "T_world_camera");
+    require("depth T_world_camera", depth, T_world_camera);
     if (added != nullptr) require_struct(added, "vg_planner_view");
     const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
     const AddedView view = own.add(frame, pose_of(T_world_camera), pose_sigma_of(pose_sigma));
@@ -273,9 +271,7 @@ vg_status vg_planner_register(vg_planner* planner, const float* depth, const flo
                               double sigma_rotation, vg_registration* found) {
   return guarded([&] {
     const ViewPlanner& own = live(planner);
-    require(depth, "depth");
-    require(T_reported, "T_reported");
-    require(found, "found");
+    require("depth T_reported found", depth, T_reported, found);
     require_struct(found, "vg_registration");
     const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
     const FrameRegistration own_found =
@@ -302,7 +298,7 @@ vg_status vg_planner_propose(vg_planner* planner, size_t* candidates, size_t* dr
                              size_t reasons) {
   return guarded([&] {
     ViewPlanner& own = live(planner);
-    require(candidates, "candidates");
+    require("candidates", candidates);
     require_array(dropped, reasons, "dropped");
     const Proposal& proposal = own.propose();
     *candidates = proposal.candidates.size();
@@ -349,7 +345,7 @@ vg_status vg_planner_outcomes(vg_planner* planner, const double T_world_camera[1
 vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16], int32_t reached) {
   return guarded([&] {
     ViewPlanner& own = live(planner);
-    require(T_world_camera, "T_world_camera");
+    require("T_world_camera", T_world_camera);
     own.tried(rigid_pose_of(T_world_camera), reached != 0);
   });
 }
@@ -357,7 +353,7 @@ vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16],
 vg_status vg_planner_should_stop(const vg_planner* planner, int32_t* reason) {
   return guarded([&] {
     const ViewPlanner& own = live(planner);
-    require(reason, "reason");
+    require("reason", reason);
     *reason = code_of(own.should_stop());
   });
 }
@@ -365,7 +361,7 @@ vg_status vg_planner_should_stop(const vg_planner* planner, int32_t* reason) {
 vg_status vg_planner_save(const vg_planner* planner, const char* path) {
   return guarded([&] {
     const ViewPlanner& own = live(planner);
-    require(path, "path");
+    require("path", path);
     own.save(path);
   });
 }
@@ -373,7 +369,7 @@ vg_status vg_planner_save(const vg_planner* planner, const char* path) {
 vg_status vg_planner_load(const char* path, const vg_sensor* sensor,
                           const vg_planner_config* config, vg_planner** planner) {
   return make_planner(planner, [&] {
-    require(path, "path");
+    require("path", path);
     const vg_planner_config chosen = read_struct(config, "vg_planner_config");
     return ViewPlanner::load(path, sensor_with_body(sensor, chosen), settings_of(chosen),
                              exec_of(chosen.num_threads, chosen.tracer));

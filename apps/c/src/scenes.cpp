@@ -2,15 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "convert.hpp"
-#include "handles.hpp"
-#include "surroundings.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 using namespace viewgain;
@@ -86,7 +82,7 @@ void vg_scene_config_init(vg_scene_config* config, size_t struct_size) {
 
 vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config, vg_scene** scene) {
   return make_handle(scene, "scene", [&] {
-    require(grid, "grid");
+    require("grid", grid);
     const vg_scene_config chosen = read_config(config, "vg_scene_config");
     return VoxelScene::build(grid->grid, surroundings_of(chosen),
                              {.num_threads = chosen.num_threads}, hazard_of(chosen, grid->grid));
@@ -96,8 +92,7 @@ vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config, vg_
 vg_status vg_scene_update(const vg_scene* before, const vg_grid* grid, int32_t num_threads,
                           vg_scene** scene) {
   return make_handle(scene, "scene", [&] {
-    require(before, "before");
-    require(grid, "grid");
+    require("before grid", before, grid);
     return VoxelScene::update(before->scene, grid->grid, {.num_threads = num_threads});
   });
 }
@@ -107,11 +102,8 @@ void vg_scene_release(vg_scene* scene) { delete scene; }
 vg_status vg_calibrate_hazard(const vg_integrator* integrator, vg_grid* grid, const vg_scene* scene,
                               const float* depth, const double T_world_camera[16]) {
   return guarded([&] {
-    require(integrator, "integrator");
-    require(grid, "grid");
-    require(scene, "scene");
-    require(depth, "depth");
-    require(T_world_camera, "T_world_camera");
+    require("integrator grid scene depth T_world_camera", integrator, grid, scene, depth,
+            T_world_camera);
     integrator->calibration.count(grid->grid, scene->scene->hazard(),
                                   frame_of(integrator->camera, depth, nullptr),
                                   rigid_pose_of(T_world_camera));
@@ -125,7 +117,7 @@ void vg_feasibility_config_init(vg_feasibility_config* config, size_t struct_siz
 vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibility_config* config,
                                 vg_feasibility** feasibility) {
   return make_handle(feasibility, "feasibility", [&] {
-    require(scene, "scene");
+    require("scene", scene);
     const vg_feasibility_config chosen = read_config(config, "vg_feasibility_config");
     return FeasibilityChecker(scene->scene, settings_of(chosen),
                               {.num_threads = chosen.num_threads});
@@ -135,7 +127,7 @@ vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibility_conf
 vg_status vg_feasibility_check(const vg_feasibility* feasibility, const double* poses, size_t count,
                                const double* taken, size_t taken_count, int32_t* reasons) {
   return guarded([&] {
-    require(feasibility, "feasibility");
+    require("feasibility", feasibility);
     require_array(reasons, count, "reasons");
     require_array(taken, taken_count, "taken");
     const std::vector<Pose> views = poses_of(taken, taken_count);
@@ -148,8 +140,7 @@ vg_status vg_feasibility_check(const vg_feasibility* feasibility, const double* 
 vg_status vg_feasibility_with_scene(const vg_feasibility* feasibility, const vg_scene* scene,
                                     vg_feasibility** following) {
   return make_handle(following, "following", [&] {
-    require(feasibility, "feasibility");
-    require(scene, "scene");
+    require("feasibility scene", feasibility, scene);
     return feasibility->checker.with_scene(scene->scene);
   });
 }

@@ -5,70 +5,30 @@
 #include <string>
 
 #include "convert.hpp"
-#include "viewgain/core/noise.hpp"
+#include "viewgain/support/noise_fields.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::c_api {
 namespace {
 
-constexpr std::size_t kParameters = 6;
-static_assert(sizeof(vg_sensor::noise) == kParameters * sizeof(double));
-using Parameters = std::array<double, kParameters>;
+static_assert(VG_NOISE_SHOT == 0 && VG_NOISE_CONSTANT == kNoiseModels.size() - 1);
 
-/// A noise model as its number and its parameters in the header's order.
-struct Noise {
-  std::int32_t model;
-  Parameters p;
-};
-
-struct Writer {
-  Noise operator()(const ShotNoise& n) const {
-    return {VG_NOISE_SHOT,
-            {n.reference_sigma, n.reference_range, n.reference_integration_time, n.integration_time,
-             n.modulation_frequency, n.min_amplitude}};
+NoiseModel noise_of(const vg_sensor& sensor) {
+  const auto model = static_cast<std::size_t>(sensor.noise_model);
+  if (model >= kNoiseModels.size()) {
+    reject("noise_model is " + std::to_string(sensor.noise_model) +
+           "; the models are 0 to 4 (VG_NOISE_)");
   }
-  Noise operator()(const StructuredLightNoise& n) const {
-    return {VG_NOISE_STRUCTURED_LIGHT,
-            {n.offset, n.quadratic, n.vertex, n.grazing, n.lateral_px, n.lateral_grazing_px}};
+  NoiseModel noise = kNoiseModels[model];
+  std::size_t used = 0;
+  for_each_parameter(noise, [&](double& value, const auto&) { value = sensor.noise[used++]; });
+  for (std::size_t i = used; i < std::size(sensor.noise); ++i) {
+    if (sensor.noise[i] == 0) continue;
+    reject("noise[" + std::to_string(i) + "] is " + short_text(sensor.noise[i]) +
+           "; the noise model " + std::to_string(model) + " has " + std::to_string(used) +
+           " parameters and the rest must be 0");
   }
-  Noise operator()(const StereoNoise& n) const {
-    return {VG_NOISE_STEREO, {n.subpixel, n.focal, n.baseline}};
-  }
-  Noise operator()(const QuadraticNoise& n) const {
-    return {VG_NOISE_QUADRATIC, {n.offset, n.quadratic}};
-  }
-  Noise operator()(const ConstantNoise& n) const {
-    return {VG_NOISE_CONSTANT, {n.sigma_axial, n.sigma_lateral}};
-  }
-};
-
-NoiseModel noise_of(std::int32_t model, const Parameters& p) {
-  const auto rest_is_zero = [&](std::size_t used) {
-    for (std::size_t i = used; i < p.size(); ++i) {
-      if (p[i] != 0) {
-        reject("noise[" + std::to_string(i) + "] is " + short_text(p[i]) + "; the noise model " +
-               std::to_string(model) + " has " + std::to_string(used) +
-               " parameters and the rest must be 0");
-      }
-    }
-  };
-  switch (model) {
-    case VG_NOISE_SHOT:
-      return ShotNoise{p[0], p[1], p[2], p[3], p[4], p[5]};
-    case VG_NOISE_STRUCTURED_LIGHT:
-      return StructuredLightNoise{p[0], p[1], p[2], p[3], p[4], p[5]};
-    case VG_NOISE_STEREO:
-      rest_is_zero(3);
-      return StereoNoise{p[0], p[1], p[2]};
-    case VG_NOISE_QUADRATIC:
-      rest_is_zero(2);
-      return QuadraticNoise{p[0], p[1]};
-    case VG_NOISE_CONSTANT:
-      rest_is_zero(2);
-      return ConstantNoise{p[0], p[1]};
-    default:
-      reject("noise_model is " + std::to_string(model) + "; the models are 0 to 4 (VG_NOISE_)");
-  }
+  return noise;
 }
 
 }  // namespace
@@ -86,7 +46,7 @@ Sensor sensor_of(const vg_sensor* given) {
   result.min_range = sensor.min_range;
   result.max_range = sensor.max_range;
   result.working_distance = sensor.working_distance;
-  result.noise = noise_of(sensor.noise_model, std::to_array(sensor.noise));
+  result.noise = noise_of(sensor);
   result.pose_sigma = {sensor.pose_sigma[0], sensor.pose_sigma[1]};
   return result;
 }
@@ -105,9 +65,10 @@ void write_sensor(const Sensor& sensor, vg_sensor* out) {
   whole.min_range = sensor.min_range;
   whole.max_range = sensor.max_range;
   whole.working_distance = sensor.working_distance;
-  const Noise noise = std::visit(Writer{}, sensor.noise);
-  whole.noise_model = noise.model;
-  std::copy(noise.p.begin(), noise.p.end(), whole.noise);
+  whole.noise_model = static_cast<std::int32_t>(sensor.noise.index());
+  NoiseModel noise = sensor.noise;
+  for_each_parameter(noise,
+                     [&, i = 0U](double value, const auto&) mutable { whole.noise[i++] = value; });
   whole.pose_sigma[0] = sensor.pose_sigma.translation;
   whole.pose_sigma[1] = sensor.pose_sigma.rotation;
   write_struct(out, whole);
@@ -122,16 +83,42 @@ void vg_sensor_init(vg_sensor* sensor, size_t struct_size) { initialise(sensor, 
 
 vg_status vg_sensor_preset(const char* name, vg_sensor* sensor) {
   return guarded([&] {
-    require(name, "name");
+    require("name", name);
     write_sensor(sensor_preset(name), sensor);
   });
 }
 
 vg_status vg_default_prior_sigma(double voxel_size, const vg_sensor* sensor, double* sigma) {
   return guarded([&] {
-    require(sigma, "sigma");
+    require("sigma", sigma);
     const Sensor camera = sensor_of(sensor);
     camera.validate();
     *sigma = default_prior_sigma(voxel_size, camera);
   });
 }
+
+vg_status vg_range_calibration_create(const vg_sensor* sensor, const double* table, size_t rows,
+                                      vg_range_calibration** calibration) {
+  return make_handle(calibration, "calibration", [&] {
+    if (rows == 0) reject("rows is 0: a table of ranges has at least one");
+    require("table", table);
+    Sensor calibrated = sensor_of(sensor);
+    for (std::size_t i = 0; i < rows; ++i) {
+      calibrated.range_calibration.table.push_back({table[2 * i], table[2 * i + 1]});
+    }
+    calibrated.validate();  // of the table it asks more than a corrector does, as files do
+    return RangeCorrector(calibrated.camera, calibrated.range_calibration);
+  });
+}
+
+vg_status vg_range_calibration_correct(const vg_range_calibration* calibration, float* depth) {
+  return guarded([&] {
+    require("calibration depth", calibration, depth);
+    const PinholeCamera& camera = calibration->corrector.camera();
+    const auto pixels =
+        static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+    calibration->corrector.correct(std::span(depth, pixels));
+  });
+}
+
+void vg_range_calibration_release(vg_range_calibration* calibration) { delete calibration; }

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdio>
 #include <new>
-#include <stdexcept>
 
 #include "viewgain/version.hpp"
 

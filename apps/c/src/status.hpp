@@ -7,6 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/export.hpp"
@@ -39,13 +40,19 @@ vg_status guarded(const Body& body) noexcept {
   throw Error(ErrorCode::invalid_argument, message);
 }
 
-inline void require(const void* pointer, const char* name) {
-  if (pointer == nullptr) reject(std::string(name) + " is null");
+/// Throws Error(invalid_argument) for the first that is null; `names` has theirs, with blanks.
+template <typename... Pointers>
+void require(std::string_view names, const Pointers*... pointers) {
+  for (const bool is_null : {(pointers == nullptr)...}) {
+    const std::string_view name = names.substr(0, names.find(' '));
+    if (is_null) reject(std::string(name) + " is null");
+    names.remove_prefix(std::min(names.size(), name.size() + 1));
+  }
 }
 
 /// For arrays, which may be null where they are empty.
 inline void require_array(const void* pointer, std::size_t count, const char* name) {
-  if (count > 0) require(pointer, name);
+  if (count > 0) require(name, pointer);
 }
 
 /// What a struct's _init sets; zeros unless specialised.
@@ -65,7 +72,7 @@ void require_size(std::size_t size, const std::string& name) {
 /// A struct that the caller has initialised, or for the library to fill.
 template <typename Struct>
 void require_struct(const Struct* value, const std::string& name) {
-  require(value, name.c_str());
+  require(name, value);
   require_size<Struct>(value->struct_size, name + " (struct_size, set by its _init)");
 }
 
@@ -104,7 +111,7 @@ template <typename Handle, typename Make>
 vg_status make_handle(Handle** handle, const char* name, const Make& make) noexcept {
   if (handle != nullptr) *handle = nullptr;
   return guarded([&] {
-    require(handle, name);
+    require(name, handle);
     *handle = new Handle{make()};
   });
 }

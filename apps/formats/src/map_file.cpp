@@ -3,7 +3,6 @@
 #include "viewgain/formats/map_file.hpp"
 
 #include <sstream>
-#include <string>
 #include <utility>
 
 #include "viewgain/core/error.hpp"

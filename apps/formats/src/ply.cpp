@@ -3,7 +3,6 @@
 #include "viewgain/formats/ply.hpp"
 
 #include <bit>
-#include <cstdint>
 #include <string>
 
 #include "viewgain/core/error.hpp"

@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
-#include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "viewgain/core/error.hpp"
@@ -51,70 +51,55 @@ void write_bytes(png_structp png, png_bytep data, std::size_t count) {
 
 void flush_nothing(png_structp) {}
 
-// What the two functions below do is undone by libpng's longjmp where it fails: then they return
-// false with a message in `state`. No object with a destructor may live in them.
+// What the functions below do is undone by libpng's longjmp where it fails: then they return false
+// with a message in `state`. No object with a destructor may live in them, but in what calls them.
 
-bool decode_rgb(png_structp png, png_infop info, PngState& state, RgbImage& image) {
-  constexpr png_uint_32 kMostPixels = 16384;  // a side
-  if (setjmp(png_jmpbuf(png)) != 0) return false;
-  png_set_read_fn(png, &state, read_bytes);
-  png_set_user_limits(png, kMostPixels, kMostPixels);
-  png_read_info(png, info);
-  if (png_get_bit_depth(png, info) != 8 || png_get_color_type(png, info) != PNG_COLOR_TYPE_RGB) {
-    png_error(png, "not an 8-bit RGB image");
-  }
-  image.width = static_cast<int>(png_get_image_width(png, info));
-  image.height = static_cast<int>(png_get_image_height(png, info));
-  const std::size_t row = 3 * static_cast<std::size_t>(image.width);
-  image.pixels.resize(row * static_cast<std::size_t>(image.height));
-  for (std::size_t v = 0; v < static_cast<std::size_t>(image.height); ++v) {
-    state.rows.push_back(image.pixels.data() + v * row);
-  }
-  (void)png_set_interlace_handling(png);
-  png_read_update_info(png, info);
-  png_read_image(png, state.rows.data());
-  png_read_end(png, nullptr);
-  return true;
-}
+// What is read: an image of this colour and one of these depths.
+struct Wanted {
+  int color, least_bits, most_bits;
+  const char* refusal;
+};
 
-// snprintf into a string of fixed size keeps it free of temporaries.
-bool has_size(png_structp png, png_infop info, PngState& state, int width, int height) {
+// Sets the image's rows up by its size; refuses by a message in `state`. snprintf into a string of
+// fixed size keeps it free of temporaries.
+template <typename Image>
+bool set_rows(png_structp png, png_infop info, PngState& state, Image& image) {
   const png_uint_32 columns = png_get_image_width(png, info);
   const png_uint_32 rows = png_get_image_height(png, info);
-  if (columns == static_cast<png_uint_32>(width) && rows == static_cast<png_uint_32>(height)) {
-    return true;
+  constexpr std::size_t kChannels = std::is_same_v<Image, RgbImage> ? 3 : 1;
+  if constexpr (kChannels == 3) {
+    image.width = static_cast<int>(columns);
+    image.height = static_cast<int>(rows);
+  } else if (columns != static_cast<png_uint_32>(image.width) ||
+             rows != static_cast<png_uint_32>(image.height)) {
+    std::snprintf(state.message.data(), state.message.size(),
+                  "the image has %lux%lu pixels, not %dx%d", static_cast<unsigned long>(columns),
+                  static_cast<unsigned long>(rows), image.width, image.height);
+    return false;
   }
-  std::snprintf(state.message.data(), state.message.size(),
-                "the image has %lux%lu pixels, not %dx%d", static_cast<unsigned long>(columns),
-                static_cast<unsigned long>(rows), width, height);
-  return false;
-}
-
-bool decode_gray8(png_structp png, png_infop info, PngState& state, Gray8Image& image) {
-  if (setjmp(png_jmpbuf(png)) != 0) return false;
-  png_set_read_fn(png, &state, read_bytes);
-  png_read_info(png, info);
-  if (png_get_bit_depth(png, info) > 8 || png_get_color_type(png, info) != PNG_COLOR_TYPE_GRAY) {
-    png_error(png, "not a grayscale image of 1 to 8 bits");
+  const std::size_t row = kChannels * columns;
+  image.pixels.resize(row * rows);
+  for (std::size_t v = 0; v < rows; ++v) {
+    state.rows.push_back(reinterpret_cast<png_bytep>(image.pixels.data() + v * row));
   }
-  if (!has_size(png, info, state, image.width, image.height)) return false;
-  png_set_packing(png);  // a byte a pixel
-  (void)png_set_interlace_handling(png);
-  png_read_update_info(png, info);
-  png_read_image(png, state.rows.data());
-  png_read_end(png, nullptr);
   return true;
 }
 
-bool decode(png_structp png, png_infop info, PngState& state, GrayImage& image) {
+template <typename Image>
+bool decode(png_structp png, png_infop info, PngState& state, const Wanted& wanted, Image& image) {
+  constexpr png_uint_32 kMostPixels = 16384;  // a side, where the file says how many
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &state, read_bytes);
+  if (std::is_same_v<Image, RgbImage>) png_set_user_limits(png, kMostPixels, kMostPixels);
   png_read_info(png, info);
-  if (png_get_bit_depth(png, info) != 16 || png_get_color_type(png, info) != PNG_COLOR_TYPE_GRAY) {
-    png_error(png, "not a 16-bit grayscale image");
+  const int bits = png_get_bit_depth(png, info);
+  if (bits < wanted.least_bits || bits > wanted.most_bits ||
+      png_get_color_type(png, info) != wanted.color) {
+    png_error(png, wanted.refusal);
   }
-  if (!has_size(png, info, state, image.width, image.height)) return false;
-  png_set_swap(png);  // PNG is big-endian, this machine is not
+  if (!set_rows(png, info, state, image)) return false;
+  if (bits == 16) png_set_swap(png);   // PNG is big-endian, this machine is not
+  if (bits < 8) png_set_packing(png);  // a byte a pixel
   (void)png_set_interlace_handling(png);
   png_read_update_info(png, info);
   png_read_image(png, state.rows.data());
@@ -178,32 +163,23 @@ void write_image(const std::filesystem::path& path, int width, int height, int c
   write_file_atomically(path, bytes);
 }
 
-// Runs libpng's reading on the file: `decode_into(png, info, state)`.
-template <typename Decode>
-void read_image(const std::filesystem::path& path, PngState& state, const Decode& decode_into) {
+// Runs libpng's reading on the file. A size that `image` has is asked for.
+template <typename Image>
+Image read_image(const std::filesystem::path& path, const Wanted& wanted, Image image = {}) {
+  if (!std::is_same_v<Image, RgbImage> && (image.width <= 0 || image.height <= 0)) {
+    fail(ErrorCode::invalid_argument, path,
+         "asked for as " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+             " px");
+  }
+  PngState state;
   state.bytes = file_bytes(path);
   state.message.resize(160);
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &state, on_error, on_warning);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
-  const bool ok = info != nullptr && decode_into(png, info);
+  const bool ok = info != nullptr && decode(png, info, state, wanted, image);
   png_destroy_read_struct(&png, &info, nullptr);
   if (!ok) {
     fail(ErrorCode::format, path, "not a usable image: " + std::string(state.message.c_str()));
-  }
-}
-
-// An image to read into, of which `state` knows the rows.
-template <typename Image>
-Image blank_image(const std::filesystem::path& path, int width, int height, PngState& state) {
-  if (width <= 0 || height <= 0) {
-    fail(ErrorCode::invalid_argument, path,
-         "asked for as " + std::to_string(width) + " x " + std::to_string(height) + " px");
-  }
-  Image image{width, height, {}};
-  const auto columns = static_cast<std::size_t>(width);
-  image.pixels.resize(columns * static_cast<std::size_t>(height));
-  for (std::size_t v = 0; v < static_cast<std::size_t>(height); ++v) {
-    state.rows.push_back(reinterpret_cast<png_bytep>(image.pixels.data() + v * columns));
   }
   return image;
 }
@@ -211,20 +187,13 @@ Image blank_image(const std::filesystem::path& path, int width, int height, PngS
 }  // namespace
 
 GrayImage read_gray_png(const std::filesystem::path& path, int width, int height) {
-  PngState state;
-  auto image = blank_image<GrayImage>(path, width, height, state);
-  read_image(path, state,
-             [&](png_structp png, png_infop info) { return decode(png, info, state, image); });
-  return image;
+  constexpr Wanted kWanted{PNG_COLOR_TYPE_GRAY, 16, 16, "not a 16-bit grayscale image"};
+  return read_image<GrayImage>(path, kWanted, {width, height, {}});
 }
 
 Gray8Image read_gray8_png(const std::filesystem::path& path, int width, int height) {
-  PngState state;
-  auto image = blank_image<Gray8Image>(path, width, height, state);
-  read_image(path, state, [&](png_structp png, png_infop info) {
-    return decode_gray8(png, info, state, image);
-  });
-  return image;
+  constexpr Wanted kWanted{PNG_COLOR_TYPE_GRAY, 1, 8, "not a grayscale image of 1 to 8 bits"};
+  return read_image<Gray8Image>(path, kWanted, {width, height, {}});
 }
 
 std::array<int, 2> png_size(const std::filesystem::path& path) {
@@ -246,11 +215,8 @@ std::array<int, 2> png_size(const std::filesystem::path& path) {
 }
 
 RgbImage read_rgb_png(const std::filesystem::path& path) {
-  PngState state;
-  RgbImage image;
-  read_image(path, state,
-             [&](png_structp png, png_infop info) { return decode_rgb(png, info, state, image); });
-  return image;
+  constexpr Wanted kWanted{PNG_COLOR_TYPE_RGB, 8, 8, "not an 8-bit RGB image"};
+  return read_image<RgbImage>(path, kWanted);
 }
 
 std::string png_bytes(const RgbImage& image) {

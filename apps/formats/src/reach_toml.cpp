@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/formats/reach_toml.hpp"
 
-#include <algorithm>
 #include <array>
 #include <numbers>
 #include <sstream>

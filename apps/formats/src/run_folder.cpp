@@ -8,7 +8,6 @@
 #include <string>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "folders.hpp"
 #include "viewgain/core/error.hpp"

@@ -3,7 +3,6 @@
 #include "viewgain/formats/sensor_toml.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <sstream>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "viewgain/formats/file_names.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/nearest_name.hpp"
+#include "viewgain/support/noise_fields.hpp"
 #include "viewgain/support/toml_table.hpp"
 
 namespace viewgain {
@@ -21,61 +21,6 @@ namespace {
 
 // Ten times what depth cameras have; rays and images of more would fill a machine's memory.
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 24U;
-
-template <typename Model>
-struct NoiseField {
-  const char* key;
-  double Model::*member;
-  bool optional = false;     // then the model's default holds
-  bool unsaid_at_0 = false;  // 0 is no value of its own, and not written
-};
-
-// One list a model: what it is called in a file and its parameters. Reader and writer share them.
-template <typename Model>
-struct NoiseLayout;
-template <>
-struct NoiseLayout<ShotNoise> {
-  static constexpr const char* kName = "shot";
-  static constexpr std::array<NoiseField<ShotNoise>, 6> kFields{
-      {{"reference_sigma", &ShotNoise::reference_sigma},
-       {"reference_range", &ShotNoise::reference_range},
-       {"reference_integration_time", &ShotNoise::reference_integration_time},
-       {"integration_time", &ShotNoise::integration_time},
-       {"modulation_frequency", &ShotNoise::modulation_frequency, true},
-       {"min_amplitude", &ShotNoise::min_amplitude, true}}};
-};
-template <>
-struct NoiseLayout<StructuredLightNoise> {
-  static constexpr const char* kName = "structured_light";
-  static constexpr std::array<NoiseField<StructuredLightNoise>, 6> kFields{
-      {{"offset", &StructuredLightNoise::offset},
-       {"quadratic", &StructuredLightNoise::quadratic},
-       {"vertex", &StructuredLightNoise::vertex},
-       {"grazing", &StructuredLightNoise::grazing},
-       {"lateral_px", &StructuredLightNoise::lateral_px},
-       {"lateral_grazing_px", &StructuredLightNoise::lateral_grazing_px}}};
-};
-template <>
-struct NoiseLayout<StereoNoise> {
-  static constexpr const char* kName = "stereo";
-  static constexpr std::array<NoiseField<StereoNoise>, 3> kFields{
-      {{"subpixel", &StereoNoise::subpixel},
-       {"focal", &StereoNoise::focal, true, true},
-       {"baseline", &StereoNoise::baseline}}};
-};
-template <>
-struct NoiseLayout<QuadraticNoise> {
-  static constexpr const char* kName = "quadratic";
-  static constexpr std::array<NoiseField<QuadraticNoise>, 2> kFields{
-      {{"offset", &QuadraticNoise::offset}, {"quadratic", &QuadraticNoise::quadratic}}};
-};
-template <>
-struct NoiseLayout<ConstantNoise> {
-  static constexpr const char* kName = "constant";
-  static constexpr std::array<NoiseField<ConstantNoise>, 2> kFields{
-      {{"sigma_axial", &ConstantNoise::sigma_axial},
-       {"sigma_lateral", &ConstantNoise::sigma_lateral}}};
-};
 
 PinholeCamera read_camera(TableReader reader) {
   PinholeCamera camera;
@@ -96,30 +41,19 @@ PinholeCamera read_camera(TableReader reader) {
   return camera;
 }
 
-template <typename Model>
-bool read_noise_as(TableReader& reader, const std::string& model, NoiseModel& noise) {
-  if (model != NoiseLayout<Model>::kName) return false;
-  Model parameters;
-  for (const auto& field : NoiseLayout<Model>::kFields) {
-    if (field.optional && reader.find(field.key) == nullptr) continue;
-    parameters.*field.member = reader.number(field.key);
-  }
-  noise = parameters;
-  return true;
-}
-
 NoiseModel read_noise(TableReader reader) {
   const std::string model = reader.text("model");
-  NoiseModel noise;
-  const bool known = read_noise_as<ShotNoise>(reader, model, noise) ||
-                     read_noise_as<StructuredLightNoise>(reader, model, noise) ||
-                     read_noise_as<StereoNoise>(reader, model, noise) ||
-                     read_noise_as<QuadraticNoise>(reader, model, noise) ||
-                     read_noise_as<ConstantNoise>(reader, model, noise);
-  if (!known) {
+  const auto known =
+      std::find_if(kNoiseModels.begin(), kNoiseModels.end(),
+                   [&](const NoiseModel& one) { return noise_model_name(one) == model; });
+  if (known == kNoiseModels.end()) {
     reader.fail("model", "is \"" + model +
                              "\", not one of shot, structured_light, stereo, quadratic, constant");
   }
+  NoiseModel noise = *known;
+  for_each_parameter(noise, [&](double& value, const auto& field) {
+    if (!field.optional || reader.find(field.name) != nullptr) value = reader.number(field.name);
+  });
   reader.refuse_unknown_keys();
   return noise;
 }
@@ -254,16 +188,12 @@ std::string sensor_toml(const Sensor& sensor) {
     text << (k > 0 ? ", " : "") << toml_float(camera.distortion[k]);
   }
   text << "]  # k1 k2 p1 p2 k3, as in OpenCV\n\n[noise]\n";
-  std::visit(
-      [&text]<typename Model>(const Model& model) {
-        text << "model = \"" << NoiseLayout<Model>::kName << "\"\n";
-        for (const auto& field : NoiseLayout<Model>::kFields) {
-          const double value = model.*field.member;
-          if (field.unsaid_at_0 && value == 0) continue;
-          text << field.key << " = " << toml_float(value) << "\n";
-        }
-      },
-      sensor.noise);
+  text << "model = \"" << noise_model_name(sensor.noise) << "\"\n";
+  NoiseModel noise = sensor.noise;
+  for_each_parameter(noise, [&text](double value, const auto& field) {
+    if (field.unsaid_at_0 && value == 0) return;
+    text << field.name << " = " << toml_float(value) << "\n";
+  });
   if (!sensor.range_calibration.table.empty()) {
     text << "\n[range_calibration]  # subtracted from readings; linear between, held at the ends; "
             "[m]\n";

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -10,8 +11,99 @@
 #include "classic_map_data.hpp"
 #include "gain_sums.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/view_rays.hpp"
+
+namespace viewgain {
+namespace {
+
+std::size_t parse(std::string_view name, const std::vector<std::string>& names, const char* what) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  std::string text("unknown ");
+  text.append(what).append(" \"").append(name).append("\"; valid are");
+  for (const std::string& valid : names) text.append(" ").append(valid);
+  throw Error(ErrorCode::invalid_argument, text);
+}
+
+}  // namespace
+
+const std::vector<std::string>& classic_gain_names() {
+  static const std::vector<std::string> names{
+      "occlusion_aware",   "unobserved_voxel",      "average_entropy", "rear_side_voxel",
+      "rear_side_entropy", "proximity_count",       "area_factor",     "unknown_volume",
+      "unknown_count",     "surface_frontier_count"};
+  return names;
+}
+std::string_view classic_gain_name(ClassicGain gain) {
+  return classic_gain_names().at(static_cast<std::size_t>(gain));
+}
+ClassicGain parse_classic_gain(std::string_view name) {
+  return static_cast<ClassicGain>(parse(name, classic_gain_names(), "classic gain"));
+}
+std::string_view classic_gain_unit(ClassicGain gain) {
+  static constexpr std::array<std::string_view, 10> kUnits{
+      "nat", "nat", "nat", "rays", "nat", "voxels", "1", "m^3", "voxels", "voxels"};
+  return kUnits.at(static_cast<std::size_t>(gain));
+}
+bool needs_occlusion(ClassicGain gain) {
+  return gain == ClassicGain::proximity_count || gain == ClassicGain::area_factor;
+}
+
+const std::vector<std::string>& gain_semantics_names() {
+  static const std::vector<std::string> names{"paper", "shipped"};
+  return names;
+}
+std::string_view gain_semantics_name(GainSemantics semantics) {
+  return gain_semantics_names().at(static_cast<std::size_t>(semantics));
+}
+GainSemantics parse_gain_semantics(std::string_view name) {
+  return static_cast<GainSemantics>(parse(name, gain_semantics_names(), "semantics"));
+}
+
+}  // namespace viewgain
+
+namespace viewgain::detail {
+namespace {
+
+constexpr double kPart = 4096;        // first parts of -log2 q are multiples of its reciprocal
+constexpr double kAllAbsorbed = 200;  // in place of -log2 0: nothing is left in single precision
+
+double entropy_of(double p) {
+  if (!(p > 0 && p < 1)) return 0;
+  return -p * std::log(p) - (1 - p) * std::log(1 - p);
+}
+
+}  // namespace
+
+VoxelValues::VoxelValues(const ClassicConfig& config) {
+  static_assert(kMaxCode < 128 && kZeroCode < kPassed);
+  const bool shipped = config.semantics == GainSemantics::shipped;
+  for (int i = 0; i <= kMaxCode; ++i) {
+    const auto code = static_cast<std::uint8_t>(i);
+    const auto at = static_cast<std::size_t>(i);
+    const bool is_known = code != kUnknownCode;
+    const double p = is_known ? 1 / (1 + std::exp(-static_cast<double>(code_log_odds(code))))
+                              : config.unknown_prior;
+    // p rises with the code.
+    const bool is_occupied = shipped ? p > config.occupied_above : detail::is_occupied(code);
+    const bool is_free = shipped ? p < config.free_below : !detail::is_occupied(code);
+    if (is_known && is_free) free_end = i + 1;
+    if (is_known && is_occupied && occupied_begin > i) occupied_begin = i;
+    const double H = entropy_of(p), q = shipped ? p : 1 - p;
+    entropy[at] = static_cast<float>(H);
+    if (i > kZeroCode) continue;
+    passed_entropy[at] = entropy[at];
+    const double absorbs = q > 0 ? std::min(-std::log2(q), kAllAbsorbed) : kAllAbsorbed;
+    const double first = std::floor(absorbs * kPart) / kPart;
+    absorbed[at] = static_cast<float>(first);
+    absorbed_rest[at] = static_cast<float>(absorbs - first);
+    per_taken[at] = H > 0 ? static_cast<float>(H / (1 - q)) : 0.0F;
+  }
+}
+
+}  // namespace viewgain::detail
 
 namespace viewgain {
 namespace detail {

@@ -3,7 +3,6 @@
 #include "classic_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 
 #include "viewgain/support/grid_blocks.hpp"

@@ -2,15 +2,89 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <memory>
+#include <vector>
 
 #include "classic_table.hpp"
-#include "distinct_voxels.hpp"
 #include "viewgain/core/isa.hpp"
+#include "viewgain/literature/classic_gains.hpp"
+#include "viewgain/support/log_odds_code.hpp"
 #include "viewgain/support/walk_task.hpp"
-#include "voxel_values.hpp"
 
 namespace viewgain::detail {
+
+/// Counts the distinct unknown voxels that the rays of a view pass: a bit a voxel, by nodes of
+/// 128³, which are made when a ray first comes there and kept. Emptied in the time that marking
+/// took.
+class DistinctVoxels {
+ public:
+  /// For another view, of a table of any size.
+  void begin(const ClassicTable& table) {
+    for (const Place& place : touched_) {
+      Node& node = *nodes_[place.node];
+      std::fill_n(node.bits.begin() + place.brick * std::size_t{8}, 8, 0);
+      node.is_touched[place.brick] = 0;
+    }
+    touched_.clear();
+    count_ = frontiers_ = 0;
+    if (nodes_.size() < table.node_entries.size()) nodes_.resize(table.node_entries.size());
+  }
+
+  /// `place` is the number of a voxel's brick in its node, times 512, plus any number of the voxel
+  /// in its brick.
+  void mark(std::uint32_t number, std::uint32_t place, std::uint32_t word) {
+    std::unique_ptr<Node>& node = nodes_[number];
+    if (!node) node = std::make_unique<Node>();
+    const std::uint32_t brick = place >> 9U;
+    if (node->is_touched[brick] == 0) {
+      touched_.push_back({number, brick});  // first: where it throws, nothing is marked for ever
+      node->is_touched[brick] = 1;
+    }
+    std::uint64_t& bits = node->bits[place >> 6U];
+    // No branch: whether another ray was here before cannot be foretold.
+    const std::uint64_t is_new = ~bits >> (place & 63U) & 1U;
+    bits |= is_new << (place & 63U);
+    count_ += is_new;
+    frontiers_ += is_new & word;
+    static_assert(ClassicTable::kFrontier == 1);
+  }
+
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+  [[nodiscard]] std::uint64_t frontiers() const { return frontiers_; }
+
+ private:
+  struct Node {
+    std::array<std::uint64_t, std::size_t{4096} * 8> bits{};
+    std::array<std::uint8_t, 4096> is_touched{};
+  };
+  struct Place {
+    std::uint32_t node, brick;
+  };
+  std::vector<std::unique_ptr<Node>> nodes_;
+  std::vector<Place> touched_;
+  std::uint64_t count_ = 0, frontiers_ = 0;
+};
+
+/// What voxels weigh by the code of their log-odds, for one semantics; q is what each lets through.
+struct VoxelValues {
+  /// Codes of voxels that rays go on through are below this.
+  static constexpr std::size_t kPassed = 64;
+  /// -log2 q in two parts. Multiples of the first by numbers of voxels, and sums of such, are exact
+  /// in single precision; the second is small, so that its rounding does not matter.
+  alignas(64) std::array<float, kPassed> absorbed{}, absorbed_rest{};
+  /// H / (1 - q): n voxels in a row have Σ P H = this times what they take of P.
+  alignas(64) std::array<float, kPassed> per_taken{};
+  alignas(64) std::array<float, kPassed> passed_entropy{};  ///< H of these [nat]
+  alignas(64) std::array<float, 128> entropy{};             ///< H of all codes [nat]
+  /// Known voxels count as free below, as occupied from there on; others, and those that no reading
+  /// told of, as unknown.
+  std::int32_t free_end = 0, occupied_begin = kMaxCode + 1;
+
+  explicit VoxelValues(const ClassicConfig& config);
+};
 
 /// What all gains of a view are made of. Lengths in voxels.
 struct ClassicSums {

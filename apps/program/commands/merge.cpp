@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/support/columns/merge.hpp"
+#include "viewgain/support/columns/parts.hpp"
 
 #include <algorithm>
 #include <cstdint>

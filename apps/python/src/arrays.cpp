@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
@@ -296,13 +295,29 @@ py::object scalar_or_array(const py::array& array) {
   return array[py::tuple()];
 }
 
-void require_file(const std::string& path) {
+std::size_t frame_index(std::size_t frames, py::ssize_t index) {
+  const auto count = static_cast<py::ssize_t>(frames);
+  if (index < 0) index += count;
+  if (index < 0 || index >= count) throw py::index_error("there is no such frame");
+  return static_cast<std::size_t>(index);
+}
+
+std::string file_path(const py::handle& value) {
+  PyObject* bytes = nullptr;
+  if (PyUnicode_FSConverter(value.ptr(), &bytes) == 0) throw py::error_already_set();
+  return py::reinterpret_steal<py::bytes>(bytes);
+}
+
+std::string readable_file(const py::handle& value) {
+  std::string path = file_path(value);
   std::error_code error;
   if (!std::filesystem::exists(path, error)) raise_os_error(ENOENT, path);
   if (std::filesystem::is_directory(path, error)) raise_os_error(EISDIR, path);
+  return path;
 }
 
-void require_writable(const std::string& path) {
+std::string writable_file(const py::handle& value) {
+  std::string path = file_path(value);
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) raise_os_error(EISDIR, path);
   std::filesystem::path folder = std::filesystem::path(path).parent_path();
@@ -311,12 +326,7 @@ void require_writable(const std::string& path) {
   if (!std::filesystem::is_directory(folder, error)) raise_os_error(ENOTDIR, folder.string());
   // The file is written beside its name first.
   if (::access(folder.c_str(), W_OK | X_OK) != 0) raise_os_error(errno, folder.string());
-}
-
-std::string file_path(const py::handle& value) {
-  PyObject* bytes = nullptr;
-  if (PyUnicode_FSConverter(value.ptr(), &bytes) == 0) throw py::error_already_set();
-  return py::reinterpret_steal<py::bytes>(bytes);
+  return path;
 }
 
 }  // namespace viewgain::python

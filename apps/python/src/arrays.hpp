@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -100,11 +99,28 @@ template <typename T>
 /// An array without axes becomes numpy's scalar, as numpy's own functions do it.
 [[nodiscard]] py::object scalar_or_array(const py::array& array);
 
-/// Throw FileNotFoundError, or another OSError, with the file's name as Python has it.
-void require_file(const std::string& path);
-/// As above, where no file can be made: not for a disk that is full.
-void require_writable(const std::string& path);
+// What calls return when it is more than one thing: named tuples, whose classes are Python's. All
+// need the GIL.
+
+/// A named tuple of a module with these values, in the order of its fields.
+template <typename... Values>
+[[nodiscard]] py::object named_in(const char* module, const char* type, Values&&... values) {
+  return py::module_::import(module).attr(type)(std::forward<Values>(values)...);
+}
+/// The same of viewgain.results.
+template <typename... Values>
+[[nodiscard]] py::object named(const char* type, Values&&... values) {
+  return named_in("viewgain.results", type, std::forward<Values>(values)...);
+}
+
+/// Of one of so many frames, from the end if negative. Throws py::index_error.
+[[nodiscard]] std::size_t frame_index(std::size_t frames, py::ssize_t index);
+
 /// The name as the system has it, of a str, bytes or os.PathLike; ValueError for one with a NUL.
 [[nodiscard]] std::string file_path(const py::handle& value);
+/// The same of a file that is there; throws FileNotFoundError, or another OSError, with the name.
+[[nodiscard]] std::string readable_file(const py::handle& value);
+/// The same where a file can be made; does not look whether a disk is full.
+[[nodiscard]] std::string writable_file(const py::handle& value);
 
 }  // namespace viewgain::python

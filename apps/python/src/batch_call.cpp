@@ -12,7 +12,6 @@
 #include <thread>
 #include <utility>
 
-#include "bindings.hpp"
 #include "classes.hpp"
 #include "gil.hpp"
 
@@ -122,11 +121,6 @@ progress : callable, optional
     done, and at the end; for an empty batch with ``(0, 0)``. If it returns something false other than ``None`` (``False``,
     ``numpy.False_``, 0) the call stops; an exception that it raises stops the call and is raised
     from there.
-
-Raises
-------
-TypeError
-    progress cannot be called.
 
 Notes
 -----

@@ -3,8 +3,6 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,15 +14,11 @@
 
 #include "arrays.hpp"
 #include "batch_call.hpp"
-#include "bindings.hpp"
 #include "classes.hpp"
 #include "evaluator.hpp"
 #include "evaluator_docs.hpp"
 #include "gil.hpp"
 #include "given.hpp"
-#include "named.hpp"
-#include "python_measure.hpp"
-#include "scene.hpp"
 
 namespace viewgain::python {
 
@@ -84,20 +78,14 @@ std::unique_ptr<Evaluator> make_evaluator(
   const GainConfig config = gain_config(gain, criterion, pixel_stride, prior_sigma, min_range,
                                         max_range, weights, refinement_weight, posterior_entropy);
   const ExecConfig exec{num_threads, parse_tracer(tracer)};
-  const auto made = [&] {
-    const WithoutGil without_gil;
-    return GainEvaluator(scene.scene, sensor, config, exec);
-  };
-  return held(scene, sensor, criterion, pixel_stride, made());
+  return held(scene, sensor, criterion, pixel_stride,
+              outside_gil([&] { return GainEvaluator(scene.scene, sensor, config, exec); }));
 }
 
 std::unique_ptr<Evaluator> with_scene(const Evaluator& self, const Given<Scene>& given) {
   const Scene& scene = *given;
-  const auto following = [&] {
-    const WithoutGil without_gil;
-    return self.evaluator.with_scene(scene.scene);
-  };
-  return held(scene, self.sensor, self.criterion, self.pixel_stride, following());
+  return held(scene, self.sensor, self.criterion, self.pixel_stride,
+              outside_gil([&] { return self.evaluator.with_scene(scene.scene); }));
 }
 
 void score(const Evaluator& self, std::span<const Pose> poses, std::span<ViewGain> results,
@@ -300,8 +288,7 @@ void bind_evaluator(py::module_& module) {
       .def_readonly("criterion", &Evaluator::criterion, "str")
       .def_readonly("pixel_stride", &Evaluator::pixel_stride, "int")
       .def_readonly("scene", &Evaluator::scene, "VoxelScene: that it was made with")
-      .def_property_readonly(
-          "sensor", [](const Evaluator& self) { return self.sensor; }, "Sensor")
+      .def_readonly("sensor", &Evaluator::sensor, "Sensor")
       .def("__repr__", [](const Evaluator& self) {
         std::ostringstream text;
         text << "<GainEvaluator " << gain_model_name(self.evaluator.model()) << " gain, "

@@ -3,25 +3,190 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "arrays.hpp"
-#include "bindings.hpp"
 #include "classes.hpp"
+#include "evaluator.hpp"
 #include "gil.hpp"
 #include "given.hpp"
-#include "python_call.hpp"
-#include "scene.hpp"
 #include "viewgain/core/reach.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 
 namespace viewgain::python {
+namespace {
+
+// Of an array (n, columns), or of None.
+template <typename F>
+void for_each_row(const py::object& given, const char* name, py::ssize_t columns, const F& f) {
+  if (given.is_none()) return;
+  const Doubles array = doubles(given, name, {-1, columns});
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) f(array.data() + i * columns);
+}
+
+ReachRegion region_of(const py::object& boxes, const py::object& shells,
+                      const py::object& half_spaces, const py::object& poses, double distance,
+                      double angle, const py::object& predicate) {
+  ReachRegion region;
+  region.boxes = optional_boxes(boxes, "boxes");
+  for_each_row(shells, "shells", 5, [&](const double* x) {
+    region.shells.push_back({{x[0], x[1], x[2]}, x[3], x[4]});
+  });
+  for_each_row(half_spaces, "half_spaces", 4, [&](const double* x) {
+    region.half_spaces.push_back({{x[0], x[1], x[2]}, x[3]});
+  });
+  if (!poses.is_none()) region.poses = pose_list(poses, "poses");
+  region.tolerance = {distance, angle};
+  if (!predicate.is_none()) {
+    if (PyCallable_Check(predicate.ptr()) == 0) throw py::type_error("predicate must be callable");
+    region.predicate = [call = PythonCall(predicate)](const Pose& T_world_camera) {
+      return with_gil([&] {
+        const py::object answer = call(to_array(T_world_camera));
+        const int truth = PyObject_IsTrue(answer.ptr());
+        if (truth < 0) throw py::error_already_set();
+        return truth == 1;
+      });
+    };
+  }
+  region.validate();
+  return region;
+}
+
+// By value; a predicate is the same as itself alone.
+bool is_same(const ReachRegion& a, const ReachRegion& b) {
+  if (&a == &b) return true;
+  const auto same_shell = [](const Shell& s, const Shell& t) {
+    return s.center == t.center && s.min_radius == t.min_radius && s.max_radius == t.max_radius;
+  };
+  const auto same_half_space = [](const HalfSpace& s, const HalfSpace& t) {
+    return s.normal == t.normal && s.offset == t.offset;
+  };
+  return !a.predicate && !b.predicate && a.boxes == b.boxes && a.poses == b.poses &&
+         a.tolerance.distance == b.tolerance.distance && a.tolerance.angle == b.tolerance.angle &&
+         std::equal(a.shells.begin(), a.shells.end(), b.shells.begin(), b.shells.end(),
+                    same_shell) &&
+         std::equal(a.half_spaces.begin(), a.half_spaces.end(), b.half_spaces.begin(),
+                    b.half_spaces.end(), same_half_space);
+}
+
+// What a pickle is of. A predicate is a function, which bytes cannot hold.
+constexpr const char* kKind = "viewgain reach 1\n";
+
+py::bytes bytes_of(const ReachRegion& region) {
+  if (region.predicate) {
+    throw py::type_error("a ReachRegion with a predicate cannot be pickled or made bytes");
+  }
+  std::vector<std::array<double, 5>> shells;
+  for (const Shell& s : region.shells) {
+    shells.push_back({s.center.x(), s.center.y(), s.center.z(), s.min_radius, s.max_radius});
+  }
+  std::vector<std::array<double, 4>> half_spaces;
+  for (const HalfSpace& h : region.half_spaces) {
+    half_spaces.push_back({h.normal.x(), h.normal.y(), h.normal.z(), h.offset});
+  }
+  SealedWriter writer(kKind);
+  writer.add(region.boxes);
+  writer.add(shells);
+  writer.add(half_spaces);
+  writer.add(region.poses);
+  writer.add(std::vector<double>{region.tolerance.distance, region.tolerance.angle});
+  return writer.seal();
+}
+
+ReachRegion from_bytes(const py::bytes& data) {
+  const auto bytes = data.cast<std::string>();
+  SealedReader reader(kKind, bytes, "region");
+  ReachRegion region;
+  region.boxes = reader.next<Box>();
+  for (const auto& s : reader.next<std::array<double, 5>>()) {
+    region.shells.push_back({{s[0], s[1], s[2]}, s[3], s[4]});
+  }
+  for (const auto& h : reader.next<std::array<double, 4>>()) {
+    region.half_spaces.push_back({{h[0], h[1], h[2]}, h[3]});
+  }
+  region.poses = reader.next<Pose>();
+  const auto tolerance = reader.next<double>();
+  reader.require_end();
+  if (tolerance.size() != 2) reader.refuse();
+  region.tolerance = {tolerance[0], tolerance[1]};
+  region.validate();
+  return region;
+}
+
+}  // namespace
+
+void bind_reach(py::module_& module) {
+  const PoseTolerance tolerance;
+  auto type = bound_class<ReachRegion>(module, "ReachRegion",
+                                       R"(Where a robot can put the camera, world frame.
+
+A pose is reachable if its centre lies in at least one of the boxes (where there are any), in at least
+one of the shells (where there are any) and in every half-space, if it is among the poses (where there
+are any), and if the predicate says so.
+
+Parameters
+----------
+boxes : array_like, (n, 2, 3), optional
+    Lowest and highest corners, world [m].
+shells : array_like, (n, 5), optional
+    Centre x y z, smallest and largest radius, world [m].
+half_spaces : array_like, (n, 4), optional
+    Normal, without a unit, and offset [m], world: normal . p >= offset.
+poses : array_like, (n, 4, 4), optional
+    T_world_camera.
+distance, angle : float
+    When two poses are the same one [m], [rad].
+predicate : callable, optional
+    Given T_world_camera (4, 4), returns a truth value. What it raises passes through.
+
+Notes
+-----
+Regions without a predicate are equal by value and can be pickled; one with a predicate is equal to
+itself alone. Holds the GIL, but not for files. Cost: linear in the parts, and in the poses that are asked
+about: some 10 ns for each of both.)");
+  pickle_as_bytes(type, "region", ", if it has no predicate.", &bytes_of, &from_bytes);
+  type.def(py::init(&region_of), py::kw_only(), py::arg("boxes") = py::none(),
+           py::arg("shells") = py::none(), py::arg("half_spaces") = py::none(),
+           py::arg("poses") = py::none(), py::arg("distance") = tolerance.distance,
+           py::arg("angle") = tolerance.angle, py::arg("predicate") = py::none())
+      .def(
+          "contains",
+          [](const ReachRegion& region, const py::object& T_world_camera) {
+            const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+            py::array_t<bool> inside(batch.shape);
+            bool* out = inside.mutable_data();
+            for (const Pose& pose : batch.poses) {
+              *out++ = std::isfinite(pose.m[0]) && region.contains(pose);
+            }
+            return scalar_or_array(inside);
+          },
+          py::arg("T_world_camera"), R"(Which poses are reachable. A bad pose is not.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+
+Returns
+-------
+ndarray, (...), bool
+    A single pose gives a scalar.)")
+      .def(
+          "__eq__", [](const ReachRegion& a, const ReachRegion& b) { return is_same(a, b); },
+          py::is_operator())
+      .def("__repr__", [](const ReachRegion& r) {
+        std::ostringstream text;
+        text << "<ReachRegion " << r.boxes.size() << " boxes, " << r.shells.size() << " shells, "
+             << r.half_spaces.size() << " half-spaces, " << r.poses.size() << " poses"
+             << (r.predicate ? ", predicate" : "") << ">";
+        return text.str();
+      });
+}
+
 namespace {
 
 // Codes of Infeasibility, one a pose.
@@ -73,13 +238,6 @@ max_near_share : float
 num_threads : int
     For arrays of poses; 0: all hardware threads. They ask the predicate of ``reach`` one at a time.
 
-Raises
-------
-ValueError
-    A shape, a body without extent, a number out of its bounds.
-TypeError
-    It is no scene, region or sensor.
-
 Notes
 -----
 Methods may run in many threads at once and leave the GIL while they work. Cost: linear in the poses,
@@ -120,12 +278,7 @@ scene : VoxelScene
 
 Returns
 -------
-FeasibilityChecker
-
-Raises
-------
-TypeError
-    It is no scene.)")
+FeasibilityChecker)")
       .def(
           "feasible",
           [](const FeasibilityChecker& self, const py::object& T_world_camera,
@@ -148,13 +301,7 @@ taken : array_like, (n, 4, 4), optional
 Returns
 -------
 ndarray, (...), bool
-    A single pose gives a scalar.
-
-Raises
-------
-ValueError
-    Another shape or masked entries, or a bad pose among those taken. What the predicate of ``reach``
-    raises passes through.)")
+    A single pose gives a scalar.)")
       .def(
           "reasons",
           [](const FeasibilityChecker& self, const py::object& T_world_camera,
@@ -166,19 +313,13 @@ ValueError
 
 Parameters
 ----------
-T_world_camera : array_like, (..., 4, 4)
-taken : array_like, (n, 4, 4), optional
-    T_world_camera of the views so far.
+T_world_camera, taken
+    As ``feasible``.
 
 Returns
 -------
 ndarray, (...), uint8
-    Indices into ``INFEASIBILITY_NAMES``; 0 is "none". A single pose gives a scalar.
-
-Raises
-------
-ValueError
-    Another shape or masked entries, or a bad pose among those taken, as ``feasible``.)")
+    Indices into ``INFEASIBILITY_NAMES``; 0 is "none". A single pose gives a scalar.)")
       .def("__repr__", [](const FeasibilityChecker& self) {
         return "<FeasibilityChecker of a scene of " +
                std::to_string(self.scene().primitive_count()) + " primitives>";

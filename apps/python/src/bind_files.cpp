@@ -7,16 +7,12 @@
 #include <span>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "arrays.hpp"
-#include "bindings.hpp"
 #include "classes.hpp"
-#include "frame_index.hpp"
 #include "gil.hpp"
 #include "map/depth_images.hpp"
-#include "named.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/reach_toml.hpp"
@@ -28,8 +24,7 @@ namespace {
 // A preset's name or the file's.
 std::string preset_or_file(const py::object& value) {
   std::string text = file_path(value);
-  if (is_sensor_file(text)) require_file(text);
-  return text;
+  return is_sensor_file(text) ? readable_file(value) : text;
 }
 
 FrameSequence read_frames(const py::object& folder, const py::object& sensor,
@@ -50,12 +45,8 @@ FrameSequence read_frames(const py::object& folder, const py::object& sensor,
 }
 
 py::object frame_at(const FrameSequence& self, py::ssize_t index) {
-  const std::size_t i = frame_index(self, index);
-  const auto loaded = [&] {
-    const WithoutGil without_gil;
-    return load_frame(self, i);
-  };
-  const DepthFrame frame = loaded();
+  const std::size_t i = frame_index(self.images.size(), index);
+  const DepthFrame frame = outside_gil([&] { return load_frame(self, i); });
   py::object amplitude = py::none();
   if (!frame.amplitude.empty()) {
     amplitude = image_array(frame.amplitude, frame.height, frame.width);
@@ -69,12 +60,8 @@ py::array_t<double> pose_array(std::span<const Pose> poses) {
 }
 
 py::object read_poses(const py::object& path, bool return_timestamps) {
-  const std::string file = file_path(path);
-  require_file(file);
-  const PoseList list = [&] {
-    const WithoutGil without_gil;
-    return read_tum(file);
-  }();
+  const std::string file = readable_file(path);
+  const PoseList list = outside_gil([&] { return read_tum(file); });
   py::object poses = pose_array(list.poses);
   if (!return_timestamps) return poses;
   return named("TimedPoses", poses, to_array_1d<double>(list.timestamps));
@@ -82,10 +69,9 @@ py::object read_poses(const py::object& path, bool return_timestamps) {
 
 void write_poses(const py::object& path, const py::object& T_world_camera,
                  const py::object& timestamps) {
-  const std::string file = file_path(path);
   const std::vector<Pose> poses = pose_list(T_world_camera, "T_world_camera");
   if (poses.empty()) throw py::value_error("there is no pose to write");
-  require_writable(file);
+  const std::string file = writable_file(path);
   std::vector<double> times;
   if (!timestamps.is_none()) {
     const Doubles given = doubles(timestamps, "timestamps", {-1});
@@ -110,9 +96,7 @@ void bind_toml(py::module_& module) {
       .def_static(
           "load",
           [](const py::object& given) {
-            const std::string file = preset_or_file(given);
-            const WithoutGil without_gil;
-            return load_sensor(file);
+            return outside_gil([file = preset_or_file(given)] { return load_sensor(file); });
           },
           py::arg("preset_or_file"), R"(A sensor from a .toml file, or a preset by its name.
 
@@ -125,23 +109,11 @@ preset_or_file : str or path-like
 
 Returns
 -------
-Sensor
-
-Raises
-------
-FileNotFoundError, OSError
-    It cannot be opened.
-Error
-    A key is missing, unknown, of the wrong type or out of bounds; names file and key.
-ValueError
-    There is no such preset.)")
+Sensor)")
       .def(
           "save",
           [](const Sensor& self, const py::object& path) {
-            const std::string file = file_path(path);
-            require_writable(file);
-            const WithoutGil without_gil;
-            write_sensor_toml(file, self);
+            outside_gil([&, file = writable_file(path)] { write_sensor_toml(file, self); });
           },
           py::arg("path"), R"(Writes a .toml file, whole or not at all.
 
@@ -150,20 +122,12 @@ Runs without the GIL. Cost: a file of some lines, 1 ms.
 Parameters
 ----------
 path : path-like
-    ``load`` takes names that end in .toml.
-
-Raises
-------
-OSError
-    It cannot be written.)");
+    ``load`` takes names that end in .toml.)");
   class_of<ReachRegion>(module, "ReachRegion")
       .def_static(
           "load",
           [](const py::object& path) {
-            const std::string file = file_path(path);
-            require_file(file);
-            const WithoutGil without_gil;
-            return read_reach_toml(file);
+            return outside_gil([file = readable_file(path)] { return read_reach_toml(file); });
           },
           py::arg("path"), R"(A region from a .toml file: boxes, shells, half-spaces, poses.
 
@@ -175,37 +139,22 @@ path : path-like
 
 Returns
 -------
-ReachRegion
-
-Raises
-------
-FileNotFoundError, OSError
-    It, or the file of poses that it names, cannot be opened.
-Error
-    A key is missing, unknown, of the wrong type or out of bounds; names file and key.)")
+ReachRegion)")
       .def(
           "save",
           [](const ReachRegion& self, const py::object& path) {
-            const std::string file = file_path(path);
-            require_writable(file);
-            const WithoutGil without_gil;
-            write_reach_toml(file, self);
+            outside_gil([&, file = writable_file(path)] { write_reach_toml(file, self); });
           },
           py::arg("path"),
           R"(Writes a .toml file; poses go into NAME.poses.txt beside it, replacing one of that name.
+
+A region with a predicate is refused, and one with poses under a name that does not end in .toml.
 
 Runs without the GIL. Cost: linear in the poses, 2 µs each, and 1 ms.
 
 Parameters
 ----------
-path : path-like
-
-Raises
-------
-ValueError
-    The region has a predicate, or poses and a name that does not end in .toml.
-OSError
-    It cannot be written.)");
+path : path-like)");
 }
 
 void bind_frames(py::module_& module) {
@@ -213,10 +162,9 @@ void bind_frames(py::module_& module) {
       module, "FrameSequence",
       R"(A folder of depth frames, read one by one. Made by ``read_frames``.
 
-``len(frames)``, ``frames[i]`` and iteration give a ``Frame`` (depth, T_world_camera, amplitude): depth (height,
-width), float32, along the optical axis [m] (0: nothing known, inf: nothing up to max_range), without
-the error of the sensor's range_calibration, the pose (4, 4), not finite where it is lost or missing,
-and the amplitude [1/m**2] or None. ``ViewPlanner.add_frame`` reads and judges in one.
+``len(frames)``, ``frames[i]`` and iteration give a ``Frame``, its depth without the error of the sensor's
+range_calibration, its pose not finite where it is lost or missing. ``ViewPlanner.add_frame`` reads and judges
+in one.
 
 Notes
 -----
@@ -243,26 +191,10 @@ index : int
 
 Returns
 -------
-Frame
-    A named tuple of the three.
-depth : ndarray, (height, width), float32
-    Along the optical axis [m].
-T_world_camera : ndarray, (4, 4), float64
-amplitude : ndarray, (height, width), float32, or None
-    [1/m**2]
-
-Raises
-------
-IndexError
-    There is no such frame.
-OSError, Error
-    Its image cannot be read or is wrong.)")
-      .def_property_readonly(
-          "sensor", [](const FrameSequence& self) { return self.sensor; },
-          "Sensor: with the folder's own intrinsics, where it has them")
-      .def_property_readonly(
-          "depth_scale", [](const FrameSequence& self) { return self.depth_scale; },
-          "float: [m] per unit of the images")
+Frame)")
+      .def_readonly("sensor", &FrameSequence::sensor,
+                    "Sensor: with the folder's own intrinsics, where it has them")
+      .def_readonly("depth_scale", &FrameSequence::depth_scale, "float: [m] per unit of the images")
       .def_property_readonly(
           "poses", [](const FrameSequence& self) { return pose_array(self.poses); },
           "ndarray, (n, 4, 4), float64: T_world_camera")
@@ -295,16 +227,7 @@ out_of_range : {"carve", "invalid"}, optional
 
 Returns
 -------
-FrameSequence
-
-Raises
-------
-OSError
-    A file is missing.
-Error
-    A file is wrong; named.
-ValueError
-    There is no sensor, or the scale is not positive.)");
+FrameSequence)");
 }
 
 }  // namespace
@@ -327,14 +250,7 @@ Returns
 -------
 T_world_camera : ndarray, (n, 4, 4), float64
 timestamps : ndarray, (n,), float64
-    [s]; only if return_timestamps: a named tuple ``TimedPoses`` of the two then.
-
-Raises
-------
-FileNotFoundError, OSError
-    It cannot be opened.
-Error
-    A line is wrong; named.)");
+    [s]; only if return_timestamps: a named tuple ``TimedPoses`` of the two then.)");
   module.def("write_poses", &write_poses, py::arg("path"), py::arg("T_world_camera"),
              py::arg("timestamps") = py::none(),
              R"(Writes poses in the TUM format, whole or not at all.
@@ -346,14 +262,7 @@ Parameters
 path : path-like
 T_world_camera : array_like, (n, 4, 4)
 timestamps : array_like, (n,), optional
-    [s]; 0, 1, 2, ... unless given.
-
-Raises
-------
-ValueError
-    There is no pose, a pose or timestamp is not finite, or their counts differ.
-OSError
-    It cannot be written.)");
+    [s]; 0, 1, 2, ... unless given.)");
 }
 
 }  // namespace viewgain::python

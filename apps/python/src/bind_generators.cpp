@@ -7,7 +7,6 @@
 #include <string>
 
 #include "arrays.hpp"
-#include "bindings.hpp"
 #include "viewgain/core/generators.hpp"
 
 namespace viewgain::python {
@@ -50,20 +49,25 @@ constexpr const char* kReturns = R"(
 Returns
 -------
 ndarray, (n, 4, 4), float64
-    T_world_camera, as many as were asked for.
-
-Raises
-------
-ValueError
-    No pose is asked for, a radius is not positive and finite, or another number not finite.
-Error
-    More than 100 million poses.)";
+    T_world_camera, as many as were asked for: 1 to 100 million.)";
 
 std::string doc_of(const char* summary, const char* parameters) {
   return std::string(summary) +
          "\n\nHolds the GIL. Cost: linear in the poses, some 0.15 µs each.\n\n"
          "Parameters\n----------\n" +
          parameters + kCenter + kReturns;
+}
+
+// A function of count, radius and centre.
+template <auto poses>
+void def_lattice(py::module_& module, const char* name, const char* summary) {
+  module.def(
+      name,
+      [](std::size_t count, double radius, const py::object& center) {
+        return pose_array(poses(count, radius, vector3(center, "center")));
+      },
+      py::arg("count"), py::arg("radius"), py::kw_only(), py::arg("center") = kOrigin,
+      doc_of(summary, "count : int\nradius : float\n    [m]\n").c_str());
 }
 
 }  // namespace
@@ -87,30 +91,13 @@ up : array_like, (3,)
 Returns
 -------
 ndarray, (..., 4, 4), float64
-    T_world_camera.
-
-Raises
-------
-ValueError
-    Another shape; an eye equals its target, up is zero, or a number is not finite.)");
-  module.def(
-      "sphere_poses",
-      [](std::size_t count, double radius, const py::object& center) {
-        return pose_array(sphere_poses(count, radius, vector3(center, "center")));
-      },
-      py::arg("count"), py::arg("radius"), py::kw_only(), py::arg("center") = kOrigin,
-      doc_of("Fibonacci lattice on a sphere, looking at its centre, image up = world up.",
-             "count : int\nradius : float\n    [m]\n")
-          .c_str());
-  module.def(
-      "dome_poses",
-      [](std::size_t count, double radius, const py::object& center) {
-        return pose_array(dome_poses(count, radius, vector3(center, "center")));
-      },
-      py::arg("count"), py::arg("radius"), py::kw_only(), py::arg("center") = kOrigin,
-      doc_of("The upper half of the lattice of ``sphere_poses``, with ``count`` poses.",
-             "count : int\nradius : float\n    [m]\n")
-          .c_str());
+    T_world_camera.)");
+  def_lattice<sphere_poses>(
+      module, "sphere_poses",
+      "Fibonacci lattice on a sphere, looking at its centre, image up = world up.");
+  def_lattice<dome_poses>(
+      module, "dome_poses",
+      "The upper half of the lattice of ``sphere_poses``, with ``count`` poses.");
   module.def(
       "orbit_poses",
       [](std::size_t count, double radius, double elevation, double start,

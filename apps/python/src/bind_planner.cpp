@@ -4,36 +4,95 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "arrays.hpp"
 #include "batch_call.hpp"
-#include "bindings.hpp"
 #include "classes.hpp"
 #include "evaluator.hpp"
-#include "frame_index.hpp"
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/depth_images.hpp"
-#include "map/integration.hpp"
 #include "map/shared_grid.hpp"
-#include "named.hpp"
-#include "planner.hpp"
 #include "planner_docs.hpp"
-#include "python_measure.hpp"
-#include "scene.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/planner/view_planner.hpp"
 
 namespace viewgain::python {
 namespace {
+
+// Python's planner: whoever calls it while it is at work is told so.
+class Planner {
+ public:
+  Planner(Sensor of, ViewPlanner planner) : sensor_(std::move(of)), planner_(std::move(planner)) {}
+
+  [[nodiscard]] const Sensor& sensor() const noexcept { return sensor_; }
+  /// For people; asks nothing of a planner that is at work.
+  [[nodiscard]] std::string text() const {
+    return std::string("<ViewPlanner of ").append(sensor_.name).append(busy_ ? ", at work>" : ">");
+  }
+
+  /// Calls f(ViewPlanner&); with the GIL, which f may let go.
+  template <typename F>
+  auto use(const F& f) {
+    if (busy_.exchange(true)) {
+      throw std::runtime_error("ViewPlanner: one call at a time; another one is at work");
+    }
+    const Free free{busy_};
+    return f(planner_);
+  }
+  /// The same without the GIL; f must not touch Python.
+  template <typename F>
+  auto run(const F& f) {
+    return use([&](ViewPlanner& planner) {
+      const WithoutGil without_gil;
+      return f(planner);
+    });
+  }
+
+ private:
+  struct Free {
+    std::atomic<bool>& busy;
+    ~Free() { busy = false; }
+  };
+
+  Sensor sensor_;
+  ViewPlanner planner_;
+  std::atomic<bool> busy_{false};
+};
+
+// VIEWPOINTSGENERATION by a function of Python's.
+class PythonGeneration : public ViewpointGeneration {
+ public:
+  /// The map is its planner's.
+  PythonGeneration(py::object callable, std::string name, const MapModel& map)
+      : call_(std::move(callable)), name_(std::move(name)), map_(map) {}
+
+  Proposal generate(const Pose&) override {
+    const auto grid = std::make_shared<SharedGrid>(map_.grid().clone());
+    const std::vector<Pose> poses =
+        with_gil([&] { return pose_list(call_(grid), "what the generator returns"); });
+    Proposal proposal;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      proposal.candidates.push_back({poses[i], name_, std::nullopt, i});
+    }
+    return proposal;
+  }
+
+ private:
+  PythonCall call_;
+  std::string name_;
+  const MapModel& map_;
+};
 
 std::unique_ptr<Planner> make(
     const Given<Sensor>& of, double voxel_size, const py::object& workspace,
@@ -71,13 +130,9 @@ std::unique_ptr<Planner> make(
   if (state.is_none()) {
     return std::make_unique<Planner>(sensor, ViewPlanner(sensor, config, exec));
   }
-  const std::string file = file_path(state);
-  require_file(file);
-  const auto loaded = [&] {
-    const WithoutGil without_gil;
-    return ViewPlanner::load(file, sensor, config, exec);
-  };
-  return std::make_unique<Planner>(sensor, loaded());
+  const std::string file = readable_file(state);
+  return std::make_unique<Planner>(
+      sensor, outside_gil([&] { return ViewPlanner::load(file, sensor, config, exec); }));
 }
 
 // A pose that may be lost, and is NaN then: numbers in the right shape.
@@ -107,7 +162,7 @@ py::object add(Planner& self, const py::object& depth, const py::object& T_world
 }
 
 py::object add_frame(Planner& self, const Given<FrameSequence>& frames, py::ssize_t index) {
-  const auto i = frame_index(*frames, index);
+  const auto i = frame_index(frames->images.size(), index);
   return to_python(self.run([&](ViewPlanner& planner) {
     const FrameReading read = read_frame(*frames, i);
     const Pose& T_world_camera = frames->poses.at(i);
@@ -221,8 +276,7 @@ void bind_planner(py::module_& module) {
       .def(
           "save",
           [](Planner& self, const py::object& path) {
-            const std::string file = file_path(path);
-            require_writable(file);
+            const std::string file = writable_file(path);
             self.run([&](ViewPlanner& planner) { planner.save(file); });
           },
           py::arg("path"), kSaveDoc)

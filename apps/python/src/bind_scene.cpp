@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -10,12 +9,11 @@
 #include <utility>
 
 #include "arrays.hpp"
-#include "bindings.hpp"
 #include "classes.hpp"
+#include "evaluator.hpp"
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/shared_grid.hpp"
-#include "scene.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain::python {
@@ -47,8 +45,7 @@ HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_si
   const Index3 dims = grid.dims();
   if (py::isinstance<py::str>(hazard) || py::isinstance<py::bytes>(hazard) ||
       py::hasattr(hazard, "__fspath__")) {
-    const std::string file = file_path(hazard);
-    require_file(file);
+    const std::string file = readable_file(hazard);
     const WithoutGil without_gil;
     config.volume = std::make_shared<const HazardVolume>(load_hazard_vdb(file, grid));
     return config;
@@ -95,18 +92,9 @@ hazard : float, path or array_like, the grid's shape, optional
 num_threads : int
     Of the build; 0: all hardware threads.
 
-Raises
-------
-ValueError
-    A shape, an index out of range, a box inside out, a number out of its bounds.
-TypeError
-    It is no grid; the message says where one comes from.
-OSError, Error
-    hazard's file cannot be read or is wrong; Embree fails; beyond 2**23 blocks of voxels.
-
 Notes
 -----
-The GIL is left while a scene is made. Cost: linear in the blocks of voxels that are not free, about
+The GIL is left while a scene is made, of at most 2**23 blocks of voxels. Cost: linear in the blocks of voxels that are not free, about
 0.2 ms per 1,000; by the surface and the combined gain some ms more when an evaluator first asks.
 ``update`` is several times faster where little has changed; properties take constant time.)");
   refuse_pickling(type);
@@ -145,14 +133,7 @@ num_threads : int
 
 Returns
 -------
-VoxelScene
-
-Raises
-------
-TypeError
-    It is no grid.
-Error
-    As the constructor.)")
+VoxelScene)")
       .def_property_readonly(
           "isa", [](const Scene& self) { return std::string(self.scene->isa()); },
           "str: the instruction set that traces it")

@@ -2,22 +2,138 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "arrays.hpp"
-#include "bindings.hpp"
 #include "classes.hpp"
 #include "given.hpp"
 #include "map/depth_images.hpp"
-#include "named.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/support/noise_fields.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::python {
+namespace py = pybind11;
+
+namespace {
+
+// A noise model: its parameters are keywords of the constructor, with the library's defaults, and
+// attributes that cannot be set. `docs` has a line for each.
+template <typename Model>
+void bind_model(py::module_& module, const char* name, const char* doc,
+                const std::array<const char*, NoiseLayout<Model>::kFields.size()>& docs) {
+  using Layout = NoiseLayout<Model>;
+  auto type = bound_class<Model>(module, name, doc);
+  std::vector<const char*> names;
+  for (const auto& field : Layout::kFields) {
+    type.def_readonly(field.name, field.member, docs[names.size()]);
+    names.push_back(field.name);
+  }
+  pickle_as_call(type, std::move(names));
+  const auto with_constructor = [&]<std::size_t... i>(std::index_sequence<i...>) {
+    const Model defaults;
+    type.def(py::init([](decltype(i, double())... values) {
+               Model model;
+               ((model.*Layout::kFields[i].member = values), ...);
+               return model;
+             }),
+             py::kw_only(),
+             (py::arg(Layout::kFields[i].name) = defaults.*Layout::kFields[i].member)...);
+  };
+  with_constructor(std::make_index_sequence<Layout::kFields.size()>());
+  type.def(
+          "__eq__", [](const Model& a, const Model& b) { return a == b; }, py::is_operator())
+      .def("__repr__", [text = std::string(name)](const Model& model) {
+        Fields fields;
+        for (const auto& field : Layout::kFields) fields.add(field.name, model.*field.member);
+        return fields.in(text.c_str());
+      });
+}
+
+}  // namespace
+
+void bind_noise(py::module_& module) {
+  bind_model<ShotNoise>(module, "ShotNoise", R"(Time-of-flight shot noise.
+
+``axial = reference_sigma * (t / reference_range) * sqrt(reference_integration_time /
+integration_time) / sqrt(max(cos, 0.1))``, ``lateral = t / fx``; t is the range along the ray [m].
+
+Parameters
+----------
+reference_sigma, reference_range : float
+    [m]
+reference_integration_time, integration_time : float
+    [s]
+modulation_frequency : float
+    Of the light [Hz]; 0: ranges are unambiguous.
+min_amplitude : float
+    cos / t**2 under which a reading is invalid [1/m**2].)",
+                        {"float: along the ray at the reference [m]", "float: of the reference [m]",
+                         "float: of the reference [s]", "float: [s]",
+                         "float: of the light [Hz]; 0: ranges are unambiguous",
+                         "float: cos / t**2 under which a reading is invalid [1/m**2]"});
+
+  bind_model<StructuredLightNoise>(module, "StructuredLightNoise",
+                                   R"(Structured light (Nguyen, Izadi, Lovell, 2012).
+
+``axial = offset + quadratic * (z - vertex)**2``, plus ``grazing / sqrt(z) * theta**2 / (pi/2 -
+theta)**2`` beyond 60 degrees; ``lateral = (lateral_px + lateral_grazing_px * theta / (pi/2 - theta))
+* z / fx``; z is taken as the range along the ray [m].
+
+Parameters
+----------
+offset, vertex : float
+    [m]
+quadratic : float
+    [1/m]
+grazing : float
+    [m**1.5]
+lateral_px, lateral_grazing_px : float
+    [px])",
+                                   {"float: [m]", "float: [1/m]", "float: [m]", "float: [m**1.5]",
+                                    "float: [px]", "float: [px]"});
+
+  bind_model<StereoNoise>(
+      module, "StereoNoise",
+      R"(Stereo: ``axial = t**2 * subpixel / (focal * baseline)``, ``lateral = t / fx``.
+
+Parameters
+----------
+subpixel : float
+    Matching error [px].
+focal : float
+    Focal length [px]; 0 stands for the camera's fx.
+baseline : float
+    [m])",
+      {"float: matching error [px]", "float: [px]", "float: [m]"});
+
+  bind_model<QuadraticNoise>(module, "QuadraticNoise",
+                             R"(``axial = offset + quadratic * t**2``, ``lateral = t / fx``.
+
+Parameters
+----------
+offset : float
+    [m]
+quadratic : float
+    [1/m])",
+                             {"float: [m]", "float: [1/m]"});
+
+  bind_model<ConstantNoise>(module, "ConstantNoise",
+                            R"(The same everywhere; equal sigmas make an isotropic sensor.
+
+Parameters
+----------
+sigma_axial : float
+    Along the ray [m].
+sigma_lateral : float
+    Across the ray [m].)",
+                            {"float: along the ray [m]", "float: across the ray [m]"});
+}
+
 namespace {
 
 // (n, 2); none for None.
@@ -73,16 +189,9 @@ pose_sigma : sequence of float, (2,), optional
     centre: of its position in each axis [m], of each component of the rotation vector [rad]. Maps
     and gains count it into each reading.
 
-Raises
-------
-ValueError
-    Names the field that is out of its bounds.
-TypeError
-    camera is none, noise is no noise model, a number is none.
-
 Notes
 -----
-Equal by value; can be pickled. Holds the GIL. Cost: some µs; linear in the rows of
+Equal by value; can be pickled. Refuses parameters of the noise that are out of their bounds. Holds the GIL. Cost: some µs; linear in the rows of
 range_calibration.)");
   pickle_as_call(type, {"camera", "min_range", "max_range", "working_distance", "noise", "name",
                         "T_flange_camera", "body_size", "range_calibration", "pose_sigma"});
@@ -110,13 +219,12 @@ range_calibration.)");
            py::arg("range_calibration") = py::none(),
            py::arg("pose_sigma") = std::array<double, 2>{0, 0})
       .def_readonly("name", &Sensor::name, "str")
-      .def_property_readonly(
-          "camera", [](const Sensor& sensor) { return sensor.camera; }, "PinholeCamera")
+      .def_readonly("camera", &Sensor::camera, "PinholeCamera")
       .def_readonly("min_range", &Sensor::min_range, "float: along the ray [m]")
       .def_readonly("max_range", &Sensor::max_range, "float: along the ray [m]")
       .def_readonly("working_distance", &Sensor::working_distance, "float: [m]")
-      .def_property_readonly(
-          "noise", [](const Sensor& sensor) { return sensor.noise; },
+      .def_readonly(
+          "noise", &Sensor::noise,
           "ShotNoise or StructuredLightNoise or StereoNoise or QuadraticNoise or ConstantNoise")
       .def_property_readonly(
           "T_flange_camera",
@@ -158,12 +266,7 @@ depth : array_like, (height, width)
 Returns
 -------
 ndarray, (height, width), float32
-    Along the optical axis [m]; 0 where nothing is known.
-
-Raises
-------
-ValueError
-    Another shape or dtype, or millimetres.)")
+    Along the optical axis [m]; 0 where nothing is known.)")
       .def(
           "sigmas",
           [](const Sensor& sensor, double t, double cos_incidence) {
@@ -176,19 +279,13 @@ ValueError
 Parameters
 ----------
 t : float
-    [m], >= 0.
+    [m], >= 0; whether it is one of the sensor's ranges nobody looks.
 cos_incidence : float
     Cosine of the angle between ray and surface normal; 1: frontal.
 
 Returns
 -------
-Sigmas
-    axial and lateral, a named tuple [m].
-
-Raises
-------
-TypeError
-    Something is no number. Whether t is one of the sensor's ranges nobody looks.)")
+Sigmas)")
       .def(
           "__eq__", [](const Sensor& a, const Sensor& b) { return is_same(a, b); },
           py::is_operator())
@@ -214,12 +311,7 @@ name : str
 
 Returns
 -------
-Sensor
-
-Raises
-------
-ValueError
-    There is no such preset; names those that there are.)");
+Sensor)");
   module.def(
       "sensor_preset_names", [] { return sensor_preset_names(); },
       "The names that ``sensor_preset`` takes.\n\nReturns\n-------\nlist of str");
@@ -243,14 +335,7 @@ sensor : Sensor
 Returns
 -------
 float
-    [m]
-
-Raises
-------
-ValueError
-    voxel_size is not positive and finite.
-TypeError
-    It is no sensor.)");
+    [m])");
 }
 
 }  // namespace viewgain::python

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "arrays.hpp"
@@ -15,7 +14,6 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/depth_images.hpp"
-#include "python_measure.hpp"
 #include "viewgain/raycast/depth_image.hpp"
 
 namespace viewgain::python {
@@ -38,14 +36,9 @@ struct ContributionRow {
 
 namespace {
 
-std::vector<RayHit> trace(const Evaluator& self, const py::object& T_world_camera) {
-  const Pose pose = one_pose(T_world_camera, "T_world_camera");
-  const WithoutGil without_gil;
-  return self.evaluator.trace(pose);
-}
-
 py::array_t<HitRow> trace_array(const Evaluator& self, const py::object& T_world_camera) {
-  const std::vector<RayHit> hits = trace(self, T_world_camera);
+  const Pose pose = one_pose(T_world_camera, "T_world_camera");
+  const std::vector<RayHit> hits = outside_gil([&] { return self.evaluator.trace(pose); });
   py::array_t<HitRow> rows(Shape{self.height(), self.width()});
   std::transform(hits.begin(), hits.end(), rows.mutable_data(), [](const RayHit& hit) {
     return HitRow{
@@ -56,11 +49,7 @@ py::array_t<HitRow> trace_array(const Evaluator& self, const py::object& T_world
 
 py::array_t<float> depth(const Evaluator& self, const py::object& T_world_camera) {
   const Pose pose = one_pose(T_world_camera, "T_world_camera");
-  DepthImage image;
-  {
-    const WithoutGil without_gil;
-    image = depth_image(self.evaluator, pose);
-  }
+  const DepthImage image = outside_gil([&] { return depth_image(self.evaluator, pose); });
   return image_array(image.depth, image.height, image.width);
 }
 
@@ -68,25 +57,20 @@ py::array_t<ContributionRow> contributions(const Evaluator& self,
                                            const py::object& T_world_camera) {
   const Pose pose = one_pose(T_world_camera, "T_world_camera");
   std::vector<ContributionRow> rows;
-  {
-    const WithoutGil without_gil;
-    for (const VoxelContribution& c : self.evaluator.contributions(pose)) {
-      rows.push_back({{c.voxel.x, c.voxel.y, c.voxel.z},
-                      static_cast<std::uint8_t>(c.state),
-                      c.rays,
-                      c.gain,
-                      c.expected_rays});
-    }
+  for (const VoxelContribution& c :
+       outside_gil([&] { return self.evaluator.contributions(pose); })) {
+    rows.push_back({{c.voxel.x, c.voxel.y, c.voxel.z},
+                    static_cast<std::uint8_t>(c.state),
+                    c.rays,
+                    c.gain,
+                    c.expected_rays});
   }
   return to_array_1d<ContributionRow>(rows);
 }
 
 py::object outcomes(const Evaluator& self, const py::object& T_world_camera) {
   const Pose pose = one_pose(T_world_camera, "T_world_camera");
-  return named_outcomes([&] {
-    const WithoutGil without_gil;
-    return self.evaluator.outcomes(pose);
-  }());
+  return named_outcomes(outside_gil([&] { return self.evaluator.outcomes(pose); }));
 }
 
 py::object evaluate_own(const Evaluator& self, const py::object& T_world_camera,
@@ -183,14 +167,7 @@ Returns
 -------
 ndarray, (...), float64
     What measure returns, in its unit; NaN for bad poses, 0 for cameras in an occupied voxel; neither is asked about. A single pose gives
-    a scalar.
-
-Raises
-------
-TypeError
-    measure cannot be called, or returned no number.
-ValueError
-    As ``evaluate``.)");
+    a scalar.)");
 }
 
 }  // namespace viewgain::python

@@ -42,18 +42,9 @@ tracer : {"automatic", "embree", "sweep"}
 num_threads : int
     0: all hardware threads.
 
-Raises
-------
-ValueError
-    Names the value that is out of its bounds.
-TypeError
-    It is no scene (a grid is none: ``VoxelScene(grid)`` makes one) or no sensor; a weight is no number.
-
 Notes
 -----
-Methods may run in many threads at once and leave the GIL while they work; Ctrl-C ends a batch. They raise
-ValueError for poses of another shape, without real numbers or with masked entries; those of a single view
-(``trace``, ``depth``, ``contributions``, ``outcomes``) for a bad pose, too.
+Methods may run in many threads at once and leave the GIL while they work; Ctrl-C ends a batch.
 
 Cost: linear in poses and rays per pose; some 120 million rays a second on two threads for a map of 128**3
 voxels by the paper's gain, which is 4,800 images of 176x144 pixels; a quarter of that by the surface gain,
@@ -75,12 +66,7 @@ scene : VoxelScene
 
 Returns
 -------
-GainEvaluator
-
-Raises
-------
-TypeError
-    It is no scene.)";
+GainEvaluator)";
 
 inline constexpr const char* kEvaluateDoc =
     R"(The expected gains of poses.
@@ -97,12 +83,7 @@ Returns
 -------
 ndarray, (...), float64
     [nat], for trace and the surface gain [m**2]; NaN for bad poses and for those not reached before a stop. A single
-    pose gives a scalar.
-
-Raises
-------
-ValueError
-    Another shape, no real numbers, masked entries; with strict a bad pose, by its index.)";
+    pose gives a scalar.)";
 
 inline constexpr const char* kEvaluateDetailedDoc =
     R"(The expected gains of poses and what they are made of.
@@ -181,15 +162,10 @@ seed, control
 
 Returns
 -------
-RacedViews
-
-Raises
-------
-ValueError
-    The time is negative; or as ``race``.)";
+RacedViews)";
 
 inline constexpr const char* kBestSetDoc =
-    R"(Up to k poses that are good together, chosen one after the other, by the paper's gain.
+    R"(Up to k poses that are good together, chosen one after the other, with gain "paper" alone.
 
 Cost: up to k times twice that of ``evaluate``, and memory for the voxels that are touched.
 
@@ -205,12 +181,7 @@ Returns
 indices : ndarray, (<= k,), int64
     In the order of their choice.
 gains : ndarray, (<= k,), structured
-    What each adds to those before it; only if return_gains.
-
-Raises
-------
-ValueError
-    The gain is not "paper"; or as ``best``.)";
+    What each adds to those before it; only if return_gains.)";
 
 inline constexpr const char* kApproximateDoc =
     R"(Estimates of the gains from a part of each view's rays.
@@ -230,11 +201,6 @@ control : BatchControl, optional
 Returns
 -------
 ndarray, (...), structured
-    gain, standard_error, in the unit of ``evaluate``, rays that were traced. A single pose gives a scalar.
-
-Raises
-------
-ValueError
-    The share is not in (0, 1]; or as ``evaluate``.)";
+    gain, standard_error, in the unit of ``evaluate``, rays that were traced. A single pose gives a scalar.)";
 
 }  // namespace viewgain::python

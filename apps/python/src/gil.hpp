@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 #include <unistd.h>
 
+#include <memory>
 #include <utility>
 
 namespace viewgain::python {
@@ -37,6 +38,13 @@ class WithoutGil {
  private:
   PyThreadState* state_;
 };
+
+/// f() without the GIL, with which it is called; f must not touch Python.
+template <typename F>
+auto outside_gil(const F& f) {
+  const WithoutGil without_gil;
+  return f();
+}
 
 /// Holds the GIL as long as it lives, on any thread. For callbacks use with_gil.
 class WithGil {
@@ -86,5 +94,22 @@ pybind11::object call_python(const pybind11::object& callable, Args&&... args) {
   if (answer == nullptr) throw pybind11::error_already_set();
   return pybind11::reinterpret_steal<pybind11::object>(answer);
 }
+
+/// A callable of Python's that C++ may keep, copy and drop on any thread, with the GIL or without.
+class PythonCall {
+ public:
+  explicit PythonCall(pybind11::object callable)
+      : callable_(new pybind11::object(std::move(callable)),
+                  [](pybind11::object* held) { with_gil([&] { delete held; }); }) {}
+
+  /// Call with the GIL.
+  template <typename... Args>
+  pybind11::object operator()(Args&&... args) const {
+    return call_python(*callable_, std::forward<Args>(args)...);
+  }
+
+ private:
+  std::shared_ptr<pybind11::object> callable_;
+};
 
 }  // namespace viewgain::python

@@ -38,51 +38,44 @@ struct GivenOrNone {
   operator Class*() const { return value; }
 };
 
-/// What the argument is called wherever one is taken, and where one comes from.
+/// What an argument of the class is called wherever one is taken, and where one comes from.
+struct ArgumentWords {
+  const char *name, *source;
+};
 template <typename Class>
-inline constexpr const char* kArgument = "the argument";
-template <typename Class>
-inline constexpr const char* kSource = "";
+inline constexpr ArgumentWords kWords{"the argument", ""};
 template <>
-inline constexpr const char* kArgument<SharedGrid> = "grid";
+inline constexpr ArgumentWords kWords<SharedGrid>{
+    "grid",
+    "; BeliefGrid.from_labels makes one of an array of states, BeliefGrid.load reads a file"};
 template <>
-inline constexpr const char* kSource<SharedGrid> =
-    "; BeliefGrid.from_labels makes one of an array of states, BeliefGrid.load reads a file";
+inline constexpr ArgumentWords kWords<FrameSequence>{"frames",
+                                                     "; read_frames opens a folder of them"};
 template <>
-inline constexpr const char* kArgument<FrameSequence> = "frames";
+inline constexpr ArgumentWords kWords<Scene>{"scene",
+                                             "; VoxelScene(grid) makes one of a BeliefGrid"};
 template <>
-inline constexpr const char* kSource<FrameSequence> = "; read_frames opens a folder of them";
+inline constexpr ArgumentWords kWords<Sensor>{
+    "sensor", "; sensor_preset(name) and Sensor.load(path) give one"};
 template <>
-inline constexpr const char* kArgument<Scene> = "scene";
+inline constexpr ArgumentWords kWords<PinholeCamera>{
+    "camera", "; PinholeCamera.from_matrix makes one of an intrinsic matrix"};
 template <>
-inline constexpr const char* kSource<Scene> = "; VoxelScene(grid) makes one of a BeliefGrid";
+inline constexpr ArgumentWords kWords<Control>{"control",
+                                               "; BatchControl(progress) makes one of a function"};
 template <>
-inline constexpr const char* kArgument<Sensor> = "sensor";
+inline constexpr ArgumentWords kWords<ReachRegion>{"reach", ""};
 template <>
-inline constexpr const char* kSource<Sensor> =
-    "; sensor_preset(name) and Sensor.load(path) give one";
-template <>
-inline constexpr const char* kArgument<PinholeCamera> = "camera";
-template <>
-inline constexpr const char* kSource<PinholeCamera> =
-    "; PinholeCamera.from_matrix makes one of an intrinsic matrix";
-template <>
-inline constexpr const char* kArgument<Control> = "control";
-template <>
-inline constexpr const char* kSource<Control> = "; BatchControl(progress) makes one of a function";
-template <>
-inline constexpr const char* kArgument<ReachRegion> = "reach";
-template <>
-inline constexpr const char* kArgument<SurfaceMesh> = "surface";
+inline constexpr ArgumentWords kWords<SurfaceMesh>{"surface", ""};
 
 template <typename Class>
 [[noreturn]] void refuse_class(const pybind11::handle& value) {
   const auto name_of = [](const pybind11::handle& type) {
     return type.attr("__name__").template cast<std::string>();
   };
-  throw pybind11::type_error(std::string(kArgument<Class>) + " must be a " +
+  throw pybind11::type_error(std::string(kWords<Class>.name) + " must be a " +
                              name_of(pybind11::type::of<Class>()) + ", not " +
-                             name_of(pybind11::type::handle_of(value)) + kSource<Class>);
+                             name_of(pybind11::type::handle_of(value)) + kWords<Class>.source);
 }
 
 }  // namespace viewgain::python
@@ -103,27 +96,20 @@ struct type_caster<viewgain::python::Given<Class>> {
   }
   operator viewgain::python::Given<Class>() const { return {value_}; }
 
- private:
+ protected:
   Class* value_ = nullptr;  // the object's, which Python keeps during the call
 };
 
 template <typename Class>
-struct type_caster<viewgain::python::GivenOrNone<Class>> {
+struct type_caster<viewgain::python::GivenOrNone<Class>>
+    : type_caster<viewgain::python::Given<Class>> {
+  using Base = type_caster<viewgain::python::Given<Class>>;
   static constexpr auto name = const_name("Optional[") + make_caster<Class>::name + const_name("]");
   template <typename>
   using cast_op_type = viewgain::python::GivenOrNone<Class>;
 
-  bool load(handle from, bool convert) {
-    if (from.is_none()) return true;
-    type_caster<viewgain::python::Given<Class>> caster;
-    caster.load(from, convert);
-    value_ = static_cast<viewgain::python::Given<Class>>(caster).value;
-    return true;
-  }
-  operator viewgain::python::GivenOrNone<Class>() const { return {value_}; }
-
- private:
-  Class* value_ = nullptr;
+  bool load(handle from, bool convert) { return from.is_none() || Base::load(from, convert); }
+  operator viewgain::python::GivenOrNone<Class>() const { return {this->value_}; }
 };
 
 }  // namespace pybind11::detail

@@ -1,15 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/pybind11.h>
+#include <unistd.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <new>
 
-#include "bindings.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::python {
 
 namespace py = pybind11;
+
+// The parts of the module.
+void bind_control(py::module_&), bind_noise(py::module_&), bind_camera(py::module_&),
+    bind_sensors(py::module_&), bind_generators(py::module_&), bind_grid(py::module_&),
+    bind_scene(py::module_&), bind_integrator(py::module_&), bind_cloud(py::module_&),
+    bind_reach(py::module_&), bind_feasibility(py::module_&), bind_simulation(py::module_&),
+    bind_evaluator(py::module_&), bind_files(py::module_&), bind_parts(py::module_&),
+    bind_planner(py::module_&);
 
 namespace {
 
@@ -22,7 +33,20 @@ PyObject* python_type(ErrorCode code) {
   return error_type;
 }
 
-}  // namespace
+// Debian's OpenVDB loads log4cplus, which starts threads as soon as it is loaded. A forked child
+// has none of them, but it has the exit handler that waits for them, for ever. What is registered
+// last runs first, so this one ends the process before it comes to that; Python has by then been
+// through its own end, atexit functions included. Handlers that the parent registered in C are left
+// out, which is how a child should end that did not exec.
+void leave_at_exit() {
+  const int failed = on_exit(
+      [](int status, void*) {
+        std::fflush(nullptr);
+        _exit(status);
+      },
+      nullptr);
+  if (failed != 0) throw std::bad_alloc();
+}
 
 void bind_errors(py::module_& module) {
   error_type = PyErr_NewExceptionWithDoc(
@@ -44,6 +68,7 @@ void bind_errors(py::module_& module) {
   });
 }
 
+}  // namespace
 }  // namespace viewgain::python
 
 PYBIND11_MODULE(_viewgain, module) {
@@ -53,23 +78,14 @@ PYBIND11_MODULE(_viewgain, module) {
   // Classes and functions are of the package that users import: so say reprs, help and pickles.
   const pybind11::object name = module.attr("__name__");
   module.attr("__name__") = "viewgain";
-  bind_errors(module);
-  bind_fork();
-  bind_control(module);
-  bind_noise(module);
-  bind_camera(module);
-  bind_sensors(module);
-  bind_generators(module);
-  bind_grid(module);
-  bind_scene(module);
-  bind_integrator(module);
-  bind_cloud(module);
-  bind_reach(module);
-  bind_feasibility(module);
-  bind_simulation(module);
-  bind_evaluator(module);
-  bind_files(module);
-  bind_parts(module);
-  bind_planner(module);
+  pybind11::module_::import("os").attr("register_at_fork")(
+      pybind11::arg("after_in_child") = pybind11::cpp_function(&leave_at_exit));
+  // In the order in which they need each other.
+  for (const auto bind :
+       {bind_errors, bind_control, bind_noise, bind_camera, bind_sensors, bind_generators,
+        bind_grid, bind_scene, bind_integrator, bind_cloud, bind_reach, bind_feasibility,
+        bind_simulation, bind_evaluator, bind_files, bind_parts, bind_planner}) {
+    bind(module);
+  }
   module.attr("__name__") = name;
 }

@@ -60,20 +60,11 @@ stop_area : float, optional
     By gain "surface" and "combined": end when no candidate promises this share of the surface so
     far as new surface, on the mean of three rankings; 0: never. Default: 0.0016.
 state : path-like, optional
-    A file of ``save`` to go on from; what ``load`` gives.
+    A file of ``save`` to go on from, its map laid out as here; what ``load`` gives.
 tracer : {"automatic", "embree", "sweep"}
     How rays meet voxels, as in ``GainEvaluator``. Never changes a result.
 num_threads : int
     0: all hardware threads. Never changes a result.
-
-Raises
-------
-ValueError
-    Names the argument. Or the state's map is laid out otherwise.
-TypeError
-    It is no sensor or no region; the message says where one comes from.
-OSError, Error
-    The state cannot be read, or is none.
 
 Notes
 -----
@@ -95,14 +86,7 @@ sensor, **settings
 
 Returns
 -------
-ViewPlanner
-
-Raises
-------
-ValueError, TypeError
-    As the constructor.
-OSError, Error
-    The state cannot be read, or is none.)";
+ViewPlanner)";
 
 inline constexpr const char* kSaveDoc =
     R"(Writes the whole state, a map with notes, whole or not at all. Cost: that of ``BeliefGrid.save``, and linear
@@ -112,14 +96,7 @@ Left out are the settings, poses, generators and the last proposal. ``BeliefGrid
 
 Parameters
 ----------
-path : path-like
-
-Raises
-------
-OSError
-    It cannot be written.
-ValueError
-    The name is that of an OctoMap file.)";
+path : path-like)";
 
 inline constexpr const char* kAddPosesDoc =
     R"(Candidates that are proposed from now on.
@@ -128,12 +105,7 @@ Parameters
 ----------
 T_world_camera : array_like, (n, 4, 4)
 name : str
-    The generator that ``propose`` names.
-
-Raises
-------
-ValueError
-    Another shape, or a bad pose, by its index. Cost: linear in the poses.)";
+    The generator that ``propose`` names.)";
 
 inline constexpr const char* kAddGeneratorDoc =
     R"(Candidates that are made anew for each proposal.
@@ -145,12 +117,7 @@ generator : callable
     raises passes through. It must not call the planner, nor refer to it: the two would never be
     released.
 name : str
-    What ``propose`` names.
-
-Raises
-------
-TypeError
-    generator cannot be called.)";
+    What ``propose`` names.)";
 
 inline constexpr const char* kAddDoc =
     R"(Puts a frame into the map; the last proposal is void.
@@ -172,19 +139,9 @@ amplitude : array_like, (height, width), optional
 Returns
 -------
 AddedView
-    The counts of ``FrameIntegrator.integrate``; view (from 0); entropy_removed [nat] and new_area
-    [m**2] by this view, total_entropy_removed and total_area so far, unknown_voxels that are left.
     new_area is area across the rays, as the expected area is: surface that is seen obliquely is
-    larger. It is NaN by gain "paper". verdict says what became of the frame: one that cannot be
-    used, as its pose is not rigid, changes no map and counts as a view that brought nothing.
-
-Raises
-------
-ValueError
-    A shape, a dtype, millimetres, or a sigma that is negative or not finite. Nothing has changed
-    then.
-Error
-    The scene cannot be made: the frame is in the map then.)";
+    larger. verdict says what became of the frame: one that cannot be used, as its pose is not rigid, changes no map and counts as a view that brought nothing. After Error,
+    where the scene cannot be made, the frame is in the map.)";
 
 inline constexpr const char* kAddFrameDoc =
     R"(Reads a frame of a folder and puts it into the map, or counts why it cannot be used. Cost: that of reading, and ``add``.
@@ -198,13 +155,7 @@ index : int
 
 Returns
 -------
-AddedView
-    As ``add``.
-
-Raises
-------
-IndexError
-    There is no such frame.)";
+AddedView)";
 
 inline constexpr const char* kDropDoc =
     R"(A view that came to nothing before there was a frame to add, or whose frame is left out. Cost: a pass over the map.
@@ -220,12 +171,7 @@ T_world_camera : array_like, (4, 4), optional
 
 Returns
 -------
-AddedView
-
-Raises
-------
-ValueError
-    No such verdict, or another shape.)";
+AddedView)";
 
 inline constexpr const char* kRegisterFrameDoc =
     R"(Where the camera was, by what the frame shows of the map so far. Changes nothing.
@@ -250,12 +196,7 @@ amplitude : array_like, (height, width), optional
 
 Returns
 -------
-FrameRegistration
-
-Raises
-------
-ValueError
-    A shape, a dtype, a pose that is not rigid, a sigma that is not positive.)";
+FrameRegistration)";
 
 inline constexpr const char* kProposeDoc =
     R"(The candidates that are possible now.
@@ -265,13 +206,10 @@ each, and what generators take.
 
 Returns
 -------
-Proposal
-    T_world_camera (n, 4, 4), generator (list of str, one a candidate), dropped (reason -> how many;
-    the names of ``INFEASIBILITY_NAMES``, and "missed": it was commanded and not reached). A tuple of
-    three: ``len(proposal.T_world_camera)`` is how many candidates there are.)";
+Proposal)";
 
 inline constexpr const char* kRankDoc =
-    R"(The k best candidates of the last proposal, or of any poses.
+    R"(The k best candidates of the proposal since the last view, or of any poses.
 
 Cost: linear in the candidates: 2 ms each in two stages, 20 ms with exact, by gain "combined", for 176x144
 pixels and a map of 128**3 voxels that is mostly unknown.
@@ -296,14 +234,7 @@ control : BatchControl, optional
 Returns
 -------
 Ranking
-    Arrays, best first: index (into the candidates or poses), T_world_camera, gain [nat; by gain
-    "surface" m**2], area [m**2] (NaN by gain "paper"), worth (the gain less the cost; 0 or less: the
-    way costs more than the view brings); and complete, False if a stop was requested.
-
-Raises
-------
-ValueError
-    There is no proposal since the last view, or costs are not one a pose.)";
+    Its arrays are best first.)";
 
 inline constexpr const char* kTriedDoc =
     R"(A pose was commanded: it is not proposed again, and goes out of the proposal as it stands.
@@ -312,12 +243,7 @@ Parameters
 ----------
 T_world_camera : array_like, (4, 4)
 reached : bool
-    Whether the camera got there.
-
-Raises
-------
-ValueError
-    Another shape, or a pose that is not rigid.)";
+    Whether the camera got there.)";
 
 inline constexpr const char* kShouldStopDoc =
     R"(Why to end, if there is a reason.

@@ -13,6 +13,12 @@
 Frames and units: a pose is ``T_world_camera``, a 4x4 matrix that maps points of the camera's optical
 frame (x right, y down, z forward) to the world; lengths are metres, gains nats. Surfaces and the whole
 reconstruction loop are in ``viewgain.mesh``, which is GPL-3.0-or-later. ``viewgain.plot`` draws, by matplotlib.
+
+Errors: ``ValueError`` names an argument of another shape, without real numbers, masked or out of its bounds, and a bad pose
+where one must be good; ``TypeError`` one of another class or that cannot be called, and where an object of the right one
+comes from. ``OSError`` (``FileNotFoundError``) names a file that cannot be opened or written, ``viewgain.Error`` one that is
+damaged or of another kind, and what a data structure cannot hold. What a function of yours raises passes through. Docstrings
+say what is raised beside that.
 """
 
 try:

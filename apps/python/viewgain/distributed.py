@@ -58,6 +58,7 @@ class _Job:
     sensor: viewgain.Sensor
     settings: dict[str, Any]
     isa: str
+    tracer: str
     num_threads: int
     head: str
     """What its parts say of themselves."""
@@ -66,7 +67,7 @@ class _Job:
     @property
     def key(self) -> str:
         """Of the evaluator that it needs."""
-        return f"{self.head.partition('# poses')[0]} {self.num_threads}"
+        return f"{self.head.partition('# poses')[0]} {self.tracer} {self.num_threads}"
 
     @property
     def gain(self) -> str:
@@ -126,7 +127,7 @@ def _build(job: _Job) -> viewgain.GainEvaluator:
         if scene.isa != job.isa:
             raise RuntimeError(f"this worker's CPU lacks {job.isa}, it has {scene.isa} at best")
         _built += 1
-        return viewgain.GainEvaluator(scene, job.sensor, num_threads=job.num_threads, **settings)
+        return viewgain.GainEvaluator(scene, job.sensor, tracer=job.tracer, num_threads=job.num_threads, **settings)
     finally:
         if before is None:
             del os.environ["VIEWGAIN_ISA"]
@@ -231,8 +232,8 @@ def _run(client: Any, job: _Job, poses: NDArray, chunks: _Chunks, keep: Callable
 
 
 def score(client: Any, map: Any, poses: Any, sensor: Any, *, out: Any, top: int = 10, isa: str | None = None,
-          chunk_seconds: float = 5.0, num_threads: int = 0, progress: Callable[[int, int], object] | None = None,
-          **settings: Any) -> Scores:
+          chunk_seconds: float = 5.0, tracer: str = "automatic", num_threads: int = 0,
+          progress: Callable[[int, int], object] | None = None, **settings: Any) -> Scores:
     """Gains of many poses, by the workers of a Dask cluster, into files.
 
     The map goes to each worker once, which builds it once; poses go in chunks of some seconds, and their rows come back and
@@ -254,6 +255,8 @@ def score(client: Any, map: Any, poses: Any, sensor: Any, *, out: Any, top: int 
         Instruction set of all workers; default: the best that all have which are there now.
     chunk_seconds : float
         How long a chunk is to take a worker [s]: 3 to 10 are right.
+    tracer : {"automatic", "embree", "sweep"}
+        Of all workers, as in ``GainEvaluator``. Never changes a result.
     num_threads : int
         Of each worker; 0: as many as its machine has.
     progress : callable, optional
@@ -291,7 +294,7 @@ def score(client: Any, map: Any, poses: Any, sensor: Any, *, out: Any, top: int 
     elif isa not in _ISAS:
         raise ValueError(f"there is no ISA {isa!r}, but {', '.join(_ISAS)}")
     map_hash = grid.content_hash()
-    job = _Job(map_hash, sensor, settings, isa, num_threads, _part_head(map_hash, sensor, settings, isa, poses))
+    job = _Job(map_hash, sensor, settings, isa, tracer, num_threads, _part_head(map_hash, sensor, settings, isa, poses))
     folder = pathlib.Path(out)
     folder.mkdir(parents=True, exist_ok=True)
     best, found = np.empty(0, job.dtype), []

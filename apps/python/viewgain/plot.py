@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of poses, gains and maps, by matplotlib, which is imported when one is drawn.
 
-Each function draws into ``axes``, or a new figure's, and returns them. matplotlib's pyplot is for one thread.
+Each function draws into ``axes``, or a new figure's, and returns them. matplotlib's pyplot is for one thread, and takes most of
+the time.
 """
 from __future__ import annotations
 
@@ -36,8 +37,6 @@ def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (
           label: str = "expected gain [nat]", axes: Any = None) -> Any:
     """Values of poses round a centre, by azimuth and elevation; the best is marked. Poses with NaN are left out.
 
-    Cost: linear in the poses; matplotlib's drawing takes most of it.
-
     Parameters
     ----------
     T_world_camera : array_like, (n, 4, 4)
@@ -47,16 +46,6 @@ def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (
         What azimuth and elevation are seen from, world frame [m].
     label : str
         What the values are.
-    axes : matplotlib.axes.Axes, optional
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ValueError
-        There is not one value a pose, or none that is a number.
     """
     poses, numbers = np.asarray(T_world_camera, float), np.asarray(values, float)
     if poses.ndim != 3 or poses.shape[1:] != (4, 4) or numbers.shape != poses.shape[:1]:
@@ -80,22 +69,10 @@ def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (
 def depth(image: ArrayLike, *, axes: Any = None) -> Any:
     """A depth image; pixels that are 0, infinite or no number are left white.
 
-    Cost: linear in the pixels; matplotlib's drawing takes most of it.
-
     Parameters
     ----------
     image : array_like, (height, width)
         Along the optical axis [m].
-    axes : matplotlib.axes.Axes, optional
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ValueError
-        The image has not two dimensions.
     """
     pixels = np.asarray(image, float)
     if pixels.ndim != 2:
@@ -113,16 +90,6 @@ def contributions(evaluator: GainEvaluator, T_world_camera: ArrayLike, *, axes: 
     evaluator : GainEvaluator
         By the paper's gain; the others' rays do not end in one voxel.
     T_world_camera : array_like, (4, 4)
-    axes : matplotlib.axes.Axes, optional
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ValueError
-        The evaluator's gain is another.
     """
     if evaluator.gain != "paper":
         raise ValueError(f"contributions by the gain {evaluator.gain!r}: only by 'paper' a ray ends in one voxel")
@@ -137,24 +104,12 @@ def contributions(evaluator: GainEvaluator, T_world_camera: ArrayLike, *, axes: 
 def coverage(values: ArrayLike, *, label: str | None = None, axes: Any = None) -> Any:
     """Coverage, or another share, by the number of views. Call it again with the axes for further curves.
 
-    Cost: linear in the views; matplotlib's drawing takes most of it.
-
     Parameters
     ----------
     values : array_like, (n,)
         In [0, 1], after 1, 2, ... n views.
     label : str, optional
         Name of the curve.
-    axes : matplotlib.axes.Axes, optional
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ValueError
-        The values have not one dimension.
     """
     shares = np.asarray(values, float)
     if shares.ndim != 1:
@@ -175,8 +130,6 @@ def calibration(predicted: ArrayLike, realised: ArrayLike, *, bins: int = 10, la
 
     On the diagonal expectations are right. Pairs with NaN are left out. Call it again with the axes for further curves.
 
-    Cost: linear in the views, but for a sort; matplotlib's drawing takes most of it.
-
     Parameters
     ----------
     predicted, realised : array_like, (n,)
@@ -185,16 +138,6 @@ def calibration(predicted: ArrayLike, realised: ArrayLike, *, bins: int = 10, la
         At most as many points.
     label : str, optional
         Name of the curve.
-    axes : matplotlib.axes.Axes, optional
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ValueError
-        The shapes differ, there is no pair of numbers, or bins is under 1.
     """
     expected, came = np.asarray(predicted, float), np.asarray(realised, float)
     if expected.ndim != 1 or expected.shape != came.shape:

@@ -34,6 +34,8 @@ extern tally checked;
     }                                                                                   \
   } while (0)
 
+#define CHECK_REFUSED(call, part) CHECK_FAILS(call, VG_INVALID_ARGUMENT, part)
+
 #define CHECK_OK(call)                                                                  \
   do {                                                                                  \
     const vg_status status_ = (call);                                                   \
@@ -50,9 +52,8 @@ extern tally checked;
 enum { MAP_EDGE = 16, MAP_VOXELS = MAP_EDGE * MAP_EDGE * MAP_EDGE };
 vg_grid* test_map(void);
 
-/* The parts of the program: right use and wrong, and both of calibrations. */
+/* The parts of the program: right use and wrong. */
 void use_everything(const char* folder);
 void misuse_everything(const char* folder);
-void range_calibrations(void);
 
 #endif

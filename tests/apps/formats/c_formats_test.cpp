@@ -70,11 +70,20 @@ TEST(CFormats, FramesAreCorrectedByTheFilesTable) {
   EXPECT_EQ(depth, frame.depth);
   EXPECT_NE(depth, before.depth);
   vg_range_calibration_release(calibration);
-
-  // What C saves has no table; without one frames stay as they are.
+  // The same of a table of the caller's.
   vg_sensor own;
   vg_sensor_init(&own, sizeof own);
   ASSERT_EQ(vg_sensor_load(path.c_str(), &own), VG_OK) << vg_last_error();
+  ASSERT_EQ(vg_range_calibration_create(&own, sensor.range_calibration.table.front().data(), 3,
+                                        &calibration),
+            VG_OK)
+      << vg_last_error();
+  depth = before.depth;
+  EXPECT_EQ(vg_range_calibration_correct(calibration, depth.data()), VG_OK);
+  EXPECT_EQ(depth, frame.depth);
+  vg_range_calibration_release(calibration);
+
+  // What C saves has no table; without one frames stay as they are.
   ASSERT_EQ(vg_sensor_save(&own, path.c_str()), VG_OK) << vg_last_error();
   EXPECT_TRUE(read_sensor_toml(path).range_calibration.table.empty());
   for (const std::string& name : {path, std::string("sr4000")}) {

@@ -23,18 +23,6 @@
 namespace viewgain {
 namespace {
 
-TEST(Formats, WrongSensorsAreNotWritten) {
-  const test::TemporaryFolder folder;
-  Sensor wrong = sensor_preset("sr4000");
-  wrong.min_range = -1;
-  test::expect_error(ErrorCode::invalid_argument, "range",
-                     [&] { write_sensor_toml(folder.path() / "wrong.toml", wrong); });
-  test::expect_error(ErrorCode::io, "none", [&] {
-    write_sensor_toml(folder.path() / "none" / "a.toml", sensor_preset("sr4000"));
-  });
-  EXPECT_EQ(folder.entries(), 0);
-}
-
 TEST(Formats, RegionsComeBackAsTheyWere) {
   const test::TemporaryFolder folder;
   ReachRegion region;

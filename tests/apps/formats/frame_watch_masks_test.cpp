@@ -110,31 +110,6 @@ TEST_F(WatchedMasks, AFrameNeedsItsMaskWheneverThatComes) {
   EXPECT_TRUE(bad.empty());
 }
 
-TEST_F(WatchedMasks, EveryPartOfAMaskWaits) {
-  put_frame(0);
-  FrameWatch watched = masked_watch();
-  std::size_t cases = 0;
-  for (; cases < left.size(); ++cases) {
-    put_mask(0, left.substr(0, cases));
-    now += 1999ms;
-    EXPECT_EQ(complete(watched), Numbers{}) << cases;
-    EXPECT_EQ(watched.waiting(), 1U);
-  }
-  EXPECT_EQ(cases, left.size());
-  put_mask(0, left);
-  const FolderLook look = watched.look(now);
-  ASSERT_TRUE(look.frame);
-  EXPECT_EQ(look.frame->masked_pixels, 3U * 6U);
-  const FrameSequence frames = open_frames(dir.path());
-  DepthFrame expected = load_frame(frames, 0);
-  const MaskFolder masks(dir.path() / "masks");
-  (void)apply_mask(masks.mask_of(frames.images[0], 8, 6).value(), expected);
-  EXPECT_EQ(look.frame->frame, expected);
-  EXPECT_NE(look.frame->frame, load_frame(frames, 0));
-  EXPECT_EQ(look.frame->identity, frame_identity(frames, 0));
-  EXPECT_TRUE(bad.empty());
-}
-
 TEST_F(WatchedMasks, AFrameNeedsItsConfidencesToo) {
   FrameWatch watched = masked_watch({}, true);
   put_frame(0);
@@ -250,32 +225,6 @@ TEST_F(WatchedMasks, ATakenFrameStaysTakenWhateverItsMask) {
   put(name(2, ".depth.png"), png(777));
   EXPECT_EQ(complete_after(second, 3s), Numbers{});
   EXPECT_EQ(second.bad(), (Counts{{"changed", 1}}));
-}
-
-TEST_F(WatchedMasks, ARefusedFrameIsLookedAtAgainWithAnotherMask) {
-  put_frame(0);
-  put_mask(0, left);
-  FrameWatch watched = masked_watch();
-  const FolderLook look = watched.look(now);
-  ASSERT_TRUE(look.frame);
-  watched.refuse(*look.frame, FrameVerdict::outside);
-  EXPECT_EQ(complete_after(watched, 3s), Numbers{});
-  put_mask(0, gray8({0}));
-  EXPECT_EQ(complete(watched), Numbers{0});
-}
-
-TEST_F(WatchedMasks, TheSensorIsNeededWithTheFirstMask) {
-  const std::string sensor = read_all(dir.path() / "sensor.toml");
-  fs::remove(dir.path() / "sensor.toml");
-  put_frame(0);
-  FrameWatch watched = masked_watch();
-  EXPECT_EQ(complete_after(watched, 3s), Numbers{});
-  put_mask(0, left.substr(0, 30));
-  EXPECT_EQ(complete(watched), Numbers{});
-  put_mask(0, left);
-  expect_error(ErrorCode::invalid_argument, "sensor.toml", [&] { (void)watched.look(now); });
-  put("sensor.toml", sensor);
-  EXPECT_EQ(complete(watched), Numbers{0});
 }
 
 }  // namespace

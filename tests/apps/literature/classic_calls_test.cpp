@@ -76,23 +76,6 @@ TEST(ClassicGains, NamesAreThereAndBack) {
   EXPECT_NE(error_of([] { (void)parse_gain_semantics("code"); }).find("shipped"), text.npos);
 }
 
-TEST(ClassicGains, AnUnknownRowHasItsClosedForm) {
-  BeliefGrid grid = row_map({});
-  grid.append_view(row_pose());
-  for (const GainSemantics semantics : {GainSemantics::paper, GainSemantics::shipped}) {
-    const auto gains = gains_of(grid, one_ray(), row_pose(), semantics);
-    const double visible = kLn2 * 2 * (1 - std::pow(0.5, 16));
-    EXPECT_NEAR(gains[0], visible, kSingle);
-    EXPECT_NEAR(gains[1], visible, kSingle);
-    // Shipped, only rays that end in an occupied voxel are averaged.
-    EXPECT_NEAR(gains[2], semantics == GainSemantics::paper ? kLn2 : 0, kSingle);
-    for (const std::size_t none : {3U, 4U, 5U, 6U, 9U}) EXPECT_EQ(gains[none], 0) << none;
-    // One pixel of focal length 1 is a solid angle of 1 sr.
-    EXPECT_NEAR(gains[7], (std::pow(20, 3) - std::pow(4, 3)) / 3 * std::pow(kExactVoxel, 3), 1e-9);
-    EXPECT_EQ(gains[8], 16);
-  }
-}
-
 TEST(ClassicGains, ARowWithASurfaceHasItsClosedForm) {
   // Two free, three unknown, one occupied, unknown ones behind. An earlier view came from there.
   BeliefGrid grid = row_map({-0.4F, -1.5F, {}, {}, {}, 2.0F});
@@ -124,18 +107,6 @@ TEST(ClassicGains, ARowWithASurfaceHasItsClosedForm) {
   EXPECT_NEAR(shipped[4], hidden + Q2 / 8 * entropy(p5), kSingle);
 }
 
-TEST(ClassicGains, ASurfaceInTheOpenHasOneRayOnIt) {
-  BeliefGrid grid = row_map({-1.6F, -1.6F, -1.6F, 2.0F});
-  grid.append_view(row_pose());
-  for (const GainSemantics semantics : {GainSemantics::paper, GainSemantics::shipped}) {
-    const auto gains = gains_of(grid, one_ray(), row_pose(), semantics);
-    EXPECT_EQ(gains[3], 0);
-    EXPECT_NEAR(gains[6], 0, 1e-12);  // f(1) + f(0)
-    EXPECT_EQ(gains[7], 0);
-    EXPECT_EQ(gains[8], 0);
-  }
-}
-
 TEST(ClassicGains, PosesThatSeeNothing) {
   BeliefGrid grid = row_map({2.0F});
   const auto map = ClassicMap::build(VoxelScene::build(grid), grid);
@@ -159,22 +130,6 @@ TEST(ClassicGains, PosesThatSeeNothing) {
   EXPECT_EQ(gains[4 * 3 + 1], 11);
   std::vector<double> none;
   EXPECT_EQ(ClassicGainEvaluator(map, one_ray(), config).evaluate({}, none), 0U);
-}
-
-TEST(ClassicGains, RangesStartAndEndRays) {
-  const BeliefGrid grid = row_map({});
-  const auto map = ClassicMap::build(VoxelScene::build(grid), grid);
-  ClassicConfig config{.gains = {ClassicGain::unknown_count}};
-  const auto count = [&](double near, double far) {
-    config.min_range = near * kExactVoxel;
-    config.max_range = far * kExactVoxel;
-    return ClassicGainEvaluator(map, one_ray(), config).evaluate(std::vector<Pose>{row_pose()})[0];
-  };
-  EXPECT_EQ(count(0, 3.9), 0);
-  EXPECT_EQ(count(0, 4.1), 1);
-  EXPECT_EQ(count(6.5, 8.5), 3);  // from within the third voxel into the fifth
-  EXPECT_EQ(count(19.5, 100), 1);
-  EXPECT_EQ(count(20.5, 100), 0);
 }
 
 TEST(ClassicGains, RefuseWhatTheyCannotDo) {

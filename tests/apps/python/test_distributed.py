@@ -204,7 +204,7 @@ def test_parts_are_those_of_the_program(client, grid, sensor, tmp_path):
     assert (tmp_path / "merged.npy").read_bytes() == (tmp_path / "whole.npy").read_bytes()
 
 
-def test_isa_is_pinned_and_wrong_calls_are_named(client, grid, sensor, poses, tmp_path):
+def test_isa_and_tracer_are_pinned_and_wrong_calls_are_named(client, grid, sensor, poses, tmp_path):
     import viewgain.distributed
 
     if viewgain.distributed._best_isa() in ("avx2", "avx512"):
@@ -215,6 +215,11 @@ def test_isa_is_pinned_and_wrong_calls_are_named(client, grid, sensor, poses, tm
     if viewgain.distributed._best_isa() != "avx512":
         with pytest.raises(RuntimeError, match="avx512"):
             viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "none", isa="avx512")
+    rows = {rows_of(viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / tracer, pixel_stride=4, tracer=tracer)).tobytes()
+            for tracer in ("automatic", "embree", "sweep")}
+    assert len(rows) == 1
+    with pytest.raises(ValueError, match="valid are automatic, embree, sweep"):
+        viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "none", tracer="bvh")
     with pytest.raises(ValueError, match="no ISA 'mmx'"):
         viewgain.distributed.score(client, grid, poses, sensor, out=tmp_path / "none", isa="mmx")
     with pytest.raises(ValueError, match=r"\(4, 4\)"):

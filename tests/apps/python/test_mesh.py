@@ -51,8 +51,9 @@ def test_the_loop_with_a_camera_in_python(camera, sensor, start, tmp_path):
     distance = np.abs(np.max(np.abs(result.surface.vertices), axis=1) - 0.1)
     assert len(distance) > 500 and np.median(distance) < 0.005
     assert f"{len(result.views)} views" in repr(result) and "vertices" in repr(result.surface)
-    again = reconstruct(camera, sensor, start, stop_gain=0.0, num_threads=1)
-    assert again.grid.content_hash() == result.grid.content_hash()
+    for tracer in ("embree", "sweep"):
+        again = reconstruct(camera, sensor, start, stop_gain=0.0, num_threads=1, tracer=tracer)
+        assert again.grid.content_hash() == result.grid.content_hash()
     result.surface.save(tmp_path / "surface.ply")
     header = (tmp_path / "surface.ply").read_bytes()[:400].decode("latin1")
     assert f"element vertex {len(result.surface.vertices)}\n" in header
@@ -146,7 +147,7 @@ def test_what_the_camera_returns_is_checked(camera, sensor, start):
 
 
 def test_wrong_settings_are_named(camera, sensor, start):
-    for settings, text in [({"policy": "best"}, "best"), ({"criterion": "x"}, "'x'"),
+    for settings, text in [({"policy": "best"}, "best"), ({"criterion": "x"}, "'x'"), ({"tracer": "bvh"}, "valid are automatic"),
                            ({"voxel_size": 0.0}, "voxel"), ({"workspace": [0, 1]}, r"\(2,\)"),
                            ({"max_views": 0}, "max_views"), ({"candidates": start}, r"\(4, 4\)")]:
         with pytest.raises(ValueError, match=text):

@@ -9,19 +9,6 @@ import pytest
 import viewgain
 
 
-def test_presets():
-    names = viewgain.sensor_preset_names()
-    assert {"sr4000", "kinect_v1", "d435", "azure_kinect_nfov"} <= set(names)
-    for name in names:
-        sensor = viewgain.sensor_preset(name)
-        assert sensor.name == name and name in repr(sensor)
-        assert sensor.min_range < sensor.working_distance < sensor.max_range
-        axial, lateral = sensor.sigmas(sensor.working_distance)
-        assert 0 < axial < 0.1 and 0 < lateral < 0.1
-    with pytest.raises(ValueError, match="sr4000"):
-        viewgain.sensor_preset("sr5000")
-
-
 def test_the_paper_s_camera_can_be_written_out():
     camera = viewgain.PinholeCamera(176, 144, fx=220.0, fy=231.2, cx=87.5, cy=71.5)
     sensor = viewgain.Sensor(
@@ -48,12 +35,6 @@ def test_noise_models_can_be_read_back(noise):
     sensor = viewgain.Sensor(camera, min_range=0.3, max_range=2.0, working_distance=0.5, noise=noise)
     assert type(sensor.noise) is type(noise) and sensor.noise == noise
     assert sensor.T_flange_camera is None
-
-
-def test_default_prior_sigma_refuses_what_is_no_voxel(sensor):
-    for size in (-1.0, 0.0, np.nan, np.inf):
-        with pytest.raises(ValueError, match="voxel_size is"):
-            viewgain.default_prior_sigma(size, sensor)
 
 
 @pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
@@ -122,18 +103,6 @@ def test_poses_that_may_be_off(protocol, tmp_path):
     for wrong in ([-1e-3, 0], [0, np.inf]):
         with pytest.raises(ValueError, match="pose_sigma"):
             viewgain.Sensor(camera, **settings, pose_sigma=wrong)
-
-
-def test_projection_undoes_rays():
-    camera = viewgain.PinholeCamera(
-        64, 48, fx=60.0, fy=62.0, cx=30.0, cy=24.0, distortion=[0.1, -0.05, 1e-3, -1e-3, 0.01])
-    rays = camera.rays()
-    assert rays.shape == (48, 64, 3)
-    v, u = np.mgrid[:48, :64]
-    assert np.allclose(camera.project(2 * rays), np.stack([u, v], axis=-1), atol=1e-8)
-    assert np.isnan(camera.project([0, 0, -1])).all()
-    with pytest.raises(ValueError, match=r"\(4,\)"):
-        camera.project([0, 0, 0, 1])
 
 
 def test_wrong_values_are_named():

@@ -125,6 +125,24 @@ TEST(Boundaries, EveryBorderEdgeIsInOneLoopAndOneRun) {
   EXPECT_GT(neighbors, 100U);
 }
 
+TEST(BoundaryLoops, RefuseWhatIsNoSurface) {
+  const auto invalid = ErrorCode::invalid_argument;
+  SurfaceMesh surface;
+  surface.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  surface.normals.assign(5, {0, 0, 1});
+  surface.triangles = {{0, 1, 5}};
+  expect_error(invalid, "vertex 5", [&] { (void)boundary_loops(surface); });
+  surface.triangles = {{0, 1, 2}, {0, 1, 3}};
+  expect_error(invalid, "0 and 1", [&] { (void)boundary_loops(surface); });
+  surface.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
+  expect_error(invalid, "0 and 1", [&] { (void)boundary_loops(surface); });
+  surface.triangles = {{2, 2, 3}};
+  expect_error(invalid, "2 and 2", [&] { (void)boundary_loops(surface); });
+  surface.triangles.clear();
+  surface.normals.pop_back();
+  expect_error(invalid, "4 normals", [&] { (void)boundary_loops(surface); });
+}
+
 TEST(BoundaryRuns, AHalfCylindersSidesAreNamedByTheCamerasAxes) {
   using enum BoundaryClass;
   // Camera turned by quarter turns: what was up is then left, and so on.

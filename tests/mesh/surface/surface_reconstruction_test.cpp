@@ -49,15 +49,6 @@ bool same(const SurfaceMesh& a, const SurfaceMesh& b) {
          a.source == b.source;
 }
 
-TEST(SurfaceReconstruction, SphereIsClosedAndOutward) {
-  const auto points = sphere_points(kRadius, kSpacing);
-  const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
-  EXPECT_EQ(mesh.vertices.size(), points.size());
-  expect_topology(check_surface(mesh, points), 1, 0, 2);
-  EXPECT_EQ(good_normals(mesh, points), 1.0);
-  EXPECT_NEAR(area_of(mesh), 4 * std::numbers::pi * kRadius * kRadius, 0.01 * area_of(mesh));
-}
-
 TEST(SurfaceReconstruction, ExactLatticeBecomesAPlateWithOneBorder) {
   constexpr int kSide = 30;
   for (const double up : {1.0, -1.0}) {
@@ -175,19 +166,6 @@ TEST(SurfaceReconstruction, HintsDecideTheSideByMajority) {
   for (std::size_t v = 0; v < mixed.vertices.size(); ++v) {
     EXPECT_LT(vec(mixed.normals[v]).dot(vec(mixed.vertices[v])), 0);
   }
-}
-
-TEST(SurfaceReconstruction, ComponentsAreOrientedEachByItsOwnHints) {
-  auto points = sphere_points(0.03, kSpacing);
-  const std::size_t first = points.size();
-  for (auto p : sphere_points(0.03, kSpacing, 0, -2, {0.1, 0, 0})) {
-    for (double& x : p.toward_free) x *= -1;
-    points.push_back(p);
-  }
-  const SurfaceMesh mesh = reconstruct_surface(points, kConfig);
-  EXPECT_EQ(check_surface(mesh, points).components, 2U);
-  EXPECT_EQ(good_normals(mesh, points), 1.0);
-  EXPECT_EQ(points.size(), 2 * first);
 }
 
 TEST(SurfaceReconstruction, DuplicatedPointsChangeNothing) {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/support/columns/merge.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <queue>
@@ -9,8 +7,7 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/columns/part_reader.hpp"
-#include "viewgain/support/columns/part_writer.hpp"
+#include "viewgain/support/columns/parts.hpp"
 
 namespace viewgain {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <cctype>
 #include <charconv>
-#include <cstdlib>
 
 #include "viewgain/core/error.hpp"
 

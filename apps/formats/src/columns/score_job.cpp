@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/columns/mapped_poses.hpp"
@@ -59,19 +58,13 @@ PartHead head_of_job(const std::string& map, const Sensor& sensor, const ScoreSe
 }
 
 std::vector<Column> gain_columns(GainModel model) {
-  std::vector<Column> columns{{"index", ColumnType::row},
-                              {"gain", ColumnType::real},
-                              {"exploration", ColumnType::real},
-                              {"refinement", ColumnType::real},
-                              {"posterior_entropy", ColumnType::real},
-                              {"rays", ColumnType::count},
-                              {"hits", ColumnType::count},
-                              {"unknown_voxels", ColumnType::count},
-                              {"occupied_voxels", ColumnType::count},
-                              {"status", ColumnType::status}};
-  if (model == GainModel::paper) return columns;
-  columns.push_back({"area", ColumnType::real});
-  columns.push_back({"refinement_saturated", ColumnType::real});
+  std::vector<Column> columns;
+  for (const char* name :
+       {"index", "gain", "exploration", "refinement", "posterior_entropy", "rays", "hits",
+        "unknown_voxels", "occupied_voxels", "status", "area", "refinement_saturated"}) {
+    columns.push_back(column_of(name));
+  }
+  if (model == GainModel::paper) columns.resize(columns.size() - 2);
   return columns;
 }
 

@@ -11,7 +11,47 @@
 #include <string_view>
 #include <vector>
 
+#include "viewgain/core/pose.hpp"
+#include "viewgain/formats/frames.hpp"
+
 namespace viewgain {
+
+/// open_frames() without images and poses: what holds for all of a folder's frames.
+[[nodiscard]] FrameSequence open_frame_folder(const std::filesystem::path& dir,
+                                              const std::string& sensor,
+                                              std::optional<double> depth_scale);
+
+/// The camera of a 3x3 matrix, row by row. Throws Error(format), beginning with `name`, unless it
+/// is fx 0 cx, 0 fy cy, 0 0 1 with fx > 0, fy not 0 and all numbers finite.
+[[nodiscard]] PinholeCamera camera_of_matrix(const std::array<double, 9>& k,
+                                             const std::string& name);
+
+/// The numbers of a file, whatever lines they stand on. Throws Error(format) for another word.
+[[nodiscard]] std::vector<double> finite_numbers(const std::filesystem::path& path);
+
+/// A pose as a file has it.
+struct ReadPose {
+  Pose T_world_camera;
+  bool is_mended = false;
+  FrameFault fault{};
+
+  bool operator==(const ReadPose& other) const {
+    return T_world_camera == other.T_world_camera && fault.what == other.fault.what;
+  }
+};
+
+/// A pose that nobody knows: not finite.
+[[nodiscard]] ReadPose unknown_pose(FrameVerdict verdict, std::string what);
+
+/// The poses of a TUM file in the order of its lines, the lost ones among them, and where asked
+/// for their times [s], NaN where a line has none. `whole_lines_alone`: what comes after the last
+/// line's end is left out. Throws Error(io) if it cannot be read.
+[[nodiscard]] std::vector<ReadPose> read_pose_lines(const std::filesystem::path& path,
+                                                    bool whole_lines_alone = false,
+                                                    std::vector<double>* times = nullptr);
+
+/// The pose of a file of a 4x4 matrix; no_pose if there is no such file.
+[[nodiscard]] ReadPose read_pose_file(const std::filesystem::path& path);
 
 // The files in a folder of frames.
 inline constexpr std::string_view kFramePrefix = "frame-";

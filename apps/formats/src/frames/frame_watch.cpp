@@ -11,9 +11,7 @@
 #include <utility>
 
 #include "folders.hpp"
-#include "frames/frame_folder.hpp"
 #include "frames/frame_names.hpp"
-#include "frames/frame_poses.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/file_bytes.hpp"
 

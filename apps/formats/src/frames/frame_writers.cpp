@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -10,7 +9,6 @@
 #include <sstream>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "folders.hpp"
@@ -39,6 +37,20 @@ std::uint16_t saturated(double units) {
                    : std::uint16_t{0};
 }
 
+[[noreturn]] void refuse_file(const fs::path& file, const char* what, const char* list) {
+  throw Error(ErrorCode::invalid_argument, file.string() + ": no " + what + " (" + list +
+                                               " says which are); choose another folder");
+}
+
+// Frames must have the camera's size.
+void check_size(int width, int height, const PinholeCamera& camera, const char* what) {
+  if (camera.width == width && camera.height == height) return;
+  throw Error(ErrorCode::invalid_argument, "frames of " + std::to_string(width) + " x " +
+                                               std::to_string(height) + " px for a " + what +
+                                               " of " + std::to_string(camera.width) + " x " +
+                                               std::to_string(camera.height) + " px");
+}
+
 // What an earlier simulation left in the folder, which a new one may replace.
 std::vector<fs::path> simulated_files(const fs::path& dir) {
   const std::vector<fs::path> files = frame_files(dir);
@@ -58,11 +70,7 @@ std::vector<fs::path> simulated_files(const fs::path& dir) {
       const auto digits = frame_number(name, suffix);
       if (digits) is_own = is_own && std::stoull(*digits) < count;
     }
-    if (!is_own) {
-      throw Error(ErrorCode::invalid_argument, (dir / file).string() + ": no frames of simulate (" +
-                                                   kSimulated +
-                                                   " says which are); choose another folder");
-    }
+    if (!is_own) refuse_file(dir / file, "frames of simulate", kSimulated);
   }
   return files;
 }
@@ -81,10 +89,7 @@ std::vector<fs::path> imported_files(const fs::path& dir) {
     }
   }
   for (const fs::path& file : files) {
-    if (own.contains(file.string())) continue;
-    throw Error(ErrorCode::invalid_argument, (dir / file).string() + ": no file of import (" +
-                                                 kImported +
-                                                 " says which are); choose another folder");
+    if (!own.contains(file.string())) refuse_file(dir / file, "file of import", kImported);
   }
   return files;
 }
@@ -132,12 +137,7 @@ void FramesWriter::commit(const std::vector<Pose>& poses, const Sensor& sensor) 
     throw Error(ErrorCode::invalid_argument, std::to_string(poses.size()) + " poses for " +
                                                  std::to_string(written_) + " frames");
   }
-  if (sensor.camera.width != width_ || sensor.camera.height != height_) {
-    throw Error(ErrorCode::invalid_argument, "frames of " + std::to_string(width_) + " x " +
-                                                 std::to_string(height_) + " px for a sensor of " +
-                                                 std::to_string(sensor.camera.width) + " x " +
-                                                 std::to_string(sensor.camera.height) + " px");
-  }
+  check_size(width_, height_, sensor.camera, "sensor");
   write_tum(staged_.path() / kPoses, poses);
   write_sensor_toml(staged_.path() / kSensor, sensor);
   write_file_atomically(staged_.path() / kSimulated,
@@ -185,12 +185,7 @@ void RecordedFramesWriter::commit(const PinholeCamera& camera, double depth_scal
                                   const std::optional<Sensor>& sensor) {
   if (files_.empty()) throw Error(ErrorCode::invalid_argument, "there is no frame to write");
   camera.validate();
-  if (camera.width != width_ || camera.height != height_) {
-    throw Error(ErrorCode::invalid_argument, "frames of " + std::to_string(width_) + " x " +
-                                                 std::to_string(height_) + " px for a camera of " +
-                                                 std::to_string(camera.width) + " x " +
-                                                 std::to_string(camera.height) + " px");
-  }
+  check_size(width_, height_, camera, "camera");
   if (!(depth_scale > 0) || !std::isfinite(depth_scale)) {
     throw Error(ErrorCode::invalid_argument,
                 "the depth scale " + short_text(depth_scale) + " must be positive and finite");

@@ -4,15 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "folders.hpp"
-#include "frames/frame_folder.hpp"
 #include "frames/frame_names.hpp"
-#include "frames/frame_poses.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/png.hpp"
@@ -36,24 +33,16 @@ void check_index(std::size_t index, std::size_t count) {
 
 // Nine numbers of a 3x3 matrix fx 0 cx / 0 fy cy / 0 0 1.
 void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
-  const std::string bytes = file_bytes(path);
-  std::vector<double> k;
-  for (LineReader lines(path.string(), bytes); lines.next();) {
-    for (std::size_t i = 0; i < lines.words().size(); ++i) k.push_back(lines.finite_number(i));
-  }
+  const std::vector<double> k = finite_numbers(path);
   if (k.size() != 9) {
     throw Error(ErrorCode::format, path.string() +
                                        ": needs the nine numbers of a 3x3 matrix, has " +
                                        std::to_string(k.size()));
   }
-  if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
-    throw Error(ErrorCode::format,
-                path.string() + ": must have the form fx 0 cx, 0 fy cy, 0 0 1 (no skew)");
-  }
-  camera.fx = k[0];
-  camera.cx = k[2];
-  camera.fy = k[4];
-  camera.cy = k[5];
+  const PinholeCamera own =
+      camera_of_matrix({k[0], k[1], k[2], k[3], k[4], k[5], k[6], k[7], k[8]}, path.string());
+  camera.fx = own.fx, camera.cx = own.cx;
+  camera.fy = own.fy, camera.cy = own.cy;
   try {
     camera.validate();
   } catch (const Error& error) {

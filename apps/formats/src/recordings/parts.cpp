@@ -3,8 +3,6 @@
 #include "recordings/parts.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <system_error>
 
 #include "folders.hpp"
 #include "viewgain/core/error.hpp"
@@ -57,21 +55,6 @@ std::map<std::uint64_t, fs::path> numbered_images(const fs::path& folder) {
     throw Error(ErrorCode::io, folder.string() + ": no folder with images called NUMBER.png");
   }
   return images;
-}
-
-PinholeCamera camera_of_matrix(const std::array<double, 9>& k, const std::string& name) {
-  const bool is_finite =
-      std::all_of(k.begin(), k.end(), [](double value) { return std::isfinite(value); });
-  if (!is_finite || !(k[0] > 0) || k[4] == 0 || k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 ||
-      k[8] != 1) {
-    throw Error(ErrorCode::format, name +
-                                       ": must have the form fx 0 cx, 0 fy cy, 0 0 1 (no skew), fx "
-                                       "positive and fy not 0");
-  }
-  PinholeCamera camera;
-  camera.fx = k[0], camera.cx = k[2];
-  camera.fy = k[4], camera.cy = k[5];
-  return camera;
 }
 
 void refuse_camera(const RecordingConfig& config, const fs::path& source) {

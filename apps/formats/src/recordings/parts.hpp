@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <string>
 #include <vector>
 
-#include "frames/frame_poses.hpp"
+#include "frames/frame_names.hpp"
 #include "viewgain/formats/recordings.hpp"
 
 namespace viewgain {
@@ -52,11 +50,6 @@ void drop_frame(Recording& recording, const FrameFault& why);
 /// and Error(format), naming the file, for two of one number.
 [[nodiscard]] std::map<std::uint64_t, std::filesystem::path> numbered_images(
     const std::filesystem::path& folder);
-
-/// The camera of a 3x3 matrix, row by row. Throws Error(format), beginning with `name`, unless it
-/// is fx 0 cx, 0 fy cy, 0 0 1 with fx > 0, fy not 0 and all numbers finite.
-[[nodiscard]] PinholeCamera camera_of_matrix(const std::array<double, 9>& k,
-                                             const std::string& name);
 
 /// Throws Error(invalid_argument) if the config has a camera: this format has its own.
 void refuse_camera(const RecordingConfig& config, const std::filesystem::path& source);

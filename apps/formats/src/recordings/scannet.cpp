@@ -1,31 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "recordings/parts.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/file_bytes.hpp"
-#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<double> numbers_of(const fs::path& path) {
-  const std::string bytes = file_bytes(path);
-  std::vector<double> numbers;
-  for (LineReader line(path.string(), bytes); line.next();) {
-    for (std::size_t i = 0; i < line.words().size(); ++i) numbers.push_back(line.number(i));
-  }
-  return numbers;
-}
-
 PinholeCamera read_camera(const fs::path& path) {
-  const std::vector<double> m = numbers_of(path);
+  const std::vector<double> m = finite_numbers(path);
   if (m.size() != 16) {
     throw Error(ErrorCode::format, path.string() + ": expected 16 numbers (a 4x4 matrix), found " +
                                        std::to_string(m.size()));

@@ -73,8 +73,7 @@ VG_API void vg_planner_config_init(vg_planner_config* config, size_t struct_size
 /* An empty map; the planner keeps copies of what it gets. */
 VG_API vg_status vg_planner_create(const vg_sensor* sensor, const vg_planner_config* config,
                                    vg_planner** planner);
-/* Null does nothing. */
-VG_API void vg_planner_release(vg_planner* planner);
+VG_API void vg_planner_release(vg_planner* planner); /* null: nothing */
 
 /* Candidates that are proposed from the next vg_planner_propose() on, 16 doubles each. */
 VG_API vg_status vg_planner_add_poses(vg_planner* planner, const double* poses, size_t count);

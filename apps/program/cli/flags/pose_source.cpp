@@ -14,7 +14,7 @@
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/support/columns/mapped_poses.hpp"
-#include "viewgain/support/columns/part_reader.hpp"
+#include "viewgain/support/columns/parts.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/text.hpp"
 

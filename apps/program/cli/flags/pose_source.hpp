@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "viewgain/core/pose.hpp"
-#include "viewgain/support/columns/part_head.hpp"
+#include "viewgain/support/columns/parts.hpp"
 
 namespace viewgain::app {
 

@@ -12,13 +12,10 @@
 #include <string>
 
 #include "arrays.hpp"
-#include "bindings.hpp"
 #include "classes.hpp"
 #include "gil.hpp"
 #include "given.hpp"
 #include "grid_class.hpp"
-#include "named.hpp"
-#include "prior.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/fused_points.hpp"
@@ -177,7 +174,8 @@ Parameters
 voxel_size : float
     [m]
 workspace : array_like, (2, 3)
-    Lowest and highest corner, grid frame [m]; grown outward to whole voxels.
+    Lowest and highest corner, grid frame [m]; grown outward to whole voxels, at most 65,536 along an axis
+    and 2**40 in all.
 prior_sigma : float, optional
     Standard deviation of an unknown voxel's position [m].
 sensor : Sensor, optional
@@ -185,15 +183,6 @@ sensor : Sensor, optional
     ``default_prior_sigma`` of the sensor.
 T_world_grid : array_like, (4, 4), optional
     Places the grid's frame in the world.
-
-Raises
-------
-ValueError
-    Names the value that is out of its bounds; neither sensor nor prior_sigma.
-TypeError
-    sensor is none.
-Error
-    More than 65,536 voxels along an axis or 2**40 in all.
 
 Notes
 -----
@@ -227,7 +216,8 @@ Parameters
 ----------
 labels : array_like, (nx, ny, nz), whole numbers
     0 unknown, 1 free, 2 occupied. uint8 is read in place if it is C-contiguous, other integers and nested
-    lists are converted once. Masked entries of a masked array are unknown.
+    lists are converted once. Masked entries of a masked array are unknown; bools are refused, which do not
+    say what is unknown.
 voxel_size : float
     [m]
 origin : array_like, (3,)
@@ -241,17 +231,7 @@ sensor : Sensor, optional
 
 Returns
 -------
-BeliefGrid
-
-Raises
-------
-ValueError
-    Another dtype or shape (of bools, too: they do not say which is unknown), labels other than 0, 1
-    and 2, which are named, an origin that is not finite, or neither sensor nor prior_sigma.
-TypeError
-    sensor is none.
-Error
-    More voxels than a grid can hold.)")
+BeliefGrid)")
       .def("clone", &clone_of,
            "A deep copy; beliefs are shared until one is written.\n\nReturns\n-------\nBeliefGrid")
       .def("__copy__", &clone_of)
@@ -350,12 +330,7 @@ Returns
 -------
 ndarray, (n,), structured
     position (float64, 3, world frame [m]), covariance (float64, 6: xx yy zz xy xz yz [m**2]),
-    toward_free (float64, 3: unit normal towards free space, world frame), hits.
-
-Raises
-------
-ValueError
-    num_threads is out of its bounds.)")
+    toward_free (float64, 3: unit normal towards free space, world frame), hits.)")
       .def("pooling_length", &pooling_length_of,
            R"(How far apart the map's points are. Cost: that of a snapshot.
 
@@ -373,13 +348,7 @@ criterion : {"log_diagonal", "log_determinant", "trace"}
 
 Returns
 -------
-GridStatistics
-    unknown, free, occupied (voxels), bytes, entropy_removed [nat, or m**2 for trace].
-
-Raises
-------
-ValueError
-    There is no such criterion.)")
+GridStatistics)")
       .def(
           "content_hash",
           [](const SharedGrid& grid) {

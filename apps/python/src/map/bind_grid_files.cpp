@@ -14,7 +14,6 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "grid_class.hpp"
-#include "prior.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/octomap_io.hpp"
@@ -84,44 +83,16 @@ std::shared_ptr<SharedGrid> from_bytes(const py::bytes& data) {
 }  // namespace
 
 void bind_grid_files(GridClass& grid_class) {
-  pickle_as_bytes(grid_class);
-  grid_class
-      .def("to_bytes", &bytes_of, R"(The map as bytes: those of the file that ``save`` writes.
+  pickle_as_bytes(grid_class, "map", R"(: those of the file that ``save`` writes.
 
 Goes through a file in the folder for temporary files. Cost: linear in the blocks of voxels, 0.1 s for
-128**3 voxels with 40,000 occupied ones.
-
-Raises
-------
-OSError
-    There is no room for that file.
-
-Returns
--------
-bytes)")
-      .def_static("from_bytes", &from_bytes, py::arg("data"),
-                  R"(The map that ``to_bytes`` wrote. Cost: half that of ``to_bytes``.
-
-Parameters
-----------
-data : bytes
-
-Returns
--------
-BeliefGrid
-    With the same ``content_hash()``.
-
-Raises
-------
-Error
-    They are no map or damaged.
-TypeError
-    They are no bytes.)")
+128**3 voxels with 40,000 occupied ones; ``from_bytes`` takes half of it.)",
+                  &bytes_of, &from_bytes);
+  grid_class
       .def_static(
           "load",
           [](const py::object& path) {
-            const std::string file = file_path(path);
-            require_file(file);
+            const std::string file = readable_file(path);
             const WithoutGil without_gil;
             return std::make_shared<SharedGrid>(load_vdb(file));
           },
@@ -136,20 +107,12 @@ path : path-like
 
 Returns
 -------
-BeliefGrid
-
-Raises
-------
-FileNotFoundError, OSError
-    It cannot be opened.
-Error
-    It is no map or it is damaged.)")
+BeliefGrid)")
       .def_static(
           "load_octomap",
           [](const py::object& path, const py::object& workspace, std::optional<double> prior_sigma,
              const GivenOrNone<Sensor>& given, double occupied_from) {
-            const std::string file = file_path(path);
-            require_file(file);
+            const std::string file = readable_file(path);
             const Sensor* sensor = given.value;
             OctomapConfig config;
             if (!workspace.is_none()) config.workspace = box(workspace, "workspace");
@@ -185,23 +148,11 @@ occupied_from : float
 
 Returns
 -------
-BeliefGrid
-
-Raises
-------
-FileNotFoundError, OSError
-    It cannot be opened.
-ValueError
-    Neither sensor nor prior_sigma.
-TypeError
-    sensor is none.
-Error
-    It is no tree or it is damaged.)")
+BeliefGrid)")
       .def(
           "save_octomap",
           [](const SharedGrid& grid, const py::object& path) {
-            const std::string file = file_path(path);
-            require_writable(file);
+            const std::string file = writable_file(path);
             grid.read([&](const BeliefGrid& g) { save_octomap(g, file); });
           },
           py::arg("path"),
@@ -212,18 +163,12 @@ Cost: linear in the tree, 50 ms for 128**3 voxels with 40,000 occupied ones.
 
 Parameters
 ----------
-path : path-like
-
-Raises
-------
-FileNotFoundError, OSError
-    It cannot be written.)")
+path : path-like)")
       .def(
           "save",
           [](const SharedGrid& grid, const py::object& path, bool with_covariance) {
-            const std::string file = file_path(path);
-            refuse_octomap_name(file);
-            require_writable(file);
+            refuse_octomap_name(file_path(path));
+            const std::string file = writable_file(path);
             grid.read([&](const BeliefGrid& g) { save_vdb(g, file, {with_covariance}); });
           },
           py::arg("path"), py::kw_only(), py::arg("with_covariance") = false,
@@ -236,14 +181,7 @@ Parameters
 path : path-like
     Any name that does not end in .ot or .bt; ``save_octomap`` writes those.
 with_covariance : bool
-    Adds covariances and positions, for viewers.
-
-Raises
-------
-ValueError
-    The name is that of an OctoMap file.
-FileNotFoundError, OSError
-    It cannot be written.)");
+    Adds covariances and positions, for viewers.)");
 }
 
 }  // namespace viewgain::python

@@ -2,23 +2,218 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <Eigen/Core>
+#include <array>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "arrays.hpp"
-#include "bindings.hpp"
 #include "classes.hpp"
 #include "depth_images.hpp"
+#include "evaluator.hpp"
+#include "gil.hpp"
 #include "given.hpp"
-#include "integration.hpp"
-#include "scene.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/cloud_io.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/grid/integrate_cloud.hpp"
 
 namespace viewgain::python {
+namespace {
+
+// What the docstrings of both integrators have in common: parameters of the constructors.
+constexpr const char* kIntegratorSettings =
+    R"(occupancy : {"probabilistic", "literal"}
+    Log-odds, changed once per voxel and call, or crossed -> free and hit -> occupied.
+support_plane : float, optional
+    Height z [m] of the table that the object stands on; its readings carve but do not hit.
+num_threads : int
+    0: all hardware threads. Never changes the map.)";
+
+// What holds for the methods.
+constexpr const char* kIntegratorNotes = R"(
+
+Notes
+-----
+One call at a time: others wait. The GIL is left while a frame or cloud goes in. Maps are the same
+bits for any number of threads.)";
+
+// What integrate() returns and raises.
+constexpr const char* kIntegrateReturns =
+    R"(Returns
+-------
+IntegrationReport
+    Counts: readings, plane_readings, out_of_range, invalid, readings_inside (of pixels or points),
+    voxels_hit, voxels_crossed.
+
+Raises
+------
+ValueError
+    Beside what is usual: all readings, or 19 in 20 that are not alike, are beyond 10 times max_range, as
+    where they are in millimetres. The grid is unchanged then.)";
+
+Occupancy parse_occupancy(const std::string& name) {
+  if (name == "probabilistic") return Occupancy::probabilistic;
+  if (name == "literal") return Occupancy::literal;
+  throw py::value_error("occupancy is \"" + name + "\"; valid are probabilistic literal");
+}
+
+py::object to_python(const IntegrationReport& r) {
+  return named("IntegrationReport", r.readings, r.plane_readings, r.out_of_range, r.invalid,
+               r.readings_inside, r.voxels_hit, r.voxels_crossed);
+}
+
+// Python's integrators; one call at a time.
+template <typename Integrator>
+struct SharedIntegrator {
+  Sensor sensor;
+  Integrator integrator;
+  std::mutex mutex{};
+
+  template <typename Config>
+  SharedIntegrator(const Sensor& of, const Config& config, int num_threads)
+      : sensor(of), integrator(of, config, ExecConfig{num_threads}) {}
+
+  // Call with the GIL.
+  template <typename Readings, typename... More>
+  py::object integrate(SharedGrid& grid, const Readings& readings, const Pose& T_world_sensor,
+                       const More&... more) {
+    return to_python(grid.write([&](BeliefGrid& g) {
+      const std::lock_guard lock(mutex);
+      return integrator.integrate(g, readings, T_world_sensor, more...);
+    }));
+  }
+};
+
+using Cloud = std::vector<std::array<double, 3>>;
+
+using Clouds = SharedIntegrator<CloudIntegrator>;
+
+// The points of a cloud in the world, masked ones NaN.
+Cloud cloud_in_world(const Sensor& sensor, const py::object& points_sensor, const Pose& pose) {
+  Cloud cloud = points(nan_where_masked(points_sensor), "points");
+  const WithoutGil without_gil;
+  const Pose T_world_sensor = orthonormalized(pose);
+  MetresCheck metres(sensor);
+  for (auto& point : cloud) {
+    const Eigen::Vector3d p_sensor(point[0], point[1], point[2]);
+    metres.add(p_sensor.norm());
+    const Eigen::Vector3d p_world = T_world_sensor * p_sensor;
+    point = {p_world.x(), p_world.y(), p_world.z()};
+  }
+  metres.require("points");
+  return cloud;
+}
+
+py::object integrate_cloud(Clouds& self, const Given<SharedGrid>& grid,
+                           const py::object& points_sensor, const py::object& T_world_sensor) {
+  const Pose pose = one_pose(T_world_sensor, "T_world_sensor");
+  return self.integrate(*grid, cloud_in_world(self.sensor, points_sensor, pose), pose);
+}
+
+py::object to_python(const std::optional<Box>& box) {
+  if (!box) return py::none();
+  return to_array_3<double>({box->min, box->max});
+}
+
+py::object bounds(const Given<Sensor>& of, const py::object& points_sensor,
+                  const py::object& T_world_sensor, std::optional<double> support_plane) {
+  const Pose pose = one_pose(T_world_sensor, "T_world_sensor");
+  const Sensor& sensor = *of;
+  const Cloud cloud = cloud_in_world(sensor, points_sensor, pose);
+  return to_python(
+      outside_gil([&] { return reading_bounds(sensor, cloud, pose, {}, support_plane); }));
+}
+
+py::object load(const py::object& path) {
+  const std::string file = readable_file(path);
+  const PointCloud cloud = outside_gil([&] { return load_cloud(file); });
+  const py::object viewpoint =
+      cloud.viewpoint ? py::object(to_array(*cloud.viewpoint)) : py::none();
+  return named("Cloud", to_array_3(cloud.points), viewpoint);
+}
+
+}  // namespace
+
+void bind_cloud(py::module_& module) {
+  const std::string doc = std::string(R"(Puts point clouds of one sensor into a belief grid.
+
+Each point is a reading along the line from the sensor's origin: it carves the voxels that the line
+passes through and hits the one that holds the point, with the sensor's noise at that range and frontal
+incidence. All points of a call count as one frame.
+
+Parameters
+----------
+sensor : Sensor
+    Only its noise, fx (where the noise across the ray is a pixel's footprint) and range limits matter.
+)") + kIntegratorSettings +
+                          kIntegratorNotes;
+  const std::string integrate_doc = std::string(R"(Updates the grid by one cloud.
+
+Cost: grows with the points and with the voxels that their lines cross: 25 ms for 25,000 points and voxels
+of 5 mm on two threads.
+
+Parameters
+----------
+grid : BeliefGrid
+points : array_like, (n, 3)
+    In the sensor's frame [m]; any axes do, its origin is where the rays start. Points that are masked
+    or not finite, or nearer than min_range, say nothing; beyond max_range they carve as far as that.
+T_world_sensor : array_like, (4, 4)
+    Rotations that are off by up to 1e-3 are orthonormalised.
+
+)") + kIntegrateReturns;
+  auto type = bound_class<Clouds>(module, "CloudIntegrator", doc.c_str());
+  refuse_pickling(type);
+  type.def(py::init([](const Given<Sensor>& sensor, const std::string& occupancy,
+                       std::optional<double> support_plane, int num_threads) {
+             const CloudIntegrationConfig config{parse_occupancy(occupancy), support_plane};
+             return std::make_unique<Clouds>(*sensor, config, num_threads);
+           }),
+           py::arg("sensor"), py::kw_only(), py::arg("occupancy") = "probabilistic",
+           py::arg("support_plane") = py::none(), py::arg("num_threads") = 0)
+      .def("integrate", &integrate_cloud, py::arg("grid"), py::arg("points"),
+           py::arg("T_world_sensor"), integrate_doc.c_str())
+      .def("__repr__",
+           [](const Clouds& self) { return "<CloudIntegrator of " + self.sensor.name + ">"; });
+
+  module.def("cloud_bounds", &bounds, py::arg("sensor"), py::arg("points"),
+             py::arg("T_world_sensor"), py::kw_only(), py::arg("support_plane") = py::none(),
+             R"(As ``reading_bounds``, of a cloud.
+
+Runs without the GIL. Cost: linear in the points, 1.5 ms for 25,000.
+
+Parameters
+----------
+sensor : Sensor
+points, T_world_sensor
+    As ``CloudIntegrator.integrate``.
+support_plane : float, optional
+
+Returns
+-------
+ndarray, (2, 3), float64, or None)");
+  module.def(
+      "load_cloud", &load, py::arg("path"),
+      R"(Reads the points of a .pcd (ascii, binary, binary_compressed) or .ply (ascii, binary).
+
+Runs without the GIL. Cost: linear in the file.
+
+Parameters
+----------
+path : path-like
+
+Returns
+-------
+Cloud
+    The viewpoint is a PCD's VIEWPOINT; points of the world become the sensor's by its inverse.)");
+}
+
 namespace {
 
 /// Frames can say what the hazard of unknown space is, too.
@@ -69,7 +264,7 @@ sensor : Sensor
 carve : {"cones", "lines"}
     What counts as crossed by a pixel: voxels whose centre lies in its pyramid, or on its ray.
 )") + kIntegratorSettings +
-                          kIntegratorRaises;
+                          kIntegratorNotes;
   const std::string integrate_doc = std::string(R"(Updates the grid by one frame.
 
 Cost: linear in the pixels and grows with the voxels that they carve: 4 ms for 176x144 pixels and voxels
@@ -118,14 +313,7 @@ grid : BeliefGrid
 scene : VoxelScene
     Of the grid as it stands.
 depth, T_world_camera
-    As ``integrate``.
-
-Raises
-------
-ValueError
-    As ``integrate``.
-TypeError
-    It is no grid, or no scene.)")
+    As ``integrate``.)")
       .def("__repr__", [](const Integrator& self) {
         return "<FrameIntegrator of " + self.sensor.name + ", " +
                std::to_string(self.sensor.camera.width) + "x" +
@@ -136,12 +324,9 @@ TypeError
       "reading_bounds",
       [](const Given<Sensor>& of, const py::object& depth, const py::object& T_world_camera,
          std::optional<double> support_plane) -> py::object {
-        const Sensor& sensor = *of;
-        const std::optional<Box> bounds =
-            reading_bounds(sensor, depth_frame(sensor, depth, py::none()),
-                           one_pose(T_world_camera, "T_world_camera"), {}, support_plane);
-        if (!bounds) return py::none();
-        return to_array_3<double>({bounds->min, bounds->max});
+        return to_python(reading_bounds(*of, depth_frame(*of, depth, py::none()),
+                                        one_pose(T_world_camera, "T_world_camera"), {},
+                                        support_plane));
       },
       py::arg("sensor"), py::arg("depth"), py::arg("T_world_camera"), py::kw_only(),
       py::arg("support_plane") = py::none(),
@@ -160,14 +345,7 @@ support_plane : float, optional
 Returns
 -------
 ndarray, (2, 3), float64, or None
-    Lowest and highest corner, world frame [m]; None if the frame has no reading.
-
-Raises
-------
-ValueError
-    As ``FrameIntegrator.integrate``.
-TypeError
-    It is no sensor.)");
+    Lowest and highest corner, world frame [m]; None if the frame has no reading.)");
 }
 
 }  // namespace viewgain::python

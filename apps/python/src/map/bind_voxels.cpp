@@ -128,12 +128,7 @@ Returns
 -------
 ndarray, (..., 3), int32
     On the lattice, minus ``min_index`` for arrays. -2**31 in all three places, which is no index of any
-    array, for a point that is outside the workspace or not finite.
-
-Raises
-------
-ValueError
-    Another shape, or no real numbers.)")
+    array, for a point that is outside the workspace or not finite.)")
       .def("center", &center, py::arg("voxels"),
            R"(Where the centres of voxels are. Cost: linear in the voxels, some 25 ns each.
 
@@ -145,12 +140,7 @@ voxels : array_like, (..., 3), whole numbers
 Returns
 -------
 ndarray, (..., 3), float64
-    World frame [m].
-
-Raises
-------
-ValueError
-    A number that is no index, such as those that ``index_of`` gives where there is no voxel.)")
+    World frame [m].)")
       .def(
           "set", &set, py::arg("voxels"), py::arg("log_odds"),
           R"(Sets voxels of the workspace, in their order, all or none. Cost: linear in the voxels, some 0.25 µs each.
@@ -161,12 +151,7 @@ voxels : array_like, (..., 3), whole numbers
     On the lattice.
 log_odds : float or array_like, (...)
     Log-odds, without a unit: occupied above 0, else free; rounded to the nearest step of 0.05 and clamped to -2..3.5. A voxel has
-    no belief afterwards.
-
-Raises
-------
-ValueError
-    A shape, a voxel outside the workspace or a log-odds that is NaN; the grid is unchanged then.)")
+    no belief afterwards.)")
       .def(
           "forget",
           [](SharedGrid& grid, const py::object& region) {
@@ -189,12 +174,7 @@ region : array_like, (2, 3)
 Returns
 -------
 int
-    How many of the voxels were known.
-
-Raises
-------
-ValueError
-    A shape, or a bound that is not a number.)")
+    How many of the voxels were known.)")
       .def("occupied", &occupied,
            R"(The occupied voxels; equal maps give the same order.
 

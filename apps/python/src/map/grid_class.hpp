@@ -5,8 +5,11 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
+#include <optional>
 
 #include "shared_grid.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/sensor.hpp"
 
 namespace viewgain::python {
 
@@ -16,5 +19,22 @@ using GridClass = pybind11::class_<SharedGrid, std::shared_ptr<SharedGrid>>;
 void bind_grid_files(GridClass& grid_class);
 /// Adds what is about single voxels.
 void bind_voxels(GridClass& grid_class);
+
+/// Throws Error(invalid_argument) if there is neither. A default of half a voxel would make unknown
+/// voxels more certain than a reading where voxels are finer than the noise.
+inline void require_prior(std::optional<double> prior_sigma, const Sensor* sensor) {
+  if (prior_sigma || sensor != nullptr) return;
+  throw Error(ErrorCode::invalid_argument,
+              "give the sensor that the map is for, or prior_sigma, the standard deviation of an "
+              "unknown voxel's position [m]");
+}
+
+/// The prior sigma [m] of a grid: the one given, else what suits the sensor; throws as
+/// require_prior().
+[[nodiscard]] inline double prior_of(std::optional<double> prior_sigma, const Sensor* sensor,
+                                     double voxel_size) {
+  require_prior(prior_sigma, sensor);
+  return prior_sigma ? *prior_sigma : default_prior_sigma(voxel_size, *sensor);
+}
 
 }  // namespace viewgain::python

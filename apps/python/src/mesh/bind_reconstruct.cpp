@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "arrays.hpp"
 #include "batch_call.hpp"
@@ -15,8 +14,6 @@
 #include "given.hpp"
 #include "map/depth_images.hpp"
 #include "map/shared_grid.hpp"
-#include "mesh/bindings.hpp"
-#include "named.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
@@ -103,22 +100,20 @@ GenerationConfig generation_config(const Sensor& sensor, double voxel_size, bool
   return config;
 }
 
-Reconstruction reconstruct(const py::object& acquire, const Given<Sensor>& of,
-                           const py::object& start, double voxel_size, const py::object& workspace,
-                           const std::string& criterion, const std::string& policy,
-                           const std::string& gain, std::optional<bool> boundary,
-                           const py::object& candidates, const ReachRegion* reach,
-                           std::optional<double> support_plane, bool jump_edges,
-                           std::size_t max_views, std::optional<double> stop_gain,
-                           std::optional<double> stop_area, std::size_t idle_views,
-                           std::size_t broken_promises, const py::object& observer,
-                           const GivenOrNone<Control>& control, int num_threads) {
+Reconstruction reconstruct(
+    const py::object& acquire, const Given<Sensor>& of, const py::object& start, double voxel_size,
+    const py::object& workspace, const std::string& criterion, const std::string& policy,
+    const std::string& gain, std::optional<bool> boundary, const py::object& candidates,
+    const ReachRegion* reach, std::optional<double> support_plane, bool jump_edges,
+    std::size_t max_views, std::optional<double> stop_gain, std::optional<double> stop_area,
+    std::size_t idle_views, std::size_t broken_promises, const py::object& observer,
+    const GivenOrNone<Control>& control, const std::string& tracer, int num_threads) {
   if (PyCallable_Check(acquire.ptr()) == 0) throw py::type_error("acquire must be callable");
   if (!observer.is_none() && PyCallable_Check(observer.ptr()) == 0) {
     throw py::type_error("observer must be callable");
   }
   const Sensor& sensor = *of;
-  const ExecConfig exec{num_threads};
+  const ExecConfig exec{num_threads, parse_tracer(tracer)};
   const Pose x_0 = one_pose(start, "start");
   SurfaceModelConfig model_config;
   MapModelConfig& map_config = model_config.map;
@@ -208,7 +203,7 @@ Cost: properties take constant time; surface and map are not copied.)");
              py::arg("stop_area") = py::none(), py::arg("idle_views") = defaults.idle_views,
              py::arg("broken_promises") = defaults.broken_promises,
              py::arg("observer") = py::none(), py::arg("control") = py::none(),
-             py::arg("num_threads") = 0,
+             py::arg("tracer") = "automatic", py::arg("num_threads") = 0,
              R"(The whole loop: measure, update map and surface, propose views, rank them, go on.
 
 The paper's Algorithm 1 with your camera, or your simulator, in it. The GIL is left but while your
@@ -225,7 +220,7 @@ acquire : callable
     passes through.
 sensor : viewgain.Sensor
 start : array_like, (4, 4)
-    T_world_camera of the first view.
+    T_world_camera of the first view, which must have a reading in the workspace.
 voxel_size : float
     [m]
 workspace : array_like, (2, 3)
@@ -264,20 +259,15 @@ observer : callable, optional
     Given the ViewRecord of each view, when the next one has been chosen.
 control : viewgain.BatchControl, optional
     Its stop() ends the loop with the reason "interrupted"; its progress function is not called.
+tracer : {"automatic", "embree", "sweep"}
+    How rays meet voxels, as in ``viewgain.GainEvaluator``. Never changes the result.
 num_threads : int
     0: all hardware threads. Never changes the result.
 
 Returns
 -------
 Reconstruction
-    Its views are named tuples, ``ViewRecord``: index, T_world_camera, generator ("start", "boundary", "candidates"),
-    boundary_class, predicted_gain, realised_gain, entropy_removed [nat, m**2 for trace],
-    unknown_voxels, predicted_area, realised_area (new surface), surface_area [m**2], travelled [m], candidates (how many), dropped (reason -> how many).
-
-Raises
-------
-ValueError
-    An argument, or what acquire returned, is wrong; the first view has no reading in the workspace.)");
+    Its views are named tuples, ``ViewRecord``.)");
 }
 
 }  // namespace viewgain::python

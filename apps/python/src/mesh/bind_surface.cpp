@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,13 +16,115 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/shared_grid.hpp"
-#include "mesh/bindings.hpp"
-#include "sealed_bytes.hpp"
 #include "viewgain/formats/ply.hpp"
+#include "viewgain/mesh/boundary.hpp"
 #include "viewgain/mesh/surface.hpp"
+#include "viewgain/mesh/viewpoint_estimator.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::python {
+/// Why a boundary candidate exists.
+struct ReasonRow {
+  std::uint8_t boundary_class;
+  std::uint32_t run;
+  double run_length;
+  std::uint32_t patch;
+  std::array<double, 3> target;
+  double distance, tilt, roll;
+  bool nominal;
+};
+
+namespace {
+
+py::object boundary_candidates(const Given<SurfaceMesh>& given, const py::object& views,
+                               const Given<Sensor>& of, double spacing,
+                               std::optional<double> working_distance,
+                               std::optional<double> overlap,
+                               const std::optional<std::vector<double>>& distances,
+                               const std::optional<std::vector<double>>& tilts,
+                               const std::optional<std::vector<double>>& rolls) {
+  const SurfaceMesh& surface = *given;
+  const Sensor& sensor = *of;
+  if (!(spacing > 0 && std::isfinite(spacing))) {
+    throw py::value_error("the spacing must be positive and finite, not " + short_text(spacing));
+  }
+  const std::vector<Pose> taken = pose_list(views, "views");
+  EstimatorConfig config = default_estimator(spacing);
+  if (overlap) config.overlap = *overlap;
+  if (distances) config.distances = *distances;
+  if (tilts) config.tilts = *tilts;
+  if (rolls) config.rolls = *rolls;
+  const EstimatedViews estimated = outside_gil([&] {
+    return estimate_views(surface, taken, sensor,
+                          working_distance.value_or(sensor.working_distance), config);
+  });
+  std::vector<Pose> poses;
+  std::vector<ReasonRow> reasons;
+  for (const BoundaryCandidate& c : estimated.candidates) {
+    poses.push_back(c.T_world_camera);
+    reasons.push_back({static_cast<std::uint8_t>(c.boundary_class),
+                       c.run,
+                       estimated.runs[c.run].length,
+                       c.patch,
+                       {c.target.x(), c.target.y(), c.target.z()},
+                       c.distance,
+                       c.tilt,
+                       c.roll,
+                       c.nominal});
+  }
+  return named_in("viewgain.mesh.results", "BoundaryCandidates",
+                  to_array(poses, {static_cast<py::ssize_t>(poses.size())}),
+                  to_array_1d<ReasonRow>(reasons));
+}
+
+}  // namespace
+
+void bind_boundary(py::module_& module) {
+  PYBIND11_NUMPY_DTYPE(ReasonRow, boundary_class, run, run_length, patch, target, distance, tilt,
+                       roll, nominal);
+  py::list classes;
+  for (const BoundaryClass c :
+       {BoundaryClass::left, BoundaryClass::right, BoundaryClass::top, BoundaryClass::bottom}) {
+    classes.append(std::string(boundary_class_name(c)));
+  }
+  module.attr("BOUNDARY_CLASS_NAMES") = py::tuple(classes);
+
+  module.def("boundary_candidates", &boundary_candidates, py::arg("surface"), py::arg("views"),
+             py::arg("sensor"), py::kw_only(), py::arg("spacing"),
+             py::arg("working_distance") = py::none(), py::arg("overlap") = py::none(),
+             py::arg("distances") = py::none(), py::arg("tilts") = py::none(),
+             py::arg("rolls") = py::none(),
+             R"(Views that look past the open boundaries of a surface, and why.
+
+Runs without the GIL. Cost: grows with the boundary's edges and the views, 3 ms for a surface of 19,000
+vertices that 12 views saw.
+
+Parameters
+----------
+surface : Surface
+views : array_like, (n, 4, 4)
+    T_world_camera of the views that saw it, in order; at least one.
+sensor : Sensor
+spacing : float
+    How far apart its points are [m]: ``grid.pooling_length()`` of the map.
+working_distance : float, optional
+    From the surface [m]; the sensor's unless given.
+overlap : float, optional
+    Share of the next view that shows known surface, in (0, 1).
+distances : sequence of float, (n,), optional
+    Multiples of the working distance.
+tilts, rolls : sequence of float, (n,), optional
+    [rad]; all combinations are tried.
+
+Returns
+-------
+BoundaryCandidates
+    What stands in their way is for ``FeasibilityChecker`` to say. Of their reasons: boundary_class (index into ``BOUNDARY_CLASS_NAMES``), run (of boundary edges), run_length [m],
+    patch, target (the extrapolated point looked at, 3, world [m]), distance from it [m], tilt, roll [rad],
+    nominal (neither tilted nor rolled, at the first distance).)");
+}
 
 namespace {
 
@@ -131,7 +235,7 @@ Notes
 -----
 Cost: linear in vertices and triangles: each property is a copy, 30 µs for 20,000 vertices. ``save``
 leaves the GIL, the rest holds it.)");
-  pickle_as_bytes(type);
+  pickle_as_bytes(type, "surface", ".", &bytes_of, &from_bytes);
   type.def_property_readonly(
           "vertices", [](const SurfaceMesh& s) { return to_array_3(s.vertices); },
           "ndarray, (n, 3), float64: in the surface's frame, of a map the world's [m]")
@@ -148,8 +252,7 @@ leaves the GIL, the rest holds it.)");
       .def(
           "save",
           [](const SurfaceMesh& self, const py::object& path) {
-            const std::string file = file_path(path);
-            require_writable(file);
+            const std::string file = writable_file(path);
             const WithoutGil without_gil;
             write_ply(file, {self.vertices, self.normals, {}, self.triangles});
           },
@@ -159,56 +262,19 @@ leaves the GIL, the rest holds it.)");
 Parameters
 ----------
 path : path-like
-    .ply by custom.
-
-Raises
-------
-OSError
-    It cannot be written.)")
-      .def("to_bytes", &bytes_of, R"(The surface as bytes, for ``from_bytes`` and pickles.
-
-Returns
--------
-bytes
-    In this machine's byte order.)")
-      .def_static("from_bytes", &from_bytes, py::arg("data"),
-                  R"(The surface that ``to_bytes`` wrote.
-
-Parameters
-----------
-data : bytes
-
-Returns
--------
-Surface
-    Equal to the one that was written.
-
-Raises
-------
-Error
-    They are no surface, or damaged.)")
+    .ply by custom.)")
       .def("to_trimesh", &to_trimesh, R"(The surface for trimesh, with its normals.
 
 Returns
 -------
 trimesh.Trimesh
-    A copy [m]; no vertex is merged or dropped.
-
-Raises
-------
-ImportError
-    trimesh is not installed.)")
+    A copy [m]; no vertex is merged or dropped.)")
       .def("to_open3d", &to_open3d, R"(The surface for Open3D, with its normals.
 
 Returns
 -------
 open3d.geometry.TriangleMesh
-    A copy [m].
-
-Raises
-------
-ImportError
-    Open3D is not installed.)")
+    A copy [m].)")
       .def(
           "__eq__",
           [](const SurfaceMesh& a, const SurfaceMesh& b) {
@@ -253,13 +319,7 @@ num_threads : int
 Returns
 -------
 Surface
-    Empty for no points, or nothing but outliers.
-
-Raises
-------
-ValueError
-    Another shape, a point that is not finite, a length that is not positive, or not one hint a
-    point.)");
+    Empty for no points, or nothing but outliers.)");
   module.def("surface_of_grid", &surface_of_grid, py::arg("grid"), py::kw_only(),
              py::arg("min_hits") = 2, py::arg("num_threads") = 0,
              R"(The surface through ``grid.points(min_hits=min_hits)``.
@@ -278,12 +338,7 @@ num_threads : int
 Returns
 -------
 Surface
-    World frame.
-
-Raises
-------
-TypeError
-    It is no grid.)");
+    World frame.)");
 }
 
 }  // namespace viewgain::python

@@ -1,6 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/bindings.hpp"
+#include <pybind11/pybind11.h>
+
+namespace viewgain::python {
+
+// The parts of the module.
+void bind_surface(pybind11::module_&), bind_boundary(pybind11::module_&),
+    bind_reconstruct(pybind11::module_&);
+
+}  // namespace viewgain::python
 
 PYBIND11_MODULE(_mesh, module) {
   module.doc() = "The C++ part of viewgain.mesh; import viewgain.mesh instead.";

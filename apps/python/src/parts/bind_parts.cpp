@@ -13,12 +13,10 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "bindings.hpp"
 #include "evaluator.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/columns/mapped_poses.hpp"
-#include "viewgain/support/columns/part_reader.hpp"
-#include "viewgain/support/columns/part_writer.hpp"
+#include "viewgain/support/columns/parts.hpp"
 #include "viewgain/support/columns/score_job.hpp"
 
 namespace viewgain::python {

@@ -54,8 +54,7 @@ typedef struct vg_watch {
   int32_t (*poll)(size_t done, size_t total, void* user);
   void* user; /* may be null */
 } vg_watch;
-/* The defaults. */
-VG_API void vg_watch_init(vg_watch* watch, size_t struct_size);
+VG_API void vg_watch_init(vg_watch* watch, size_t struct_size); /* the defaults */
 
 #ifdef __cplusplus
 }

@@ -41,8 +41,7 @@ typedef struct vg_scene_config {
   size_t hazard_count;     /* of hazard_rates: dims[0] * dims[1] * dims[2] */
   const char* hazard_file; /* null: none */
 } vg_scene_config;
-/* The defaults. */
-VG_API void vg_scene_config_init(vg_scene_config* config, size_t struct_size);
+VG_API void vg_scene_config_init(vg_scene_config* config, size_t struct_size); /* the defaults */
 
 /* config null: nothing stands there. */
 VG_API vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config,
@@ -51,8 +50,7 @@ VG_API vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* conf
 /* The scene of what `grid` is now, in the surroundings of `before`; copies what has not changed. */
 VG_API vg_status vg_scene_update(const vg_scene* before, const vg_grid* grid, int32_t num_threads,
                                  vg_scene** scene);
-/* Null does nothing. */
-VG_API void vg_scene_release(vg_scene* scene);
+VG_API void vg_scene_release(vg_scene* scene); /* null: nothing */
 
 /* Counts how often a frame meets the surface in unknown space, before it is integrated; the surface
    and the combined gain of the grid's later scenes go by it. `scene` is that of the grid as it
@@ -113,8 +111,7 @@ VG_API vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sen
    so that it takes microseconds; gains are those of an evaluator made for that scene. */
 VG_API vg_status vg_evaluator_with_scene(const vg_evaluator* evaluator, const vg_scene* scene,
                                          vg_evaluator** following);
-/* Null does nothing. */
-VG_API void vg_evaluator_release(vg_evaluator* evaluator);
+VG_API void vg_evaluator_release(vg_evaluator* evaluator); /* null: nothing */
 
 /* What an evaluator is. */
 typedef struct vg_evaluator_info {
@@ -293,8 +290,7 @@ VG_API vg_status vg_feasibility_check(const vg_feasibility* feasibility, const d
    `feasibility` stays as it is. Takes microseconds. */
 VG_API vg_status vg_feasibility_with_scene(const vg_feasibility* feasibility, const vg_scene* scene,
                                            vg_feasibility** following);
-/* Null does nothing. */
-VG_API void vg_feasibility_release(vg_feasibility* feasibility);
+VG_API void vg_feasibility_release(vg_feasibility* feasibility); /* null: nothing */
 
 /* ---- Poses ---- */
 

@@ -69,8 +69,7 @@ VG_API vg_status vg_range_calibration_create(const vg_sensor* sensor, const doub
    distortion or without. */
 VG_API vg_status vg_range_calibration_correct(const vg_range_calibration* calibration,
                                               float* depth);
-/* Null does nothing. */
-VG_API void vg_range_calibration_release(vg_range_calibration* calibration);
+VG_API void vg_range_calibration_release(vg_range_calibration* calibration); /* null: nothing */
 
 /* ---- Belief grids ---- */
 
@@ -85,8 +84,7 @@ typedef struct vg_grid_config {
   double T_world_grid[16];       /* identity */
   double prior_sigma;            /* of an unknown voxel [m] */
 } vg_grid_config;
-/* The defaults. */
-VG_API void vg_grid_config_init(vg_grid_config* config, size_t struct_size);
+VG_API void vg_grid_config_init(vg_grid_config* config, size_t struct_size); /* the defaults */
 
 /* An empty map: every voxel of the workspace is unknown. */
 VG_API vg_status vg_grid_create(const vg_grid_config* config, vg_grid** grid);
@@ -103,8 +101,7 @@ VG_API vg_status vg_grid_save(const vg_grid* grid, const char* path);
 
 /* A deep copy. */
 VG_API vg_status vg_grid_clone(const vg_grid* grid, vg_grid** copy);
-/* Null does nothing. */
-VG_API void vg_grid_release(vg_grid* grid);
+VG_API void vg_grid_release(vg_grid* grid); /* null: nothing */
 
 /* What a map is, and how far. */
 typedef struct vg_grid_info {
@@ -209,8 +206,7 @@ VG_API vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrat
 VG_API vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* depth,
                               const float* amplitude, const double T_world_camera[16],
                               const double pose_sigma[2], vg_integration_report* report);
-/* Null does nothing. */
-VG_API void vg_integrator_release(vg_integrator* integrator);
+VG_API void vg_integrator_release(vg_integrator* integrator); /* null: nothing */
 
 #ifdef __cplusplus
 }

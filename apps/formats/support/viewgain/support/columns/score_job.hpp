@@ -12,7 +12,7 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
-#include "viewgain/support/columns/part_head.hpp"
+#include "viewgain/support/columns/parts.hpp"
 
 namespace viewgain {
 

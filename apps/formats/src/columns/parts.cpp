@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/support/columns/part_reader.hpp"
+#include "viewgain/support/columns/parts.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <system_error>
+#include <utility>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/file_names.hpp"
@@ -16,20 +17,128 @@
 namespace viewgain {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 20U;
+// The lines before rows and scored: key and text.
+constexpr std::array<std::pair<const char*, std::string PartHead::*>, 5> kTexts{
+    {{"viewgain", &PartHead::version},
+     {"map", &PartHead::map},
+     {"sensor", &PartHead::sensor},
+     {"settings", &PartHead::settings},
+     {"isa", &PartHead::isa}}};
+
+std::string poses_text(const PartHead& head) {
+  return std::to_string(head.poses) + " " + head.poses_hash;
+}
+
+class HeadReader {
+ public:
+  HeadReader(const std::string& file, std::string_view rest) : file_(file), rest_(rest) {}
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorCode::format, file_ + ": line " + std::to_string(line_) + " of #: " + what);
+  }
+  // What stands behind "# key ".
+  std::string_view value(const std::string& key) {
+    ++line_;
+    const std::string start = "# " + key + " ";
+    const std::size_t end = rest_.find('\n');
+    if (end == std::string_view::npos || !rest_.starts_with(start)) {
+      fail("expected \"" + start + "...\"");
+    }
+    const std::string_view found = rest_.substr(start.size(), end - start.size());
+    rest_.remove_prefix(end + 1);
+    if (found.empty()) fail(key + " is empty");
+    return found;
+  }
+  [[nodiscard]] std::uint64_t count(std::string_view word) const {
+    std::uint64_t value = 0;
+    const char* const end = word.data() + word.size();
+    if (std::from_chars(word.data(), end, value).ptr != end || word.empty()) {
+      fail(quoted(word) + " is no count");
+    }
+    return value;
+  }
+  // A word and what stands behind its separator.
+  [[nodiscard]] std::pair<std::string_view, std::string_view> cut(std::string_view text,
+                                                                  char separator) const {
+    const std::size_t at = text.find(separator);
+    if (at == std::string_view::npos) fail(quoted(text) + " lacks a " + quoted({&separator, 1}));
+    return {text.substr(0, at), text.substr(at + 1)};
+  }
+  [[nodiscard]] bool has(std::string_view start) const { return rest_.starts_with(start); }
+  void end() const {
+    if (!rest_.empty()) fail("more lines follow");
+  }
+
+ private:
+  const std::string& file_;
+  std::string_view rest_;
+  std::size_t line_ = 0;
+};
+
+}  // namespace
+
+Column column_of(const std::string& name) {
+  constexpr std::array<std::string_view, 4> kCounts{"rays", "hits", "unknown_voxels",
+                                                    "occupied_voxels"};
+  if (name == "index") return {name, ColumnType::row};
+  if (name == "status") return {name, ColumnType::status};
+  const bool counts = std::find(kCounts.begin(), kCounts.end(), name) != kCounts.end();
+  return {name, counts ? ColumnType::count : ColumnType::real};
+}
+
+std::string text_of(const RowRange& rows) {
+  return std::to_string(rows.begin) + ":" + std::to_string(rows.end);
+}
+
+std::string head_text(const PartHead& head) {
+  std::string text;
+  for (const auto& [key, member] : kTexts) {
+    text.append("# ").append(key).append(" ").append(head.*member).append("\n");
+  }
+  text.append("# poses ").append(poses_text(head)).append("\n");
+  text.append("# rows ").append(text_of(head.rows)).append("\n");
+  text.append(head.is_best ? "# best " : "# scored ").append(std::to_string(head.scored));
+  return text + "\n";
+}
+
+PartHead parse_head(const std::string& file, std::string_view text) {
+  HeadReader reader(file, text);
+  PartHead head;
+  for (const auto& [key, member] : kTexts) head.*member = reader.value(key);
+  const auto [poses, hash] = reader.cut(reader.value("poses"), ' ');
+  head.poses = reader.count(poses);
+  head.poses_hash = hash;
+  const auto [begin, end] = reader.cut(reader.value("rows"), ':');
+  head.rows = {reader.count(begin), reader.count(end)};
+  if (head.rows.begin > head.rows.end || head.rows.end > head.poses) {
+    reader.fail("rows " + text_of(head.rows) + " of " + std::to_string(head.poses));
+  }
+  head.is_best = reader.has("# best ");
+  head.scored = reader.count(reader.value(head.is_best ? "best" : "scored"));
+  if (head.scored > head.rows.end - head.rows.begin) reader.fail("more were scored than rows");
+  reader.end();
+  return head;
+}
+
+std::string difference(const PartHead& head, const PartHead& first, const std::string& first_file) {
+  const auto differ = [&](const char* key, const std::string& mine, const std::string& other) {
+    return std::string(key) + " " + mine + ", not " + other + " as in " + first_file;
+  };
+  for (const auto& [key, member] : kTexts) {
+    if (head.*member != first.*member) return differ(key, head.*member, first.*member);
+  }
+  if (poses_text(head) != poses_text(first)) {
+    return differ("poses", poses_text(head), poses_text(first));
+  }
+  return "";
+}
+
+namespace {
+
+constexpr std::size_t kBlock = std::size_t{1} << 20U;  // that is read or written at once
 constexpr auto kLastStatus = static_cast<std::uint8_t>(ViewStatus::camera_in_occupied);
 constexpr std::array kTypes{ColumnType::row, ColumnType::real, ColumnType::count,
                             ColumnType::status};
-
-// In CSV a column's name says what it holds.
-ColumnType type_of(std::string_view name) {
-  if (name == "index") return ColumnType::row;
-  if (name == "status") return ColumnType::status;
-  constexpr std::array<std::string_view, 4> kCounts{"rays", "hits", "unknown_voxels",
-                                                    "occupied_voxels"};
-  const bool counts = std::find(kCounts.begin(), kCounts.end(), name) != kCounts.end();
-  return counts ? ColumnType::count : ColumnType::real;
-}
 
 }  // namespace
 
@@ -120,14 +229,12 @@ void PartReader::open_csv() {
     text.append(line).append("\n");
     if (text.size() > kBlock) fail("too many lines of #");
   }
-  if (text.empty()) {
-    fail("does not say which rows it has (lines of #)");
-  }
+  if (text.empty()) fail("does not say which rows it has (lines of #)");
   const std::string names(line);
   for (std::size_t begin = 0; begin <= names.size();) {
     const std::size_t end = std::min(names.find(',', begin), names.size());
     const std::string name = names.substr(begin, end - begin);
-    columns_.push_back({name, type_of(name)});
+    columns_.push_back(column_of(name));
     begin = end + 1;
   }
   head_ = parse_head(name_, text);
@@ -221,6 +328,68 @@ const char* PartReader::next() {
   check_row();
   ++read_;
   return row_.bytes.data();
+}
+
+void append_csv(std::string& csv, const std::vector<Column>& columns, std::string_view rows) {
+  const char* at = rows.data();
+  const char* const end = at + rows.size();
+  while (at != end) {
+    for (const Column& column : columns) {
+      if (&column != columns.data()) csv += ',';
+      if (column.type == ColumnType::row) {
+        csv += std::to_string(value_at<std::int64_t>(at));
+      } else if (column.type == ColumnType::real) {
+        csv += exact_text(value_at<double>(at));
+      } else if (column.type == ColumnType::count) {
+        csv += std::to_string(value_at<std::uint32_t>(at));
+      } else {
+        csv += view_status_name(static_cast<ViewStatus>(*at));
+      }
+      at += size_of(column.type);
+    }
+    csv += '\n';
+  }
+}
+
+std::string csv_columns(const std::vector<Column>& columns) {
+  std::string line;
+  for (const Column& column : columns) line += (line.empty() ? "" : ",") + column.name;
+  return line + "\n";
+}
+
+PartWriter::PartWriter(const std::filesystem::path& path, const std::vector<Column>& columns,
+                       const std::optional<PartHead>& head)
+    : file_(path), columns_(columns), is_npy_(is_npy(path)) {
+  const std::string lines = head ? head_text(*head) : std::string();
+  if (is_npy_) {
+    buffer_ = npy_header(columns_, head ? head->scored : 0);
+    tail_ = lines;
+  } else {
+    buffer_ = lines + csv_columns(columns_);
+  }
+}
+
+void PartWriter::add(std::string_view rows) {
+  if (is_npy_) {
+    buffer_ += rows;
+  } else {
+    append_csv(buffer_, columns_, rows);
+  }
+  if (buffer_.size() < kBlock) return;
+  file_.write(buffer_);
+  buffer_.clear();
+}
+
+void PartWriter::commit() {
+  file_.write(buffer_ + tail_);
+  file_.commit();
+}
+
+void write_table(const std::filesystem::path& path, const Table& table,
+                 const std::optional<PartHead>& head) {
+  PartWriter writer(path, table.columns, head);
+  writer.add(table.bytes);
+  writer.commit();
 }
 
 }  // namespace viewgain

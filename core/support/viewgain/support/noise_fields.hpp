@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "viewgain/core/noise.hpp"
+
+namespace viewgain {
+
+/// A parameter of a noise model.
+template <typename Model>
+struct NoiseField {
+  const char* name;  ///< in files and in Python
+  double Model::*member;
+  bool optional = false;     ///< in files: then the model's default holds
+  bool unsaid_at_0 = false;  ///< in files: 0 is no value of its own
+};
+
+/// What a model is called in files, and its parameters in the order of C's vg_sensor::noise.
+template <typename Model>
+struct NoiseLayout;
+template <>
+struct NoiseLayout<ShotNoise> {
+  static constexpr const char* kName = "shot";
+  static constexpr std::array<NoiseField<ShotNoise>, 6> kFields{
+      {{"reference_sigma", &ShotNoise::reference_sigma},
+       {"reference_range", &ShotNoise::reference_range},
+       {"reference_integration_time", &ShotNoise::reference_integration_time},
+       {"integration_time", &ShotNoise::integration_time},
+       {"modulation_frequency", &ShotNoise::modulation_frequency, true},
+       {"min_amplitude", &ShotNoise::min_amplitude, true}}};
+};
+template <>
+struct NoiseLayout<StructuredLightNoise> {
+  static constexpr const char* kName = "structured_light";
+  static constexpr std::array<NoiseField<StructuredLightNoise>, 6> kFields{
+      {{"offset", &StructuredLightNoise::offset},
+       {"quadratic", &StructuredLightNoise::quadratic},
+       {"vertex", &StructuredLightNoise::vertex},
+       {"grazing", &StructuredLightNoise::grazing},
+       {"lateral_px", &StructuredLightNoise::lateral_px},
+       {"lateral_grazing_px", &StructuredLightNoise::lateral_grazing_px}}};
+};
+template <>
+struct NoiseLayout<StereoNoise> {
+  static constexpr const char* kName = "stereo";
+  static constexpr std::array<NoiseField<StereoNoise>, 3> kFields{
+      {{"subpixel", &StereoNoise::subpixel},
+       {"focal", &StereoNoise::focal, true, true},
+       {"baseline", &StereoNoise::baseline}}};
+};
+template <>
+struct NoiseLayout<QuadraticNoise> {
+  static constexpr const char* kName = "quadratic";
+  static constexpr std::array<NoiseField<QuadraticNoise>, 2> kFields{
+      {{"offset", &QuadraticNoise::offset}, {"quadratic", &QuadraticNoise::quadratic}}};
+};
+template <>
+struct NoiseLayout<ConstantNoise> {
+  static constexpr const char* kName = "constant";
+  static constexpr std::array<NoiseField<ConstantNoise>, 2> kFields{
+      {{"sigma_axial", &ConstantNoise::sigma_axial},
+       {"sigma_lateral", &ConstantNoise::sigma_lateral}}};
+};
+
+/// All models with their start values, in the order of their numbers.
+inline const std::array<NoiseModel, 5> kNoiseModels{
+    ShotNoise{}, StructuredLightNoise{}, StereoNoise{}, QuadraticNoise{}, ConstantNoise{}};
+
+/// Calls f(double&, field) of each parameter.
+template <typename F>
+void for_each_parameter(NoiseModel& noise, F&& f) {
+  std::visit(
+      [&f]<typename Model>(Model& model) {
+        for (const auto& field : NoiseLayout<Model>::kFields) f(model.*field.member, field);
+      },
+      noise);
+}
+
+}  // namespace viewgain
