@@ -6,7 +6,7 @@
 
 #include "classic_table.hpp"
 #include "distinct_voxels.hpp"
-#include "viewgain/core/isa.hpp"
+#include "viewgain/support/isa.hpp"
 #include "viewgain/support/walk_task.hpp"
 #include "voxel_values.hpp"
 

@@ -56,7 +56,7 @@ py::array_t<HitRow> trace_array(const Evaluator& self, const py::object& T_world
 
 py::array_t<float> depth(const Evaluator& self, const py::object& T_world_camera) {
   const Pose pose = one_pose(T_world_camera, "T_world_camera");
-  DepthImage image;
+  DepthFrame image;
   {
     const WithoutGil without_gil;
     image = depth_image(self.evaluator, pose);

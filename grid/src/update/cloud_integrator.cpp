@@ -57,12 +57,12 @@ class CloudPoints : public Readings {
 }  // namespace
 
 struct CloudIntegrator::Impl {
-  CloudIntegrationConfig config;
+  IntegrationConfig config;
   MapUpdate update;
   CloudPoints points;
 };
 
-CloudIntegrator::CloudIntegrator(const Sensor& sensor, const CloudIntegrationConfig& config,
+CloudIntegrator::CloudIntegrator(const Sensor& sensor, const IntegrationConfig& config,
                                  const ExecConfig& exec)
     : impl_(std::make_unique<Impl>(
           Impl{config, MapUpdate(config.occupancy, exec), CloudPoints(sensor)})) {

@@ -12,7 +12,7 @@
 #include <numeric>
 #include <utility>
 
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
 namespace {

@@ -16,9 +16,9 @@
 #include "scene/scene_data.hpp"
 #include "sight_check.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/text.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
@@ -45,7 +45,7 @@ void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConf
   if (!(std::isfinite(config.clearance) && config.clearance >= 0)) {
     fail("the clearance must be finite and not negative, not " + short_text(config.clearance));
   }
-  const PoseTolerance& taken = config.taken_tolerance;
+  const ReachRegion::Tolerance& taken = config.taken_tolerance;
   if (!(std::isfinite(taken.distance) && taken.distance >= 0 && std::isfinite(taken.angle) &&
         taken.angle >= 0)) {
     fail("the tolerance of views taken must be finite and not negative");
@@ -86,7 +86,7 @@ struct FeasibilityChecker::Impl {
   struct Settings {
     Settings(FeasibilityConfig config_in, const ExecConfig& exec)
         : config(std::move(config_in)), num_threads(thread_count(exec.num_threads)) {
-      const SensorBody& body = config.body;
+      const FeasibilityConfig::Body& body = config.body;
       const double depth = body.size[2];
       half = 0.5 * Eigen::Vector3d(body.size[0], body.size[1], depth) +
              Eigen::Vector3d::Constant(config.clearance);

@@ -18,6 +18,7 @@
 
 #include "gain_kernels.hpp"
 #include "viewgain/core/noise.hpp"
+#include "viewgain/support/belief_block.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
@@ -122,8 +123,8 @@ void accumulate(const HitBatch& batch, const std::uint32_t* places, const std::u
   }
 }
 
-void look_up(const SnapshotLeaf* const* leaves, const std::uint32_t* offsets, std::size_t count,
-             MatrixHalf* known_a, MatrixHalf* known_b) {
+void look_up(const GridSnapshot::Leaf* const* leaves, const std::uint32_t* offsets,
+             std::size_t count, MatrixHalf* known_a, MatrixHalf* known_b) {
   // Where the beliefs are is found some voxels ahead of reading them, so that memory can follow.
   constexpr std::size_t kAhead = 32;
   static constexpr Belief kNothing{};

@@ -29,12 +29,6 @@ namespace detail {
 struct EvaluatorAccess;
 }
 
-/// A task weight for a part of the workspace: the paper's "selected parts".
-struct VIEWGAIN_EXPORT WeightRegion {
-  Box box;            ///< grid frame [m]; a voxel belongs to it if its centre does
-  double weight = 1;  ///< w_v >= 0; the last region that holds a voxel counts, 1 outside all
-};
-
 /// What a view's gain counts (apps/docs/guide/equations.md).
 enum class GainModel : std::uint8_t {
   paper,     ///< the paper's: entropy removed where rays first meet what is not free [nat]
@@ -53,6 +47,12 @@ inline constexpr GainModel kDefaultGain = GainModel::combined;
 
 /// What changes the answer.
 struct VIEWGAIN_EXPORT GainConfig {
+  /// A task weight for a part of the workspace: the paper's "selected parts".
+  struct WeightRegion {
+    Box box;            ///< grid frame [m]; a voxel belongs to it if its centre does
+    double weight = 1;  ///< w_v >= 0; the last region that holds a voxel counts, 1 outside all
+  };
+
   GainModel model = kDefaultGain;  ///< what is counted
   /// Of the paper's gain. The combined gain's refinement is by log_diagonal whatever it says, but
   /// not trace.
