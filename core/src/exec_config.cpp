@@ -28,13 +28,7 @@ const std::vector<std::string>& tracer_names() {
 }
 
 ExecConfig::Tracer parse_tracer(std::string_view name) {
-  const std::vector<std::string>& names = tracer_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw Error(ErrorCode::invalid_argument,
-                "unknown tracer \"" + std::string(name) + "\"; valid are " + listed(names));
-  }
-  return static_cast<ExecConfig::Tracer>(found - names.begin());
+  return static_cast<ExecConfig::Tracer>(place_of_name(name, tracer_names(), "tracer"));
 }
 
 }  // namespace viewgain

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "viewgain/core/camera.hpp"
-#include "viewgain/core/range_corrector.hpp"
+#include "viewgain/core/range_calibration.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate.hpp"

@@ -16,11 +16,9 @@
 #include "code_mask.hpp"
 #include "grid_layout.hpp"
 #include "grid_storage.hpp"
-#include "rigid_view.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/grid_blocks.hpp"
-#include "voxels_in.hpp"
 
 namespace viewgain {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "belief_blocks.hpp"
 #include "code_mask.hpp"
+#include "grid_layout.hpp"
 #include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/grid_blocks.hpp"
-#include "voxels_in.hpp"
 
 namespace viewgain {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "input_checks.hpp"
-#include "map/rigid_view.hpp"
+#include "map/grid_layout.hpp"
 #include "map_update.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/integrate_cloud.hpp"

@@ -18,7 +18,6 @@
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/range_calibration.hpp"
-#include "viewgain/core/range_corrector.hpp"
 #include "viewgain/core/reach.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/core/triangle_mesh.hpp"

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "scene/gather_scene.hpp"
-#include "scene/obstacle_mesh.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/thread_pool.hpp"
 

@@ -3,6 +3,7 @@
 #include "viewgain/raycast/feasibility.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <optional>
@@ -60,25 +61,9 @@ void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConf
 }  // namespace
 
 std::string_view infeasibility_name(Infeasibility reason) {
-  switch (reason) {
-    case Infeasibility::none:
-      return "none";
-    case Infeasibility::bad_pose:
-      return "bad_pose";
-    case Infeasibility::unreachable:
-      return "unreachable";
-    case Infeasibility::taken:
-      return "taken";
-    case Infeasibility::plane:
-      return "plane";
-    case Infeasibility::obstacle:
-      return "obstacle";
-    case Infeasibility::collision:
-      return "collision";
-    case Infeasibility::too_near:
-      break;
-  }
-  return "too_near";
+  constexpr std::array<std::string_view, 8> kNames{"none",  "bad_pose", "unreachable", "taken",
+                                                   "plane", "obstacle", "collision",   "too_near"};
+  return kNames[std::min<std::size_t>(static_cast<std::size_t>(reason), kNames.size() - 1)];
 }
 
 struct FeasibilityChecker::Impl {

@@ -11,7 +11,6 @@
 
 #include "batch_loop.hpp"
 #include "gain_evaluator_impl.hpp"
-#include "measured_view.hpp"
 #include "viewgain/support/belief_block.hpp"
 
 namespace viewgain {

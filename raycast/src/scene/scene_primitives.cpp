@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "scene_primitives.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <string>
 
+#include "gather_scene.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::detail {

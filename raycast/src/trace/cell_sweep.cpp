@@ -16,6 +16,7 @@
 #include "cell_sweep.hpp"
 #include "image_bounds-inl.hpp"
 #include "leaf_walk-inl.hpp"
+#include "viewgain/support/isa_dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
@@ -212,20 +213,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace viewgain::detail {
 
-CellSweep cell_sweep(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::cell_sweep_of_target();
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::cell_sweep_of_target();
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(cell_sweep_of_target)();
-  }
-}
+CellSweep cell_sweep(Isa isa) { return VIEWGAIN_OF_ISA(isa, cell_sweep_of_target)(); }
 
 }  // namespace viewgain::detail
 #endif

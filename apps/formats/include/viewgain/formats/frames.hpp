@@ -16,7 +16,7 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/frame_verdict.hpp"
 #include "viewgain/core/pose.hpp"
-#include "viewgain/core/range_corrector.hpp"
+#include "viewgain/core/range_calibration.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/png.hpp"
