@@ -55,7 +55,7 @@ TEST(Cloud, MakesTheMapThatTheLiteralLoopsMake) {
     for (const Occupancy occupancy : {Occupancy::probabilistic, Occupancy::literal}) {
       BeliefGrid grid(config);
       VoxelOracle oracle(grid);
-      CloudIntegrator integrator(sensor, {occupancy, {}}, {2});
+      CloudIntegrator integrator(sensor, {.occupancy = occupancy}, {2});
       for (int view = 0; view < 4; ++view) {
         const Pose pose = ring_view(view);
         const DepthFrame frame = mixed_frame(sensor, pose, random, false);
