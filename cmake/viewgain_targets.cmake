@@ -21,7 +21,7 @@ function(viewgain_compile_rules target)
 endfunction()
 
 # viewgain_use_highway(target sources...): SIMD through Highway: on x86-64 each of the sources is compiled
-# for SSE4, AVX2 and AVX-512 and no others, and nothing lower, whatever the compiler's flags. core/isa.hpp
+# for SSE4, AVX2 and AVX-512 and no others, and nothing lower, whatever the compiler's flags. support/isa.hpp
 # chooses among them at run time.
 function(viewgain_use_highway target)
   # Each is a translation unit of its own, since it includes itself anew for each instruction set.

@@ -9,8 +9,8 @@
 
 #include "commit.hpp"
 #include "measure.hpp"
-#include "viewgain/core/isa.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/isa.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {
 

@@ -8,10 +8,11 @@
 
 class NearUnknown : public viewgain::ViewMeasure {
  public:
-  double measure(const viewgain::Pose&, std::span<const viewgain::ViewHit> hits) const override {
+  double measure(const viewgain::Pose&,
+                 std::span<const viewgain::ViewMeasure::Hit> hits) const override {
     std::set<std::tuple<int, int, int>> seen;
     double sum = 0;
-    for (const viewgain::ViewHit& hit : hits) {
+    for (const viewgain::ViewMeasure::Hit& hit : hits) {
       if (hit.state != viewgain::VoxelState::unknown) continue;
       const bool is_new = seen.insert({hit.voxel.x, hit.voxel.y, hit.voxel.z}).second;
       if (is_new) sum += 1 / (hit.range * hit.range);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "viewgain/core/error.hpp"
+#include "viewgain/support/nearest_name.hpp"
 
 namespace viewgain {
 namespace {
@@ -60,14 +60,7 @@ std::string_view criterion_name(Criterion criterion) {
 }
 
 Criterion parse_criterion(std::string_view name) {
-  const auto& names = criterion_names();
-  std::string valid;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == name) return static_cast<Criterion>(i);
-    valid += (i == 0 ? "" : ", ") + names[i];
-  }
-  throw Error(ErrorCode::invalid_argument,
-              "unknown criterion '" + std::string(name) + "', valid are " + valid);
+  return static_cast<Criterion>(place_of_name(name, criterion_names(), "criterion"));
 }
 
 double entropy(const SymmetricMatrix3& information, Criterion criterion) {

@@ -3,25 +3,32 @@
 #include "viewgain/core/exec_config.hpp"
 
 #include <algorithm>
+#include <string>
+#include <thread>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/nearest_name.hpp"
 
 namespace viewgain {
 
+int thread_count(int num_threads) {
+  constexpr int kMaxThreads = 1024;
+  if (num_threads < 0 || num_threads > kMaxThreads) {
+    throw Error(ErrorCode::invalid_argument, "number of threads must be in 0.." +
+                                                 std::to_string(kMaxThreads) + ", not " +
+                                                 std::to_string(num_threads));
+  }
+  if (num_threads > 0) return num_threads;
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads);
+}
+
 const std::vector<std::string>& tracer_names() {
   static const std::vector<std::string> names{"automatic", "embree", "sweep"};
   return names;
 }
 
-Tracer parse_tracer(std::string_view name) {
-  const std::vector<std::string>& names = tracer_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw Error(ErrorCode::invalid_argument,
-                "unknown tracer \"" + std::string(name) + "\"; valid are " + listed(names));
-  }
-  return static_cast<Tracer>(found - names.begin());
+ExecConfig::Tracer parse_tracer(std::string_view name) {
+  return static_cast<ExecConfig::Tracer>(place_of_name(name, tracer_names(), "tracer"));
 }
 
 }  // namespace viewgain

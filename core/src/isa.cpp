@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/core/isa.hpp"
+#include "viewgain/support/isa.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 #include <unistd.h>
 
@@ -16,11 +16,10 @@
 #include <vector>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/exec_config.hpp"
 
 namespace viewgain {
 namespace {
-
-constexpr int kMaxThreads = 1024;
 
 /// Looks at the flag before sleeping: some microseconds, less than a wake-up costs.
 constexpr int kSpins = 200;
@@ -151,9 +150,7 @@ struct ThreadPool::Impl::Crew {
       }
       work();
       finished.fetch_add(1, std::memory_order_release);
-      {
-        const std::lock_guard lock(mutex);
-      }  // the caller is asleep by now or will look first
+      { const std::lock_guard lock(mutex); }  // the caller is asleep by now or will look first
       done.notify_one();
     }
   }
@@ -202,16 +199,6 @@ ThreadPool::Impl::Crew& ThreadPool::Impl::here() {
     return *made.release();
   }
   return *own;  // another thread of the child was faster
-}
-
-int thread_count(int num_threads) {
-  if (num_threads < 0 || num_threads > kMaxThreads) {
-    throw Error(ErrorCode::invalid_argument, "number of threads must be in 0.." +
-                                                 std::to_string(kMaxThreads) + ", not " +
-                                                 std::to_string(num_threads));
-  }
-  if (num_threads > 0) return num_threads;
-  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads);
 }
 
 ThreadPool::ThreadPool(int num_threads)

@@ -39,11 +39,12 @@ struct Figure {
 using BarGroup = std::vector<Figure> (*)(const BarsOptions& options);
 
 /// One interleaved run of `trace`: gain_over_quads, gain_over_quads_fast, gain_over_trace,
-/// floor_over_quads, trace_over_floor, gain_over_octomap, build_ms.
+/// floor_over_quads, trace_over_floor, gain_over_octomap, build_ms; by the tracer embree
+/// gain_embree_over_quads, gain_embree_over_gain, trace_embree_over_trace.
 [[nodiscard]] std::vector<Figure> trace_figures(const BarsOptions& options);
-/// thread_scaling, cost_512_over_128.
+/// thread_scaling, cost_512_over_128; the same by the tracer embree (`_embree`).
 [[nodiscard]] std::vector<Figure> scaling_figures(const BarsOptions& options);
-/// latency_scaling.
+/// latency_scaling; the same by the tracer embree (`_embree`).
 [[nodiscard]] std::vector<Figure> latency_figures(const BarsOptions& options);
 /// octomap_over_integrate.
 [[nodiscard]] std::vector<Figure> integrate_figures(const BarsOptions& options);

@@ -8,8 +8,8 @@
 
 #include "bars.hpp"
 #include "measure.hpp"
-#include "viewgain/core/isa.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/isa.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {
 namespace {
@@ -29,17 +29,23 @@ struct Rule {
 constexpr std::array kRules{
     Rule{"gain_over_quads", 3.0, true},
     Rule{"gain_over_quads_fast", {}, true},
+    Rule{"gain_embree_over_quads", {}, true},
+    Rule{"gain_embree_over_gain", {}, true},
+    Rule{"trace_embree_over_trace", {}, true},
     Rule{"gain_over_trace", 0.88, true},
     Rule{"floor_over_quads", 6.0, true},
     Rule{"trace_over_floor", 0.45, true},
     Rule{"gain_over_octomap", 1000.0, true},
     Rule{"thread_scaling", 1.9, true},
+    Rule{"thread_scaling_embree", {}, true},
     Rule{"cost_512_over_128", 2.5, false},
+    Rule{"cost_512_over_128_embree", {}, false},
     Rule{"octomap_over_integrate", 100.0, true},
     Rule{"update_over_build", 0.35, false},
     Rule{"build_ms", 2.0, false},
     Rule{"race_over_exhaustive", 0.25, false},
     Rule{"latency_scaling", 0.6, false},
+    Rule{"latency_scaling_embree", {}, false},
     Rule{"memory_mb", 250.0, false},
     Rule{"surface_over_paper", 0.35, true},
     Rule{"combined_over_paper", {}, true},
@@ -85,7 +91,7 @@ Json to_json(const Rule& rule, const Figure& figure, int threads, bool& is_misse
 
 void print_row(const Json& entry, const std::string& note) {
   const bool has_bar = !entry["bar"].is_null();
-  std::printf("%-24s %10.3f  ", entry["name"].get<std::string>().c_str(),
+  std::printf("%-26s %10.3f  ", entry["name"].get<std::string>().c_str(),
               entry["value"].get<double>());
   if (has_bar) {
     std::printf("%s %-8g %s", entry["better"] == "higher" ? ">=" : "<=", entry["bar"].get<double>(),

@@ -3,7 +3,10 @@
 
 // Bars whose figures other subcommands measure too.
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 
 #include "bars.hpp"
 #include "integrate_bench.hpp"
@@ -15,53 +18,19 @@
 #include "viewgain/core/generators.hpp"
 
 namespace viewgain::bench {
+namespace {
 
-std::vector<Figure> trace_figures(const BarsOptions& options) {
-  TraceOptions trace;
-  trace.num_threads = options.num_threads;
-  trace.voxels = options.voxels;
-  trace.poses = options.poses;
-  trace.repetitions = options.repetitions;
-  trace.mesh = options.mesh;
-  const TraceRun run = run_trace_methods(trace);
-  const bool agrees = run.agrees();
-  const std::string note = run.disagreement();
-  const double gain = run.rate("viewgain_gain"), ours = run.rate("viewgain_trace"),
-               floor = run.rate("viewgain_floor"), quads = run.rate("embree_quads");
-  // All methods run on the same threads, one pose a thread: a ratio per thread is that of the
-  // rates.
-  return {{"gain_over_quads", gain / quads, agrees, note},
-          {"gain_over_quads_fast", gain / run.fast_embree},
-          {"gain_over_trace", gain / ours, agrees, note},
-          {"floor_over_quads", floor / quads, agrees, note},
-          {"trace_over_floor", ours / floor, agrees, note},
-          {"gain_over_octomap", gain / run.rate("octomap_gain"), agrees, note},
-          {"build_ms", median(run.build_ms)}};
-}
+// Both tracers, and what the names of their figures end in.
+constexpr std::array kTracers{std::pair(ExecConfig::Tracer::sweep, ""),
+                              std::pair(ExecConfig::Tracer::embree, "_embree")};
 
-std::vector<Figure> scaling_figures(const BarsOptions& options) {
-  ScalingPlan plan;
-  plan.voxels = {options.voxels, options.large_voxels};
-  plan.rays = {kFullRays};
-  plan.threads = {1, options.num_threads};
-  plan.poses = options.poses;
-  plan.repetitions = options.repetitions;
-  plan.mesh = options.mesh;
-  const std::vector<ScalingCase> cases = run_scaling_cases(plan);
-  const bool agree =
-      std::all_of(cases.begin(), cases.end(), [](const ScalingCase& c) { return c.agrees(); });
-  const std::string note = agree ? "" : "answers differ";
-  const auto poses_per_second = [&](std::size_t i) { return cases[i].poses_per_second(); };
-  return {{"thread_scaling", poses_per_second(1) / poses_per_second(0), agree, note},
-          {"cost_512_over_128", poses_per_second(1) / poses_per_second(3), agree, note}};
-}
-
-std::vector<Figure> latency_figures(const BarsOptions& options) {
-  const auto scene = VoxelScene::build(test::camel_grid(options.voxels, options.mesh));
+// 200 poses one by one, by evaluators of one and of all threads in turns.
+Figure latency_figure(const BarsOptions& options, const std::shared_ptr<const VoxelScene>& scene,
+                      ExecConfig::Tracer tracer) {
   const Sensor sensor = sensor_preset("sr4000");
-  const GainEvaluator alone(scene, sensor, {.model = GainModel::paper}, {.num_threads = 1});
-  const GainEvaluator together(scene, sensor, {.model = GainModel::paper},
-                               {.num_threads = options.num_threads});
+  const GainConfig paper{.model = GainModel::paper};
+  const GainEvaluator alone(scene, sensor, paper, {1, tracer});
+  const GainEvaluator together(scene, sensor, paper, {options.num_threads, tracer});
   const std::vector<Pose> poses = sphere_poses(static_cast<std::size_t>(options.poses), 0.6);
   // Of each pose the median counts, so that a pose that was interrupted does not.
   double sum_alone = 0, sum_together = 0;
@@ -80,7 +49,68 @@ std::vector<Figure> latency_figures(const BarsOptions& options) {
     sum_alone += median(seconds_alone);
     sum_together += median(seconds_together);
   }
-  return {{"latency_scaling", sum_together / sum_alone, same, same ? "" : "gains differ"}};
+  return {"latency_scaling", sum_together / sum_alone, same, same ? "" : "gains differ"};
+}
+
+}  // namespace
+
+std::vector<Figure> trace_figures(const BarsOptions& options) {
+  TraceOptions trace;
+  trace.num_threads = options.num_threads;
+  trace.voxels = options.voxels;
+  trace.poses = options.poses;
+  trace.repetitions = options.repetitions;
+  trace.mesh = options.mesh;
+  const TraceRun run = run_trace_methods(trace);
+  const bool agrees = run.agrees();
+  const std::string note = run.disagreement();
+  const double gain = run.rate("viewgain_gain"), ours = run.rate("viewgain_trace"),
+               gain_embree = run.rate("viewgain_gain_embree"), floor = run.rate("viewgain_floor"),
+               quads = run.rate("embree_quads");
+  // All methods run on the same threads, one pose a thread: a ratio per thread is that of the
+  // rates.
+  return {{"gain_over_quads", gain / quads, agrees, note},
+          {"gain_over_quads_fast", gain / run.fast_embree},
+          {"gain_over_trace", gain / ours, agrees, note},
+          {"floor_over_quads", floor / quads, agrees, note},
+          {"trace_over_floor", ours / floor, agrees, note},
+          {"gain_over_octomap", gain / run.rate("octomap_gain"), agrees, note},
+          {"gain_embree_over_quads", gain_embree / quads, agrees, note},
+          {"gain_embree_over_gain", gain_embree / gain, agrees, note},
+          {"trace_embree_over_trace", run.rate("viewgain_trace_embree") / ours, agrees, note},
+          {"build_ms", median(run.build_ms)}};
+}
+
+std::vector<Figure> scaling_figures(const BarsOptions& options) {
+  ScalingPlan plan;
+  plan.voxels = {options.voxels, options.large_voxels};
+  plan.rays = {kFullRays};
+  plan.threads = {1, options.num_threads};
+  plan.poses = options.poses;
+  plan.repetitions = options.repetitions;
+  plan.mesh = options.mesh;
+  std::vector<Figure> figures;
+  for (const auto& [tracer, by] : kTracers) {
+    plan.tracer = tracer;
+    const std::vector<ScalingCase> cases = run_scaling_cases(plan);
+    const bool agree =
+        std::all_of(cases.begin(), cases.end(), [](const ScalingCase& c) { return c.agrees(); });
+    const std::string note = agree ? "" : "answers differ";
+    const auto rate = [&](std::size_t i) { return cases[i].poses_per_second(); };
+    figures.push_back({std::string("thread_scaling") + by, rate(1) / rate(0), agree, note});
+    figures.push_back({std::string("cost_512_over_128") + by, rate(1) / rate(3), agree, note});
+  }
+  return figures;
+}
+
+std::vector<Figure> latency_figures(const BarsOptions& options) {
+  const auto scene = VoxelScene::build(test::camel_grid(options.voxels, options.mesh));
+  std::vector<Figure> figures;
+  for (const auto& [tracer, by] : kTracers) {
+    figures.push_back(latency_figure(options, scene, tracer));
+    figures.back().name += by;
+  }
+  return figures;
 }
 
 std::vector<Figure> integrate_figures(const BarsOptions& options) {

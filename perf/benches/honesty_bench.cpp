@@ -13,10 +13,10 @@
 #include "measure.hpp"
 #include "model_scene.hpp"
 #include "viewgain/core/generators.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/mesh/quality.hpp"
 #include "viewgain/planner/point_arrays.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {
 namespace {
@@ -56,7 +56,7 @@ Json consistency_rows(const ModelScene& scene, const GroundTruth& truth,
                       const HonestyOptions& options, const ExecConfig& exec) {
   const std::vector<Pose> views = sphere_poses(static_cast<std::size_t>(options.views), kDistance);
   FusedPointsConfig literal;
-  literal.rule = PointRule::per_voxel;
+  literal.per_voxel = true;
   Json rows = Json::array();
   for (const double voxel : kVoxels) {
     BeliefGrid grid = scene.empty_grid(voxel);

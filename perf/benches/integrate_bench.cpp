@@ -13,7 +13,7 @@
 #include "methods/octomap_integrate.hpp"
 #include "oracle/walk.hpp"
 #include "support/camel_scene.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {
 namespace {

@@ -86,7 +86,8 @@ class Pair {
  public:
   Pair(const Views& views, const Image& image, GainModel model, bool is_batch, int num_threads)
       : views_(views), is_batch_(is_batch) {
-    for (const Tracer tracer : {Tracer::sweep, Tracer::embree}) {
+    for (const ExecConfig::Tracer tracer :
+         {ExecConfig::Tracer::sweep, ExecConfig::Tracer::embree}) {
       evaluators_.emplace_back(views.scene, sensor_of(image),
                                GainConfig{.model = model, .pixel_stride = image.pixel_stride},
                                ExecConfig{num_threads, tracer});

@@ -10,7 +10,7 @@
 #include "oracle/dense_map.hpp"
 #include "trace/ray_tile.hpp"
 #include "trace_method.hpp"
-#include "viewgain/core/isa.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain::bench {
 

@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include "dense_grid.hpp"
+#include "viewgain/support/isa_dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::bench::HWY_NAMESPACE {
@@ -184,20 +185,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace viewgain::bench {
 
-DenseTileTracer dense_tile_tracer(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::tracer();
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::tracer();
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(tracer)();
-  }
-}
+DenseTileTracer dense_tile_tracer(Isa isa) { return VIEWGAIN_OF_ISA(isa, tracer)(); }
 
 }  // namespace viewgain::bench
 #endif

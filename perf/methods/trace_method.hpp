@@ -8,8 +8,8 @@
 
 #include "oracle/dense_map.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {
 

@@ -19,7 +19,8 @@ namespace {
 /// Traces alone.
 class ViewgainTrace : public TraceMethod {
  public:
-  ViewgainTrace(std::string name, const TraceTask& task, ScenePointer scene, Tracer tracer)
+  ViewgainTrace(std::string name, const TraceTask& task, ScenePointer scene,
+                ExecConfig::Tracer tracer)
       : TraceMethod(std::move(name), task.sensor.camera.ray_table().size()),
         map_(task.map),
         scene_(std::move(scene)),
@@ -56,7 +57,7 @@ class ViewgainTrace : public TraceMethod {
       });
     }
     const auto all = static_cast<double>(poses.size() * rays_per_pose());
-    return {1 - static_cast<double>(traced) / all, way_ == Tracer::embree ? 1.0 : 0.0};
+    return {1 - static_cast<double>(traced) / all, way_ == ExecConfig::Tracer::embree ? 1.0 : 0.0};
   }
 
  protected:
@@ -80,14 +81,15 @@ class ViewgainTrace : public TraceMethod {
   detail::ViewTracer tracer_;
 
  private:
-  Tracer way_;
+  ExecConfig::Tracer way_;
 };
 
 /// The same kernel on the leaves that each tile is known to end in.
 class ViewgainFloor final : public ViewgainTrace {
  public:
   ViewgainFloor(const TraceTask& task, ScenePointer scene)
-      : ViewgainTrace("viewgain_floor", task, std::move(scene), Tracer::sweep), poses_(task.poses) {
+      : ViewgainTrace("viewgain_floor", task, std::move(scene), ExecConfig::Tracer::sweep),
+        poses_(task.poses) {
     const std::size_t tiles = tracer_.table().tile_count;
     begins_.assign(poses_.size() * tiles + 1, 0);
     detail::ViewSweep sweep;
@@ -133,7 +135,7 @@ class ViewgainFloor final : public ViewgainTrace {
 class ViewgainGain final : public TraceMethod {
  public:
   ViewgainGain(std::string name, const TraceTask& task, const ScenePointer& scene, GainModel model,
-               Tracer tracer)
+               ExecConfig::Tracer tracer)
       : TraceMethod(std::move(name), task.sensor.camera.ray_table().size()),
         map_(task.map),
         model_(model),
@@ -177,8 +179,8 @@ class ViewgainGain final : public TraceMethod {
 std::vector<std::unique_ptr<TraceMethod>> make_viewgain_gains(const TraceTask& task,
                                                               const ScenePointer& scene) {
   std::vector<std::unique_ptr<TraceMethod>> methods;
-  for (const Tracer tracer : {Tracer::sweep, Tracer::embree}) {
-    const std::string by = tracer == Tracer::embree ? "_embree" : "";
+  for (const ExecConfig::Tracer tracer : {ExecConfig::Tracer::sweep, ExecConfig::Tracer::embree}) {
+    const std::string by = tracer == ExecConfig::Tracer::embree ? "_embree" : "";
     for (const auto& [name, model] : {std::pair("viewgain_gain", GainModel::paper),
                                       std::pair("viewgain_surface", GainModel::surface),
                                       std::pair("viewgain_combined", GainModel::combined)}) {
@@ -189,12 +191,13 @@ std::vector<std::unique_ptr<TraceMethod>> make_viewgain_gains(const TraceTask& t
 }
 
 std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task, ScenePointer scene) {
-  return std::make_unique<ViewgainTrace>("viewgain_trace", task, std::move(scene), Tracer::sweep);
+  return std::make_unique<ViewgainTrace>("viewgain_trace", task, std::move(scene),
+                                         ExecConfig::Tracer::sweep);
 }
 
 std::unique_ptr<TraceMethod> make_viewgain_trace_embree(const TraceTask& task, ScenePointer scene) {
   return std::make_unique<ViewgainTrace>("viewgain_trace_embree", task, std::move(scene),
-                                         Tracer::embree);
+                                         ExecConfig::Tracer::embree);
 }
 
 std::unique_ptr<TraceMethod> make_viewgain_floor(const TraceTask& task, ScenePointer scene) {

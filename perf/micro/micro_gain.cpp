@@ -4,7 +4,7 @@
 // From hits to a gain: sums by voxel, entropy differences; whole views by each model.
 #include <benchmark/benchmark.h>
 
-#include "gain/gain_accumulator.hpp"
+#include "gain/evaluator_core.hpp"
 #include "micro_benchmarks.hpp"
 #include "micro_scene.hpp"
 #include "viewgain/core/criterion.hpp"

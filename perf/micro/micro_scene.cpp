@@ -19,7 +19,7 @@ MicroScene::MicroScene()
       frames(test::camel_views(4)),
       grid(test::camel_grid(kVoxels, {frames.begin(), frames.begin() + 3})),
       scene(VoxelScene::build(grid, {}, {.num_threads = 1})),
-      tracer(make_tracer(Tracer::sweep)) {
+      tracer(make_tracer(ExecConfig::Tracer::sweep)) {
   for (const Pose& pose : sphere_poses(kViews, 0.6)) {
     View view;
     view.frame = tracer.frame_of(pose).value();
@@ -36,7 +36,7 @@ MicroScene::MicroScene()
   }
 }
 
-detail::ViewTracer MicroScene::make_tracer(Tracer way) const {
+detail::ViewTracer MicroScene::make_tracer(ExecConfig::Tracer way) const {
   return {detail::SceneAccess::data(*scene),
           std::make_shared<const detail::SensorRays>(sensor.camera, 1), sensor.min_range,
           sensor.max_range, way};

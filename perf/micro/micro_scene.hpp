@@ -8,8 +8,8 @@
 
 #include "support/camel_scene.hpp"
 #include "trace/view_tracer.hpp"
-#include "viewgain/core/isa.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain::bench {
 
@@ -29,7 +29,7 @@ class MicroScene {
   };
 
   /// Of the same views, one way or the other.
-  [[nodiscard]] detail::ViewTracer make_tracer(Tracer way) const;
+  [[nodiscard]] detail::ViewTracer make_tracer(ExecConfig::Tracer way) const;
 
   Sensor sensor;
   std::vector<test::CamelView> frames;  ///< three make the map, the fourth is new

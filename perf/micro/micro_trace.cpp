@@ -22,7 +22,7 @@ void count_rays(benchmark::State& state, std::size_t rays) {
 }
 
 // Whole views: swept, as the evaluator does, or all tiles through Embree.
-void view_traversal(benchmark::State& state, Tracer way) {
+void view_traversal(benchmark::State& state, ExecConfig::Tracer way) {
   const MicroScene& micro = MicroScene::get();
   const detail::ViewTracer tracer = micro.make_tracer(way);
   detail::ViewSweep sweep;
@@ -85,8 +85,8 @@ void ordered_walk(benchmark::State& state, Isa isa) {
 }  // namespace
 
 void register_trace_benchmarks() {
-  benchmark::RegisterBenchmark("view_traversal/sweep", view_traversal, Tracer::sweep);
-  benchmark::RegisterBenchmark("view_traversal/embree", view_traversal, Tracer::embree);
+  benchmark::RegisterBenchmark("view_traversal/sweep", view_traversal, ExecConfig::Tracer::sweep);
+  benchmark::RegisterBenchmark("view_traversal/embree", view_traversal, ExecConfig::Tracer::embree);
   for (const Isa isa : micro_isas()) {
     const std::string name(isa_name(isa));
     benchmark::RegisterBenchmark(("leaf_dda/" + name).c_str(), leaf_dda, isa);

@@ -16,12 +16,12 @@
 #include "model_maps.hpp"
 #include "model_scene.hpp"
 #include "viewgain/core/generators.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/mesh/quality.hpp"
 #include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/point_arrays.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {
 namespace {

@@ -10,7 +10,7 @@
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {
 

@@ -13,11 +13,11 @@
 #include "resident_memory.hpp"
 #include "support/room_scene.hpp"
 #include "viewgain/core/generators.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/support/mix64.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {
 namespace {

@@ -13,8 +13,8 @@
 #include "resident_memory.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {
 namespace {

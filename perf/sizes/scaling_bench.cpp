@@ -9,7 +9,7 @@
 #include "environment.hpp"
 #include "peak_memory.hpp"
 #include "scaling_run.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {
 namespace {

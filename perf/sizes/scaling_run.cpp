@@ -51,7 +51,7 @@ void add_cases(const ScalingPlan& plan, int voxels, std::vector<Runner>& runners
     for (const int threads : plan.threads) {
       Runner runner;
       runner.evaluator = std::make_unique<GainEvaluator>(scene, pattern.sensor, pattern.config,
-                                                         ExecConfig{.num_threads = threads});
+                                                         ExecConfig{threads, plan.tracer});
       if (threads == plan.threads.front()) {
         agreement =
             compare_with_oracle(map, pattern.sensor, pattern.config, *runner.evaluator, checked);

@@ -30,6 +30,7 @@ struct ScalingPlan {
   std::vector<int> voxels{64, 128, 256, 512};  ///< a side
   std::vector<int> rays{kFewRays, kHalfRays, kFullRays};
   std::vector<int> threads{1};
+  ExecConfig::Tracer tracer = ExecConfig::Tracer::automatic;
   int poses = 100;  ///< at full resolution; with fewer rays as many more as make the rays equal
   int repetitions = 7;
   std::filesystem::path mesh;

@@ -38,7 +38,7 @@ DepthFrame flat(const PinholeCamera& camera, float depth) {
 }
 
 /// The definition, by the angle itself.
-DepthFrame filtered_by_definition(const PinholeCamera& camera, const JumpEdgeConfig& config,
+DepthFrame filtered_by_definition(const PinholeCamera& camera, const JumpEdgeFilter::Config& config,
                                   const DepthFrame& frame, std::size_t& removed) {
   DepthFrame result = frame;
   removed = 0;
@@ -83,7 +83,7 @@ TEST(JumpEdgeFilter, EqualsItsDefinition) {
       camera.fx = camera.fy = 9;
       camera.distortion = {-0.35, 0, 0, 0, 0};
     }
-    const JumpEdgeConfig config{random.uniform(1, 10) * kDegree, i % 2 == 0};
+    const JumpEdgeFilter::Config config{random.uniform(1, 10) * kDegree, i % 2 == 0};
     DepthFrame frame = flat(camera, 1.0F);
     for (float& depth : frame.depth) {
       depth = static_cast<float>(random.uniform(0.97, 1.03));

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/core/range_corrector.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,6 +12,7 @@
 
 #include "expect_error.hpp"
 #include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/range_calibration.hpp"
 
 namespace viewgain {
 namespace {

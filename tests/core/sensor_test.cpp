@@ -40,7 +40,7 @@ TEST(SensorPresets, AreAllValid) {
 }
 
 TEST(SensorPresets, MakersHousingsDiffer) {
-  EXPECT_FALSE(sensor_preset("sr4000").body_size);  // what SensorBody has
+  EXPECT_FALSE(sensor_preset("sr4000").body_size);  // what FeasibilityConfig::Body has
   EXPECT_EQ(sensor_preset("d435").body_size, (std::array<double, 3>{0.090, 0.025, 0.025}));
   for (const double wrong : {0.0, -0.1, std::nan("")}) {
     Sensor sensor = sensor_preset("d435");

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The rules by themselves: what they remember is all they need to go on.
-#include "viewgain/core/stop_rules.hpp"
+#include "viewgain/support/stop_rules.hpp"
 
 #include <gtest/gtest.h>
 

@@ -37,7 +37,7 @@ Eigen::Matrix3d information_of(const Sensor& sensor, const Ray& ray, double rang
 
 double weight_of(const BeliefGrid& grid, const GainConfig& config, Index3 voxel) {
   double weight = 1;
-  for (const WeightRegion& region : config.weights) {
+  for (const GainConfig::WeightRegion& region : config.weights) {
     const double v = grid.voxel_size();
     if (region.box.contains((voxel.x + 0.5) * v, (voxel.y + 0.5) * v, (voxel.z + 0.5) * v)) {
       weight = region.weight;

@@ -20,7 +20,7 @@ Cell cell_of(Index3 v, int shift) { return {v.x >> shift, v.y >> shift, v.z >> s
 
 double weight_of(const GainConfig& config, double voxel_size, Index3 v) {
   double weight = 1;
-  for (const WeightRegion& region : config.weights) {
+  for (const GainConfig::WeightRegion& region : config.weights) {
     if (region.box.contains((v.x + 0.5) * voxel_size, (v.y + 0.5) * voxel_size,
                             (v.z + 0.5) * voxel_size)) {
       weight = region.weight;
@@ -208,11 +208,9 @@ double distance_to_evidence(const BeliefGrid& grid, int shift, Index3 voxel, int
   };
   std::map<Cell, std::uint64_t> hits;
   const auto for_each_occupied = [&](auto&& visit) {
-    for (const BeliefBlockAt& block : grid.belief_blocks()) {
-      block.for_each([&](Index3 v, const Belief& belief) {
-        if (grid.state(v) == VoxelState::occupied) visit(v, belief);
-      });
-    }
+    grid.for_each_belief([&](Index3 v, const Belief& belief) {
+      if (grid.state(v) == VoxelState::occupied) visit(v, belief);
+    });
   };
   for_each_occupied(
       [&](Index3 v, const Belief& belief) { hits[cell_of(v, pooling)] += belief.hits; });

@@ -54,7 +54,7 @@ class ScopedIsa : ScopedVariable {
 };
 
 /// The ways to trace.
-inline constexpr std::array kTracers{Tracer::sweep, Tracer::embree};
+inline constexpr std::array kTracers{ExecConfig::Tracer::sweep, ExecConfig::Tracer::embree};
 
 /// What the random maps look like.
 enum class MapFamily {

@@ -22,7 +22,7 @@
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
-#include "viewgain/core/range_corrector.hpp"
+#include "viewgain/core/range_calibration.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/grid/belief_grid.hpp"
@@ -75,7 +75,7 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (tracer < VG_TRACER_AUTOMATIC || tracer > VG_TRACER_SWEEP) {
     reject("tracer is " + std::to_string(tracer) + "; the tracers are 0 to 2");
   }
-  return {num_threads, static_cast<Tracer>(tracer)};
+  return {num_threads, static_cast<ExecConfig::Tracer>(tracer)};
 }
 
 /// A pose from 16 numbers, row by row; all NaN if the lowest row is off by more than 1e-3.

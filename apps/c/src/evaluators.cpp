@@ -17,7 +17,7 @@ using namespace viewgain::c_api;
 namespace {
 
 static_assert(VG_GAIN_COMBINED == static_cast<int>(GainModel::combined));
-static_assert(VG_TRACER_SWEEP == static_cast<int>(Tracer::sweep));
+static_assert(VG_TRACER_SWEEP == static_cast<int>(ExecConfig::Tracer::sweep));
 static_assert(VG_TRACE == static_cast<int>(Criterion::trace));
 static_assert(VG_VIEW_CAMERA_IN_OCCUPIED == static_cast<int>(ViewStatus::camera_in_occupied));
 static_assert(VG_HIT_OBSTACLE == static_cast<int>(RayHit::Kind::obstacle));
@@ -236,10 +236,12 @@ vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_world_cam
       reject("room for " + std::to_string(count) + " pixels, but the image has " +
              std::to_string(pixels));
     }
-    const DepthImage image = depth_image(evaluator->evaluator, rigid_pose_of(T_world_camera));
+    std::vector<RayHit::Kind> kinds;
+    const DepthFrame image =
+        depth_image(evaluator->evaluator, rigid_pose_of(T_world_camera), &kinds);
     std::copy(image.depth.begin(), image.depth.end(), depth);
     if (labels == nullptr) return;
-    std::transform(image.labels.begin(), image.labels.end(), labels,
+    std::transform(kinds.begin(), kinds.end(), labels,
                    [](RayHit::Kind kind) { return static_cast<std::uint8_t>(kind); });
   });
 }

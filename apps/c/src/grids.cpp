@@ -187,7 +187,7 @@ vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds
     require_array(voxels, capacity, "voxels");
     require("found", found);
     std::size_t count = 0;
-    grid->grid.for_each_occupied([&](const OccupiedVoxel& one) {
+    grid->grid.for_each_occupied([&](const VoxelValue& one) {
       const std::size_t i = count++;
       if (i >= capacity) return;
       std::copy_n(std::array{one.voxel.x, one.voxel.y, one.voxel.z}.data(), 3, voxels + 3 * i);

@@ -175,7 +175,7 @@ struct RankCall {
 template <>
 vg_planner_config viewgain::c_api::defaults() noexcept {
   const PlannerConfig own;
-  const SensorBody body;
+  const FeasibilityConfig::Body body;
   vg_planner_config config{};
   config.gain = static_cast<std::int32_t>(own.gain.model);
   write_pose(Pose{}, config.T_world_grid);

@@ -26,11 +26,12 @@ HazardConfig hazard_of(const vg_scene_config& config, const BeliefGrid& grid) {
     reject("give one of hazard_rate, hazard_rates and hazard_file");
   }
   if (by_file) {
-    hazard.volume = std::make_shared<const HazardVolume>(load_hazard_vdb(config.hazard_file, grid));
+    hazard.volume =
+        std::make_shared<const HazardConfig::Volume>(load_hazard_vdb(config.hazard_file, grid));
   } else if (by_voxel) {
-    HazardVolume volume{VoxelBox::from_dims(grid.min_index(), grid.dims()), {}};
+    HazardConfig::Volume volume{VoxelBox::from_dims(grid.min_index(), grid.dims()), {}};
     volume.rates.assign(config.hazard_rates, config.hazard_rates + config.hazard_count);
-    hazard.volume = std::make_shared<const HazardVolume>(std::move(volume));
+    hazard.volume = std::make_shared<const HazardConfig::Volume>(std::move(volume));
   } else if (rate) {
     hazard = constant_hazard(*rate, grid, hazard.object_size);
   }

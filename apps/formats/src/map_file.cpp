@@ -97,9 +97,7 @@ LostInTree save_map(const BeliefGrid& grid, const std::filesystem::path& path,
   }
   save_octomap(grid, path);
   LostInTree lost;
-  for (const BeliefBlockAt& block : grid.belief_blocks()) {
-    lost.beliefs += block.beliefs->beliefs.size();
-  }
+  grid.for_each_belief([&](Index3, const Belief&) { ++lost.beliefs; });
   lost.views = grid.views().size();
   lost.hazard_counters = !grid.hazard_counters().empty();
   lost.T_world_grid = !octomap_keeps_frame(grid);

@@ -33,23 +33,23 @@ Box read_box(TableReader& reader) {
   return {min, triple(reader, "max")};
 }
 
-Shell read_shell(TableReader& reader) {
-  Shell shell;
+ReachRegion::Shell read_shell(TableReader& reader) {
+  ReachRegion::Shell shell;
   shell.center = vector(reader, "center");
   shell.min_radius = reader.number("min_radius");
   shell.max_radius = reader.number("max_radius");
   return shell;
 }
 
-HalfSpace read_half_space(TableReader& reader) {
-  HalfSpace half_space;
+ReachRegion::HalfSpace read_half_space(TableReader& reader) {
+  ReachRegion::HalfSpace half_space;
   half_space.normal = vector(reader, "normal");
   half_space.offset = reader.number("offset");
   return half_space;
 }
 
-PoseTolerance read_tolerance(TableReader reader) {
-  PoseTolerance tolerance;
+ReachRegion::Tolerance read_tolerance(TableReader reader) {
+  ReachRegion::Tolerance tolerance;
   if (reader.find("distance") != nullptr) tolerance.distance = reader.number("distance");
   if (reader.find("angle_deg") != nullptr) {
     tolerance.angle = reader.number("angle_deg") * std::numbers::pi / 180;
@@ -122,12 +122,12 @@ void write_reach_toml(const std::filesystem::path& path, const ReachRegion& regi
   for (const Box& box : region.boxes) {
     boxes.push_back(toml::table{{"min", xyz(box.min)}, {"max", xyz(box.max)}});
   }
-  for (const Shell& shell : region.shells) {
+  for (const ReachRegion::Shell& shell : region.shells) {
     shells.push_back(toml::table{{"center", xyz(shell.center)},
                                  {"min_radius", shell.min_radius},
                                  {"max_radius", shell.max_radius}});
   }
-  for (const HalfSpace& half : region.half_spaces) {
+  for (const ReachRegion::HalfSpace& half : region.half_spaces) {
     half_spaces.push_back(toml::table{{"normal", xyz(half.normal)}, {"offset", half.offset}});
   }
   if (!boxes.empty()) root.insert("box", std::move(boxes));

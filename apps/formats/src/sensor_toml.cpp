@@ -119,7 +119,7 @@ Sensor sensor_of(const toml::table& root, const std::string& file) {
       reader.fail("out_of_range", "is \"" + meaning + "\", not carve or invalid");
     }
     sensor.out_of_range =
-        meaning == "carve" ? OutOfRangeMeaning::carve : OutOfRangeMeaning::invalid;
+        meaning == "carve" ? Sensor::OutOfRange::carve : Sensor::OutOfRange::invalid;
   }
   sensor.camera = read_camera(reader.table("camera"));
   sensor.noise = read_noise(reader.table("noise"));
@@ -175,7 +175,7 @@ std::string sensor_toml(const Sensor& sensor) {
   }
   if (sensor.out_of_range) {
     text << "out_of_range = "
-         << (sensor.out_of_range == OutOfRangeMeaning::carve ? "\"carve\"" : "\"invalid\"")
+         << (sensor.out_of_range == Sensor::OutOfRange::carve ? "\"carve\"" : "\"invalid\"")
          << "  # what 65535 says in depth images\n";
   }
   const PinholeCamera& camera = sensor.camera;

@@ -14,6 +14,7 @@
 
 #include "gain_sums.hpp"
 #include "viewgain/support/brick_walk-inl.hpp"
+#include "viewgain/support/isa_dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
@@ -376,20 +377,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace viewgain::detail {
 
-const ClassicKernels& classic_kernels(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::kernels_of_target();
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::kernels_of_target();
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(kernels_of_target)();
-  }
-}
+const ClassicKernels& classic_kernels(Isa isa) { return VIEWGAIN_OF_ISA(isa, kernels_of_target)(); }
 
 }  // namespace viewgain::detail
 #endif

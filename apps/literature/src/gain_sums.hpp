@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "classic_table.hpp"
-#include "viewgain/core/isa.hpp"
 #include "viewgain/literature/classic_gains.hpp"
+#include "viewgain/support/isa.hpp"
 #include "viewgain/support/log_odds_code.hpp"
 #include "viewgain/support/walk_task.hpp"
 

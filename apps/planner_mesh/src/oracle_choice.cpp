@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/planner/point_arrays.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {

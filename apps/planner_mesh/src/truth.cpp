@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "viewgain/core/generators.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/planner/point_arrays.hpp"
 #include "viewgain/planner_mesh/mesh_area.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
@@ -87,7 +87,7 @@ void mark_seen(const SurfaceScene& scene, const SurfaceScene* surroundings, cons
                std::span<const SurfaceSample> samples, std::span<std::uint8_t> seen) {
   const Eigen::Vector3d eye = T_world_camera.translation();
   const Pose T_camera_world = T_world_camera.inverse();
-  std::vector<SurfaceRay> rays;
+  std::vector<SurfaceScene::Ray> rays;
   std::vector<std::size_t> asked;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (seen[i] != 0) continue;

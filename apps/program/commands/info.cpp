@@ -11,7 +11,6 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
-#include "viewgain/grid/region_statistics.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -26,14 +25,14 @@ struct Options {
 
 struct Region {
   Box box;
-  RegionStatistics statistics;
+  GridStatistics statistics;
 };
 
 std::optional<Region> region_of(const Options& options, const BeliefGrid& grid,
                                 Criterion criterion) {
   if (options.region.empty()) return std::nullopt;
   const Box box = parse_box("--region", options.region);
-  const RegionStatistics s = region_statistics(grid, box, criterion);
+  const GridStatistics s = grid.statistics(box, criterion);
   if (s.unknown + s.free + s.occupied == 0) {
     throw Error(ErrorCode::invalid_argument,
                 "--region " + options.region + ": holds no voxel of the map");
@@ -42,7 +41,7 @@ std::optional<Region> region_of(const Options& options, const BeliefGrid& grid,
 }
 
 Json region_json(const Region& region) {
-  const RegionStatistics& s = region.statistics;
+  const GridStatistics& s = region.statistics;
   return {{"box", to_json(region.box)},
           {"entropy_removed", s.entropy_removed},
           {"mean_sigma", s.mean_sigma},  // a NaN becomes null
@@ -53,7 +52,7 @@ Json region_json(const Region& region) {
 }
 
 void print(const Region& region, const char* unit) {
-  const RegionStatistics& s = region.statistics;
+  const GridStatistics& s = region.statistics;
   std::printf("region           %s m (grid frame)\n", describe(region.box).c_str());
   std::printf("  unknown        %s\n", with_commas(s.unknown).c_str());
   std::printf("  free           %s\n", with_commas(s.free).c_str());

@@ -97,8 +97,8 @@ bool sees_mesh(const SurfaceScene& scene, const Sensor& sensor,
                const std::vector<Eigen::Vector3d>& rays, const Pose& T_world_camera) {
   const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
   return std::any_of(rays.begin(), rays.end(), [&](const Eigen::Vector3d& ray) {
-    const SurfaceRay in_world{T_world_camera.translation(), (R_world_camera * ray).normalized(),
-                              sensor.max_range};
+    const SurfaceScene::Ray in_world{T_world_camera.translation(),
+                                     (R_world_camera * ray).normalized(), sensor.max_range};
     return ray.allFinite() && scene.intersect(in_world).range <= sensor.max_range;
   });
 }

@@ -16,7 +16,6 @@
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/grid/pooling.hpp"
@@ -28,6 +27,7 @@
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/support/stopwatch.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::app {
 namespace {

@@ -60,10 +60,11 @@ ReachRegion region_of(const py::object& boxes, const py::object& shells,
 // By value; a predicate is the same as itself alone.
 bool is_same(const ReachRegion& a, const ReachRegion& b) {
   if (&a == &b) return true;
-  const auto same_shell = [](const Shell& s, const Shell& t) {
+  const auto same_shell = [](const ReachRegion::Shell& s, const ReachRegion::Shell& t) {
     return s.center == t.center && s.min_radius == t.min_radius && s.max_radius == t.max_radius;
   };
-  const auto same_half_space = [](const HalfSpace& s, const HalfSpace& t) {
+  const auto same_half_space = [](const ReachRegion::HalfSpace& s,
+                                  const ReachRegion::HalfSpace& t) {
     return s.normal == t.normal && s.offset == t.offset;
   };
   return !a.predicate && !b.predicate && a.boxes == b.boxes && a.poses == b.poses &&
@@ -82,11 +83,11 @@ py::bytes bytes_of(const ReachRegion& region) {
     throw py::type_error("a ReachRegion with a predicate cannot be pickled or made bytes");
   }
   std::vector<std::array<double, 5>> shells;
-  for (const Shell& s : region.shells) {
+  for (const ReachRegion::Shell& s : region.shells) {
     shells.push_back({s.center.x(), s.center.y(), s.center.z(), s.min_radius, s.max_radius});
   }
   std::vector<std::array<double, 4>> half_spaces;
-  for (const HalfSpace& h : region.half_spaces) {
+  for (const ReachRegion::HalfSpace& h : region.half_spaces) {
     half_spaces.push_back({h.normal.x(), h.normal.y(), h.normal.z(), h.offset});
   }
   SealedWriter writer(kKind);
@@ -121,7 +122,7 @@ ReachRegion from_bytes(const py::bytes& data) {
 }  // namespace
 
 void bind_reach(py::module_& module) {
-  const PoseTolerance tolerance;
+  const ReachRegion::Tolerance tolerance;
   auto type = bound_class<ReachRegion>(module, "ReachRegion",
                                        R"(Where a robot can put the camera, world frame.
 

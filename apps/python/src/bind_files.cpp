@@ -39,7 +39,7 @@ FrameSequence read_frames(const py::object& folder, const py::object& sensor,
   FrameSequence frames = open_frames(path, given, depth_scale);
   if (out_of_range) {
     frames.out_of_range =
-        *out_of_range == "carve" ? OutOfRangeMeaning::carve : OutOfRangeMeaning::invalid;
+        *out_of_range == "carve" ? Sensor::OutOfRange::carve : Sensor::OutOfRange::invalid;
   }
   return frames;
 }

@@ -47,7 +47,7 @@ HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_si
       py::hasattr(hazard, "__fspath__")) {
     const std::string file = readable_file(hazard);
     const WithoutGil without_gil;
-    config.volume = std::make_shared<const HazardVolume>(load_hazard_vdb(file, grid));
+    config.volume = std::make_shared<const HazardConfig::Volume>(load_hazard_vdb(file, grid));
     return config;
   }
   const Doubles rates = doubles(hazard, "hazard");
@@ -56,7 +56,7 @@ HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_si
       rates.shape(2) != dims.z) {
     throw py::value_error("hazard must be a number, a path or an array of the grid's shape");
   }
-  auto volume = std::make_shared<HazardVolume>();
+  auto volume = std::make_shared<HazardConfig::Volume>();
   volume->box = VoxelBox::from_dims(grid.min_index(), dims);
   volume->rates.reserve(static_cast<std::size_t>(rates.size()));
   for (py::ssize_t i = 0; i < rates.size(); ++i) {

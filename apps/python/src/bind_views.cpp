@@ -49,7 +49,7 @@ py::array_t<HitRow> trace_array(const Evaluator& self, const py::object& T_world
 
 py::array_t<float> depth(const Evaluator& self, const py::object& T_world_camera) {
   const Pose pose = one_pose(T_world_camera, "T_world_camera");
-  const DepthImage image = outside_gil([&] { return depth_image(self.evaluator, pose); });
+  const DepthFrame image = outside_gil([&] { return depth_image(self.evaluator, pose); });
   return image_array(image.depth, image.height, image.width);
 }
 

@@ -78,7 +78,8 @@ class PythonMeasure : public ViewMeasure {
  public:
   explicit PythonMeasure(const py::object& callable) : call_(checked(callable)) {}
 
-  double measure(const Pose& T_world_camera, std::span<const ViewHit> hits) const override {
+  double measure(const Pose& T_world_camera,
+                 std::span<const ViewMeasure::Hit> hits) const override {
     return with_gil([&] { return asked(T_world_camera, hits); });
   }
 
@@ -87,9 +88,9 @@ class PythonMeasure : public ViewMeasure {
     if (PyCallable_Check(callable.ptr()) == 0) throw py::type_error("measure must be callable");
     return callable;
   }
-  double asked(const Pose& T_world_camera, std::span<const ViewHit> hits) const {
+  double asked(const Pose& T_world_camera, std::span<const ViewMeasure::Hit> hits) const {
     py::array_t<OwnHitRow> rows(static_cast<py::ssize_t>(hits.size()));
-    std::transform(hits.begin(), hits.end(), rows.mutable_data(), [](const ViewHit& hit) {
+    std::transform(hits.begin(), hits.end(), rows.mutable_data(), [](const ViewMeasure::Hit& hit) {
       OwnHitRow row{{hit.voxel.x, hit.voxel.y, hit.voxel.z},
                     static_cast<std::uint8_t>(hit.state),
                     0,

@@ -10,7 +10,7 @@ namespace viewgain::app {
 
 std::vector<Index3> occupied_voxels(const GridSnapshot& snapshot) {
   std::vector<Index3> voxels;
-  for (const SnapshotLeaf& leaf : snapshot.leaves) {
+  for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
     for (unsigned offset = 0; offset < 512; ++offset) {
       if (!test_bit(leaf.occupied, offset)) continue;
       voxels.push_back({leaf.origin.x + static_cast<std::int32_t>(offset >> 6U),

@@ -14,7 +14,6 @@
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
-#include "viewgain/raycast/view_contributions.hpp"
 
 namespace viewgain::app {
 

@@ -12,8 +12,8 @@
 #include <span>
 #include <utility>
 
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -41,7 +41,8 @@ struct TracedPart {
   TracedPart(const PaintedMesh::Part& painted, const ExecConfig& exec) : part(painted) {
     if (!painted.mesh.triangles.empty()) scene.emplace(painted.mesh, exec);
   }
-  void intersect(std::span<const SurfaceRay> rays, std::vector<SurfaceHit>& hits) const {
+  void intersect(std::span<const SurfaceScene::Ray> rays,
+                 std::vector<SurfaceScene::Hit>& hits) const {
     hits.assign(rays.size(), {});
     if (scene) scene->intersect(rays, hits);
   }
@@ -81,9 +82,9 @@ class Renderer {
   };
 
   void sample(std::span<const Look> looks, std::span<Sample> samples) const {
-    std::vector<SurfaceRay> rays;
+    std::vector<SurfaceScene::Ray> rays;
     for (const Look& look : looks) rays.push_back({eye_, look.direction});
-    std::vector<SurfaceHit> behind, hits;
+    std::vector<SurfaceScene::Hit> behind, hits;
     solid_.intersect(rays, behind);
     const auto meet_behind = [&](std::size_t i) {
       if (std::isfinite(behind[i].range)) {
@@ -140,7 +141,7 @@ class Renderer {
   };
 
   [[nodiscard]] std::vector<Vector3d> colors(const std::vector<Shade>& shades) const {
-    std::vector<SurfaceRay> rays;
+    std::vector<SurfaceScene::Ray> rays;
     for (const Shade& shade : shades) {
       if (shade.sample->visible > 0) add_sky_rays(shade, rays);
     }
@@ -180,7 +181,7 @@ class Renderer {
   }
 
   void meet(const PaintedMesh::Part& part, const Vector3d& origin, const Vector3d& direction,
-            const SurfaceHit& hit, Sample& found) const {
+            const SurfaceScene::Hit& hit, Sample& found) const {
     const Paint& paint = painted_.paint_of(part, hit.triangle);
     if (!paint.lit) {
       found.flat += found.visible * paint.color;
@@ -200,7 +201,7 @@ class Renderer {
   // The sun on samples that are lit and turned to it.
   void shine(std::span<Sample> samples) const {
     std::vector<Sample*> lit;
-    std::vector<SurfaceRay> rays;
+    std::vector<SurfaceScene::Ray> rays;
     for (Sample& sample : samples) {
       if (!(sample.visible > 0 && sample.smooth.dot(to_sun_) > 0)) continue;
       lit.push_back(&sample);
@@ -212,14 +213,14 @@ class Renderer {
     }
   }
 
-  [[nodiscard]] std::unique_ptr<bool[]> blocked(const std::vector<SurfaceRay>& rays) const {
+  [[nodiscard]] std::unique_ptr<bool[]> blocked(const std::vector<SurfaceScene::Ray>& rays) const {
     auto blocked = std::make_unique<bool[]>(rays.size());
     if (solid_.scene) solid_.scene->block(rays, {blocked.get(), rays.size()});
     return blocked;
   }
 
   // Cosine-weighted, stratified in azimuth.
-  void add_sky_rays(const Shade& shade, std::vector<SurfaceRay>& rays) const {
+  void add_sky_rays(const Shade& shade, std::vector<SurfaceScene::Ray>& rays) const {
     const Vector3d& normal = shade.sample->smooth;
     const auto [u, v] = tangents(normal);
     for (int i = 0; i < shade.sky_rays; ++i) {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/stop_rules.hpp"
+#include "viewgain/support/stop_rules.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/core/stop_rules.hpp"
+#include "viewgain/support/stop_rules.hpp"
 
 #include <cmath>
 #include <string>

@@ -26,12 +26,12 @@ bool contains(const Box& box, const Eigen::Vector3d& p) {
   return true;
 }
 
-bool contains(const Shell& shell, const Eigen::Vector3d& p) {
+bool contains(const ReachRegion::Shell& shell, const Eigen::Vector3d& p) {
   const double distance = (p - shell.center).norm();
   return distance >= shell.min_radius && distance <= shell.max_radius;
 }
 
-bool contains(const HalfSpace& half_space, const Eigen::Vector3d& p) {
+bool contains(const ReachRegion::HalfSpace& half_space, const Eigen::Vector3d& p) {
   return half_space.normal.dot(p) >= half_space.offset;
 }
 
@@ -50,7 +50,8 @@ double angle_between(const Pose& a, const Pose& b) {
 
 }  // namespace
 
-bool is_among(const Pose& pose, std::span<const Pose> poses, const PoseTolerance& tolerance) {
+bool is_among(const Pose& pose, std::span<const Pose> poses,
+              const ReachRegion::Tolerance& tolerance) {
   return std::any_of(poses.begin(), poses.end(), [&](const Pose& other) {
     return (pose.translation() - other.translation()).norm() <= tolerance.distance &&
            angle_between(pose, other) <= tolerance.angle;
@@ -68,7 +69,7 @@ void ReachRegion::validate() const {
     }
   }
   for (std::size_t i = 0; i < shells.size(); ++i) {
-    const Shell& shell = shells[i];
+    const ReachRegion::Shell& shell = shells[i];
     if (!shell.center.allFinite() || !std::isfinite(shell.min_radius) ||
         !std::isfinite(shell.max_radius)) {
       fail("shell", i, "is not finite");
@@ -82,7 +83,7 @@ void ReachRegion::validate() const {
     }
   }
   for (std::size_t i = 0; i < half_spaces.size(); ++i) {
-    const HalfSpace& half_space = half_spaces[i];
+    const ReachRegion::HalfSpace& half_space = half_spaces[i];
     if (!half_space.normal.allFinite() || !std::isfinite(half_space.offset)) {
       fail("half-space", i, "is not finite");
     }
@@ -109,7 +110,9 @@ bool ReachRegion::contains(const Pose& T_world_camera) const {
   const Eigen::Vector3d center = T_world_camera.translation();
   return in_any(boxes, center) && in_any(shells, center) &&
          std::all_of(half_spaces.begin(), half_spaces.end(),
-                     [&center](const HalfSpace& h) { return viewgain::contains(h, center); }) &&
+                     [&center](const ReachRegion::HalfSpace& h) {
+                       return viewgain::contains(h, center);
+                     }) &&
          (poses.empty() || is_among(T_world_camera, poses, tolerance)) &&
          (!predicate || predicate(T_world_camera));
 }

@@ -26,7 +26,7 @@ bool along_ray(const Eigen::Vector3d& p, const Eigen::Vector3d& q, double sin2_a
 
 }  // namespace
 
-JumpEdgeFilter::JumpEdgeFilter(const PinholeCamera& camera, const JumpEdgeConfig& config)
+JumpEdgeFilter::JumpEdgeFilter(const PinholeCamera& camera, const JumpEdgeFilter::Config& config)
     : camera_(camera), config_(config) {
   camera_.validate();
   if (!(config_.angle >= kMinAngle - kAngleSlack && config_.angle <= kMaxAngle + kAngleSlack)) {

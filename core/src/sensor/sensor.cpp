@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/nearest_name.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
@@ -152,13 +153,7 @@ const std::vector<std::string>& sensor_preset_names() {
 }
 
 Sensor sensor_preset(std::string_view name) {
-  std::string valid;
-  for (const Sensor& sensor : presets()) {
-    if (sensor.name == name) return sensor;
-    valid += (valid.empty() ? "" : ", ") + sensor.name;
-  }
-  throw Error(ErrorCode::invalid_argument,
-              "unknown sensor '" + std::string(name) + "', valid are " + valid);
+  return presets()[place_of_name(name, sensor_preset_names(), "sensor")];
 }
 
 double default_prior_sigma(double voxel_size, const Sensor& sensor) {

@@ -26,8 +26,8 @@ class RateReader {
     if (!rates_->transform().isLinear()) fail("has a transform that is not linear");
   }
 
-  [[nodiscard]] HazardVolume rates_in(const BeliefGrid& grid) const {
-    HazardVolume volume;
+  [[nodiscard]] HazardConfig::Volume rates_in(const BeliefGrid& grid) const {
+    HazardConfig::Volume volume;
     volume.outside = checked(rates_->background());
     const VoxelBox& box = volume.box = touched_by_active(grid);
     volume.rates.reserve(static_cast<std::size_t>(box.volume()));

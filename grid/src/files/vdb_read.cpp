@@ -20,6 +20,7 @@
 #include "vdb_rates.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/solid_voxels.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -345,7 +346,7 @@ BeliefGrid load_vdb(const std::filesystem::path& path) {
 
 VdbMap load_vdb_map(const std::filesystem::path& path) { return Loader(path).load(); }
 
-HazardVolume load_hazard_vdb(const std::filesystem::path& path, const BeliefGrid& grid) {
+HazardConfig::Volume load_hazard_vdb(const std::filesystem::path& path, const BeliefGrid& grid) {
   const VdbContents contents(path);
   try {
     return RateReader(path, contents).rates_in(grid);

@@ -20,6 +20,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/belief_block.hpp"
 
 namespace viewgain {
 namespace {
@@ -237,10 +238,10 @@ void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
   });
 }
 
-void save_hazard_vdb(const HazardVolume& volume, const BeliefGrid& grid,
+void save_hazard_vdb(const HazardConfig::Volume& volume, const BeliefGrid& grid,
                      const std::filesystem::path& path) {
   HazardConfig config;
-  config.volume = std::make_shared<const HazardVolume>(volume);
+  config.volume = std::make_shared<const HazardConfig::Volume>(volume);
   config.validate();
   write_sealed(path, [&] {
     GridSet set(make_transform(GridAccess::storage(grid)));

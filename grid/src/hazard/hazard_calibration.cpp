@@ -87,7 +87,7 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
   const Pose T_grid_camera = grid.T_world_grid().inverse() * *T_rigid;
   const Eigen::Vector3d eye = T_grid_camera.translation();
   const Box workspace = grid.workspace();
-  const HazardModel& model = hazard.model();
+  const HazardConfig::Model& model = hazard.model();
   // Half a hazard cell: finer steps say the same.
   const double step = 0.5 * std::ldexp(grid.voxel_size(), hazard.cell_shift());
   const auto class_at = [&](double distance) {

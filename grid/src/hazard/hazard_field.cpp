@@ -7,6 +7,7 @@
 #include "squared_distances.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/hazard.hpp"
+#include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
@@ -29,7 +30,7 @@ std::vector<Index3> evidence_in(const GridSnapshot& snapshot, int shift) {
   std::vector<Index3> voxels;
   std::vector<unsigned> occupied;
   std::array<std::uint64_t, 512> hits{};  // by the offset of a cube's lowest voxel
-  for (const SnapshotLeaf& leaf : snapshot.leaves) {
+  for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
     if (!leaf.beliefs) continue;
     const unsigned inside = ~((1U << shift) - 1U) & 7U;
     const unsigned cube_of = inside << 6U | inside << 3U | inside;
@@ -74,7 +75,7 @@ int shift_for(double decay_length, double voxel_size) {
 // distance: neighbours that do are pooled by weight (isotonic regression), so that a class about
 // which little is known follows those about which more is.
 using Factors = std::array<double, HazardCounters::kClasses>;
-Factors monotone_factors(const HazardModel& model, const HazardCounters& counters) {
+Factors monotone_factors(const HazardConfig::Model& model, const HazardCounters& counters) {
   struct Block {
     double rate, weight;
     std::size_t classes;
@@ -138,7 +139,7 @@ HazardConfig constant_hazard(double rate, const BeliefGrid& grid,
   const double longest = std::max({dims.x, dims.y, dims.z}) * grid.voxel_size();
   HazardConfig config;
   config.object_size = object_size;
-  config.model = HazardModel::constant(rate, object_size.value_or(longest));
+  config.model = HazardConfig::Model::constant(rate, object_size.value_or(longest));
   return config;
 }
 
@@ -149,7 +150,7 @@ HazardField::HazardField(const GridSnapshot& snapshot, const HazardConfig& confi
   const VoxelBox workspace = VoxelBox::from_dims(snapshot.min_index, snapshot.dims);
   const VoxelBox seen = evidence.empty() ? workspace : box_of(evidence);
   const double size = config.object_size.value_or(longest_side(seen) * voxel_size_);
-  model_ = config.model.value_or(HazardModel::for_size(size));
+  model_ = config.model.value_or(HazardConfig::Model::for_size(size));
   shift_ = shift_for(model_.decay_length, voxel_size_);
   factors_.fill(1.0);
   follows_counters_ = config.calibrated && !config.model && !volume_;
@@ -164,8 +165,8 @@ void HazardField::find_distances(const std::vector<Index3>& evidence, const Voxe
   if (evidence.empty()) return;
   const int edge = 1 << shift_;
   const double cell = voxel_size_ * edge;
-  const int reach = static_cast<int>(std::clamp(HazardModel::kCut * model_.decay_length / cell, 1.0,
-                                                static_cast<double>(kMaxReach)));
+  const int reach = static_cast<int>(std::clamp(
+      HazardConfig::Model::kCut * model_.decay_length / cell, 1.0, static_cast<double>(kMaxReach)));
   const VoxelBox seen = box_of(evidence);
   const auto shifted = [&](Index3 v, int by) {
     return Index3{(v.x >> shift_) + by, (v.y >> shift_) + by, (v.z >> shift_) + by};

@@ -2,11 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "belief_blocks.hpp"
 
+#include <algorithm>
+
+#include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/block_lattice.hpp"
 
-namespace viewgain::detail {
+namespace viewgain {
 
-std::shared_ptr<BeliefBlock> reshaped(const BeliefBlock* block, const LeafMask& mask) {
+std::vector<BeliefBlockAt> belief_blocks(const BeliefGrid& grid) {
+  const detail::BeliefMap& beliefs = detail::beliefs_of(grid);
+  std::vector<std::uint64_t> keys;
+  keys.reserve(beliefs.size());
+  for (const auto& [key, block] : beliefs) keys.push_back(key);
+  std::sort(keys.begin(), keys.end());
+  const detail::BlockLattice lattice(grid.min_index(), grid.dims());
+  std::vector<BeliefBlockAt> blocks;
+  blocks.reserve(keys.size());
+  for (const std::uint64_t key : keys) blocks.push_back({lattice.origin(key), beliefs.at(key)});
+  return blocks;
+}
+
+std::shared_ptr<BeliefBlock> detail::reshaped(const BeliefBlock* block, const LeafMask& mask) {
   auto result = std::make_shared<BeliefBlock>();
   result->mask = mask;
   result->beliefs.reserve(count_bits(mask));
@@ -17,4 +33,4 @@ std::shared_ptr<BeliefBlock> reshaped(const BeliefBlock* block, const LeafMask& 
   return result;
 }
 
-}  // namespace viewgain::detail
+}  // namespace viewgain

@@ -8,6 +8,7 @@
 
 #include "viewgain/grid/belief.hpp"
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/support/belief_block.hpp"
 
 namespace viewgain::detail {
 

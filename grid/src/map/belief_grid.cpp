@@ -16,10 +16,9 @@
 #include "code_mask.hpp"
 #include "grid_layout.hpp"
 #include "grid_storage.hpp"
-#include "rigid_view.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/grid_blocks.hpp"
-#include "voxels_in.hpp"
 
 namespace viewgain {
 namespace {
@@ -324,30 +323,22 @@ std::uint64_t BeliefGrid::forget(const Box& region) {
   return forgotten;
 }
 
-void BeliefGrid::for_each_occupied(const std::function<void(const OccupiedVoxel&)>& visit) const {
+void BeliefGrid::for_each_belief(const std::function<void(Index3, const Belief&)>& visit) const {
+  for (const BeliefBlockAt& block : belief_blocks(*this)) block.for_each(visit);
+}
+
+void BeliefGrid::for_each_occupied(const std::function<void(const VoxelValue&)>& visit) const {
   const GridSnapshot now = snapshot();
-  for (const SnapshotLeaf& leaf : now.leaves) {
+  for (const GridSnapshot::Leaf& leaf : now.leaves) {
     if (leaf.occupied == LeafMask{}) continue;
     const std::uint8_t* codes =
         storage_->tree.probeConstLeaf(to_coord(leaf.origin))->buffer().data();
     for_each_bit(leaf.occupied, [&](unsigned offset) {
+      const Belief* belief = leaf.beliefs != nullptr ? leaf.beliefs->find(offset) : nullptr;
       visit({offset_voxel(leaf.origin, offset), code_log_odds(codes[offset]),
-             leaf.beliefs != nullptr ? leaf.beliefs->find(offset) : nullptr});
+             belief != nullptr ? std::optional(*belief) : std::nullopt});
     });
   }
-}
-
-std::vector<BeliefBlockAt> BeliefGrid::belief_blocks() const {
-  std::vector<std::uint64_t> keys;
-  keys.reserve(storage_->beliefs.size());
-  for (const auto& [key, block] : storage_->beliefs) keys.push_back(key);
-  std::sort(keys.begin(), keys.end());
-  std::vector<BeliefBlockAt> blocks;
-  blocks.reserve(keys.size());
-  for (const std::uint64_t key : keys) {
-    blocks.push_back({storage_->lattice.origin(key), storage_->beliefs.at(key)});
-  }
-  return blocks;
 }
 
 void put_block(BeliefGrid& grid, Index3 origin, const std::uint8_t* codes) {

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "grid_storage.hpp"
+#include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/hash64.hpp"
 
 namespace viewgain {

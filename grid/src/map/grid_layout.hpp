@@ -22,4 +22,13 @@ void check_layout(double voxel_size, const Pose& T_world_grid, double prior_sigm
 /// Throws Error(invalid_argument) for a count that is negative or over 2^40.
 void check_counters(const HazardCounters& counters);
 
+/// The voxels of the workspace whose centres lie in a region of the grid's frame [m], which is half
+/// open; its bounds may be infinite. Throws Error(invalid_argument) for a bound that is not a
+/// number.
+[[nodiscard]] VoxelBox voxels_in(const BeliefGrid& grid, const Box& region);
+
+/// A camera's pose as a map takes it, rigid_pose(). Throws Error(invalid_argument) if there is
+/// none.
+[[nodiscard]] Pose rigid_view(const Pose& T_world_camera);
+
 }  // namespace viewgain::detail

@@ -9,6 +9,7 @@
 
 #include "code_mask.hpp"
 #include "grid_storage.hpp"
+#include "viewgain/support/belief_block.hpp"
 
 namespace viewgain {
 namespace {
@@ -160,7 +161,7 @@ class SnapshotMaker {
   const GridStorage& storage_;
   const GridSnapshot& before_;
   GridSnapshot& out_;
-  std::vector<SnapshotRegion>::const_iterator earlier_;
+  std::vector<GridSnapshot::Region>::const_iterator earlier_;
   std::vector<Waiting> waiting_;
 };
 
@@ -179,16 +180,16 @@ namespace {
 // The region that holds a voxel of the workspace, if it is listed.
 std::optional<std::size_t> listed_region(const GridSnapshot& snapshot, const BlockLattice& lattice,
                                          Index3 voxel) {
-  const std::vector<SnapshotRegion>& regions = snapshot.regions;
+  const std::vector<GridSnapshot::Region>& regions = snapshot.regions;
   const std::uint64_t number = lattice.key(voxel) >> 6U;
   const auto region =
       std::lower_bound(regions.begin(), regions.end(), number,
-                       [](const SnapshotRegion& r, std::uint64_t n) { return r.number < n; });
+                       [](const GridSnapshot::Region& r, std::uint64_t n) { return r.number < n; });
   if (region == regions.end() || region->number != number) return std::nullopt;
   return static_cast<std::size_t>(region - regions.begin());
 }
 
-const SnapshotLeaf* leaf_in(const GridSnapshot& snapshot, std::size_t region, Index3 voxel) {
+const GridSnapshot::Leaf* leaf_in(const GridSnapshot& snapshot, std::size_t region, Index3 voxel) {
   const Index3 origin = block_origin(voxel);
   const auto [first, last] = snapshot.leaves_of(region);
   for (std::uint32_t i = first; i < last; ++i) {
@@ -199,7 +200,7 @@ const SnapshotLeaf* leaf_in(const GridSnapshot& snapshot, std::size_t region, In
 
 }  // namespace
 
-const SnapshotLeaf* GridSnapshot::find_leaf(Index3 voxel) const {
+const GridSnapshot::Leaf* GridSnapshot::find_leaf(Index3 voxel) const {
   const BlockLattice lattice(min_index, dims);
   if (!lattice.contains(voxel)) return nullptr;
   const auto region = listed_region(*this, lattice, voxel);
@@ -210,7 +211,7 @@ bool GridSnapshot::is_free(Index3 voxel) const {
   const BlockLattice lattice(min_index, dims);
   if (!lattice.contains(voxel)) return true;
   if (const auto region = listed_region(*this, lattice, voxel)) {
-    if (const SnapshotLeaf* leaf = leaf_in(*this, *region, voxel)) {
+    if (const GridSnapshot::Leaf* leaf = leaf_in(*this, *region, voxel)) {
       return !test_bit(leaf->non_free, block_offset(voxel));
     }
     const auto [first, last] = tiles_of(*region);

@@ -1,40 +1,73 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+
+#include "belief_blocks.hpp"
 #include "code_mask.hpp"
+#include "grid_layout.hpp"
+#include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/grid_blocks.hpp"
 
 namespace viewgain {
+namespace {
 
 using namespace detail;
 
-GridStatistics BeliefGrid::statistics(Criterion criterion) const {
+GridStatistics statistics_of(const BeliefGrid& grid, const VoxelBox& range, Criterion criterion) {
+  const auto prior = SymmetricMatrix3::identity(1.0 / (grid.prior_sigma() * grid.prior_sigma()));
+  const double floor = grid.voxel_size() * grid.voxel_size() / 12.0;
+  const BlockLattice lattice(grid.min_index(), grid.dims());
   GridStatistics result;
-  const BlockLattice lattice(min_index(), dims());
-  const auto prior = SymmetricMatrix3::identity(1.0 / (prior_sigma() * prior_sigma()));
+  for (const auto& [key, block] : beliefs_of(grid)) {
+    std::size_t rank = 0;
+    const LeafMask part = block_mask(range, lattice.origin(key));
+    for_each_bit(block->mask, [&, &beliefs = block->beliefs](unsigned offset) {
+      const std::uint32_t hits = beliefs[rank++].hits;
+      if (test_bit(part, offset)) result.hits += hits;
+    });
+  }
+  double sum_of_sigmas = 0;
+  std::uint64_t believed = 0;
+  const auto part_of = [&](Index3 origin, std::int32_t size) {
+    return range.intersection(VoxelBox::from_dims(origin, {size, size, size}));
+  };
   visit_grid(
-      *this,
+      grid,
       [&](Index3 origin, const std::uint8_t* codes) {
-        LeafMask inside;
-        inside.fill(~std::uint64_t{0});
-        if (!lattice.covers(origin, kBlockSize)) inside = lattice.clip(origin);
+        const LeafMask inside = block_mask(range, origin);
         const LeafMask occupied = intersection(inside, occupied_mask(codes));
         const std::uint64_t occupied_count = count_bits(occupied);
         result.occupied += occupied_count;
         result.free += count_bits(intersection(inside, known_mask(codes))) - occupied_count;
         if (occupied_count == 0) return;
-        const BeliefBlock* block = find_beliefs(*this, clipped(lattice, origin, kBlockSize).min);
+        const BeliefBlock* block = find_beliefs(grid, part_of(origin, kBlockSize).min);
         if (block == nullptr) return;
         for_each_bit(intersection(occupied, block->mask), [&](unsigned offset) {
-          result.entropy_removed +=
-              entropy_reduction(prior, block->find(offset)->information_matrix(), criterion);
+          const SymmetricMatrix3 information = block->find(offset)->information_matrix();
+          result.entropy_removed += entropy_reduction(prior, information, criterion);
+          sum_of_sigmas += std::sqrt(information.inverse().trace() / 3.0 + floor);
+          ++believed;
         });
       },
       [&](Index3 origin, std::int32_t size, std::uint8_t code) {
-        if (code != kUnknownCode) result.free += clipped(lattice, origin, size).volume();
+        if (code != kUnknownCode) result.free += part_of(origin, size).volume();
       });
-  result.unknown = voxel_count() - result.free - result.occupied;
-  result.bytes = bytes_of(*this);
+  result.unknown = range.volume() - result.free - result.occupied;
+  result.bytes = bytes_of(grid);
+  result.mean_sigma = believed > 0 ? sum_of_sigmas / static_cast<double>(believed)
+                                   : std::numeric_limits<double>::quiet_NaN();
   return result;
+}
+
+}  // namespace
+
+GridStatistics BeliefGrid::statistics(Criterion criterion) const {
+  return statistics_of(*this, VoxelBox::from_dims(min_index(), dims()), criterion);
+}
+
+GridStatistics BeliefGrid::statistics(const Box& region, Criterion criterion) const {
+  return statistics_of(*this, voxels_in(*this, region), criterion);
 }
 
 }  // namespace viewgain

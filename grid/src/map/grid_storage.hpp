@@ -17,6 +17,7 @@
 
 #include "belief_blocks.hpp"
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/block_lattice.hpp"
 #include "viewgain/support/log_odds_code.hpp"
 

@@ -37,7 +37,7 @@ BeliefBricks::BeliefBricks(const GridSnapshot& snapshot, const std::vector<Belie
     unknown_cubes_[size].insert(cube_number(tile.min, kTileShifts[size]));
   }
   numbers_.reserve(snapshot.leaves.size() + blocks.size());
-  for (const SnapshotLeaf& leaf : snapshot.leaves) (void)brick_at(leaf.origin);
+  for (const GridSnapshot::Leaf& leaf : snapshot.leaves) (void)brick_at(leaf.origin);
   for (const BeliefBlockAt& block : blocks) add_beliefs(block, snapshot.voxel_size);
   for (PlacedBelief& belief : beliefs_) {
     belief.covariance = belief.information.inverse();
@@ -71,9 +71,9 @@ void BeliefBricks::add_beliefs(const BeliefBlockAt& block, double voxel_size) {
 }
 
 void BeliefBricks::find_states(const GridSnapshot& snapshot) {
-  std::unordered_map<std::uint64_t, const SnapshotLeaf*> leaves;
+  std::unordered_map<std::uint64_t, const GridSnapshot::Leaf*> leaves;
   leaves.reserve(snapshot.leaves.size());
-  for (const SnapshotLeaf& leaf : snapshot.leaves) leaves[block_number(leaf.origin)] = &leaf;
+  for (const GridSnapshot::Leaf& leaf : snapshot.leaves) leaves[block_number(leaf.origin)] = &leaf;
   const int edge = 1 << shift_;  // of a brick in leaves, too
   for (Brick& brick : bricks_) {
     LeafMask has_free{};

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/block_lattice.hpp"
 #include "viewgain/support/log_odds_code.hpp"
 

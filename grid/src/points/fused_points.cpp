@@ -14,9 +14,9 @@
 #include "point_thinning.hpp"
 #include "reading_sigma.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/grid/pooling.hpp"
 #include "viewgain/support/text.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
@@ -132,9 +132,9 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
                                      const ExecConfig& exec) {
   check(config);
   const GridSnapshot snapshot = grid.snapshot();
-  const bool pooled = config.rule == PointRule::pooled;
+  const bool pooled = !config.per_voxel;
   const Pooling pooling = pooled ? pooling_of(snapshot) : Pooling{0, grid.voxel_size()};
-  const BeliefBricks bricks(snapshot, grid.belief_blocks(), pooling.shift);
+  const BeliefBricks bricks(snapshot, belief_blocks(grid), pooling.shift);
   const double V = std::ldexp(grid.voxel_size(), pooling.shift);
   const double unit = pooling.length / V;
   const Lengths lengths{std::min(config.normal_radius * unit, kMaxReach),

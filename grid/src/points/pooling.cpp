@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "reading_sigma.hpp"
+#include "viewgain/support/belief_block.hpp"
 
 namespace viewgain {
 namespace {
@@ -17,7 +18,7 @@ constexpr int kMostShift = 3;  // cubes stay within a leaf
 // Median sigma of a reading across its ray [m]; 0 if nothing was read.
 double footprint_in(const GridSnapshot& snapshot) {
   std::vector<float> variances;
-  for (const SnapshotLeaf& leaf : snapshot.leaves) {
+  for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
     if (!leaf.beliefs) continue;
     std::size_t rank = 0;
     for_each_bit(leaf.beliefs->mask, [&](unsigned offset) {

@@ -11,8 +11,8 @@
 #include "frame_hits.hpp"
 #include "line_evidence.hpp"
 #include "readings.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
 

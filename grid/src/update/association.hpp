@@ -10,9 +10,10 @@
 #include "hit.hpp"
 #include "map/belief_blocks.hpp"
 #include "readings.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/block_lattice.hpp"
 #include "viewgain/support/log_odds_code.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
 

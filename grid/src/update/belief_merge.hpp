@@ -8,6 +8,7 @@
 #include "hit.hpp"
 #include "readings.hpp"
 #include "viewgain/grid/belief.hpp"
+#include "viewgain/support/belief_block.hpp"
 
 namespace viewgain::detail {
 

@@ -13,6 +13,7 @@
 #include <cstring>
 
 #include "block_kernels.hpp"
+#include "viewgain/support/isa_dispatch.hpp"
 #include "viewgain/support/log_odds_code.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -210,18 +211,7 @@ ConeCamera::ConeCamera(const PinholeCamera& camera, const Pose& T_camera_grid_po
       height(camera.height) {}
 
 const BlockKernels& block_kernels(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::block_kernels_of_target();
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::block_kernels_of_target();
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(block_kernels_of_target)();
-  }
+  return VIEWGAIN_OF_ISA(isa, block_kernels_of_target)();
 }
 
 }  // namespace viewgain::detail

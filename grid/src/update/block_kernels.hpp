@@ -6,9 +6,9 @@
 #include <cstdint>
 
 #include "viewgain/core/camera.hpp"
-#include "viewgain/core/isa.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain::detail {
 

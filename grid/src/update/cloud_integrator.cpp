@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "input_checks.hpp"
-#include "map/rigid_view.hpp"
+#include "map/grid_layout.hpp"
 #include "map_update.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/integrate_cloud.hpp"
@@ -57,12 +57,12 @@ class CloudPoints : public Readings {
 }  // namespace
 
 struct CloudIntegrator::Impl {
-  CloudIntegrationConfig config;
+  IntegrationConfig config;
   MapUpdate update;
   CloudPoints points;
 };
 
-CloudIntegrator::CloudIntegrator(const Sensor& sensor, const CloudIntegrationConfig& config,
+CloudIntegrator::CloudIntegrator(const Sensor& sensor, const IntegrationConfig& config,
                                  const ExecConfig& exec)
     : impl_(std::make_unique<Impl>(
           Impl{config, MapUpdate(config.occupancy, exec), CloudPoints(sensor)})) {

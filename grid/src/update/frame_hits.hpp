@@ -9,8 +9,8 @@
 #include "association.hpp"
 #include "hit.hpp"
 #include "readings.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/support/block_lattice.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
 

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "viewgain/grid/belief.hpp"
+#include "viewgain/support/belief_block.hpp"
 
 namespace viewgain::detail {
 

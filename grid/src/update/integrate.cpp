@@ -7,7 +7,7 @@
 
 #include "frame_pixels.hpp"
 #include "input_checks.hpp"
-#include "map/rigid_view.hpp"
+#include "map/grid_layout.hpp"
 #include "map_update.hpp"
 
 namespace viewgain {

@@ -8,7 +8,7 @@
 #include "evidence.hpp"
 #include "line_marks.hpp"
 #include "readings.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
 

@@ -6,8 +6,8 @@
 
 #include "block_kernels.hpp"
 #include "readings.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
 

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "point_grid.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
 

@@ -14,9 +14,8 @@
 #include <vector>
 
 #include "scene/gather_scene.hpp"
-#include "scene/obstacle_mesh.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
@@ -63,8 +62,8 @@ void ObstacleView::mark(DepthFrame& frame, const Pose& T_world_camera) const {
   const Eigen::Matrix3d R_world_camera = T_rigid->rotation();
   const Eigen::Vector3d eye = T_rigid->translation();
   m.pool.for_each_chunk(m.rays.size(), kRayChunk, [&](std::size_t begin, std::size_t end) {
-    std::array<SurfaceRay, kRayChunk> rays;
-    std::array<SurfaceHit, kRayChunk> hits;
+    std::array<SurfaceScene::Ray, kRayChunk> rays;
+    std::array<SurfaceScene::Hit, kRayChunk> hits;
     std::array<std::size_t, kRayChunk> pixels;
     std::size_t count = 0;
     for (std::size_t i = begin; i < end; ++i) {
@@ -74,7 +73,7 @@ void ObstacleView::mark(DepthFrame& frame, const Pose& T_world_camera) const {
     }
     m.scene->intersect(std::span(rays).first(count), hits);
     for (std::size_t k = 0; k < count; ++k) {
-      const SurfaceHit& hit = hits[k];
+      const SurfaceScene::Hit& hit = hits[k];
       if (!std::isfinite(hit.range)) continue;
       const double cosine = std::abs(hit.normal.dot(rays[k].direction));
       // Along the ray; at a graze all before the obstacle may be a reading of it.

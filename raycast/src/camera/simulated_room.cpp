@@ -10,7 +10,7 @@ namespace viewgain::detail {
 namespace {
 
 // The sphere and the table, where they are nearer.
-void meet_walls(const SimulatedRoom& room, const SurfaceRay& ray, RayReturn& first) {
+void meet_walls(const SimulatedRoom& room, const SurfaceScene::Ray& ray, RayReturn& first) {
   const Eigen::Vector3d &origin = ray.origin, &direction = ray.direction;
   if (const double r = room.background_radius; r > 0) {
     const double b = origin.dot(direction), c = origin.squaredNorm() - r * r;
@@ -30,10 +30,10 @@ void meet_walls(const SimulatedRoom& room, const SurfaceRay& ray, RayReturn& fir
 
 }  // namespace
 
-void SimulatedRoom::first_returns(std::span<const SurfaceRay> rays,
+void SimulatedRoom::first_returns(std::span<const SurfaceScene::Ray> rays,
                                   std::span<RayReturn> returns) const {
   constexpr std::size_t kAtOnce = 64;
-  std::array<SurfaceHit, kAtOnce> hits;
+  std::array<SurfaceScene::Hit, kAtOnce> hits;
   for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
     const auto some = rays.subspan(first, std::min(kAtOnce, rays.size() - first));
     const auto found = returns.subspan(first, some.size());

@@ -25,7 +25,7 @@ struct SimulatedRoom {
   std::shared_ptr<const SurfaceScene> surroundings;  ///< may be null
 
   /// The first returns of rays, which go on for ever, world frame; as many as there are rays.
-  void first_returns(std::span<const SurfaceRay> rays, std::span<RayReturn> returns) const;
+  void first_returns(std::span<const SurfaceScene::Ray> rays, std::span<RayReturn> returns) const;
 };
 
 }  // namespace viewgain::detail

@@ -13,8 +13,8 @@
 
 #include "tof_pixel.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/support/text.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
@@ -70,8 +70,8 @@ std::vector<PixelRays> pixel_rays(const PinholeCamera& camera, bool with_steps) 
   return pixels;
 }
 
-PixelTruth truth_of(std::span<const RayReturn> hits, double reading) {
-  PixelTruth truth;
+SimulatedSensor::PixelTruth truth_of(std::span<const RayReturn> hits, double reading) {
+  SimulatedSensor::PixelTruth truth;
   double low = 0, high = 0, nearest = 0;
   for (const RayReturn& hit : hits) {
     if (!std::isfinite(hit.range)) continue;
@@ -115,7 +115,7 @@ struct SimulatedSensor::Impl {
 
   // Rays of some pixels and what they meet.
   struct Bundle {
-    std::vector<SurfaceRay> rays;
+    std::vector<SurfaceScene::Ray> rays;
     std::vector<RayReturn> returns;
 
     void add(const View& view, const Eigen::Vector3d& ray_world) {
@@ -169,7 +169,7 @@ struct SimulatedSensor::Impl {
 
   // Pixels [begin, end), all rays of which are traced together.
   void acquire(const View& view, std::size_t begin, std::size_t end, Bundle& bundle,
-               DepthFrame& frame, PixelTruth* truth) const {
+               DepthFrame& frame, SimulatedSensor::PixelTruth* truth) const {
     const auto for_each_pixel = [&](const auto& visit) {
       for (std::size_t i = begin; i < end; ++i) {
         if (pixels[i].center.allFinite()) visit(i, PixelRandom(config.seed, view.frame_index, i));
@@ -219,7 +219,7 @@ struct SimulatedSensor::Impl {
   }
 
   [[nodiscard]] DepthFrame acquire(const Pose& T_world_camera, std::uint64_t frame_index,
-                                   PixelTruth* truth) const {
+                                   SimulatedSensor::PixelTruth* truth) const {
     const std::optional<Pose> pose = rigid_pose(T_world_camera);
     if (!pose) {
       throw Error(ErrorCode::invalid_argument,
@@ -229,7 +229,7 @@ struct SimulatedSensor::Impl {
     DepthFrame frame{sensor.camera.width, sensor.camera.height,
                      std::vector<float>(pixels.size(), DepthFrame::kInvalid),
                      std::vector<float>(pixels.size())};
-    if (truth != nullptr) std::fill_n(truth, pixels.size(), PixelTruth{});
+    if (truth != nullptr) std::fill_n(truth, pixels.size(), SimulatedSensor::PixelTruth{});
     const std::size_t at_once = std::max<std::size_t>(1, kRaysAtOnce / rays_per_pixel());
     pool.for_each_chunk(pixels.size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
       Bundle bundle;
@@ -257,7 +257,7 @@ DepthFrame SimulatedSensor::acquire(const Pose& T_world_camera, std::uint64_t fr
 }
 
 DepthFrame SimulatedSensor::acquire(const Pose& T_world_camera, std::uint64_t frame_index,
-                                    std::vector<PixelTruth>& truth) const {
+                                    std::vector<SimulatedSensor::PixelTruth>& truth) const {
   truth.resize(impl_->pixels.size());
   return impl_->acquire(T_world_camera, frame_index, truth.data());
 }

@@ -12,7 +12,7 @@
 
 #include "trace/triangle_scene.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
@@ -54,10 +54,10 @@ struct SurfaceScene::Impl {
   std::optional<detail::TriangleScene> scene;
 
   // At most kAtOnce.
-  void load(std::span<const SurfaceRay> rays, TriangleRays& packet) const {
+  void load(std::span<const SurfaceScene::Ray> rays, TriangleRays& packet) const {
     for (std::size_t i = 0; i < kAtOnce; ++i) {
       // Lanes that are not asked for repeat a ray.
-      const SurfaceRay& ray = rays[std::min(i, rays.size() - 1)];
+      const SurfaceScene::Ray& ray = rays[std::min(i, rays.size() - 1)];
       const Vector3d origin = ray.origin - middle;
       packet.ox[i] = static_cast<float>(origin.x());
       packet.oy[i] = static_cast<float>(origin.y());
@@ -99,14 +99,15 @@ SurfaceScene::~SurfaceScene() = default;
 SurfaceScene::SurfaceScene(SurfaceScene&&) noexcept = default;
 SurfaceScene& SurfaceScene::operator=(SurfaceScene&&) noexcept = default;
 
-void SurfaceScene::intersect(std::span<const SurfaceRay> rays, std::span<SurfaceHit> hits) const {
+void SurfaceScene::intersect(std::span<const SurfaceScene::Ray> rays,
+                             std::span<SurfaceScene::Hit> hits) const {
   TriangleRays packet;
   for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, rays.size() - first);
     impl_->load(rays.subspan(first, count), packet);
     const std::uint32_t met = impl_->scene->meet(packet, lanes_of(count));
     for (std::size_t i = 0; i < count; ++i) {
-      SurfaceHit& hit = hits[first + i];
+      SurfaceScene::Hit& hit = hits[first + i];
       hit = {};
       if ((met >> i & 1U) == 0) continue;
       hit.range = static_cast<double>(packet.far[i]);
@@ -116,13 +117,13 @@ void SurfaceScene::intersect(std::span<const SurfaceRay> rays, std::span<Surface
   }
 }
 
-SurfaceHit SurfaceScene::intersect(const SurfaceRay& ray) const {
-  SurfaceHit hit;
+SurfaceScene::Hit SurfaceScene::intersect(const SurfaceScene::Ray& ray) const {
+  SurfaceScene::Hit hit;
   intersect(std::span(&ray, 1), std::span(&hit, 1));
   return hit;
 }
 
-void SurfaceScene::block(std::span<const SurfaceRay> rays, std::span<bool> blocked) const {
+void SurfaceScene::block(std::span<const SurfaceScene::Ray> rays, std::span<bool> blocked) const {
   TriangleRays packet;
   for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, rays.size() - first);

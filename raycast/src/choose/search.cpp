@@ -13,7 +13,6 @@
 
 #include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
-#include "gain/measured_view.hpp"
 #include "gain/sampled_views.hpp"
 #include "ray_lattices.hpp"
 #include "viewgain/core/error.hpp"

@@ -3,6 +3,7 @@
 #include "viewgain/raycast/feasibility.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <optional>
@@ -16,9 +17,9 @@
 #include "scene/scene_data.hpp"
 #include "sight_check.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/text.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
@@ -45,7 +46,7 @@ void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConf
   if (!(std::isfinite(config.clearance) && config.clearance >= 0)) {
     fail("the clearance must be finite and not negative, not " + short_text(config.clearance));
   }
-  const PoseTolerance& taken = config.taken_tolerance;
+  const ReachRegion::Tolerance& taken = config.taken_tolerance;
   if (!(std::isfinite(taken.distance) && taken.distance >= 0 && std::isfinite(taken.angle) &&
         taken.angle >= 0)) {
     fail("the tolerance of views taken must be finite and not negative");
@@ -60,25 +61,9 @@ void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConf
 }  // namespace
 
 std::string_view infeasibility_name(Infeasibility reason) {
-  switch (reason) {
-    case Infeasibility::none:
-      return "none";
-    case Infeasibility::bad_pose:
-      return "bad_pose";
-    case Infeasibility::unreachable:
-      return "unreachable";
-    case Infeasibility::taken:
-      return "taken";
-    case Infeasibility::plane:
-      return "plane";
-    case Infeasibility::obstacle:
-      return "obstacle";
-    case Infeasibility::collision:
-      return "collision";
-    case Infeasibility::too_near:
-      break;
-  }
-  return "too_near";
+  constexpr std::array<std::string_view, 8> kNames{"none",  "bad_pose", "unreachable", "taken",
+                                                   "plane", "obstacle", "collision",   "too_near"};
+  return kNames[std::min<std::size_t>(static_cast<std::size_t>(reason), kNames.size() - 1)];
 }
 
 struct FeasibilityChecker::Impl {
@@ -86,7 +71,7 @@ struct FeasibilityChecker::Impl {
   struct Settings {
     Settings(FeasibilityConfig config_in, const ExecConfig& exec)
         : config(std::move(config_in)), num_threads(thread_count(exec.num_threads)) {
-      const SensorBody& body = config.body;
+      const FeasibilityConfig::Body& body = config.body;
       const double depth = body.size[2];
       half = 0.5 * Eigen::Vector3d(body.size[0], body.size[1], depth) +
              Eigen::Vector3d::Constant(config.clearance);

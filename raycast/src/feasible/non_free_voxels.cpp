@@ -67,7 +67,7 @@ Index3 cube_at(const Index3& origin, std::int32_t size, unsigned number) {
   return {origin.x + part(4), origin.y + part(2), origin.z + part(0)};
 }
 
-bool voxels_overlap(const OrientedBox& body, const Box& range, const SnapshotLeaf& leaf,
+bool voxels_overlap(const OrientedBox& body, const Box& range, const GridSnapshot::Leaf& leaf,
                     const OrientedBox::Limits& limits) {
   const Eigen::Vector3d origin = vector(leaf.origin);
   // The voxels [low, high) of the leaf are those within the body's bounds.
@@ -162,8 +162,8 @@ NonFreeVoxels::Blocks NonFreeVoxels::blocks_of(std::uint32_t region) const {
   return blocks;
 }
 
-const SnapshotLeaf& NonFreeVoxels::leaf_at(std::uint32_t region, const Blocks& blocks,
-                                           unsigned block) const {
+const GridSnapshot::Leaf& NonFreeVoxels::leaf_at(std::uint32_t region, const Blocks& blocks,
+                                                 unsigned block) const {
   const std::uint64_t before = blocks.leaves & ((std::uint64_t{1} << block) - 1U);
   const std::uint32_t first = snapshot_.leaves_of(region)[0];
   return snapshot_.leaves[first + static_cast<std::uint32_t>(std::popcount(before))];
@@ -220,7 +220,7 @@ bool NonFreeVoxels::any_block(const Box& range, const LeafVisit& leaf_visit,
     };
     const auto [leaf, leaf_end] = snapshot_.leaves_of(region);
     for (std::uint32_t i = leaf; i < leaf_end; ++i) {
-      const SnapshotLeaf& item = snapshot_.leaves[i];
+      const GridSnapshot::Leaf& item = snapshot_.leaves[i];
       if (is_wanted(item.origin) && leaf_visit(item)) return true;
     }
     const auto [tile, tile_end] = snapshot_.tiles_of(region);
@@ -238,7 +238,7 @@ bool NonFreeVoxels::overlap(const OrientedBox& body) const {
   const auto leaf_limits = body.limits(Eigen::Vector3d::Constant(0.5 * kBlock));
   return any_block(
       range,
-      [&](const SnapshotLeaf& leaf) {
+      [&](const GridSnapshot::Leaf& leaf) {
         const Eigen::Vector3d center = vector(leaf.origin) + Eigen::Vector3d::Constant(4.0);
         return body.overlaps(center, leaf_limits) &&
                voxels_overlap(body, range, leaf, voxel_limits);
@@ -255,7 +255,7 @@ bool NonFreeVoxels::may_meet(const Cone& cone, const Box& range) const {
   };
   return any_block(
       range,
-      [&](const SnapshotLeaf& leaf) {
+      [&](const GridSnapshot::Leaf& leaf) {
         // A ball round the leaf; 6.93 is half its diagonal.
         return touches(vector(leaf.origin) + Eigen::Vector3d::Constant(4.0), 6.93);
       },

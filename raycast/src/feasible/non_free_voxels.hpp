@@ -64,8 +64,8 @@ class NonFreeVoxels {
   [[nodiscard]] const Node* find_node(const Index3& voxel) const;
   [[nodiscard]] Blocks blocks_of(std::uint32_t region) const;
   /// The leaf of a block that has one.
-  [[nodiscard]] const SnapshotLeaf& leaf_at(std::uint32_t region, const Blocks& blocks,
-                                            unsigned block) const;
+  [[nodiscard]] const GridSnapshot::Leaf& leaf_at(std::uint32_t region, const Blocks& blocks,
+                                                  unsigned block) const;
   [[nodiscard]] bool contains(const Index3& voxel) const;
   template <typename Visit>
   [[nodiscard]] bool any_region(const Box& range, const Visit& visit) const;

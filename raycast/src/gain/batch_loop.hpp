@@ -10,7 +10,7 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/exec_config.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/raycast/depth_image.hpp"
 
-#include <limits>
 #include <string>
 
 #include "trace/ray_tile.hpp"
@@ -11,7 +10,8 @@
 
 namespace viewgain {
 
-DepthImage depth_image(const GainEvaluator& evaluator, const Pose& T_world_camera) {
+DepthFrame depth_image(const GainEvaluator& evaluator, const Pose& T_world_camera,
+                       std::vector<RayHit::Kind>* labels) {
   const PinholeCamera& camera = evaluator.camera();
   const int stride = evaluator.pixel_stride();
   const std::vector<RayHit> hits = evaluator.trace(T_world_camera);
@@ -20,13 +20,13 @@ DepthImage depth_image(const GainEvaluator& evaluator, const Pose& T_world_camer
                 "the pose of a depth image is off from a rigid transform by " +
                     short_text(orthonormality_error(T_world_camera)) + "; 1e-3 is allowed");
   }
-  DepthImage image;
+  DepthFrame image;
   image.width = detail::strided(camera.width, stride);
   image.height = detail::strided(camera.height, stride);
-  image.depth.assign(hits.size(), std::numeric_limits<float>::infinity());
-  image.labels.resize(hits.size());
+  image.depth.assign(hits.size(), DepthFrame::kOutOfRange);
+  if (labels != nullptr) labels->resize(hits.size());
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    image.labels[i] = hits[i].kind;
+    if (labels != nullptr) (*labels)[i] = hits[i].kind;
     if (hits[i].kind == RayHit::Kind::none) continue;
     const auto columns = static_cast<std::size_t>(image.width);
     const Eigen::Vector3d ray = camera.ray(static_cast<double>(i % columns) * stride,

@@ -57,7 +57,7 @@ void check(const GainConfig& config, const Sensor& sensor) {
              " m across, differ by more than a factor of " + short_text(kMaxSigmaRatio));
     }
   }
-  for (const WeightRegion& region : config.weights) {
+  for (const GainConfig::WeightRegion& region : config.weights) {
     if (!std::isfinite(region.weight) || region.weight < 0) {
       reject("task weight is " + short_text(region.weight) + "; it must be >= 0 and finite");
     }
@@ -84,6 +84,34 @@ std::uint32_t rays_of(const SensorRays& rays) {
 }
 
 }  // namespace
+
+FrontalSigmas frontal_sigmas(const Sensor& sensor) {
+  struct Visitor {
+    double fx;
+    FrontalSigmas operator()(const ShotNoise& n) const {
+      return {.a1 = n.reference_sigma / n.reference_range *
+                    std::sqrt(n.reference_integration_time / n.integration_time),
+              .l1 = 1.0 / fx};
+    }
+    FrontalSigmas operator()(const StructuredLightNoise& n) const {
+      return {.a0 = n.offset, .a2 = n.quadratic, .v = n.vertex, .l1 = n.lateral_px / fx};
+    }
+    FrontalSigmas operator()(const StereoNoise& n) const {
+      return {.a2 = n.subpixel / (n.focal_with(fx) * n.baseline), .l1 = 1.0 / fx};
+    }
+    FrontalSigmas operator()(const QuadraticNoise& n) const {
+      return {.a0 = n.offset, .a2 = n.quadratic, .l1 = 1.0 / fx};
+    }
+    FrontalSigmas operator()(const ConstantNoise& n) const {
+      return {.a0 = n.sigma_axial, .l0 = n.sigma_lateral};
+    }
+  };
+  FrontalSigmas sigmas = std::visit(Visitor{sensor.camera.fx}, sensor.noise);
+  const PoseSigma& pose = sensor.pose_sigma;
+  sigmas.p0 = pose.translation * pose.translation;
+  sigmas.p2 = pose.rotation * pose.rotation;
+  return sigmas;
+}
 
 EvaluatorCore::EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config,
                              const ExecConfig& exec)

@@ -16,11 +16,14 @@
 #include "trace/sensor_rays.hpp"
 #include "trace/view_sweep.hpp"
 #include "viewgain/core/exec_config.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/thread_pool.hpp"
 #include "viewgain/support/view_rays.hpp"
 
 namespace viewgain::detail {
+
+/// Frontal sigmas of a sensor in the form the kernels take.
+[[nodiscard]] FrontalSigmas frontal_sigmas(const Sensor& sensor);
 
 /// A voxel that a ray may end in, and what the ray would show there.
 struct SurfaceShare {
@@ -40,11 +43,20 @@ struct SampledEnd {
   double expected;  ///< SampledVoxel's
 };
 
+/// Of a sample by the paper's gain.
+struct SampleScratch {
+  std::vector<SampledHit> hits;
+  std::vector<double> gain_per_hit;  ///< by a voxel's place
+  std::vector<double> copies,
+      each;  ///< of the voxels of one class: SampledVoxel's, what each gains
+};
+
 /// What a thread needs for a view. Serves the views of any scene, one after another.
 struct Workspace {
   ViewSweep sweep;
-  std::vector<ViewHit> view_hits;  ///< for a gain of the user's own
-  std::vector<ViewRun> view_runs;
+  std::vector<ViewMeasure::Hit> view_hits;  ///< for a gain of the user's own
+  std::vector<RunMeasure::Run> view_runs;
+  SampleScratch sample;
   OccupiedSums occupied;  ///< these four for the surface gain
   std::vector<SampledEnd> sampled_ends;
   std::vector<VoxelVisit> visits;
@@ -73,7 +85,7 @@ struct EvaluatorCore {
   FrontalSigmas sigmas;
   double working_distance;      ///< the sensor's [m]
   double min_range, max_range;  ///< along the ray [m]
-  Tracer tracer;                ///< of all views, samples of them too
+  ExecConfig::Tracer tracer;    ///< of all views, samples of them too
   std::shared_ptr<const SensorRays> rays;
   std::uint32_t ray_count = 0;  ///< of the rays that a lens has
   ThreadPool pool;

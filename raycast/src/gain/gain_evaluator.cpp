@@ -3,12 +3,13 @@
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "batch_loop.hpp"
 #include "gain_evaluator_impl.hpp"
-#include "one_view.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/nearest_name.hpp"
 
 namespace viewgain {
 namespace {
@@ -42,15 +43,8 @@ struct RayHitConsumer {
 }  // namespace
 
 std::string_view view_status_name(ViewStatus status) {
-  switch (status) {
-    case ViewStatus::ok:
-      return "ok";
-    case ViewStatus::camera_in_occupied:
-      return "camera_in_occupied";
-    case ViewStatus::bad_pose:
-      break;
-  }
-  return "bad_pose";
+  constexpr std::array<std::string_view, 3> kNames{"ok", "bad_pose", "camera_in_occupied"};
+  return kNames[std::min<std::size_t>(static_cast<std::size_t>(status), kNames.size() - 1)];
 }
 
 const std::vector<std::string>& gain_model_names() {
@@ -63,14 +57,7 @@ std::string_view gain_model_name(GainModel model) {
 }
 
 GainModel parse_gain_model(std::string_view name) {
-  const std::vector<std::string>& names = gain_model_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    std::string text = "unknown gain \"" + std::string(name) + "\"; valid are";
-    for (const std::string& valid : names) text.append(" ").append(valid);
-    throw Error(ErrorCode::invalid_argument, text);
-  }
-  return static_cast<GainModel>(found - names.begin());
+  return static_cast<GainModel>(place_of_name(name, gain_model_names(), "gain"));
 }
 
 GainEvaluator::GainEvaluator(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,

@@ -20,6 +20,16 @@ namespace detail {
              : RayHit::Kind::unknown;
 }
 
+/// As ViewDriver::evaluate(), the same bits, with all threads at one view.
+[[nodiscard]] ViewGain evaluate_together(const ViewDriver& driver, const Pose& T_world_camera);
+
+/// What a measure of the user's own says of a view: NaN for a bad pose, 0 for a camera in an
+/// occupied voxel, of which it is not asked. Throws what the measure throws.
+[[nodiscard]] double measured(const ViewDriver& driver, const Pose& T_world_camera,
+                              ViewDriver::Lease& lease, const ViewMeasure& measure);
+[[nodiscard]] double measured(const ViewDriver& driver, const Pose& T_world_camera,
+                              ViewDriver::Lease& lease, const RunMeasure& measure);
+
 }  // namespace detail
 
 struct GainEvaluator::Impl {

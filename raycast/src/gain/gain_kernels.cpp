@@ -18,6 +18,8 @@
 
 #include "gain_kernels.hpp"
 #include "viewgain/core/noise.hpp"
+#include "viewgain/support/belief_block.hpp"
+#include "viewgain/support/isa_dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
@@ -122,8 +124,8 @@ void accumulate(const HitBatch& batch, const std::uint32_t* places, const std::u
   }
 }
 
-void look_up(const SnapshotLeaf* const* leaves, const std::uint32_t* offsets, std::size_t count,
-             MatrixHalf* known_a, MatrixHalf* known_b) {
+void look_up(const GridSnapshot::Leaf* const* leaves, const std::uint32_t* offsets,
+             std::size_t count, MatrixHalf* known_a, MatrixHalf* known_b) {
   // Where the beliefs are is found some voxels ahead of reading them, so that memory can follow.
   constexpr std::size_t kAhead = 32;
   static constexpr Belief kNothing{};
@@ -319,20 +321,7 @@ double LogProduct::log() const {
   return std::log(product) + static_cast<double>(power) * std::numbers::ln2;
 }
 
-const GainKernels& gain_kernels(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::gain_kernel_table();
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::gain_kernel_table();
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(gain_kernel_table)();
-  }
-}
+const GainKernels& gain_kernels(Isa isa) { return VIEWGAIN_OF_ISA(isa, gain_kernel_table)(); }
 
 }  // namespace viewgain::detail
 #endif

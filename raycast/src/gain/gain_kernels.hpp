@@ -7,8 +7,8 @@
 
 #include "trace/ray_tile.hpp"
 #include "viewgain/core/criterion.hpp"
-#include "viewgain/core/isa.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain::detail {
 
@@ -33,7 +33,7 @@ struct alignas(64) HitList {
 };
 
 struct HitBatch : HitList {
-  float expected[kCapacity];  ///< of a sample's hits, see GainAccumulator::begin_sample()
+  float expected[kCapacity];  ///< of a sample's hits, see VoxelSums::add()
   /// Λ_r [m⁻²], filled by expand(): xx yy zz xy and xz yz 0 0.
   alignas(64) double information_a[kCapacity][4], information_b[kCapacity][4];
 };
@@ -80,7 +80,7 @@ struct GainKernels {
   void (*accumulate)(const HitBatch& batch, const std::uint32_t* places, const std::uint64_t* keep,
                      VoxelSum* sums);
   /// Λ_v of occupied voxels: voxel i is the one at offsets[i] of leaves[i]; zero without a belief.
-  void (*look_up)(const SnapshotLeaf* const* leaves, const std::uint32_t* offsets,
+  void (*look_up)(const GridSnapshot::Leaf* const* leaves, const std::uint32_t* offsets,
                   std::size_t count, MatrixHalf* known_a, MatrixHalf* known_b);
   /// What the members gain and what stays. Multiplies the ratios whose logarithms, halved, are
   /// H(before) - H(after) into `ratios`, or, if `each` is not null (room for 8 beyond count),

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "one_view.hpp"
-
 #include <algorithm>
 #include <thread>
 
+#include "gain_evaluator_impl.hpp"
 #include "trace/scene_tracing.hpp"
 
 namespace viewgain::detail {

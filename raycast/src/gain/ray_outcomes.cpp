@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/raycast/ray_outcomes.hpp"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
@@ -10,6 +8,7 @@
 
 #include "gain_evaluator_impl.hpp"
 #include "trace/ordered_walk.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain {
 namespace {

@@ -85,16 +85,18 @@ float exposed_area(const Surroundings& around, const std::array<float, 3>& direc
   return std::max(exposed, kLeast * all);
 }
 
-// Sums a sample's hits by voxel.
+// Sums a sample's hits by voxel, and what the voxels and those that they stand for gain.
 struct SampleConsumer {
-  GainAccumulator& accumulator;
+  VoxelSums& sums;
+  SampleScratch& scratch;
   const SceneData& scene;
+  const GainSettings& settings;
   const TileTable& table;
-  float min_range;  // [voxels]
-  double rays_each;
+  float min_range;   // [voxels]
+  double rays_each;  // that a ray stands for
   SampleTally& tally;
 
-  void begin() { accumulator.begin_sample(); }
+  void begin() { sums.begin(&scratch.hits); }
   void add(std::size_t number, const RayTile& tile) {
     if (tile.hit == 0) return;
     std::array<float, kTileRays> expected;
@@ -104,11 +106,44 @@ struct SampleConsumer {
       const float angle = table.solid_angle[number * kTileRays + static_cast<std::size_t>(lane)];
       expected[count++] = across(tile, lane) / (t * t * angle);
     });
-    accumulator.add(tile, expected.data());
+    sums.add(tile, expected.data());
   }
-  void finish(ViewGain&) { accumulator.finish_sample(rays_each, tally); }
+  void finish(ViewGain&) {
+    sums.close();
+    sums.look_up();
+    scratch.gain_per_hit.resize(sums.voxel_count());
+    for (const bool is_known : {false, true}) {
+      const std::span<const std::uint32_t> members = is_known ? sums.occupied() : sums.unknown();
+      std::vector<double>& copies = scratch.copies;
+      copies.clear();
+      for (const std::uint32_t place : members) copies.push_back(spread(place));
+      scratch.each.resize(members.size() + VoxelSums::kOverhang);
+      LogProduct ratios;
+      is_known ? sums.finish_occupied(ratios, nullptr, scratch.each.data())
+               : sums.finish_unknown(ratios, nullptr, scratch.each.data());
+      for (std::size_t i = 0; i < members.size(); ++i) {
+        const std::uint32_t place = members[i];
+        const double each = scratch.each[i];
+        const double gain = (settings.criterion == Criterion::trace ? each : 0.5 * std::log(each)) *
+                            copies[i] * sums.weight(place);
+        tally.add(gain, sums.hits(place), sums.expected(place));
+        scratch.gain_per_hit[place] = gain / sums.hits(place);
+      }
+    }
+    for (const SampledHit& hit : scratch.hits) {
+      tally.by_lane[hit.lane] += scratch.gain_per_hit[hit.place];
+    }
+  }
 
  private:
+  // The voxel's hits become all that stand for them; how many voxels it stands for.
+  double spread(std::uint32_t place) {
+    const SampledVoxel voxel(sums.hits(place), sums.expected(place), rays_each);
+    VoxelSum& sum = sums.sum(place);
+    for (double& value : sum.a) value *= voxel.rays_per_hit;
+    for (std::size_t k = 0; k < 2; ++k) sum.b[k] *= voxel.rays_per_hit;
+    return voxel.copies;
+  }
   // What the ray's voxel shows of itself, across the ray [voxels²].
   [[nodiscard]] float across(const RayTile& tile, int lane) const {
     const std::array<float, 3> direction{tile.dx[lane], tile.dy[lane], tile.dz[lane]};
@@ -150,8 +185,9 @@ ApproximateGain SampledViews::estimate(const Pose& T_world_camera, ViewDriver::L
   } else {
     const auto min_range =
         static_cast<float>(driver_.core()->min_range / driver_.scene().snapshot.voxel_size);
-    SampleConsumer consumer{lease.accumulator(),   driver_.scene(), driver_.tracer().table(),
-                            min_range * 1.000001F, step_squared_,   tally};
+    SampleConsumer consumer{
+        lease.accumulator(),      lease.workspace().sample, driver_.scene(), driver_.settings(),
+        driver_.tracer().table(), min_range * 1.000001F,    step_squared_,   tally};
     result = driver_.view(T_world_camera, lease, consumer);
     if (result.status != ViewStatus::ok) return {result.gain, result.gain};
   }

@@ -10,6 +10,7 @@
 #include "task_weight.hpp"
 #include "trace/scene_tracing.hpp"
 #include "view_driver.hpp"
+#include "viewgain/support/belief_block.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -161,7 +162,7 @@ double SurfaceView::expected_hits(std::size_t number, const RayTile& rays, int l
                                   Index3 voxel) const {
   // Unknown voxels do not hide what is behind them.
   const auto is_exposed = [&](Index3 beside) {
-    const SnapshotLeaf* leaf = scene_.snapshot.find_leaf(beside);
+    const GridSnapshot::Leaf* leaf = scene_.snapshot.find_leaf(beside);
     return leaf == nullptr || !test_bit(leaf->occupied, block_offset(beside));
   };
   const auto before = [](float d) { return d > 0 ? -1 : 1; };
@@ -219,12 +220,12 @@ void SurfaceView::sample(const PoseFrame& frame, Workspace& workspace, double ra
 
 double SurfaceView::saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const {
   SymmetricMatrix3 before = SymmetricMatrix3::identity(prior_information_);
-  const SnapshotLeaf* leaf = scene_.snapshot.find_leaf(voxel);
+  const GridSnapshot::Leaf* leaf = scene_.snapshot.find_leaf(voxel);
   if (leaf != nullptr && leaf->beliefs) {
     if (const Belief* belief = leaf->beliefs->find(block_offset(voxel)))
       before += belief->information_matrix();
   }
-  const std::vector<WeightRegion>& weights = core_.config.weights;
+  const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
   const double weight =
       weights.empty() ? 1.0 : task_weight(weights, voxel, scene_.snapshot.voxel_size);
   return weight * (entropy_with_floor(before, floor_variance_) -
@@ -247,7 +248,7 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
   find_visits(frame, number, rays, workspace);
   const double V = scene_.snapshot.voxel_size;
   const int shift = bricks_.rate_shift;
-  const std::vector<WeightRegion>& weights = core_.config.weights;
+  const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
   double passed = 1.0;
   // The stretch of unknown voxels that the ray is in: its first share, where it begins, T there.
   std::size_t stretch = 0;

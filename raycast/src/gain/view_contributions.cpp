@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Which voxels a view's gain comes from.
-#include "viewgain/raycast/view_contributions.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +11,7 @@
 
 #include "gain_evaluator_impl.hpp"
 #include "viewgain/core/criterion.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain {
 namespace {

@@ -44,7 +44,7 @@ bool ViewDriver::is_in_occupied(const PoseFrame& frame) const {
   }
   const Index3& base = snapshot.min_index;
   const Index3 at{base.x + voxel[0], base.y + voxel[1], base.z + voxel[2]};
-  const SnapshotLeaf* leaf = snapshot.find_leaf(at);
+  const GridSnapshot::Leaf* leaf = snapshot.find_leaf(at);
   return leaf != nullptr && test_bit(leaf->occupied, block_offset(at));
 }
 

@@ -11,7 +11,7 @@
 
 #include "batch_loop.hpp"
 #include "gain_evaluator_impl.hpp"
-#include "measured_view.hpp"
+#include "viewgain/support/belief_block.hpp"
 
 namespace viewgain {
 namespace {
@@ -22,14 +22,14 @@ struct MeasureConsumer {
   const Eigen::Matrix3d& R_world_grid;
   const Pose& T_world_camera;
   const ViewMeasure& measure;
-  std::vector<ViewHit>& hits;
+  std::vector<ViewMeasure::Hit>& hits;
 
   void begin() { hits.clear(); }
   void add(std::size_t number, const detail::RayTile& tile) {
     const detail::SceneData& scene = driver.scene();
     detail::for_each_lane(tile.hit, [&](int lane) {
       const std::uint32_t primitive = tile.primitive[lane], offset = tile.offset[lane];
-      const SnapshotLeaf* leaf = scene.occupied_leaf(primitive, offset);
+      const GridSnapshot::Leaf* leaf = scene.occupied_leaf(primitive, offset);
       const Eigen::Vector3d d =
           R_world_grid * Eigen::Vector3d(tile.dx[lane], tile.dy[lane], tile.dz[lane]).normalized();
       hits.push_back(
@@ -52,13 +52,13 @@ void list_runs(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
   const double V = snapshot.voxel_size;
   const detail::SurfaceView& walk = driver.ordered();
   driver.tracer().prepare(frame, workspace.sweep);
-  std::vector<ViewRun>& runs = workspace.view_runs;
+  std::vector<RunMeasure::Run>& runs = workspace.view_runs;
   runs.clear();
   walk.for_each_visited(
       frame, workspace,
       [&](std::size_t number, const detail::RayTile& rays,
           const std::vector<detail::VoxelVisit>& visits) {
-        ViewRun run;
+        RunMeasure::Run run;
         for (auto visit = visits.begin(); visit != visits.end(); ++visit) {
           if (visit == visits.begin() || visit->lane != (visit - 1)->lane) {
             const auto lane = static_cast<int>(visit->lane);
@@ -76,7 +76,7 @@ void list_runs(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
           // The sign says that surface there would not be new.
           run.rate = occupied ? 0.0 : std::abs(static_cast<double>(visit->rate)) / V;
           run.belief = nullptr;
-          if (const SnapshotLeaf* leaf = occupied ? snapshot.find_leaf(run.voxel) : nullptr) {
+          if (const GridSnapshot::Leaf* leaf = occupied ? snapshot.find_leaf(run.voxel) : nullptr) {
             if (leaf->beliefs) run.belief = leaf->beliefs->find(block_offset(run.voxel));
           }
           runs.push_back(run);

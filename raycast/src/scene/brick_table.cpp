@@ -47,7 +47,7 @@ class BrickTableMaker {
     table_.rate_shift = hazard_.cell_shift();
     cells_ = BrickIndex::kBrick >> table_.rate_shift;
     (void)add_far_slot();
-    for (const SnapshotLeaf& leaf : snapshot_.leaves) add_leaf(leaf);
+    for (const GridSnapshot::Leaf& leaf : snapshot_.leaves) add_leaf(leaf);
     for (const VoxelBox& tile : snapshot_.tiles) add_unknown(tile);
     table_.for_each_own_node(widen_free);
     find_normals();
@@ -89,12 +89,12 @@ class BrickTableMaker {
   // Has a cube the far rate everywhere, and is what is found in it new?
   [[nodiscard]] bool is_far(Index3 origin, int edge) const {
     const VoxelBox box{origin, {origin.x + edge, origin.y + edge, origin.z + edge}};
-    const HazardVolume* volume = hazard_.volume();
+    const HazardConfig::Volume* volume = hazard_.volume();
     return box.intersection(hazard_.near_box()).volume() == 0 &&
            (volume == nullptr || box.intersection(volume->box).volume() == 0);
   }
 
-  void add_leaf(const SnapshotLeaf& leaf) {
+  void add_leaf(const GridSnapshot::Leaf& leaf) {
     const std::uint32_t slot = add_slot(leaf.origin);
     const Index3 at = table_.in_table(leaf.origin);
     table_.own_entry(at.x, at.y, at.z) = BrickTable::kMixed << 30U | slot;
@@ -163,7 +163,7 @@ class BrickTableMaker {
   // The normal at a cube leads from where voxels around are unknown to where they are free.
   void find_normals() {
     table_.normals.assign(table_.states.size(), 0);
-    for (const SnapshotLeaf& leaf : snapshot_.leaves) {
+    for (const GridSnapshot::Leaf& leaf : snapshot_.leaves) {
       if (leaf.occupied == LeafMask{}) continue;
       const auto [x, y, z] = table_.in_table(leaf.origin);
       const std::size_t first =

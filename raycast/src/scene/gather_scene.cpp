@@ -3,13 +3,36 @@
 #include "gather_scene.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 
-#include "scene_primitives.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::detail {
+namespace {
+
+void append(TriangleMesh& mesh, const TriangleMesh& part) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
+  for (const auto& t : part.triangles) {
+    mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+}
+
+TriangleMesh mesh_of(const Box& box) {
+  TriangleMesh mesh;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    auto& vertex = mesh.vertices.emplace_back();
+    for (unsigned a = 0; a < 3; ++a) {
+      vertex[a] = (corner >> a & 1U) != 0 ? box.max[a] : box.min[a];
+    }
+  }
+  mesh.triangles.assign(kBoxTriangles.begin(), kBoxTriangles.end());
+  return mesh;
+}
+
+}  // namespace
 
 void check_obstacles(const Obstacles& obstacles) {
   for (const Box& box : obstacles.boxes) {
@@ -59,6 +82,13 @@ std::unique_ptr<SceneData> gather_scene(GridSnapshot snapshot,
   data->surroundings = std::move(surroundings);
   data->hazard = std::move(hazard);
   return data;
+}
+
+TriangleMesh join_obstacles(const Obstacles& obstacles) {
+  TriangleMesh all;
+  for (const Box& box : obstacles.boxes) append(all, mesh_of(box));
+  for (const TriangleMesh& mesh : obstacles.meshes) append(all, mesh);
+  return all;
 }
 
 }  // namespace viewgain::detail

@@ -21,4 +21,12 @@ void check_surroundings(const Surroundings& surroundings);
     GridSnapshot snapshot, std::shared_ptr<const Surroundings> surroundings,
     std::shared_ptr<const HazardConfig> hazard, const SceneData* before);
 
+/// Boxes and meshes as one mesh, world frame [m]; they are not checked.
+[[nodiscard]] TriangleMesh join_obstacles(const Obstacles& obstacles);
+
+/// Makes the primitives of data.snapshot. Regions that the snapshot shares with `before` (null:
+/// none), the data of the scene that its snapshot was made from, are copied from there. Throws
+/// Error(capacity).
+void gather_primitives(SceneData& data, const SceneData* before);
+
 }  // namespace viewgain::detail

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "scene_cells.hpp"
-#include "viewgain/core/isa.hpp"
 #include "viewgain/grid/hazard.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain::detail {
 
@@ -141,10 +141,10 @@ struct SceneData {
   }
 
   /// The leaf of the occupied voxel that a hit names; null if the voxel is unknown.
-  [[nodiscard]] const SnapshotLeaf* occupied_leaf(std::uint32_t primitive,
-                                                  std::uint32_t offset) const {
+  [[nodiscard]] const GridSnapshot::Leaf* occupied_leaf(std::uint32_t primitive,
+                                                        std::uint32_t offset) const {
     if (primitive >= leaf_count) return nullptr;
-    const SnapshotLeaf& leaf = snapshot.leaves[leaf_source[primitive]];
+    const GridSnapshot::Leaf& leaf = snapshot.leaves[leaf_source[primitive]];
     return test_bit(leaf.occupied, offset) ? &leaf : nullptr;
   }
 

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "scene_primitives.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <string>
 
+#include "gather_scene.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::detail {
@@ -47,7 +46,7 @@ bool is_whole_block(const VoxelBox& tile) {
          aligned(tile.min.z, tile.max.z);
 }
 
-bool is_wholly_unknown(const SnapshotLeaf& leaf) {
+bool is_wholly_unknown(const GridSnapshot::Leaf& leaf) {
   std::uint64_t non_free = ~std::uint64_t{0}, occupied = 0;
   for (std::size_t i = 0; i < 8; ++i) {
     non_free &= leaf.non_free[i];
@@ -81,7 +80,7 @@ class Gatherer {
     std::size_t earlier = 0;
     for (std::size_t i = 0; i < snapshot_.regions.size(); ++i) {
       note_region();
-      const SnapshotRegion& region = snapshot_.regions[i];
+      const GridSnapshot::Region& region = snapshot_.regions[i];
       if (before_ != nullptr && snapshot_.is_shared(region)) {
         const auto& regions = before_->snapshot.regions;
         while (earlier < regions.size() && regions[earlier].number < region.number) ++earlier;
@@ -116,7 +115,7 @@ class Gatherer {
                              static_cast<std::uint32_t>(larger_.size())});
   }
 
-  void copy_region(std::size_t earlier, const SnapshotRegion& region) {
+  void copy_region(std::size_t earlier, const GridSnapshot::Region& region) {
     const SceneData& from = *before_;
     const SceneRegion &first = from.regions[earlier], &last = from.regions[earlier + 1];
     const auto append = [](auto& to, const auto& list, std::size_t begin, std::size_t end) {
@@ -139,7 +138,7 @@ class Gatherer {
   }
 
   void add_leaf(std::uint32_t number) {
-    const SnapshotLeaf& leaf = snapshot_.leaves[number];
+    const GridSnapshot::Leaf& leaf = snapshot_.leaves[number];
     if (is_wholly_unknown(leaf)) {
       add_block(leaf.origin);
       return;

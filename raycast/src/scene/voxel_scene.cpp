@@ -7,7 +7,7 @@
 #include "gather_scene.hpp"
 #include "scene_data.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/thread_pool.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {

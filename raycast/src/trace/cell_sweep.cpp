@@ -16,6 +16,7 @@
 #include "cell_sweep.hpp"
 #include "image_bounds-inl.hpp"
 #include "leaf_walk-inl.hpp"
+#include "viewgain/support/isa_dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
@@ -79,7 +80,7 @@ HWY_INLINE void sweep_windows(const Sweep& sweep, std::uint32_t primitive, const
     const int rows = std::min(kRows, rect.row1 - row + 1);
     for (std::int32_t column = rect.column0; column <= rect.column1; column += kTileEdge) {
       std::uint32_t lanes = 0;
-      for (int k = 0; k < rows; ++k) lanes |= strip.left(row + k, column) << (k * kTileEdge);
+      for (int k = 0; k < rows; ++k) lanes |= strip.left().four(row + k, column) << (k * kTileEdge);
       const std::int32_t rest = rect.column1 - column;
       if (rest < kTileEdge - 1) lanes &= ((2U << rest) - 1U) * 0x1111U;
       if (lanes == 0) continue;
@@ -139,7 +140,7 @@ void sweep(const SceneData& scene, const SeenCell& seen_cell, const PoseFrame& f
            const ImageScale& image, const std::array<std::int32_t, 3>& camera_block,
            StripRays& strip) {
   ImageRect cell_rect = seen_cell.rect;
-  if (!strip.clip(cell_rect) || !strip.any_left(cell_rect)) return;
+  if (!strip.clip(cell_rect) || !strip.left().any_in_tiles(cell_rect)) return;
   const std::uint32_t cell = seen_cell.cell;
   const SceneCells& cells = *scene.cells;
   const CellPlace& place = cells.places[cell];
@@ -171,7 +172,8 @@ void sweep(const SceneData& scene, const SeenCell& seen_cell, const PoseFrame& f
       const std::uint32_t primitive = cells.primitives[at + i];
       ImageRect rect = bounds.rect(i);
       if (primitive == kNoPrimitive || !strip.clip(rect)) continue;
-      if (!(by_rows ? strip.any_left_in_rows(rect) : strip.any_left(rect))) continue;
+      const RaysLeft& left = strip.left();
+      if (!(by_rows ? left.any_in_rows(rect) : left.any_in_tiles(rect))) continue;
       __builtin_prefetch(&scene.boxes[primitive]);
       if (primitive < scene.leaf_count) __builtin_prefetch(&scene.masks[primitive]);
       const std::uint8_t block = cells.blocks[at + i];
@@ -211,20 +213,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace viewgain::detail {
 
-CellSweep cell_sweep(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::cell_sweep_of_target();
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::cell_sweep_of_target();
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(cell_sweep_of_target)();
-  }
-}
+CellSweep cell_sweep(Isa isa) { return VIEWGAIN_OF_ISA(isa, cell_sweep_of_target)(); }
 
 }  // namespace viewgain::detail
 #endif

@@ -9,7 +9,7 @@
 #include "ray_tile.hpp"
 #include "scene/scene_data.hpp"
 #include "strip_rays.hpp"
-#include "viewgain/core/isa.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain::detail {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "embree_compat.hpp"
-#include "viewgain/core/isa.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain::detail {
 

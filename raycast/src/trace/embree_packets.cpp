@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "leaf_walk-inl.hpp"
+#include "viewgain/support/isa_dispatch.hpp"
 #include "voxel_bvh.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -138,20 +139,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace viewgain::detail {
 
-const PacketKernels& packet_kernels(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::kernels();
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::kernels();
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(kernels)();
-  }
-}
+const PacketKernels& packet_kernels(Isa isa) { return VIEWGAIN_OF_ISA(isa, kernels)(); }
 
 }  // namespace viewgain::detail
 #endif

@@ -14,6 +14,7 @@
 
 #include "image_bounds-inl.hpp"
 #include "image_bounds.hpp"
+#include "viewgain/support/isa_dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
@@ -70,18 +71,7 @@ LensBend::LensBend(const PinholeCamera& camera, const TileTable& table) {
 }
 
 const ImageBoundsKernels& image_bounds_kernels(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::image_bounds_of_target();
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::image_bounds_of_target();
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(image_bounds_of_target)();
-  }
+  return VIEWGAIN_OF_ISA(isa, image_bounds_of_target)();
 }
 
 }  // namespace viewgain::detail

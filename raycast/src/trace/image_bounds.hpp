@@ -8,7 +8,7 @@
 #include "ray_tile.hpp"
 #include "scene/scene_cells.hpp"
 #include "viewgain/core/camera.hpp"
-#include "viewgain/core/isa.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain::detail {
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene/obstacle_mesh.hpp"
+#include "scene/gather_scene.hpp"
 #include "scene_tracing.hpp"
 
 namespace viewgain::detail {

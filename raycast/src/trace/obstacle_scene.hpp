@@ -11,7 +11,7 @@
 #include "ray_tile.hpp"
 #include "scene/scene_data.hpp"
 #include "triangle_scene.hpp"
-#include "viewgain/core/isa.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain::detail {
 

@@ -16,6 +16,7 @@
 
 #include "ordered_walk.hpp"
 #include "viewgain/support/brick_walk-inl.hpp"
+#include "viewgain/support/isa_dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
@@ -344,20 +345,7 @@ void set_up(const TileTable& table, std::size_t number, const PoseFrame& frame, 
   task.lanes = rays.hit;
 }
 
-const WalkKernels& walk_kernels(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::ordered_walk_kernels();
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::ordered_walk_kernels();
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(ordered_walk_kernels)();
-  }
-}
+const WalkKernels& walk_kernels(Isa isa) { return VIEWGAIN_OF_ISA(isa, ordered_walk_kernels)(); }
 
 }  // namespace viewgain::detail
 #endif

@@ -8,7 +8,7 @@
 #include "ray_tile.hpp"
 #include "scene/brick_table.hpp"
 #include "scene/scene_data.hpp"
-#include "viewgain/core/isa.hpp"
+#include "viewgain/support/isa.hpp"
 #include "viewgain/support/walk_task.hpp"
 
 namespace viewgain::detail {

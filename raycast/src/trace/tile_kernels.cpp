@@ -12,6 +12,7 @@
 
 #include "leaf_walk-inl.hpp"
 #include "tile_kernels.hpp"
+#include "viewgain/support/isa_dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace viewgain::detail::HWY_NAMESPACE {
@@ -79,20 +80,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace viewgain::detail {
 
-const TileKernels& tile_kernels(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::kernels(isa);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::kernels(isa);
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(kernels)(isa);
-  }
-}
+const TileKernels& tile_kernels(Isa isa) { return VIEWGAIN_OF_ISA(isa, kernels)(isa); }
 
 }  // namespace viewgain::detail
 #endif

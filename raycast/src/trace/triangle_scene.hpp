@@ -7,7 +7,7 @@
 #include <string>
 
 #include "device.hpp"
-#include "viewgain/core/isa.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain::detail {
 

@@ -18,12 +18,12 @@ constexpr double kRayEnd = 4 * kFarthestCamera;
 }  // namespace
 
 ViewTracer::ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays> rays,
-                       double min_range, double max_range, Tracer tracer)
+                       double min_range, double max_range, ExecConfig::Tracer tracer)
     : scene_(scene),
       kernels_(scene.tracing->kernels),
       rays_(std::move(rays)),
       // A BVH would have to pay for its making first (perf/results/tracers.md).
-      by_sweep_(tracer != Tracer::embree),
+      by_sweep_(tracer != ExecConfig::Tracer::embree),
       T_grid_world_(scene.snapshot.T_world_grid.inverse()) {
   const double voxel = scene.snapshot.voxel_size;
   const double nearest = min_range / voxel, farthest = std::min(max_range / voxel, kRayEnd);

@@ -30,7 +30,7 @@ class ViewTracer {
   /// Ranges in metres. Throws Error(backend), Error(capacity) if a BVH is wanted and cannot be
   /// built.
   ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays> rays, double min_range,
-             double max_range, Tracer tracer = Tracer::automatic);
+             double max_range, ExecConfig::Tracer tracer = ExecConfig::Tracer::automatic);
 
   /// The pose in the scene's coordinates; nothing if it is not finite or its rotation is off by
   /// more than 1e-3.

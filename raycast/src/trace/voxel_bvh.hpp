@@ -5,7 +5,7 @@
 #include "device.hpp"
 #include "ray_tile.hpp"
 #include "scene/scene_data.hpp"
-#include "viewgain/core/isa.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain::detail {
 

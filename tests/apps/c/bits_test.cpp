@@ -140,7 +140,7 @@ TEST(CApi, GainsAreThoseOfCppToTheLastBit) {
                         &found, nullptr),
                 VG_OK);
       EXPECT_EQ(indices, best_indices(expected, 4));
-      const DepthImage image = depth_image(evaluator, poses[0]);
+      const DepthFrame image = depth_image(evaluator, poses[0]);
       std::vector<float> depth(image.depth.size());
       ASSERT_EQ(vg_depth_image(own.evaluator, matrices.data(), depth.data(), nullptr, depth.size()),
                 VG_OK);
@@ -180,13 +180,13 @@ TEST(CApi, HazardsFromElsewhereAndFromFramesAreThoseOfCpp) {
   Handles own;
   ASSERT_EQ(vg_grid_load(path.c_str(), &own.grid), VG_OK);
 
-  HazardVolume volume{VoxelBox::from_dims(map.grid.min_index(), map.grid.dims()), {}, 0.5F};
+  HazardConfig::Volume volume{VoxelBox::from_dims(map.grid.min_index(), map.grid.dims()), {}, 0.5F};
   for (std::uint64_t i = 0; i < volume.box.volume(); ++i) {
     volume.rates.push_back(static_cast<float>(i % 7));
   }
   save_hazard_vdb(volume, map.grid, prior);
   HazardConfig hazard;
-  hazard.volume = std::make_shared<const HazardVolume>(volume);
+  hazard.volume = std::make_shared<const HazardConfig::Volume>(volume);
   const double expected = GainEvaluator(VoxelScene::build(map.grid, {}, {}, hazard), sensor,
                                         {.model = GainModel::surface})
                               .evaluate(pose)

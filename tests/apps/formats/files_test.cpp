@@ -274,21 +274,21 @@ TEST_F(Files, FramesReadBackInTenthsOfAMillimetre) {
   const std::vector<float> expected{0.0F,    DepthFrame::kOutOfRange, 0.1234F, 0.1235F,
                                     6.5534F, DepthFrame::kOutOfRange, 0.0F,    1.0F};
   EXPECT_EQ(load_frame(frames, 1).depth, expected);
-  frames.out_of_range = OutOfRangeMeaning::invalid;
+  frames.out_of_range = Sensor::OutOfRange::invalid;
   const DepthFrame read_back = load_frame(frames, 1);
   EXPECT_EQ(read_back.depth[1], DepthFrame::kInvalid);
 
   // Whose word counts: the sensor's, else the layout's.
-  sensor.out_of_range = OutOfRangeMeaning::invalid;
+  sensor.out_of_range = Sensor::OutOfRange::invalid;
   write_sensor_toml(dir / "frames/sensor.toml", sensor);
-  EXPECT_EQ(open_frames(dir / "frames").out_of_range, OutOfRangeMeaning::invalid);
+  EXPECT_EQ(open_frames(dir / "frames").out_of_range, Sensor::OutOfRange::invalid);
   std::filesystem::rename(dir / "frames/poses.txt", dir / "frames/none.txt");
   sensor.out_of_range.reset();
   write_sensor_toml(dir / "frames/sensor.toml", sensor);
-  EXPECT_EQ(open_frames(dir / "frames").out_of_range, OutOfRangeMeaning::invalid);
-  sensor.out_of_range = OutOfRangeMeaning::carve;
+  EXPECT_EQ(open_frames(dir / "frames").out_of_range, Sensor::OutOfRange::invalid);
+  sensor.out_of_range = Sensor::OutOfRange::carve;
   write_sensor_toml(dir / "frames/sensor.toml", sensor);
-  EXPECT_EQ(open_frames(dir / "frames").out_of_range, OutOfRangeMeaning::carve);
+  EXPECT_EQ(open_frames(dir / "frames").out_of_range, Sensor::OutOfRange::carve);
   std::filesystem::rename(dir / "frames/none.txt", dir / "frames/poses.txt");
 
   // A run into the same folder leaves none of the old frames; one that fails changes nothing.

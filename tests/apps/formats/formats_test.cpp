@@ -113,7 +113,7 @@ TEST(Formats, FramesAreReadWithTheSensorsTable) {
   std::filesystem::remove(dir / "poses.txt");
   EXPECT_EQ(read_frame(open_frames(dir, calibrated), 0).fault.verdict, FrameVerdict::no_pose);
   FrameSequence images = open_depth_images(dir, calibrated, kDepthUnit);
-  images.out_of_range = OutOfRangeMeaning::carve;  // without poses.txt it is a recording
+  images.out_of_range = Sensor::OutOfRange::carve;  // without poses.txt it is a recording
   ASSERT_EQ(images.images, plain.images);
   EXPECT_TRUE(images.poses.empty());
   EXPECT_EQ(load_frame(images, 0), expected);

@@ -16,11 +16,11 @@
 #include "core/temporary_folder.hpp"
 #include "grid/analytic_frames.hpp"
 #include "viewgain/core/generators.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/formats/cloud_io.hpp"
 #include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace {
 

@@ -68,8 +68,9 @@ TEST_F(ReachFiles, EveryPartMayBeMissing) {
   const ReachRegion empty = read_region("");
   EXPECT_TRUE(empty.boxes.empty() && empty.shells.empty() && empty.half_spaces.empty() &&
               empty.poses.empty());
-  EXPECT_EQ(empty.tolerance.distance, PoseTolerance{}.distance);
-  EXPECT_EQ(read_region("[tolerance]\nangle_deg = 1").tolerance.distance, PoseTolerance{}.distance);
+  EXPECT_EQ(empty.tolerance.distance, ReachRegion::Tolerance{}.distance);
+  EXPECT_EQ(read_region("[tolerance]\nangle_deg = 1").tolerance.distance,
+            ReachRegion::Tolerance{}.distance);
   EXPECT_EQ(
       read_region("shell = [{center = [0,0,0], min_radius = 0, max_radius = 1}]").shells.size(),
       1U);

@@ -94,7 +94,7 @@ Belief hit(std::uint32_t hits) { return {{1e6F, 1e6F, 1e6F, 0.F, 0.F, 0.F}, {}, 
 // Hazard cells of one voxel.
 HazardField fine_hazard(const BeliefGrid& grid) {
   HazardConfig config;
-  config.model = HazardModel{20, 4 * kVoxel, 0.5};
+  config.model = HazardConfig::Model{20, 4 * kVoxel, 0.5};
   return HazardField(grid.snapshot(), config);
 }
 

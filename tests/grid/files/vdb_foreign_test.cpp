@@ -376,7 +376,7 @@ openvdb::FloatGrid::Ptr turned_rates() {
   return rates;
 }
 
-float rate_at(const HazardVolume& volume, Index3 v) {
+float rate_at(const HazardConfig::Volume& volume, Index3 v) {
   if (!volume.box.contains(v)) return volume.outside;
   const VoxelBox& b = volume.box;
   const auto at = [](std::int32_t value, std::int32_t from) {
@@ -396,7 +396,7 @@ TEST_F(ForeignVdb, RatesOfAnyLatticeAreRead) {
   for (const BeliefGrid& map : {small_map(), turned.clone()}) {
     const auto rates = turned_rates();
     const auto file = rewritten([&](Contents& c) { c.grids = {rates}; });
-    const HazardVolume volume = load_hazard_vdb(file, map);
+    const HazardConfig::Volume volume = load_hazard_vdb(file, map);
     EXPECT_EQ(volume.outside, 0.25F);
     const Index3 low = map.min_index(), dims = map.dims();
     for (std::int32_t x = 0; x < dims.x; ++x) {
@@ -414,7 +414,7 @@ TEST_F(ForeignVdb, RatesOfAnyLatticeAreRead) {
     }
     // As our own file, exactly.
     save_hazard_vdb(volume, map, folder_.path() / "own.vdb");
-    const HazardVolume again = load_hazard_vdb(folder_.path() / "own.vdb", map);
+    const HazardConfig::Volume again = load_hazard_vdb(folder_.path() / "own.vdb", map);
     EXPECT_EQ(again.box, volume.box);
     EXPECT_EQ(again.rates, volume.rates);
     EXPECT_EQ(again.outside, volume.outside);
@@ -434,7 +434,7 @@ TEST_F(ForeignVdb, OtherGridsBesideTheRatesDoNotMatter) {
     return load_hazard_vdb(rewritten([&](Contents& c) { c.grids = grids; }), map);
   };
   EXPECT_EQ(load({named("density", 1), named("hazard", 2)}).outside, 2.0F);
-  const HazardVolume alone = load({named("density", 3)});
+  const HazardConfig::Volume alone = load({named("density", 3)});
   EXPECT_EQ(alone.outside, 3.0F);
   EXPECT_EQ(alone.box.volume(), 0U);
   EXPECT_EQ(load({openvdb::Int32Grid::create(7), named("", 4)}).outside, 4.0F);

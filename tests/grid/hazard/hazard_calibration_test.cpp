@@ -142,7 +142,7 @@ TEST(HazardCalibration, FindsTheRateOfAWorldThatHasOne) {
   }
   EXPECT_EQ(compared, 38U);
   // Rates that are given stay what they are.
-  const HazardModel given{20.0, 0.03, 0.5};
+  const HazardConfig::Model given{20.0, 0.03, 0.5};
   EXPECT_EQ(HazardField(grid.snapshot(), {.model = given}).far_rate(), 0.5F);
   EXPECT_EQ(HazardField(grid.snapshot(), {.object_size = 0.35, .calibrated = false}).far_rate(),
             field.far_rate());
@@ -197,7 +197,7 @@ TEST(HazardCalibration, WhatSaysNothing) {
   EXPECT_TRUE(grid.hazard_counters().empty());
   // What is given is not what is counted against: other scenes of the map would be misled.
   for (const HazardConfig& given :
-       {constant_hazard(0.5, grid), HazardConfig{.model = HazardModel::for_size(0.3)},
+       {constant_hazard(0.5, grid), HazardConfig{.model = HazardConfig::Model::for_size(0.3)},
         HazardConfig{.calibrated = false}}) {
     const HazardField fixed(grid.snapshot(), given);
     EXPECT_FALSE(fixed.follows_counters());

@@ -51,14 +51,14 @@ TEST(HazardField, DistancesAreThoseOfBruteForce) {
       const Index3 v = voxel();
       if (!grid.belief(v)) put(grid, v, 2);
     }
-    const HazardModel model{30.0, 4 * kVoxel * (1 << shift), 0.5};
+    const HazardConfig::Model model{30.0, 4 * kVoxel * (1 << shift), 0.5};
     const HazardField field(grid.snapshot(), {.model = model});
     ASSERT_EQ(field.cell_shift(), shift);
     for (int k = 0; k < 2000; ++k) {
       const Index3 v = voxel();
       const double expected = oracle::distance_to_evidence(grid, shift, v);
       ++checks;
-      if (expected > HazardModel::kCut * model.decay_length + 1e-9) {
+      if (expected > HazardConfig::Model::kCut * model.decay_length + 1e-9) {
         EXPECT_TRUE(std::isinf(field.distance(v)));
         EXPECT_EQ(field.rate(v), 0.5F);
         EXPECT_TRUE(field.is_new(v));
@@ -82,7 +82,7 @@ TEST(HazardField, VoxelsFinerThanTheFootprintCountTogether) {
     BeliefGrid grid = grid_of({41, 29, 35});
     const auto voxel = [&] { return any_voxel(grid, random); };
     for (int k = 0; k < 150; ++k) put(grid, voxel(), 1, footprint);
-    const HazardModel model{30.0, 8 * kVoxel, 0.5};
+    const HazardConfig::Model model{30.0, 8 * kVoxel, 0.5};
     const HazardField field(grid.snapshot(), {.model = model});
     ASSERT_EQ(field.pooling().shift, pooling);
     for (int k = 0; k < 1000; ++k) {
@@ -91,7 +91,7 @@ TEST(HazardField, VoxelsFinerThanTheFootprintCountTogether) {
           oracle::distance_to_evidence(grid, field.cell_shift(), v, field.pooling().shift);
       ++checks;
       if (pooling == 0) single += std::isinf(expected);
-      if (expected > HazardModel::kCut * model.decay_length + 1e-9) {
+      if (expected > HazardConfig::Model::kCut * model.decay_length + 1e-9) {
         EXPECT_TRUE(std::isinf(field.distance(v)));
         continue;
       }
@@ -108,7 +108,8 @@ TEST(HazardField, VoxelsFinerThanTheFootprintCountTogether) {
 TEST(HazardField, WithoutEvidenceEverythingIsFar) {
   const BeliefGrid grid = grid_of({16, 16, 70});
   const HazardField field(grid.snapshot());
-  const HazardModel model = HazardModel::for_size(0.7);  // the workspace's longest side
+  const HazardConfig::Model model =
+      HazardConfig::Model::for_size(0.7);  // the workspace's longest side
   EXPECT_NEAR(field.model().near_rate, model.near_rate, 1e-9);
   EXPECT_NEAR(field.model().decay_length, model.decay_length, 1e-12);
   EXPECT_EQ(field.rate(grid.min_index()), static_cast<float>(field.model().far_rate));
@@ -129,7 +130,7 @@ TEST(HazardField, TheSizeIsThatOfTheEvidenceUnlessGiven) {
 TEST(HazardField, RatesFromElsewhere) {
   BeliefGrid grid = grid_of({16, 16, 16});
   const Index3 base = grid.min_index();
-  auto volume = std::make_shared<HazardVolume>();
+  auto volume = std::make_shared<HazardConfig::Volume>();
   volume->box = VoxelBox::from_dims({base.x + 2, base.y, base.z}, {2, 3, 4});
   for (int i = 0; i < 24; ++i) volume->rates.push_back(static_cast<float>(i));
   volume->outside = 100;
@@ -147,13 +148,13 @@ TEST(HazardField, RefusesWhatIsOutOfBounds) {
   };
   refuses("object size 0", {.object_size = 0.0});
   refuses("object size nan", {.object_size = std::nan("")});
-  refuses("decay length", {.model = HazardModel{1.0, 0.0, 1.0}});
-  refuses("rate near the surface -1", {.model = HazardModel{-1.0, 0.1, 1.0}});
-  refuses("rate far from the surface inf", {.model = HazardModel{1.0, 0.1, HUGE_VAL}});
-  auto volume = std::make_shared<HazardVolume>();
+  refuses("decay length", {.model = HazardConfig::Model{1.0, 0.0, 1.0}});
+  refuses("rate near the surface -1", {.model = HazardConfig::Model{-1.0, 0.1, 1.0}});
+  refuses("rate far from the surface inf", {.model = HazardConfig::Model{1.0, 0.1, HUGE_VAL}});
+  auto volume = std::make_shared<HazardConfig::Volume>();
   volume->box = VoxelBox::from_dims({0, 0, 0}, {2, 2, 2});
   refuses("0 rates for a box of 8 voxels", {.volume = volume});
-  auto negative = std::make_shared<HazardVolume>(*volume);
+  auto negative = std::make_shared<HazardConfig::Volume>(*volume);
   negative->rates.assign(8, -1.0F);
   refuses("rate -1", {.volume = negative});
 }

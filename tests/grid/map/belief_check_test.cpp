@@ -66,12 +66,10 @@ TEST(BeliefCheck, TakesWhatRoundingAndImportersMake) {
 std::size_t taken(const BeliefGrid& grid) {
   BeliefGrid other(kConfig);
   std::size_t count = 0;
-  for (const BeliefBlockAt& block : grid.belief_blocks()) {
-    block.for_each([&](Index3 voxel, const Belief& belief) {
-      EXPECT_NO_THROW(other.set(voxel, 1.0F, belief));
-      ++count;
-    });
-  }
+  grid.for_each_belief([&](Index3 voxel, const Belief& belief) {
+    EXPECT_NO_THROW(other.set(voxel, 1.0F, belief));
+    ++count;
+  });
   return count;
 }
 
@@ -112,11 +110,8 @@ TEST(BeliefCheck, TakesAllThatIntegratorsMake) {
     }
     integrator.integrate(sparse, points, Pose(Eigen::Matrix3d::Identity(), {0.4, 0.3, 0.2}));
     beliefs += taken(sparse);
-    for (const BeliefBlockAt& block : sparse.belief_blocks()) {
-      block.for_each([&](Index3, const Belief& b) {
-        indefinite += b.information_matrix().determinant() <= 0;
-      });
-    }
+    sparse.for_each_belief(
+        [&](Index3, const Belief& b) { indefinite += b.information_matrix().determinant() <= 0; });
   }
   EXPECT_GT(beliefs, 1000U);
   EXPECT_GT(indefinite, 500U);  // which a check without tolerance would refuse

@@ -93,16 +93,16 @@ TEST(ForEachOccupied, VisitsEachOnceInAnOrderOfItsOwn) {
   grid.set(random_values(grid, 6000, 3));
   std::vector<Index3> visited;
   std::size_t with_belief = 0;
-  grid.for_each_occupied([&](const OccupiedVoxel& v) {
+  grid.for_each_occupied([&](const VoxelValue& v) {
     visited.push_back(v.voxel);
     ASSERT_EQ(grid.state(v.voxel), VoxelState::occupied);
     ASSERT_EQ(grid.log_odds(v.voxel), v.log_odds);
     const std::optional<Belief> belief = grid.belief(v.voxel);
-    ASSERT_EQ(belief.has_value(), v.belief != nullptr);
+    ASSERT_EQ(belief.has_value(), v.belief.has_value());
     if (belief) {
       ASSERT_EQ(*belief, *v.belief);
     }
-    with_belief += v.belief != nullptr;
+    with_belief += v.belief.has_value();
   });
   EXPECT_EQ(visited.size(), grid.statistics().occupied);
   EXPECT_GT(visited.size(), 2000U);
@@ -111,7 +111,7 @@ TEST(ForEachOccupied, VisitsEachOnceInAnOrderOfItsOwn) {
 
   // Leaves as the snapshot lists them, z fastest within: each voxel once, so.
   std::vector<Index3> expected;
-  for (const SnapshotLeaf& leaf : grid.snapshot().leaves) {
+  for (const GridSnapshot::Leaf& leaf : grid.snapshot().leaves) {
     for (int i = 0; i < 512; ++i) {
       const Index3 v{leaf.origin.x + i / 64, leaf.origin.y + i / 8 % 8, leaf.origin.z + i % 8};
       if (grid.state(v) == VoxelState::occupied) expected.push_back(v);
@@ -134,7 +134,7 @@ TEST(ForEachOccupied, VisitsEachOnceInAnOrderOfItsOwn) {
   other.set(values);
   ASSERT_EQ(other.content_hash(), grid.content_hash());
   std::vector<Index3> again;
-  other.for_each_occupied([&](const OccupiedVoxel& v) { again.push_back(v.voxel); });
+  other.for_each_occupied([&](const VoxelValue& v) { again.push_back(v.voxel); });
   EXPECT_EQ(again, visited);
 }
 

@@ -113,7 +113,7 @@ TEST(Forget, EverywhereLeavesAnEmptyMap) {
   const std::uint64_t bytes = grid.statistics().bytes;
   EXPECT_EQ(grid.forget({{-kInf, -kInf, -kInf}, {kInf, kInf, kInf}}), grid.voxel_count());
   EXPECT_EQ(grid.content_hash(), BeliefGrid(kConfig).content_hash());
-  EXPECT_TRUE(grid.belief_blocks().empty());
+  grid.for_each_belief([](Index3 voxel, const Belief&) { FAIL() << voxel.x; });
   EXPECT_LT(grid.statistics().bytes, bytes);
 }
 

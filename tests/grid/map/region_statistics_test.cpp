@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/grid/region_statistics.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -12,6 +10,7 @@
 #include <string>
 
 #include "core/expect_error.hpp"
+#include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain {
 namespace {
@@ -43,11 +42,11 @@ BeliefGrid random_map(std::mt19937_64& random) {
 }
 
 /// Voxel by voxel, by the definition.
-RegionStatistics slow_statistics(const BeliefGrid& grid, const Box& region, Criterion criterion) {
+GridStatistics slow_statistics(const BeliefGrid& grid, const Box& region, Criterion criterion) {
   const Index3 min = grid.min_index(), dims = grid.dims();
   const double V = grid.voxel_size();
   const SymmetricMatrix3 prior = SymmetricMatrix3::identity(std::pow(grid.prior_sigma(), -2));
-  RegionStatistics result;
+  GridStatistics result;
   double sum = 0;
   int believed = 0;
   for (int x = min.x; x < min.x + dims.x; ++x) {
@@ -76,7 +75,7 @@ RegionStatistics slow_statistics(const BeliefGrid& grid, const Box& region, Crit
   return result;
 }
 
-void expect_equal(const RegionStatistics& a, const RegionStatistics& b) {
+void expect_equal(const GridStatistics& a, const GridStatistics& b) {
   EXPECT_EQ(a.unknown, b.unknown);
   EXPECT_EQ(a.free, b.free);
   EXPECT_EQ(a.occupied, b.occupied);
@@ -102,8 +101,8 @@ TEST(RegionStatistics, AreTheSumsOverTheVoxels) {
       region.max[k] = std::max(a, b);
     }
     const auto criterion = static_cast<Criterion>(i % 3);
-    const RegionStatistics expected = slow_statistics(grid, region, criterion);
-    expect_equal(region_statistics(grid, region, criterion), expected);
+    const GridStatistics expected = slow_statistics(grid, region, criterion);
+    expect_equal(grid.statistics(region, criterion), expected);
     with_points += expected.entropy_removed > 0 ? 1 : 0;
   }
   EXPECT_GT(with_points, 40);
@@ -114,38 +113,25 @@ TEST(RegionStatistics, BoundsMayBeInfiniteButNotNaN) {
   const BeliefGrid grid = random_map(random);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Box everywhere{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
-  expect_equal(region_statistics(grid, everywhere), region_statistics(grid, grid.workspace()));
+  expect_equal(grid.statistics(everywhere), grid.statistics(grid.workspace()));
+  expect_equal(grid.statistics(), slow_statistics(grid, everywhere, Criterion::log_diagonal));
   for (std::size_t bound = 0; bound < 6; ++bound) {
     Box region = grid.workspace();
     (bound < 3 ? region.min : region.max)[bound % 3] = std::nan("");
     test::expect_error(ErrorCode::invalid_argument, std::string("along ") + "xyz"[bound % 3],
-                       [&] { (void)region_statistics(grid, region); });
-  }
-}
-
-TEST(RegionStatistics, OfTheWholeMapAreTheMaps) {
-  std::mt19937_64 random(5);
-  const BeliefGrid grid = random_map(random);
-  for (const Box& region : {grid.workspace(), Box{{-1e300, -9, -9}, {1e300, 9, 9}}}) {
-    const RegionStatistics part = region_statistics(grid, region);
-    const GridStatistics whole = grid.statistics();
-    EXPECT_EQ(part.unknown, whole.unknown);
-    EXPECT_EQ(part.free, whole.free);
-    EXPECT_EQ(part.occupied, whole.occupied);
-    EXPECT_GT(part.entropy_removed, 0);
-    EXPECT_NEAR(part.entropy_removed, whole.entropy_removed, 1e-9 * whole.entropy_removed);
+                       [&] { (void)grid.statistics(region); });
   }
 }
 
 TEST(RegionStatistics, NothingThere) {
   std::mt19937_64 random(6);
   const BeliefGrid grid = random_map(random);
-  const RegionStatistics outside = region_statistics(grid, {{1, 1, 1}, {2, 2, 2}});
+  const GridStatistics outside = grid.statistics(Box{{1, 1, 1}, {2, 2, 2}});
   EXPECT_EQ(outside.unknown + outside.free + outside.occupied + outside.hits, 0U);
   EXPECT_EQ(outside.entropy_removed, 0);
   EXPECT_TRUE(std::isnan(outside.mean_sigma));
   const BeliefGrid unknown(GridConfig{0.01, {{0, 0, 0}, {3, 3, 3}}, {}, 0.01});
-  const RegionStatistics part = region_statistics(unknown, {{1, 1, 1}, {2, 2.1, 9}});
+  const GridStatistics part = unknown.statistics(Box{{1, 1, 1}, {2, 2.1, 9}});
   EXPECT_EQ(part.unknown, 100U * 110 * 200);
   EXPECT_EQ(part.free + part.occupied, 0U);
 }

@@ -10,6 +10,7 @@
 
 #include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/support/belief_block.hpp"
 
 namespace viewgain {
 namespace {
@@ -37,7 +38,7 @@ std::vector<std::uint8_t> states_of(const GridSnapshot& s, std::uint64_t& faults
     if (at != 1) ++faults;
     at = state;
   };
-  for (const SnapshotLeaf& leaf : s.leaves) {
+  for (const GridSnapshot::Leaf& leaf : s.leaves) {
     if (leaf.origin.x % 8 != 0 || leaf.origin.y % 8 != 0 || leaf.origin.z % 8 != 0) ++faults;
     for (unsigned n = 0; n < 512; ++n) {
       if (test_bit(leaf.occupied, n) && !test_bit(leaf.non_free, n)) ++faults;
@@ -74,7 +75,7 @@ void expect_equal(const GridSnapshot& snapshot, const BeliefGrid& grid) {
   EXPECT_EQ(states_of(snapshot, faults), states_of(grid));
   EXPECT_EQ(faults, 0U);
   std::uint64_t beliefs = 0;
-  for (const SnapshotLeaf& leaf : snapshot.leaves) {
+  for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
     for (unsigned n = 0; n < 512; ++n) {
       if (!test_bit(leaf.occupied, n)) continue;
       const Belief* told = leaf.beliefs != nullptr ? leaf.beliefs->find(n) : nullptr;
@@ -219,11 +220,11 @@ TEST(Snapshot, StaysAsItWasAndSharesWhatDidNotChange) {
   expect_equal(after, grid);
 
   std::map<std::tuple<int, int, int>, const BeliefBlock*> old_blocks;
-  for (const SnapshotLeaf& leaf : before.leaves) {
+  for (const GridSnapshot::Leaf& leaf : before.leaves) {
     old_blocks[{leaf.origin.x, leaf.origin.y, leaf.origin.z}] = leaf.beliefs.get();
   }
   std::size_t shared = 0, changed = 0;
-  for (const SnapshotLeaf& leaf : after.leaves) {
+  for (const GridSnapshot::Leaf& leaf : after.leaves) {
     const auto found = old_blocks.find({leaf.origin.x, leaf.origin.y, leaf.origin.z});
     if (leaf.beliefs == nullptr || found == old_blocks.end() || found->second == nullptr) continue;
     ++(leaf.beliefs.get() == found->second ? shared : changed);
@@ -261,7 +262,7 @@ TEST(Snapshot, FromTheOneBeforeIsTheSame) {
 
     // Marks on the earlier leaves show which were copied: those of the shared regions.
     GridSnapshot marked = before;
-    for (SnapshotLeaf& leaf : marked.leaves) leaf.occupied = marked_mask;
+    for (GridSnapshot::Leaf& leaf : marked.leaves) leaf.occupied = marked_mask;
     const GridSnapshot traced = now.snapshot(marked);
     ASSERT_EQ(traced.leaves.size(), anew.leaves.size());
     for (std::size_t r = 0; r < traced.regions.size(); ++r) {

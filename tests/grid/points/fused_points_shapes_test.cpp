@@ -88,7 +88,7 @@ TEST(FusedPointsShapes, FreeSideBesideLargeUnknownTiles) {
   }
   ASSERT_EQ(patches, 27);
   FusedPointsConfig config;
-  config.rule = PointRule::per_voxel;  // so that each point is its voxel's centre
+  config.per_voxel = true;  // so that each point is its voxel's centre
   const std::vector<FusedPoint> points = fused_points(grid, config);
   ASSERT_EQ(points.size(), 27U * 49U);
   const VoxelBox workspace = VoxelBox::from_dims(grid.min_index(), grid.dims());
@@ -167,7 +167,7 @@ TEST(FusedPointsShapes, BeliefsFarFromTheirVoxelMakeNoPoint) {
       {{most, 0, most, 0, 0, 0}, {0, 1, 0}, 3}};
   std::size_t cases = 0, refused = 0;
   for (const Belief& belief : strange) {
-    for (const PointRule rule : {PointRule::pooled, PointRule::per_voxel}) {
+    for (const bool per_voxel : {false, true}) {
       BeliefGrid grid({0.01, {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}}, {}, 0.01});
       try {
         grid.set({0, 0, 0}, 0.85F, belief);
@@ -181,7 +181,7 @@ TEST(FusedPointsShapes, BeliefsFarFromTheirVoxelMakeNoPoint) {
         }
       }
       FusedPointsConfig config;
-      config.rule = rule;
+      config.per_voxel = per_voxel;
       const std::vector<FusedPoint> points = fused_points(grid, config);
       EXPECT_EQ(points.size(), 64U) << cases;
       for (const FusedPoint& point : points) EXPECT_NEAR(point.position[2], 0.405, 1e-6);

@@ -80,7 +80,7 @@ double plane_consistency(const std::vector<FusedPoint>& points) {
 
 TEST(FusedPoints, PooledStaysHonestAsReadingsAccumulateLiteralDoesNot) {
   FusedPointsConfig literal;
-  literal.rule = PointRule::per_voxel;
+  literal.per_voxel = true;
   for (const double voxel : {0.002, 0.003125, 0.006}) {
     for (const int frames : {3, 30}) {
       const BeliefGrid grid = noisy_plane(voxel, frames);
@@ -145,7 +145,7 @@ TEST(FusedPoints, WhereCutsOutAPartAndFarFromItsBorderChangesNothing) {
 TEST(FusedPoints, PerVoxelIsTheFusedPositionOfEachOccupiedVoxel) {
   const BeliefGrid grid = noisy_plane(0.003125, 3);
   FusedPointsConfig config;
-  config.rule = PointRule::per_voxel;
+  config.per_voxel = true;
   config.min_hits = 2;
   const std::vector<FusedPoint> points = fused_points(grid, config);
   std::vector<Vector3d> expected;

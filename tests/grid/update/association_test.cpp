@@ -204,7 +204,7 @@ TEST(Association, NothingGoesIntoTheWorkspaceOrOutOfIt) {
 double thickness(const BeliefGrid& grid) {
   double occupied = 0;
   std::set<std::array<int, 2>> columns;
-  grid.for_each_occupied([&](const OccupiedVoxel& at) {
+  grid.for_each_occupied([&](const VoxelValue& at) {
     const Index3 v = at.voxel;
     if (std::abs(v.x) > 8 || std::abs(v.y) > 8) return;
     ++occupied;
@@ -275,12 +275,10 @@ TEST(Association, IsTheSameForAnyNumberOfThreadsAndOrderOfPoints) {
     BeliefGrid grid = turned_grid();
     CloudIntegrator(sensor).integrate(grid, points, pose);
     std::string text;
-    for (const BeliefBlockAt& block : grid.belief_blocks()) {
-      block.for_each([&](Index3 v, const Belief& b) {
-        text += std::to_string(v.x) + ',' + std::to_string(v.y) + ',' + std::to_string(v.z) + ':' +
-                std::to_string(b.hits) + ' ';
-      });
-    }
+    grid.for_each_belief([&](Index3 v, const Belief& b) {
+      text += std::to_string(v.x) + ',' + std::to_string(v.y) + ',' + std::to_string(v.z) + ':' +
+              std::to_string(b.hits) + ' ';
+    });
     return text;
   };
   const std::string in_order = counts();

@@ -55,7 +55,7 @@ TEST(Cloud, MakesTheMapThatTheLiteralLoopsMake) {
     for (const Occupancy occupancy : {Occupancy::probabilistic, Occupancy::literal}) {
       BeliefGrid grid(config);
       VoxelOracle oracle(grid);
-      CloudIntegrator integrator(sensor, {occupancy, {}}, {2});
+      CloudIntegrator integrator(sensor, {.occupancy = occupancy}, {2});
       for (int view = 0; view < 4; ++view) {
         const Pose pose = ring_view(view);
         const DepthFrame frame = mixed_frame(sensor, pose, random, false);
@@ -143,7 +143,7 @@ TEST(Cloud, ASupportPlaneIsCarvedToButNotHit) {
                       {0.1, 0, -0.099},   // 1 mm over the table: within 3 sigma
                       {0.15, 0, -0.101},  // under it
                       {-0.1, 0, -0.05}};  // 50 mm over it
-  const CloudIntegrationConfig config{.support_plane = -0.1};
+  const IntegrationConfig config{.support_plane = -0.1};
   const IntegrationReport report = CloudIntegrator(sensor, config).integrate(grid, points, above);
   EXPECT_EQ(report.readings, 2U);
   EXPECT_EQ(report.plane_readings, 2U);

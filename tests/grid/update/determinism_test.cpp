@@ -13,9 +13,9 @@
 
 #include "core/temporary_folder.hpp"
 #include "grid/analytic_frames.hpp"
-#include "viewgain/core/isa.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain {
 namespace {

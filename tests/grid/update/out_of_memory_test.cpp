@@ -15,6 +15,7 @@
 #include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/belief_block.hpp"
 
 namespace {
 
@@ -41,7 +42,7 @@ using namespace test;
 std::vector<std::tuple<int, int, int, LeafMask, LeafMask, const BeliefBlock*>> leaves_of(
     const GridSnapshot& snapshot) {
   std::vector<std::tuple<int, int, int, LeafMask, LeafMask, const BeliefBlock*>> leaves;
-  for (const SnapshotLeaf& leaf : snapshot.leaves) {
+  for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
     leaves.emplace_back(leaf.origin.x, leaf.origin.y, leaf.origin.z, leaf.non_free, leaf.occupied,
                         leaf.beliefs.get());
   }
@@ -50,7 +51,7 @@ std::vector<std::tuple<int, int, int, LeafMask, LeafMask, const BeliefBlock*>> l
 
 std::uint64_t hits_of(const BeliefGrid& grid) {
   std::uint64_t hits = 0;
-  for (const BeliefBlockAt& block : grid.belief_blocks()) {
+  for (const BeliefBlockAt& block : belief_blocks(grid)) {
     for (const Belief& belief : block.beliefs->beliefs) hits += belief.hits;
   }
   return hits;
@@ -89,7 +90,7 @@ TEST(OutOfMemory, WhatAFrameLeftUndoneIsSeenByTheNextSnapshot) {
     ++failed;
     written += leaves_of(anew) != leaves_of(before);
     EXPECT_EQ(grid.views().size(), 1U);
-    for (const BeliefBlockAt& block : grid.belief_blocks()) {
+    for (const BeliefBlockAt& block : belief_blocks(grid)) {
       hollow += block.beliefs->beliefs.empty();
     }
     // It stays a map: what is saved can be loaded, and another frame goes in.

@@ -41,7 +41,7 @@ struct Judged {
   Counts flying, outliers, good_object, good_background;
 
   void add(const Sensor& sensor, const std::vector<Eigen::Vector3d>& rays, const DepthFrame& frame,
-           const DepthFrame& filtered, const std::vector<PixelTruth>& truth) {
+           const DepthFrame& filtered, const std::vector<SimulatedSensor::PixelTruth>& truth) {
     for (std::size_t i = 0; i < frame.depth.size(); ++i) {
       if (!(frame.depth[i] > 0) || !std::isfinite(frame.depth[i])) continue;
       const double range = frame.depth[i] * rays[i].norm();
@@ -82,7 +82,7 @@ Comparison compare(bool lateral_noise) {
   const JumpEdgeFilter nearer(sensor.camera), two_sided(sensor.camera, {.two_sided = true});
   const auto scene = std::make_shared<const SurfaceScene>(test::camel_mesh());
   Comparison result;
-  std::vector<PixelTruth> truth;
+  std::vector<SimulatedSensor::PixelTruth> truth;
   int frames = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const SimulatedSensor camera(scene, sensor,

@@ -29,7 +29,7 @@ TEST(SurfaceScene, NormalFollowsTheRightHandRule) {
 TEST(SurfaceScene, MissesAndRespectsMaxRange) {
   const SurfaceScene scene(test::square(2.0, 1.0));
   const Eigen::Vector3d origin(0.1, 0.2, 0);
-  const SurfaceHit away = scene.intersect({origin, -Eigen::Vector3d::UnitZ()});
+  const SurfaceScene::Hit away = scene.intersect({origin, -Eigen::Vector3d::UnitZ()});
   EXPECT_EQ(away.range, std::numeric_limits<double>::infinity());
   EXPECT_EQ(scene.intersect({{5, 0, 0}}).range, std::numeric_limits<double>::infinity());
   EXPECT_EQ(scene.intersect({origin, Eigen::Vector3d::UnitZ(), 0.999}).range,
@@ -48,22 +48,22 @@ TEST(SurfaceScene, RaysAreWhatEachIsByItselfWhereverTheOriginIs) {
   }
   const SurfaceScene scene(ball), far_scene(moved);
   test::Random random(2);
-  std::vector<SurfaceRay> rays;
+  std::vector<SurfaceScene::Ray> rays;
   for (int i = 0; i < 1003; ++i) {
     const Eigen::Vector3d eye = test::random_rigid(random, 1).translation();
     const Eigen::Vector3d target = 0.5 * test::random_rigid(random, 1).translation();
     rays.push_back({eye, (target - eye).normalized(), i % 3 == 0 ? 0.4 : 10.0});
   }
-  std::vector<SurfaceHit> hits(rays.size()), far_hits(rays.size());
+  std::vector<SurfaceScene::Hit> hits(rays.size()), far_hits(rays.size());
   const auto blocked = std::make_unique<bool[]>(rays.size());
   scene.intersect(rays, hits);
   scene.block(rays, {blocked.get(), rays.size()});
-  std::vector<SurfaceRay> far_rays = rays;
-  for (SurfaceRay& ray : far_rays) ray.origin += utm;
+  std::vector<SurfaceScene::Ray> far_rays = rays;
+  for (SurfaceScene::Ray& ray : far_rays) ray.origin += utm;
   far_scene.intersect(far_rays, far_hits);
   int met = 0, at_edges = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const SurfaceHit alone = scene.intersect(rays[i]);
+    const SurfaceScene::Hit alone = scene.intersect(rays[i]);
     ASSERT_EQ(blocked[i], std::isfinite(hits[i].range));
     ASSERT_EQ(std::isfinite(alone.range), std::isfinite(hits[i].range));
     met += blocked[i] ? 1 : 0;

@@ -129,7 +129,7 @@ TEST(TofCamera, NothingAddsNothing) {
   TriangleMesh half = test::square(1, 0.8);
   for (auto& vertex : half.vertices) vertex[0] -= 1;
   const auto scene = std::make_shared<const SurfaceScene>(std::move(half));
-  std::vector<PixelTruth> truth;
+  std::vector<SimulatedSensor::PixelTruth> truth;
   const DepthFrame frame =
       SimulatedSensor(scene, sensor, {.sub_rays = 4}).acquire(Pose{}, 0, truth);
   EXPECT_NEAR(frame.depth[0], 0.8, 1e-6);

@@ -220,7 +220,7 @@ TEST(PixelTruth, IsTheExtentOfTheSubRays) {
     if (distorted) sensor.camera.distortion = {-0.2, 0.05, 0.001, -0.001, 0};
     const double angle = 50 * kDegree;
     const SimulatedSensor camera(tilted_plane(1.0, angle), sensor, {.sub_rays = 3});
-    std::vector<PixelTruth> truth;
+    std::vector<SimulatedSensor::PixelTruth> truth;
     const DepthFrame frame = camera.acquire(Pose{}, 0, truth);
     EXPECT_EQ(frame, camera.acquire(Pose{}));
     ASSERT_EQ(truth.size(), frame.depth.size());
@@ -259,7 +259,7 @@ TEST(TofNoise, TheSameForAnyNumberOfThreadsAndReproducible) {
                           .support_plane = -0.1};
   const auto ball = std::make_shared<const SurfaceScene>(test::sphere(0.1, 24));
   const Pose pose = look_at({0.5, 0.1, 0.2}, {0, 0, 0});
-  std::vector<PixelTruth> truth, other_truth;
+  std::vector<SimulatedSensor::PixelTruth> truth, other_truth;
   const DepthFrame first = SimulatedSensor(ball, sensor, config, {1}).acquire(pose, 7, truth);
   for (const int threads : {1, 2, 3, 5}) {
     const SimulatedSensor camera(ball, sensor, config, {threads});

@@ -149,10 +149,10 @@ TEST(BestViews, CostsAreSubtracted) {
 // The farther the better; counts hits or runs besides.
 class Height : public ViewMeasure, public RunMeasure {
  public:
-  double measure(const Pose& pose, std::span<const ViewHit> hits) const override {
+  double measure(const Pose& pose, std::span<const ViewMeasure::Hit> hits) const override {
     return pose.translation().z() * static_cast<double>(hits.size());
   }
-  double measure(const Pose& pose, std::span<const ViewRun> runs) const override {
+  double measure(const Pose& pose, std::span<const RunMeasure::Run> runs) const override {
     return -pose.translation().z() * static_cast<double>(runs.size());
   }
 };
@@ -214,9 +214,9 @@ TEST(Race, CostsAreSubtracted) {
 class Promise : public RunMeasure {
  public:
   explicit Promise(bool averages) : averages_(averages) {}
-  double measure(const Pose&, std::span<const ViewRun> runs) const override {
+  double measure(const Pose&, std::span<const RunMeasure::Run> runs) const override {
     double sum = 0;
-    for (const ViewRun& run : runs) sum += run.end - run.begin;
+    for (const RunMeasure::Run& run : runs) sum += run.end - run.begin;
     return averages_ && !runs.empty() ? sum / static_cast<double>(runs.size()) : sum;
   }
 

@@ -62,7 +62,7 @@ Eigen::Vector3d half_size(const FeasibilityConfig& config) {
   return Eigen::Vector3d(s[0], s[1], s[2]) / 2 + Eigen::Vector3d::Constant(config.clearance);
 }
 
-// From the definition of SensorBody, by another way than the checker's.
+// From the definition of FeasibilityConfig::Body, by another way than the checker's.
 Solid body_of(const FeasibilityConfig& config, const Pose& T_world_camera) {
   const double depth = config.body.size[2];
   if (!config.body.T_flange_camera) {

@@ -162,7 +162,7 @@ class Meeting final : public ViewMeasure {
  public:
   explicit Meeting(int size) : size_(size) {}
 
-  double measure(const Pose&, std::span<const ViewHit>) const override {
+  double measure(const Pose&, std::span<const ViewMeasure::Hit>) const override {
     std::unique_lock lock(mutex_);
     ++here_;
     changed_.notify_all();

@@ -119,7 +119,7 @@ TEST_F(Concurrency, TheFirstToNeedTheBvhMakesItForAll) {
   for (int round = 0; round < kRounds; ++round) {
     const auto scene = VoxelScene::build(grid_, {}, {.num_threads = 1});
     at_once(4, [&](std::size_t) {
-      const GainEvaluator evaluator(scene, sensor_, test::kPaper, {1, Tracer::embree});
+      const GainEvaluator evaluator(scene, sensor_, test::kPaper, {1, ExecConfig::Tracer::embree});
       if (test::same_bits(evaluator.evaluate(poses_), expected)) ++std::atomic_ref(same);
     });
   }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What becomes of a view's rays: against the oracle's rays, and by hand.
-#include "viewgain/raycast/ray_outcomes.hpp"
 
 #include <gtest/gtest.h>
 

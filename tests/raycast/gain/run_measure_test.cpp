@@ -24,12 +24,12 @@ namespace {
 /// Keeps what it is given, and says how many voxels that was.
 class Keeping : public RunMeasure {
  public:
-  double measure(const Pose& T_world_camera, std::span<const ViewRun> runs) const override {
+  double measure(const Pose& T_world_camera, std::span<const RunMeasure::Run> runs) const override {
     const std::lock_guard lock(mutex_);
-    kept_.emplace_back(T_world_camera, std::vector<ViewRun>(runs.begin(), runs.end()));
+    kept_.emplace_back(T_world_camera, std::vector<RunMeasure::Run>(runs.begin(), runs.end()));
     return static_cast<double>(runs.size());
   }
-  [[nodiscard]] const std::vector<ViewRun>& of(const Pose& pose) const {
+  [[nodiscard]] const std::vector<RunMeasure::Run>& of(const Pose& pose) const {
     for (const auto& [at, runs] : kept_) {
       if (at == pose) return runs;
     }
@@ -39,7 +39,7 @@ class Keeping : public RunMeasure {
 
  private:
   mutable std::mutex mutex_;
-  mutable std::vector<std::pair<Pose, std::vector<ViewRun>>> kept_;
+  mutable std::vector<std::pair<Pose, std::vector<RunMeasure::Run>>> kept_;
 };
 
 TEST(RunMeasure, PassesASlabToTheWallBehindIt) {
@@ -64,8 +64,8 @@ TEST(RunMeasure, PassesASlabToTheWallBehindIt) {
       }
     }
   }
-  const auto scene =
-      VoxelScene::build(grid, {}, {}, {.model = HazardModel::constant(kRate, 4 * V / 0.07)});
+  const auto scene = VoxelScene::build(
+      grid, {}, {}, {.model = HazardConfig::Model::constant(kRate, 4 * V / 0.07)});
   Sensor sensor = test::lattice_sensor(1, 1);
   const Pose pose = test::axis_pose({-30, 8.5, 8.5}, 0, true);
   for (const GainModel model : {GainModel::paper, GainModel::surface, GainModel::combined}) {
@@ -74,10 +74,10 @@ TEST(RunMeasure, PassesASlabToTheWallBehindIt) {
     std::vector<double> result(1);
     EXPECT_EQ(evaluator.evaluate(std::span(&pose, 1), result, own), 1U);
     EXPECT_EQ(result[0], 13);
-    const std::vector<ViewRun>& runs = own.of(pose);
+    const std::vector<RunMeasure::Run>& runs = own.of(pose);
     ASSERT_EQ(runs.size(), 13U);
     for (int i = 0; i < 13; ++i) {
-      const ViewRun& run = runs[static_cast<std::size_t>(i)];
+      const RunMeasure::Run& run = runs[static_cast<std::size_t>(i)];
       EXPECT_EQ(run.voxel.x - base.x, 8 + i);
       EXPECT_EQ(run.ray, 0U);
       EXPECT_NEAR(run.begin, (38 + i) * V, 1e-5 * V);
@@ -138,13 +138,13 @@ TEST_P(Runs, AreTheVoxelsOfTheOraclesWalk) {
         EXPECT_EQ(results[p], 0);
         continue;
       }
-      const std::vector<ViewRun>& runs = own.of(poses[p]);
+      const std::vector<RunMeasure::Run>& runs = own.of(poses[p]);
       EXPECT_EQ(results[p], static_cast<double>(runs.size()));
       const std::vector<oracle::Ray> expected_rays = oracle::view_rays(
           made.grid.T_world_grid(), V, sensor.camera, config.pixel_stride, poses[p]);
       std::vector<Passed> passed(expected_rays.size());
       for (std::size_t i = 0; i < runs.size(); ++i) {
-        const ViewRun& run = runs[i];
+        const RunMeasure::Run& run = runs[i];
         const bool follows = i > 0 && runs[i - 1].ray == run.ray;
         Passed& ray = passed.at(run.ray);
         EXPECT_EQ(follows, !ray.lengths.empty() || ray.end) << "a ray is in one piece";
@@ -193,7 +193,7 @@ INSTANTIATE_TEST_SUITE_P(Maps, Runs,
 
 class Failing : public RunMeasure {
  public:
-  double measure(const Pose&, std::span<const ViewRun>) const override {
+  double measure(const Pose&, std::span<const RunMeasure::Run>) const override {
     throw std::out_of_range("the user's own");
   }
 };

@@ -55,7 +55,7 @@ BeliefGrid slab(int begin, int end, int wall = 1000) {
 
 /// The same rate everywhere, in cells of 2^shift voxels.
 HazardConfig constant(int shift, double rate = kRate) {
-  return {.model = HazardModel::constant(rate, 4 * kExactVoxel * (1 << shift) / 0.07)};
+  return {.model = HazardConfig::Model::constant(rate, 4 * kExactVoxel * (1 << shift) / 0.07)};
 }
 
 ViewGain gain_of(const BeliefGrid& grid, const Sensor& sensor, const HazardConfig& hazard,
@@ -151,7 +151,7 @@ TEST(SurfaceGain, AWallSeenFromBehindIsInTheSlabBeforeIt) {
 
 TEST(SurfaceGain, ARayInAFaceBelongsToTheLargerIndex) {
   const BeliefGrid grid = slab(8, 40);
-  auto volume = std::make_shared<HazardVolume>();
+  auto volume = std::make_shared<HazardConfig::Volume>();
   volume->box = VoxelBox::from_dims({0, 0, 0}, kDims);
   for (int i = 0; i < kDims.x * kDims.y * kDims.z; ++i) {
     volume->rates.push_back(static_cast<float>(i / kDims.z % kDims.y));  // by y
@@ -217,7 +217,7 @@ TEST(SurfaceGain, RefusesWhatCannotBeMeant) {
   test::expect_error(ErrorCode::invalid_argument, "support plane", [] {
     (void)VoxelScene::build(slab(1, 2), {{}, HUGE_VAL});
   });
-  test::expect_error(ErrorCode::invalid_argument, "valid are paper surface combined",
+  test::expect_error(ErrorCode::invalid_argument, "valid are paper, surface, combined",
                      [] { (void)parse_gain_model("papers"); });
 }
 

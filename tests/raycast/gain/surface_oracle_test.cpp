@@ -26,7 +26,7 @@ HazardConfig random_hazard(const BeliefGrid& grid, int number, test::Random& ran
                   test::uniform(random, 0.0, 0.02) / grid.voxel_size()};
   if (number % 5 == 1) config.model->near_rate = 0;
   if (number % 5 == 3) {
-    HazardVolume volume;
+    HazardConfig::Volume volume;
     const Index3 base = grid.min_index();
     volume.box = VoxelBox::from_dims({base.x + 3, base.y + 2, base.z + 1},
                                      {std::min(24, grid.dims().x), 17, 20});
@@ -35,7 +35,7 @@ HazardConfig random_hazard(const BeliefGrid& grid, int number, test::Random& ran
       rate = static_cast<float>(test::uniform(random, 0.0, 0.3) / grid.voxel_size());
     }
     volume.outside = static_cast<float>(0.01 / grid.voxel_size());
-    config.volume = std::make_shared<const HazardVolume>(std::move(volume));
+    config.volume = std::make_shared<const HazardConfig::Volume>(std::move(volume));
   }
   return config;
 }

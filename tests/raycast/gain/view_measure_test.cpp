@@ -24,13 +24,14 @@ class Checking : public ViewMeasure {
   Checking(const GainEvaluator& evaluator, const BeliefGrid& grid, const Sensor& sensor)
       : evaluator_(evaluator), grid_(grid), sensor_(sensor) {}
 
-  double measure(const Pose& T_world_camera, std::span<const ViewHit> hits) const override {
+  double measure(const Pose& T_world_camera,
+                 std::span<const ViewMeasure::Hit> hits) const override {
     const std::vector<RayHit> expected = evaluator_.trace(T_world_camera);
     const std::vector<oracle::Ray> rays =
         oracle::view_rays(grid_.T_world_grid(), grid_.voxel_size(), sensor_.camera,
                           evaluator_.pixel_stride(), T_world_camera);
     const Eigen::Matrix3d R_world_grid = grid_.T_world_grid().rotation();
-    for (const ViewHit& hit : hits) {
+    for (const ViewMeasure::Hit& hit : hits) {
       const RayHit& same = expected.at(hit.ray);
       EXPECT_EQ(hit.voxel, same.voxel);
       EXPECT_EQ(hit.state,
@@ -106,7 +107,7 @@ TEST_F(Own, SeesTheHitsOfTheViews) {
 
 class Counting : public ViewMeasure {
  public:
-  double measure(const Pose&, std::span<const ViewHit>) const override {
+  double measure(const Pose&, std::span<const ViewMeasure::Hit>) const override {
     if (++calls == throw_at) throw std::out_of_range("the user's own");
     return 1;
   }
@@ -156,13 +157,14 @@ TEST_F(Own, DepthImageIsWhereRaysEndAlongTheOpticalAxis) {
           map_.grid.T_world_grid(), map_.grid.voxel_size(), sensor_.camera, stride, pose);
       const Eigen::Vector3d axis =
           map_.grid.T_world_grid().rotation().transpose() * pose.rotation().col(2);
-      const DepthImage image = depth_image(evaluator, pose);
+      std::vector<RayHit::Kind> labels;
+      const DepthFrame image = depth_image(evaluator, pose, &labels);
       ASSERT_EQ(image.width, (25 + stride - 1) / stride);
       ASSERT_EQ(image.height, (19 + stride - 1) / stride);
       ASSERT_EQ(image.depth.size(), hits.size());
-      ASSERT_EQ(image.labels.size(), hits.size());
+      ASSERT_EQ(labels.size(), hits.size());
       for (std::size_t i = 0; i < hits.size(); ++i, ++pixels) {
-        EXPECT_EQ(image.labels[i], hits[i].kind);
+        EXPECT_EQ(labels[i], hits[i].kind);
         if (hits[i].kind == RayHit::Kind::none) {
           EXPECT_EQ(image.depth[i], std::numeric_limits<float>::infinity());
           continue;

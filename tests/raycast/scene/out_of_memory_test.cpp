@@ -129,7 +129,7 @@ TEST_F(OutOfMemory, AnEvaluatorAndTheBvhThatItWants) {
   // One a process, Embree's device is made first: where memory runs out meanwhile, its TBB waits
   // for ever.
   (void)GainEvaluator(VoxelScene::build(map_.grid), sensor_, test::kPaper,
-                      ExecConfig{1, Tracer::embree});
+                      ExecConfig{1, ExecConfig::Tracer::embree});
   std::shared_ptr<const VoxelScene> scene;
   std::optional<GainEvaluator> evaluator;
   const int threw = runs_that_threw(
@@ -140,7 +140,7 @@ TEST_F(OutOfMemory, AnEvaluatorAndTheBvhThatItWants) {
           scene = VoxelScene::build(map_.grid, {}, {.num_threads = 1});
           allocations_left = left;
         }
-        evaluator.emplace(scene, sensor_, test::kPaper, ExecConfig{2, Tracer::embree});
+        evaluator.emplace(scene, sensor_, test::kPaper, ExecConfig{2, ExecConfig::Tracer::embree});
       },
       [&] {
         EXPECT_TRUE(test::same_bits(gains(scene), expected));

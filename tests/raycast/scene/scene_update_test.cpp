@@ -112,7 +112,7 @@ class Changes {
  public:
   void note(const GridSnapshot& snapshot) {
     std::set<Block> leaves;
-    for (const SnapshotLeaf& leaf : snapshot.leaves) {
+    for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
       leaves.emplace(leaf.origin.x, leaf.origin.y, leaf.origin.z);
     }
     for (const Block& leaf : leaves) {
@@ -196,7 +196,8 @@ TEST_P(SceneUpdate, AChainOfUpdatesIsWhatBuildsAre) {
   sensor.min_range = 0.01;
   sensor.max_range = 1.5;
 
-  const ExecConfig exec{1, chain.is_by_bvh ? Tracer::embree : Tracer::sweep};
+  const ExecConfig exec{1,
+                        chain.is_by_bvh ? ExecConfig::Tracer::embree : ExecConfig::Tracer::sweep};
   const std::vector<std::string> isas = available_isas();
   std::vector<std::shared_ptr<const VoxelScene>> scenes;
   for (const std::string& isa : isas) {

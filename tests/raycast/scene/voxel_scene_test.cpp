@@ -89,7 +89,7 @@ TEST(VoxelScene, NeedsRayPacketsOnlyForObstaclesAndTheTracerEmbree) {
   EXPECT_TRUE(
       test::same_bits(GainEvaluator(scene, sensor, test::kPaper).evaluate(poses), expected));
   test::expect_error(ErrorCode::backend, "no ray packets", [&] {
-    GainEvaluator(scene, sensor, test::kPaper, {1, Tracer::embree});
+    GainEvaluator(scene, sensor, test::kPaper, {1, ExecConfig::Tracer::embree});
   });
   test::expect_error(ErrorCode::backend, "no ray packets",
                      [&] { (void)VoxelScene::build(grid, {obstacles}); });
@@ -99,7 +99,8 @@ TEST(VoxelScene, NeedsRayPacketsOnlyForObstaclesAndTheTracerEmbree) {
   test::expect_error(ErrorCode::backend, "no ray packets", [&] { SurfaceScene surface(mesh); });
   has_ray_packets = true;
   EXPECT_TRUE(test::same_bits(
-      GainEvaluator(scene, sensor, test::kPaper, {1, Tracer::embree}).evaluate(poses), expected));
+      GainEvaluator(scene, sensor, test::kPaper, {1, ExecConfig::Tracer::embree}).evaluate(poses),
+      expected));
 }
 
 TEST(Umbrella, HasTheFilesOfTheGridToo) {

@@ -94,7 +94,7 @@ BeliefGrid map_of(const Layout& layout, test::Random& random) {
 std::size_t cubes_in_use(const GridSnapshot& snapshot, int edge) {
   std::set<std::tuple<int, int, int>> cubes;
   const auto cube = [&](int v) { return (v & ~(edge - 1)) / edge; };
-  for (const SnapshotLeaf& leaf : snapshot.leaves) {
+  for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
     cubes.emplace(cube(leaf.origin.x), cube(leaf.origin.y), cube(leaf.origin.z));
   }
   return cubes.size();
@@ -165,7 +165,7 @@ TEST_P(CellsOracle, AgreesUnderEachInstructionSet) {
       const GainEvaluator evaluator(scene, sensor, test::kPaper, {.num_threads = 1});
       const std::vector<RayHit> own = evaluator.trace(pose);
       tallies[i].add(map, sensor, pose, expected, own, tolerance);
-      const GainEvaluator by_embree(scene, sensor, test::kPaper, {1, Tracer::embree});
+      const GainEvaluator by_embree(scene, sensor, test::kPaper, {1, ExecConfig::Tracer::embree});
       tallies[i].add(map, sensor, pose, expected, by_embree.trace(pose), tolerance);
       const ViewGain gain = evaluator.evaluate(pose);
       const ViewGain by_own = oracle::gain_of_hits(grid, sensor, {}, pose, own);

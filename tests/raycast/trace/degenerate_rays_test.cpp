@@ -204,8 +204,8 @@ TEST_P(DegenerateRays, ObliqueViewsFromTheLatticeMeetTheOracle) {
     sensor.camera.fx = sensor.camera.fy = 12;
     for (const double min_range : {0.0, 1.5 * kExactVoxel}) {
       sensor.min_range = min_range;
-      const GainEvaluator sweep(scene, sensor, test::kPaper, {1, Tracer::sweep});
-      const GainEvaluator embree(scene, sensor, test::kPaper, {1, Tracer::embree});
+      const GainEvaluator sweep(scene, sensor, test::kPaper, {1, ExecConfig::Tracer::sweep});
+      const GainEvaluator embree(scene, sensor, test::kPaper, {1, ExecConfig::Tracer::embree});
       for (const double step : {0.0, 0.5, 0.25, 1.0 / 4096}) {
         for (int i = 0; i < 16; ++i) {
           Eigen::Vector3d at;

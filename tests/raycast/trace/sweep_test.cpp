@@ -21,8 +21,8 @@ std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vec
     SCOPED_TRACE(isa);
     const test::ScopedIsa scoped(isa);
     const auto scene = VoxelScene::build(grid, {obstacles});
-    const GainEvaluator sweep(scene, sensor, test::kPaper, {1, Tracer::sweep});
-    const GainEvaluator bvh(scene, sensor, test::kPaper, {1, Tracer::embree});
+    const GainEvaluator sweep(scene, sensor, test::kPaper, {1, ExecConfig::Tracer::sweep});
+    const GainEvaluator bvh(scene, sensor, test::kPaper, {1, ExecConfig::Tracer::embree});
     EXPECT_TRUE(test::same_bits(sweep.evaluate(poses), bvh.evaluate(poses)));
     for (const Pose& pose : poses) {
       const std::vector<RayHit> a = sweep.trace(pose), b = bvh.trace(pose);

@@ -71,7 +71,7 @@ TEST_P(TraceOracle, AgreesUnderEachInstructionSet) {
   test::Random random(1234 + static_cast<unsigned>(GetParam()));
   const std::vector<std::string> isas = available_isas();
   ASSERT_FALSE(isas.empty());
-  std::map<std::pair<std::string, Tracer>, test::OracleTally> tallies;
+  std::map<std::pair<std::string, ExecConfig::Tracer>, test::OracleTally> tallies;
   for (int i = 0; i < kMaps; ++i) {
     const test::RandomMap made = test::random_map(GetParam(), random);
     const oracle::DenseMap map(made.grid);
@@ -85,7 +85,7 @@ TEST_P(TraceOracle, AgreesUnderEachInstructionSet) {
       const test::ScopedIsa scoped(isa);
       const auto scene = VoxelScene::build(made.grid, {}, {.num_threads = 1});
       ASSERT_EQ(scene->isa(), isa);
-      for (const Tracer tracer : test::kTracers) {
+      for (const ExecConfig::Tracer tracer : test::kTracers) {
         const ExecConfig exec{1, tracer};
         const GainEvaluator evaluator(scene, sensor, test::kPaper, exec);
         test::OracleTally& tally = tallies[{isa, tracer}];

@@ -14,8 +14,9 @@
 namespace viewgain {
 namespace {
 
-GainEvaluator evaluator_by(Tracer tracer, const std::shared_ptr<const VoxelScene>& scene,
-                           const Sensor& sensor, GainModel model = GainModel::paper) {
+GainEvaluator evaluator_by(ExecConfig::Tracer tracer,
+                           const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor,
+                           GainModel model = GainModel::paper) {
   return GainEvaluator(scene, sensor, {.model = model}, {.num_threads = 1, .tracer = tracer});
 }
 
@@ -23,8 +24,8 @@ GainEvaluator evaluator_by(Tracer tracer, const std::shared_ptr<const VoxelScene
 std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vector<Pose>& poses,
                     const Obstacles& obstacles = {}) {
   const auto scene = VoxelScene::build(grid, {obstacles});
-  const GainEvaluator free_choice = evaluator_by(Tracer::sweep, scene, sensor);
-  const GainEvaluator bvh = evaluator_by(Tracer::embree, scene, sensor);
+  const GainEvaluator free_choice = evaluator_by(ExecConfig::Tracer::sweep, scene, sensor);
+  const GainEvaluator bvh = evaluator_by(ExecConfig::Tracer::embree, scene, sensor);
   EXPECT_TRUE(test::same_bits(free_choice.evaluate(poses), bvh.evaluate(poses)));
   for (const double share : {0.02, 0.1, 0.4}) {
     std::vector<ApproximateGain> a(poses.size()), b(poses.size());
@@ -108,8 +109,10 @@ TEST(TracePaths, ObstaclesEndTheSameRaysEitherWay) {
     const std::vector<Pose> poses = test::random_poses(map, 6, random);
     hits += compare(map.grid, sensor, poses, obstacles);
     const auto scene = VoxelScene::build(map.grid, {obstacles});
-    const GainEvaluator swept = evaluator_by(Tracer::sweep, scene, sensor, GainModel::combined);
-    const GainEvaluator bvh = evaluator_by(Tracer::embree, scene, sensor, GainModel::combined);
+    const GainEvaluator swept =
+        evaluator_by(ExecConfig::Tracer::sweep, scene, sensor, GainModel::combined);
+    const GainEvaluator bvh =
+        evaluator_by(ExecConfig::Tracer::embree, scene, sensor, GainModel::combined);
     const std::vector<ViewGain> gains = swept.evaluate(poses);
     EXPECT_TRUE(test::same_bits(gains, bvh.evaluate(poses)));
     walked += test::gaining(gains);
@@ -122,7 +125,7 @@ TEST(TracePaths, ObstaclesEndTheSameRaysEitherWay) {
         in_voxels +=
             hit.kind == RayHit::Kind::occupied || hit.kind == RayHit::Kind::unknown ? 1 : 0;
       }
-      const ViewGain view = evaluator_by(Tracer::sweep, scene, sensor).evaluate(pose);
+      const ViewGain view = evaluator_by(ExecConfig::Tracer::sweep, scene, sensor).evaluate(pose);
       if (view.status == ViewStatus::ok) {
         EXPECT_EQ(view.hits, in_voxels);
       }
@@ -159,7 +162,7 @@ TEST(TracePaths, ObstaclesAtTheEndsOfRangesAreTheSameEitherWay) {
       const Obstacles obstacles{{Box{{x * v, -v, -v}, {(x + 1) * v, 17 * v, 17 * v}}}, {}};
       hits += compare(grid, sensor, poses, obstacles);
       const GainEvaluator evaluator =
-          evaluator_by(Tracer::sweep, VoxelScene::build(grid, {obstacles}), sensor);
+          evaluator_by(ExecConfig::Tracer::sweep, VoxelScene::build(grid, {obstacles}), sensor);
       for (const Pose& pose : poses) {
         std::uint32_t in_voxels = 0;
         for (const RayHit& hit : evaluator.trace(pose)) {
@@ -188,9 +191,12 @@ TEST(TracePaths, ObstaclesBeyondSinglePrecisionHideNothing) {
   for (const double huge : {1e12, 1e25, 1e37, 1e300}) {
     const Obstacles both{{wall, Box{{-huge, -huge, -huge}, {huge, huge, -1e9}}}, {}};
     (void)compare(grid, sensor, poses, both);
-    const std::vector<RayHit>
-        a = evaluator_by(Tracer::sweep, VoxelScene::build(grid, {alone}), sensor).trace(poses[0]),
-        b = evaluator_by(Tracer::sweep, VoxelScene::build(grid, {both}), sensor).trace(poses[0]);
+    const std::vector<RayHit> a = evaluator_by(ExecConfig::Tracer::sweep,
+                                               VoxelScene::build(grid, {alone}), sensor)
+                                      .trace(poses[0]),
+                              b = evaluator_by(ExecConfig::Tracer::sweep,
+                                               VoxelScene::build(grid, {both}), sensor)
+                                      .trace(poses[0]);
     for (std::size_t i = 0; i < a.size(); ++i) {
       EXPECT_EQ(a[i].kind, b[i].kind) << huge << " " << i;
       blocked += b[i].kind == RayHit::Kind::obstacle ? 1U : 0U;
@@ -223,9 +229,9 @@ TEST(TracePaths, StrongLensesSeeTheSameBits) {
 }
 
 TEST(TracePaths, TracersAreNamed) {
-  EXPECT_EQ(parse_tracer("embree"), Tracer::embree);
-  EXPECT_EQ(tracer_names().at(static_cast<std::size_t>(Tracer::sweep)), "sweep");
-  test::expect_error(ErrorCode::invalid_argument, "\"octree\"; valid are automatic, embree, sweep",
+  EXPECT_EQ(parse_tracer("embree"), ExecConfig::Tracer::embree);
+  EXPECT_EQ(tracer_names().at(static_cast<std::size_t>(ExecConfig::Tracer::sweep)), "sweep");
+  test::expect_error(ErrorCode::invalid_argument, "'octree', valid are automatic, embree, sweep",
                      [] { (void)parse_tracer("octree"); });
 }
 

@@ -28,7 +28,7 @@ std::string settings_text(const ScoreSettings& settings) {
   add("prior_sigma", config.prior_sigma);
   add("min_range", config.min_range);
   add("max_range", config.max_range);
-  for (const WeightRegion& region : config.weights) {
+  for (const GainConfig::WeightRegion& region : config.weights) {
     json["weight"].push_back({region.box.min, region.box.max, region.weight});
   }
   for (const auto& [flag, values] : settings.further) json[flag] = values;

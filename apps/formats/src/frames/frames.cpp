@@ -148,7 +148,7 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
     apply_intrinsics_file(dir / kIntrinsics, frames.sensor.camera);
   }
   frames.out_of_range = frames.sensor.out_of_range.value_or(
-      frames.recorded ? OutOfRangeMeaning::invalid : OutOfRangeMeaning::carve);
+      frames.recorded ? Sensor::OutOfRange::invalid : Sensor::OutOfRange::carve);
   if (!frames.sensor.range_calibration.table.empty()) {
     frames.corrector = std::make_shared<const RangeCorrector>(frames.sensor.camera,
                                                               frames.sensor.range_calibration);
@@ -186,7 +186,7 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index) {
   check_index(index, frames.images.size());
   const PinholeCamera& camera = frames.sensor.camera;
   const GrayImage image = read_gray_png(frames.images[index], camera.width, camera.height);
-  const float out_of_range = frames.out_of_range == OutOfRangeMeaning::carve
+  const float out_of_range = frames.out_of_range == Sensor::OutOfRange::carve
                                  ? DepthFrame::kOutOfRange
                                  : DepthFrame::kInvalid;
   DepthFrame frame{image.width, image.height, {}};

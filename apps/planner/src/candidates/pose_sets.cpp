@@ -65,9 +65,9 @@ std::vector<Pose> spread_out(const std::vector<Pose>& poses, const PoseSetReques
 }
 
 // The shells, or else those round the boxes.
-std::vector<Shell> shells_of(const ReachRegion& reach) {
+std::vector<ReachRegion::Shell> shells_of(const ReachRegion& reach) {
   if (!reach.shells.empty()) return reach.shells;
-  std::vector<Shell> shells;
+  std::vector<ReachRegion::Shell> shells;
   for (const Box& box : reach.boxes) {
     const Eigen::Vector3d low(box.min.data()), high(box.max.data());
     shells.push_back({0.5 * (low + high), 0, 0.5 * (high - low).norm()});
@@ -76,12 +76,12 @@ std::vector<Shell> shells_of(const ReachRegion& reach) {
 }
 
 // Where the robot can put the camera, in equal numbers for each of its shells if these have room.
-std::vector<Pose> poses_in_reach(const std::vector<Shell>& shells, std::size_t count,
+std::vector<Pose> poses_in_reach(const std::vector<ReachRegion::Shell>& shells, std::size_t count,
                                  const PoseSetRequest& request) {
   constexpr std::size_t kMostDrawn = 1'000'000;  // of a shell
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < shells.size(); ++i) {
-    const Shell& shell = shells[i];
+    const ReachRegion::Shell& shell = shells[i];
     const std::size_t wanted = count * (i + 1) / shells.size();
     const double least = std::max(shell.min_radius, 1e-6 * shell.max_radius);
     // More of them begin with the same ones.
@@ -133,7 +133,7 @@ PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request)
   } else if (generator == "rings") {
     set.poses = literature_ring_poses(count, request.distance, request.center);
   } else if (generator == "shell") {
-    const std::vector<Shell> shells = shells_of(request.reach);
+    const std::vector<ReachRegion::Shell> shells = shells_of(request.reach);
     set.poses = shells.empty() || !request.reach.poses.empty()
                     ? shell_poses(count, 0.8 * request.distance, 1.25 * request.distance,
                                   request.seed, request.center)

@@ -10,7 +10,7 @@
 #include "viewgain/core/frame_verdict.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/pose.hpp"
-#include "viewgain/core/stop_rules.hpp"
+#include "viewgain/support/stop_rules.hpp"
 
 namespace viewgain::detail {
 

@@ -13,11 +13,11 @@ constexpr double kCoarseRays = 400;
 }  // namespace
 
 ProximityMeasure::ProximityMeasure(const HazardField& hazard)
-    : hazard_(hazard), cut_(HazardModel::kCut * hazard.model().decay_length) {}
+    : hazard_(hazard), cut_(HazardConfig::Model::kCut * hazard.model().decay_length) {}
 
-double ProximityMeasure::measure(const Pose&, std::span<const ViewRun> runs) const {
+double ProximityMeasure::measure(const Pose&, std::span<const RunMeasure::Run> runs) const {
   double sum = 0;
-  for (const ViewRun& run : runs) {
+  for (const RunMeasure::Run& run : runs) {
     if (run.state != VoxelState::unknown) continue;
     sum += std::max(0.0, 1.0 - hazard_.distance(run.voxel) / cut_);
   }

@@ -11,8 +11,8 @@
 #include "choose/planner_settings.hpp"
 #include "choose/planner_state.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/stop_rules.hpp"
 #include "viewgain/planner/align_frames.hpp"
+#include "viewgain/support/stop_rules.hpp"
 #include "viewgain/support/stopwatch.hpp"
 #include "viewgain/support/text.hpp"
 

@@ -112,7 +112,7 @@ Proposal ViewProposer::propose(const BeliefGrid& grid, std::shared_ptr<const Vox
   }
   std::vector<Pose> taken = grid.views();
   taken.insert(taken.end(), reached.begin(), reached.end());
-  const PoseTolerance& tolerance = config_.feasibility.taken_tolerance;
+  const ReachRegion::Tolerance& tolerance = config_.feasibility.taken_tolerance;
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (found[i] == Infeasibility::none) poses.push_back(candidates[i].T_world_camera);

@@ -15,10 +15,10 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/noise.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/grid/pooling.hpp"
 #include "viewgain/raycast/obstacle_view.hpp"
 #include "viewgain/support/text.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {

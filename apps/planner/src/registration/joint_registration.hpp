@@ -11,8 +11,8 @@
 #include "registration/joint_alignment.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/core/thread_pool.hpp"
 #include "viewgain/planner/register_frame.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
 

@@ -25,9 +25,9 @@ FrameSequence frames_of(const FrameFolderOptions& options) {
 
 }  // namespace
 
-std::optional<OutOfRangeMeaning> out_of_range_of(const FrameFolderOptions& options) {
+std::optional<Sensor::OutOfRange> out_of_range_of(const FrameFolderOptions& options) {
   if (options.out_of_range.empty()) return std::nullopt;
-  return options.out_of_range == "carve" ? OutOfRangeMeaning::carve : OutOfRangeMeaning::invalid;
+  return options.out_of_range == "carve" ? Sensor::OutOfRange::carve : Sensor::OutOfRange::invalid;
 }
 
 void add_frame_folder_options(App& app, FrameFolderOptions& options) {

@@ -31,7 +31,7 @@ struct FrameFolderOptions {
 };
 
 /// What the flag says; nothing: the folder does.
-[[nodiscard]] std::optional<OutOfRangeMeaning> out_of_range_of(const FrameFolderOptions& options);
+[[nodiscard]] std::optional<Sensor::OutOfRange> out_of_range_of(const FrameFolderOptions& options);
 
 /// --depth-scale, --out-of-range, --mask and --confidence, the same in every subcommand that reads
 /// frames.

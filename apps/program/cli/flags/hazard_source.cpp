@@ -21,7 +21,7 @@ HazardConfig hazard_source(const std::string& hazard, std::optional<double> obje
   config.object_size = object_size;
   if (hazard.empty()) return config;
   if (is_hazard_file(hazard)) {
-    config.volume = std::make_shared<const HazardVolume>(load_hazard_vdb(hazard, grid));
+    config.volume = std::make_shared<const HazardConfig::Volume>(load_hazard_vdb(hazard, grid));
     return config;
   }
   if (!small_ending(hazard).empty() &&

@@ -40,10 +40,10 @@ PoseSigma parse_pose_sigma(std::string_view flag, const std::string& text) {
   return {sigmas[0], sigmas[1] * std::numbers::pi / 180};
 }
 
-std::optional<JumpEdgeConfig> parse_jump_edge_filter(const std::string& text) {
+std::optional<JumpEdgeFilter::Config> parse_jump_edge_filter(const std::string& text) {
   if (text == "off") return std::nullopt;
   const double degrees = parse_numbers("--jump-edge-filter", text, 1, 1)[0];
-  return JumpEdgeConfig{degrees * std::numbers::pi / 180};
+  return JumpEdgeFilter::Config{degrees * std::numbers::pi / 180};
 }
 
 }  // namespace viewgain::app

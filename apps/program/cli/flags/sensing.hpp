@@ -39,6 +39,6 @@ inline constexpr const char* kJumpEdgeHelp =
 
 /// --jump-edge-filter ANGLE_DEG|off. Throws Error(invalid_argument) for other text; the filter
 /// itself refuses angles out of its bounds.
-[[nodiscard]] std::optional<JumpEdgeConfig> parse_jump_edge_filter(const std::string& text);
+[[nodiscard]] std::optional<JumpEdgeFilter::Config> parse_jump_edge_filter(const std::string& text);
 
 }  // namespace viewgain::app

@@ -77,7 +77,7 @@ FrameSequence open_wall_frames(const Options& options) {
 Calibrated measure(const Options& options) {
   FrameSequence frames = open_wall_frames(options);
   frames.sensor.range_calibration = {};  // readings are to be as the camera gives them
-  frames.out_of_range = OutOfRangeMeaning::invalid;
+  frames.out_of_range = Sensor::OutOfRange::invalid;
   std::optional<Wall> wall;
   if (!options.wall.empty()) wall = parse_wall(options.wall);
   std::vector<std::optional<double>> distances;

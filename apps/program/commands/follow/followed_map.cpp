@@ -91,7 +91,7 @@ void FollowedMap::drop(FrameVerdict verdict, const std::optional<Pose>& T_world_
 
 void FollowedMap::answer(std::span<const Pose> asked, const std::optional<Pose>& T_world_camera) {
   if (asked.empty()) return;
-  if (T_world_camera && is_among(*T_world_camera, asked, PoseTolerance{})) return;
+  if (T_world_camera && is_among(*T_world_camera, asked, ReachRegion::Tolerance{})) return;
   planner_.tried(asked.front(), false);
 }
 

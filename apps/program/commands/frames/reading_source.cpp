@@ -120,7 +120,8 @@ class CloudSource : public ReadingSource {
       : files_(options.clouds),
         sensor_(sensor_of(options)),
         support_plane_(options.support_plane),
-        integrator_(sensor_, {options.occupancy_rule(), options.support_plane},
+        integrator_(sensor_,
+                    {.occupancy = options.occupancy_rule(), .support_plane = options.support_plane},
                     {options.common.threads}) {
     if (options.poses.empty()) {
       if (options.origin == "viewpoint") return;

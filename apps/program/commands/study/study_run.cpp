@@ -14,7 +14,7 @@
 #include "program/commands/study/prediction.hpp"
 #include "program/commands/study/results.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/isa.hpp"
+#include "viewgain/support/isa.hpp"
 #include "viewgain/support/stopwatch.hpp"
 #include "viewgain/support/text.hpp"
 

@@ -112,14 +112,10 @@ py::array_t<std::uint8_t> states_of(const SharedGrid& grid) {
 
 std::vector<BeliefRow> belief_rows(const BeliefGrid& grid) {
   std::vector<BeliefRow> rows;
-  for (const BeliefBlockAt& block : grid.belief_blocks()) {
-    block.for_each([&](Index3 voxel, const Belief& belief) {
-      rows.push_back({{voxel.x, voxel.y, voxel.z},
-                      belief.hits,
-                      belief.information,
-                      belief.information_vector});
-    });
-  }
+  grid.for_each_belief([&](Index3 voxel, const Belief& belief) {
+    rows.push_back(
+        {{voxel.x, voxel.y, voxel.z}, belief.hits, belief.information, belief.information_vector});
+  });
   return rows;
 }
 

@@ -172,7 +172,8 @@ T_world_sensor : array_like, (4, 4)
   refuse_pickling(type);
   type.def(py::init([](const Given<Sensor>& sensor, const std::string& occupancy,
                        std::optional<double> support_plane, int num_threads) {
-             const CloudIntegrationConfig config{parse_occupancy(occupancy), support_plane};
+             const IntegrationConfig config{.occupancy = parse_occupancy(occupancy),
+                                            .support_plane = support_plane};
              return std::make_unique<Clouds>(*sensor, config, num_threads);
            }),
            py::arg("sensor"), py::kw_only(), py::arg("occupancy") = "probabilistic",

@@ -102,10 +102,10 @@ void set(SharedGrid& grid, const py::object& voxels, const py::object& log_odds)
 py::array_t<OccupiedRow> occupied(const SharedGrid& grid) {
   std::vector<OccupiedRow> rows;
   grid.read([&](const BeliefGrid& g) {
-    g.for_each_occupied([&](const OccupiedVoxel& one) {
+    g.for_each_occupied([&](const VoxelValue& one) {
       rows.push_back({{one.voxel.x, one.voxel.y, one.voxel.z},
                       one.log_odds,
-                      one.belief != nullptr ? one.belief->hits : 0});
+                      one.belief ? one.belief->hits : 0});
     });
   });
   return to_array_1d<OccupiedRow>(rows);

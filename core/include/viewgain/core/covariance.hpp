@@ -114,13 +114,4 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
           c * d.x() * d.y(),     c * d.x() * d.z(),     c * d.y() * d.z()};
 }
 
-/// The same reading's covariance: Σ_r = σ_lat² (I - d dᵀ) + σ_ax² d dᵀ.
-[[nodiscard]] inline SymmetricMatrix3 measurement_covariance(const Eigen::Vector3d& d,
-                                                             const MeasurementSigmas& sigmas) {
-  const double a = sigmas.lateral * sigmas.lateral;
-  const double c = sigmas.axial * sigmas.axial - a;
-  return {a + c * d.x() * d.x(), a + c * d.y() * d.y(), a + c * d.z() * d.z(),
-          c * d.x() * d.y(),     c * d.x() * d.z(),     c * d.y() * d.z()};
-}
-
 }  // namespace viewgain

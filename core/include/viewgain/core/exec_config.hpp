@@ -14,22 +14,26 @@
 
 namespace viewgain {
 
-/// How a view's rays find the first voxel that is not free. Results are the same bits.
-enum class Tracer : std::uint8_t {
-  automatic,  ///< the sweep: full images are faster by it, and there is no BVH to make
-  embree,     ///< a BVH of leaves and boxes: for few rays and many views (perf/results/tracers.md)
-  sweep,      ///< the scene's cells from near to far, each over the rays that it can end
-};
-/// Names of the tracers, in their order.
-[[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& tracer_names();
-/// Throws Error(invalid_argument) that lists the valid names.
-[[nodiscard]] VIEWGAIN_EXPORT Tracer parse_tracer(std::string_view name);
-
 /// What changes only speed, never an answer.
 struct VIEWGAIN_EXPORT ExecConfig {
+  /// How a view's rays find the first voxel that is not free. Results are the same bits.
+  enum class Tracer : std::uint8_t {
+    automatic,  ///< the sweep: full images are faster by it, and there is no BVH to make
+    embree,  ///< a BVH of leaves and boxes: for few rays and many views (perf/results/tracers.md)
+    sweep,   ///< the scene's cells from near to far, each over the rays that it can end
+  };
+
   int num_threads = 0;  ///< 0: all hardware threads; 1: the caller alone; n: caller and n - 1 more
   Tracer tracer = Tracer::automatic;  ///< of gain evaluators; others do not trace voxels
 };
+
+/// The number of threads that ExecConfig::num_threads stands for: all hardware threads if 0. Throws
+/// Error(invalid_argument) if it is negative or over 1024.
+[[nodiscard]] VIEWGAIN_EXPORT int thread_count(int num_threads);
+/// Names of the tracers, in their order.
+[[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& tracer_names();
+/// Throws Error(invalid_argument) that lists the valid names.
+[[nodiscard]] VIEWGAIN_EXPORT ExecConfig::Tracer parse_tracer(std::string_view name);
 
 /// Watches one long call, or ends it early: two ways to do so with one effect, see the call.
 struct VIEWGAIN_EXPORT BatchControl {

@@ -13,12 +13,6 @@
 
 namespace viewgain {
 
-/// Which pixels count as flying.
-struct VIEWGAIN_EXPORT JumpEdgeConfig {
-  double angle = 5.0 * std::numbers::pi / 180;  ///< threshold, in 1°..10° [rad]
-  bool two_sided = false;  ///< the literal form: nearer and farther neighbours alike
-};
-
 /// Removes flying pixels, the mixtures of two surfaces at a jump of depth (after May et al.,
 /// "Three-dimensional mapping with time-of-flight cameras", J. Field Robotics 26, 2009). A reading
 /// p goes when, for one of its 8 neighbours q that is a reading nearer to the camera, the angle
@@ -26,9 +20,17 @@ struct VIEWGAIN_EXPORT JumpEdgeConfig {
 /// by the frame as it came. Thread safety: const members may run from many threads.
 class VIEWGAIN_EXPORT JumpEdgeFilter {
  public:
+  /// Which pixels count as flying.
+  struct Config {
+    double angle = 5.0 * std::numbers::pi / 180;  ///< threshold, in 1°..10° [rad]
+    bool two_sided = false;  ///< the literal form: nearer and farther neighbours alike
+  };
+
   /// Undoes the lens distortion once. Throws Error(invalid_argument) for a camera that is not valid
   /// or an angle outside its bounds.
-  explicit JumpEdgeFilter(const PinholeCamera& camera, const JumpEdgeConfig& config = {});
+  JumpEdgeFilter(const PinholeCamera& camera, const Config& config);
+  /// By the default configuration.
+  explicit JumpEdgeFilter(const PinholeCamera& camera) : JumpEdgeFilter(camera, Config{}) {}
 
   /// Turns flying pixels into DepthFrame::kInvalid (their amplitude 0); returns how many. Throws
   /// Error(invalid_argument) if the frame's size is not the camera's. Cost: a pass over the pixels
@@ -37,7 +39,7 @@ class VIEWGAIN_EXPORT JumpEdgeFilter {
 
  private:
   PinholeCamera camera_;
-  JumpEdgeConfig config_;
+  Config config_;
   std::vector<Eigen::Vector3d> rays_;
 };
 

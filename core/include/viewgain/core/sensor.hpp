@@ -26,15 +26,15 @@ struct VIEWGAIN_EXPORT PoseSigma {
   bool operator==(const PoseSigma&) const = default;
 };
 
-/// What the value 65535 of a depth image says.
-enum class OutOfRangeMeaning : std::uint8_t {
-  carve,    ///< nothing up to max_range
-  invalid,  ///< no reading
-};
-
 /// A depth camera: intrinsics, range limits along the ray, noise; by default the preset sr4000. A
 /// value type; unless they say otherwise members check nothing.
 struct VIEWGAIN_EXPORT Sensor {
+  /// What the value 65535 of a depth image says.
+  enum class OutOfRange : std::uint8_t {
+    carve,    ///< nothing up to max_range
+    invalid,  ///< no reading
+  };
+
   std::string name = "sr4000";  ///< preset's or file's name, for reports
   PinholeCamera camera{176, 144, 220.0, 231.2, 87.5, 71.5, {}};  ///< intrinsics, lens
   double min_range = 0.2;                                        ///< along the ray [m]
@@ -43,7 +43,7 @@ struct VIEWGAIN_EXPORT Sensor {
   NoiseModel noise;                     ///< how readings scatter
   std::optional<Pose> T_flange_camera;  ///< mounting on the robot's flange, if known
   /// Width, height, depth of the housing along x, y, z of the flange's frame [m], if known; see
-  /// SensorBody in raycast/feasibility.hpp, which takes the SR4000's otherwise.
+  /// FeasibilityConfig::Body in raycast/feasibility.hpp, which takes the SR4000's otherwise.
   std::optional<std::array<double, 3>> body_size{};
   /// Its systematic error, which load_frame() takes away; without a table none is known. Camera
   /// frames from elsewhere are corrected by RangeCalibration::correct().
@@ -51,7 +51,7 @@ struct VIEWGAIN_EXPORT Sensor {
 
   PoseSigma pose_sigma{};  ///< zero: poses are exact
   /// In its depth images; nothing: as the folder's layout has it (FrameSequence).
-  std::optional<OutOfRangeMeaning> out_of_range{};
+  std::optional<OutOfRange> out_of_range{};
 
   /// Standard deviations of a reading at range t [m], whose cosine of incidence is cos_incidence,
   /// in the camera's frame; see sigmas() in noise.hpp.
@@ -81,8 +81,8 @@ struct VIEWGAIN_EXPORT Sensor {
 
 /// The presets: sr4000, azure_kinect_nfov, kinect_v1, d435; and laser_line,
 /// a scanner of one line a pose (640x1 px, 0.2 mm in each direction, 0.1-1.0 m). Those of a maker
-/// have the size of his housing (kinect_v1: about, without its foot), the SR4000 as SensorBody has
-/// it.
+/// have the size of his housing (kinect_v1: about, without its foot), the SR4000 as
+/// FeasibilityConfig::Body has it.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& sensor_preset_names();
 
 /// Throws Error(invalid_argument) that lists the valid names.

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "viewgain/core/error.hpp"
+
 namespace viewgain {
 
 /// How many letters must be added, taken away, changed or swapped with their neighbour to make one
@@ -57,6 +59,17 @@ namespace viewgain {
   std::string text;
   for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(name);
   return text;
+}
+
+/// The place of a name among `names`. Throws Error(invalid_argument), naming `what` it should be
+/// of, that lists them.
+[[nodiscard]] inline std::size_t place_of_name(std::string_view name,
+                                               const std::vector<std::string>& names,
+                                               std::string_view what) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  throw Error(ErrorCode::invalid_argument, std::string("unknown ").append(what).append(" '") +
+                                               std::string(name) + "', valid are " + listed(names));
 }
 
 }  // namespace viewgain

@@ -39,28 +39,24 @@ struct VIEWGAIN_EXPORT GridConfig {
   std::optional<double> prior_sigma{};
 };
 
-/// Voxel counts and the paper's measure of progress.
+/// Voxel counts and the paper's measure of progress, of a map or a part of it ("selected parts").
 struct VIEWGAIN_EXPORT GridStatistics {
-  std::uint64_t unknown = 0;   ///< voxels of the workspace never observed
+  std::uint64_t unknown = 0;   ///< voxels never observed
   std::uint64_t free = 0;      ///< voxels known to be free
   std::uint64_t occupied = 0;  ///< voxels known to be occupied
-  std::uint64_t bytes = 0;     ///< memory of the map: tree, beliefs, book-keeping
+  std::uint64_t bytes = 0;     ///< memory of the whole map: tree, beliefs, book-keeping
   double entropy_removed =
       0;  ///< sum over occupied of H(Λ_0) - H(Λ_0 + Λ_v) [nat, or m² for trace]
+  std::uint64_t hits = 0;  ///< readings that ended there, whatever the voxels are now
+  /// Mean of √(tr(Λ_v⁻¹ + voxel²/12 I) / 3) over occupied voxels with a belief [m]; NaN without.
+  double mean_sigma = 0;
 };
 
-/// What BeliefGrid::set() makes of a voxel.
+/// A known voxel: what BeliefGrid::set() makes of one, and what for_each_occupied() shows.
 struct VIEWGAIN_EXPORT VoxelValue {
   Index3 voxel;                    ///< of the workspace
-  float log_odds = 0;              ///< rounded to the nearest step of 0.05 and clamped
-  std::optional<Belief> belief{};  ///< none: the voxel has none afterwards
-};
-
-/// What BeliefGrid::for_each_occupied() shows of a voxel.
-struct VIEWGAIN_EXPORT OccupiedVoxel {
-  Index3 voxel;                    ///< of the workspace
-  float log_odds = 0;              ///< above 0
-  const Belief* belief = nullptr;  ///< null without one; valid during the visit
+  float log_odds = 0;              ///< set() rounds it to the nearest step of 0.05 and clamps it
+  std::optional<Belief> belief{};  ///< none: it has none, and after set() none any more
 };
 
 /// The belief grid: what is known of a workspace, voxel by voxel.
@@ -143,7 +139,11 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Visits the occupied voxels: by leaves in the order of snapshot().leaves, in a leaf [x][y][z]
   /// with z fastest. Equal maps give the same order. The visit must not change the grid. Costs a
   /// snapshot.
-  void for_each_occupied(const std::function<void(const OccupiedVoxel&)>& visit) const;
+  void for_each_occupied(const std::function<void(const VoxelValue&)>& visit) const;
+
+  /// Visits all beliefs, those of free voxels too, by blocks in a fixed order, in a block [x][y][z]
+  /// with z fastest. Costs a look at each.
+  void for_each_belief(const std::function<void(Index3, const Belief&)>& visit) const;
 
   /// T_world_camera of every frame integrated so far, in order.
   [[nodiscard]] const std::vector<Pose>& views() const noexcept;
@@ -156,9 +156,13 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Throws Error(invalid_argument) for a count that is negative or over 2^40.
   void set_hazard_counters(const HazardCounters& counters);
 
-  /// Voxels by state, memory, and the entropy removed by this criterion. Costs a pass over the
-  /// map's blocks.
+  /// How much is known, and how well; the entropy removed is by this criterion. Costs a pass over
+  /// the map's blocks. Deterministic.
   [[nodiscard]] GridStatistics statistics(Criterion criterion = Criterion::log_diagonal) const;
+  /// The same of the voxels whose centres lie in a region of the grid's frame [m], half-open;
+  /// bounds may be infinite. Throws Error(invalid_argument) if one is NaN.
+  [[nodiscard]] GridStatistics statistics(const Box& region,
+                                          Criterion criterion = Criterion::log_diagonal) const;
 
   /// 16 hexadecimal digits over states, log-odds, beliefs, layout, prior, views and, if there are
   /// any, hazard counters. The same for
@@ -172,10 +176,6 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// taken of this grid, or of the one that it is a clone of, are copied from there. Any other
   /// snapshot is as good as none.
   [[nodiscard]] GridSnapshot snapshot(const GridSnapshot& before) const;
-
-  /// All beliefs, those of free voxels too, by block in a fixed order; shared, not copied. Costs a
-  /// look at each block.
-  [[nodiscard]] std::vector<BeliefBlockAt> belief_blocks() const;
 
  private:
   friend struct detail::GridAccess;  // this module's sources

@@ -24,19 +24,14 @@ struct VIEWGAIN_EXPORT FusedPoint {
   std::uint32_t hits = 0;               ///< readings that support it
 };
 
-/// Which beliefs make a point.
-enum class PointRule : std::uint8_t {
-  /// Noise spreads the readings of one place over a shell of voxels across the surface. The beliefs
-  /// of the voxels in a short column along the surface normal are fused into one point.
-  pooled,
-  per_voxel,  ///< the paper's literal rule: each occupied voxel is a point, centre + Λ_v⁻¹ η_v
-};
-
 /// Lengths are in pooling lengths (pooling_of: a voxel, or the sensor's footprint where that is
 /// longer) unless said otherwise.
 struct VIEWGAIN_EXPORT FusedPointsConfig {
-  PointRule rule = PointRule::pooled;  ///< how beliefs become points
-  std::uint32_t min_hits = 2;          ///< points with fewer readings are left out
+  /// Noise spreads the readings of one place over a shell of voxels across the surface, so that the
+  /// beliefs of the voxels in a short column along the surface normal are fused into one point.
+  /// True: the paper's literal rule, each occupied voxel is a point, centre + Λ_v⁻¹ η_v.
+  bool per_voxel = false;
+  std::uint32_t min_hits = 2;  ///< points with fewer readings are left out
   /// Pooled points with less than this share of the upper quartile of the evidence within 4 lengths
   /// are left out: the halo that silhouettes leave beside the surface. 0: none. Evidence is the
   /// readings against those to be expected of one frontal view from where they were taken, so that

@@ -17,37 +17,38 @@
 
 namespace viewgain {
 
-/// A leaf with at least one voxel that is not free, clipped to the workspace.
-struct VIEWGAIN_EXPORT SnapshotLeaf {
-  Index3 origin;        ///< lowest voxel, a multiple of 8
-  LeafMask non_free{};  ///< unknown or occupied
-  LeafMask occupied{};  ///< of the voxels that are not free, the occupied ones
-  std::shared_ptr<const BeliefBlock> beliefs;  ///< null without occupied voxels; else may be null,
-                                               ///< may hold free voxels' beliefs too
-};
-
-/// A cube of 32³ voxels of the lattice; its leaves and tiles follow one another in the lists.
-struct VIEWGAIN_EXPORT SnapshotRegion {
-  std::uint64_t number = 0;   ///< lists of regions rise in it; the same in all snapshots of a grid
-  std::uint64_t changed = 0;  ///< when its voxels changed last
-  std::uint32_t first_leaf = 0;  ///< a region's leaves rise in their origin's x, then y, then z
-  std::uint32_t first_tile = 0;  ///< of this region, in the list of tiles
-};
+struct BeliefBlock;
 
 /// Everything a scene reads of a grid: an immutable value, safe to share between threads. Members
 /// check nothing: a region's place must be one in the list.
 struct VIEWGAIN_EXPORT GridSnapshot {
-  double voxel_size = 0;             ///< [m]
-  double prior_sigma = 0;            ///< [m]
-  Pose T_world_grid;                 ///< places the grid's frame
-  Index3 min_index;                  ///< lowest voxel of the workspace
-  Index3 dims;                       ///< voxels along x, y, z
-  HazardCounters hazard;             ///< what frames have said of unknown space
-  std::vector<SnapshotLeaf> leaves;  ///< with a voxel that is not free, in the order of the regions
+  /// A leaf with at least one voxel that is not free, clipped to the workspace.
+  struct Leaf {
+    Index3 origin;        ///< lowest voxel, a multiple of 8
+    LeafMask non_free{};  ///< unknown or occupied
+    LeafMask occupied{};  ///< of the voxels that are not free, the occupied ones
+    std::shared_ptr<const BeliefBlock> beliefs;  ///< null without occupied voxels; else may be
+                                                 ///< null, may hold free voxels' beliefs too
+  };
+  /// A cube of 32³ voxels of the lattice; its leaves and tiles follow one another in the lists.
+  struct Region {
+    std::uint64_t number = 0;  ///< lists of regions rise in it; the same in all snapshots of a grid
+    std::uint64_t changed = 0;     ///< when its voxels changed last
+    std::uint32_t first_leaf = 0;  ///< a region's leaves rise in their origin's x, then y, then z
+    std::uint32_t first_tile = 0;  ///< of this region, in the list of tiles
+  };
+
+  double voxel_size = 0;     ///< [m]
+  double prior_sigma = 0;    ///< [m]
+  Pose T_world_grid;         ///< places the grid's frame
+  Index3 min_index;          ///< lowest voxel of the workspace
+  Index3 dims;               ///< voxels along x, y, z
+  HazardCounters hazard;     ///< what frames have said of unknown space
+  std::vector<Leaf> leaves;  ///< with a voxel that is not free, in the order of the regions
   /// Of unknown voxels, clipped to the workspace; those larger than a region first, by the nodes of
   /// 2048³ and then 128³ voxels that they fill, each by x, y, z; then in the order of the regions.
   std::vector<VoxelBox> tiles;
-  std::vector<SnapshotRegion> regions;  ///< cubes of 32³ voxels that hold any, numbers rising
+  std::vector<Region> regions;  ///< cubes of 32³ voxels that hold any, numbers rising
   /// Which grid it is of and when, for BeliefGrid::snapshot(before); 0: none.
   std::uint64_t grid_number = 0;
   std::uint64_t time = 0;  ///< of the grid's last change
@@ -55,7 +56,7 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   std::uint64_t shared_until = 0;
 
   /// Is the region as it was in that earlier snapshot, provided that it is listed there?
-  [[nodiscard]] bool is_shared(const SnapshotRegion& region) const {
+  [[nodiscard]] bool is_shared(const Region& region) const {
     return shared_until != 0 && region.changed <= shared_until;
   }
 
@@ -66,7 +67,7 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   [[nodiscard]] Eigen::Vector3d center(Index3 voxel) const;
 
   /// The leaf that holds a voxel, null if there is none. O(log regions).
-  [[nodiscard]] const SnapshotLeaf* find_leaf(Index3 voxel) const;
+  [[nodiscard]] const Leaf* find_leaf(Index3 voxel) const;
 
   /// Is the voxel neither unknown nor occupied? So is all outside the workspace. O(log regions +
   /// log tiles).

@@ -19,51 +19,50 @@
 
 namespace viewgain {
 
-/// The hazard of unknown space: the rate at which a ray through it meets the surface, by the
-/// distance d from what is known of the surface (apps/docs/guide/surface_gain.md):
-/// h(d) = far_rate + near_rate exp(-d / decay_length), and far_rate beyond 5 decay lengths. Members
-/// check nothing; HazardConfig::validate() does.
-struct VIEWGAIN_EXPORT HazardModel {
-  double near_rate = 25.6;       ///< h_0 [1/m]
-  double decay_length = 0.0245;  ///< lambda [m]
-  double far_rate = 0.64;        ///< h_inf [1/m]
-
-  static constexpr double kCut = 5.0;  ///< [decay lengths]
-
-  /// Start values for an object whose longest side is `size` [m]: read off three objects of 0.35 m
-  /// and taken to go with the size. Rankings are flat over half to twice these values.
-  [[nodiscard]] static HazardModel for_size(double size) {
-    return {9.0 / size, 0.07 * size, 0.224 / size};
-  }
-  /// The same `rate` [1/m] everywhere; `size` [m] as above says how fine the cells are.
-  [[nodiscard]] static HazardModel constant(double rate, double size) {
-    return {0.0, 0.07 * size, rate};
-  }
-
-  /// Hazard [1/m] at this distance from known surface [m].
-  [[nodiscard]] double rate(double distance) const {
-    return distance <= kCut * decay_length
-               ? far_rate + near_rate * std::exp(-distance / decay_length)
-               : far_rate;
-  }
-  bool operator==(const HazardModel&) const = default;
-};
-
-/// Rates from elsewhere, say from a prior of the object's shape, instead of the model's.
-struct VIEWGAIN_EXPORT HazardVolume {
-  VoxelBox box;              ///< voxels of the grid's lattice
-  std::vector<float> rates;  ///< [1/m], [x][y][z] with z fastest: box.volume() of them
-  float outside = 0;         ///< [1/m]
-};
-
 /// How likely rays meet the surface in unknown voxels.
 struct VIEWGAIN_EXPORT HazardConfig {
+  /// The hazard of unknown space: the rate at which a ray through it meets the surface, by the
+  /// distance d from what is known of the surface (apps/docs/guide/surface_gain.md):
+  /// h(d) = far_rate + near_rate exp(-d / decay_length), and far_rate beyond 5 decay lengths.
+  /// Members check nothing; validate() does.
+  struct Model {
+    double near_rate = 25.6;       ///< h_0 [1/m]
+    double decay_length = 0.0245;  ///< lambda [m]
+    double far_rate = 0.64;        ///< h_inf [1/m]
+
+    static constexpr double kCut = 5.0;  ///< [decay lengths]
+
+    /// Start values for an object whose longest side is `size` [m]: read off three objects of 0.35
+    /// m and taken to go with the size. Rankings are flat over half to twice these values.
+    [[nodiscard]] static Model for_size(double size) {
+      return {9.0 / size, 0.07 * size, 0.224 / size};
+    }
+    /// The same `rate` [1/m] everywhere; `size` [m] as above says how fine the cells are.
+    [[nodiscard]] static Model constant(double rate, double size) {
+      return {0.0, 0.07 * size, rate};
+    }
+
+    /// Hazard [1/m] at this distance from known surface [m].
+    [[nodiscard]] double rate(double distance) const {
+      return distance <= kCut * decay_length
+                 ? far_rate + near_rate * std::exp(-distance / decay_length)
+                 : far_rate;
+    }
+    bool operator==(const Model&) const = default;
+  };
+  /// Rates from elsewhere, say from a prior of the object's shape, instead of the model's.
+  struct Volume {
+    VoxelBox box;              ///< voxels of the grid's lattice
+    std::vector<float> rates;  ///< [1/m], [x][y][z] with z fastest: box.volume() of them
+    float outside = 0;         ///< [1/m]
+  };
+
   /// Longest side of the object [m]; unless given that of the box of voxels with evidence, or while
   /// there are none that of the workspace.
   std::optional<double> object_size{};
-  std::optional<HazardModel> model{};  ///< unless given HazardModel::for_size
+  std::optional<Model> model{};  ///< unless given Model::for_size
   /// Rates by place, instead of the model; null: none.
-  std::shared_ptr<const HazardVolume> volume{};
+  std::shared_ptr<const Volume> volume{};
   /// Multiplies the start values by what frames have said (GridSnapshot::hazard). A model that is
   /// given, or a volume, stays what it is. Counters go by classes of distance in decay lengths: a
   /// size that is given should be the same for all scenes of a map.
@@ -100,7 +99,7 @@ class VIEWGAIN_EXPORT HazardField {
   explicit HazardField(const GridSnapshot& snapshot, const HazardConfig& config = {});
 
   /// Start values, or what was given; rates may differ from them by the map's counters.
-  [[nodiscard]] const HazardModel& model() const { return model_; }
+  [[nodiscard]] const HazardConfig::Model& model() const { return model_; }
   /// Beyond the cut [1/m]; with a volume outside of its box.
   [[nodiscard]] float far_rate() const { return far_rate_; }
   /// Does it follow the map's counters? Not where a model or a volume was given, or `calibrated`
@@ -133,7 +132,7 @@ class VIEWGAIN_EXPORT HazardField {
   /// The voxels outside of which nothing is nearer than the cut; empty while there is no evidence.
   [[nodiscard]] const VoxelBox& near_box() const { return near_box_; }
   /// Rates that are not the model's, null unless given.
-  [[nodiscard]] const HazardVolume* volume() const { return volume_.get(); }
+  [[nodiscard]] const HazardConfig::Volume* volume() const { return volume_.get(); }
 
  private:
   static constexpr std::uint16_t kBeyond = 0xFFFF;
@@ -149,8 +148,8 @@ class VIEWGAIN_EXPORT HazardField {
   [[nodiscard]] float volume_rate(Index3 voxel) const;
   void find_distances(const std::vector<Index3>& evidence, const VoxelBox& workspace);
 
-  HazardModel model_;
-  std::shared_ptr<const HazardVolume> volume_;
+  HazardConfig::Model model_;
+  std::shared_ptr<const HazardConfig::Volume> volume_;
   Pooling pooling_;
   double voxel_size_;
   int shift_ = 0;  // of the cells that have a distance

@@ -15,12 +15,6 @@
 
 namespace viewgain {
 
-/// What changes the map.
-struct VIEWGAIN_EXPORT CloudIntegrationConfig {
-  Occupancy occupancy = Occupancy::probabilistic;  ///< how states follow
-  std::optional<double> support_plane{};           ///< as in IntegrationConfig, world z [m]
-};
-
 /// Puts point clouds into a belief grid: the sibling of FrameIntegrator for points that are no
 /// pixels of a camera.
 ///
@@ -38,8 +32,9 @@ struct VIEWGAIN_EXPORT CloudIntegrationConfig {
 /// the voxels crossed.
 class VIEWGAIN_EXPORT CloudIntegrator {
  public:
-  /// Throws Error(invalid_argument) if the sensor is not valid or the support plane is not finite.
-  explicit CloudIntegrator(const Sensor& sensor, const CloudIntegrationConfig& config = {},
+  /// `config.carve` does not matter: clouds have no pixels to carve by. Throws
+  /// Error(invalid_argument) if the sensor is not valid or the support plane is not finite.
+  explicit CloudIntegrator(const Sensor& sensor, const IntegrationConfig& config = {},
                            const ExecConfig& exec = {});
   ~CloudIntegrator();
   CloudIntegrator(CloudIntegrator&&) noexcept;

@@ -50,13 +50,13 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
 /// load_vdb(), and Error(format) for a rate that is negative or not finite, a file with several
 /// grids of floats of other names, or a transform that is not linear. 4 bytes, and some 50 ns, per
 /// voxel of the map in the box of active ones.
-[[nodiscard]] VIEWGAIN_EXPORT HazardVolume load_hazard_vdb(const std::filesystem::path& path,
-                                                           const BeliefGrid& grid);
+[[nodiscard]] VIEWGAIN_EXPORT HazardConfig::Volume load_hazard_vdb(
+    const std::filesystem::path& path, const BeliefGrid& grid);
 
 /// Writes rates of voxels of the map's lattice as such a file; load_hazard_vdb() reads the same.
 /// Atomic, as save_vdb(). Throws Error(invalid_argument) as HazardConfig::validate(), Error(io).
 /// Cost: a pass over the rates.
-VIEWGAIN_EXPORT void save_hazard_vdb(const HazardVolume& volume, const BeliefGrid& grid,
+VIEWGAIN_EXPORT void save_hazard_vdb(const HazardConfig::Volume& volume, const BeliefGrid& grid,
                                      const std::filesystem::path& path);
 
 }  // namespace viewgain

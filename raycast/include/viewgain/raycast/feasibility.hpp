@@ -19,15 +19,6 @@
 
 namespace viewgain {
 
-/// The sensor's housing, a box. In the flange's frame it is centred on the z axis and reaches from
-/// z = 0 to its depth; T_flange_camera places the camera on the flange. Without one the camera's
-/// centre is the middle of the box's front face, looking out of it.
-struct VIEWGAIN_EXPORT SensorBody {
-  /// Width, height, depth [m]; the SR4000's. Sensor::body_size has another sensor's.
-  std::array<double, 3> size{0.065, 0.065, 0.076};
-  std::optional<Pose> T_flange_camera{};  ///< mounting on the flange, if known
-};
-
 /// Why a candidate is dropped; checked in this order, the first one counts.
 enum class Infeasibility : std::uint8_t {
   none,
@@ -44,10 +35,19 @@ enum class Infeasibility : std::uint8_t {
 
 /// What must have room, and where the robot gets.
 struct VIEWGAIN_EXPORT FeasibilityConfig {
-  SensorBody body{};                ///< what must have room
-  double clearance = 0;             ///< the body is grown by this on each side [m]
-  ReachRegion reach{};              ///< where the camera may be
-  PoseTolerance taken_tolerance{};  ///< when two poses are the same
+  /// The sensor's housing, a box. In the flange's frame it is centred on the z axis and reaches
+  /// from z = 0 to its depth; T_flange_camera places the camera on the flange. Without one the
+  /// camera's centre is the middle of the box's front face, looking out of it.
+  struct Body {
+    /// Width, height, depth [m]; the SR4000's. Sensor::body_size has another sensor's.
+    std::array<double, 3> size{0.065, 0.065, 0.076};
+    std::optional<Pose> T_flange_camera{};  ///< mounting on the flange, if known
+  };
+
+  Body body{};                               ///< what must have room
+  double clearance = 0;                      ///< the body is grown by this on each side [m]
+  ReachRegion reach{};                       ///< where the camera may be
+  ReachRegion::Tolerance taken_tolerance{};  ///< when two poses are the same
   /// Where given: a view is too near if more than max_near_share of its rays that end in the map
   /// end within the sensor's min_range. The expected gain lets such rays pass, so a camera in front
   /// of a wall would seem to see what is behind it.

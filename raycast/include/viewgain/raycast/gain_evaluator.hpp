@@ -17,8 +17,7 @@
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/raycast/ray_outcomes.hpp"
-#include "viewgain/raycast/view_contributions.hpp"
+#include "viewgain/grid/grid_snapshot.hpp"
 #include "viewgain/raycast/view_measure.hpp"
 #include "viewgain/raycast/view_selection.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
@@ -28,12 +27,6 @@ namespace viewgain {
 namespace detail {
 struct EvaluatorAccess;
 }
-
-/// A task weight for a part of the workspace: the paper's "selected parts".
-struct VIEWGAIN_EXPORT WeightRegion {
-  Box box;            ///< grid frame [m]; a voxel belongs to it if its centre does
-  double weight = 1;  ///< w_v >= 0; the last region that holds a voxel counts, 1 outside all
-};
 
 /// What a view's gain counts (apps/docs/guide/equations.md).
 enum class GainModel : std::uint8_t {
@@ -53,6 +46,12 @@ inline constexpr GainModel kDefaultGain = GainModel::combined;
 
 /// What changes the answer.
 struct VIEWGAIN_EXPORT GainConfig {
+  /// A task weight for a part of the workspace: the paper's "selected parts".
+  struct WeightRegion {
+    Box box;            ///< grid frame [m]; a voxel belongs to it if its centre does
+    double weight = 1;  ///< w_v >= 0; the last region that holds a voxel counts, 1 outside all
+  };
+
   GainModel model = kDefaultGain;  ///< what is counted
   /// Of the paper's gain. The combined gain's refinement is by log_diagonal whatever it says, but
   /// not trace.
@@ -107,6 +106,30 @@ struct VIEWGAIN_EXPORT RayHit {
   Index3 voxel{};          ///< the voxel it ends in (unknown, occupied)
   double range =
       std::numeric_limits<double>::infinity();  ///< max(range of the entry point, min_range) [m]
+};
+
+/// What one voxel adds to the gain of a view; see GainEvaluator::contributions().
+struct VIEWGAIN_EXPORT VoxelContribution {
+  Index3 voxel{};                          ///< of the map
+  VoxelState state = VoxelState::unknown;  ///< unknown or occupied
+  std::uint32_t rays = 0;                  ///< that end in it; surface, combined: that reach it
+  /// Rays that are expected to end in it: as many as `rays` for the paper's gain, else the sum of
+  /// their chances.
+  double expected_rays = 0;
+  double gain = 0;  ///< its task weight included, in the gain's unit
+};
+
+/// What becomes of a view's rays, for asking why its gain is what it is. Each ray counts once, so
+/// that the counts below `rays` add up to it.
+struct VIEWGAIN_EXPORT RayOutcomes {
+  std::uint32_t rays = 0;           ///< of the view
+  std::uint32_t too_near = 0;       ///< meet surface or an obstacle before min_range, in free space
+  std::uint32_t unknown = 0;        ///< come to unknown space: what may be new
+  std::uint32_t known_surface = 0;  ///< end in known surface, with free space before it
+  std::uint32_t obstacle =
+      0;  ///< end at an obstacle or, but by the paper's gain, on the support plane
+  std::uint32_t out_of_range = 0;  ///< are in known free space to max_range
+  std::uint32_t out_of_map = 0;    ///< leave the workspace, or never come into it
 };
 
 /// Scores camera poses against a scene by expected information gain (apps/docs/guide/equations.md).

@@ -40,19 +40,19 @@ struct VIEWGAIN_EXPORT SimulationConfig {
   std::shared_ptr<const SurfaceScene> surroundings{};
 };
 
-/// What the rays of one pixel met, without noise.
-struct VIEWGAIN_EXPORT PixelTruth {
-  float min_range = 0;      ///< of all returns [m]; 0 if there is none
-  float max_range = 0;      ///< [m]
-  float nearest_range = 0;  ///< the return nearest to the reading [m]; 0 if there is no reading
-  int returns = 0;          ///< how many rays met something
-};
-
 /// A depth camera in front of a triangle mesh. Thread safety: acquire() is const and may run from
 /// many threads; results do not depend on them. Cost of acquire(): sub_rays² rays a pixel, on all
 /// threads. The constructor calls PinholeCamera::ray() for each pixel.
 class VIEWGAIN_EXPORT SimulatedSensor {
  public:
+  /// What the rays of one pixel met, without noise.
+  struct PixelTruth {
+    float min_range = 0;      ///< of all returns [m]; 0 if there is none
+    float max_range = 0;      ///< [m]
+    float nearest_range = 0;  ///< the return nearest to the reading [m]; 0 if there is no reading
+    int returns = 0;          ///< how many rays met something
+  };
+
   /// Throws Error(invalid_argument) for a sensor that is not valid or a value of the configuration
   /// out of its bounds.
   SimulatedSensor(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,

@@ -14,28 +14,27 @@
 
 namespace viewgain {
 
-/// A ray to trace, in the mesh's frame.
-struct VIEWGAIN_EXPORT SurfaceRay {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();            ///< [m]
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();        ///< of unit length
-  double max_range = std::numeric_limits<double>::infinity();  ///< it meets nothing beyond [m]
-};
-
-/// Where a ray meets a triangle mesh.
-struct VIEWGAIN_EXPORT SurfaceHit {
-  double range =
-      std::numeric_limits<double>::infinity();  ///< along the unit direction [m]; infinity: miss
-  std::uint32_t triangle = 0;                   ///< which one; 0 for a miss
-  Eigen::Vector3d normal =
-      Eigen::Vector3d::Zero();  ///< unit, in the mesh's frame, right-hand rule of the vertices
-};
-
 /// Triangles to trace, for simulated depth and for pictures. Immutable; owns its copy of the mesh.
 /// Traced by Embree in single precision, relative to the middle of the mesh: how far off the
 /// world's origin is does not matter. Thread safety: const members may run from many threads. Cost
 /// of the constructor: Embree's BVH is built, O(n log n) of the triangles.
 class VIEWGAIN_EXPORT SurfaceScene {
  public:
+  /// A ray to trace, in the mesh's frame.
+  struct Ray {
+    Eigen::Vector3d origin = Eigen::Vector3d::Zero();            ///< [m]
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();        ///< of unit length
+    double max_range = std::numeric_limits<double>::infinity();  ///< it meets nothing beyond [m]
+  };
+  /// Where a ray meets a triangle mesh.
+  struct Hit {
+    double range =
+        std::numeric_limits<double>::infinity();  ///< along the unit direction [m]; infinity: miss
+    std::uint32_t triangle = 0;                   ///< which one; 0 for a miss
+    Eigen::Vector3d normal =
+        Eigen::Vector3d::Zero();  ///< unit, in the mesh's frame, right-hand rule of the vertices
+  };
+
   /// Throws Error(invalid_argument) for an empty mesh, a vertex that is not finite or an index out
   /// of range; Error(backend) if Embree fails.
   explicit SurfaceScene(TriangleMesh mesh, const ExecConfig& exec = {});
@@ -46,13 +45,13 @@ class VIEWGAIN_EXPORT SurfaceScene {
   /// First hits in (0, max_range], hit i of ray i; as many as rays. Checks nothing. Fastest if rays
   /// that follow on one another start and look alike, since 4 to 16 are traced together; O(log n)
   /// of the triangles a ray.
-  void intersect(std::span<const SurfaceRay> rays, std::span<SurfaceHit> hits) const;
+  void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
   /// The same of one ray.
-  [[nodiscard]] SurfaceHit intersect(const SurfaceRay& ray) const;
+  [[nodiscard]] Hit intersect(const Ray& ray) const;
 
   /// Whether rays meet anything in (0, max_range], whatever it is, as it takes for shadows. Faster
   /// than first hits, and rays may look anywhere. As many answers as rays; checks nothing.
-  void block(std::span<const SurfaceRay> rays, std::span<bool> blocked) const;
+  void block(std::span<const Ray> rays, std::span<bool> blocked) const;
 
   /// The triangles that are traced.
   [[nodiscard]] const TriangleMesh& mesh() const noexcept;

@@ -12,17 +12,6 @@
 
 namespace viewgain {
 
-/// A ray of a view that ends in a voxel.
-struct VIEWGAIN_EXPORT ViewHit {
-  Index3 voxel{};                          ///< that the ray ends in
-  VoxelState state = VoxelState::unknown;  ///< unknown or occupied
-  const Belief* belief = nullptr;     ///< what is known of the voxel; null: nothing; lives with the
-                                      ///< scene
-  std::size_t ray = 0;                ///< pixel index, row by row, strided; as in trace()
-  double range = 0;                   ///< max(range of the entry point, min_range) [m]
-  std::array<double, 3> direction{};  ///< of the ray, unit length, world frame
-};
-
 /// A gain of the user's own: a number for what a view would see. GainEvaluator::evaluate() traces
 /// the views and hands over their hits. apps/examples/own_gain.cpp is one in thirty lines.
 ///
@@ -30,6 +19,17 @@ struct VIEWGAIN_EXPORT ViewHit {
 /// pose or, in two stages, twice.
 class VIEWGAIN_EXPORT ViewMeasure {
  public:
+  /// A ray of a view that ends in a voxel.
+  struct Hit {
+    Index3 voxel{};                          ///< that the ray ends in
+    VoxelState state = VoxelState::unknown;  ///< unknown or occupied
+    const Belief* belief = nullptr;  ///< what is known of the voxel; null: nothing; lives with the
+                                     ///< scene
+    std::size_t ray = 0;             ///< pixel index, row by row, strided; as in trace()
+    double range = 0;                ///< max(range of the entry point, min_range) [m]
+    std::array<double, 3> direction{};  ///< of the ray, unit length, world frame
+  };
+
   virtual ~ViewMeasure();
 
   /// `hits`: the rays that end in an unknown or occupied voxel, by tiles of 4x4 pixels, in the same
@@ -37,19 +37,7 @@ class VIEWGAIN_EXPORT ViewMeasure {
   /// are not among them. What it returns, in whatever unit, is the view's gain. What it throws ends
   /// the batch and reaches the caller.
   [[nodiscard]] virtual double measure(const Pose& T_world_camera,
-                                       std::span<const ViewHit> hits) const = 0;
-};
-
-/// What a ray of a view has of one voxel on its way through unknown space.
-struct VIEWGAIN_EXPORT ViewRun {
-  Index3 voxel{};                          ///< that the ray has a part of
-  VoxelState state = VoxelState::unknown;  ///< unknown, or occupied: the ray ends there
-  const Belief* belief = nullptr;     ///< what is known of the voxel; null: nothing; lives with the
-                                      ///< scene
-  std::size_t ray = 0;                ///< pixel index, row by row, strided; as in trace()
-  double begin = 0, end = 0;          ///< ranges along the ray [m]; occupied: both where it enters
-  double rate = 0;                    ///< hazard [1/m]; occupied: 0
-  std::array<double, 3> direction{};  ///< of the ray, unit length, world frame
+                                       std::span<const Hit> hits) const = 0;
 };
 
 /// A gain of the user's own that looks at all that a view's rays might pass, in order: they go on
@@ -60,6 +48,18 @@ struct VIEWGAIN_EXPORT ViewRun {
 /// pose or, in two stages, twice.
 class VIEWGAIN_EXPORT RunMeasure {
  public:
+  /// What a ray of a view has of one voxel on its way through unknown space.
+  struct Run {
+    Index3 voxel{};                          ///< that the ray has a part of
+    VoxelState state = VoxelState::unknown;  ///< unknown, or occupied: the ray ends there
+    const Belief* belief = nullptr;  ///< what is known of the voxel; null: nothing; lives with the
+                                     ///< scene
+    std::size_t ray = 0;             ///< pixel index, row by row, strided; as in trace()
+    double begin = 0, end = 0;       ///< ranges along the ray [m]; occupied: both where it enters
+    double rate = 0;                 ///< hazard [1/m]; occupied: 0
+    std::array<double, 3> direction{};  ///< of the ray, unit length, world frame
+  };
+
   virtual ~RunMeasure();
 
   /// `runs`: of the rays by tiles of 4x4 pixels, each ray's in one piece and in order of range; its
@@ -67,7 +67,7 @@ class VIEWGAIN_EXPORT RunMeasure {
   /// threads; valid during the call. What it returns, in whatever unit, is the view's gain. What it
   /// throws ends the batch and reaches the caller.
   [[nodiscard]] virtual double measure(const Pose& T_world_camera,
-                                       std::span<const ViewRun> runs) const = 0;
+                                       std::span<const Run> runs) const = 0;
 };
 
 }  // namespace viewgain

@@ -46,7 +46,7 @@ class Calibrate : public test::ProgramTest {
   // The readings of the frames are off by A sin(4 phase), as of a camera whose light is no sine.
   void spoil(const std::string& frames_dir, const std::string& sensor) const {
     FrameSequence frames = open_frames(dir / frames_dir);
-    frames.out_of_range = OutOfRangeMeaning::invalid;
+    frames.out_of_range = Sensor::OutOfRange::invalid;
     const std::vector<Eigen::Vector3d> rays = frames.sensor.camera.ray_table();
     const double period = unambiguous_range(frames.sensor.noise);
     for (std::size_t f = 0; f < frames.images.size(); ++f) {
@@ -66,7 +66,7 @@ class Calibrate : public test::ProgramTest {
   // How far readings are off along their rays, RMS.
   [[nodiscard]] double off(const std::string& frames_dir, const std::string& sensor) const {
     FrameSequence frames = open_frames(dir / frames_dir, (dir / sensor).string());
-    frames.out_of_range = OutOfRangeMeaning::invalid;
+    frames.out_of_range = Sensor::OutOfRange::invalid;
     const std::vector<Eigen::Vector3d> rays = frames.sensor.camera.ray_table();
     double squares = 0;
     int readings = 0;

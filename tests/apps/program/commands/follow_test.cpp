@@ -348,7 +348,7 @@ TEST_F(Follow, NoViewIsProposedTwiceToAnArmThatFails) {
       for (std::size_t k = 0; k < 12; ++k) {
         best.m[k] = next["next"][0]["T_world_camera"][k / 4][k % 4].get<double>();
       }
-      EXPECT_FALSE(is_among(best, asked, PoseTolerance{})) << kind << " " << step;
+      EXPECT_FALSE(is_among(best, asked, ReachRegion::Tolerance{})) << kind << " " << step;
       asked.push_back(best);
       write(name(step) + ".depth.png", kind == "misses" ? images[0] : dark);
       write(name(step) + ".pose.txt", kind == "misses"         ? poses[0]

@@ -4,7 +4,7 @@
 
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
-#include "viewgain/grid/region_statistics.hpp"
+#include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
@@ -33,8 +33,8 @@ TEST_F(InfoRegion, SaysHowWellAPartIsKnown) {
   EXPECT_EQ(part.at("free"), 4);
   EXPECT_EQ(part.at("unknown"), 4 * 100 - 8);
   EXPECT_EQ(part.at("hits"), 28);
-  const RegionStatistics expected = region_statistics(
-      load_vdb(dir / "map.vdb"), {{0.025, 0, 0}, {0.065, 0.1, 0.1}}, Criterion::trace);
+  const GridStatistics expected =
+      load_vdb(dir / "map.vdb").statistics({{0.025, 0, 0}, {0.065, 0.1, 0.1}}, Criterion::trace);
   EXPECT_EQ(part.at("entropy_removed"), expected.entropy_removed);
   const double variance = (1e-5 + 0.5e-5 + 1e-5 / 3) / 3 + 1e-4 / 12;
   EXPECT_NEAR(part.at("mean_sigma").get<double>(), std::sqrt(variance), 1e-9);

@@ -23,9 +23,9 @@ namespace viewgain {
 
 /// How a folder is watched.
 struct VIEWGAIN_EXPORT FrameWatchConfig {
-  std::string sensor{};                             ///< as of open_frames()
-  std::optional<double> depth_scale{};              ///< likewise [m per unit]
-  std::optional<OutOfRangeMeaning> out_of_range{};  ///< nothing: the folder's own
+  std::string sensor{};                              ///< as of open_frames()
+  std::optional<double> depth_scale{};               ///< likewise [m per unit]
+  std::optional<Sensor::OutOfRange> out_of_range{};  ///< nothing: the folder's own
   /// Each frame needs its mask in every one of them, in any order; somebody may be writing into
   /// these, too.
   std::vector<MaskFolder> masks{};

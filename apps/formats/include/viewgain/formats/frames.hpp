@@ -16,7 +16,7 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/frame_verdict.hpp"
 #include "viewgain/core/pose.hpp"
-#include "viewgain/core/range_corrector.hpp"
+#include "viewgain/core/range_calibration.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/png.hpp"
@@ -50,7 +50,7 @@ struct VIEWGAIN_EXPORT FrameSequence {
   std::vector<FrameFault> pose_faults;  ///< one a pose: lost_pose, no_pose, or nothing against it
   /// What 65535 says in the images: by the sensor's own word, else carve in our own layout and
   /// invalid in the recorded one. May be set before frames are loaded.
-  OutOfRangeMeaning out_of_range = OutOfRangeMeaning::carve;
+  Sensor::OutOfRange out_of_range = Sensor::OutOfRange::carve;
   std::size_t orthonormalized = 0;  ///< rotations that were a little off
   /// Of the sensor as the folder was opened with it, null if that has no table: spares load_frame()
   /// the rays of the sensor's camera. Where the sensor has been changed it does not count.

@@ -30,7 +30,7 @@ struct VIEWGAIN_EXPORT MapModelConfig {
   IntegrationConfig
       integration{};  ///< how frames change it; support_plane is ignored: surroundings has it
   /// Takes flying pixels out of the frames; nothing: they are taken as they are.
-  std::optional<JumpEdgeConfig> jump_edges = JumpEdgeConfig{};
+  std::optional<JumpEdgeFilter::Config> jump_edges = JumpEdgeFilter::Config{};
   /// They block rays and bodies, and readings of them carve but do not hit.
   Surroundings surroundings{};
   HazardConfig hazard{};  ///< of unknown space, for the surface and the combined gain

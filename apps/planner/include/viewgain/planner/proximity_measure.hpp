@@ -21,7 +21,7 @@ class VIEWGAIN_EXPORT ProximityMeasure : public RunMeasure {
   explicit ProximityMeasure(const HazardField& hazard);
 
   [[nodiscard]] double measure(const Pose& T_world_camera,
-                               std::span<const ViewRun> runs) const override;
+                               std::span<const RunMeasure::Run> runs) const override;
 
  private:
   const HazardField& hazard_;

@@ -33,18 +33,19 @@
 namespace viewgain {
 
 /// What a planner is set up with, each setting in one place. The body that must have room is the
-/// sensor's (Sensor::body_size, T_flange_camera; without a size SensorBody's).
+/// sensor's (Sensor::body_size, T_flange_camera; without a size FeasibilityConfig::Body's).
 struct VIEWGAIN_EXPORT PlannerConfig {
   /// A workspace that begins at the table has no voxels under it that stay unknown, which the
   /// paper's gain would count.
   GridConfig grid{};
-  Surroundings surroundings{};                                  ///< the table, known obstacles
-  std::optional<JumpEdgeConfig> jump_edges = JumpEdgeConfig{};  ///< nothing: frames are taken as is
-  HazardConfig hazard{};                                        ///< of unknown space
-  GainConfig gain{};                                            ///< what ranks views
-  ReachRegion reach{};              ///< its list of poses, if it has one, is among the candidates
-  double clearance = 0;             ///< round the body [m]
-  PoseTolerance taken_tolerance{};  ///< when two poses are the same
+  Surroundings surroundings{};  ///< the table, known obstacles
+  std::optional<JumpEdgeFilter::Config> jump_edges =
+      JumpEdgeFilter::Config{};  ///< nothing: frames are taken as is
+  HazardConfig hazard{};         ///< of unknown space
+  GainConfig gain{};             ///< what ranks views
+  ReachRegion reach{};           ///< its list of poses, if it has one, is among the candidates
+  double clearance = 0;          ///< round the body [m]
+  ReachRegion::Tolerance taken_tolerance{};                    ///< when two poses are the same
   double max_near_share = FeasibilityConfig{}.max_near_share;  ///< as there
   /// False: every candidate is possible but those that were taken or tried.
   bool check_feasibility = true;

@@ -10,10 +10,6 @@
 
 namespace viewgain {
 
-/// The number of threads that ExecConfig::num_threads stands for: all hardware threads if 0. Throws
-/// Error(invalid_argument) if it is negative or over 1024.
-[[nodiscard]] VIEWGAIN_EXPORT int thread_count(int num_threads);
-
 /// Reusable threads for data-parallel loops. The caller takes part. A call that finds the pool
 /// busy, from another thread or from inside a loop body, runs its whole loop on its caller, so
 /// nested and concurrent use cannot deadlock. Thread safety: every member may be called from any
