@@ -27,6 +27,7 @@ constexpr double kMaxReach = BrickNeighborhood::kMaxReach;
 constexpr double kSupportRadius = 4.0;  // pooling lengths
 constexpr double kMostHeight = 6.0;     // half of a column's [voxels]
 constexpr int kSteps = 3;               // of a point towards its column's mean
+constexpr double kFloor = 0.2;          // of a point's sigma [voxels]; perf/results/honesty.md
 
 void check(const FusedPointsConfig& config) {
   const auto need = [](bool ok, const char* name, double value) {
@@ -165,7 +166,12 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
       seed.information = own.information;
       seed.covariance = own.covariance;
       seed.hits = own.hits;
-      if (pooled) pool_column(bricks, around, V, own, config, lengths.column_radius, seed);
+      if (pooled && around.is_near(seed.position)) {
+        // The voxel was given its readings from as far as noise carries: the mean of a few may lie
+        // so far off the surface that a column round it would miss that.
+        seed.position = center + (own.mean / V).cwiseMax(-0.5).cwiseMin(0.5);
+        pool_column(bricks, around, V, own, config, lengths.column_radius, seed);
+      }
       seed.is_near = around.is_near(seed.position);
     }
   });
@@ -200,7 +206,7 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
     }
   });
 
-  const double floor = config.floor_sigma.value_or(V / std::sqrt(12.0));
+  const double floor = config.floor_sigma.value_or(kFloor * V);
   const Eigen::Matrix3d R = T_world_grid.rotation();
   std::vector<FusedPoint> points;
   points.reserve(kept.size());
