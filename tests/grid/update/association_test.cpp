@@ -239,7 +239,7 @@ TEST(Association, WallsStayThinAndThinThingsStay) {
     return thickness(grid);
   };
   for (const double z : {0.0004, 0.0025, 0.005, 0.0075}) {  // in the voxel
-    EXPECT_LE(seen(z, false, 40), 2.6) << z;
+    EXPECT_LE(seen(z, false, 40), 1.8) << z;
     const double plate = seen(z, true, 40);
     EXPECT_LE(plate, 2.6) << z;
     EXPECT_GE(plate, 1.0) << z;
