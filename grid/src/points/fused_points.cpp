@@ -27,7 +27,6 @@ constexpr double kMaxReach = BrickNeighborhood::kMaxReach;
 constexpr double kSupportRadius = 4.0;  // pooling lengths
 constexpr double kMostHeight = 6.0;     // half of a column's [voxels]
 constexpr int kSteps = 3;               // of a point towards its column's mean
-constexpr double kFloor = 0.2;          // of a point's sigma [voxels]; perf/results/honesty.md
 
 void check(const FusedPointsConfig& config) {
   const auto need = [](bool ok, const char* name, double value) {
@@ -206,7 +205,7 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
     }
   });
 
-  const double floor = config.floor_sigma.value_or(kFloor * V);
+  const double floor = config.floor_sigma.value_or(V / std::sqrt(12.0));
   const Eigen::Matrix3d R = T_world_grid.rotation();
   std::vector<FusedPoint> points;
   points.reserve(kept.size());

@@ -166,7 +166,7 @@ TEST(FusedPoints, PerVoxelIsTheFusedPositionOfEachOccupiedVoxel) {
   }
   ASSERT_EQ(points.size(), expected.size());
   ASSERT_GT(points.size(), 1000U);
-  const double floor = grid.voxel_size() * grid.voxel_size() / 25;
+  const double floor = grid.voxel_size() * grid.voxel_size() / 12;
   for (const FusedPoint& point : points) {
     const auto near = std::find_if(expected.begin(), expected.end(), [&](const Vector3d& p) {
       return (p - vector(point.position)).norm() < 1e-9;
