@@ -42,7 +42,7 @@ Stretch clipped(const Box& box, const Eigen::Vector3d& origin, const Eigen::Vect
   return stretch;
 }
 
-// Does the map's update give the reading to surface that is known? As associate() of the update:
+// Does the map's update give the reading to surface that is known? As associate() from the reading:
 // noise carried it off, and it is no meeting.
 bool is_of_known_surface(const BeliefGrid& grid, const Eigen::Vector3d& p_grid,
                          const Eigen::Vector3d& direction, double range, double sigma) {

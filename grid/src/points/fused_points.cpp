@@ -165,7 +165,12 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
       seed.information = own.information;
       seed.covariance = own.covariance;
       seed.hits = own.hits;
-      if (pooled) pool_column(bricks, around, V, own, config, lengths.column_radius, seed);
+      if (pooled && around.is_near(seed.position)) {
+        // The voxel was given its readings from as far as noise carries: the mean of a few may lie
+        // so far off the surface that a column round it would miss that.
+        seed.position = center + (own.mean / V).cwiseMax(-0.5).cwiseMin(0.5);
+        pool_column(bricks, around, V, own, config, lengths.column_radius, seed);
+      }
       seed.is_near = around.is_near(seed.position);
     }
   });

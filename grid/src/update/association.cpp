@@ -67,8 +67,9 @@ std::uint32_t VoxelSupport::Reader::at(Index3 voxel) {
   return belief != nullptr ? belief->hits : 0;
 }
 
-void associate(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
-               const VoxelSupport& support, ThreadPool& pool, std::vector<Hit>& by_pixel) {
+void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places,
+               const BlockLattice& lattice, double voxel_size, const VoxelSupport& support,
+               ThreadPool& pool, std::vector<Hit>& by_pixel) {
   const Readings& pixels = frame.readings;
   const Eigen::Matrix3d R_grid_readings = frame.T_grid_readings.rotation();
   pool.for_each_chunk(by_pixel.size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
@@ -78,7 +79,7 @@ void associate(const PlacedFrame& frame, const BlockLattice& lattice, double vox
       if (hit.offset >= kBlockVoxels) continue;
       const double sigma = pixels.sigmas(i).axial / voxel_size;
       if (sigma < kNoisySigma) continue;
-      const Eigen::Vector3d p = frame.T_grid_readings * pixels.point(i) / voxel_size;
+      const Eigen::Vector3d& p = places[i];
       const Eigen::Vector3d direction = R_grid_readings * pixels.direction(i);
       const double range = (pixels.point(i) - pixels.origin()).norm() / voxel_size;
       const double reach = std::min(kTaperSigmas * sigma, kFarthest);

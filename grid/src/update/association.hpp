@@ -25,7 +25,7 @@ inline constexpr double kNoisySigma = 0.5;
 class VoxelSupport {
  public:
   /// Of the map, which must stay as it is, and of the frame's hits in these blocks, sorted by key,
-  /// each hit in the voxel that it lies in.
+  /// each hit in its place's voxel.
   void gather(const BeliefGrid& map, const BlockLattice& lattice, std::span<const HitBlock> blocks,
               std::span<const Hit> hits, ThreadPool& pool);
 
@@ -52,12 +52,13 @@ class VoxelSupport {
 };
 
 /// Gives each noisy reading, which noise may have carried out of its voxel, to the voxel with the
-/// largest n · (1 - (t / reach)²): n its support, t the distance along the ray, sought at half
-/// voxels' steps, reach 3 sigma_ax, at most 8 voxels. It stays in its own voxel unless another has
-/// more than twice its value; of equal ones the nearer counts, then the one nearer to the camera.
-/// Else the readings of one wall would fill all voxels within their noise. `by_pixel` holds each
-/// reading's own voxel.
-void associate(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
-               const VoxelSupport& support, ThreadPool& pool, std::vector<Hit>& by_pixel);
+/// largest n · (1 - (t / reach)²): n its support, t the distance from the reading's place, one of
+/// `places` [voxels], along the ray, sought at half voxels' steps, reach 3 sigma_ax, at most 8
+/// voxels. It stays in its place's voxel unless another has more than twice its value; of equal
+/// ones the nearer counts, then the one nearer to the camera. Else the readings of one wall would
+/// fill all voxels within their noise. `by_pixel` holds the voxel of each place.
+void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places,
+               const BlockLattice& lattice, double voxel_size, const VoxelSupport& support,
+               ThreadPool& pool, std::vector<Hit>& by_pixel);
 
 }  // namespace viewgain::detail

@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 
+#include "surface_at.hpp"
 #include "viewgain/support/log_odds_code.hpp"
 
 namespace viewgain::detail {
@@ -39,16 +40,26 @@ void sort_by_block(std::vector<Hit>& hits, std::vector<Hit>& scratch) {
 }  // namespace
 
 void FrameHits::find(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
-                     ThreadPool& pool) {
+                     bool on_surface, ThreadPool& pool) {
   const Readings& pixels = frame.readings;
   by_pixel_.resize(pixels.size());
+  places_.resize(pixels.size());
   pool.for_each_chunk(pixels.size(), kHitChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       by_pixel_[i].offset = kBlockVoxels;
       if (pixels.kind(i) != PixelKind::reading) continue;
-      const std::optional<Index3> voxel =
-          lattice.voxel_at(frame.T_grid_readings * pixels.point(i) / voxel_size);
+      places_[i] = frame.T_grid_readings * pixels.point(i) / voxel_size;
+      std::optional<Index3> voxel = lattice.voxel_at(places_[i]);
       if (!voxel) continue;
+      if (on_surface && pixels.sigmas(i).axial >= kNoisySigma * voxel_size) {
+        if (const auto surface = surface_at(pixels, i)) {
+          const Eigen::Vector3d place = frame.T_grid_readings * *surface / voxel_size;
+          if (const auto there = lattice.voxel_at(place)) {
+            places_[i] = place;
+            voxel = there;
+          }
+        }
+      }
       by_pixel_[i] = {lattice.key(*voxel), static_cast<std::uint32_t>(i), block_offset(*voxel)};
     }
   });
@@ -64,7 +75,7 @@ void FrameHits::associate(const PlacedFrame& frame, const BlockLattice& lattice,
     return;
   }
   support_.gather(map, lattice, blocks_, hits_, pool);
-  detail::associate(frame, lattice, voxel_size, support_, pool, by_pixel_);
+  detail::associate(frame, places_, lattice, voxel_size, support_, pool, by_pixel_);
   sort();
 }
 

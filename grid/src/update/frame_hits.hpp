@@ -17,10 +17,11 @@ namespace viewgain::detail {
 /// Readings of a frame that lie in the workspace, by block and within a block in pixel order.
 class FrameHits {
  public:
-  /// Each reading counts for the voxel that it lies in: the paper's eq. (4).
+  /// Each reading counts for the voxel that it lies in: the paper's eq. (4). With `on_surface`
+  /// noisy ones count for that of their surface_at(), unless it is outside the workspace.
   void find(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
-            ThreadPool& pool);
-  /// After find(): noisy readings count for the best supported voxel on their ray (associate()).
+            bool on_surface, ThreadPool& pool);
+  /// After find(): noisy readings count for the best supported voxel along their ray (associate()).
   void associate(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
                  const BeliefGrid& map, ThreadPool& pool);
 
@@ -35,7 +36,8 @@ class FrameHits {
  private:
   void sort();
 
-  std::vector<Hit> by_pixel_;  ///< one a pixel; offset kBlockVoxels where there is no hit
+  std::vector<Hit> by_pixel_;            ///< one a pixel; offset kBlockVoxels where there is no hit
+  std::vector<Eigen::Vector3d> places_;  ///< one a pixel, where it is taken to be [voxels]
   std::vector<Hit> hits_, scratch_;
   std::vector<HitBlock> blocks_;
   VoxelSupport support_;

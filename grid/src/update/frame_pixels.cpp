@@ -27,6 +27,7 @@ CameraPlane::CameraPlane(double height, const Pose& T_world_camera)
 
 FramePixels::FramePixels(const Sensor& sensor)
     : Readings(sensor), own_pose_sigma_(sensor.pose_sigma) {
+  row_length_ = sensor_.camera.width;
   rays_ = sensor_.camera.ray_table();
   norms_.reserve(rays_.size());
   for (const Eigen::Vector3d& ray : rays_) norms_.push_back(ray.norm());

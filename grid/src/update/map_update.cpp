@@ -37,7 +37,7 @@ IntegrationReport MapUpdate::run(BeliefGrid& grid, const PlacedFrame& frame,
   Impl& m = *impl_;
   const BlockLattice lattice(grid.min_index(), grid.dims());
   const double voxel_size = grid.voxel_size();
-  m.hits.find(frame, lattice, voxel_size, m.pool);
+  m.hits.find(frame, lattice, voxel_size, !m.literal, m.pool);
   if (!m.literal) m.hits.associate(frame, lattice, voxel_size, grid, m.pool);
   ApplyCounts counts;
   if (camera != nullptr) {

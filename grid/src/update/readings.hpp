@@ -26,6 +26,8 @@ class Readings {
  public:
   [[nodiscard]] const Sensor& sensor() const { return sensor_; }
   [[nodiscard]] std::size_t size() const { return rays_.size(); }
+  /// Pixels in a row of the image; 0 for a cloud.
+  [[nodiscard]] int row_length() const { return row_length_; }
   [[nodiscard]] PixelKind kind(std::size_t pixel) const { return kinds_[pixel]; }
   [[nodiscard]] const std::vector<PixelKind>& kinds() const { return kinds_; }
 
@@ -55,6 +57,7 @@ class Readings {
   [[nodiscard]] PixelKind sort_by_range(std::size_t pixel, double range);
 
   Sensor sensor_;
+  int row_length_ = 0;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> rays_;
   std::vector<double> norms_;  ///< of the rays

@@ -234,7 +234,7 @@ TEST(Oracle, NeedsTheObject) {
 double proximity_of(const SurfaceModel& model, const Sensor& sensor, const Pose& pose) {
   const BeliefGrid& grid = model.grid();
   const HazardField hazard(grid.snapshot());
-  const double reach = 5 * hazard.model().decay_length, step = 0.05 * grid.voxel_size();
+  const double reach = 5 * hazard.model().decay_length, step = 0.02 * grid.voxel_size();
   const int stride = coarse_stride(sensor.camera);
   double sum = 0;
   for (int v = 0; v < sensor.camera.height; v += stride) {

@@ -41,10 +41,11 @@ Sensor plane_sensor() {
 }
 
 // A frontal plane as a noisy sensor sees it, `frames` times.
-BeliefGrid noisy_plane(double voxel, int frames, const Pose& T_world_grid = {}) {
+BeliefGrid noisy_plane(double voxel, int frames, const Pose& T_world_grid = {},
+                       Occupancy occupancy = Occupancy::probabilistic) {
   const Sensor sensor = plane_sensor();
   BeliefGrid grid({voxel, {{-0.06, -0.06, 0.34}, {0.06, 0.06, 0.46}}, T_world_grid, 0.0072});
-  FrameIntegrator integrator(sensor);
+  FrameIntegrator integrator(sensor, {Carve::cones, occupancy, {}});
   RandomValues random(7);
   for (int i = 0; i < frames; ++i) {
     DepthFrame frame{64, 64, {}};
@@ -87,7 +88,8 @@ TEST(FusedPoints, PooledStaysHonestAsReadingsAccumulateLiteralDoesNot) {
       const double pooled = plane_consistency(fused_points(grid));
       EXPECT_LT(pooled, 2.0) << voxel << " " << frames;
       if (frames == 30) {
-        EXPECT_GT(plane_consistency(fused_points(grid, literal)), 2.0) << voxel;
+        const BeliefGrid of_paper = noisy_plane(voxel, frames, {}, Occupancy::literal);
+        EXPECT_GT(plane_consistency(fused_points(of_paper, literal)), 2.0) << voxel;
       }
     }
   }
@@ -233,7 +235,7 @@ SlowPoint slow_point(const std::vector<SlowBelief>& beliefs, const SlowBelief& o
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
       squares / weight - sum / weight * (sum / weight).transpose());
   const Vector3d n = solver.eigenvectors().col(0);
-  Vector3d p = own.mean();
+  Vector3d p = own.center + (own.mean() - own.center).cwiseMax(-0.5 * cube).cwiseMin(0.5 * cube);
   const double sigma = std::sqrt(own.hits * n.dot(own.information.inverse() * n));
   const double half_height = std::clamp(config.column_sigmas * sigma, cube, 6 * cube);
   Eigen::Matrix3d covariance;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -61,6 +62,47 @@ bool holding_pixel(const PinholeCamera& camera, const Eigen::Vector3d& p, int& u
   return (ray - p / p.z()).norm() < 1e-6;
 }
 
+// The reading put along the normal onto the plane through the readings of 5x5 pixels, by a
+// factorisation; the normal is the cross product of differences on the plane. Camera's frame.
+std::optional<Eigen::Vector3d> on_surface(const Sensor& sensor, const DepthFrame& frame, int u0,
+                                          int v0) {
+  const PinholeCamera& camera = sensor.camera;
+  const double z0 = frame.at(u0, v0);
+  const Eigen::Vector3d reading = z0 * camera.ray(u0, v0);
+  const MeasurementSigmas s = sensor.sigmas(reading.norm());
+  std::vector<Eigen::Vector3d> near;  // 1, column, row, then depth
+  std::vector<double> depths;
+  for (int v = std::max(0, v0 - 2); v <= std::min(camera.height - 1, v0 + 2); ++v) {
+    for (int u = std::max(0, u0 - 2); u <= std::min(camera.width - 1, u0 + 2); ++u) {
+      if (!pixel_at(sensor, frame, u, v).reading) continue;
+      const double across = std::hypot(u - u0, v - v0) * z0 / std::min(camera.fx, camera.fy);
+      const double dz = frame.at(u, v) - z0;
+      if (std::abs(dz) > 2 * across + 3 * std::sqrt(2.0) * s.axial) continue;
+      near.emplace_back(1, u - u0, v - v0);
+      depths.push_back(dz);
+    }
+  }
+  if (near.size() < 6) return std::nullopt;
+  const auto count = static_cast<Eigen::Index>(near.size());
+  const Eigen::MatrixX3d A = Eigen::Map<Eigen::Matrix3Xd>(near[0].data(), 3, count).transpose();
+  const auto qr = A.colPivHouseholderQr();
+  if (qr.rank() < 3) return std::nullopt;
+  const Eigen::Vector3d fit = qr.solve(Eigen::Map<Eigen::VectorXd>(depths.data(), count));
+  const auto on_plane = [&](double i, double j) -> Eigen::Vector3d {
+    const Eigen::Vector3d ray = reading / z0 + Eigen::Vector3d(i / camera.fx, j / camera.fy, 0);
+    return ray * (z0 + fit[0] + fit[1] * i + fit[2] * j);
+  };
+  constexpr double h = 1e-3;  // pixels
+  const Eigen::Vector3d away =
+      (on_plane(h, 0) - on_plane(-h, 0)).cross(on_plane(0, h) - on_plane(0, -h)).normalized();
+  const double cosine = away.dot(reading.normalized());
+  if (cosine < 0.1) return std::nullopt;
+  const double sigma = std::hypot(cosine * s.axial, std::sqrt(1 - cosine * cosine) * s.lateral);
+  const double distance = away.dot(on_plane(0, 0) - reading);
+  if (std::abs(distance) > 3 * sigma) return std::nullopt;
+  return reading + distance * away;
+}
+
 }  // namespace
 
 VoxelOracle::VoxelOracle(const BeliefGrid& grid)
@@ -97,18 +139,18 @@ std::optional<std::size_t> VoxelOracle::voxel_at(const Eigen::Vector3d& p) const
   return position(voxel);
 }
 
-// Lists the values along the ray, and takes the largest of those more than twice the own one's.
-std::size_t VoxelOracle::best_supported(const Eigen::Vector3d& point, const Eigen::Vector3d& ray,
+// Lists the values along the ray, and takes the largest of those more than twice the start's.
+std::size_t VoxelOracle::best_supported(const Eigen::Vector3d& start, const Eigen::Vector3d& ray,
                                         double sigma,
                                         const std::map<std::size_t, double>& support) const {
   const double reach = std::min(3.0 * sigma, 8.0 * voxel_size_);
-  const std::size_t own = *voxel_at(point);
+  const std::size_t own = *voxel_at(start);
   std::vector<std::array<double, 3>> found;  // value, -|t|, -t
   std::vector<std::size_t> voxels;
   for (int step = -16; step <= 16; ++step) {
     const double t = 0.5 * step * voxel_size_;
     if (step == 0 || !(std::abs(t) < reach)) continue;
-    const std::optional<std::size_t> voxel = voxel_at(point + t * ray);
+    const std::optional<std::size_t> voxel = voxel_at(start + t * ray);
     if (!voxel || !support.contains(*voxel)) continue;
     found.push_back({support.at(*voxel) * (1 - t * t / (reach * reach)), -std::abs(t), -t});
     voxels.push_back(*voxel);
@@ -178,6 +220,7 @@ void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
   }
 
   std::vector<std::optional<std::size_t>> own(pixels.size());  // voxel that a reading lies in
+  std::vector<Eigen::Vector3d> starts(pixels.size());          // where its support is sought
   std::vector<Eigen::Vector3d> points(pixels.size());
   std::map<std::size_t, double> support;
   for (const auto& [voxel, fused] : fused_) {
@@ -188,7 +231,14 @@ void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
     const int u = static_cast<int>(n) % camera.width, v = static_cast<int>(n) / camera.width;
     points[n] = T_grid_camera * (camera.ray(u, v) * double{frame.at(u, v)});
     own[n] = voxel_at(points[n]);
-    if (own[n]) ++support[*own[n]];
+    if (!own[n]) continue;
+    starts[n] = points[n];
+    if (config.occupancy != Occupancy::literal &&
+        sensor.sigmas(pixels[n].range).axial >= 0.5 * voxel_size_) {
+      const auto surface = on_surface(sensor, frame, u, v);
+      if (surface && voxel_at(T_grid_camera * *surface)) starts[n] = T_grid_camera * *surface;
+    }
+    ++support[*voxel_at(starts[n])];
   }
 
   std::vector<bool> is_hit(steps_.size(), false);
@@ -198,7 +248,7 @@ void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
     const MeasurementSigmas s = sensor.sigmas(pixels[n].range);
     std::size_t voxel = *own[n];
     if (config.occupancy != Occupancy::literal && s.axial >= 0.5 * voxel_size_) {
-      voxel = best_supported(points[n], rays[n], s.axial, support);
+      voxel = best_supported(starts[n], rays[n], s.axial, support);
     }
     if (voxel != *own[n]) ++moved_;
     is_hit[voxel] = true;

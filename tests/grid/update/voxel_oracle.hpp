@@ -48,7 +48,7 @@ class VoxelOracle {
   [[nodiscard]] Eigen::Vector3d center(Index3 voxel) const;
   [[nodiscard]] Index3 voxel_of(std::size_t position) const;
   [[nodiscard]] std::optional<std::size_t> voxel_at(const Eigen::Vector3d& p_grid) const;
-  [[nodiscard]] std::size_t best_supported(const Eigen::Vector3d& point, const Eigen::Vector3d& ray,
+  [[nodiscard]] std::size_t best_supported(const Eigen::Vector3d& start, const Eigen::Vector3d& ray,
                                            double sigma,
                                            const std::map<std::size_t, double>& support) const;
 

@@ -60,10 +60,10 @@ struct VIEWGAIN_EXPORT IntegrationReport {
 /// bit for any number of threads and under each instruction set.
 ///
 /// A reading hits the voxel that it lies in. Where its sigma_ax is at least half a voxel, noise may
-/// have carried it there: it hits the best supported voxel on its ray within 3 sigma_ax, that with
-/// the most readings of map and frame, near ones before far ones, if that has more than twice the
-/// support of its own. So noise does not make walls thick. Occupancy::literal leaves it where it is
-/// (the paper's eq. 4).
+/// have carried it there: it is put on the plane through the 5×5 pixels around, and hits the best
+/// supported voxel on its ray within 3 sigma_ax of there, that with the most readings of map and
+/// frame, near ones before far ones, if it has more than twice the support of the plane's. So noise
+/// does not make walls thick. Occupancy::literal leaves it where it is (the paper's eq. 4).
 ///
 /// Thread safety: one call at a time on one integrator and on one grid.
 class VIEWGAIN_EXPORT FrameIntegrator {

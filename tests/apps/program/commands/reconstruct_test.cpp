@@ -276,7 +276,7 @@ TEST_F(Reconstruct, ObjectLargerThanTheWorkspaceEnds) {
   const json result =
       reconstruct("cube.off", {"--max-views", "80", "--pictures", "off", "--size", "0.3",
                                "--workspace", "-0.1,-0.1,0,0.1,0.1,0.17", "--distance", "0.6",
-                               "--noise", "off", "--gain", "paper", "--stop-gain", "1"});
+                               "--noise", "off", "--gain", "paper", "--stop-gain", "1.1"});
   EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
   EXPECT_GT(result["coverage"].get<double>(), 0.02);
   EXPECT_LT(result["coverage"].get<double>(), 0.6);
