@@ -128,7 +128,7 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
         const Index3 voxel = voxel_at(eye + t * direction);
         if (grid.state(voxel) != VoxelState::unknown) continue;
         const double distance = hazard.distance(voxel);
-        sums.expected[class_at(distance)] += model.rate(distance) * step;
+        sums.expected[class_at(distance)] += hazard.start_rate(voxel) * step;
       }
       if (!is_reading || frame.shows_known(i) ||
           sees_plane(static_cast<double>(z) * rays_[i], range)) {

@@ -78,7 +78,7 @@ TEST(HazardCalibration, CountsWhatAFineWalkCounts) {
           const auto v = grid.index_of(kFromFront.translation() + t * u);
           if (!v || grid.state(*v) != VoxelState::unknown) continue;
           const double d = field.distance(*v);  // has a test of its own
-          const double rate = field.model().rate(d) * step;
+          const double rate = field.start_rate(*v) * step;
           expected[HazardCounters::class_of(d / lambda)] += rate;
           all += rate;
         }

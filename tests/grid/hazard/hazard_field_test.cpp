@@ -66,12 +66,125 @@ TEST(HazardField, DistancesAreThoseOfBruteForce) {
       }
       ++finite;
       EXPECT_NEAR(field.distance(v), expected, 1e-12);
-      EXPECT_NEAR(field.rate(v), 0.5 + 30.0 * std::exp(-expected / model.decay_length), 1e-5);
-      EXPECT_EQ(field.is_new(v), expected > 2 * kVoxel + 1e-9);
+      const double c = field.continuation(v);
+      EXPECT_NEAR(field.rate(v), 0.5 + 30.0 * c * std::exp(-expected / model.decay_length), 1e-5);
+      EXPECT_NEAR(field.start_rate(v), field.rate(v), 1e-5);
+      EXPECT_EQ(field.is_new(v), expected > 1.2 * kVoxel + 1e-9);
     }
   }
   EXPECT_EQ(checks, 8000U);
   EXPECT_GT(finite, 3000U);
+}
+
+// What HazardConfig::Model::continuation() is at a voxel for each of the nearest cells with
+// evidence, from the definition; the near box's faces go on beyond it.
+std::vector<double> continuations(const BeliefGrid& grid, const HazardField& field, Index3 voxel) {
+  const int shift = field.cell_shift();
+  const VoxelBox box = field.near_box();
+  const auto cell_of = [&](Index3 v) {
+    return Eigen::Vector3i(v.x >> shift, v.y >> shift, v.z >> shift);
+  };
+  const VoxelBox workspace = VoxelBox::from_dims(grid.min_index(), grid.dims());
+  const auto share = [&](Eigen::Vector3i cell) {  // free voxels of those in the workspace
+    double free = 0, all = 0;
+    for (int i = 0; i < 1 << (3 * shift); ++i) {
+      const int edge = 1 << shift;
+      const Index3 v{(cell.x() << shift) + i % edge, (cell.y() << shift) + i / edge % edge,
+                     (cell.z() << shift) + i / edge / edge};
+      if (!workspace.contains(v)) continue;
+      all += 1;
+      free += grid.state(v) == VoxelState::free;
+    }
+    return free / all;
+  };
+  const Eigen::Vector3i low = cell_of(box.min),
+                        high = cell_of({box.max.x - 1, box.max.y - 1, box.max.z - 1});
+  const auto around = [&](const Eigen::Vector3i& cell) {
+    const Eigen::Vector3i middle = cell.cwiseMax(low).cwiseMin(high);
+    double sum = 0;
+    for (int i = 0; i < 343; ++i) {
+      const Eigen::Vector3i by(i % 7 - 3, i / 7 % 7 - 3, i / 49 - 3);
+      sum += share((middle + by).cwiseMax(low).cwiseMin(high));
+    }
+    return sum;
+  };
+  const Eigen::Vector3i here = cell_of(voxel);
+  int nearest = 1 << 30;
+  std::vector<Eigen::Vector3i> cells;
+  grid.for_each_belief([&](Index3 v, const Belief& belief) {
+    if (belief.hits < 3) return;
+    const int squared = (cell_of(v) - here).squaredNorm();
+    if (squared < nearest) nearest = squared, cells.clear();
+    if (squared == nearest) cells.push_back(cell_of(v));
+  });
+  std::vector<double> values;
+  for (const Eigen::Vector3i& cell : cells) {
+    Eigen::Vector3d n;
+    for (int a = 0; a < 3; ++a) {
+      const Eigen::Vector3i step = Eigen::Vector3i::Unit(a);
+      n[a] = around(cell + step) - around(cell - step);
+    }
+    const Eigen::Vector3d away = (here - cell).cast<double>();
+    const double product = n.norm() * away.norm();
+    values.push_back(
+        HazardConfig::Model::continuation(product > 1e-9 ? n.dot(away) / product : 0.0));
+  }
+  return values;
+}
+
+TEST(HazardField, ContinuationsAreThoseOfTheDefinition) {
+  std::mt19937 random(27);
+  std::size_t checks = 0, tilted = 0;
+  for (int shift = 0; shift < 3; ++shift) {
+    BeliefGrid grid = grid_of({29, 22, 26});
+    // Free on one side of a slope.
+    const Index3 base = grid.min_index();
+    for (int i = 0; i < 29 * 22 * 26; ++i) {
+      const Index3 at{i % 29, i / 29 % 22, i / 29 / 22};
+      if (at.x + 2 * at.y - at.z > 20)
+        grid.set({base.x + at.x, base.y + at.y, base.z + at.z}, -1.0F, {});
+    }
+    for (int k = 0; k < 12; ++k) put(grid, any_voxel(grid, random), 3);
+    const HazardConfig::Model model{30.0, 4 * kVoxel * (1 << shift), 0.5};
+    const HazardField field(grid.snapshot(), {.model = model});
+    ASSERT_EQ(field.cell_shift(), shift);
+    for (int k = 0; k < 150; ++k) {
+      const Index3 v = any_voxel(grid, random);
+      if (grid.state(v) == VoxelState::free || std::isinf(field.distance(v))) continue;
+      double off = 1;
+      for (const double c : continuations(grid, field, v)) {
+        off = std::min(off, std::abs(c - field.continuation(v)));
+        tilted += std::abs(c - HazardConfig::Model::continuation(0)) > 0.05;
+      }
+      EXPECT_LT(off, 0.5 / 255 + (shift > 0 ? 0.01 : 1e-9));  // shares are whole voxels there
+      ++checks;
+    }
+  }
+  EXPECT_GT(checks, 150U);
+  EXPECT_GT(tilted, 100U);
+}
+
+TEST(HazardField, SurfaceGoesOnAsItIs) {
+  // Half a plane that looks up: what lies in its plane beyond the rim is likelier to be surface
+  // than what lies as far behind it or before it.
+  BeliefGrid grid = grid_of({40, 40, 40});
+  const Index3 base = grid.min_index();
+  const auto at = [&](int x, int y, int z) { return Index3{base.x + x, base.y + y, base.z + z}; };
+  for (int x = 0; x < 20; ++x) {
+    for (int y = 0; y < 40; ++y) {
+      for (int z = 20; z < 40; ++z) grid.set(at(x, y, z), -1.0F, {});
+      put(grid, at(x, y, 19), 3);
+    }
+  }
+  const HazardField field(grid.snapshot(), {.model = HazardConfig::Model{30.0, 0.06, 0.0}});
+  const float beyond = field.rate(at(25, 20, 19)), behind = field.rate(at(10, 20, 13)),
+              before = field.rate(at(23, 20, 24));
+  EXPECT_GT(beyond, 1.5F * before);
+  EXPECT_GT(beyond, 1.1F * behind);
+  EXPECT_EQ(HazardConfig::Model::continuation(-0.4), 1.0);
+  EXPECT_EQ(HazardConfig::Model::continuation(-1), 0.41);
+  EXPECT_EQ(HazardConfig::Model::continuation(1), 0.015);
+  EXPECT_NEAR(HazardConfig::Model::continuation(0.1), 0.375, 1e-12);
 }
 
 TEST(HazardField, VoxelsFinerThanTheFootprintCountTogether) {
@@ -97,7 +210,7 @@ TEST(HazardField, VoxelsFinerThanTheFootprintCountTogether) {
       }
       ++finite;
       EXPECT_NEAR(field.distance(v), expected, 1e-12);
-      EXPECT_EQ(field.is_new(v), expected > 2 * footprint + 1e-9);
+      EXPECT_EQ(field.is_new(v), expected > 1.2 * footprint + 1e-9);
     }
   }
   EXPECT_EQ(checks, 4000U);
@@ -122,8 +235,8 @@ TEST(HazardField, TheSizeIsThatOfTheEvidenceUnlessGiven) {
   const Index3 base = grid.min_index();
   put(grid, {base.x + 10, base.y + 10, base.z + 10}, 5);
   put(grid, {base.x + 29, base.y + 12, base.z + 10}, 5);
-  EXPECT_NEAR(HazardField(grid.snapshot()).model().decay_length, 0.07 * 0.20, 1e-12);
-  EXPECT_NEAR(HazardField(grid.snapshot(), {.object_size = 0.5}).model().decay_length, 0.035,
+  EXPECT_NEAR(HazardField(grid.snapshot()).model().decay_length, 0.051 * 0.20, 1e-12);
+  EXPECT_NEAR(HazardField(grid.snapshot(), {.object_size = 0.5}).model().decay_length, 0.0255,
               1e-12);
 }
 

@@ -262,14 +262,12 @@ BeliefGrid seen_once(const Sensor& sensor, double voxel, double (*depth_at)(doub
 /// image's rim.
 double share_within(const BeliefGrid& grid, double distance, double (*off)(double x, double z)) {
   double all = 0, near = 0;
-  for (const BeliefBlockAt& block : grid.belief_blocks()) {
-    block.for_each([&](Index3 v, const Belief& belief) {
-      const Eigen::Vector3d c = grid.center(v);
-      if (std::abs(c.x()) > 0.12 || std::abs(c.y()) > 0.08) return;
-      all += belief.hits;
-      if (std::abs(off(c.x(), c.z())) <= distance) near += belief.hits;
-    });
-  }
+  grid.for_each_belief([&](Index3 v, const Belief& belief) {
+    const Eigen::Vector3d c = grid.center(v);
+    if (std::abs(c.x()) > 0.12 || std::abs(c.y()) > 0.08) return;
+    all += belief.hits;
+    if (std::abs(off(c.x(), c.z())) <= distance) near += belief.hits;
+  });
   EXPECT_GT(all, 500.0);
   return near / all;
 }

@@ -55,7 +55,7 @@ BeliefGrid slab(int begin, int end, int wall = 1000) {
 
 /// The same rate everywhere, in cells of 2^shift voxels.
 HazardConfig constant(int shift, double rate = kRate) {
-  return {.model = HazardConfig::Model::constant(rate, 4 * kExactVoxel * (1 << shift) / 0.07)};
+  return {.model = HazardConfig::Model::constant(rate, 4 * kExactVoxel * (1 << shift) / 0.051)};
 }
 
 ViewGain gain_of(const BeliefGrid& grid, const Sensor& sensor, const HazardConfig& hazard,

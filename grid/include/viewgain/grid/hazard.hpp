@@ -18,34 +18,43 @@
 #include "viewgain/grid/voxel.hpp"
 
 namespace viewgain {
+namespace detail {
+class FreeShare;
+class NearestCells;
+}  // namespace detail
 
 /// How likely rays meet the surface in unknown voxels.
 struct VIEWGAIN_EXPORT HazardConfig {
-  /// The hazard of unknown space: the rate at which a ray through it meets the surface, by the
-  /// distance d from what is known of the surface (apps/docs/guide/surface_gain.md):
-  /// h(d) = far_rate + near_rate exp(-d / decay_length), and far_rate beyond 5 decay lengths.
-  /// Members check nothing; validate() does.
+  /// The hazard of unknown space: the rate at which a ray through it meets the surface, by where
+  /// it lies to what is known of the surface (apps/docs/guide/surface_gain.md):
+  /// h(d, s) = far_rate + near_rate c(s) exp(-d / decay_length), and far_rate beyond 5 decay
+  /// lengths; d is the distance, s the sine of the elevation over the known surface's tangent plane
+  /// at its nearest point, 1 towards free space. Members check nothing; validate() does.
   struct Model {
-    double near_rate = 25.6;       ///< h_0 [1/m]
-    double decay_length = 0.0245;  ///< lambda [m]
-    double far_rate = 0.64;        ///< h_inf [1/m]
+    double near_rate = 160;        ///< h_0 [1/m]
+    double decay_length = 0.0179;  ///< lambda [m]
+    double far_rate = 0.14;        ///< h_inf [1/m]
 
     static constexpr double kCut = 5.0;  ///< [decay lengths]
 
-    /// Start values for an object whose longest side is `size` [m]: read off three objects of 0.35
-    /// m and taken to go with the size. Rankings are flat over half to twice these values.
+    /// Start values for an object whose longest side is `size` [m]: fitted to seven objects of 0.35
+    /// m (perf/hazard/fit.py) and taken to go with the size.
     [[nodiscard]] static Model for_size(double size) {
-      return {9.0 / size, 0.07 * size, 0.224 / size};
+      return {56.0 / size, 0.051 * size, 0.05 / size};
     }
     /// The same `rate` [1/m] everywhere; `size` [m] as above says how fine the cells are.
     [[nodiscard]] static Model constant(double rate, double size) {
-      return {0.0, 0.07 * size, rate};
+      return {0.0, 0.051 * size, rate};
     }
 
-    /// Hazard [1/m] at this distance from known surface [m].
-    [[nodiscard]] double rate(double distance) const {
+    /// c(s): surfaces go on as they are, bending away from free space rather than into it. Linear
+    /// between values at each fifth of s, fitted with the rest; 1 at -0.4, less elsewhere.
+    [[nodiscard]] static VIEWGAIN_EXPORT double continuation(double sine_of_elevation);
+
+    /// Hazard [1/m] at this distance from known surface [m], where `continuation` is c.
+    [[nodiscard]] double rate(double distance, double continuation = 1.0) const {
       return distance <= kCut * decay_length
-                 ? far_rate + near_rate * std::exp(-distance / decay_length)
+                 ? far_rate + near_rate * continuation * std::exp(-distance / decay_length)
                  : far_rate;
     }
     bool operator==(const Model&) const = default;
@@ -87,15 +96,16 @@ struct VIEWGAIN_EXPORT HazardConfig {
 /// leaves, about a quarter of the decay length wide. Distances are between centres of such cells,
 /// to the nearest one with an occupied voxel of at least 3 hits, cut at 5 decay lengths or 127
 /// cells; voxels that are finer than the sensor's footprint count in the cubes of pooling_of(). The
+/// surface's normal at such a cell leads to where more of the 7³ cells around are free. The
 /// model's start values are multiplied class by class by HazardCounters::factor(), pooled where
 /// rates would rise with the distance. The rates of a volume are by voxel. Members take any voxel
 /// and never throw; calls cost constant time.
 class VIEWGAIN_EXPORT HazardField {
  public:
-  /// Exact distances in 3 passes over the box of cells with evidence, widened by the cut, with 2
-  /// bytes a cell of it: about 3 ms for 64³ voxels of object, whatever the size of the workspace;
-  /// with evidence all over a room, 0.3 s for 320³ cells. Throws as HazardConfig::validate(), and
-  /// Error(capacity) for a box of more than 2³¹ cells.
+  /// Exact distances in 3 passes over the box of cells with evidence, widened by the cut, with 12
+  /// bytes a cell of it, of which 3 stay: about 12 ms for 64³ voxels of object, whatever the size
+  /// of the workspace. Throws as HazardConfig::validate(), and Error(capacity) for a box of more
+  /// than 2³¹ cells.
   explicit HazardField(const GridSnapshot& snapshot, const HazardConfig& config = {});
 
   /// Start values, or what was given; rates may differ from them by the map's counters.
@@ -111,22 +121,34 @@ class VIEWGAIN_EXPORT HazardField {
 
   /// From a voxel's cell to the nearest one with evidence [m]; infinity beyond the cut.
   [[nodiscard]] double distance(Index3 voxel) const {
-    const std::uint16_t squared = squared_distance(voxel);
-    return squared == kBeyond
+    const std::size_t cell = cell_of(voxel);
+    return cell == kBeyond || squared_[cell] == kNoDistance
                ? std::numeric_limits<double>::infinity()
-               : std::sqrt(static_cast<double>(squared)) * voxel_size_ * (1 << shift_);
+               : std::sqrt(static_cast<double>(squared_[cell])) * voxel_size_ * (1 << shift_);
   }
-  /// In a voxel [1/m], as a ray meets it: single precision.
+  /// c of a voxel that is not free: HazardConfig::Model::continuation() at its cell, where several
+  /// cells with evidence are the nearest at that of one of them, in steps of 1/255; 1 beyond the
+  /// cut.
+  [[nodiscard]] double continuation(Index3 voxel) const {
+    const std::size_t cell = cell_of(voxel);
+    return cell == kBeyond ? 1.0 : continuation_[cell] / 255.0;
+  }
+  /// In a voxel that is not free [1/m], as a ray meets it: single precision.
   [[nodiscard]] float rate(Index3 voxel) const {
     if (volume_) return volume_rate(voxel);
-    const std::uint16_t squared = squared_distance(voxel);
-    return squared == kBeyond ? far_rate_ : rates_[squared];
+    const std::size_t cell = cell_of(voxel);
+    if (cell == kBeyond || squared_[cell] == kNoDistance) return far_rate_;
+    return far_rate_ + near_rates_[squared_[cell]] * static_cast<float>(continuation_[cell]);
+  }
+  /// The same by the model alone, without what the counters say [1/m].
+  [[nodiscard]] double start_rate(Index3 voxel) const {
+    return model_.rate(distance(voxel), continuation(voxel));
   }
   [[nodiscard]] const Pooling& pooling() const { return pooling_; }  ///< of the map
-  /// Does surface found in this voxel count as new? d > 2 pooling lengths.
+  /// Does surface found in this voxel count as new? d > 1.2 pooling lengths.
   [[nodiscard]] bool is_new(Index3 voxel) const {
-    const std::uint16_t squared = squared_distance(voxel);
-    return squared == kBeyond || squared > most_known_;
+    const std::size_t cell = cell_of(voxel);
+    return cell == kBeyond || squared_[cell] > most_known_;
   }
 
   /// The voxels outside of which nothing is nearer than the cut; empty while there is no evidence.
@@ -135,18 +157,24 @@ class VIEWGAIN_EXPORT HazardField {
   [[nodiscard]] const HazardConfig::Volume* volume() const { return volume_.get(); }
 
  private:
-  static constexpr std::uint16_t kBeyond = 0xFFFF;
+  static constexpr std::uint16_t kNoDistance = 0xFFFF;
+  static constexpr std::size_t kBeyond = std::numeric_limits<std::size_t>::max();
   static constexpr int kMaxReach = 127;  // of distances [cells]
 
-  [[nodiscard]] std::uint16_t squared_distance(Index3 voxel) const {
+  [[nodiscard]] std::size_t cell_of(Index3 voxel) const {
     if (!near_box_.contains(voxel)) return kBeyond;
     const std::size_t x = static_cast<std::size_t>((voxel.x >> shift_) - low_cell_.x),
                       y = static_cast<std::size_t>((voxel.y >> shift_) - low_cell_.y),
                       z = static_cast<std::size_t>((voxel.z >> shift_) - low_cell_.z);
-    return squared_[(x * size_[1] + y) * size_[2] + z];
+    return (x * size_[1] + y) * size_[2] + z;
   }
   [[nodiscard]] float volume_rate(Index3 voxel) const;
-  void find_distances(const std::vector<Index3>& evidence, const VoxelBox& workspace);
+  [[nodiscard]] Index3 cell_at(Index3 v, int by) const {
+    return {(v.x >> shift_) + by, (v.y >> shift_) + by, (v.z >> shift_) + by};
+  }
+  void find_distances(const GridSnapshot& snapshot, const std::vector<Index3>& evidence);
+  void find_continuations(const detail::NearestCells& nearest, const detail::FreeShare& free);
+  void find_rates(int reach);
 
   HazardConfig::Model model_;
   std::shared_ptr<const HazardConfig::Volume> volume_;
@@ -157,7 +185,8 @@ class VIEWGAIN_EXPORT HazardField {
   std::array<std::size_t, 3> size_{};                       // of the box of distances [cells]
   VoxelBox near_box_{};                                     // the same in voxels
   std::vector<std::uint16_t> squared_;                      // [cells²]
-  std::vector<float> rates_;                                // by squared distance
+  std::vector<std::uint8_t> continuation_;                  // c [1/255]
+  std::vector<float> near_rates_;                           // by squared distance, of 1/255
   std::array<double, HazardCounters::kClasses> factors_{};  // by class of distance
   float far_rate_ = 0;
   bool follows_counters_ = false;
