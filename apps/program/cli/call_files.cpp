@@ -14,9 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "program/cli/flags/hazard_source.hpp"
-#include "program/cli/flags/obstacle_source.hpp"
-#include "viewgain/core/error.hpp"
+#include "program/cli/flags/scene_sources.hpp"
+#include "program/cli/values.hpp"
 #include "viewgain/formats/file_names.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/reach_toml.hpp"
@@ -71,11 +70,6 @@ struct NamedFile {
   Kind kind;
 };
 
-[[noreturn]] void refuse(const std::string& option, const std::string& value,
-                         const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, option + " " + value + ": " + what);
-}
-
 Kind kind_of(const FileOption& option, const std::string& subcommand) {
   if (option.name != "--out") return option.kind;
   if (subcommand == "simulate" || subcommand == "import") return Kind::frames_output;
@@ -87,9 +81,7 @@ Kind kind_of(const FileOption& option, const std::string& subcommand) {
 void check_values(const App& subcommand) {
   for (const Option* option : subcommand.options()) {
     for (const std::string& value : option->results()) {
-      if (value.empty()) {
-        throw Error(ErrorCode::invalid_argument, option->name() + ": the value is empty");
-      }
+      if (value.empty()) refuse(option->name() + ": the value is empty");
     }
   }
   for (const App* group : subcommand.subcommands()) check_values(*group);

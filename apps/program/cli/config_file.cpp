@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/values.hpp"
 #include "program/cli/words.hpp"
 #include "viewgain/support/settings_toml.hpp"
@@ -46,7 +45,7 @@ std::vector<std::string> keys_of(const Options& options) {
 }
 
 bool is_switch(const Option& option) {
-  return choices_of(option) == std::vector<std::string>{"on", "off"};
+  return option.choices() == std::vector<std::string>{"on", "off"};
 }
 
 bool is_repeated(const Option& option) { return option.is_repeated(); }

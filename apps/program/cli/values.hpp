@@ -16,6 +16,11 @@
 
 namespace viewgain::app {
 
+/// Throws Error(invalid_argument).
+[[noreturn]] void refuse(const std::string& what);
+/// Likewise: "FLAG VALUE: what".
+[[noreturn]] void refuse(std::string_view flag, std::string_view value, const std::string& what);
+
 /// Numbers separated by commas; each must be finite and their count in [min_count, max_count].
 /// Throws Error(invalid_argument) that names the flag and the text.
 [[nodiscard]] std::vector<double> parse_numbers(std::string_view flag, std::string_view text,

@@ -10,15 +10,12 @@
 #include <variant>
 #include <vector>
 
-#include "program/cli/choices.hpp"
-#include "program/cli/flags/pose_flags.hpp"
-#include "program/cli/flags/pose_sigma_json.hpp"
+#include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/flags/sensing_flags.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
@@ -96,9 +93,8 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
         box.max[k] = std::max(box.max[k], v[k]);
       }
     }
-    throw Error(ErrorCode::invalid_argument,
-                options.mesh + ": no pose has the mesh in view and in range, which lies in " +
-                    describe(box) + " m (--size, --recenter)");
+    refuse(options.mesh + ": no pose has the mesh in view and in range, which lies in " +
+           describe(box) + " m (--size, --recenter)");
   }
 }
 
@@ -189,19 +185,20 @@ Command add_simulate(App& program) {
   app->add_option("--size", options->size,
                   "scale the mesh so that its bounding box's longest side is this [m]; default: "
                   "the file's own size, in metres");
-  on_or_off(*app->add_option("--recenter", options->recenter,
-                             "move the bounding box's centre to the origin")
-                 ->capture_default_str());
-  one_of(*app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
-              ->capture_default_str(),
-         {"x", "y", "z"}, "axis");
+  app->add_option("--recenter", options->recenter, "move the bounding box's centre to the origin")
+      ->capture_default_str()
+      ->on_or_off();
+  app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
+      ->capture_default_str()
+      ->one_of({"x", "y", "z"}, "axis");
   add_sensing_options(*app, options->sensing);
   app->add_option("--frames-per-view", options->frames_per_view,
                   "frames from each pose, numbered on; poses.txt repeats the pose")
       ->range(std::size_t{1}, std::size_t{1000}, "number")
       ->capture_default_str();
-  on_or_off(*app->add_option("--amplitude", options->amplitude,
-                             "write amplitude images; default: on for sensors with shot noise"));
+  app->add_option("--amplitude", options->amplitude,
+                  "write amplitude images; default: on for sensors with shot noise")
+      ->on_or_off();
   app->add_option(
          "--out", options->out,
          "folder to write; frames that simulate has left in it are replaced, others are refused")

@@ -12,10 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/fused_points.hpp"
@@ -44,12 +42,10 @@ struct Options {
 };
 
 void check(const Options& options, const App& app) {
-  if (options.out.empty() && options.points.empty()) {
-    throw Error(ErrorCode::invalid_argument, "needs --out or --points");
-  }
+  if (options.out.empty() && options.points.empty()) refuse("needs --out or --points");
   for (const char* flag : {"--size", "--recenter", "--up"}) {
     if (app.count(flag) > 0 && options.truth.empty()) {
-      throw Error(ErrorCode::invalid_argument, std::string(flag) + " goes with --truth");
+      refuse(std::string(flag) + " goes with --truth");
     }
   }
   if (options.size) check_positive("--size", *options.size);
@@ -145,10 +141,7 @@ void surface(const Options& options, const App& app) {
   const std::shared_ptr<const SurfaceScene> truth = truth_of(options, exec);
   const MapOfSensor map = load_map_of_sensor(options.map, nullptr);
   const std::vector<FusedPoint> points = fused_points(map.grid, {}, exec);
-  if (points.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                options.map + ": no voxel has readings that make a surface");
-  }
+  if (points.empty()) refuse(options.map + ": no voxel has readings that make a surface");
   const SurfaceMesh surface = surface_of(points, pooling_of(map.grid.snapshot()), exec);
   write_surfaces(surface, points, options.out, options.points);
   std::vector<double> sigmas = surface_sigmas(surface, points);
@@ -199,12 +192,13 @@ Command add_surface(App& program) {
       "mesh (off, obj, stl, ply) that the surface is held against, in the world's frame");
   app->add_option("--size", options->size,
                   "longest side that the truth is scaled to [m]; default: as it is");
-  on_or_off(*app->add_option("--recenter", options->recenter,
-                             "the middle of the truth's bounding box becomes the origin")
-                 ->capture_default_str());
-  one_of(*app->add_option("--up", options->up, "axis of the truth that is turned to +z")
-              ->capture_default_str(),
-         {"x", "y", "z"}, "axis");
+  app->add_option("--recenter", options->recenter,
+                  "the middle of the truth's bounding box becomes the origin")
+      ->capture_default_str()
+      ->on_or_off();
+  app->add_option("--up", options->up, "axis of the truth that is turned to +z")
+      ->capture_default_str()
+      ->one_of({"x", "y", "z"}, "axis");
   add_common_options(*app, options->common);
   add_help(*app, kLookGroup, "surface map.vdb --out surface.ply --points points.ply");
   return {app, [options, app] { surface(*options, *app); }};

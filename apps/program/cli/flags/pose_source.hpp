@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "program/cli/app.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/support/columns/part_head.hpp"
 
@@ -52,6 +53,10 @@ struct PoseOptions {
            orbit.empty();
   }
 };
+
+/// The flags of PoseOptions, the same in every subcommand that is given poses; one set of poses,
+/// or, unless `needed`, none.
+void add_pose_options(App& app, PoseOptions& options, bool needed = true);
 
 /// `seed`: of the shell. A .npy is read once for the hash, and the rows asked for are kept; sets
 /// and TUM files are made whole, and rows taken from them. Throws Error(invalid_argument), naming

@@ -6,12 +6,10 @@
 #include <utility>
 
 #include "program/cli/flags/common_options.hpp"
-#include "program/cli/flags/hazard_source.hpp"
-#include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/grid/integrate.hpp"
 

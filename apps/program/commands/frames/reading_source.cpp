@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
@@ -108,9 +108,7 @@ class FrameSource : public ReadingSource {
 };
 
 Sensor sensor_of(const IntegrateOptions& options) {
-  if (options.frames.sensor.empty()) {
-    throw Error(ErrorCode::invalid_argument, "--sensor is needed with --cloud");
-  }
+  if (options.frames.sensor.empty()) refuse("--sensor is needed with --cloud");
   return load_sensor(options.frames.sensor);
 }
 
@@ -130,9 +128,8 @@ class CloudSource : public ReadingSource {
     }
     poses_ = read_tum(options.poses);
     if (poses_.poses.size() != files_.size()) {
-      throw Error(ErrorCode::invalid_argument,
-                  options.poses + ": has " + std::to_string(poses_.poses.size()) + " poses for " +
-                      std::to_string(files_.size()) + " clouds");
+      refuse(options.poses + ": has " + std::to_string(poses_.poses.size()) + " poses for " +
+             std::to_string(files_.size()) + " clouds");
     }
   }
 
@@ -156,8 +153,7 @@ class CloudSource : public ReadingSource {
     } else if (cloud_.viewpoint) {
       T_world_sensor_ = *cloud_.viewpoint;
     } else {
-      throw Error(ErrorCode::invalid_argument,
-                  files_[index] + ": has no VIEWPOINT, so --origin or --poses is needed");
+      refuse(files_[index] + ": has no VIEWPOINT, so --origin or --poses is needed");
     }
     return {};
   }

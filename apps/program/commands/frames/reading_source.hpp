@@ -12,7 +12,7 @@
 
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/frame_folder.hpp"
-#include "program/cli/flags/registration_options.hpp"
+#include "program/cli/flags/sensing.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"

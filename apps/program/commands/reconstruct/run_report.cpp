@@ -11,7 +11,7 @@
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/json_text.hpp"
 #include "program/cli/values.hpp"
-#include "program/commands/reconstruct/registration_json.hpp"
+#include "program/commands/frames/registration_json.hpp"
 
 namespace viewgain::app {
 namespace {

@@ -11,11 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/flags/hazard_source.hpp"
-#include "program/cli/flags/obstacle_source.hpp"
-#include "program/cli/flags/pose_flags.hpp"
+#include "program/cli/flags/pose_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensed_map.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
@@ -26,7 +24,6 @@
 #include "program/commands/score/score_report.hpp"
 #include "show/pictures/score_picture.hpp"
 #include "show/report/page.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -40,12 +37,9 @@ namespace {
 using Options = ScoreOptions;
 
 void check_feasibility(const Options& options) {
-  if (options.deadline && !options.race)
-    throw Error(ErrorCode::invalid_argument, "--deadline goes with --race");
+  if (options.deadline && !options.race) refuse("--deadline goes with --race");
   if (options.deadline) check_at_least_0("--deadline", *options.deadline);
-  if (!options.body.empty() && options.feasible == "off") {
-    throw Error(ErrorCode::invalid_argument, "--body goes with --feasible on");
-  }
+  if (!options.body.empty() && options.feasible == "off") refuse("--body goes with --feasible on");
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
 }
 
@@ -53,28 +47,24 @@ GainConfig gain_config(const Options& options) {
   GainConfig config;
   config.model = parse_gain_model(options.gain);
   if (config.model == GainModel::paper && (options.object_size || !options.hazard.empty())) {
-    throw Error(ErrorCode::invalid_argument,
-                "--object-size and --hazard go with --gain surface or combined");
+    refuse("--object-size and --hazard go with --gain surface or combined");
   }
   if (config.model == GainModel::paper && options.support_plane && options.feasible == "off") {
-    throw Error(ErrorCode::invalid_argument,
-                "--support-plane goes with --feasible on, and with --gain surface or combined");
+    refuse("--support-plane goes with --feasible on, and with --gain surface or combined");
   }
   if (config.model != GainModel::combined && options.refinement_weight) {
-    throw Error(ErrorCode::invalid_argument, "--refinement-weight goes with --gain combined");
+    refuse("--refinement-weight goes with --gain combined");
   }
   if (options.refinement_weight)
     check_at_least_0("--refinement-weight", *options.refinement_weight);
   if (config.model != GainModel::paper && options.criterion != "log_diagonal") {
-    throw Error(ErrorCode::invalid_argument, "--criterion " + options.criterion +
-                                                 " goes with --gain paper, not " + options.gain);
+    refuse("--criterion " + options.criterion + " goes with --gain paper, not " + options.gain);
   }
   if (config.model != GainModel::paper && options.set) {
-    throw Error(ErrorCode::invalid_argument, "--set goes with --gain paper, not " + options.gain);
+    refuse("--set goes with --gain paper, not " + options.gain);
   }
   if (options.semantics != "paper") {
-    throw Error(ErrorCode::invalid_argument,
-                "--semantics " + options.semantics + " goes with classic gains");
+    refuse("--semantics " + options.semantics + " goes with classic gains");
   }
   config.refinement_weight = options.refinement_weight.value_or(config.refinement_weight);
   config.criterion = parse_criterion(options.criterion);
@@ -105,8 +95,7 @@ FeasiblePoses candidates_of(const Options& options, const PoseSource& source, co
 
 void check_left(const FeasiblePoses& candidates, const Options& options) {
   if (!candidates.poses.empty() || !options.shard.empty()) return;  // a part may be empty
-  throw Error(ErrorCode::invalid_argument,
-              "no pose is left to score; dropped: " + counts_text(candidates.dropped));
+  refuse("no pose is left to score; dropped: " + counts_text(candidates.dropped));
 }
 
 // Calls work(control), which shows how far it is. Returns how long it took [s].
@@ -130,14 +119,9 @@ void name_by_input(Scores& scores, const FeasiblePoses& candidates) {
   const auto name = [&](std::vector<std::size_t>& indices) {
     for (std::size_t& i : indices) i = candidates.numbers[i];
   };
-  if (auto* ranking = std::get_if<Ranking>(&scores.found)) {
-    name(ranking->scored.indices);
-    name(ranking->best.indices);
-  } else if (auto* joint = std::get_if<JointViews>(&scores.found)) {
-    name(joint->views.indices);
-  } else {
-    std::get<Estimates>(scores.found).indices = candidates.numbers;
-  }
+  name(scores.scored.indices);
+  name(scores.best.indices);
+  if (scores.estimates) scores.estimates->indices = candidates.numbers;
   scores.candidates = candidates.poses.size();
   scores.dropped = candidates.dropped;
 }
@@ -155,17 +139,17 @@ void warn_of_prior(const GainEvaluator& evaluator, const Sensor& sensor) {
 
 Scores scored(const Options& options, const GainEvaluator& evaluator,
               const std::vector<Pose>& poses, const BatchControl& control) {
-  Ranking ranking;
-  ranking.scored.gains.resize(poses.size());
-  evaluator.evaluate(poses, ranking.scored.gains, control);
-  ranking.scored.indices.resize(poses.size());
-  std::iota(ranking.scored.indices.begin(), ranking.scored.indices.end(), std::size_t{0});
-  ranking.best.indices = best_indices(ranking.scored.gains, options.top);
-  for (const std::size_t i : ranking.best.indices)
-    ranking.best.gains.push_back(ranking.scored.gains[i]);
-  std::uint64_t rays = 0;
-  for (const ViewGain& gain : ranking.scored.gains) rays += gain.rays;
-  return {std::move(ranking), rays};
+  Scores scores;
+  scores.scored.gains.resize(poses.size());
+  evaluator.evaluate(poses, scores.scored.gains, control);
+  scores.scored.indices.resize(poses.size());
+  std::iota(scores.scored.indices.begin(), scores.scored.indices.end(), std::size_t{0});
+  scores.best.indices = best_indices(scores.scored.gains, options.top);
+  for (const std::size_t i : scores.best.indices) {
+    scores.best.gains.push_back(scores.scored.gains[i]);
+  }
+  for (const ViewGain& gain : scores.scored.gains) scores.rays_traced += gain.rays;
+  return scores;
 }
 
 Scores raced(const Options& options, const GainEvaluator& evaluator, const std::vector<Pose>& poses,
@@ -173,32 +157,36 @@ Scores raced(const Options& options, const GainEvaluator& evaluator, const std::
   BestConfig config{.seed = options.seed};
   config.deadline = options.deadline.value_or(config.deadline);
   BestViews views = evaluator.race(poses, options.top, config, control);
-  return {Ranking{{std::move(views.scored_indices), std::move(views.scored_gains)},
-                  {std::move(views.indices), std::move(views.gains)}},
-          views.rays_traced, views.estimated};
+  return {.scored = {std::move(views.scored_indices), std::move(views.scored_gains)},
+          .best = {std::move(views.indices), std::move(views.gains)},
+          .rays_traced = views.rays_traced,
+          .estimated = views.estimated};
 }
 
 Scores chosen_together(const Options& options, const GainEvaluator& evaluator,
                        const std::vector<Pose>& poses, const BatchControl& control) {
   ViewSet set = evaluator.best_set(poses, *options.set, control);
-  return {JointViews{{std::move(set.indices), std::move(set.marginal)}, set.gain},
-          set.evaluations * evaluator.rays_per_pose()};
+  const ScoredViews views{std::move(set.indices), std::move(set.marginal)};
+  return {.scored = views,
+          .best = views,
+          .set_gain = set.gain,
+          .rays_traced = set.evaluations * evaluator.rays_per_pose()};
 }
 
 Scores estimated(const Options& options, const GainEvaluator& evaluator,
                  const std::vector<Pose>& poses, const BatchControl& control) {
   const ApproximateConfig config{.share = *options.approximate, .seed = options.seed};
-  Estimates estimates;
+  Scores scores{.estimates = Estimates{}, .estimated = poses.size()};
+  Estimates& estimates = *scores.estimates;
   estimates.gains.resize(poses.size());
   evaluator.approximate(poses, estimates.gains, config, control);
   std::vector<ViewGain> ranked(poses.size());
-  std::uint64_t rays = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     ranked[i].gain = estimates.gains[i].gain;
-    rays += estimates.gains[i].rays;
+    scores.rays_traced += estimates.gains[i].rays;
   }
   estimates.best = best_indices(ranked, options.top);
-  return {std::move(estimates), rays, poses.size()};
+  return scores;
 }
 
 Scores make_scores(const Options& options, const GainEvaluator& evaluator,
@@ -309,17 +297,17 @@ Command add_score(App& program) {
   app->add_option("MAP", options->map, kMapHelp)->required();
   add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kMapSensorHelp);
-  several_of(*app->add_option("--gain", options->gain,
-                              "paper (entropy removed) [nat], surface (new surface to be expected) "
-                              "[m^2] or combined (both) [nat]; or gains of the literature, several "
-                              "with commas, ranked by the first")
-                  ->capture_default_str(),
-             all_gain_names(), "gain");
-  one_of(*app->add_option("--semantics", options->semantics,
-                          "of the literature's gains: as the papers define them or as the code "
-                          "that was shipped with them computes them")
-              ->capture_default_str(),
-         gain_semantics_names(), "semantics");
+  app->add_option("--gain", options->gain,
+                  "paper (entropy removed) [nat], surface (new surface to be expected) "
+                  "[m^2] or combined (both) [nat]; or gains of the literature, several "
+                  "with commas, ranked by the first")
+      ->capture_default_str()
+      ->several_of(all_gain_names(), "gain");
+  app->add_option("--semantics", options->semantics,
+                  "of the literature's gains: as the papers define them or as the code "
+                  "that was shipped with them computes them")
+      ->capture_default_str()
+      ->one_of(gain_semantics_names(), "semantics");
   app->add_option("--refinement-weight", options->refinement_weight,
                   "combined: of refining known surface against finding new; default: 0.3");
   app->add_option("--object-size", options->object_size, kObjectSizeHelp);
@@ -330,17 +318,18 @@ Command add_score(App& program) {
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
   app->add_option("--reach", options->reach,
                   "TOML file: boxes, shells, half-spaces, poses in reach; other poses are dropped");
-  on_or_off(*app->add_option("--feasible", options->feasible,
-                             "drop poses where the sensor's body would touch the map, an obstacle "
-                             "or the table, much would be too near to be measured, or a view of "
-                             "the map was taken")
-                 ->capture_default_str());
+  app->add_option("--feasible", options->feasible,
+                  "drop poses where the sensor's body would touch the map, an obstacle "
+                  "or the table, much would be too near to be measured, or a view of "
+                  "the map was taken")
+      ->capture_default_str()
+      ->on_or_off();
   app->add_option("--body", options->body, kBodyHelp);
-  one_of(*app->add_option("--criterion", options->criterion,
-                          "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] "
-                          "or trace [m^2]")
-              ->capture_default_str(),
-         criterion_names(), "criterion");
+  app->add_option("--criterion", options->criterion,
+                  "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] "
+                  "or trace [m^2]")
+      ->capture_default_str()
+      ->one_of(criterion_names(), "criterion");
   app->add_option("--stride", options->stride, "every s-th pixel of every s-th row")
       ->range(1, std::numeric_limits<int>::max(), "stride")
       ->capture_default_str();

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "program/commands/study/markdown.hpp"
-
 #include <cmath>
 #include <cstdio>
 #include <functional>
 #include <set>
 #include <utility>
 
+#include "program/commands/study/results.hpp"
 #include "program/commands/study/statistics.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -34,7 +33,6 @@ Figure views_to(std::size_t goal) {
   return [goal](const ResultRow& row) { return row.counted_views_to(goal); };
 }
 
-double auc(const ResultRow& row) { return row.auc; }
 double rms_mm(const ResultRow& row) { return 1e3 * row.rms_error; }
 
 // Runs of one sensor, voxel and size: what can be compared.
@@ -51,36 +49,42 @@ struct Group {
   }
 };
 
-std::string cell(const MeanWithError& value, int digits) { return fixed(value.mean, digits); }
+// "| a | b |", and below the head of a table its line.
+std::string line_of(const std::vector<std::string>& cells) {
+  std::string text = "|";
+  for (const std::string& cell : cells) text.append(" ").append(cell).append(" |");
+  return text + "\n";
+}
+std::string head_of(const std::vector<std::string>& cells) {
+  std::string text = line_of(cells) + "|";
+  for (std::size_t i = 0; i < cells.size(); ++i) text += "---|";
+  return text + "\n";
+}
+
+std::string mean_cell(const Rows& rows, const Figure& figure, int digits) {
+  return fixed(mean_of(figures(rows, figure)).mean, digits);
+}
 
 std::string means(const Group& group) {
-  std::string text =
-      "| policy | to 80 % | to 90 % | to 95 % | not to 90 % | AUC | in the end | RMS [mm] | "
-      "consistency | way [m] | time [s] |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+  std::string text = head_of({"policy", "to 80 %", "to 90 %", "to 95 %", "not to 90 %", "AUC",
+                              "in the end", "RMS [mm]", "consistency", "way [m]", "time [s]"});
   for (std::size_t policy = 0; policy < group.spec.policies.size(); ++policy) {
     const Rows rows = group.of(policy);
     std::size_t missed = 0;
     for (const ResultRow* row : rows) missed += row->views_to[1] ? 0 : 1;
-    text.append("| ").append(group.spec.policies[policy].name);
+    std::vector<std::string> cells{group.spec.policies[policy].name};
     for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
-      text.append(" | ").append(cell(mean_of(figures(rows, views_to(goal))), 2));
+      cells.push_back(mean_cell(rows, views_to(goal), 2));
     }
-    text.append(" | ")
-        .append(std::to_string(missed))
-        .append(" of ")
-        .append(std::to_string(rows.size()));
-    text.append(" | ").append(cell(mean_of(figures(rows, auc)), 3));
+    cells.push_back(std::to_string(missed) + " of " + std::to_string(rows.size()));
+    cells.push_back(mean_cell(rows, &ResultRow::auc, 3));
     const auto in_the_end = [](const ResultRow& row) { return 100 * row.coverage_visible; };
-    text.append(" | ").append(cell(mean_of(figures(rows, in_the_end)), 1)).append(" %");
-    text.append(" | ").append(cell(mean_of(figures(rows, rms_mm)), 2));
-    const auto member = [](double ResultRow::*m) {
-      return [m](const ResultRow& row) { return row.*m; };
-    };
-    text.append(" | ").append(cell(mean_of(figures(rows, member(&ResultRow::consistency))), 2));
-    text.append(" | ").append(cell(mean_of(figures(rows, member(&ResultRow::travelled))), 1));
-    text.append(" | ")
-        .append(cell(mean_of(figures(rows, member(&ResultRow::seconds))), 1))
-        .append(" |\n");
+    cells.push_back(mean_cell(rows, in_the_end, 1) + " %");
+    cells.push_back(mean_cell(rows, rms_mm, 2));
+    cells.push_back(mean_cell(rows, &ResultRow::consistency, 2));
+    cells.push_back(mean_cell(rows, &ResultRow::travelled, 1));
+    cells.push_back(mean_cell(rows, &ResultRow::seconds, 1));
+    text += line_of(cells);
   }
   return text;
 }
@@ -99,29 +103,28 @@ std::string difference(const Rows& of, const Rows& against, const Figure& figure
     ++count[better > 0 ? 0 : better < 0 ? 2 : 1];
   }
   const MeanWithError mean = mean_of(differences);
-  std::string text = fixed(mean.mean, digits);
-  text.append(" ± ").append(fixed(mean.error, digits)).append(" (");
-  text.append(std::to_string(count[0])).append("-").append(std::to_string(count[1]));
-  return text.append("-").append(std::to_string(count[2])).append(")");
+  return fixed(mean.mean, digits) + " ± " + fixed(mean.error, digits) + " (" +
+         std::to_string(count[0]) + "-" + std::to_string(count[1]) + "-" +
+         std::to_string(count[2]) + ")";
 }
 
 std::string pairs(const Group& group) {
   const StudySpec& spec = group.spec;
   if (spec.policies.size() < 2) return "";
   std::string text = "\nPaired with " + spec.policies[spec.against].name +
-                     ": mean difference ± standard error (wins-ties-losses)\n\n"
-                     "| policy | to 80 % | to 90 % | to 95 % | AUC | RMS [mm] |\n"
-                     "|---|---|---|---|---|---|\n";
+                     ": mean difference ± standard error (wins-ties-losses)\n\n" +
+                     head_of({"policy", "to 80 %", "to 90 %", "to 95 %", "AUC", "RMS [mm]"});
   const Rows against = group.of(spec.against);
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
     if (policy == spec.against) continue;
     const Rows of = group.of(policy);
-    text.append("| ").append(spec.policies[policy].name);
+    std::vector<std::string> cells{spec.policies[policy].name};
     for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
-      text.append(" | ").append(difference(of, against, views_to(goal), 2, false));
+      cells.push_back(difference(of, against, views_to(goal), 2, false));
     }
-    text.append(" | ").append(difference(of, against, auc, 3, true));
-    text.append(" | ").append(difference(of, against, rms_mm, 2, false)).append(" |\n");
+    cells.push_back(difference(of, against, &ResultRow::auc, 3, true));
+    cells.push_back(difference(of, against, rms_mm, 2, false));
+    text += line_of(cells);
   }
   return text;
 }
@@ -129,20 +132,17 @@ std::string pairs(const Group& group) {
 std::string by_object(const Group& group) {
   const StudySpec& spec = group.spec;
   if (spec.objects.size() < 2) return "";
-  std::string text = "\nAUC by object\n\n| policy |", line = "|---|";
-  for (const StudyObject& object : spec.objects) {
-    text.append(" ").append(object.name).append(" |");
-    line += "---|";
-  }
-  text += "\n" + line + "\n";
+  std::vector<std::string> names{"policy"};
+  for (const StudyObject& object : spec.objects) names.push_back(object.name);
+  std::string text = "\nAUC by object\n\n" + head_of(names);
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
-    text.append("| ").append(spec.policies[policy].name + " |");
+    std::vector<std::string> cells{spec.policies[policy].name};
     for (std::size_t object = 0; object < spec.objects.size(); ++object) {
       Rows rows = group.of(policy);
       std::erase_if(rows, [&](const ResultRow* row) { return row->run->object != object; });
-      text.append(" ").append(cell(mean_of(figures(rows, auc)), 3)).append(" |");
+      cells.push_back(mean_cell(rows, &ResultRow::auc, 3));
     }
-    text += "\n";
+    text += line_of(cells);
   }
   return text;
 }
@@ -171,13 +171,11 @@ std::string prediction(const Group& group) {
       " each time: Spearman's rank correlation with the truly new samples after so many views, "
       "the mean of these, that with the entropy truly removed, and the favourite's share of what "
       "the best candidate brings; ± standard errors over runs. Where all scores are equal there is "
-      "no figure; the means are over the others\n\n| policy |";
-  std::string line = "|---|";
-  for (const std::size_t view : spec.prediction.views) {
-    text.append(" ").append(std::to_string(view)).append(" |");
-    line += "---|";
-  }
-  text += " all | entropy | favourite |\n" + line + "---|---|---|\n";
+      "no figure; the means are over the others\n\n";
+  std::vector<std::string> names{"policy"};
+  for (const std::size_t view : spec.prediction.views) names.push_back(std::to_string(view));
+  names.insert(names.end(), {"all", "entropy", "favourite"});
+  text += head_of(names);
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
     const Rows rows = group.of(policy);
     const auto values = [&](const char* key, std::size_t view) {  // a figure a run; view 0: all
@@ -189,13 +187,14 @@ std::string prediction(const Group& group) {
       return found;
     };
     if (mean_of(values("spearman_area", 0)).count == 0) continue;
-    text.append("| ").append(spec.policies[policy].name);
+    std::vector<std::string> cells{spec.policies[policy].name};
     for (const std::size_t view : spec.prediction.views) {
-      text.append(" | ").append(with_error(values("spearman_area", view)));
+      cells.push_back(with_error(values("spearman_area", view)));
     }
-    text.append(" | ").append(with_error(values("spearman_area", 0)));
-    text.append(" | ").append(with_error(values("spearman_entropy", 0)));
-    text.append(" | ").append(with_error(values("top1_share", 0))).append(" |\n");
+    for (const char* key : {"spearman_area", "spearman_entropy", "top1_share"}) {
+      cells.push_back(with_error(values(key, 0)));
+    }
+    text += line_of(cells);
   }
   return text;
 }

@@ -53,4 +53,10 @@ inline constexpr const char* kRunColumns = "object,policy,gain,semantics,seed,se
 [[nodiscard]] std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows);
 [[nodiscard]] Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows);
 
+/// A study's results for people, as Markdown: for each sensor, voxel and size the policies' means,
+/// their paired differences to the spec's `against`, views by object, and how well their scores
+/// tell what candidates bring.
+[[nodiscard]] std::string results_markdown(const StudySpec& spec,
+                                           const std::vector<ResultRow>& rows);
+
 }  // namespace viewgain::app

@@ -13,7 +13,7 @@
 
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
-#include "program/commands/study/markdown.hpp"
+#include "program/commands/study/results.hpp"
 #include "program/commands/study/results.hpp"
 #include "viewgain/core/error.hpp"
 
