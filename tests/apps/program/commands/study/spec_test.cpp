@@ -14,7 +14,6 @@
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
 #include "program/commands/study/results.hpp"
-#include "program/commands/study/results.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain {
