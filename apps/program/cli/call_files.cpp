@@ -46,21 +46,21 @@ struct FileOption {
   std::string_view name;
   Kind kind;
 };
-constexpr std::array kFileOptions{
-    FileOption{"--config", Kind::input},    FileOption{"MESH", Kind::input},
-    FileOption{"MAP", Kind::input},         FileOption{"IN", Kind::input},
-    FileOption{"--map", Kind::input},       FileOption{"--cloud", Kind::input},
-    FileOption{"--poses", Kind::input},     FileOption{"--sensor", Kind::input},
-    FileOption{"--reach", Kind::reach},     FileOption{"--hazard", Kind::input},
-    FileOption{"--obstacle", Kind::input},  FileOption{"FRAMES_DIR", Kind::frames},
-    FileOption{"OUT", Kind::output},        FileOption{"--picture", Kind::picture},
-    FileOption{"--out", Kind::output},      FileOption{"--save-config", Kind::output},
-    FileOption{"INPUT", Kind::run},         FileOption{"--report", Kind::page},
-    FileOption{"SPEC", Kind::input},        FileOption{"--truth", Kind::input},
-    FileOption{"--points", Kind::output},   FileOption{"SOURCE", Kind::folder},
-    FileOption{"--mask", Kind::folder},     FileOption{"--confidence", Kind::folder},
-    FileOption{"--distances", Kind::input}, FileOption{"PART", Kind::input},
-    FileOption{"--amplitude", Kind::folder}};
+constexpr auto kFileOptions =
+    std::to_array<FileOption>({{"--config", Kind::input},    {"MESH", Kind::input},
+                               {"MAP", Kind::input},         {"IN", Kind::input},
+                               {"--map", Kind::input},       {"--cloud", Kind::input},
+                               {"--poses", Kind::input},     {"--sensor", Kind::input},
+                               {"--reach", Kind::reach},     {"--hazard", Kind::input},
+                               {"--obstacle", Kind::input},  {"FRAMES_DIR", Kind::frames},
+                               {"OUT", Kind::output},        {"--picture", Kind::picture},
+                               {"--out", Kind::output},      {"--save-config", Kind::output},
+                               {"INPUT", Kind::run},         {"--report", Kind::page},
+                               {"SPEC", Kind::input},        {"--truth", Kind::input},
+                               {"--points", Kind::output},   {"SOURCE", Kind::folder},
+                               {"--mask", Kind::folder},     {"--confidence", Kind::folder},
+                               {"--distances", Kind::input}, {"PART", Kind::input},
+                               {"--amplitude", Kind::folder}});
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 

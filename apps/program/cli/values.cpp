@@ -7,6 +7,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdarg>
+#include <cstdio>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/nearest_name.hpp"
@@ -171,6 +173,15 @@ std::string utf8_text(std::string_view text) {
     text.remove_prefix(std::max(length, std::size_t{1}));
   }
   return result;
+}
+
+std::string formatted(const char* format, ...) {
+  std::array<char, 512> text{};
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text.data(), text.size(), format, arguments);
+  va_end(arguments);
+  return text.data();
 }
 
 std::string with_commas(unsigned long long value) {

@@ -60,6 +60,9 @@ void check_one_of(std::string_view flag, std::string_view value,
 /// bytes, in JSON.
 [[nodiscard]] std::string utf8_text(std::string_view text);
 
+/// As std::printf prints it, to at most 511 bytes.
+[[nodiscard]] __attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...);
+
 /// 2,097,152 for 2097152.
 [[nodiscard]] std::string with_commas(unsigned long long value);
 

@@ -238,10 +238,7 @@ void print_json_summary(const Options& options, const Calibrated& calibrated, do
 }
 
 std::string millimetres(const std::optional<double>& value) {
-  if (!value) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", 1e3 * *value);
-  return text;
+  return value ? formatted("%.2f", 1e3 * *value) : "-";
 }
 
 void print_summary(const Options& options, const Calibrated& calibrated) {

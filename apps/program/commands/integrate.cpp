@@ -39,29 +39,15 @@ std::optional<double> scale_of(const ReadingSource& source) {
   return source.folder()->frames().depth_scale;
 }
 
-Box seen_workspace(ReadingSource& source, const Options& options, double voxel) {
-  FrameTally tally(true);
-  Progress progress(std::string("bounds of ") + part_name(options), options.common.quiet);
-  const std::optional<Box> seen = workspace_around(source.size(), voxel, [&](std::size_t i) {
-    const FrameFault fault = source.load(i);
-    progress.update(i + 1, source.size());
-    if (fault.verdict == FrameVerdict::used) return source.bounds();
-    tally.add(source.file(i), fault);
-    return std::optional<Box>();
-  });
-  if (seen) return *seen;
-  if (source.folder() == nullptr) refuse("no cloud has a reading");
-  refuse_without_readings(*source.folder(), tally);
-}
-
 BeliefGrid new_map(ReadingSource& source, const Options& options) {
   if (!options.voxel) refuse("--voxel is needed unless --map is given");
   check_positive("--voxel", *options.voxel);
   GridConfig config;
   config.voxel_size = *options.voxel;
   config.prior_sigma = options.prior_sigma;
-  config.workspace = options.workspace.empty() ? seen_workspace(source, options, config.voxel_size)
-                                               : parse_box("--workspace", options.workspace);
+  config.workspace = options.workspace.empty()
+                         ? source.seen_workspace(config.voxel_size, options.common.quiet)
+                         : parse_box("--workspace", options.workspace);
   return BeliefGrid(config, source.sensor());
 }
 

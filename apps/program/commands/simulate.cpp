@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "program/cli/flags/pose_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/flags/sensing_flags.hpp"
 #include "program/cli/progress.hpp"
@@ -62,14 +63,6 @@ struct PixelCounts {
   }
 };
 
-MeshPlacement placement_of(const Options& options) {
-  MeshPlacement placement;
-  placement.up = options.up == "x" ? UpAxis::x : options.up == "y" ? UpAxis::y : UpAxis::z;
-  placement.center = options.recenter == "on";
-  if (options.size) placement.longest_side = *options.size;
-  return placement;
-}
-
 // Whether a pixel looks at the mesh, and not all of them at the room alone.
 bool sees_mesh(const SurfaceScene& scene, const Sensor& sensor,
                const std::vector<Eigen::Vector3d>& rays, const Pose& T_world_camera) {
@@ -105,7 +98,8 @@ void simulate(const Options& options) {
   sensor.range_calibration = {};  // the frames have no such error
   if (options.size) check_positive("--size", *options.size);
   const PoseSource source = make_poses(options.poses, options.sensing.seed);
-  TriangleMesh mesh = read_mesh(options.mesh, placement_of(options));
+  TriangleMesh mesh =
+      read_mesh(options.mesh, placement_of(options.size, options.recenter, options.up));
   const std::size_t triangles = mesh.triangles.size();
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
   check_view(options, *scene, sensor, source.poses);

@@ -7,7 +7,6 @@
 #include "program/cli/values.hpp"
 #include "viewgain/formats/file_names.hpp"
 #include "viewgain/grid/vdb_io.hpp"
-#include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::app {
@@ -31,6 +30,15 @@ HazardConfig hazard_source(const std::string& hazard, std::optional<double> obje
   const double rate = parse_numbers("--hazard", hazard, 1, 1)[0];
   check_at_least_0("--hazard", rate);
   return constant_hazard(rate, grid, object_size);
+}
+
+MeshPlacement placement_of(std::optional<double> size, const std::string& recenter,
+                           const std::string& up) {
+  MeshPlacement placement;
+  placement.up = up == "x" ? UpAxis::x : up == "y" ? UpAxis::y : UpAxis::z;
+  placement.center = recenter == "on";
+  if (size) placement.longest_side = *size;
+  return placement;
 }
 
 bool is_obstacle_file(const std::string& value) {

@@ -8,6 +8,7 @@
 
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/hazard.hpp"
+#include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain::app {
@@ -29,6 +30,10 @@ inline constexpr const char* kHazardHelp =
 inline constexpr const char* kObjectSizeHelp =
     "of the surface and combined gain: longest side of the object [m]; default: that of what is "
     "seen of it";
+
+/// What --size [m], --recenter and --up say of a mesh.
+[[nodiscard]] MeshPlacement placement_of(std::optional<double> size, const std::string& recenter,
+                                         const std::string& up);
 
 /// Is a value of --obstacle a mesh file, and not the numbers of a box?
 [[nodiscard]] bool is_obstacle_file(const std::string& value);

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "program/cli/config_file.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/json.hpp"
@@ -34,7 +33,6 @@
 #include "viewgain/planner_mesh/surface_files.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/stopwatch.hpp"
-#include "viewgain/version.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -162,8 +160,7 @@ class Recording {
     write_surfaces(moment.model, folder.file("surface.ply"), folder.file("points.ply"));
     write_tum(folder.file("views.txt"), moment.model.grid().views());
     write_tum(folder.file("next.txt"), poses_of(next_));
-    Json run{{"settings", settings()},
-             {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}}};
+    Json run = run_head(settings());
     run.update(views_->json(moment.model, next_));
     write_file_atomically(folder.file("run.json"), json_text(run));
     if (options_.outputs.with_report()) {
@@ -250,9 +247,7 @@ void reconstruct(Options& options, const App& app) {
   RunFolder folder(options.outputs.out);
   recording.add_frames(folder, interrupt.token());
   const Json run = recording.finish(folder);
-  write_file_atomically(folder.file("config.toml"),
-                        config_text(app, {"out", "json", "quiet", "threads"}));
-  folder.commit();
+  commit(folder, app);
   if (options.common.json) return print_json(run);
   print(options, run, recording.counts(), recording.next());
 }

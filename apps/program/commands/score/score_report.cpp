@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program/commands/score/score_report.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -104,15 +103,14 @@ void print_rows(const ScoredViews& views, const PoseSource& poses, GainModel mod
     const std::size_t i = views.indices[rank];
     const ViewGain& r = views.gains[rank];
     const Eigen::Vector3d eye = poses.at(i).translation();
-    std::array<char, 80> position{};
-    std::snprintf(position.data(), position.size(), "%8.3f %8.3f %8.3f", eye.x(), eye.y(), eye.z());
     std::printf("%4zu %8zu %12.6g", rank + 1, i, r.gain);
     if (by_paper) std::printf(" %12.6g %12.6g", r.exploration, r.refinement);
     if (!by_paper) std::printf(" %12.6g", r.area);
     if (refines) std::printf(" %12.6g", r.refinement_saturated);
     std::printf(" %8u", r.hits);
     if (by_paper) std::printf(" %9u %9u", r.unknown_voxels, r.occupied_voxels);
-    std::printf("  %-26s %s\n", position.data(), std::string(view_status_name(r.status)).c_str());
+    std::printf("  %8.3f %8.3f %8.3f %s\n", eye.x(), eye.y(), eye.z(),
+                std::string(view_status_name(r.status)).c_str());
   }
 }
 

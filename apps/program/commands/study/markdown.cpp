@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <set>
 #include <utility>
 
+#include "program/cli/values.hpp"
 #include "program/commands/study/results.hpp"
 #include "program/commands/study/statistics.hpp"
 #include "viewgain/support/text.hpp"
@@ -17,10 +17,7 @@ using Rows = std::vector<const ResultRow*>;
 using Figure = std::function<double(const ResultRow&)>;
 
 std::string fixed(double value, int digits) {
-  if (!std::isfinite(value)) return "-";
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
+  return std::isfinite(value) ? formatted("%.*f", digits, value) : "-";
 }
 
 std::vector<double> figures(const Rows& rows, const Figure& figure) {
