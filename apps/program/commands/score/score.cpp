@@ -22,7 +22,7 @@
 #include "program/commands/score/score_options.hpp"
 #include "program/commands/score/score_part.hpp"
 #include "program/commands/score/score_report.hpp"
-#include "show/pictures/score_picture.hpp"
+#include "show/pictures/map_picture.hpp"
 #include "show/report/page.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/reach_toml.hpp"

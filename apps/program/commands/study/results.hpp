@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,5 +59,11 @@ inline constexpr const char* kRunColumns = "object,policy,gain,semantics,seed,se
 /// tell what candidates bring.
 [[nodiscard]] std::string results_markdown(const StudySpec& spec,
                                            const std::vector<ResultRow>& rows);
+
+/// The script that draws a study's plots, plots.py.
+[[nodiscard]] const char* plots_script();
+
+/// Runs a study folder's plots.py by python3. Whether it went well; what it says is dropped.
+[[nodiscard]] bool draw_plots(const std::filesystem::path& script);
 
 }  // namespace viewgain::app

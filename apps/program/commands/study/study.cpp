@@ -16,7 +16,6 @@
 #include "program/cli/interrupt.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/study/plots.hpp"
 #include "program/commands/study/results.hpp"
 #include "program/commands/study/runs.hpp"
 #include "program/commands/study/spec.hpp"
