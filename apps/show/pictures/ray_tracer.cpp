@@ -12,6 +12,7 @@
 #include <span>
 #include <utility>
 
+#include "show/pictures/veils.hpp"
 #include "viewgain/core/thread_pool.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 
@@ -24,7 +25,6 @@ constexpr int kSamplesPerSide = 2;    // of a pixel at an edge
 constexpr int kEdgeSkyRays = 4;       // of each sample there
 constexpr int kSmoothSkyRays = 10;    // of the one sample of any other pixel
 constexpr double kAmbient = 0.62;     // share of the sky's light, the sun has the rest
-constexpr double kHidden = 0.05;      // less visible than this is not looked at any more
 constexpr double kOffset = 1.5e-4;    // of the occlusion range: a ray must not hit its own start
 constexpr std::size_t kAtOnce = 128;  // pixels
 
@@ -48,80 +48,6 @@ struct TracedPart {
 
   const PaintedMesh::Part& part;
   std::optional<SurfaceScene> scene;
-};
-
-// Translucent triangles. A picture has tens of thousands, dozens behind one another: lists of them
-// by tiles of pixels are looked through in a fraction of the time of a ray from each to the next.
-class Veils {
- public:
-  struct Layer {
-    double range;  // along the ray [m]
-    const Paint* paint;
-  };
-
-  Veils(const PaintedMesh& painted, const PinholeCamera& camera, const Pose& T_world_camera)
-      : columns_(tile_of(camera.width, camera.width) + 1),
-        tiles_(columns_ * (tile_of(camera.height, camera.height) + 1)) {
-    const Pose T_camera_world = T_world_camera.inverse();
-    const TriangleMesh& mesh = painted.veils().mesh;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-      std::array<Vector3d, 3> p;  // from the eye
-      Eigen::AlignedBox2d box;    // [px]
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vector3d vertex(mesh.vertices[mesh.triangles[i][k]].data());
-        const Vector3d q = T_camera_world * vertex;
-        p[k] = vertex - T_world_camera.translation();
-        box.extend(Eigen::Vector2d(camera.fx * q.x() / q.z() + camera.cx,
-                                   camera.fy * q.y() / q.z() + camera.cy));
-        if (q.z() > 0) continue;  // beside or behind the eye: anywhere
-        box.extend(Eigen::Vector2d::Constant(-1e9));
-        box.extend(Eigen::Vector2d::Constant(1e9));
-      }
-      Triangle triangle{{}, p[0].dot(p[1].cross(p[2])), &painted.paint_of(painted.veils(), i)};
-      triangle.sides << p[1].cross(p[2]).transpose(), p[2].cross(p[0]).transpose(),
-          p[0].cross(p[1]).transpose();
-      triangles_.push_back(triangle);
-      for (auto v = tile_of(box.min().y(), camera.height);
-           v <= tile_of(box.max().y() + 1, camera.height); ++v) {
-        for (auto u = tile_of(box.min().x(), camera.width);
-             u <= tile_of(box.max().x() + 1, camera.width); ++u) {
-          tiles_[v * columns_ + u].push_back(i);
-        }
-      }
-    }
-  }
-
-  // Those that a ray from the eye through the pixel (u, v) meets before `max_range`, near to far.
-  void meet(std::size_t u, std::size_t v, const Vector3d& direction, double max_range,
-            std::vector<Layer>& layers) const {
-    layers.clear();
-    for (const std::uint32_t i : tiles_[v / kTile * columns_ + u / kTile]) {
-      const Triangle& triangle = triangles_[i];
-      const Eigen::Array3d inside = triangle.sides * direction;
-      if (!((inside >= 0).all() || (inside <= 0).all())) continue;
-      const double range = triangle.volume / inside.sum();
-      if (range > 0 && range < max_range) layers.push_back({range, triangle.paint});
-    }
-    std::sort(layers.begin(), layers.end(),
-              [](const Layer& a, const Layer& b) { return a.range < b.range; });
-  }
-
- private:
-  static constexpr std::size_t kTile = 4;  // [px]
-
-  struct Triangle {
-    Eigen::Matrix3d sides;  // rows: normals of the planes through the eye and an edge
-    double volume;          // of the vertices seen from the eye, as a triple product
-    const Paint* paint;
-  };
-
-  static std::size_t tile_of(double pixel, int count) {
-    return static_cast<std::size_t>(std::clamp(pixel, 0.0, count - 1.0)) / kTile;
-  }
-
-  std::size_t columns_;
-  std::vector<std::vector<std::uint32_t>> tiles_;
-  std::vector<Triangle> triangles_;
 };
 
 // Traces and shades many places of the picture together, which is what Embree is fast at.
@@ -164,18 +90,14 @@ class Renderer {
     solid_.intersect(rays, solid);
     for (std::size_t i = 0; i < rays.size(); ++i) rays[i].max_range = solid[i].range;
     overlay_.intersect(rays, overlay);
-    std::vector<Veils::Layer> layers;
+    std::vector<Veils::Layer> waiting;
     for (std::size_t i = 0; i < looks.size(); ++i) {
       const Look& look = looks[i];
       Sample& found = samples[i];
       const bool is_overlay = std::isfinite(overlay[i].range);
       const SurfaceHit& behind = is_overlay ? overlay[i] : solid[i];
-      veils_.meet(look.u, look.v, look.direction, behind.range, layers);
-      for (const auto& [range, paint] : layers) {
-        const double opacity = found.visible < kHidden ? 1 : paint->opacity;
-        found.flat += found.visible * opacity * paint->color;
-        found.visible *= 1 - opacity;
-      }
+      veils_.draw(look.u, look.v, look.direction, behind.range, found.flat, found.visible, waiting);
+      if (found.visible == 0) continue;
       if (std::isfinite(behind.range)) {
         meet((is_overlay ? overlay_ : solid_).part, look.direction, behind, found);
       } else {
