@@ -93,9 +93,9 @@ std::string counts(const Rows& rows, std::size_t goal) {
 }
 
 std::string means(const Group& group) {
-  std::string text = head_of({"policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "AUC ↑",
-                              "in the end ↑", "RMS [mm] ↓", "consistency", "way [m] ↓",
-                              "time [s] ↓"});
+  std::string text =
+      head_of({"policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "AUC ↑", "in the end ↑",
+               "RMS [mm] ↓", "consistency", "way [m] ↓", "time [s] ↓"});
   for (std::size_t policy = 0; policy < group.spec.policies.size(); ++policy) {
     const Rows rows = group.of(policy);
     std::vector<std::string> cells{group.spec.policies[policy].name};
@@ -136,11 +136,11 @@ std::string difference(const Rows& of, const Rows& against, const Figure& figure
 std::string pairs(const Group& group) {
   const StudySpec& spec = group.spec;
   if (spec.policies.size() < 2) return "";
-  std::string text = "\nPaired with " + spec.policies[spec.against].name +
-                     ": mean difference ± standard error (wins-ties-losses; p of the sign test, of "
-                     "Wilcoxon's signed-rank test)\n\n" +
-                     head_of({"policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "AUC ↑",
-                              "RMS [mm] ↓"});
+  std::string text =
+      "\nPaired with " + spec.policies[spec.against].name +
+      ": mean difference ± standard error (wins-ties-losses; p of the sign test, of "
+      "Wilcoxon's signed-rank test)\n\n" +
+      head_of({"policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "AUC ↑", "RMS [mm] ↓"});
   const Rows against = group.of(spec.against);
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
     if (policy == spec.against) continue;
