@@ -24,6 +24,8 @@ MOST_SOURCES = 16  # .cpp in a folder
 MOST_LINES = 400
 # Where a module's rooms are.
 ROOMS = {"grid": "grid/src", "raycast": "raycast/src", "mesh": "mesh/src", "apps": "apps", "perf": "perf"}
+# Rooms of apps that have rooms, too.
+LIBRARIES = {"apps/planner": "apps/planner/src", "apps/formats": "apps/formats/src"}
 # The modules whose public headers a module may include; apps and perf may include all.
 LOWER = {"core": {"core"}, "grid": {"core", "grid"}, "raycast": {"core", "grid", "raycast"}, "mesh": {"core", "mesh"}}
 # Not a module: what core has for the other modules alone (core/support), which all include.
@@ -97,7 +99,7 @@ def room_of(path):
 
 
 def check_rooms(root, module, faults):
-    folder, readme = ROOMS[module], f"{module}/README.md"
+    folder, readme = (ROOMS | LIBRARIES)[module], f"{module}/README.md"
     drawn = drawn_rooms(root, readme, faults)
     on_disk = {}
     for source in sources(root, folder):
@@ -109,6 +111,8 @@ def check_rooms(root, module, faults):
     for room in sorted(drawn.keys() - on_disk.keys()):
         faults.append(f"{readme}:{drawn[room][0]}: there is no room {room}")
 
+    # A library's public header is of the room that has its source.
+    made = {s.path.stem: room for room, members in on_disk.items() for s in members if module in LIBRARIES}
     found = {room: {} for room in on_disk}
     for room, members in on_disk.items():
         own = {s.path.name for s in members}
@@ -116,6 +120,8 @@ def check_rooms(root, module, faults):
             for number, is_quoted, include in source.includes:
                 where = f"{source.path}:{number}"
                 target, is_there = room_of(include), (root / folder / include).is_file()
+                if include.startswith(f"viewgain/{pathlib.PurePath(module).name}/") and pathlib.PurePath(include).stem in made:
+                    target, is_there = made[pathlib.PurePath(include).stem], True
                 for other in on_disk if include.endswith(".hpp") else ():  # C's headers are one, of parts of three libraries
                     if any((root / folder / other / part / include).is_file() for part in ("include", "support")):
                         target, is_there = other, True
@@ -201,7 +207,7 @@ def check_heavy(all_sources, faults):
 
 def faults_of(root):
     faults = []
-    for module in ROOMS:
+    for module in ROOMS | LIBRARIES:
         check_rooms(root, module, faults)
     product = [s for folder in ("core", *ROOMS) for s in sources(root, folder)]
     check_privates(root, product, faults)

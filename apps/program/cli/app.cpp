@@ -10,7 +10,18 @@
 #include <optional>
 #include <utility>
 
+#include "program/cli/values.hpp"
+
 namespace viewgain::app {
+namespace {
+
+std::string shown(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text.append(text.empty() ? "{" : ",").append(name);
+  return text + "}";
+}
+
+}  // namespace
 
 Option* Option::required() {
   option_->required();
@@ -39,6 +50,40 @@ template Option* Option::range(double, double, const std::string&);
 Option* Option::check(std::function<std::string(std::string&)> check, const std::string& shown) {
   option_->check(CLI::Validator(std::move(check), shown));
   return this;
+}
+
+Option* Option::one_of(const std::vector<std::string>& names, const char* what) {
+  return check(
+      [flag = name(), names, what](std::string& value) {
+        check_one_of(flag, value, names, what);
+        return std::string();
+      },
+      shown(names));
+}
+
+Option* Option::several_of(const std::vector<std::string>& names, const char* what) {
+  return check(
+      [flag = name(), names, what](std::string& value) {
+        (void)parse_names(flag, value, names, what);
+        return std::string();
+      },
+      shown(names));
+}
+
+Option* Option::on_or_off() { return one_of({"on", "off"}, "position of a switch"); }
+
+Option* Option::takes_seed() {
+  return range(std::size_t{0}, std::size_t{1} << 62U, "number")->capture_default_str();
+}
+
+std::vector<std::string> Option::choices() const {
+  const std::string type = type_name();
+  const std::size_t begin = type.find('{'), end = type.find('}');
+  std::vector<std::string> names;
+  for (std::size_t at = begin; at < end; at = type.find_first_of(",}", at + 1)) {
+    names.push_back(type.substr(at + 1, type.find_first_of(",}", at + 1) - at - 1));
+  }
+  return names;
 }
 
 bool Option::nonpositional() const { return option_->nonpositional(); }

@@ -45,6 +45,15 @@ class Option {
   /// values in the help.
   Option* check(std::function<std::string(std::string&)> check, const std::string& shown);
 
+  /// It takes one of these names, which help and completion show; check_one_of() refuses others.
+  Option* one_of(const std::vector<std::string>& names, const char* what);
+  /// Likewise several of them with commas.
+  Option* several_of(const std::vector<std::string>& names, const char* what);
+  /// It takes on or off.
+  Option* on_or_off();
+  /// It takes a seed, with the same bounds in every subcommand, and shows its default.
+  Option* takes_seed();
+
   [[nodiscard]] bool nonpositional() const;
   /// "--voxel", or the name of a positional.
   [[nodiscard]] std::string name() const;
@@ -53,6 +62,8 @@ class Option {
   [[nodiscard]] std::string description() const;
   /// Of the values: "FLOAT", "TEXT:{on,off}" and so on.
   [[nodiscard]] std::string type_name() const;
+  /// What it takes by one_of() or several_of(), else nothing.
+  [[nodiscard]] std::vector<std::string> choices() const;
   [[nodiscard]] std::string default_text() const;
   [[nodiscard]] bool is_required() const;
   /// Whether it stands alone, without a value.

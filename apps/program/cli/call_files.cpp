@@ -14,9 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "program/cli/flags/hazard_source.hpp"
-#include "program/cli/flags/obstacle_source.hpp"
-#include "viewgain/core/error.hpp"
+#include "program/cli/flags/scene_sources.hpp"
+#include "program/cli/values.hpp"
 #include "viewgain/formats/file_names.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/reach_toml.hpp"
@@ -47,21 +46,21 @@ struct FileOption {
   std::string_view name;
   Kind kind;
 };
-constexpr std::array kFileOptions{
-    FileOption{"--config", Kind::input},     FileOption{"MESH", Kind::input},
-    FileOption{"MAP", Kind::input},          FileOption{"IN", Kind::input},
-    FileOption{"--map", Kind::input},        FileOption{"--cloud", Kind::input},
-    FileOption{"--poses", Kind::input},      FileOption{"--sensor", Kind::input},
-    FileOption{"--reach", Kind::reach},      FileOption{"--hazard", Kind::input},
-    FileOption{"--obstacle", Kind::input},   FileOption{"FRAMES_DIR", Kind::frames},
-    FileOption{"OUT", Kind::output},         FileOption{"--picture", Kind::picture},
-    FileOption{"--out", Kind::output},       FileOption{"--save-config", Kind::output},
-    FileOption{"INPUT", Kind::run},          FileOption{"--report", Kind::page},
-    FileOption{"SPEC", Kind::input},         FileOption{"--truth", Kind::input},
-    FileOption{"--points", Kind::output},    FileOption{"SOURCE", Kind::folder},
-    FileOption{"--mask", Kind::folder},      FileOption{"--confidence", Kind::folder},
-    FileOption{"--distances", Kind::input},  FileOption{"PART", Kind::input},
-    FileOption{"--amplitude", Kind::folder}, FileOption{"--costs", Kind::input}};
+constexpr auto kFileOptions =
+    std::to_array<FileOption>({{"--config", Kind::input},     {"MESH", Kind::input},
+                               {"MAP", Kind::input},          {"IN", Kind::input},
+                               {"--map", Kind::input},        {"--cloud", Kind::input},
+                               {"--poses", Kind::input},      {"--sensor", Kind::input},
+                               {"--reach", Kind::reach},      {"--hazard", Kind::input},
+                               {"--obstacle", Kind::input},   {"FRAMES_DIR", Kind::frames},
+                               {"OUT", Kind::output},         {"--picture", Kind::picture},
+                               {"--out", Kind::output},       {"--save-config", Kind::output},
+                               {"INPUT", Kind::run},          {"--report", Kind::page},
+                               {"SPEC", Kind::input},         {"--truth", Kind::input},
+                               {"--points", Kind::output},    {"SOURCE", Kind::folder},
+                               {"--mask", Kind::folder},      {"--confidence", Kind::folder},
+                               {"--distances", Kind::input},  {"PART", Kind::input},
+                               {"--amplitude", Kind::folder}, {"--costs", Kind::input}});
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 
@@ -70,11 +69,6 @@ struct NamedFile {
   fs::path path;
   Kind kind;
 };
-
-[[noreturn]] void refuse(const std::string& option, const std::string& value,
-                         const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, option + " " + value + ": " + what);
-}
 
 Kind kind_of(const FileOption& option, const std::string& subcommand) {
   if (option.name != "--out") return option.kind;
@@ -87,9 +81,7 @@ Kind kind_of(const FileOption& option, const std::string& subcommand) {
 void check_values(const App& subcommand) {
   for (const Option* option : subcommand.options()) {
     for (const std::string& value : option->results()) {
-      if (value.empty()) {
-        throw Error(ErrorCode::invalid_argument, option->name() + ": the value is empty");
-      }
+      if (value.empty()) refuse(option->name() + ": the value is empty");
     }
   }
   for (const App* group : subcommand.subcommands()) check_values(*group);

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/values.hpp"
 #include "program/cli/words.hpp"
 #include "viewgain/support/settings_toml.hpp"
@@ -46,10 +45,8 @@ std::vector<std::string> keys_of(const Options& options) {
 }
 
 bool is_switch(const Option& option) {
-  return choices_of(option) == std::vector<std::string>{"on", "off"};
+  return option.choices() == std::vector<std::string>{"on", "off"};
 }
-
-bool is_repeated(const Option& option) { return option.is_repeated(); }
 
 Kind kind_of(const Option& option) {
   if (option.is_bare() || is_switch(option)) return Kind::boolean;
@@ -92,7 +89,7 @@ void add_words(const std::string& path, const Setting& setting, const Option& op
   const std::string flag = option.name();
   if (option.is_bare()) {
     if (word_of(path, setting, setting.value, option) == "on") words.push_back(flag);
-  } else if (!is_repeated(option)) {
+  } else if (!option.is_repeated()) {
     words.push_back(flag + "=" + word_of(path, setting, setting.value, option));
   } else {
     if (setting.value.kind != Kind::list) {
@@ -106,7 +103,7 @@ void add_words(const std::string& path, const Setting& setting, const Option& op
 
 std::vector<std::string> positional_words(const std::string& path, const Setting& setting,
                                           const Option& option) {
-  if (!is_repeated(option) || setting.value.kind != Kind::list) {
+  if (!option.is_repeated() || setting.value.kind != Kind::list) {
     return {word_of(path, setting, setting.value, option)};
   }
   std::vector<std::string> words;
@@ -237,7 +234,7 @@ std::string config_text(const App& subcommand, const std::vector<std::string>& l
     if (option->empty()) {
       if (option->default_text().empty()) continue;
       line = "# " + setting_line(key, default_of(*option));
-    } else if (is_repeated(*option)) {
+    } else if (option->is_repeated()) {
       SettingValue list{Kind::list, {}, {}};
       for (const std::string& value : option->results())
         list.elements.push_back({Kind::text, value});

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "program/cli/app.hpp"
-#include "program/cli/choices.hpp"
 #include "program/cli/json.hpp"
 
 namespace viewgain::app {
@@ -22,7 +21,7 @@ namespace viewgain::app {
 inline constexpr auto as_it_is = [](Option&) {};
 inline constexpr auto shows_default = [](Option& option) { option.capture_default_str(); };
 inline constexpr auto switched = [](Option& option) {
-  on_or_off(option);
+  option.on_or_off();
   option.capture_default_str();
 };
 inline constexpr auto needed = [](Option& option) { option.required(); };

@@ -127,26 +127,22 @@ void Json::read(bool& value) const {
 
 namespace {
 
-// Whether a value is a number that the type can hold; then it is that.
+// Whether a value is a number that the type can hold; then `number` is that.
 template <typename Number>
 struct ToNumber {
   template <typename Value>
   bool operator()(const Value& value) const {
     if constexpr (!std::is_arithmetic_v<Value> || std::same_as<Value, bool>) {
       return false;
-    } else if constexpr (std::floating_point<Number>) {
-      number = static_cast<Number>(value);
-      return true;
-    } else if constexpr (std::floating_point<Value>) {
-      // 2^63 and 2^64 themselves are too large.
-      if (!(value >= static_cast<Value>(std::numeric_limits<Number>::min()) &&
-            value < static_cast<Value>(std::numeric_limits<Number>::max()))) {
-        return false;
-      }
-      number = static_cast<Number>(value);
-      return true;
     } else {
-      if (!std::in_range<Number>(value)) return false;
+      using Limits = std::numeric_limits<Number>;
+      if constexpr (std::integral<Number> && std::integral<Value>) {
+        if (!std::in_range<Number>(value)) return false;
+      } else if constexpr (std::integral<Number>) {  // 2^63 and 2^64 themselves are too large
+        if (!(value >= static_cast<Value>(Limits::min()) &&
+              value < static_cast<Value>(Limits::max())))
+          return false;
+      }
       number = static_cast<Number>(value);
       return true;
     }

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <map>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "program/cli/values.hpp"
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
 
 namespace viewgain::app {
 
@@ -24,6 +26,12 @@ namespace viewgain::app {
           {m[4], m[5], m[6], m[7]},
           {m[8], m[9], m[10], m[11]},
           {0.0, 0.0, 0.0, 1.0}};
+}
+
+/// The sigmas [m, deg]; null where both are 0.
+[[nodiscard]] inline Json pose_sigma_json(const PoseSigma& sigma) {
+  if (sigma == PoseSigma{}) return {};
+  return {sigma.translation, sigma.rotation * 180 / std::numbers::pi};
 }
 
 /// The key `seconds`: each stage's, and their sum.

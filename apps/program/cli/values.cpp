@@ -7,6 +7,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdarg>
+#include <cstdio>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/nearest_name.hpp"
@@ -47,12 +49,13 @@ std::size_t utf8_length(std::string_view text) {
   return is_wrong ? 0 : length;
 }
 
-[[noreturn]] void fail(std::string_view flag, std::string_view text, const std::string& what) {
-  throw Error(ErrorCode::invalid_argument,
-              std::string(flag) + " " + std::string(text) + ": " + what);
-}
-
 }  // namespace
+
+void refuse(const std::string& what) { throw Error(ErrorCode::invalid_argument, what); }
+
+void refuse(std::string_view flag, std::string_view value, const std::string& what) {
+  refuse(std::string(flag) + " " + std::string(value) + ": " + what);
+}
 
 std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
                                   std::size_t min_count, std::size_t max_count) {
@@ -67,16 +70,16 @@ std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc{} || end != word.data() + word.size()) {
-      fail(flag, text, std::string("\"").append(word).append("\" is no number"));
+      refuse(flag, text, std::string("\"").append(word).append("\" is no number"));
     }
-    if (!std::isfinite(value)) fail(flag, text, "numbers must be finite");
+    if (!std::isfinite(value)) refuse(flag, text, "numbers must be finite");
     numbers.push_back(value);
   }
   if (numbers.size() < min_count || numbers.size() > max_count) {
-    fail(flag, text,
-         "needs " + std::to_string(min_count) +
-             (min_count == max_count ? "" : " to " + std::to_string(max_count)) +
-             " numbers separated by commas, has " + std::to_string(numbers.size()));
+    refuse(flag, text,
+           "needs " + std::to_string(min_count) +
+               (min_count == max_count ? "" : " to " + std::to_string(max_count)) +
+               " numbers separated by commas, has " + std::to_string(numbers.size()));
   }
   return numbers;
 }
@@ -84,7 +87,7 @@ std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
 std::size_t parse_count(std::string_view flag, double value) {
   constexpr double kMaxCount = 1e7;
   if (!(value >= 0 && value <= kMaxCount && value == std::floor(value))) {
-    fail(flag, short_text(value), "the count must be a whole number from 0 to 10000000");
+    refuse(flag, short_text(value), "the count must be a whole number from 0 to 10000000");
   }
   return static_cast<std::size_t>(value);
 }
@@ -93,7 +96,7 @@ Box box_of(std::string_view flag, const std::vector<double>& numbers) {
   const Box box{{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(box.min[k] < box.max[k])) {
-      fail(flag, describe(box), "the box is inside out or has no extent");
+      refuse(flag, describe(box), "the box is inside out or has no extent");
     }
   }
   return box;
@@ -106,7 +109,7 @@ Box parse_box(std::string_view flag, std::string_view text) {
 std::array<double, 3> parse_size(std::string_view flag, std::string_view text) {
   const std::vector<double> n = parse_numbers(flag, text, 3, 3);
   for (const double length : n) {
-    if (!(length > 0)) fail(flag, text, "width, height and depth must be positive");
+    if (!(length > 0)) refuse(flag, text, "width, height and depth must be positive");
   }
   return {n[0], n[1], n[2]};
 }
@@ -115,7 +118,7 @@ Pose parse_pose(std::string_view flag, std::string_view text) {
   const std::vector<double> n = parse_numbers(flag, text, 7, 7);
   const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);
   if (!(std::abs(q.norm() - 1) < 1e-2)) {
-    fail(flag, text, "the quaternion qx,qy,qz,qw has the norm " + short_text(q.norm()));
+    refuse(flag, text, "the quaternion qx,qy,qz,qw has the norm " + short_text(q.norm()));
   }
   return {q.normalized().toRotationMatrix(), Eigen::Vector3d(n[0], n[1], n[2])};
 }
@@ -129,9 +132,9 @@ void check_one_of(std::string_view flag, std::string_view value,
                   const std::vector<std::string>& names, const char* what) {
   if (std::find(names.begin(), names.end(), value) != names.end()) return;
   const std::string nearest = did_you_mean(value, names);
-  fail(flag, value,
-       std::string("no such ") + what +
-           (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names));
+  refuse(flag, value,
+         std::string("no such ") + what +
+             (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names));
 }
 
 std::vector<std::string> parse_names(std::string_view flag, std::string_view text,
@@ -172,6 +175,15 @@ std::string utf8_text(std::string_view text) {
   return result;
 }
 
+std::string formatted(const char* format, ...) {
+  std::array<char, 512> text{};
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text.data(), text.size(), format, arguments);
+  va_end(arguments);
+  return text.data();
+}
+
 std::string with_commas(unsigned long long value) {
   const std::string digits = std::to_string(value);
   std::string text;
@@ -201,23 +213,23 @@ std::string counts_text(const std::map<std::string, std::size_t>& counts) {
 }
 
 void check_finite(std::string_view flag, double value) {
-  if (!std::isfinite(value)) fail(flag, short_text(value), "must be finite");
+  if (!std::isfinite(value)) refuse(flag, short_text(value), "must be finite");
 }
 
 void check_positive(std::string_view flag, double value) {
   if (!(value > 0 && std::isfinite(value))) {
-    fail(flag, short_text(value), "must be positive and finite");
+    refuse(flag, short_text(value), "must be positive and finite");
   }
 }
 
 void check_at_least_0(std::string_view flag, double value) {
   if (!(value >= 0 && std::isfinite(value))) {
-    fail(flag, short_text(value), "must be at least 0 and finite");
+    refuse(flag, short_text(value), "must be at least 0 and finite");
   }
 }
 
 void check_inside_0_1(std::string_view flag, double value) {
-  if (!(value > 0 && value < 1)) fail(flag, short_text(value), "must be between 0 and 1");
+  if (!(value > 0 && value < 1)) refuse(flag, short_text(value), "must be between 0 and 1");
 }
 
 }  // namespace viewgain::app

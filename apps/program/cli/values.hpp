@@ -16,6 +16,11 @@
 
 namespace viewgain::app {
 
+/// Throws Error(invalid_argument).
+[[noreturn]] void refuse(const std::string& what);
+/// Likewise: "FLAG VALUE: what".
+[[noreturn]] void refuse(std::string_view flag, std::string_view value, const std::string& what);
+
 /// Numbers separated by commas; each must be finite and their count in [min_count, max_count].
 /// Throws Error(invalid_argument) that names the flag and the text.
 [[nodiscard]] std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
@@ -54,6 +59,9 @@ void check_one_of(std::string_view flag, std::string_view value,
 /// The text as UTF-8, in which a byte that is none stands as \xE9. For file names, which may be any
 /// bytes, in JSON.
 [[nodiscard]] std::string utf8_text(std::string_view text);
+
+/// As std::printf prints it, to at most 511 bytes.
+[[nodiscard]] __attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...);
 
 /// 2,097,152 for 2097152.
 [[nodiscard]] std::string with_commas(unsigned long long value);

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "program/cli/choices.hpp"
-#include "viewgain/core/error.hpp"
+#include "program/cli/values.hpp"
 #include "viewgain/support/nearest_name.hpp"
 
 namespace viewgain::app {
@@ -16,7 +15,7 @@ namespace {
   if (!subcommand.name().empty() && subcommand.has_parent()) {
     what.append(" (see viewgain ").append(subcommand.name()).append(" --help)");
   }
-  throw Error(ErrorCode::invalid_argument, flag + ": " + what);
+  app::refuse(flag + ": " + what);
 }
 
 // What the first positional of a form is called.
@@ -42,7 +41,7 @@ std::string source_of(const App& form) {
 }
 
 [[noreturn]] void refuse_without_value(const App& subcommand, const Option& option) {
-  const std::vector<std::string> choices = choices_of(option);
+  const std::vector<std::string> choices = option.choices();
   std::string what = "needs a value";
   if (!choices.empty()) what.append("; there are ").append(listed(choices));
   refuse(subcommand, option.name(), what);
@@ -88,9 +87,8 @@ const App* subcommand_of(const App& program, const std::vector<std::string>& wor
     if (!subcommand->group_name().empty()) names.push_back(subcommand->name());
   }
   const std::string nearest = did_you_mean(words[0], names);
-  throw Error(ErrorCode::invalid_argument,
-              words[0] + ": no such subcommand" +
-                  (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names));
+  app::refuse(words[0] + ": no such subcommand" +
+              (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names));
 }
 
 GivenWords sort_words(const App& subcommand, const std::vector<const Option*>& options,

@@ -12,13 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/sensed_map.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/planner/pose_sets.hpp"
 #include "viewgain/planner/rank_views.hpp"
@@ -84,9 +82,8 @@ void refuse_none(const Options& options, const Proposal& proposal) {
   if (!proposal.candidates.empty()) return;
   const std::string reasons =
       proposal.dropped.empty() ? "" : "; dropped: " + counts_text(proposal.dropped);
-  throw Error(ErrorCode::invalid_argument, options.map + ": no candidate of --generator " +
-                                               options.proposal.generator + " is feasible" +
-                                               reasons + "; no poses are written");
+  refuse(options.map + ": no candidate of --generator " + options.proposal.generator +
+         " is feasible" + reasons + "; no poses are written");
 }
 
 void candidates(const Options& options) {
@@ -174,17 +171,16 @@ Command add_candidates(App& program) {
       "why it was dropped.");
   Options& o = *options;
   app->add_option("MAP", o.map, kMapHelp)->required();
-  one_of(*app->add_option("--generator", o.proposal.generator,
-                          "boundary (open boundaries of the surface in the map), sphere, dome, "
-                          "rings, shell or sequence")
-              ->required(),
-         generator_names(), "generator");
+  app->add_option("--generator", o.proposal.generator,
+                  "boundary (open boundaries of the surface in the map), sphere, dome, "
+                  "rings, shell or sequence")
+      ->required()
+      ->one_of(generator_names(), "generator");
   app->add_option("--sensor", o.sensor, kMapSensorHelp);
   add_proposal_options(*app, o.proposal);
-  one_of(*app->add_option(
-             "--gain", o.proposal.gain,
-             "paper, surface or combined, as in score: order the poses by it, best first"),
-         gain_model_names(), "gain");
+  app->add_option("--gain", o.proposal.gain,
+                  "paper, surface or combined, as in score: order the poses by it, best first")
+      ->one_of(gain_model_names(), "gain");
   app->add_option("--out", o.out, "TUM file of camera-to-world poses")->required();
   add_trace_option(*app, o.common);
   add_common_options(*app, o.common);

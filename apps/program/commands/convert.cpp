@@ -6,11 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/map_json.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -29,7 +27,7 @@ struct Options {
 
 void check(const Options& options) {
   const auto refuse = [](const std::string& flag, const std::string& file, const char* why) {
-    throw Error(ErrorCode::invalid_argument, flag + " with " + file + ": " + why);
+    app::refuse(flag + " with " + file + ": " + why);
   };
   if (!is_octomap(options.in)) {
     constexpr const char* kWhy = "the map has its own; the flag is for .ot and .bt";
@@ -102,9 +100,10 @@ Command add_convert(App& program) {
   app->add_option("--sensor", options->sensor,
                   std::string("whose readings will be scored, for the prior of a tree's voxels: ") +
                       kSensorHelp);
-  on_or_off(*app->add_option("--with-covariance", options->with_covariance,
-                             "add covariances and positions to the .vdb, for viewers")
-                 ->capture_default_str());
+  app->add_option("--with-covariance", options->with_covariance,
+                  "add covariances and positions to the .vdb, for viewers")
+      ->capture_default_str()
+      ->on_or_off();
   add_common_options(*app, options->common);
   add_help(*app, kLookGroup, "convert map.vdb tree.ot");
   return {app, [options] { convert(*options); }};

@@ -7,12 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/recordings.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -40,12 +38,12 @@ bool has_own_intrinsics(RecordingFormat format) {
 
 void check(const Options& options, const App& app, RecordingFormat format) {
   const auto refuse = [&options](const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, what + " --format " + options.format);
+    app::refuse(what + " --format " + options.format);
   };
   check_at_least_0("--max-time-gap", options.max_time_gap);
   check_positive("--amplitude-scale", options.amplitude_scale);
   if (app.count("--amplitude-scale") > 0 && options.amplitude.empty()) {
-    throw Error(ErrorCode::invalid_argument, "--amplitude-scale goes with --amplitude");
+    app::refuse("--amplitude-scale goes with --amplitude");
   }
   if (app.count("--max-time-gap") > 0 && format != RecordingFormat::tum) {
     refuse("--max-time-gap is not for");
@@ -147,8 +145,9 @@ Command add_import(App& program) {
       "*.gt.freiburg. Frames that cannot be used are left out and counted by reason: no_pose, "
       "lost_pose, unreadable, wrong_size, intrinsics, depth_scale.");
   app->add_option("SOURCE", options->source, "folder of the recording")->required();
-  one_of(*app->add_option("--format", options->format, "how it is laid out")->required(),
-         recording_format_names(), "format");
+  app->add_option("--format", options->format, "how it is laid out")
+      ->required()
+      ->one_of(recording_format_names(), "format");
   app->add_option("--sensor", options->sensor,
                   kSensorHelp +
                       ", whose noise and ranges the folder is to say; of tum its intrinsics, too, "

@@ -5,10 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
@@ -34,8 +32,7 @@ std::optional<Region> region_of(const Options& options, const BeliefGrid& grid,
   const Box box = parse_box("--region", options.region);
   const GridStatistics s = grid.statistics(box, criterion);
   if (s.unknown + s.free + s.occupied == 0) {
-    throw Error(ErrorCode::invalid_argument,
-                "--region " + options.region + ": holds no voxel of the map");
+    refuse("--region " + options.region + ": holds no voxel of the map");
   }
   return Region{box, s};
 }
@@ -146,10 +143,10 @@ Command add_info(App& program) {
   app->add_option("MAP", options->map, kMapHelp)->required();
   app->add_flag("--hash", options->hash,
                 "print only the hash of grids and metadata: equal maps have equal ones");
-  one_of(*app->add_option("--criterion", options->criterion,
-                          "of the entropy: log_diagonal, log_determinant [nat] or trace [m^2]")
-              ->capture_default_str(),
-         criterion_names(), "criterion");
+  app->add_option("--criterion", options->criterion,
+                  "of the entropy: log_diagonal, log_determinant [nat] or trace [m^2]")
+      ->capture_default_str()
+      ->one_of(criterion_names(), "criterion");
   app->add_option("--region", options->region,
                   "x0,y0,z0,x1,y1,z1: also how well this part is known, grid frame [m]");
   add_common_options(*app, options->common);

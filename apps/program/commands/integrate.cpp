@@ -13,8 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "program/cli/choices.hpp"
-#include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensed_map.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/progress.hpp"
@@ -22,9 +21,8 @@
 #include "program/commands/commands.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "program/commands/frames/reading_source.hpp"
+#include "program/commands/frames/registration_json.hpp"
 #include "program/commands/map_json.hpp"
-#include "program/commands/reconstruct/registration_json.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -41,33 +39,15 @@ std::optional<double> scale_of(const ReadingSource& source) {
   return source.folder()->frames().depth_scale;
 }
 
-Box seen_workspace(ReadingSource& source, const Options& options, double voxel) {
-  FrameTally tally(true);
-  Progress progress(std::string("bounds of ") + part_name(options), options.common.quiet);
-  const std::optional<Box> seen = workspace_around(source.size(), voxel, [&](std::size_t i) {
-    const FrameFault fault = source.load(i);
-    progress.update(i + 1, source.size());
-    if (fault.verdict == FrameVerdict::used) return source.bounds();
-    tally.add(source.file(i), fault);
-    return std::optional<Box>();
-  });
-  if (seen) return *seen;
-  if (source.folder() == nullptr) {
-    throw Error(ErrorCode::invalid_argument, "no cloud has a reading");
-  }
-  refuse_without_readings(*source.folder(), tally);
-}
-
 BeliefGrid new_map(ReadingSource& source, const Options& options) {
-  if (!options.voxel) {
-    throw Error(ErrorCode::invalid_argument, "--voxel is needed unless --map is given");
-  }
+  if (!options.voxel) refuse("--voxel is needed unless --map is given");
   check_positive("--voxel", *options.voxel);
   GridConfig config;
   config.voxel_size = *options.voxel;
   config.prior_sigma = options.prior_sigma;
-  config.workspace = options.workspace.empty() ? seen_workspace(source, options, config.voxel_size)
-                                               : parse_box("--workspace", options.workspace);
+  config.workspace = options.workspace.empty()
+                         ? source.seen_workspace(config.voxel_size, options.common.quiet)
+                         : parse_box("--workspace", options.workspace);
   return BeliefGrid(config, source.sensor());
 }
 
@@ -92,8 +72,7 @@ GrownMap continued_map(const Sensor& sensor, const Options& options) {
   BeliefGrid& grid = map.grid;
   const auto conflict = [&options](const std::string& flag, const std::string& given,
                                    const std::string& stored) {
-    throw Error(ErrorCode::invalid_argument,
-                flag + " " + given + " conflicts with " + options.map + ", which has " + stored);
+    refuse(flag + " " + given + " conflicts with " + options.map + ", which has " + stored);
   };
   if (options.voxel && *options.voxel != grid.voxel_size()) {
     check_positive("--voxel", *options.voxel);
@@ -268,13 +247,11 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
 void check_flags(const Options& options, const App& app) {
   const auto refuse = [&app](std::initializer_list<const char*> flags, const char* why) {
     for (const char* flag : flags) {
-      if (app.count(flag) > 0) {
-        throw Error(ErrorCode::invalid_argument, std::string(flag) + " " + why);
-      }
+      if (app.count(flag) > 0) app::refuse(std::string(flag) + " " + why);
     }
   };
   if (options.frames.folder.empty() == options.clouds.empty()) {
-    throw Error(ErrorCode::invalid_argument, "needs either FRAMES_DIR or --cloud");
+    app::refuse("needs either FRAMES_DIR or --cloud");
   }
   if (options.clouds.empty()) {
     refuse({"--origin", "--poses"}, "is for clouds (--cloud)");
@@ -295,9 +272,8 @@ void refuse_empty(const Options& options, const ReadingSource& source, const Tot
   const IntegrationReport& sum = totals.sum;
   warn_if_out_of_range(options.clouds.front(), sum);
   if (sum.readings_inside + sum.plane_readings + sum.voxels_crossed > 0) return;
-  throw Error(ErrorCode::invalid_argument, options.clouds.front() + ": none of " +
-                                               with_commas(sum.readings) +
-                                               " readings lies in the workspace");
+  refuse(options.clouds.front() + ": none of " + with_commas(sum.readings) +
+         " readings lies in the workspace");
 }
 
 void integrate(const Options& options, const App& app) {
@@ -305,12 +281,10 @@ void integrate(const Options& options, const App& app) {
   check_flags(options, app);
   check_map_name(options.out);
   if (options.with_covariance == "on" && is_octomap(options.out)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--with-covariance with " + options.out + ": a tree has no place for covariances");
+    refuse("--with-covariance with " + options.out + ": a tree has no place for covariances");
   }
   if (is_octomap(options.out) && app.count("--calibrate-hazard") > 0) {
-    throw Error(ErrorCode::invalid_argument, "--calibrate-hazard with " + options.out +
-                                                 ": a tree has no place for hazard counters");
+    refuse("--calibrate-hazard with " + options.out + ": a tree has no place for hazard counters");
   }
   const std::unique_ptr<ReadingSource> source = open_reading_source(options);
   GrownMap map = options.map.empty() ? GrownMap{new_map(*source, options)}
@@ -362,14 +336,13 @@ Command add_integrate(App& program) {
                       "; default: FRAMES_DIR/sensor.toml; needed for clouds, of which noise and "
                       "ranges hold");
   add_frame_folder_options(*app, options->frames);
-  one_of(*app->add_option("--carve", options->carve,
-                          "voxels that a pixel crosses: those in its pyramid, or on its ray")
-              ->capture_default_str(),
-         {"cones", "lines"}, "way of carving");
-  one_of(
-      *app->add_option("--occupancy", options->occupancy, "log-odds, or the paper's literal rule")
-           ->capture_default_str(),
-      {"probabilistic", "literal"}, "rule");
+  app->add_option("--carve", options->carve,
+                  "voxels that a pixel crosses: those in its pyramid, or on its ray")
+      ->capture_default_str()
+      ->one_of({"cones", "lines"}, "way of carving");
+  app->add_option("--occupancy", options->occupancy, "log-odds, or the paper's literal rule")
+      ->capture_default_str()
+      ->one_of({"probabilistic", "literal"}, "rule");
   app->add_option("--jump-edge-filter", options->jump_edge_filter, kJumpEdgeHelp)
       ->capture_default_str();
   app->add_option("--support-plane", options->support_plane,
@@ -378,14 +351,16 @@ Command add_integrate(App& program) {
                   "sigma of an unknown voxel [m]; default: max(voxel/2, twice the sensor's axial "
                   "sigma at its working distance)");
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
-  on_or_off(*app->add_option("--calibrate-hazard", options->calibrate_hazard,
-                             "count how often frames met the surface in unknown space, for the "
-                             "surface and combined gain of the map")
-                 ->capture_default_str());
+  app->add_option("--calibrate-hazard", options->calibrate_hazard,
+                  "count how often frames met the surface in unknown space, for the "
+                  "surface and combined gain of the map")
+      ->capture_default_str()
+      ->on_or_off();
   add_registration_options(*app, options->registration);
-  on_or_off(*app->add_option("--with-covariance", options->with_covariance,
-                             "add covariances and positions to the file, for viewers")
-                 ->capture_default_str());
+  app->add_option("--with-covariance", options->with_covariance,
+                  "add covariances and positions to the file, for viewers")
+      ->capture_default_str()
+      ->on_or_off();
   app->add_option("--out", options->out, "map to write (.vdb, or OctoMap's .ot)")->required();
   app->add_option("--map", options->map,
                   "map to continue (.vdb, .ot, .bt); its voxel size, workspace and prior hold, and "

@@ -11,15 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/flags/pose_flags.hpp"
+#include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/sensed_map.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "show/pictures/map_picture.hpp"
 #include "show/pictures/surface_picture.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/fused_points.hpp"
@@ -48,10 +46,6 @@ struct Options {
   std::uint64_t seed = 1;
   std::string gain = default_gain();
 };
-
-[[noreturn]] void refuse(const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, what);
-}
 
 // What a kind of picture has no use for would be ignored in silence.
 void check(const Options& options, const App& app) {
@@ -194,7 +188,7 @@ Command add_render(App& program) {
              "map (its voxels), surface, sigma (how well it is known) or gain (poses, which it "
              "needs, by what they gain)")
           ->required();
-  one_of(*what, {"map", "surface", "sigma", "gain"}, "kind of picture");
+  what->one_of({"map", "surface", "sigma", "gain"}, "kind of picture");
   app->add_option("--width", o.width, "of the picture [px]")
       ->range(64, 8192, "width")
       ->capture_default_str();
@@ -208,7 +202,7 @@ Command add_render(App& program) {
   add_seed_option(*app, o.seed, "of --shell");
   app->add_option("--sensor", o.sensor, std::string("gain: ").append(kMapSensorHelp));
   auto* gain = app->add_option("--gain", o.gain, "gain: paper, surface or combined, as in score");
-  one_of(*gain->capture_default_str(), gain_model_names(), "gain");
+  gain->capture_default_str()->one_of(gain_model_names(), "gain");
   app->add_option("--out", o.out, "PNG file to write")->required();
   add_trace_option(*app, o.common);
   add_common_options(*app, o.common);

@@ -12,15 +12,13 @@
 #include <variant>
 #include <vector>
 
-#include "program/cli/choices.hpp"
-#include "program/cli/flags/pose_flags.hpp"
-#include "program/cli/flags/pose_sigma_json.hpp"
+#include "program/cli/flags/pose_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/flags/sensing_flags.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
@@ -68,14 +66,6 @@ struct PixelCounts {
   }
 };
 
-MeshPlacement placement_of(const Options& options) {
-  MeshPlacement placement;
-  placement.up = options.up == "x" ? UpAxis::x : options.up == "y" ? UpAxis::y : UpAxis::z;
-  placement.center = options.recenter == "on";
-  if (options.size) placement.longest_side = *options.size;
-  return placement;
-}
-
 // Where the mesh's frame is in the world.
 Pose parse_place(const std::string& text) {
   const std::vector<double> n = parse_numbers("--place", text, 3, 7);
@@ -115,9 +105,8 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
         box.max[k] = std::max(box.max[k], v[k]);
       }
     }
-    throw Error(ErrorCode::invalid_argument,
-                options.mesh + ": no pose has the mesh in view and in range, which lies in " +
-                    describe(box) + " m (--size, --recenter, --place)");
+    refuse(options.mesh + ": no pose has the mesh in view and in range, which lies in " +
+           describe(box) + " m (--size, --recenter, --place)");
   }
 }
 
@@ -130,7 +119,8 @@ void simulate(const Options& options) {
   const PoseSource source = make_poses(options.poses, options.sensing.seed);
   std::optional<Pose> T_world_mesh;
   if (!options.place.empty()) T_world_mesh = parse_place(options.place);
-  TriangleMesh mesh = read_mesh(options.mesh, placement_of(options));
+  TriangleMesh mesh =
+      read_mesh(options.mesh, placement_of(options.size, options.recenter, options.up));
   if (T_world_mesh) place(*T_world_mesh, mesh);
   const std::size_t triangles = mesh.triangles.size();
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
@@ -211,12 +201,12 @@ Command add_simulate(App& program) {
   app->add_option("--size", options->size,
                   "scale the mesh so that its bounding box's longest side is this [m]; default: "
                   "the file's own size, in metres");
-  on_or_off(*app->add_option("--recenter", options->recenter,
-                             "move the bounding box's centre to the origin")
-                 ->capture_default_str());
-  one_of(*app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
-              ->capture_default_str(),
-         {"x", "y", "z"}, "axis");
+  app->add_option("--recenter", options->recenter, "move the bounding box's centre to the origin")
+      ->capture_default_str()
+      ->on_or_off();
+  app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
+      ->capture_default_str()
+      ->one_of({"x", "y", "z"}, "axis");
   app->add_option(
       "--place", options->place,
       "x,y,z[,YAW_DEG] or tx,ty,tz,qx,qy,qz,qw: mesh to world, after --size, --recenter "
@@ -227,8 +217,9 @@ Command add_simulate(App& program) {
                   "frames from each pose, numbered on; poses.txt repeats the pose")
       ->range(std::size_t{1}, std::size_t{1000}, "number")
       ->capture_default_str();
-  on_or_off(*app->add_option("--amplitude", options->amplitude,
-                             "write amplitude images; default: on for sensors with shot noise"));
+  app->add_option("--amplitude", options->amplitude,
+                  "write amplitude images; default: on for sensors with shot noise")
+      ->on_or_off();
   app->add_option(
          "--out", options->out,
          "folder to write; frames that simulate has left in it are replaced, others are refused")

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -12,9 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "program/cli/choices.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
+#include "program/commands/reconstruct/run_report.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/fused_points.hpp"
@@ -44,12 +46,10 @@ struct Options {
 };
 
 void check(const Options& options, const App& app) {
-  if (options.out.empty() && options.points.empty()) {
-    throw Error(ErrorCode::invalid_argument, "needs --out or --points");
-  }
+  if (options.out.empty() && options.points.empty()) refuse("needs --out or --points");
   for (const char* flag : {"--size", "--recenter", "--up"}) {
     if (app.count(flag) > 0 && options.truth.empty()) {
-      throw Error(ErrorCode::invalid_argument, std::string(flag) + " goes with --truth");
+      refuse(std::string(flag) + " goes with --truth");
     }
   }
   if (options.size) check_positive("--size", *options.size);
@@ -57,19 +57,9 @@ void check(const Options& options, const App& app) {
 
 std::shared_ptr<const SurfaceScene> truth_of(const Options& options, const ExecConfig& exec) {
   if (options.truth.empty()) return nullptr;
-  MeshPlacement placement;
-  if (options.up != "z") placement.up = options.up == "x" ? UpAxis::x : UpAxis::y;
-  placement.center = options.recenter == "on";
-  if (options.size) placement.longest_side = *options.size;
+  const MeshPlacement placement = placement_of(options.size, options.recenter, options.up);
   return std::make_shared<const SurfaceScene>(read_mesh(options.truth, placement), exec);
 }
-
-struct Figures {
-  double coverage = 0, coverage_2_5mm = 0;
-  std::optional<double> coverage_seen{};  // of the samples that the map's views have in sight
-  ErrorStatistics surface_error{}, points_error{};
-  Consistency consistency{};
-};
 
 // Which samples any of the views has in sight.
 std::vector<std::uint8_t> seen_samples(const GroundTruth& truth, const SurfaceScene& mesh,
@@ -88,20 +78,23 @@ std::vector<std::uint8_t> seen_samples(const GroundTruth& truth, const SurfaceSc
   return seen;
 }
 
-Figures figures_of(const SurfaceScene& mesh, const MapOfSensor& map, const SurfaceMesh& surface,
-                   const std::vector<FusedPoint>& points, const ExecConfig& exec) {
+// Of the samples visible are those that the map's views have in sight; NaN without any.
+QualityFigures figures_of(const SurfaceScene& mesh, const MapOfSensor& map,
+                          const SurfaceMesh& surface, const std::vector<FusedPoint>& points,
+                          const ExecConfig& exec) {
   constexpr std::size_t kSamples = 10'000;
   constexpr std::uint64_t kSeed = 1;
   const GroundTruth truth(mesh.mesh(), kSamples, kSeed, exec);
   const PointArrays arrays = arrays_of(points);
   const std::vector<double> distances = truth.distances_to(surface.vertices);
-  Figures figures;
+  QualityFigures figures;
   figures.coverage = coverage(distances, kCovered);
+  figures.coverage_visible = std::numeric_limits<double>::quiet_NaN();
   figures.coverage_2_5mm = coverage(distances, kCovered / 2);
   if (map.sensor && !map.grid.views().empty()) {
     const auto seen = seen_samples(truth, mesh, map.grid.views(), *map.sensor, exec);
     if (std::find(seen.begin(), seen.end(), 1) != seen.end()) {
-      figures.coverage_seen = coverage(distances, kCovered, seen);
+      figures.coverage_visible = coverage(distances, kCovered, seen);
     }
   }
   figures.surface_error = truth.error(surface.vertices);
@@ -110,26 +103,12 @@ Figures figures_of(const SurfaceScene& mesh, const MapOfSensor& map, const Surfa
   return figures;
 }
 
-Json to_json(const Figures& figures) {
-  return {{"coverage", figures.coverage},
-          {"coverage_seen", figures.coverage_seen},
-          {"coverage_2_5mm", figures.coverage_2_5mm},
-          {"rms_error", figures.surface_error.rms},
-          {"p95_error", figures.surface_error.p95},
-          {"rms_error_points", figures.points_error.rms},
-          {"p95_error_points", figures.points_error.p95},
-          {"consistency", figures.consistency.mean_clipped},
-          {"consistency_median", figures.consistency.median},
-          {"consistency_above_9", figures.consistency.above_9},
-          {"outliers", figures.consistency.outliers}};
-}
-
-void print(const Figures& figures) {
+void print(const QualityFigures& figures) {
   std::printf("of the truth %.2f %% within 5 mm, %.2f %% within 2.5 mm", 100 * figures.coverage,
               100 * figures.coverage_2_5mm);
-  if (figures.coverage_seen) {
+  if (!std::isnan(figures.coverage_visible)) {
     std::printf("; of what the map's views have in sight %.2f %% within 5 mm",
-                100 * *figures.coverage_seen);
+                100 * figures.coverage_visible);
   }
   std::printf("\nsurface off by %.2f mm (RMS), %.2f mm (95 %%); points by %.2f mm, %.2f mm\n",
               1e3 * figures.surface_error.rms, 1e3 * figures.surface_error.p95,
@@ -145,10 +124,7 @@ void surface(const Options& options, const App& app) {
   const std::shared_ptr<const SurfaceScene> truth = truth_of(options, exec);
   const MapOfSensor map = load_map_of_sensor(options.map, nullptr);
   const std::vector<FusedPoint> points = fused_points(map.grid, {}, exec);
-  if (points.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                options.map + ": no voxel has readings that make a surface");
-  }
+  if (points.empty()) refuse(options.map + ": no voxel has readings that make a surface");
   const SurfaceMesh surface = surface_of(points, pooling_of(map.grid.snapshot()), exec);
   write_surfaces(surface, points, options.out, options.points);
   std::vector<double> sigmas = surface_sigmas(surface, points);
@@ -158,7 +134,7 @@ void surface(const Options& options, const App& app) {
     std::nth_element(sigmas.begin(), middle, sigmas.end());
     median = *middle;
   }
-  std::optional<Figures> figures;
+  std::optional<QualityFigures> figures;
   if (truth) figures = figures_of(*truth, map, surface, points, exec);
 
   if (options.common.json) {
@@ -167,7 +143,7 @@ void surface(const Options& options, const App& app) {
                        {"triangles", surface.triangles.size()},
                        {"area", mesh_area(surface)},
                        {"median_sigma", median},
-                       {"truth", figures ? to_json(*figures) : Json()},
+                       {"truth", figures ? quality_json(*figures, "coverage_seen") : Json()},
                        {"out", Json::or_null(options.out)},
                        {"points_out", Json::or_null(options.points)},
                        {"seconds", watch.seconds()}});
@@ -199,12 +175,13 @@ Command add_surface(App& program) {
       "mesh (off, obj, stl, ply) that the surface is held against, in the world's frame");
   app->add_option("--size", options->size,
                   "longest side that the truth is scaled to [m]; default: as it is");
-  on_or_off(*app->add_option("--recenter", options->recenter,
-                             "the middle of the truth's bounding box becomes the origin")
-                 ->capture_default_str());
-  one_of(*app->add_option("--up", options->up, "axis of the truth that is turned to +z")
-              ->capture_default_str(),
-         {"x", "y", "z"}, "axis");
+  app->add_option("--recenter", options->recenter,
+                  "the middle of the truth's bounding box becomes the origin")
+      ->capture_default_str()
+      ->on_or_off();
+  app->add_option("--up", options->up, "axis of the truth that is turned to +z")
+      ->capture_default_str()
+      ->one_of({"x", "y", "z"}, "axis");
   add_common_options(*app, options->common);
   add_help(*app, kLookGroup, "surface map.vdb --out surface.ply --points points.ply");
   return {app, [options, app] { surface(*options, *app); }};

@@ -11,6 +11,7 @@
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
 
@@ -29,5 +30,13 @@ namespace viewgain::app {
                                     const std::vector<double>& gains,
                                     const std::array<double, 2>& range, const Viewer& viewer,
                                     const ExecConfig& exec);
+
+/// A picture of one view, 1280x960 px: the map's occupied voxels as little grey cubes, the view's
+/// frustum, and the voxels where its rays end, unknown ones orange, occupied ones blue; by the
+/// surface and combined gain unknown voxels in which it may find surface, the stronger in orange
+/// the likelier; seen from a place that shows both. Throws Error(invalid_argument) unless the pose
+/// is rigid (1e-3).
+[[nodiscard]] RgbImage score_picture(const GainEvaluator& evaluator, const Sensor& sensor,
+                                     const Pose& T_world_camera, const ExecConfig& exec);
 
 }  // namespace viewgain::app

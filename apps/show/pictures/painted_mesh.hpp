@@ -35,7 +35,7 @@ class PaintedMesh {
   void add_surface(const std::vector<std::array<double, 3>>& vertices,
                    const std::vector<std::array<double, 3>>& normals,
                    const std::vector<std::array<std::uint32_t, 3>>& triangles, std::uint8_t paint);
-  /// The same with a paint for each triangle, all of which pass light or none.
+  /// The same with a paint for each triangle, all of one part.
   void add_surface(const std::vector<std::array<double, 3>>& vertices,
                    const std::vector<std::array<double, 3>>& normals,
                    const std::vector<std::array<std::uint32_t, 3>>& triangles,
@@ -53,7 +53,7 @@ class PaintedMesh {
   void add_ribbon(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double width,
                   const Eigen::Vector3d& viewer_eye, std::uint8_t paint);
 
-  /// Triangles of one kind, apart so that light need not find its way through those that let it.
+  /// Triangles of one kind, apart since each is met in another way.
   struct Part {
     TriangleMesh mesh;
     /// Zero for vertices of flat triangles; shorter than mesh.vertices if the last ones are flat.
@@ -67,16 +67,18 @@ class PaintedMesh {
   };
   [[nodiscard]] const Part& solid() const noexcept { return solid_; }      ///< lit, throws shadows
   [[nodiscard]] const Part& overlay() const noexcept { return overlay_; }  ///< passes light
+  [[nodiscard]] const Part& veils() const noexcept { return veils_; }      ///< translucent
   [[nodiscard]] const Paint& paint_of(const Part& part, std::uint32_t triangle) const {
     return paints_[part.paint_of_triangle[triangle]];
   }
 
  private:
   Part& part_for(std::uint8_t paint) {
+    if (paints_[paint].opacity < 1) return veils_;
     return paints_[paint].passes_light || !paints_[paint].lit ? overlay_ : solid_;
   }
 
-  Part solid_, overlay_;
+  Part solid_, overlay_, veils_;
   std::vector<Paint> paints_;
 };
 

@@ -4,14 +4,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
 
+#include "show/pictures/veils.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
@@ -24,7 +25,6 @@ constexpr int kSamplesPerSide = 2;    // of a pixel at an edge
 constexpr int kEdgeSkyRays = 4;       // of each sample there
 constexpr int kSmoothSkyRays = 10;    // of the one sample of any other pixel
 constexpr double kAmbient = 0.62;     // share of the sky's light, the sun has the rest
-constexpr double kHidden = 0.05;      // less visible than this is not looked at any more
 constexpr double kOffset = 1.5e-4;    // of the occlusion range: a ray must not hit its own start
 constexpr std::size_t kAtOnce = 128;  // pixels
 
@@ -54,19 +54,22 @@ struct TracedPart {
 // Traces and shades many places of the picture together, which is what Embree is fast at.
 class Renderer {
  public:
-  Renderer(const PaintedMesh& painted, const Vector3d& eye, const Vector3d& to_sun,
+  Renderer(const PaintedMesh& painted, const PinholeCamera& camera, const Pose& T_world_camera,
            double occlusion_range, const ExecConfig& exec)
       : painted_(painted),
         solid_(painted.solid(), exec),
         overlay_(painted.overlay(), exec),
-        eye_(eye),
-        to_sun_(to_sun),
+        veils_(painted, camera, T_world_camera),
+        eye_(T_world_camera.translation()),
+        // It stands over the viewer's left shoulder.
+        to_sun_((T_world_camera.rotation() * Vector3d(-0.45, -0.75, -0.6)).normalized()),
         occlusion_range_(occlusion_range) {}
 
-  // A place in the picture; `height` in [0, 1] runs down it.
+  // A place in the picture, in pixel (u, v); `height` in [0, 1] runs down it.
   struct Look {
     Vector3d direction;
     double height;
+    std::size_t u, v;
   };
 
   // What a ray meets. The light of the sky, which takes most rays, is left to colors().
@@ -84,51 +87,24 @@ class Renderer {
   void sample(std::span<const Look> looks, std::span<Sample> samples) const {
     std::vector<SurfaceScene::Ray> rays;
     for (const Look& look : looks) rays.push_back({eye_, look.direction});
-    std::vector<SurfaceScene::Hit> behind, hits;
-    solid_.intersect(rays, behind);
-    const auto meet_behind = [&](std::size_t i) {
-      if (std::isfinite(behind[i].range)) {
-        meet(solid_.part, eye_, looks[i].direction, behind[i], samples[i]);
+    std::vector<SurfaceScene::Hit> solid, overlay;
+    solid_.intersect(rays, solid);
+    for (std::size_t i = 0; i < rays.size(); ++i) rays[i].max_range = solid[i].range;
+    overlay_.intersect(rays, overlay);
+    std::vector<Veils::Layer> waiting;
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      const Look& look = looks[i];
+      Sample& found = samples[i];
+      const bool is_overlay = std::isfinite(overlay[i].range);
+      const SurfaceScene::Hit& behind = is_overlay ? overlay[i] : solid[i];
+      veils_.draw(look.u, look.v, look.direction, behind.range, found.flat, found.visible, waiting);
+      if (found.visible == 0) continue;
+      if (std::isfinite(behind.range)) {
+        meet((is_overlay ? overlay_ : solid_).part, look.direction, behind, found);
       } else {
-        samples[i].flat += samples[i].visible * background(looks[i].height);
-        samples[i].visible = 0;
+        found.flat += found.visible * background(look.height);
+        found.visible = 0;
       }
-    };
-    // Again and again from where they met what is translucent.
-    std::vector<std::size_t> under_way(looks.size());
-    std::iota(under_way.begin(), under_way.end(), std::size_t{0});
-    std::vector<double> starts(looks.size());
-    while (!under_way.empty()) {
-      rays.clear();
-      for (const std::size_t i : under_way) {
-        const Vector3d& direction = looks[i].direction;
-        rays.push_back({eye_ + starts[i] * direction, direction, behind[i].range - starts[i]});
-      }
-      overlay_.intersect(rays, hits);
-      std::vector<std::size_t> left;
-      for (std::size_t k = 0; k < rays.size(); ++k) {
-        const std::size_t i = under_way[k];
-        Sample& found = samples[i];
-        if (!std::isfinite(hits[k].range)) {
-          meet_behind(i);
-          continue;
-        }
-        const Paint& paint = painted_.paint_of(overlay_.part, hits[k].triangle);
-        if (paint.lit || paint.opacity >= 1 || found.visible < kHidden) {
-          meet(overlay_.part, rays[k].origin, rays[k].direction, hits[k], found);
-          found.range += starts[i];
-          continue;
-        }
-        found.flat += found.visible * paint.opacity * paint.color;
-        found.visible *= 1 - paint.opacity;
-        starts[i] += hits[k].range + kOffset * occlusion_range_;
-        if (starts[i] < behind[i].range) {
-          left.push_back(i);
-        } else {
-          meet_behind(i);
-        }
-      }
-      under_way.swap(left);
     }
     shine(samples);
   }
@@ -180,8 +156,8 @@ class Renderer {
     return top + height * (bottom - top);
   }
 
-  void meet(const PaintedMesh::Part& part, const Vector3d& origin, const Vector3d& direction,
-            const SurfaceScene::Hit& hit, Sample& found) const {
+  void meet(const PaintedMesh::Part& part, const Vector3d& direction, const SurfaceScene::Hit& hit,
+            Sample& found) const {
     const Paint& paint = painted_.paint_of(part, hit.triangle);
     if (!paint.lit) {
       found.flat += found.visible * paint.color;
@@ -193,7 +169,7 @@ class Renderer {
     found.range = hit.range;
     found.front = hit.normal.dot(direction) < 0;
     const Vector3d normal = found.front ? hit.normal : Vector3d(-hit.normal);
-    const Vector3d on_surface = origin + hit.range * direction;
+    const Vector3d on_surface = eye_ + hit.range * direction;
     found.smooth = part.shading_normal(hit.triangle, on_surface, normal);
     found.point = on_surface + kOffset * occlusion_range_ * normal;
   }
@@ -236,6 +212,7 @@ class Renderer {
 
   const PaintedMesh& painted_;
   TracedPart solid_, overlay_;
+  Veils veils_;
   Vector3d eye_, to_sun_;
   double occlusion_range_;
 };
@@ -250,19 +227,17 @@ std::uint8_t encoded(double linear) {
 RgbImage render(const PaintedMesh& scene, const PinholeCamera& camera, const Pose& T_world_camera,
                 double occlusion_range, const ExecConfig& exec) {
   const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
-  const Vector3d eye = T_world_camera.translation();
-  // The sun stands over the viewer's left shoulder.
-  const Vector3d to_sun = (R_world_camera * Vector3d(-0.45, -0.75, -0.6)).normalized();
-  const Renderer renderer(scene, eye, to_sun, occlusion_range, exec);
+  const Renderer renderer(scene, camera, T_world_camera, occlusion_range, exec);
 
   RgbImage image{camera.width, camera.height, {}};
   const auto columns = static_cast<std::size_t>(camera.width);
   const auto rows = static_cast<std::size_t>(camera.height);
   image.pixels.resize(3 * columns * rows);
   const auto look = [&](std::size_t pixel, double du, double dv) -> Renderer::Look {
-    const auto u = static_cast<double>(pixel % columns), v = static_cast<double>(pixel / columns);
-    return {(R_world_camera * camera.ray(u + du, v + dv)).normalized(),
-            v / static_cast<double>(rows)};
+    const std::size_t u = pixel % columns, v = pixel / columns;
+    const double x = static_cast<double>(u), y = static_cast<double>(v);
+    return {(R_world_camera * camera.ray(x + du, y + dv)).normalized(),
+            y / static_cast<double>(rows), u, v};
   };
   // One ray a pixel tells where the edges are; only there are more needed. In bands of rows, since
   // what a ray meets takes a hundred bytes; each band has a row of its neighbours on either side.

@@ -537,83 +537,77 @@ TEST_F(Recordings, FlagsThatDoNotFitAreRefused) {
 TEST_F(Recordings, DamagedTumIsNamed) {
   write_tum_recording();
   const std::string list = read("rec/depth.txt");
-  expect_damage_named([this] {
-    write_tum_recording(); }, call("tum", {"--sensor", "small.toml"}),
-                      {
-    {"depth.txt", "", "names no image"}, {"depth.txt", list + "101.5\n", ":8: "},
-        {"depth.txt", list + "soon depth/0.png\n", "'soon'"}, {
-      "depth.txt", list +
-                       "101.5 ../0.png
-                       ", " : 8 : the image '../0.png' is "},
-      {"depth.txt", list + "101.5 /0.png
-", ":8: the image '/0.png' is"},
-                        {"depth.txt", list + "100 depth/../../rec/depth/0.png
-", "outside"},
+  expect_damage_named([this] { write_tum_recording(); }, call("tum", {"--sensor", "small.toml"}),
+                      {{"depth.txt", "", "names no image"},
+                       {"depth.txt", list + "101.5\n", ":8: "},
+                       {"depth.txt", list + "soon depth/0.png\n", "'soon'"},
+                       {"depth.txt", list + "101.5 ../0.png\n", ":8: the image '../0.png' is"},
+                       {"depth.txt", list + "101.5 /0.png\n", ":8: the image '/0.png' is"},
+                       {"depth.txt", list + "100 depth/../../rec/depth/0.png\n", "outside"},
                        {"depth.txt", {}, "", true},
                        {"groundtruth.txt", "101 0 0 0\n", "expected 8 numbers"},
                        {"groundtruth.txt", "101 0 0 0 0 0 0 1.1\n", "norm"}});
-      }
+}
 
-      TEST_F(Recordings, DamagedBopIsNamed) {
-        write_bop_recording();
-        const json cameras = bop_cameras();
-        const auto with = [&cameras](const char* key, const json& value) {
-          json changed = cameras;
-          changed["20"][key] = value;
-          return changed.dump();
-        };
-        const std::string file = "scene_camera.json";
-        expect_damage_named([this] { write_bop_recording(); }, call("bop"),
-                            {{file, cameras.dump().substr(0, 300), "parse error"},
-                             {file, "[1, 2]", "object"},
-                             {file, with("cam_K", {60, 0, 23.5}), "frame 20: cam_K"},
-                             {file, with("cam_K", {60, 1, 23.5, 0, 60, 17.5, 0, 0, 1}), "no skew"},
-                             {file, with("depth_scale", 0), "depth_scale"}});
-      }
+TEST_F(Recordings, DamagedBopIsNamed) {
+  write_bop_recording();
+  const json cameras = bop_cameras();
+  const auto with = [&cameras](const char* key, const json& value) {
+    json changed = cameras;
+    changed["20"][key] = value;
+    return changed.dump();
+  };
+  const std::string file = "scene_camera.json";
+  expect_damage_named([this] { write_bop_recording(); }, call("bop"),
+                      {{file, cameras.dump().substr(0, 300), "parse error"},
+                       {file, "[1, 2]", "object"},
+                       {file, with("cam_K", {60, 0, 23.5}), "frame 20: cam_K"},
+                       {file, with("cam_K", {60, 1, 23.5, 0, 60, 17.5, 0, 0, 1}), "no skew"},
+                       {file, with("depth_scale", 0), "depth_scale"}});
+}
 
-      TEST_F(Recordings, DamagedScanNetIsNamed) {
-        write_scannet_recording();
-        const std::string intrinsics = "intrinsic/intrinsic_depth.txt";
-        expect_damage_named(
-            [this] { write_scannet_recording(); }, call("scannet"),
-            {{intrinsics, "60 0 23.5\n0 60 17.5\n0 0 1\n", "found 9"},
-             {intrinsics, "60 0 23.5 0\n0 sixty 17.5 0\n0 0 1 0\n0 0 0 1\n", "'sixty'"},
-             {intrinsics, "0 0 23.5 0\n0 60 17.5 0\n0 0 1 0\n0 0 0 1\n", "fx"},
-             {intrinsics, {}, "", true},
-             {"depth/03.png", bytes_of(image_of(0)), "same number"}});
-      }
+TEST_F(Recordings, DamagedScanNetIsNamed) {
+  write_scannet_recording();
+  const std::string intrinsics = "intrinsic/intrinsic_depth.txt";
+  expect_damage_named([this] { write_scannet_recording(); }, call("scannet"),
+                      {{intrinsics, "60 0 23.5\n0 60 17.5\n0 0 1\n", "found 9"},
+                       {intrinsics, "60 0 23.5 0\n0 sixty 17.5 0\n0 0 1 0\n0 0 0 1\n", "'sixty'"},
+                       {intrinsics, "0 0 23.5 0\n0 60 17.5 0\n0 0 1 0\n0 0 0 1\n", "fx"},
+                       {intrinsics, {}, "", true},
+                       {"depth/03.png", bytes_of(image_of(0)), "same number"}});
+}
 
-      TEST_F(Recordings, DamagedIclNuimIsNamed) {
-        write_icl_recording();
-        const std::string file = "traj0.gt.freiburg", poses = read("rec/traj0.gt.freiburg");
-        expect_damage_named([this] { write_icl_recording(); }, call("icl-nuim"),
-                            {{file, "", "no pose"},
-                             {"traj1.gt.freiburg", poses, "second"},
-                             {"depth/000.png", bytes_of(image_of(0)), "same number"}});
-      }
+TEST_F(Recordings, DamagedIclNuimIsNamed) {
+  write_icl_recording();
+  const std::string file = "traj0.gt.freiburg", poses = read("rec/traj0.gt.freiburg");
+  expect_damage_named([this] { write_icl_recording(); }, call("icl-nuim"),
+                      {{file, "", "no pose"},
+                       {"traj1.gt.freiburg", poses, "second"},
+                       {"depth/000.png", bytes_of(image_of(0)), "same number"}});
+}
 
-      TEST_F(Recordings, TheLibraryRefusesWhatItCannotUse) {
-        write_scannet_recording();
-        const Recording recording = open_recording(dir / "rec", RecordingFormat::scannet);
-        EXPECT_EQ(load_depth(recording, 0).pixels, without_saturated(image_of(0)).pixels);
-        EXPECT_THROW((void)load_depth(recording, kFrames), Error);
-        RecordingConfig config;
-        config.max_time_gap = std::numeric_limits<double>::quiet_NaN();
-        EXPECT_THROW((void)open_recording(dir / "rec", RecordingFormat::scannet, config), Error);
-        EXPECT_THROW((void)open_recording(dir / "rec", RecordingFormat::tum), Error);
-        RecordedFramesWriter writer(dir / "out");
-        EXPECT_THROW(writer.commit(recording.camera, 1e-3), Error);
-        writer.write_frame(3, image_of(0), pose_of(0));
-        EXPECT_THROW(writer.write_frame(3, image_of(0), pose_of(0)), Error);
-        EXPECT_THROW(writer.write_frame(4, image_of(0, 40, 30), pose_of(0)), Error);
-        EXPECT_THROW(writer.write_frame(4, image_of(0), off_by(pose_of(0), 0.1)), Error);
-        EXPECT_THROW(writer.commit(recording.camera, 0), Error);
-        PinholeCamera other = recording.camera;
-        other.width = 40;
-        EXPECT_THROW(writer.commit(other, 1e-3), Error);
-        writer.commit(recording.camera, 1e-3);
-        EXPECT_EQ(list("out").size(), 5U);
-      }
+TEST_F(Recordings, TheLibraryRefusesWhatItCannotUse) {
+  write_scannet_recording();
+  const Recording recording = open_recording(dir / "rec", RecordingFormat::scannet);
+  EXPECT_EQ(load_depth(recording, 0).pixels, without_saturated(image_of(0)).pixels);
+  EXPECT_THROW((void)load_depth(recording, kFrames), Error);
+  RecordingConfig config;
+  config.max_time_gap = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW((void)open_recording(dir / "rec", RecordingFormat::scannet, config), Error);
+  EXPECT_THROW((void)open_recording(dir / "rec", RecordingFormat::tum), Error);
+  RecordedFramesWriter writer(dir / "out");
+  EXPECT_THROW(writer.commit(recording.camera, 1e-3), Error);
+  writer.write_frame(3, image_of(0), pose_of(0));
+  EXPECT_THROW(writer.write_frame(3, image_of(0), pose_of(0)), Error);
+  EXPECT_THROW(writer.write_frame(4, image_of(0, 40, 30), pose_of(0)), Error);
+  EXPECT_THROW(writer.write_frame(4, image_of(0), off_by(pose_of(0), 0.1)), Error);
+  EXPECT_THROW(writer.commit(recording.camera, 0), Error);
+  PinholeCamera other = recording.camera;
+  other.width = 40;
+  EXPECT_THROW(writer.commit(other, 1e-3), Error);
+  writer.commit(recording.camera, 1e-3);
+  EXPECT_EQ(list("out").size(), 5U);
+}
 
-    }  // namespace
+}  // namespace
 }  // namespace viewgain

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "program/cli/app.hpp"
-#include "program/cli/choices.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/support/nearest_name.hpp"
@@ -35,11 +34,11 @@ inline void add_common_options(App& app, CommonOptions& options) {
 
 /// Of subcommands that score.
 inline void add_trace_option(App& app, CommonOptions& options) {
-  one_of(*app.add_option("--trace", options.trace,
-                         "how rays meet voxels: by Embree's BVH or by sweeping cells from near to "
-                         "far, as unless told otherwise; never changes a result")
-              ->capture_default_str(),
-         tracer_names(), "tracer");
+  app.add_option("--trace", options.trace,
+                 "how rays meet voxels: by Embree's BVH or by sweeping cells from near to "
+                 "far, as unless told otherwise; never changes a result")
+      ->capture_default_str()
+      ->one_of(tracer_names(), "tracer");
 }
 
 [[nodiscard]] inline ExecConfig exec_of(const CommonOptions& options) {
@@ -78,7 +77,7 @@ inline constexpr const char* kRegionDepthHelp =
 
 /// --seed, the same bounds in every subcommand.
 inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {
-  takes_seed(*app.add_option("--seed", seed, of_what));
+  app.add_option("--seed", seed, of_what)->takes_seed();
 }
 
 }  // namespace viewgain::app

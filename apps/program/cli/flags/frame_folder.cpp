@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -35,12 +34,11 @@ void add_frame_folder_options(App& app, FrameFolderOptions& options) {
       "--depth-scale", options.depth_scale,
       "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
       "sensor.toml), else 1e-3");
-  one_of(
-      *app.add_option("--out-of-range", options.out_of_range,
-                      "what 65535 says: carve (nothing up to the maximal range) or invalid (no "
-                      "reading); default: as the sensor's file says, else carve for what simulate "
-                      "writes (poses.txt), invalid for recorded frames"),
-      {"carve", "invalid"}, "meaning");
+  app.add_option("--out-of-range", options.out_of_range,
+                 "what 65535 says: carve (nothing up to the maximal range) or invalid (no "
+                 "reading); default: as the sensor's file says, else carve for what simulate "
+                 "writes (poses.txt), invalid for recorded frames")
+      ->one_of({"carve", "invalid"}, "meaning");
   app.add_option("--mask", options.mask, kMaskHelp);
   app.add_option("--confidence", options.confidence, kConfidenceHelp);
   app.add_option("--least-confidence", options.least_confidence, kLeastConfidenceHelp)

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/json_text.hpp"
@@ -51,10 +50,7 @@ std::string text_of(const RayOutcomes& rays) {
   for (const Outcome& outcome : kOutcomes) {
     const std::uint32_t count = rays.*outcome.count;
     if (count == 0) continue;
-    std::array<char, 80> part{};
-    std::snprintf(part.data(), part.size(), "%s%.3g %% %s", between, 100.0 * count / rays.rays,
-                  outcome.words);
-    text += part.data();
+    text += formatted("%s%.3g %% %s", between, 100.0 * count / rays.rays, outcome.words);
     between = ", ";
   }
   return text;
@@ -121,24 +117,18 @@ std::string text_of(const NextViews& next) {
   if (next.no_gain) return "none of the candidates gains: " + text_of(*next.no_gain) + "\n";
   if (next.views.empty()) return {};
   const bool has_area = next.model != GainModel::paper;
-  std::array<char, 160> line{};
-  std::snprintf(line.data(), line.size(), "rank %12s%s  %-26s %-23s why\n",
-                ("gain [" + std::string(gain_unit(next.model, kCriterion)) + "]").c_str(),
-                has_area ? "   area [cm^2]" : "", "eye x y z [m]", "looks along x y z");
-  std::string text = line.data();
+  const std::string gain = "gain [" + std::string(gain_unit(next.model, kCriterion)) + "]";
+  std::string text =
+      formatted("rank %12s%s  %-26s %-23s why\n", gain.c_str(), has_area ? "   area [cm^2]" : "",
+                "eye x y z [m]", "looks along x y z");
   for (std::size_t i = 0; i < next.views.size(); ++i) {
     const NextView& view = next.views[i];
     const Eigen::Vector3d eye = view.T_world_camera.translation();
     const Eigen::Vector3d axis = view.T_world_camera.rotation().col(2);
-    std::snprintf(line.data(), line.size(), "%4zu %12.6g", i + 1, view.gain.gain);
-    text += line.data();
-    if (has_area) {
-      std::snprintf(line.data(), line.size(), " %13.4g", 1e4 * view.gain.area);
-      text += line.data();
-    }
-    std::snprintf(line.data(), line.size(), "  %8.3f %8.3f %8.3f %7.3f %7.3f %7.3f  ", eye.x(),
-                  eye.y(), eye.z(), axis.x(), axis.y(), axis.z());
-    text.append(line.data()).append(why(view)).append("\n");
+    text += formatted("%4zu %12.6g", i + 1, view.gain.gain);
+    if (has_area) text += formatted(" %13.4g", 1e4 * view.gain.area);
+    text += formatted("  %8.3f %8.3f %8.3f %7.3f %7.3f %7.3f  %s\n", eye.x(), eye.y(), eye.z(),
+                      axis.x(), axis.y(), axis.z(), why(view).c_str());
     if (view.rays) text.append("     ").append(text_of(*view.rays)).append("\n");
   }
   if (next.views.front().worth <= 0) text += "no view is worth its way\n";

@@ -23,11 +23,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-[[noreturn]] void refuse(const std::string& flag, const std::string& text,
-                         const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, flag + " " + text + ": " + what);
-}
-
 // Generators know nothing of flags; a user does not know which value is meant without one.
 template <typename Make>
 std::vector<Pose> naming_the_flag(const std::string& flag, const std::string& text, Make&& make) {
@@ -96,6 +91,39 @@ std::vector<Pose> set_of_poses(const PoseOptions& options, std::uint64_t seed) {
 
 }  // namespace
 
+void add_pose_options(App& app, PoseOptions& options, bool needed) {
+  auto* poses = app.add_option_group("poses", needed ? "exactly one of" : "at most one of");
+  poses->add_option(
+      "--poses", options.file,
+      "TUM file of camera-to-world poses: time tx ty tz qx qy qz qw [s, m]; or .npy: rows with "
+      "tx, ty, tz, qx, qy, qz, qw, or (n, 4, 4) matrices");
+  poses->add_option("--sphere", options.sphere,
+                    "N,RADIUS: Fibonacci lattice on a sphere round --center, looking at it [m]");
+  poses->add_option("--dome", options.dome,
+                    "N,RADIUS: the lattice's upper half, with N points [m]");
+  poses->add_option("--rings", options.rings,
+                    "N,RADIUS: cylinder and dome rings of the literature, N is 48, 80, 288 or 864 "
+                    "[m]");
+  poses->add_option("--shell", options.shell,
+                    "N,RMIN,RMAX: at random (--seed) between two spheres [m]");
+  poses->add_option("--orbit", options.orbit,
+                    "N,RADIUS,ELEVATION_DEG[,START_DEG,STEP_DEG]: N views on a circle of latitude "
+                    "[m, degrees]; START 0, STEP 360/N");
+  poses->require_option(needed ? 1 : 0, 1);
+  app.add_option("--center", options.center,
+                 "x,y,z that the sets of poses look at, world [m]; default: the origin");
+}
+
+void add_cost_options(App& app, CostOptions& options, const std::string& of) {
+  app.add_option("--costs", options.file,
+                 "file of one number for each of " + of +
+                     ", which is subtracted from its gain, in the gain's unit");
+  app.add_option("--cost-per-metre", options.per_metre,
+                 "subtracted for each metre of the way from the map's last view, in the gain's "
+                 "unit")
+      ->capture_default_str();
+}
+
 Shard parse_shard(const std::string& text) {
   Shard shard;
   if (text.empty()) return shard;
@@ -103,9 +131,7 @@ Shard parse_shard(const std::string& text) {
   const auto index = std::from_chars(text.data(), end, shard.index);
   const bool is_slash = index.ec == std::errc() && index.ptr != end && *index.ptr == '/';
   const auto count = std::from_chars(is_slash ? index.ptr + 1 : end, end, shard.count);
-  if (count.ec != std::errc() || count.ptr != end) {
-    refuse("--shard", text, "must be i/n, i from 0");
-  }
+  if (count.ec != std::errc() || count.ptr != end) refuse("--shard", text, "must be i/n, i from 0");
   constexpr std::uint64_t kMost = 10'000'000;
   if (shard.index >= shard.count || shard.count > kMost) {
     refuse("--shard", text, "i must be below n, from 0, and n at most 10,000,000");
@@ -124,8 +150,8 @@ std::vector<double> read_costs(const std::string& file, std::size_t poses) {
     if (costs.back() < 0) reader.fail("a cost must not be negative");
   }
   if (costs.size() == poses) return costs;
-  throw Error(ErrorCode::invalid_argument, file + ": has " + std::to_string(costs.size()) +
-                                               " costs for " + std::to_string(poses) + " poses");
+  refuse(file + ": has " + std::to_string(costs.size()) + " costs for " + std::to_string(poses) +
+         " poses");
 }
 
 PoseSource make_poses(const PoseOptions& options, std::uint64_t seed, const Shard& shard) {

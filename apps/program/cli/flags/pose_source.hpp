@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "program/cli/app.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/support/columns/parts.hpp"
 
@@ -59,6 +60,10 @@ struct PoseOptions {
   }
 };
 
+/// The flags of PoseOptions, the same in every subcommand that is given poses; one set of poses,
+/// or, unless `needed`, none.
+void add_pose_options(App& app, PoseOptions& options, bool needed = true);
+
 /// What is subtracted from gains, in their unit.
 struct CostOptions {
   std::string file;      ///< --costs: one number a pose
@@ -66,6 +71,9 @@ struct CostOptions {
 
   [[nodiscard]] bool none() const { return file.empty() && per_metre == 0; }
 };
+
+/// The flags of CostOptions; `of`: whose costs a file has.
+void add_cost_options(App& app, CostOptions& options, const std::string& of);
 
 /// Of a file with one number a line, blank lines and comments aside. Throws Error that names the
 /// file, and the line or how many `poses` there are.

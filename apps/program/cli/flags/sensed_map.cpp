@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "program/cli/values.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain::app {
@@ -35,8 +34,7 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
   if (!sensor_flag.empty()) asked = load_sensor(sensor_flag);
   MapOfSensor map = load_map_of_sensor(path, asked ? &*asked : nullptr);
   if (!asked && !map.sensor) {
-    throw Error(ErrorCode::invalid_argument,
-                path + ": does not say which sensor its readings come from; give --sensor");
+    refuse(path + ": does not say which sensor its readings come from; give --sensor");
   }
   if (asked) warn_of_other_sensor(path, map, *asked);
   return {std::move(map.grid), asked ? std::move(*asked) : std::move(*map.sensor)};
@@ -44,10 +42,9 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
 
 void require_known(const BeliefGrid& grid, const std::string& path) {
   if (grid.statistics().unknown < grid.voxel_count()) return;
-  throw Error(ErrorCode::invalid_argument,
-              path +
-                  ": all of it is unknown, no reading is in it; was it made with the wrong "
-                  "workspace, scale or poses (world to camera)?");
+  refuse(path +
+         ": all of it is unknown, no reading is in it; was it made with the wrong "
+         "workspace, scale or poses (world to camera)?");
 }
 
 }  // namespace viewgain::app

@@ -9,6 +9,7 @@
 
 #include "program/cli/values.hpp"
 #include "viewgain/core/noise.hpp"
+#include "viewgain/planner/register_frame.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -44,6 +45,34 @@ std::optional<JumpEdgeFilter::Config> parse_jump_edge_filter(const std::string& 
   if (text == "off") return std::nullopt;
   const double degrees = parse_numbers("--jump-edge-filter", text, 1, 1)[0];
   return JumpEdgeFilter::Config{degrees * std::numbers::pi / 180};
+}
+
+void add_registration_options(App& app, RegistrationOptions& options) {
+  app.add_option("--register", options.is_on,
+                 "register each frame against the map before it goes in; one that "
+                 "contradicts the map is left out")
+      ->capture_default_str()
+      ->on_or_off();
+  app.add_option("--pose-sigma", options.pose_sigma,
+                 "SIGMA_M,SIGMA_DEG by which reported poses may be off, of --register; default: "
+                 "0.005,0.5");
+}
+
+std::optional<PoseSigma> registration_sigma(const RegistrationOptions& options,
+                                            const PoseSigma& noise) {
+  if (options.is_on != "on") {
+    if (options.pose_sigma.empty()) return std::nullopt;
+    refuse("--pose-sigma " + options.pose_sigma + " goes with --register on");
+  }
+  if (!options.pose_sigma.empty()) {
+    const PoseSigma stated = parse_pose_sigma("--pose-sigma", options.pose_sigma);
+    check_positive("--pose-sigma", std::min(stated.translation, stated.rotation));
+    return stated;
+  }
+  PoseSigma sigma = kUsualPoseSigma;
+  if (noise.translation > 0) sigma.translation = noise.translation;
+  if (noise.rotation > 0) sigma.rotation = noise.rotation;
+  return sigma;
 }
 
 }  // namespace viewgain::app

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "program/cli/app.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
@@ -40,5 +41,20 @@ inline constexpr const char* kJumpEdgeHelp =
 /// --jump-edge-filter ANGLE_DEG|off. Throws Error(invalid_argument) for other text; the filter
 /// itself refuses angles out of its bounds.
 [[nodiscard]] std::optional<JumpEdgeFilter::Config> parse_jump_edge_filter(const std::string& text);
+
+/// Whether frames are registered, as the command line says it.
+struct RegistrationOptions {
+  std::string is_on = "off";  ///< --register on|off
+  std::string pose_sigma;     ///< --pose-sigma SIGMA_M,SIGMA_DEG; empty: the default
+};
+
+/// --register and --pose-sigma, for frames that go into a map one after the other.
+void add_registration_options(App& app, RegistrationOptions& options);
+
+/// By how much reported poses may be off: what --pose-sigma says, else `noise` (--pose-noise) where
+/// it is not 0; nothing without --register on. Throws Error(invalid_argument), naming the flag,
+/// also for --pose-sigma without --register on.
+[[nodiscard]] std::optional<PoseSigma> registration_sigma(const RegistrationOptions& options,
+                                                          const PoseSigma& noise = {});
 
 }  // namespace viewgain::app

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "program/cli/app.hpp"
-#include "program/cli/choices.hpp"
 #include "program/cli/described_options.hpp"
 #include "program/cli/flags/sensing.hpp"
 
@@ -20,7 +19,7 @@ void describe_sensing(Options& o, Visitor& visit) {
   visit.option("flying_pixels", "--flying-pixels", o.flying_pixels,
                "mix the returns of 3x3 rays in a pixel, in sensors with a modulation frequency; "
                "default: as --noise",
-               on_or_off);
+               [](Option& option) { option.on_or_off(); });
   visit.option("background", "--background", o.background,
                "radius of a sphere round the origin that stands for the room [m]; 0: none",
                shows_default);
@@ -29,7 +28,8 @@ void describe_sensing(Options& o, Visitor& visit) {
                "component of the rotation vector [deg]; the first view's is exact and defines the "
                "world; default: none",
                as_it_is);
-  visit.option(nullptr, "--seed", o.seed, "of the noise of readings and of poses", takes_seed);
+  visit.option(nullptr, "--seed", o.seed, "of the noise of readings and of poses",
+               [](Option& option) { option.takes_seed(); });
 }
 
 inline void add_sensing_options(App& app, SensingOptions& options) {

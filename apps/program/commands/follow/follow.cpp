@@ -13,19 +13,15 @@
 #include <thread>
 #include <vector>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/flags/hazard_source.hpp"
 #include "program/cli/flags/next_views.hpp"
-#include "program/cli/flags/obstacle_source.hpp"
-#include "program/cli/flags/registration_options.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/follow/asked_views.hpp"
-#include "program/commands/follow/folder_lock.hpp"
 #include "program/commands/follow/followed_map.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "viewgain/core/error.hpp"
@@ -76,8 +72,7 @@ PlannerConfig planner_config(const Options& options) {
   config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
   config.gain.model = parse_gain_model(options.gain);
   if (config.gain.model == GainModel::paper && (options.object_size || !options.hazard.empty())) {
-    throw Error(ErrorCode::invalid_argument,
-                "--object-size and --hazard go with --gain surface or combined");
+    refuse("--object-size and --hazard go with --gain surface or combined");
   }
   if (!options.reach.empty()) config.reach = read_reach_toml(options.reach);
   config.max_views = options.max_views;
@@ -89,9 +84,8 @@ MaskFolder mask_folder(const char* flag, const fs::path& folder, const fs::path&
                        std::optional<std::uint8_t> least_confidence = {}) {
   std::error_code ignored;
   if (fs::equivalent(folder, frames, ignored)) {
-    throw Error(ErrorCode::invalid_argument,
-                std::string(flag) + " " + folder.string() +
-                    ": has the depth images, whose names masks have; name a folder in it");
+    refuse(std::string(flag) + " " + folder.string() +
+           ": has the depth images, whose names masks have; name a folder in it");
   }
   return MaskFolder(folder, least_confidence);
 }
@@ -118,8 +112,7 @@ void check_folder(const fs::path& out) {
   for (const char* name : {"next.txt", "next.json"}) {
     std::error_code ignored;
     if (!fs::exists(out / name, ignored)) continue;
-    throw Error(ErrorCode::invalid_argument,
-                (out / name).string() + ": is there, but no state.vdb; name a new folder");
+    refuse((out / name).string() + ": is there, but no state.vdb; name a new folder");
   }
 }
 
@@ -176,8 +169,8 @@ class Following {
   void print_summary(bool is_done, double seconds) const {
     if (is_done && count() == 0) {
       const std::string bad = counts_text(watch_->bad());
-      throw Error(ErrorCode::invalid_argument, frames_.string() + ": done, but without a frame" +
-                                                   (bad.empty() ? "" : "; bad: " + bad));
+      refuse(frames_.string() + ": done, but without a frame" +
+             (bad.empty() ? "" : "; bad: " + bad));
     }
     if (options_.common.json) {
       Json json = counts();
@@ -371,10 +364,10 @@ Command add_follow(App& program) {
   app->add_option("--sensor", o.frames.sensor, kSensorHelp + "; default: FRAMES_DIR/sensor.toml");
   add_frame_folder_options(*app, o.frames);
   app->add_option("--jump-edge-filter", o.jump_edge_filter, kJumpEdgeHelp)->capture_default_str();
-  one_of(*app->add_option("--gain", o.gain,
-                          "that views are ranked by: paper, surface or combined, as in score")
-              ->capture_default_str(),
-         gain_model_names(), "gain");
+  app->add_option("--gain", o.gain,
+                  "that views are ranked by: paper, surface or combined, as in score")
+      ->capture_default_str()
+      ->one_of(gain_model_names(), "gain");
   app->add_option("--object-size", o.object_size, kObjectSizeHelp);
   app->add_option("--hazard", o.hazard, kHazardHelp);
   app->add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");

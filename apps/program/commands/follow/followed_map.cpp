@@ -2,12 +2,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/commands/follow/followed_map.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <system_error>
 #include <utility>
 
 #include "program/cli/flags/sensed_map.hpp"
+#include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/planner/suspect_frames.hpp"
@@ -22,15 +28,33 @@ ViewPlanner planner_of(Sensor sensor, std::optional<std::array<double, 3>> body,
                        const PlannerConfig& config, const fs::path& state,
                        const std::optional<SavedFrames>& saved, const ExecConfig& exec) {
   if (saved && saved->sensor && !is_same_sensor(*saved->sensor, sensor)) {
-    throw Error(ErrorCode::invalid_argument, state.string() + ": its frames are of " +
-                                                 saved->sensor->name + ", not of this " +
-                                                 sensor.name + "; name a new folder");
+    refuse(state.string() + ": its frames are of " + saved->sensor->name + ", not of this " +
+           sensor.name + "; name a new folder");
   }
   if (body) sensor.body_size = body;
   return saved ? ViewPlanner::load(state, sensor, config, exec) : ViewPlanner(sensor, config, exec);
 }
 
 }  // namespace
+
+FolderLock::FolderLock(const fs::path& folder) : folder_(folder) {
+  std::error_code code;
+  is_made_ = fs::create_directories(folder, code);
+  if (!code) lock_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ < 0) {
+    const std::string why = code ? code.message() : std::generic_category().message(errno);
+    throw Error(ErrorCode::io, folder.string() + ": cannot be made or opened: " + why);
+  }
+  if (::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  ::close(lock_);
+  refuse(folder.string() + ": another process is writing into it");
+}
+
+FolderLock::~FolderLock() {
+  std::error_code ignored;
+  if (is_made_) fs::remove(folder_, ignored);
+  ::close(lock_);
+}
 
 std::optional<SavedFrames> saved_frames(const fs::path& state) {
   std::error_code code;

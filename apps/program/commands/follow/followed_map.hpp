@@ -20,6 +20,24 @@
 
 namespace viewgain::app {
 
+/// A folder that one process at a time writes into. The lock ends with the process, however that
+/// ends; where the file system has no locks there is none.
+class FolderLock {
+ public:
+  /// Makes the folder where it is missing. Throws Error(io) if that cannot be done, and
+  /// Error(invalid_argument) if another process has the lock.
+  explicit FolderLock(const std::filesystem::path& folder);
+  /// Removes the folder if it was made and nothing is in it.
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  std::filesystem::path folder_;
+  bool is_made_ = false;
+  int lock_ = -1;
+};
+
 /// What an earlier call has left of a map: which frames are in it and which sensor took them.
 struct SavedFrames {
   std::set<std::string> frames{};  ///< as frame_identity() has them

@@ -6,22 +6,37 @@
 #include <utility>
 
 #include "program/cli/flags/common_options.hpp"
-#include "program/cli/flags/hazard_source.hpp"
-#include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/grid/integrate.hpp"
 
 namespace viewgain::app {
 namespace {
 
-Box seen_workspace(const FrameFolder& folder, const Sensor& sensor, const MapModelConfig& config,
+MapModelConfig config_of(const FrameFolder& folder, const FrameMapOptions& options,
+                         const ProposalOptions& proposal, bool quiet) {
+  check_positive("--voxel", options.voxel);
+  MapModelConfig config;
+  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
+  config.surroundings = {obstacles_of(proposal.obstacles), proposal.support_plane};
+  config.refine = options.refine;
+  config.grid.voxel_size = options.voxel;
+  config.grid.workspace = options.workspace.empty()
+                              ? seen_workspace(folder, config, options.voxel, quiet)
+                              : parse_box("--workspace", options.workspace);
+  config.hazard = hazard_source(proposal.hazard, proposal.object_size, BeliefGrid(config.grid));
+  return config;
+}
+
+}  // namespace
+
+Box seen_workspace(const FrameFolder& folder, const MapModelConfig& config, double voxel,
                    bool quiet) {
   std::optional<JumpEdgeFilter> filter;
-  if (config.jump_edges) filter.emplace(sensor.camera, *config.jump_edges);
+  if (config.jump_edges) filter.emplace(folder.sensor().camera, *config.jump_edges);
   Progress progress("bounds of frame", quiet);
   FrameTally tally(true);
   const auto bounds = [&](std::size_t i) {
@@ -31,31 +46,14 @@ Box seen_workspace(const FrameFolder& folder, const Sensor& sensor, const MapMod
       tally.add(folder.frames().images[i], reading.fault);
       return std::optional<Box>();
     }
-    DepthFrame& frame = reading.frame;
-    if (filter) filter->apply(frame);
-    return reading_bounds(sensor, frame, folder.T_world_camera(i), {},
+    if (filter) filter->apply(reading.frame);
+    return reading_bounds(folder.sensor(), reading.frame, folder.T_world_camera(i), {},
                           config.surroundings.support_plane);
   };
-  const std::optional<Box> seen = workspace_around(folder.size(), config.grid.voxel_size, bounds);
+  const std::optional<Box> seen = workspace_around(folder.size(), voxel, bounds);
   if (seen) return *seen;
   refuse_without_readings(folder, tally);
 }
-
-MapModelConfig config_of(const FrameFolder& folder, const FrameMapOptions& options,
-                         const ProposalOptions& proposal, const Sensor& sensor, bool quiet) {
-  check_positive("--voxel", options.voxel);
-  MapModelConfig config;
-  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
-  config.surroundings = {obstacles_of(proposal.obstacles), proposal.support_plane};
-  config.refine = options.refine;
-  config.grid.voxel_size = options.voxel;
-  config.grid.workspace = options.workspace.empty() ? seen_workspace(folder, sensor, config, quiet)
-                                                    : parse_box("--workspace", options.workspace);
-  config.hazard = hazard_source(proposal.hazard, proposal.object_size, BeliefGrid(config.grid));
-  return config;
-}
-
-}  // namespace
 
 bool is_frame_folder(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -77,7 +75,7 @@ void add_frame_map_options(App& app, FrameMapOptions& options) {
 FrameMap::FrameMap(const FrameMapOptions& options, const ProposalOptions& proposal, bool quiet,
                    const ExecConfig& exec)
     : folder_(options.folder),
-      config_(config_of(folder_, options, proposal, with_body(folder_.sensor(), proposal), quiet)),
+      config_(config_of(folder_, options, proposal, quiet)),
       model_(with_body(folder_.sensor(), proposal), config_, exec),
       tally_(quiet) {}
 

@@ -32,6 +32,11 @@ struct FrameMapOptions {
 /// FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter and those of a folder.
 void add_frame_map_options(App& app, FrameMapOptions& options);
 
+/// The workspace for what the frames see, but for the pixels that --jump-edge-filter takes; reads
+/// all of them. Throws Error(invalid_argument) if none has a reading.
+[[nodiscard]] Box seen_workspace(const FrameFolder& folder, const MapModelConfig& config,
+                                 double voxel, bool quiet);
+
 /// The map as frames of a folder go into it, in the folder's order.
 class FrameMap {
  public:

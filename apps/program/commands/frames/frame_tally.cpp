@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "program/cli/values.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/planner/suspect_frames.hpp"
 
 namespace viewgain::app {
@@ -82,8 +81,7 @@ void FrameTally::require_any(const FrameFolder& folder) const {
     std::string warning = suspicion;
     if (count_of(counts_, FrameVerdict::used) == 0 && readings_ > 0) {
       warning = none_inside(folder) + (suspicion.empty() ? "" : "; " + suspicion);
-      if (!suspicion.empty())
-        throw Error(ErrorCode::invalid_argument, folder.name() + ": " + warning);
+      if (!suspicion.empty()) refuse(folder.name() + ": " + warning);
     }
     if (warning.empty()) return;
     std::fprintf(stderr, "viewgain: warning: %s: %s\n", utf8_text(folder.name()).c_str(),
@@ -97,7 +95,7 @@ void FrameTally::require_any(const FrameFolder& folder) const {
   }
   what += "; " + faults_.front();
   if (!suspicion.empty()) what += "; " + suspicion;
-  throw Error(ErrorCode::invalid_argument, what);
+  refuse(what);
 }
 
 void refuse_without_readings(const FrameFolder& folder, const FrameTally& bad) {
@@ -108,7 +106,7 @@ void refuse_without_readings(const FrameFolder& folder, const FrameTally& bad) {
   if (!reasons.empty()) what += "; left out: " + counts_text(reasons) + "; " + bad.faults().front();
   const std::string suspicion = suspicion_of(folder);
   if (!suspicion.empty()) what += "; " + suspicion;
-  throw Error(ErrorCode::invalid_argument, what);
+  refuse(what);
 }
 
 }  // namespace viewgain::app

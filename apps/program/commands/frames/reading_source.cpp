@@ -4,11 +4,12 @@
 
 #include <Eigen/Core>
 
-#include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
+#include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
+#include "program/commands/frames/frame_map.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/cloud_io.hpp"
@@ -41,7 +42,6 @@ class FrameSource : public ReadingSource {
  public:
   explicit FrameSource(const IntegrateOptions& options)
       : folder_(options.frames), config_(map_config(options)), exec_{options.common.threads} {
-    if (config_.jump_edges) filter_.emplace(folder_.sensor().camera, *config_.jump_edges);
     reported_sigma_ = registration_sigma(options.registration);
     if (reported_sigma_) registration_.emplace(folder_.sensor(), config_, exec_);
   }
@@ -70,11 +70,8 @@ class FrameSource : public ReadingSource {
   [[nodiscard]] std::filesystem::path file(std::size_t index) const override {
     return folder_.frames().images[index];
   }
-  [[nodiscard]] std::optional<Box> bounds() const override {
-    DepthFrame frame = loaded_.frame;
-    if (filter_) filter_->apply(frame);
-    return reading_bounds(folder_.sensor(), frame, T_world_camera_, {},
-                          config_.surroundings.support_plane);
+  [[nodiscard]] Box seen_workspace(double voxel, bool quiet) override {
+    return app::seen_workspace(folder_, config_, voxel, quiet);
   }
   void start(BeliefGrid grid) override {
     map_.emplace(std::move(grid), folder_.sensor(), config_, exec_);
@@ -98,7 +95,6 @@ class FrameSource : public ReadingSource {
   FrameFolder folder_;
   MapModelConfig config_;
   ExecConfig exec_;
-  std::optional<JumpEdgeFilter> filter_;
   std::optional<PoseSigma> reported_sigma_;  // if frames are registered
   std::optional<FrameAlignment> registration_;
   std::optional<MapModel> map_;  // once it has started
@@ -108,9 +104,7 @@ class FrameSource : public ReadingSource {
 };
 
 Sensor sensor_of(const IntegrateOptions& options) {
-  if (options.frames.sensor.empty()) {
-    throw Error(ErrorCode::invalid_argument, "--sensor is needed with --cloud");
-  }
+  if (options.frames.sensor.empty()) refuse("--sensor is needed with --cloud");
   return load_sensor(options.frames.sensor);
 }
 
@@ -131,9 +125,8 @@ class CloudSource : public ReadingSource {
     }
     poses_ = read_tum(options.poses);
     if (poses_.poses.size() != files_.size()) {
-      throw Error(ErrorCode::invalid_argument,
-                  options.poses + ": has " + std::to_string(poses_.poses.size()) + " poses for " +
-                      std::to_string(files_.size()) + " clouds");
+      refuse(options.poses + ": has " + std::to_string(poses_.poses.size()) + " poses for " +
+             std::to_string(files_.size()) + " clouds");
     }
   }
 
@@ -157,13 +150,19 @@ class CloudSource : public ReadingSource {
     } else if (cloud_.viewpoint) {
       T_world_sensor_ = *cloud_.viewpoint;
     } else {
-      throw Error(ErrorCode::invalid_argument,
-                  files_[index] + ": has no VIEWPOINT, so --origin or --poses is needed");
+      refuse(files_[index] + ": has no VIEWPOINT, so --origin or --poses is needed");
     }
     return {};
   }
-  [[nodiscard]] std::optional<Box> bounds() const override {
-    return reading_bounds(sensor_, cloud_.points, T_world_sensor_, {}, support_plane_);
+  [[nodiscard]] Box seen_workspace(double voxel, bool quiet) override {
+    Progress progress("bounds of cloud", quiet);
+    const auto seen = workspace_around(files_.size(), voxel, [&](std::size_t i) {
+      (void)load(i);
+      progress.update(i + 1, files_.size());
+      return reading_bounds(sensor_, cloud_.points, T_world_sensor_, {}, support_plane_);
+    });
+    if (!seen) refuse("no cloud has a reading");
+    return *seen;
   }
   void start(BeliefGrid grid) override { grid_.emplace(std::move(grid)); }
   [[nodiscard]] const BeliefGrid& grid() const override { return *grid_; }

@@ -12,7 +12,7 @@
 
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/frame_folder.hpp"
-#include "program/cli/flags/registration_options.hpp"
+#include "program/cli/flags/sensing.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
@@ -53,7 +53,7 @@ struct IntegrateOptions {
 };
 
 /// What `integrate` puts into a map, one part after the other: depth frames or clouds. The order of
-/// calls is load, then bounds, register_in or integrate, of any part any number of times.
+/// calls is load, then register_loaded and integrate, of one part after the other.
 class ReadingSource {
  public:
   virtual ~ReadingSource() = default;
@@ -63,6 +63,9 @@ class ReadingSource {
   /// Poses that were off and were mended.
   [[nodiscard]] virtual std::size_t orthonormalized() const = 0;
 
+  /// For what all parts see. Throws Error(invalid_argument) if none has a reading.
+  [[nodiscard]] virtual Box seen_workspace(double voxel, bool quiet) = 0;
+
   /// By name and content, for the map to remember; empty: it is not remembered, or cannot be read,
   /// as `fault` then says.
   [[nodiscard]] virtual std::string identity(std::size_t /*index*/, FrameFault& /*fault*/) const {
@@ -71,8 +74,6 @@ class ReadingSource {
 
   /// Says what is wrong with a frame that cannot be used; a cloud is read or throws.
   virtual FrameFault load(std::size_t index) = 0;
-  /// Of the part's readings, world frame [m].
-  [[nodiscard]] virtual std::optional<Box> bounds() const = 0;
   /// The map that the readings go into.
   virtual void start(BeliefGrid grid) = 0;
   /// After start().

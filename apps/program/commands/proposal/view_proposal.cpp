@@ -6,14 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/flags/hazard_source.hpp"
-#include "program/cli/flags/obstacle_source.hpp"
-#include "program/cli/flags/pose_flags.hpp"
+#include "program/cli/flags/pose_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/planner/pose_sets.hpp"
 #include "viewgain/planner/rank_views.hpp"
@@ -92,20 +89,20 @@ void add_proposal_options(App& app, ProposalOptions& o) {
 
 void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
   o.gain = default_gain();
-  one_of(*app.add_option("--generator", o.generator,
-                         "where views come from: boundary (open boundaries of the surface in the "
-                         "map), sphere, dome, rings, shell or sequence; default: boundary, and a "
-                         "sphere round the workspace of a map without a surface or views"),
-         generator_names(), "generator");
+  app.add_option("--generator", o.generator,
+                 "where views come from: boundary (open boundaries of the surface in the "
+                 "map), sphere, dome, rings, shell or sequence; default: boundary, and a "
+                 "sphere round the workspace of a map without a surface or views")
+      ->one_of(generator_names(), "generator");
   app.add_option(
       "--poses", o.poses,
       "TUM or .npy file of camera-to-world poses to choose among; with --generator beside "
       "what that proposes, else alone");
   add_cost_options(app, o.costs, "--poses");
   add_proposal_options(app, o);
-  one_of(*app.add_option("--gain", o.gain, "paper, surface or combined, as in score")
-              ->capture_default_str(),
-         gain_model_names(), "gain");
+  app.add_option("--gain", o.gain, "paper, surface or combined, as in score")
+      ->capture_default_str()
+      ->one_of(gain_model_names(), "gain");
   app.add_option("--top", top, "views to name at most")
       ->capture_default_str()
       ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
@@ -114,17 +111,14 @@ void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
 void check(const ProposalOptions& options) {
   const bool boundary = is_at_boundaries(options), sequence = options.generator == "sequence";
   if (options.count && (boundary || sequence)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--count goes with sets of poses, not with --generator " +
-                    (boundary ? "boundary" : options.generator));
+    refuse("--count goes with sets of poses, not with --generator " +
+           (boundary ? "boundary" : options.generator));
   }
   if (boundary && !options.center.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                "--center goes with sets of poses, not with --generator boundary");
+    refuse("--center goes with sets of poses, not with --generator boundary");
   }
   if (!boundary && (options.overlap || options.region_depth)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--overlap and --region-depth go with --generator boundary");
+    refuse("--overlap and --region-depth go with --generator boundary");
   }
   if (options.overlap) check_inside_0_1("--overlap", *options.overlap);
   if (options.region_depth) check_positive("--region-depth", *options.region_depth);
@@ -132,18 +126,14 @@ void check(const ProposalOptions& options) {
   check_at_least_0("--cost-per-metre", options.costs.per_metre);
   if (!options.poses.empty() && options.generator.empty() &&
       (options.count || options.distance || !options.center.empty())) {
-    throw Error(ErrorCode::invalid_argument,
-                "--count, --distance and --center go with --generator, not with --poses alone");
+    refuse("--count, --distance and --center go with --generator, not with --poses alone");
   }
-  if (!options.costs.file.empty() && options.poses.empty()) {
-    throw Error(ErrorCode::invalid_argument, "--costs goes with --poses");
-  }
+  if (!options.costs.file.empty() && options.poses.empty()) refuse("--costs goes with --poses");
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
   const bool by_hazard =
       !options.gain.empty() && parse_gain_model(options.gain) != GainModel::paper;
   if (!by_hazard && (options.object_size || !options.hazard.empty())) {
-    throw Error(ErrorCode::invalid_argument,
-                "--object-size and --hazard go with --gain surface or combined");
+    refuse("--object-size and --hazard go with --gain surface or combined");
   }
 }
 
@@ -171,8 +161,7 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
   if (options.region_depth) config.boundary.estimator.region_depth = *options.region_depth;
   if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
   if (options.generator == "boundary" && grid.views().empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                map + ": has no views, which boundary candidates need; try --generator sphere");
+    refuse(map + ": has no views, which boundary candidates need; try --generator sphere");
   }
   if (!options.poses.empty()) {
     config.sets.push_back({kGivenPoses, poses_in(options.poses)});

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "program/cli/config_file.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
@@ -25,7 +24,6 @@
 #include "viewgain/planner_mesh/surface_files.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/stopwatch.hpp"
-#include "viewgain/version.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -50,10 +48,9 @@ Json write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t
   save_vdb(model.grid(), folder.file("map.vdb"), noting_sensor(setup.sensor));
   write_surfaces(model, folder.file("surface.ply"), folder.file("points.ply"));
   write_tum(folder.file("views.txt"), views);
-  Json run{{"settings", setup.settings},
-           {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}},
-           {"seed", seed},
-           {"map_hash", model.grid().content_hash()}};
+  Json run = run_head(setup.settings);
+  run["seed"] = seed;
+  run["map_hash"] = model.grid().content_hash();
   run.update(report);
   write_file_atomically(folder.file("run.json"), json_text(run));
   return run;
@@ -112,13 +109,11 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   }
   report.set_registrations(registrations);
   const Json json = report.json(result.reason);
-  write_file_atomically(folder.file("config.toml"),
-                        config_text(app, {"out", "json", "quiet", "threads"}));
   const Json run = write_results(folder, setup, options.sensing.seed, model, views, json);
   if (outputs.with_report()) {
     write_report(folder.file("report.html"), page.json(run, setup.stage.scene.get()));
   }
-  folder.commit();
+  commit(folder, app);
   if (options.common.json) {
     print_json(json);
   } else {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -10,33 +11,28 @@
 #include <utility>
 #include <vector>
 
-#include "program/cli/choices.hpp"
-#include "program/cli/config_file.hpp"
 #include "program/cli/flags/next_views.hpp"
-#include "program/cli/flags/pose_sigma_json.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/json.hpp"
 #include "program/cli/json_text.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/frames/aligned_frames.hpp"
 #include "program/commands/frames/frame_map.hpp"
+#include "program/commands/frames/registration_json.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
 #include "program/commands/reconstruct/recorded_views.hpp"
-#include "program/commands/reconstruct/registration_json.hpp"
 #include "program/commands/reconstruct/run_outputs.hpp"
 #include "show/report/page.hpp"
 #include "show/report/run_page.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/run_folder.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/planner/align_frames.hpp"
 #include "viewgain/planner_mesh/surface_files.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/stopwatch.hpp"
-#include "viewgain/version.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -77,6 +73,29 @@ struct Moment {
         evaluator(evaluator_of(proposal, model, map.model().sensor(), exec)) {}
 };
 
+// All frames of the folder aligned with one another, for a map into which none has gone yet: by the
+// frame's index, those that cannot be read left out; after a stop those so far.
+std::map<std::size_t, FrameRegistration> align_folder(const FrameMap& map, const PoseSigma& sigma,
+                                                      bool quiet, const ExecConfig& exec,
+                                                      const std::stop_token& stop) {
+  FrameAlignment alignment(map.model().sensor(), map.config(), exec);
+  Progress progress("alignment of frame", quiet);
+  const FrameFolder& folder = map.folder();
+  std::vector<std::size_t> aligned;
+  for (std::size_t i = 0; i < folder.size() && !stop.stop_requested(); ++i) {
+    const FrameReading reading = folder.load(i);
+    progress.update(i + 1, folder.size());
+    if (reading.fault.verdict != FrameVerdict::used) continue;
+    alignment.add(reading.frame, folder.T_world_camera(i), sigma);
+    aligned.push_back(i);
+  }
+  std::map<std::size_t, FrameRegistration> registrations;
+  for (std::size_t k = 0; k < aligned.size(); ++k) {
+    registrations.emplace(aligned[k], alignment.registrations()[k]);
+  }
+  return registrations;
+}
+
 class Recording {
  public:
   Recording(const Options& options, const std::stop_token& stop)
@@ -115,8 +134,7 @@ class Recording {
       progress.update(i + 1, map_->folder().size());
     }
     if (views_->empty() && stop.stop_requested()) {
-      throw Error(ErrorCode::invalid_argument,
-                  map_->folder().name() + ": interrupted before a frame was in the map");
+      refuse(map_->folder().name() + ": interrupted before a frame was in the map");
     }
     map_->require_frames();
   }
@@ -142,8 +160,7 @@ class Recording {
     write_surfaces(moment.model, folder.file("surface.ply"), folder.file("points.ply"));
     write_tum(folder.file("views.txt"), moment.model.grid().views());
     write_tum(folder.file("next.txt"), poses_of(next_));
-    Json run{{"settings", settings()},
-             {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}}};
+    Json run = run_head(settings());
     run.update(views_->json(moment.model, next_));
     write_file_atomically(folder.file("run.json"), json_text(run));
     if (options_.outputs.with_report()) {
@@ -230,9 +247,7 @@ void reconstruct(Options& options, const App& app) {
   RunFolder folder(options.outputs.out);
   recording.add_frames(folder, interrupt.token());
   const Json run = recording.finish(folder);
-  write_file_atomically(folder.file("config.toml"),
-                        config_text(app, {"out", "json", "quiet", "threads"}));
-  folder.commit();
+  commit(folder, app);
   if (options.common.json) return print_json(run);
   print(options, run, recording.counts(), recording.next());
 }
@@ -245,9 +260,9 @@ Command add_reconstruct_frames(App& reconstruct_of_meshes) {
       "Of a folder of recorded frames: map, surface and the views to take next.", is_frame_folder);
   Options& o = *options;
   add_frame_map_options(*app, o.frames);
-  on_or_off(*app->add_option("--refine", o.refine,
-                             "readings of a voxel refine it; off: the first one wins")
-                 ->capture_default_str());
+  app->add_option("--refine", o.refine, "readings of a voxel refine it; off: the first one wins")
+      ->capture_default_str()
+      ->on_or_off();
   add_registration_options(*app, o.registration);
   add_next_view_options(*app, o.proposal, o.top);
   add_output_options(*app, o.outputs);

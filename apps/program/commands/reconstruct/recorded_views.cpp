@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "program/cli/json_text.hpp"
-#include "program/commands/reconstruct/registration_json.hpp"
+#include "program/commands/frames/registration_json.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/planner_mesh/mesh_area.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -53,7 +53,7 @@ void RecordedViews::add(std::size_t index) {
                       registered != nullptr ? registered->pose_sigma() : PoseSigma{});
     readings_.readings += update.counts.readings;
     readings_.readings_inside += update.counts.readings_inside;
-    flying_pixels_ += update.flying_pixels;
+    jump_edge_removed_ += update.flying_pixels;
     for (const auto& [stage, value] : update.seconds) add_seconds(stage, value);
     add_seconds("read", watch.seconds() - sum_of(update.seconds));
     if (!is_in_map(update.verdict)) return;
@@ -112,7 +112,7 @@ Json RecordedViews::json(const SurfaceModel& model, const NextViews& next) const
            {"readings", readings_.readings},
            {"readings_inside", readings_.readings_inside},
            {"masked_pixels", map_.masked_pixels()},
-           {"flying_pixels", flying_pixels_},
+           {"jump_edge_removed", jump_edge_removed_},
            {"orthonormalized_poses", map_.folder().frames().orthonormalized},
            {"entropy_removed", last.progress.entropy_removed},
            {"unknown_voxels", last.progress.unknown_voxels},

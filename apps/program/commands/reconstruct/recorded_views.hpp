@@ -51,7 +51,7 @@ class RecordedViews {
   std::vector<ViewRecord> records_;
   std::vector<double> new_areas_;  ///< one a record [m²]
   IntegrationReport readings_{};   ///< of all frames
-  std::size_t flying_pixels_ = 0;
+  std::size_t jump_edge_removed_ = 0;
   StageSeconds seconds_;
 };
 

@@ -2,10 +2,173 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/commands/reconstruct/run.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include "program/cli/flags/scene_sources.hpp"
+#include "program/cli/json_text.hpp"
+#include "program/cli/values.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/raycast/obstacle_view.hpp"
 
 namespace viewgain::app {
 namespace {
+
+// A distance [m] from the centre at which nothing of an object of this size is.
+double outside(double size) { return 1.1 * 0.5 * std::sqrt(3.0) * size; }
+
+Pose start_pose(const ReconstructOptions& options, const Stage& stage, double distance,
+                const ReachRegion& reach) {
+  if (options.start.empty()) {
+    return default_start(stage, distance, options.sensing.seed, reach,
+                         options.sensing.support_plane);
+  }
+  const Pose pose = parse_pose("--start", options.start);
+  const std::optional<double>& plane = options.sensing.support_plane;
+  if (plane && pose.translation().z() <= *plane) {
+    refuse("--start " + options.start + ": is not above the support plane");
+  }
+  if (!reach.contains(pose)) {
+    refuse("--start " + options.start + ": lies outside the reachable region of " + options.reach);
+  }
+  return pose;
+}
+
+void check_voxel(const ReconstructOptions& options, const Stage& stage) {
+  if (options.voxel < stage.size) return;
+  refuse("--voxel " + short_text(options.voxel) + ": the object is no larger, its longest side " +
+         short_text(stage.size) + " m (--size)");
+}
+
+// Most meshes that are far too large are in millimetres.
+void check_size(const RunSetup& setup) {
+  constexpr double kTooLarge = 10;  // times what the sensor sees
+  if (setup.stage.size <= kTooLarge * setup.sensor.max_range) return;
+  refuse("the object's longest side is " + short_text(setup.stage.size) +
+         " m, the sensor sees to " + short_text(setup.sensor.max_range) +
+         " m: is the mesh in millimetres? (--size)");
+}
+
+// An obstacle where the run is to start.
+void check_start(const ReconstructOptions& options, const RunSetup& setup, const ExecConfig& exec) {
+  if (options.obstacles.empty()) return;
+  const BeliefGrid grid(setup.model.map.grid);
+  // The obstacles alone: at the table the camera may start.
+  const FeasibilityChecker checker(
+      VoxelScene::build(grid, {setup.model.map.surroundings.obstacles}, exec),
+      feasibility_of(setup.sensor));
+  if (checker.check(setup.start) != Infeasibility::obstacle) return;
+  const std::string which = options.start.empty() ? "the start pose, which --start would give"
+                                                  : "--start " + options.start;
+  refuse(which + ": the sensor's body would overlap an --obstacle there");
+}
+
+SurfaceModelConfig model_config(const ReconstructOptions& options, const Stage& stage) {
+  SurfaceModelConfig model;
+  MapModelConfig& config = model.map;
+  config.grid.voxel_size = options.voxel;
+  config.grid.workspace = stage.workspace;
+  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
+  config.surroundings = {obstacles_of(options.obstacles), options.sensing.support_plane};
+  config.criterion = parse_criterion(options.criterion);
+  config.refine = options.refine == "on";
+  config.hazard = hazard_source(options.hazard, options.object_size, BeliefGrid(config.grid));
+  return model;
+}
+
+// The obstacles as the simulated camera meets them.
+std::shared_ptr<const SurfaceScene> surroundings_of(const Obstacles& obstacles,
+                                                    const ExecConfig& exec) {
+  TriangleMesh mesh = mesh_of(obstacles);
+  if (mesh.triangles.empty()) return nullptr;
+  return std::make_shared<const SurfaceScene>(std::move(mesh), exec);
+}
+
+std::vector<std::string> generators(const ReconstructOptions& options, Policy policy) {
+  if (!options.generator.empty()) {
+    const auto names =
+        parse_names("--generator", options.generator, generator_names(), "generator");
+    if (policy == Policy::kriegel && names != std::vector<std::string>{"boundary"}) {
+      refuse("--policy kriegel chooses among boundary candidates alone");
+    }
+    return names;
+  }
+  if (policy == Policy::random || policy == Policy::fibonacci) return {"sphere"};
+  if (policy == Policy::sequence) return {"sequence"};
+  return {"boundary"};
+}
+
+GenerationConfig generation_config(const ReconstructOptions& options, const RunSetup& setup) {
+  GenerationConfig config = default_generation(setup.sensor, options.voxel);
+  config.boundary.estimator.overlap = options.overlap;
+  config.boundary.estimator.region_depth = options.region_depth;
+  config.at_boundaries = false;
+  // His choice is by class alone.
+  config.boundary.classes_by_sight = setup.policy.policy == Policy::kriegel;
+  const bool spread_out = setup.policy.policy == Policy::fibonacci;
+  PoseSetRequest request{setup.stage.center,   setup.distance, options.count,
+                         options.sensing.seed, setup.start,    spread_out};
+  if (!options.distance) request.reach = setup.reach;
+  for (const std::string& name : generators(options, setup.policy.policy)) {
+    if (name == "boundary") {
+      config.at_boundaries = true;
+    } else {
+      request.count = options.count;
+      if (spread_out && name == "sphere" && !request.count) request.count = options.max_views;
+      config.sets.push_back(make_pose_set(name, request));
+    }
+  }
+  config.feasibility.reach = setup.reach;
+  return config;
+}
+
+PlanningConfig planning_config(const ReconstructOptions& options, const PolicyConfig& policy) {
+  PlanningConfig config;
+  config.max_views = options.max_views;
+  config.idle_views = options.stop_idle;
+  config.broken_promises = options.stop_promises;
+  config.stop_coverage = options.stop_coverage;
+  set_stop_rules(config, policy, options.stop_gain, options.stop_area);
+  return config;
+}
+
+StageConfig stage_config(const ReconstructOptions& options) {
+  StageConfig config{options.mesh, options.size, UpAxis::z, std::nullopt,
+                     options.sensing.support_plane};
+  if (options.up != "z") config.up = options.up == "x" ? UpAxis::x : UpAxis::y;
+  if (!options.workspace.empty()) config.workspace = parse_box("--workspace", options.workspace);
+  return config;
+}
+
+Json resolved_settings(const ReconstructOptions& options, const RunSetup& setup) {
+  Json generators = Json::array();
+  if (setup.generation.at_boundaries) generators.push_back("boundary");
+  for (const PoseSet& set : setup.generation.sets) generators.push_back(set.generator);
+  if (!setup.reach.poses.empty()) generators.push_back("reach");
+  return {{"sensor", sensor_toml(setup.sensor)},
+          {"size", setup.stage.size},
+          {"workspace", to_json(setup.stage.workspace)},
+          {"prior_sigma", default_prior_sigma(options.voxel, setup.sensor)},
+          {"start", to_json(setup.start)},
+          {"distance", setup.distance},
+          {"generators", generators},
+          {"gain", setup.policy.classic ? classic_gain_name(setup.policy.classic->gain)
+                                        : gain_model_name(setup.policy.model)},
+          {"stop_gain", setup.planning.stop_gain},
+          {"stop_gain_is_relative", setup.planning.stop_gain_is_relative},
+          {"stop_area", setup.planning.stop_area},
+          {"flying_pixels", options.sensing.has_flying_pixels(setup.sensor)},
+          {"pose_noise", pose_sigma_json(setup.pose_noise)},
+          {"register", setup.registration.has_value()},
+          {"pose_sigma", setup.registration ? pose_sigma_json(*setup.registration) : Json()},
+          {"refine", options.refine == "on"}};
+}
 
 PolicyConfig with_object(PolicyConfig policy, const RunSetup& setup,
                          const std::shared_ptr<const Truth>& truth) {
@@ -14,6 +177,59 @@ PolicyConfig with_object(PolicyConfig policy, const RunSetup& setup,
 }
 
 }  // namespace
+
+PolicyConfig policy_config(const ReconstructOptions& options) {
+  PolicyConfig policy;
+  policy.policy = parse_policy(options.policy);
+  policy.criterion = parse_criterion(options.criterion);
+  policy.travel_cost = options.travel_cost;
+  policy.seed = options.sensing.seed;
+  if (options.gain.empty()) return policy;
+  const std::vector<std::string>& classic = classic_gain_names();
+  if (std::find(classic.begin(), classic.end(), options.gain) == classic.end()) {
+    policy.model = parse_gain_model(options.gain);
+  } else {
+    policy.classic = {
+        parse_classic_gain(options.gain),
+        parse_gain_semantics(options.semantics.empty() ? "paper" : options.semantics)};
+  }
+  return policy;
+}
+
+RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
+  check(options);
+  RunSetup setup;
+  setup.sensor = load_sensor(options.sensor);
+  if (!options.body.empty()) setup.sensor.body_size = parse_size("--body", options.body);
+  setup.sensor.validate();
+  setup.policy = policy_config(options);
+  if (!options.reach.empty()) setup.reach = read_reach_toml(options.reach);
+  setup.stage = set_stage(stage_config(options), exec);
+  check_voxel(options, setup.stage);
+  check_size(setup);
+  setup.distance =
+      options.distance.value_or(filling_distance(setup.sensor, 0.5 * setup.stage.size));
+  setup.start = start_pose(options, setup.stage, setup.distance, setup.reach);
+  setup.visibility = {setup.stage.center,
+                      std::max(setup.sensor.working_distance, outside(setup.stage.size)),
+                      setup.start,
+                      setup.reach,
+                      options.sensing.support_plane,
+                      nullptr,
+                      options.tolerance};
+  setup.simulation = simulation_config(options.sensing, setup.sensor);
+  setup.pose_noise = parse_pose_sigma("--pose-noise", options.sensing.pose_noise);
+  setup.registration = registration_sigma(options.registration, setup.pose_noise);
+  setup.model = model_config(options, setup.stage);
+  check_start(options, setup, exec);
+  setup.visibility.surroundings = setup.simulation.surroundings =
+      surroundings_of(setup.model.map.surroundings.obstacles, exec);
+  setup.generation = generation_config(options, setup);
+  setup.planning = planning_config(options, setup.policy);
+  setup.settings = settings_json(options, resolved_settings(options, setup));
+  if (!options.obstacles.empty()) setup.settings["obstacles"] = options.obstacles;
+  return setup;
+}
 
 Run::Run(RunSetup setup, std::size_t frames_per_view, const ExecConfig& exec)
     : setup_(std::move(setup)),

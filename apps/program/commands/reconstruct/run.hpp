@@ -7,17 +7,48 @@
 #include <optional>
 #include <vector>
 
-#include "program/commands/reconstruct/run_setup.hpp"
+#include "program/cli/json.hpp"
+#include "program/commands/reconstruct/run_options.hpp"
 #include "viewgain/core/planning.hpp"
+#include "viewgain/core/reach.hpp"
+#include "viewgain/core/sensor.hpp"
 #include "viewgain/planner/pose_noise.hpp"
+#include "viewgain/planner/register_frame.hpp"
 #include "viewgain/planner/simulated_acquisition.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
 #include "viewgain/planner_mesh/registered_model.hpp"
+#include "viewgain/planner_mesh/stage.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
+#include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain::app {
+
+/// What the flags of a run come to.
+struct RunSetup {
+  Sensor sensor;
+  ReachRegion reach{};
+  Stage stage{};
+  double distance = 0;  ///< of the start and of sets of poses from the object's centre [m]
+  Pose start;
+  VisibilityConfig visibility{};
+  SimulationConfig simulation{};
+  PoseSigma pose_noise{};  ///< of what the camera reports
+  /// Of reported poses, by which frames are registered; its pose says nothing. None: they are not.
+  std::optional<PoseSigma> registration{};
+  SurfaceModelConfig model{};
+  GenerationConfig generation{};
+  PolicyConfig policy{};
+  PlanningConfig planning{};
+  Json settings;  ///< of run.json
+};
+
+/// How the options say that views are chosen; of the oracle without its object. Throws Error.
+[[nodiscard]] PolicyConfig policy_config(const ReconstructOptions& options);
+
+/// Reads the files that the options name and checks everything. Throws Error.
+[[nodiscard]] RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec);
 
 /// The parts of a simulated run, wired up as its flags say. For one run.
 class Run {

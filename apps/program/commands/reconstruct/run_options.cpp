@@ -4,14 +4,11 @@
 
 #include <algorithm>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/flags/hazard_source.hpp"
-#include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/flags/sensing_flags.hpp"
 #include "program/cli/values.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
@@ -34,7 +31,7 @@ auto counted_with_default(std::size_t least, std::size_t most) {
 
 auto named(const std::vector<std::string>& names, const char* what) {
   return [&names, what](Option& option) {
-    one_of(option, names, what);
+    option.one_of(names, what);
     shows_default(option);
   };
 }
@@ -55,7 +52,7 @@ void describe(Options& o, Visitor& visit) {
       as_it_is);
   visit.derived("prior_sigma");
   visit.option("up", "--up", o.up, "axis of the mesh file that points up", [](Option& option) {
-    one_of(*option.capture_default_str(), {"x", "y", "z"}, "axis");
+    option.capture_default_str()->one_of({"x", "y", "z"}, "axis");
   });
   visit.option("start", "--start", o.start,
                "first camera pose tx,ty,tz,qx,qy,qz,qw [m]; default: 27 deg "
@@ -76,7 +73,7 @@ void describe(Options& o, Visitor& visit) {
                "where candidates come from: boundary, sphere, dome, rings, shell, sequence, or "
                "several with commas; default: boundary (random and fibonacci: sphere, sequence: "
                "sequence)",
-               [](Option& option) { several_of(option, generator_names(), "generator"); });
+               [](Option& option) { option.several_of(generator_names(), "generator"); });
   visit.option("sphere_poses", "--count", o.count,
                "poses of the sphere, dome or shell (default 500; sphere of --policy fibonacci: "
                "--max-views); rings: 48, 80, 288 or 864 (default 48)",
@@ -84,11 +81,11 @@ void describe(Options& o, Visitor& visit) {
   visit.option("gain", "--gain", o.gain,
                "of --policy gain: paper (entropy removed), surface (new surface to be expected) or "
                "combined (default); or a gain of the literature",
-               [](Option& option) { one_of(option, all_gain_names(), "gain"); });
+               [](Option& option) { option.one_of(all_gain_names(), "gain"); });
   visit.option("semantics", "--semantics", o.semantics,
                "of a gain of the literature: as the papers define it (default) or as the code that "
                "was shipped with them computes it",
-               [](Option& option) { one_of(option, gain_semantics_names(), "semantics"); });
+               [](Option& option) { option.one_of(gain_semantics_names(), "semantics"); });
   visit.option("overlap", "--overlap", o.overlap, kOverlapHelp, shows_default);
   visit.option("region_depth", "--region-depth", o.region_depth, kRegionDepthHelp, shows_default);
   visit.option("object_size", "--object-size", o.object_size, kObjectSizeHelp, as_it_is);
@@ -184,15 +181,13 @@ void check(const ReconstructOptions& options) {
   check_positive("--voxel", options.voxel);
   if (options.size) check_positive("--size", *options.size);
   if (!options.gain.empty() && parse_policy(options.policy) != Policy::gain) {
-    throw Error(ErrorCode::invalid_argument,
-                "--gain " + options.gain + " goes with --policy gain, not " + options.policy);
+    refuse("--gain " + options.gain + " goes with --policy gain, not " + options.policy);
   }
   const std::vector<std::string>& classic = classic_gain_names();
   if (!options.semantics.empty() &&
       std::find(classic.begin(), classic.end(), options.gain) == classic.end()) {
-    throw Error(ErrorCode::invalid_argument, "--semantics " + options.semantics +
-                                                 " goes with a gain of the literature (--gain " +
-                                                 classic.front() + ", ...)");
+    refuse("--semantics " + options.semantics + " goes with a gain of the literature (--gain " +
+           classic.front() + ", ...)");
   }
   check_positive("--tolerance", options.tolerance);
   check_at_least_0("--travel-cost", options.travel_cost);
@@ -203,8 +198,7 @@ void check(const ReconstructOptions& options) {
   check_inside_0_1("--overlap", options.overlap);
   check_positive("--region-depth", options.region_depth);
   if (options.stop_coverage && !(*options.stop_coverage >= 0 && *options.stop_coverage <= 1)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--stop-coverage " + short_text(*options.stop_coverage) + " must be in 0..1");
+    refuse("--stop-coverage " + short_text(*options.stop_coverage) + " must be in 0..1");
   }
 }
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "program/cli/flags/common_options.hpp"
-#include "program/cli/flags/registration_options.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/json.hpp"
 #include "viewgain/core/planning.hpp"

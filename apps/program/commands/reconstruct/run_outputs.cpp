@@ -6,8 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "program/cli/config_file.hpp"
 #include "show/pictures/view_picture.hpp"
+#include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/stopwatch.hpp"
+#include "viewgain/version.hpp"
 
 namespace viewgain::app {
 
@@ -39,6 +42,17 @@ StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPa
                 std::move(contributions), picture);
   seconds["report"] = watch.seconds();
   return seconds;
+}
+
+Json run_head(const Json& settings) {
+  return {{"settings", settings},
+          {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}}};
+}
+
+void commit(RunFolder& folder, const App& app) {
+  write_file_atomically(folder.file("config.toml"),
+                        config_text(app, {"out", "json", "quiet", "threads"}));
+  folder.commit();
 }
 
 void print_left(const RunOutputs& outputs, const char* files) {

@@ -29,6 +29,12 @@ struct ShownStep {
 StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPage& page,
                        const ShownStep& step, const ExecConfig& exec);
 
+/// `settings` and `versions`, with which run.json begins.
+[[nodiscard]] Json run_head(const Json& settings);
+
+/// Writes the flags of the call into config.toml, for --config, and puts the folder in its place.
+void commit(RunFolder& folder, const App& app);
+
 /// Says where the run lies; `files` are those that every such run leaves.
 void print_left(const RunOutputs& outputs, const char* files);
 

@@ -2,45 +2,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/commands/reconstruct/run_report.hpp"
 
-#include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <utility>
 
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/json_text.hpp"
 #include "program/cli/values.hpp"
-#include "program/commands/reconstruct/registration_json.hpp"
+#include "program/commands/frames/registration_json.hpp"
 
 namespace viewgain::app {
 namespace {
 
 // The figures that both a view and the whole run have.
 void put_figures(Json& json, const QualityFigures& quality, const ModelProgress& progress) {
-  json["coverage"] = quality.coverage;
-  json["coverage_visible"] = quality.coverage_visible;
-  json["coverage_2_5mm"] = quality.coverage_2_5mm;
-  json["rms_error"] = quality.surface_error.rms;
-  json["p95_error"] = quality.surface_error.p95;
-  json["rms_error_points"] = quality.points_error.rms;
-  json["p95_error_points"] = quality.points_error.p95;
-  json["consistency"] = quality.consistency.mean_clipped;
-  json["consistency_median"] = quality.consistency.median;
-  json["consistency_above_9"] = quality.consistency.above_9;
-  json["outliers"] = quality.consistency.outliers;
+  json.update(quality_json(quality, "coverage_visible"));
   json["entropy_removed"] = progress.entropy_removed;
   json["unknown_voxels"] = progress.unknown_voxels;
   json["surface_area"] = progress.surface_area;
-}
-
-__attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...) {
-  std::array<char, 512> text{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text.data(), text.size(), format, arguments);
-  va_end(arguments);
-  return text.data();
 }
 
 std::size_t total(const std::map<std::string, std::size_t>& counts) {
@@ -50,6 +28,20 @@ std::size_t total(const std::map<std::string, std::size_t>& counts) {
 }
 
 }  // namespace
+
+Json quality_json(const QualityFigures& quality, const char* visible) {
+  return {{"coverage", quality.coverage},
+          {visible, quality.coverage_visible},
+          {"coverage_2_5mm", quality.coverage_2_5mm},
+          {"rms_error", quality.surface_error.rms},
+          {"p95_error", quality.surface_error.p95},
+          {"rms_error_points", quality.points_error.rms},
+          {"p95_error_points", quality.points_error.p95},
+          {"consistency", quality.consistency.mean_clipped},
+          {"consistency_median", quality.consistency.median},
+          {"consistency_above_9", quality.consistency.above_9},
+          {"outliers", quality.consistency.outliers}};
+}
 
 RunReport::RunReport(const PolicyConfig& policy, double tolerance)
     : entropy_unit_(gain_unit(GainModel::paper, criterion_name(policy.criterion))),

@@ -14,6 +14,10 @@
 
 namespace viewgain::app {
 
+/// How far a surface and its points are from the truth, by the keys of run.json; `visible` is the
+/// key of the share of visible samples.
+[[nodiscard]] Json quality_json(const QualityFigures& quality, const char* visible);
+
 /// What a run came to, for run.json, --json and people. apps/docs/reference/json.md names the keys.
 class RunReport {
  public:

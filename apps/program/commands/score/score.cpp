@@ -10,11 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "program/cli/choices.hpp"
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/flags/hazard_source.hpp"
-#include "program/cli/flags/obstacle_source.hpp"
-#include "program/cli/flags/pose_flags.hpp"
+#include "program/cli/flags/pose_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensed_map.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
@@ -24,9 +22,8 @@
 #include "program/commands/score/score_part.hpp"
 #include "program/commands/score/score_report.hpp"
 #include "program/commands/score/score_views.hpp"
-#include "show/pictures/score_picture.hpp"
+#include "show/pictures/map_picture.hpp"
 #include "show/report/page.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -41,16 +38,13 @@ namespace {
 using Options = ScoreOptions;
 
 void check_feasibility(const Options& options) {
-  if (options.deadline && !options.race)
-    throw Error(ErrorCode::invalid_argument, "--deadline goes with --race");
+  if (options.deadline && !options.race) refuse("--deadline goes with --race");
   if (options.deadline) check_at_least_0("--deadline", *options.deadline);
-  if (!options.body.empty() && options.feasible == "off") {
-    throw Error(ErrorCode::invalid_argument, "--body goes with --feasible on");
-  }
+  if (!options.body.empty() && options.feasible == "off") refuse("--body goes with --feasible on");
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
   check_at_least_0("--cost-per-metre", options.costs.per_metre);
   if (options.set && !options.costs.none()) {
-    throw Error(ErrorCode::invalid_argument, "--costs and --cost-per-metre do not go with --set");
+    refuse("--costs and --cost-per-metre do not go with --set");
   }
 }
 
@@ -58,28 +52,24 @@ GainConfig gain_config(const Options& options) {
   GainConfig config;
   config.model = parse_gain_model(options.gain);
   if (config.model == GainModel::paper && (options.object_size || !options.hazard.empty())) {
-    throw Error(ErrorCode::invalid_argument,
-                "--object-size and --hazard go with --gain surface or combined");
+    refuse("--object-size and --hazard go with --gain surface or combined");
   }
   if (config.model == GainModel::paper && options.support_plane && options.feasible == "off") {
-    throw Error(ErrorCode::invalid_argument,
-                "--support-plane goes with --feasible on, and with --gain surface or combined");
+    refuse("--support-plane goes with --feasible on, and with --gain surface or combined");
   }
   if (config.model != GainModel::combined && options.refinement_weight) {
-    throw Error(ErrorCode::invalid_argument, "--refinement-weight goes with --gain combined");
+    refuse("--refinement-weight goes with --gain combined");
   }
   if (options.refinement_weight)
     check_at_least_0("--refinement-weight", *options.refinement_weight);
   if (config.model != GainModel::paper && options.criterion != "log_diagonal") {
-    throw Error(ErrorCode::invalid_argument, "--criterion " + options.criterion +
-                                                 " goes with --gain paper, not " + options.gain);
+    refuse("--criterion " + options.criterion + " goes with --gain paper, not " + options.gain);
   }
   if (config.model != GainModel::paper && options.set) {
-    throw Error(ErrorCode::invalid_argument, "--set goes with --gain paper, not " + options.gain);
+    refuse("--set goes with --gain paper, not " + options.gain);
   }
   if (options.semantics != "paper") {
-    throw Error(ErrorCode::invalid_argument,
-                "--semantics " + options.semantics + " goes with classic gains");
+    refuse("--semantics " + options.semantics + " goes with classic gains");
   }
   config.refinement_weight = options.refinement_weight.value_or(config.refinement_weight);
   config.criterion = parse_criterion(options.criterion);
@@ -110,8 +100,7 @@ FeasiblePoses candidates_of(const Options& options, const PoseSource& source, co
 
 void check_left(const FeasiblePoses& candidates, const Options& options) {
   if (!candidates.poses.empty() || !options.shard.empty()) return;  // a part may be empty
-  throw Error(ErrorCode::invalid_argument,
-              "no pose is left to score; dropped: " + counts_text(candidates.dropped));
+  refuse("no pose is left to score; dropped: " + counts_text(candidates.dropped));
 }
 
 // What the poses cost, whichever of them are possible.
@@ -150,14 +139,9 @@ void name_by_input(Scores& scores, const FeasiblePoses& candidates) {
   const auto name = [&](std::vector<std::size_t>& indices) {
     for (std::size_t& i : indices) i = candidates.numbers[i];
   };
-  if (auto* ranking = std::get_if<Ranking>(&scores.found)) {
-    name(ranking->scored.indices);
-    name(ranking->best.indices);
-  } else if (auto* joint = std::get_if<JointViews>(&scores.found)) {
-    name(joint->views.indices);
-  } else {
-    std::get<Estimates>(scores.found).indices = candidates.numbers;
-  }
+  name(scores.scored.indices);
+  name(scores.best.indices);
+  if (scores.estimates) scores.estimates->indices = candidates.numbers;
   scores.candidates = candidates.poses.size();
   scores.dropped = candidates.dropped;
 }
@@ -278,17 +262,17 @@ Command add_score(App& program) {
   app->add_option("MAP", options->map, kMapHelp)->required();
   add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kMapSensorHelp);
-  several_of(*app->add_option("--gain", options->gain,
-                              "paper (entropy removed) [nat], surface (new surface to be expected) "
-                              "[m^2] or combined (both) [nat]; or gains of the literature, several "
-                              "with commas, ranked by the first")
-                  ->capture_default_str(),
-             all_gain_names(), "gain");
-  one_of(*app->add_option("--semantics", options->semantics,
-                          "of the literature's gains: as the papers define them or as the code "
-                          "that was shipped with them computes them")
-              ->capture_default_str(),
-         gain_semantics_names(), "semantics");
+  app->add_option("--gain", options->gain,
+                  "paper (entropy removed) [nat], surface (new surface to be expected) "
+                  "[m^2] or combined (both) [nat]; or gains of the literature, several "
+                  "with commas, ranked by the first")
+      ->capture_default_str()
+      ->several_of(all_gain_names(), "gain");
+  app->add_option("--semantics", options->semantics,
+                  "of the literature's gains: as the papers define them or as the code "
+                  "that was shipped with them computes them")
+      ->capture_default_str()
+      ->one_of(gain_semantics_names(), "semantics");
   app->add_option("--refinement-weight", options->refinement_weight,
                   "combined: of refining known surface against finding new; default: 0.3");
   app->add_option("--object-size", options->object_size, kObjectSizeHelp);
@@ -299,17 +283,18 @@ Command add_score(App& program) {
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
   app->add_option("--reach", options->reach,
                   "TOML file: boxes, shells, half-spaces, poses in reach; other poses are dropped");
-  on_or_off(*app->add_option("--feasible", options->feasible,
-                             "drop poses where the sensor's body would touch the map, an obstacle "
-                             "or the table, much would be too near to be measured, or a view of "
-                             "the map was taken")
-                 ->capture_default_str());
+  app->add_option("--feasible", options->feasible,
+                  "drop poses where the sensor's body would touch the map, an obstacle "
+                  "or the table, much would be too near to be measured, or a view of "
+                  "the map was taken")
+      ->capture_default_str()
+      ->on_or_off();
   app->add_option("--body", options->body, kBodyHelp);
-  one_of(*app->add_option("--criterion", options->criterion,
-                          "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] "
-                          "or trace [m^2]")
-              ->capture_default_str(),
-         criterion_names(), "criterion");
+  app->add_option("--criterion", options->criterion,
+                  "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] "
+                  "or trace [m^2]")
+      ->capture_default_str()
+      ->one_of(criterion_names(), "criterion");
   app->add_option("--stride", options->stride, "every s-th pixel of every s-th row")
       ->range(1, std::numeric_limits<int>::max(), "stride")
       ->capture_default_str();

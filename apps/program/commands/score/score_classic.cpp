@@ -13,7 +13,6 @@
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/json_text.hpp"
 #include "program/cli/values.hpp"
-#include "viewgain/core/error.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -36,9 +35,7 @@ void check_classic(const ScoreOptions& options) {
        {"--prior-sigma", options.prior_sigma.has_value()}}};
   for (const auto& [flag, is_given] : given) {
     if (!is_given) continue;
-    throw Error(
-        ErrorCode::invalid_argument,
-        std::string(flag) + " does not go with the classic gains (--gain " + options.gain + ")");
+    refuse(std::string(flag) + " does not go with the classic gains (--gain " + options.gain + ")");
   }
 }
 
@@ -54,8 +51,7 @@ std::optional<std::vector<ClassicGain>> classic_gains_of(const std::string& name
     if (std::find(models.begin(), models.end(), name) == models.end()) {
       gains.push_back(parse_classic_gain(name));
     } else if (asked.size() > 1) {
-      throw Error(ErrorCode::invalid_argument,
-                  "--gain " + names + ": " + name + " stands alone; several are classic gains");
+      refuse("--gain " + names + ": " + name + " stands alone; several are classic gains");
     }
   }
   if (gains.empty()) return std::nullopt;

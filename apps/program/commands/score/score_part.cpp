@@ -8,9 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "program/cli/flags/hazard_source.hpp"
-#include "program/cli/flags/obstacle_source.hpp"
-#include "viewgain/core/error.hpp"
+#include "program/cli/flags/scene_sources.hpp"
+#include "program/cli/values.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/support/columns/mapped_poses.hpp"
 #include "viewgain/support/columns/parts.hpp"
@@ -84,12 +83,9 @@ Shard shard_of(const ScoreOptions& options) {
         std::pair("--picture", !options.picture.empty()),
         std::pair("--report", !options.report.empty())}) {
     if (!is_given) continue;
-    throw Error(ErrorCode::invalid_argument,
-                std::string("--shard does not go with ") + other + ", which is about all poses");
+    refuse(std::string("--shard does not go with ") + other + ", which is about all poses");
   }
-  if (options.out.empty()) {
-    throw Error(ErrorCode::invalid_argument, "--shard needs --out FILE for the part");
-  }
+  if (options.out.empty()) refuse("--shard needs --out FILE for the part");
   return parse_shard(options.shard);
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program/commands/score/score_report.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -108,8 +107,6 @@ void print_rows(const ScoredViews& views, const PoseSource& poses, GainModel mod
     const std::size_t i = views.indices[rank];
     const ViewGain& r = views.gains[rank];
     const Eigen::Vector3d eye = poses.at(i).translation();
-    std::array<char, 80> position{};
-    std::snprintf(position.data(), position.size(), "%8.3f %8.3f %8.3f", eye.x(), eye.y(), eye.z());
     std::printf("%4zu %8zu %12.6g", rank + 1, i, r.gain);
     if (has_costs) std::printf(" %12.6g", poses.worth(i, r.gain));
     if (by_paper) std::printf(" %12.6g %12.6g", r.exploration, r.refinement);
@@ -117,7 +114,8 @@ void print_rows(const ScoredViews& views, const PoseSource& poses, GainModel mod
     if (refines) std::printf(" %12.6g", r.refinement_saturated);
     std::printf(" %8u", r.hits);
     if (by_paper) std::printf(" %9u %9u", r.unknown_voxels, r.occupied_voxels);
-    std::printf("  %-26s %s\n", position.data(), std::string(view_status_name(r.status)).c_str());
+    std::printf("  %8.3f %8.3f %8.3f %s\n", eye.x(), eye.y(), eye.z(),
+                std::string(view_status_name(r.status)).c_str());
   }
 }
 
@@ -130,44 +128,29 @@ void print_rows(const Estimates& estimates) {
   }
 }
 
-// The poses whose every ray was traced; for people and files, nothing of estimates.
-const ScoredViews& scored_in_full(const Scores& scores) {
-  static const ScoredViews none;
-  if (const auto* ranking = std::get_if<Ranking>(&scores.found)) return ranking->scored;
-  if (const auto* joint = std::get_if<JointViews>(&scores.found)) return joint->views;
-  return none;
-}
-
 // Poses that a gain is known of, by some of their rays or by all; fewer than there are where a
 // deadline ended the call.
 std::size_t looked_at(const Scores& scores) {
-  if (std::holds_alternative<JointViews>(scores.found)) return scores.candidates;
-  return std::max(scores.estimated, scored_in_full(scores).gains.size());
+  return scores.set_gain ? scores.candidates
+                         : std::max(scores.estimated, scores.scored.gains.size());
 }
 
 }  // namespace
 
 std::optional<std::size_t> Scores::winner() const {
-  if (const auto* estimates = std::get_if<Estimates>(&found)) {
-    if (estimates->best.empty()) return std::nullopt;
-    return estimates->indices[estimates->best.front()];
-  }
-  const auto* ranking = std::get_if<Ranking>(&found);
-  const std::vector<std::size_t>& best =
-      ranking != nullptr ? ranking->best.indices : std::get<JointViews>(found).views.indices;
-  return best.empty() ? std::nullopt : std::optional(best.front());
+  if (estimates && !estimates->best.empty()) return estimates->indices[estimates->best.front()];
+  return best.indices.empty() ? std::nullopt : std::optional(best.indices.front());
 }
 
 Table table_of(const Scores& scores, GainModel model) {
-  const auto* estimates = std::get_if<Estimates>(&scores.found);
-  return estimates != nullptr ? table_of(*estimates) : table_of(scored_in_full(scores), model);
+  return scores.estimates ? table_of(*scores.estimates) : table_of(scores.scored, model);
 }
 
 Json ScoreReport::summary() const {
   return {{"poses", source.poses.size()},
           {"dropped", scores.dropped},
           {"poses_estimated", scores.estimated},
-          {"poses_scored", scored_in_full(scores).gains.size()},
+          {"poses_scored", scores.scored.gains.size()},
           {"rays_traced", scores.rays_traced},
           {"rays_per_pose", evaluator.rays_per_pose()},
           {"threads", evaluator.num_threads()},
@@ -187,14 +170,9 @@ Json ScoreReport::summary() const {
 
 void ScoreReport::print_json() const {
   Json json = summary();
-  if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
-    json["best"] = entries(ranking->best, source, model);
-  } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
-    json["best"] = entries(joint->views, source, model);
-    json["set_gain"] = joint->gain;
-  } else {
-    json["best"] = entries(std::get<Estimates>(scores.found), source);
-  }
+  json["best"] =
+      scores.estimates ? entries(*scores.estimates, source) : entries(scores.best, source, model);
+  if (scores.set_gain) json["set_gain"] = *scores.set_gain;
   app::print_json(json);
 }
 
@@ -210,15 +188,13 @@ void ScoreReport::print_table() const {
     std::printf("%zu of %zu poses; dropped: %s\n", scores.candidates, source.poses.size(),
                 counts_text(scores.dropped).c_str());
   }
-  if (const auto* ranking = std::get_if<Ranking>(&scores.found)) {
-    print_rows(ranking->best, source, model);
-  } else if (const auto* joint = std::get_if<JointViews>(&scores.found)) {
-    print_rows(joint->views, source, model);
-    std::printf("together: %.6g\n", joint->gain);
+  if (scores.estimates) {
+    print_rows(*scores.estimates);
   } else {
-    print_rows(std::get<Estimates>(scores.found));
+    print_rows(scores.best, source, model);
   }
-  const std::size_t poses = scores.candidates, in_full = scored_in_full(scores).gains.size();
+  if (scores.set_gain) std::printf("together: %.6g\n", *scores.set_gain);
+  const std::size_t poses = scores.candidates, in_full = scores.scored.gains.size();
   const int threads = evaluator.num_threads();
   std::printf(
       "%s poses in %.3f s: %.0f poses/s, %s rays/s, %s rays per pose, %s voxels, %d %s, %s\n",
@@ -237,14 +213,14 @@ Json ScoreReport::page(const std::string& title, RgbImage picture) const {
   constexpr std::size_t kRows = 1000, kShown = 10;
   std::vector<ViewGain> ranked(source.poses.size());
   for (ViewGain& gain : ranked) gain.gain = std::numeric_limits<double>::quiet_NaN();
-  const auto* estimates = std::get_if<Estimates>(&scores.found);
-  const ScoredViews& full = scored_in_full(scores);
+  const bool in_full = !scores.estimates;
+  const ScoredViews& full = scores.scored;
   for (std::size_t k = 0; k < full.indices.size(); ++k) ranked[full.indices[k]] = full.gains[k];
-  for (std::size_t k = 0; estimates != nullptr && k < estimates->gains.size(); ++k) {
-    ranked[estimates->indices[k]].gain = estimates->gains[k].gain;
+  for (std::size_t k = 0; !in_full && k < scores.estimates->gains.size(); ++k) {
+    ranked[scores.estimates->indices[k]].gain = scores.estimates->gains[k].gain;
   }
-  const bool by_area = model != GainModel::paper && estimates == nullptr;
-  const bool by_paper = model == GainModel::paper && estimates == nullptr;
+  const bool by_area = model != GainModel::paper && in_full;
+  const bool by_paper = model == GainModel::paper && in_full;
   std::vector<double> gains, areas;
   std::vector<ViewGain> by_worth = ranked;
   for (std::size_t i = 0; i < ranked.size(); ++i) {
@@ -254,19 +230,18 @@ Json ScoreReport::page(const std::string& title, RgbImage picture) const {
   }
   Json columns{"pose", "gain"}, rows = Json::array();
   if (by_area) columns.push_back("area");
-  if (estimates == nullptr) columns.push_back("hits");
+  if (in_full) columns.push_back("hits");
   if (by_paper) columns.push_back("unknown");
   if (by_paper) columns.push_back("occupied");
   std::vector<std::size_t> shown;
-  const std::vector<std::size_t> order = std::holds_alternative<JointViews>(scores.found)
-                                             ? full.indices
-                                             : best_indices(by_worth, kRows);
+  const std::vector<std::size_t> order =
+      scores.set_gain ? full.indices : best_indices(by_worth, kRows);
   for (const std::size_t i : order) {
     const ViewGain& r = ranked[i];
     if (std::isnan(r.gain)) break;
     Json row{i, r.gain};
     if (by_area) row.push_back(r.area);
-    if (estimates == nullptr) row.push_back(r.hits);
+    if (in_full) row.push_back(r.hits);
     if (by_paper) row.push_back(r.unknown_voxels);
     if (by_paper) row.push_back(r.occupied_voxels);
     rows.push_back(std::move(row));

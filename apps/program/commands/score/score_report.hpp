@@ -7,7 +7,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "program/cli/flags/pose_source.hpp"
@@ -25,18 +24,6 @@ struct ScoredViews {
   std::vector<ViewGain> gains;       ///< of those
 };
 
-/// Every pose, or those that a race traced with all their rays.
-struct Ranking {
-  ScoredViews scored;  ///< in input order
-  ScoredViews best;    ///< best first
-};
-
-/// Views that are good together.
-struct JointViews {
-  ScoredViews views;  ///< in the set's order, each with what it adds to those before
-  double gain = 0;    ///< of all
-};
-
 /// Gains from a share of the rays.
 struct Estimates {
   std::vector<ApproximateGain> gains;  ///< of all candidates
@@ -46,7 +33,10 @@ struct Estimates {
 
 /// What scoring came to, by the way that was asked for.
 struct Scores {
-  std::variant<Ranking, JointViews, Estimates> found;
+  ScoredViews scored{};                  ///< with all their rays, in input order or in the set's
+  ScoredViews best{};                    ///< best first, or the set
+  std::optional<double> set_gain{};      ///< of views that are good together: of all
+  std::optional<Estimates> estimates{};  ///< instead of both
   std::uint64_t rays_traced = 0;
   std::size_t estimated = 0;                     ///< poses that a race scored by some rays
   std::size_t candidates = 0;                    ///< poses that were not dropped

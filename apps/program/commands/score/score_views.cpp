@@ -19,17 +19,17 @@ std::vector<std::size_t> best_by_worth(std::vector<ViewGain> gains,
 Scores scored(const ScoreOptions& options, const GainEvaluator& evaluator,
               const std::vector<Pose>& poses, const std::vector<double>& costs,
               const BatchControl& control) {
-  Ranking ranking;
-  ranking.scored.gains.resize(poses.size());
-  evaluator.evaluate(poses, ranking.scored.gains, control);
-  ranking.scored.indices.resize(poses.size());
-  std::iota(ranking.scored.indices.begin(), ranking.scored.indices.end(), std::size_t{0});
-  ranking.best.indices = best_by_worth(ranking.scored.gains, costs, options.top);
-  for (const std::size_t i : ranking.best.indices)
-    ranking.best.gains.push_back(ranking.scored.gains[i]);
-  std::uint64_t rays = 0;
-  for (const ViewGain& gain : ranking.scored.gains) rays += gain.rays;
-  return {std::move(ranking), rays};
+  Scores scores;
+  scores.scored.gains.resize(poses.size());
+  evaluator.evaluate(poses, scores.scored.gains, control);
+  scores.scored.indices.resize(poses.size());
+  std::iota(scores.scored.indices.begin(), scores.scored.indices.end(), std::size_t{0});
+  scores.best.indices = best_by_worth(scores.scored.gains, costs, options.top);
+  for (const std::size_t i : scores.best.indices) {
+    scores.best.gains.push_back(scores.scored.gains[i]);
+  }
+  for (const ViewGain& gain : scores.scored.gains) scores.rays_traced += gain.rays;
+  return scores;
 }
 
 Scores raced(const ScoreOptions& options, const GainEvaluator& evaluator,
@@ -38,33 +38,37 @@ Scores raced(const ScoreOptions& options, const GainEvaluator& evaluator,
   BestConfig config{.costs = costs, .seed = options.seed};
   config.deadline = options.deadline.value_or(config.deadline);
   BestViews views = evaluator.race(poses, options.top, config, control);
-  return {Ranking{{std::move(views.scored_indices), std::move(views.scored_gains)},
-                  {std::move(views.indices), std::move(views.gains)}},
-          views.rays_traced, views.estimated};
+  return {.scored = {std::move(views.scored_indices), std::move(views.scored_gains)},
+          .best = {std::move(views.indices), std::move(views.gains)},
+          .rays_traced = views.rays_traced,
+          .estimated = views.estimated};
 }
 
 Scores chosen_together(const ScoreOptions& options, const GainEvaluator& evaluator,
                        const std::vector<Pose>& poses, const BatchControl& control) {
   ViewSet set = evaluator.best_set(poses, *options.set, control);
-  return {JointViews{{std::move(set.indices), std::move(set.marginal)}, set.gain},
-          set.evaluations * evaluator.rays_per_pose()};
+  const ScoredViews views{std::move(set.indices), std::move(set.marginal)};
+  return {.scored = views,
+          .best = views,
+          .set_gain = set.gain,
+          .rays_traced = set.evaluations * evaluator.rays_per_pose()};
 }
 
 Scores estimated(const ScoreOptions& options, const GainEvaluator& evaluator,
                  const std::vector<Pose>& poses, const std::vector<double>& costs,
                  const BatchControl& control) {
   const ApproximateConfig config{.share = *options.approximate, .seed = options.seed};
-  Estimates estimates;
+  Scores scores{.estimates = Estimates{}, .estimated = poses.size()};
+  Estimates& estimates = *scores.estimates;
   estimates.gains.resize(poses.size());
   evaluator.approximate(poses, estimates.gains, config, control);
   std::vector<ViewGain> ranked(poses.size());
-  std::uint64_t rays = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     ranked[i].gain = estimates.gains[i].gain;
-    rays += estimates.gains[i].rays;
+    scores.rays_traced += estimates.gains[i].rays;
   }
   estimates.best = best_by_worth(std::move(ranked), costs, options.top);
-  return {std::move(estimates), rays, poses.size()};
+  return scores;
 }
 
 }  // namespace

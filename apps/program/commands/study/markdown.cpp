@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "program/commands/study/markdown.hpp"
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <set>
 #include <utility>
 
+#include "program/cli/values.hpp"
+#include "program/commands/study/results.hpp"
 #include "program/commands/study/statistics.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -19,10 +18,7 @@ using Rows = std::vector<const ResultRow*>;
 using Figure = std::function<double(const ResultRow&)>;
 
 std::string fixed(double value, int digits) {
-  if (!std::isfinite(value)) return "-";
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
+  return std::isfinite(value) ? formatted("%.*f", digits, value) : "-";
 }
 
 // "0.81 ± 0.02"
@@ -43,7 +39,6 @@ Figure views_to(std::size_t goal) {
   return [goal](const ResultRow& row) { return row.counted_views_to(goal); };
 }
 
-double auc(const ResultRow& row) { return row.auc; }
 double rms_mm(const ResultRow& row) { return 1e3 * row.rms_error; }
 
 // Runs of one sensor, voxel and size: what can be compared.
@@ -60,7 +55,19 @@ struct Group {
   }
 };
 
-std::string mean_text(const Rows& rows, const Figure& figure, int digits) {
+// "| a | b |", and below the head of a table its line.
+std::string line_of(const std::vector<std::string>& cells) {
+  std::string text = "|";
+  for (const std::string& cell : cells) text.append(" ").append(cell).append(" |");
+  return text + "\n";
+}
+std::string head_of(const std::vector<std::string>& cells) {
+  std::string text = line_of(cells) + "|";
+  for (std::size_t i = 0; i < cells.size(); ++i) text += "---|";
+  return text + "\n";
+}
+
+std::string mean_cell(const Rows& rows, const Figure& figure, int digits) {
   return fixed(mean_of(figures(rows, figure)).mean, digits);
 }
 
@@ -81,32 +88,26 @@ std::string counts(const Rows& rows, std::size_t goal) {
     views.push_back(row->views_to[goal] ? row->counted_views_to(goal) : HUGE_VAL);
   }
   const double median = median_of(std::move(views));
-  std::string text = never > 0 ? "≥ " : "";
-  text.append(mean_text(rows, views_to(goal), 2)).append(" / ");
-  text.append(median == HUGE_VAL ? "never" : fixed(median, 1)).append(" / ");
-  return text + std::to_string(never);
+  return (never > 0 ? "≥ " : "") + mean_cell(rows, views_to(goal), 2) + " / " +
+         (median == HUGE_VAL ? "never" : fixed(median, 1)) + " / " + std::to_string(never);
 }
 
 std::string means(const Group& group) {
   std::string text =
-      "| policy | to 80 % ↓ | to 90 % ↓ | to 95 % ↓ | AUC ↑ | in the end ↑ | RMS [mm] ↓ | "
-      "consistency | way [m] ↓ | time [s] ↓ |\n|---|---|---|---|---|---|---|---|---|---|\n";
+      head_of({"policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "AUC ↑", "in the end ↑",
+               "RMS [mm] ↓", "consistency", "way [m] ↓", "time [s] ↓"});
   for (std::size_t policy = 0; policy < group.spec.policies.size(); ++policy) {
     const Rows rows = group.of(policy);
-    const auto add = [&](const Figure& figure, int digits, const char* unit = "") {
-      text.append(" | ").append(mean_text(rows, figure, digits)).append(unit);
-    };
-    text.append("| ").append(group.spec.policies[policy].name);
-    for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
-      text.append(" | ").append(counts(rows, goal));
-    }
-    add(auc, 3);
-    add([](const ResultRow& row) { return 100 * row.coverage_visible; }, 1, " %");
-    add(rms_mm, 2);
-    add(&ResultRow::consistency, 2);
-    add(&ResultRow::travelled, 1);
-    add(&ResultRow::seconds, 1);
-    text += " |\n";
+    std::vector<std::string> cells{group.spec.policies[policy].name};
+    for (std::size_t goal = 0; goal < kGoals.size(); ++goal) cells.push_back(counts(rows, goal));
+    cells.push_back(mean_cell(rows, &ResultRow::auc, 3));
+    const auto in_the_end = [](const ResultRow& row) { return 100 * row.coverage_visible; };
+    cells.push_back(mean_cell(rows, in_the_end, 1) + " %");
+    cells.push_back(mean_cell(rows, rms_mm, 2));
+    cells.push_back(mean_cell(rows, &ResultRow::consistency, 2));
+    cells.push_back(mean_cell(rows, &ResultRow::travelled, 1));
+    cells.push_back(mean_cell(rows, &ResultRow::seconds, 1));
+    text += line_of(cells);
   }
   return text;
 }
@@ -126,31 +127,31 @@ std::string difference(const Rows& of, const Rows& against, const Figure& figure
     const double better = more_is_better ? d : -d;
     ++count[better > 0 ? 0 : better < 0 ? 2 : 1];
   }
-  std::string text = with_error(differences, objects_of(of), digits) + " (";
-  text.append(std::to_string(count[0])).append("-").append(std::to_string(count[1]));
-  text.append("-").append(std::to_string(count[2])).append("; ");
-  text.append(probability(sign_test(differences))).append(", ");
-  return text.append(probability(signed_rank_test(differences))).append(")");
+  return with_error(differences, objects_of(of), digits) + " (" + std::to_string(count[0]) + "-" +
+         std::to_string(count[1]) + "-" + std::to_string(count[2]) + "; " +
+         probability(sign_test(differences)) + ", " + probability(signed_rank_test(differences)) +
+         ")";
 }
 
 std::string pairs(const Group& group) {
   const StudySpec& spec = group.spec;
   if (spec.policies.size() < 2) return "";
-  std::string text = "\nPaired with " + spec.policies[spec.against].name +
-                     ": mean difference ± standard error (wins-ties-losses; p of the sign test, of "
-                     "Wilcoxon's signed-rank test)\n\n"
-                     "| policy | to 80 % ↓ | to 90 % ↓ | to 95 % ↓ | AUC ↑ | RMS [mm] ↓ |\n"
-                     "|---|---|---|---|---|---|\n";
+  std::string text =
+      "\nPaired with " + spec.policies[spec.against].name +
+      ": mean difference ± standard error (wins-ties-losses; p of the sign test, of "
+      "Wilcoxon's signed-rank test)\n\n" +
+      head_of({"policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "AUC ↑", "RMS [mm] ↓"});
   const Rows against = group.of(spec.against);
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
     if (policy == spec.against) continue;
     const Rows of = group.of(policy);
-    text.append("| ").append(spec.policies[policy].name);
+    std::vector<std::string> cells{spec.policies[policy].name};
     for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
-      text.append(" | ").append(difference(of, against, views_to(goal), 2, false));
+      cells.push_back(difference(of, against, views_to(goal), 2, false));
     }
-    text.append(" | ").append(difference(of, against, auc, 3, true));
-    text.append(" | ").append(difference(of, against, rms_mm, 2, false)).append(" |\n");
+    cells.push_back(difference(of, against, &ResultRow::auc, 3, true));
+    cells.push_back(difference(of, against, rms_mm, 2, false));
+    text += line_of(cells);
   }
   return text;
 }
@@ -158,20 +159,17 @@ std::string pairs(const Group& group) {
 std::string by_object(const Group& group) {
   const StudySpec& spec = group.spec;
   if (spec.objects.size() < 2) return "";
-  std::string text = "\nAUC by object\n\n| policy |", line = "|---|";
-  for (const StudyObject& object : spec.objects) {
-    text.append(" ").append(object.name).append(" |");
-    line += "---|";
-  }
-  text += "\n" + line + "\n";
+  std::vector<std::string> names{"policy"};
+  for (const StudyObject& object : spec.objects) names.push_back(object.name);
+  std::string text = "\nAUC by object\n\n" + head_of(names);
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
-    text.append("| ").append(spec.policies[policy].name + " |");
+    std::vector<std::string> cells{spec.policies[policy].name};
     for (std::size_t object = 0; object < spec.objects.size(); ++object) {
       Rows rows = group.of(policy);
       std::erase_if(rows, [&](const ResultRow* row) { return row->run->object != object; });
-      text.append(" ").append(mean_text(rows, auc, 3)).append(" |");
+      cells.push_back(mean_cell(rows, &ResultRow::auc, 3));
     }
-    text += "\n";
+    text += line_of(cells);
   }
   return text;
 }
@@ -198,33 +196,29 @@ std::string prediction(const Group& group) {
       " each time: Spearman's rank correlation with the truly new samples after so many views, "
       "the mean of these, that with the entropy truly removed, and the favourite's share of what "
       "the best candidate brings, all ↑. Where all scores are equal there is no figure; the means "
-      "are over the others\n\n| policy |";
-  std::string line = "|---|";
-  for (const std::size_t view : spec.prediction.views) {
-    text.append(" ").append(std::to_string(view)).append(" |");
-    line += "---|";
-  }
-  text += " all | entropy | favourite |\n" + line + "---|---|---|\n";
+      "are over the others\n\n";
+  std::vector<std::string> names{"policy"};
+  for (const std::size_t view : spec.prediction.views) names.push_back(std::to_string(view));
+  names.insert(names.end(), {"all", "entropy", "favourite"});
+  text += head_of(names);
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
     const Rows rows = group.of(policy);
     if (std::all_of(rows.begin(), rows.end(),
                     [](const ResultRow* row) { return row->prediction.size() == 0; })) {
       continue;
     }
-    text.append("| ").append(spec.policies[policy].name);
+    std::vector<std::string> cells{spec.policies[policy].name};
     const auto add = [&](const char* key, std::size_t view) {  // view 0: all
       std::vector<double> values;
       for (const ResultRow* row : rows) {
         // Views of one run are not independent: they count as one.
         values.push_back(mean_of(prediction_figures(*row, key, view)).mean);
       }
-      text.append(" | ").append(with_error(values, objects_of(rows), 2));
+      cells.push_back(with_error(values, objects_of(rows), 2));
     };
     for (const std::size_t view : spec.prediction.views) add("spearman_area", view);
-    add("spearman_area", 0);
-    add("spearman_entropy", 0);
-    add("top1_share", 0);
-    text += " |\n";
+    for (const char* key : {"spearman_area", "spearman_entropy", "top1_share"}) add(key, 0);
+    text += line_of(cells);
   }
   return text;
 }

@@ -17,6 +17,19 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 // What is not finite is null in JSON.
 double number_of(const Json& value) { return value.is_number() ? value.get<double>() : kNone; }
 
+// The figures of a row that are numbers alike in results.csv and results.json, in their order.
+struct RowFigure {
+  const char* key;
+  double ResultRow::*value;
+};
+constexpr std::array kFigures{RowFigure{"auc", &ResultRow::auc},
+                              RowFigure{"coverage_visible", &ResultRow::coverage_visible},
+                              RowFigure{"coverage", &ResultRow::coverage},
+                              RowFigure{"rms_error", &ResultRow::rms_error},
+                              RowFigure{"consistency", &ResultRow::consistency},
+                              RowFigure{"outliers", &ResultRow::outliers},
+                              RowFigure{"travelled", &ResultRow::travelled}};
+
 double mean_over_views(const Json& prediction, const char* key) {
   std::vector<double> values;
   for (const Json& view : prediction) values.push_back(number_of(view.at(key)));
@@ -93,12 +106,9 @@ std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& row
     for (const auto& views : row.views_to) {
       csv.append(",").append(views ? std::to_string(*views) : "nan");
     }
-    for (const double value :
-         {row.auc, row.coverage_visible, row.coverage, row.rms_error, row.consistency, row.outliers,
-          row.travelled, mean_over_views(row.prediction, "spearman_area"),
-          mean_over_views(row.prediction, "spearman_entropy"),
-          mean_over_views(row.prediction, "top1_share")}) {
-      csv.append(",").append(exact_text(value));
+    for (const RowFigure& figure : kFigures) csv.append(",").append(exact_text(row.*figure.value));
+    for (const char* key : {"spearman_area", "spearman_entropy", "top1_share"}) {
+      csv.append(",").append(exact_text(mean_over_views(row.prediction, key)));
     }
     csv.append(",").append(run.hash).append(",").append(row.isa);
     csv.append(",").append(exact_text(row.seconds)).append("\n");
@@ -123,13 +133,7 @@ Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows) {
               {"stop_reason", row.stop_reason}};
     const std::array<const char*, kGoals.size()> keys{"views_to_80", "views_to_90", "views_to_95"};
     for (std::size_t goal = 0; goal < keys.size(); ++goal) json[keys[goal]] = row.views_to[goal];
-    json["auc"] = row.auc;
-    json["coverage_visible"] = row.coverage_visible;
-    json["coverage"] = row.coverage;
-    json["rms_error"] = row.rms_error;
-    json["consistency"] = row.consistency;
-    json["outliers"] = row.outliers;
-    json["travelled"] = row.travelled;
+    for (const RowFigure& figure : kFigures) json[figure.key] = row.*figure.value;
     json["coverage_by_view"] = row.coverage_by_view;
     json["prediction"] = row.prediction;
     json["hash"] = run.hash;

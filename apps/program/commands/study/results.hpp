@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,5 +55,17 @@ inline constexpr const char* kRunColumns = "object,policy,gain,semantics,seed,se
 /// The contents of results.csv and results.json, a row a run in the spec's order.
 [[nodiscard]] std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows);
 [[nodiscard]] Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows);
+
+/// A study's results for people, as Markdown: for each sensor, voxel and size the policies' means,
+/// their paired differences to the spec's `against`, views by object, and how well their scores
+/// tell what candidates bring.
+[[nodiscard]] std::string results_markdown(const StudySpec& spec,
+                                           const std::vector<ResultRow>& rows);
+
+/// The script that draws a study's plots, plots.py.
+[[nodiscard]] const char* plots_script();
+
+/// Runs a study folder's plots.py by python3. Whether it went well; what it says is dropped.
+[[nodiscard]] bool draw_plots(const std::filesystem::path& script);
 
 }  // namespace viewgain::app

@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/flags/hazard_source.hpp"
-#include "program/cli/flags/obstacle_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/reach_toml.hpp"

@@ -14,9 +14,8 @@
 
 #include "program/cli/described_options.hpp"
 #include "program/cli/interrupt.hpp"
+#include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/study/markdown.hpp"
-#include "program/commands/study/plots.hpp"
 #include "program/commands/study/results.hpp"
 #include "program/commands/study/runs.hpp"
 #include "program/commands/study/spec.hpp"
@@ -95,8 +94,7 @@ void check_folder(const std::filesystem::path& dir, const std::filesystem::path&
   });
   // Looked for last: another worker of the same study may begin at this moment.
   if (is_new || std::filesystem::is_directory(dir / "runs", ignored)) return;
-  throw Error(ErrorCode::invalid_argument,
-              "--out " + dir.string() + ": has files, but no runs/ of a study; name a new folder");
+  refuse("--out " + dir.string() + ": has files, but no runs/ of a study; name a new folder");
 }
 
 ResultRow row_in(const StudyFolder& folder, const StudySpec& spec, const StudyRun& run) {

@@ -211,15 +211,5 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithFileAndLine) {
        {{"--config", "c.toml", "--save-config", "s.toml", "--out", "s.toml"}, "s.toml"}});
 }
 
-TEST_F(ConfigFile, FlagsThatStandAloneAreKept) {
-  write_cube();
-  run_well({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "sr4000", "--voxel", "0.02",
-            "--max-views", "1", "--pictures", "off", "--quiet", "--out", "run"});
-  for (const char* race : {"--race", "--race=yes", "--race=1", "--race=true"}) {
-    run_well({"score", "run/map.vdb", "--sphere", "20,0.6", race, "--save-config", "r.toml"});
-    EXPECT_NE(read("r.toml").find("race = true"), std::string::npos) << race;
-  }
-}
-
 }  // namespace
 }  // namespace viewgain

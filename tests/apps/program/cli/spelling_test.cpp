@@ -45,13 +45,6 @@ TEST_F(Spelling, TheNearestIsNamed) {
         "--gain: needs a value; there are paper, surface, combined"}});
 }
 
-TEST_F(Spelling, SwitchesNeedTheirValue) {
-  expect_refused({{{"reconstruct", "cube.off", "--save-maps", "--out", "run"}, "there are on, off"},
-                  {{"score", "map.vdb", "--feasible", "--body", "1,1,1"}, "there are on, off"},
-                  {{"integrate", "frames", "--calibrate-hazard"}, "there are on, off"},
-                  {{"convert", "map.vdb", "b.vdb", "--with-covariance"}, "there are on, off"}});
-}
-
 TEST_F(Spelling, AMeshKeepsItsSizeUnlessAsked) {
   const auto reconstruct = [this](const Strings& more) {
     run_well(test::joined({"reconstruct", "cube.off", "--sensor", "small.toml", "--voxel", "0.1",
@@ -69,17 +62,6 @@ TEST_F(Spelling, AMeshKeepsItsSizeUnlessAsked) {
   expect_refused({"simulate", "cube.off", "--sensor", "small.toml", "--out", "frames", "--size",
                   "0", "--orbit", "1,6,20"},
                  "--size 0");
-  // From outside the cube of 2 m and 4 m away; the wall of a cube of 0.35 m would be farther.
-  const auto near = [this](const Strings& more) {
-    const std::string json = run_well(
-        test::joined({"simulate", "cube.off", "--orbit", "1,4,0", "--center", "1,1,1", "--sensor",
-                      "small.toml", "--background", "0", "--out", "frames", "--json"},
-                     more));
-    const std::size_t at = json.find("\"readings\": ") + 12;
-    return std::stoi(json.substr(at));
-  };
-  EXPECT_EQ(near({}), near({"--size", "2"}));
-  EXPECT_NE(near({}), near({"--size", "1"}));
 }
 
 }  // namespace

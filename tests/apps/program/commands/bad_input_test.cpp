@@ -202,6 +202,7 @@ TEST_F(BadInputTest, Scores) {
        {with({"--gain", "surface", "--hazard", "cube.off"}), ".vdb"},
        {with({"--gain", "surface", "--support-plane", "nan"}), "--support-plane nan"},
        {with({"--gain", "combined", "--refinement-weight", "-1"}), "--refinement-weight"},
+       {with({"--report", "report.txt"}), "report"},
        {with({"--stride", "0"}), "stride"},
        {with({"--weight", "0,0,0,1,1,1"}), "--weight"},
        {with({"--weight", "1,0,0,0,1,1,2"}), "inside out"},

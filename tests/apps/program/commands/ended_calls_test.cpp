@@ -207,20 +207,5 @@ TEST_F(EndedCalls, AFullDeviceIsAnError) {
   }
 }
 
-TEST_F(EndedCalls, WithoutCandidatesJsonSaysWhy) {
-  run_well(simulate("frames"));
-  run_well({"integrate", "frames", "--voxel", "0.02", "--out", "m.vdb"});
-  write("far.toml", "[[shell]]\ncenter = [0, 0, 0]\nmin_radius = 50.0\nmax_radius = 60.0\n");
-  const test::ProgramResult result =
-      run({"candidates", "m.vdb", "--generator", "sphere", "--count", "7", "--sensor", "tof.toml",
-           "--reach", "far.toml", "--out", "none.txt", "--json"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("7 unreachable"), std::string::npos) << result.err;
-  const json report = json::parse(result.out);
-  EXPECT_EQ(report["candidates"], 0);
-  EXPECT_EQ(report["dropped"]["unreachable"], 7);
-  EXPECT_FALSE(fs::exists(dir / "none.txt"));
-}
-
 }  // namespace
 }  // namespace viewgain

@@ -315,15 +315,6 @@ TEST_F(Follow, SaysWhereToLookNext) {
   EXPECT_EQ(read("plan/next.json"), before);
 }
 
-TEST_F(Follow, WithoutAFrameThatCanBeUsedItEndsWithTheReasons) {
-  put(0);
-  write(name(0) + ".pose.txt", "1 0 0 90\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
-  write("live/done", "");
-  const test::ProgramResult result = run(follow());
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("1 outside"), std::string::npos) << result.err;
-}
-
 // An arm that misses, sees nothing or writes garbage, for 50 steps.
 TEST_F(Follow, NoViewIsProposedTwiceToAnArmThatFails) {
   const auto nothing = GrayImage{48, 36, std::vector<std::uint16_t>(48 * 36)};
@@ -397,26 +388,6 @@ TEST_F(Follow, WhatContradictsTheMapIsLeftOut) {
   EXPECT_EQ(result["bad"].size(), 1U);
   EXPECT_EQ(result["bad"]["contradicts"], 1);
   EXPECT_EQ(result["frames"], 9);
-}
-
-TEST_F(Follow, EachBadFrameIsALine) {
-  put(0);
-  put(1);
-  write(name(1) + ".depth.png", images[1].substr(0, 50));
-  write("live/done", "");
-  Strings call = follow();
-  std::erase(call, "--quiet");
-  const test::ProgramResult result = run(call);
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  std::size_t lines = 0;
-  std::istringstream said(result.err);
-  for (std::string line; std::getline(said, line);) {
-    if (line.find("unreadable") == std::string::npos) continue;
-    ++lines;
-    EXPECT_NE(line.find("live/frame-000001.depth.png"), std::string::npos) << line;
-  }
-  EXPECT_EQ(lines, 1U);
-  EXPECT_NE(result.out.find("left out: 1 unreadable"), std::string::npos) << result.out;
 }
 
 TEST_F(Follow, RefusesWhatItCannotGoOnWith) {

@@ -46,32 +46,10 @@ TEST_F(InfoRegion, SaysHowWellAPartIsKnown) {
   EXPECT_FALSE(json::parse(run_well({"info", "map.vdb", "--json"})).contains("region"));
 }
 
-TEST_F(InfoRegion, WithoutPointsTheSigmaIsNull) {
-  const json info =
-      json::parse(run_well({"info", "map.vdb", "--region", "0.15,0,0,0.2,0.1,0.1", "--json"}));
-  EXPECT_TRUE(info.at("region").at("mean_sigma").is_null());
-  EXPECT_EQ(info.at("region").at("entropy_removed"), 0);
-}
-
 TEST_F(InfoRegion, BadRegionsAreRefused) {
   for (const char* bad : {"0,0,0,1,1", "0,0,0,1,1,0", "5,5,5,6,6,6", "a,0,0,1,1,1"}) {
     expect_refused({"info", "map.vdb", "--region", bad}, "--region");
   }
-}
-
-TEST_F(InfoRegion, RingsAndShellsAreScored) {
-  write_small_sensor();
-  const auto poses = [this](const std::string& flag, const std::string& value) {
-    return json::parse(run_well({"score", "map.vdb", flag, value, "--center", "0.1,0,0", "--seed",
-                                 "5", "--sensor", "small.toml", "--json"}))
-        .at("poses");
-  };
-  EXPECT_EQ(poses("--rings", "80,0.6"), 80);
-  EXPECT_EQ(poses("--shell", "33,0.4,0.9"), 33);
-  EXPECT_EQ(poses("--orbit", "7,0.6,20"), 7);
-  const auto both =
-      run({"score", "map.vdb", "--rings", "80,0.6", "--sphere", "9,1", "--sensor", "small.toml"});
-  EXPECT_EQ(both.exit_code, 2);
 }
 
 }  // namespace

@@ -90,16 +90,5 @@ TEST_F(Reports, HoldTheRunAndTheRanking) {
   EXPECT_FALSE(std::filesystem::exists(dir / "run" / "report.html"));
 }
 
-TEST_F(Reports, OddNamesAreRefused) {
-  ASSERT_EQ(reconstruct("off").exit_code, 0);
-  for (const char* name : {"report.txt", "run/map.vdb", "-", "no/such/folder/report.html"}) {
-    const test::ProgramResult result =
-        run({"score", "run/map.vdb", "--sphere", "10,0.6", "--report", name});
-    EXPECT_EQ(result.exit_code, 2) << name;
-    EXPECT_NE(result.err.find("report"), std::string::npos) << result.err;
-  }
-  EXPECT_EQ(reconstruct("perhaps").exit_code, 2);
-}
-
 }  // namespace
 }  // namespace viewgain

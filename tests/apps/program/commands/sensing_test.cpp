@@ -167,27 +167,6 @@ TEST_F(Sensing, BadFlagsAndImagesAreRefused) {
   refused({"--support-plane", "inf"}, "support plane");
 }
 
-TEST_F(Sensing, ReportedPosesAreOffButForTheFirst) {
-  (void)simulate("exact");
-  const json said = simulate("off", {"--pose-noise", "0.01,1"});
-  EXPECT_EQ(said["pose_noise"][0], 0.01);
-  EXPECT_NEAR(said["pose_noise"][1].get<double>(), 1, 1e-12);
-  const std::vector<Pose> exact = read_tum(dir / "exact/poses.txt").poses;
-  const std::vector<Pose> off = read_tum(dir / "off/poses.txt").poses;
-  ASSERT_EQ(exact.size(), 2U);
-  ASSERT_EQ(off.size(), 2U);
-  EXPECT_EQ(off[0], exact[0]);
-  const double way = (off[1].translation() - exact[1].translation()).norm();
-  EXPECT_GT(way, 1e-4);
-  EXPECT_LT(way, 0.06);
-  EXPECT_EQ(load("off"), load("exact"));  // the camera was where it was sent
-  for (const char* noise : {"0.01", "-0.01,1", "0.01,x"}) {
-    expect_refused({"simulate", "cube.off", "--orbit", "2,0.6,27,0,46", "--sensor", "tof.toml",
-                    "--out", "refused", "--pose-noise", noise},
-                   "--pose-noise");
-  }
-}
-
 // The cube at a place, seen from a pose, is the cube at home, seen from the pose carried back.
 TEST_F(Sensing, AMeshIsPlacedInTheWorld) {
   const Pose T_world_mesh(

@@ -301,6 +301,32 @@ TEST(Pictures, AreTheSameWhereverTheOriginIs) {
   });
 }
 
+// Layers before a wall, one after the other: what each lets through of those behind it.
+TEST(Pictures, TranslucentLayersBlendFromNearToFar) {
+  PaintedMesh scene;
+  const auto add_square = [&](double x, double half, std::uint8_t paint) {
+    const auto at = [&](double y, double z) { return Eigen::Vector3d(x, half * y, half * z); };
+    scene.add_triangle(at(-1, -1), at(1, -1), at(1, 1), paint);
+    scene.add_triangle(at(-1, -1), at(1, 1), at(-1, 1), paint);
+  };
+  const auto flat = [&](const Eigen::Vector3d& color, double opacity) {
+    return scene.add_paint({.color = color, .lit = false, .opacity = opacity});
+  };
+  const Eigen::Vector3d wall(0.8, 0.1, 0.1), middle(0.1, 0.9, 0.2), nearest(0.2, 0.1, 0.7);
+  add_square(0, 1, flat(wall, 1));
+  add_square(0.2, 1, flat(nearest, 0.25));
+  add_square(0.1, 1, flat(middle, 0.5));
+  add_square(-0.1, 1, flat({1, 1, 1}, 0.9));  // behind the wall
+  const PinholeCamera camera{40, 30, 100, 100, 20, 15, {}};
+  const RgbImage image = render(scene, camera, look_at({2, 0, 0}, {0, 0, 0}), 0.1, {});
+  const Eigen::Vector3d seen = 0.25 * nearest + 0.75 * (0.5 * middle + 0.5 * wall);
+  ASSERT_EQ(image.pixels.size(), 3U * 40 * 30);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const double share = seen[static_cast<Eigen::Index>(i % 3)];
+    ASSERT_EQ(image.pixels[i], std::lround(255 * std::pow(share, 1 / 2.2))) << i;
+  }
+}
+
 TEST_F(ViewPictureTest, TheSurfaceIsShadedAndDarkerFromBehind) {
   const auto mean_grey = [](const Image& image) {
     double sum = 0;

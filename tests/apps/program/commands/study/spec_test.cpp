@@ -13,7 +13,6 @@
 
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
-#include "program/commands/study/markdown.hpp"
 #include "program/commands/study/results.hpp"
 #include "viewgain/core/error.hpp"
 

@@ -23,7 +23,7 @@ function columnsOf(report, part, chosen, withClass) {
   const columns = [
     { name: "#", title: "Index of the candidate", number: true,
       value: (row) => row.id, cell: (row) => String(row.id) },
-    { name: `Gain ${unit.name}`, title: "Gain by which it ranks; ≈: estimated from a tenth of its rays", number: true,
+    { name: `Gain ${unit.name}`, title: "Gain by which it ranks; ≈: estimated from some of its rays", number: true,
       value: (row) => row.gain, cell: gainCell },
   ];
   if (report.gain_unit !== "m^2" && part.area.some(Number.isFinite)) {

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "program/cli/flags/hazard_source.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 
 #include <memory>
 
 #include "program/cli/values.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/file_names.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/text.hpp"
@@ -26,12 +25,36 @@ HazardConfig hazard_source(const std::string& hazard, std::optional<double> obje
   }
   if (!small_ending(hazard).empty() &&
       hazard.find_first_not_of("0123456789.+-eE") != std::string::npos) {
-    throw Error(ErrorCode::invalid_argument,
-                "--hazard " + hazard + ": must be a number or the path of a .vdb file");
+    refuse("--hazard " + hazard + ": must be a number or the path of a .vdb file");
   }
   const double rate = parse_numbers("--hazard", hazard, 1, 1)[0];
   check_at_least_0("--hazard", rate);
   return constant_hazard(rate, grid, object_size);
+}
+
+MeshPlacement placement_of(std::optional<double> size, const std::string& recenter,
+                           const std::string& up) {
+  MeshPlacement placement;
+  placement.up = up == "x" ? UpAxis::x : up == "y" ? UpAxis::y : UpAxis::z;
+  placement.center = recenter == "on";
+  if (size) placement.longest_side = *size;
+  return placement;
+}
+
+bool is_obstacle_file(const std::string& value) {
+  return value.find_first_not_of("0123456789.,+-eE ") != std::string::npos;
+}
+
+Obstacles obstacles_of(const std::vector<std::string>& values) {
+  Obstacles obstacles;
+  for (const std::string& value : values) {
+    if (is_obstacle_file(value)) {
+      obstacles.meshes.push_back(read_mesh(value));
+    } else {
+      obstacles.boxes.push_back(parse_box("--obstacle", value));
+    }
+  }
+  return obstacles;
 }
 
 }  // namespace viewgain::app

@@ -10,23 +10,27 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calibration/wall_calibration.hpp"
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
-#include "program/commands/calibrate/wall_distances.hpp"
 #include "program/commands/commands.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/file_names.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/stopwatch.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::app {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Options {
   CommonOptions common;
@@ -49,7 +53,57 @@ Wall parse_wall(const std::string& text) {
   const std::vector<double> n = parse_numbers("--wall", text, 4, 4);
   const Wall wall{{n[0], n[1], n[2]}, n[3]};
   if (!wall.normal.isZero(0)) return wall;
-  throw Error(ErrorCode::invalid_argument, "--wall " + text + ": the normal is zero");
+  refuse("--wall " + text + ": the normal is zero");
+}
+
+// The number of the frame of this name, with or without the image's ending.
+std::map<std::string, std::size_t> numbers_of(const std::vector<fs::path>& images) {
+  constexpr std::string_view kEnding = ".depth.png";
+  std::map<std::string, std::size_t> numbers;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const std::string name = images[i].filename().string();
+    numbers[name] = i;
+    numbers[name.substr(0, name.size() - kEnding.size())] = i;
+  }
+  return numbers;
+}
+
+// The distances of a wall [m], one a depth image: of the text file's line i for image i, or of the
+// line that begins with its name, with or without .depth.png; nothing for those that a file with
+// names leaves out.
+std::vector<std::optional<double>> read_wall_distances(const std::string& path,
+                                                       const std::vector<fs::path>& images) {
+  const std::map<std::string, std::size_t> numbers = numbers_of(images);
+  std::vector<std::optional<double>> distances(images.size());
+  const std::string bytes = file_bytes(path);
+  std::size_t lines = 0, words = 0;
+  for (LineReader line(path, bytes); line.next();) {
+    if (line.words().empty() || line.words()[0].starts_with('#')) continue;
+    if (lines++ == 0) words = line.words().size();
+    if (line.words().size() != words || words > 2) {
+      line.fail("needs a distance [m], or a frame's name and its distance, as all other lines");
+    }
+    std::size_t frame = lines - 1;
+    if (words == 2) {
+      const auto found = numbers.find(std::string(line.words()[0]));
+      if (found == numbers.end()) {
+        line.fail("there is no frame " + quoted(line.words()[0]) + " in the folder");
+      }
+      frame = found->second;
+    } else if (frame >= distances.size()) {
+      line.fail("is of no frame, the folder has " + std::to_string(distances.size()));
+    }
+    if (distances[frame]) line.fail("the frame has a distance already");
+    const double distance = line.finite_number(words - 1);
+    if (!(distance > 0)) line.fail("the distance " + short_text(distance) + " is not positive");
+    distances[frame] = distance;
+  }
+  if (words != 2 && lines < distances.size()) {
+    throw Error(ErrorCode::format, path + ": has " + std::to_string(lines) + " distances for " +
+                                       std::to_string(distances.size()) +
+                                       " frames; with names on its lines it may leave some out");
+  }
+  return distances;
 }
 
 // What the frames' readings come to.
@@ -150,9 +204,7 @@ Json or_null(const std::optional<double>& value) { return value ? Json(*value) :
 
 double degrees(double angle) { return angle * 180 / std::numbers::pi; }
 
-std::string base_name(const std::string& path) {
-  return std::filesystem::path(path).filename().string();
-}
+std::string base_name(const std::string& path) { return fs::path(path).filename().string(); }
 
 Json frame_json(const WallFrameFigures& frame) {
   return {{"name", base_name(frame.name)},  {"distance", frame.distance},
@@ -186,10 +238,7 @@ void print_json_summary(const Options& options, const Calibrated& calibrated, do
 }
 
 std::string millimetres(const std::optional<double>& value) {
-  if (!value) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", 1e3 * *value);
-  return text;
+  return value ? formatted("%.2f", 1e3 * *value) : "-";
 }
 
 void print_summary(const Options& options, const Calibrated& calibrated) {
@@ -229,11 +278,10 @@ void print_summary(const Options& options, const Calibrated& calibrated) {
 void calibrate(const Options& options) {
   const Stopwatch watch;
   if (options.distances.empty() == options.wall.empty()) {
-    throw Error(ErrorCode::invalid_argument, "needs either --distances or --wall");
+    refuse("needs either --distances or --wall");
   }
   if (!is_sensor_file(options.out) && !is_special_file(options.out)) {
-    throw Error(ErrorCode::invalid_argument,
-                "--out " + options.out + ": the name of a sensor file must end in .toml");
+    refuse("--out " + options.out + ": the name of a sensor file must end in .toml");
   }
   const Calibrated calibrated = measure(options);
   write_sensor_toml(options.out, calibrated.sensor);
