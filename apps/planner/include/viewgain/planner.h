@@ -60,12 +60,11 @@ typedef struct vg_planner_config {
   double T_flange_camera[16]; /* camera to flange, rows */
   double clearance;           /* round the body [m] */
   int32_t (*reachable)(const double T_world_camera[16],
-                       void* user); /* may the camera be there? null: anywhere */
-  void* user;                       /* handed to reachable */
-  /* 20, 3 and 3; idle_views or broken_promises 0: never */
-  uint64_t max_views, idle_views, broken_promises;
-  double stop_gain, stop_area; /* NaN: the defaults of the gain; 0: never */
-  int32_t tracer;              /* VG_TRACER_AUTOMATIC; never changes a result */
+                       void* user);                /* may the camera be there? null: anywhere */
+  void* user;                                      /* handed to reachable */
+  uint64_t max_views, idle_views, broken_promises; /* 20, 3, 3; the last two 0: never */
+  double stop_gain, stop_area;                     /* NaN: the defaults of the gain; 0: never */
+  int32_t tracer;                                  /* VG_TRACER_AUTOMATIC; never changes a result */
 } vg_planner_config;
 /* The defaults. */
 VG_API void vg_planner_config_init(vg_planner_config* config, size_t struct_size);

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
@@ -62,12 +64,14 @@ TEST_F(Workflow, CsvReadsBackTheSameDoubles) {
   const auto rows = rows_of(read("s.csv"));
   ASSERT_EQ(rows.size(), 31U);
   EXPECT_EQ(rows[0], (Strings{"index", "gain", "exploration", "refinement", "posterior_entropy",
-                              "rays", "hits", "unknown_voxels", "occupied_voxels", "status"}));
+                              "rays", "hits", "unknown_voxels", "occupied_voxels", "status", "tx",
+                              "ty", "tz", "qx", "qy", "qz", "qw"}));
   const BeliefGrid grid = load_vdb(dir / "map.vdb");
   const GainEvaluator evaluator(VoxelScene::build(grid),
                                 open_frames(dir / "frames", "", std::nullopt).sensor,
                                 {.model = GainModel::paper, .posterior_entropy = true});
-  const auto expected = evaluator.evaluate(sphere_poses(30, 0.6));
+  const std::vector<Pose> poses = sphere_poses(30, 0.6);
+  const auto expected = evaluator.evaluate(poses);
   std::size_t cases = 0;
   for (; cases < expected.size(); ++cases) {
     const Strings& row = rows[cases + 1];
@@ -82,6 +86,11 @@ TEST_F(Workflow, CsvReadsBackTheSameDoubles) {
     EXPECT_EQ(row[7], std::to_string(gain.unknown_voxels));
     EXPECT_EQ(row[8], std::to_string(gain.occupied_voxels));
     EXPECT_EQ(row[9], "ok");
+    std::array<double, 7> pose{};
+    for (std::size_t k = 0; k < pose.size(); ++k) pose[k] = std::stod(row.at(10 + k));
+    EXPECT_EQ(Eigen::Vector3d(pose.data()), poses[cases].translation());
+    const Eigen::Quaterniond q(pose[6], pose[3], pose[4], pose[5]);
+    EXPECT_TRUE(q.toRotationMatrix().isApprox(poses[cases].rotation(), 1e-14));
   }
   EXPECT_EQ(cases, 30U);
 }
