@@ -123,14 +123,14 @@ TEST(RealisedArea, IsWhatAnOracleCounts) {
   const std::vector<double> angles = sensor.camera.solid_angles(rays);
   std::size_t new_readings = 0, known = 0, near = 0;
   int maps = 0;
-  for (; maps < 10; ++maps) {
+  for (; maps < 20; ++maps) {
     BeliefGrid grid = empty_map(0.1);
     std::vector<Index3> evidence;
     for (int i = 0; i < 4000; ++i) {
       const auto coordinate = [&] { return static_cast<int>(std::floor(uniform(-20, 20))); };
       const Index3 voxel{coordinate(), coordinate(), coordinate()};
       if (grid.state(voxel) != VoxelState::unknown) continue;
-      const bool occupied = uniform(0, 1) < 0.01;
+      const bool occupied = uniform(0, 1) < 0.05;
       const auto hits = static_cast<std::uint32_t>(1 + i % 5);
       occupied ? grid.set(voxel, 0.85F, hit(hits)) : grid.set(voxel, -0.4F);
       if (occupied && hits >= 3) evidence.push_back(voxel);
@@ -152,7 +152,7 @@ TEST(RealisedArea, IsWhatAnOracleCounts) {
       bool is_near = false;
       for (const Index3& e : evidence) {
         const int dx = e.x - voxel->x, dy = e.y - voxel->y, dz = e.z - voxel->z;
-        is_near = is_near || dx * dx + dy * dy + dz * dz <= 4;
+        is_near = is_near || dx * dx + dy * dy + dz * dz <= 1;
       }
       if (is_near) {
         ++near;
@@ -163,7 +163,7 @@ TEST(RealisedArea, IsWhatAnOracleCounts) {
     }
     EXPECT_NEAR(realised.of(frame, pose, grid, &hazard), expected, 1e-9 * expected);
   }
-  EXPECT_EQ(maps, 10);
+  EXPECT_EQ(maps, 20);
   EXPECT_GT(new_readings, 5000U);
   EXPECT_GT(known, 100U);
   EXPECT_GT(near, 100U);

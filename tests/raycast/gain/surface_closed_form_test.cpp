@@ -199,8 +199,8 @@ TEST(SurfaceGain, SurfaceNextToWhatIsSeenIsNotNew) {
   const HazardConfig hazard = constant(0);
   const double all = kCap * -std::expm1(-kRate * 24 * kExactVoxel);
   EXPECT_NEAR(gain_of(grid, one_ray(1.0), hazard).gain, all, 1e-5 * kCap);
-  // Along y = 2.5 the voxels 32 (d = 2) is known; those at 31 and 33 are farther away.
-  const Pose near = test::axis_pose({-30, 2.5, 8.5}, 0, true);
+  // Along y = 1.5 the voxel 32 (d = 1) is known; those at 31 and 33 are farther away.
+  const Pose near = test::axis_pose({-30, 1.5, 8.5}, 0, true);
   const double before = -std::expm1(-kRate * 12 * kExactVoxel);
   const double known = (1 - before) * -std::expm1(-kRate * kExactVoxel);
   EXPECT_NEAR(gain_of(grid, one_ray(1.0), hazard, {}, near).gain, all - kCap * known, 1e-5 * kCap);

@@ -148,7 +148,7 @@ TEST_F(BadInputTest, Frames) {
        {integrate({"--voxel", "0.02", "--sensor", "small.toml"}, "recorded"),
         "frame-000000.pose.txt"},
        {integrate({"--voxel", "0.02", "--sensor", "small.toml"}, "negative"),
-        "negative/camera-intrinsics.txt: camera: fx"},
+        "negative/camera-intrinsics.txt: must have the form fx"},
        {integrate({"--voxel", "0.02", "--mask", "masks"}), "masks"},
        {integrate({"--voxel", "0.02", "--confidence", "masks"}), "masks"},
        {integrate({"--voxel", "0.02", "--confidence", "masks", "--least-confidence", "0"}), "0"},

@@ -20,6 +20,7 @@ class VIEWGAIN_EXPORT ProximityMeasure : public RunMeasure {
   /// The field, that of the evaluator's scene, must outlive it.
   explicit ProximityMeasure(const HazardField& hazard);
 
+  /// That sum, without a unit.
   [[nodiscard]] double measure(const Pose& T_world_camera,
                                std::span<const RunMeasure::Run> runs) const override;
 
