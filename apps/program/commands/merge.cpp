@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/support/columns/parts.hpp"
-
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -14,6 +12,7 @@
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
+#include "viewgain/support/columns/parts.hpp"
 
 namespace viewgain::app {
 namespace {

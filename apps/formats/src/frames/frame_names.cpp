@@ -16,8 +16,6 @@
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/text.hpp"
 
-#include "viewgain/core/error.hpp"
-
 namespace viewgain {
 
 namespace fs = std::filesystem;

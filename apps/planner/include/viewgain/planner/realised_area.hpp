@@ -26,8 +26,8 @@ class VIEWGAIN_EXPORT RealisedArea {
 
   /// Σ ω t² [m²], area across the rays, over the frame's readings within the sensor's range that
   /// lie in a voxel of the workspace that is unknown in `before`, at d > 1.2 pooling lengths from
-  /// what is known of the surface, and show nothing known (DepthFrame::known_depth). `hazard`: that of the
-  /// same map; null: no surface is known, all is new. Throws Error(invalid_argument) as
+  /// what is known of the surface, and show nothing known (DepthFrame::known_depth). `hazard`: that
+  /// of the same map; null: no surface is known, all is new. Throws Error(invalid_argument) as
   /// check_frame_size().
   [[nodiscard]] double of(const DepthFrame& frame, const Pose& T_world_camera,
                           const BeliefGrid& before, const HazardField* hazard) const;
