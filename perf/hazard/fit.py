@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""fit.py VIEWGAIN MESH... [--size M] [--voxel M] [--seed N] [--work DIR]: the constants of HazardModel.
+"""fit.py VIEWGAIN MESH... [--size M] [--voxel M] [--seed N] [--work DIR]: the constants of HazardConfig::Model.
 
 Models each mesh by `reconstruct`, keeps the maps after views 1, 3 and 5, and lets noise-free rays from 80 poses of a
 sphere run through each map's unknown voxels: by distance d and elevation s over what is known, how many metres they

@@ -59,6 +59,12 @@ void FreeShare::settle(const VoxelBox& workspace, int shift) {
   const int edge = 1 << shift;
   const std::int32_t all = std::int32_t{1} << (3 * shift);
   is_free_.reserve(sums_.size());
+  const VoxelBox voxels{{cells_.min.x * edge, cells_.min.y * edge, cells_.min.z * edge},
+                        {cells_.max.x * edge, cells_.max.y * edge, cells_.max.z * edge}};
+  if (voxels.intersection(workspace).volume() == voxels.volume()) {
+    for (const std::int32_t free : sums_) is_free_.push_back(free == all ? 1 : 0);
+    return;
+  }
   std::size_t i = 0;
   for (int x = cells_.min.x; x < cells_.max.x; ++x) {
     for (int y = cells_.min.y; y < cells_.max.y; ++y) {
@@ -77,8 +83,7 @@ void FreeShare::settle(const VoxelBox& workspace, int shift) {
 // Sums of 7 along an axis, of which the first and last go on beyond the ends.
 void FreeShare::add_up(std::size_t stride, std::size_t count) {
   std::vector<std::int32_t> line(count + 2 * kAround + 1);
-  for (std::size_t first = 0; first < sums_.size(); ++first) {
-    if (first / stride % count != 0) continue;
+  const auto add_up_from = [&](std::size_t first) {
     for (std::size_t i = 0; i < line.size(); ++i) {
       const std::size_t at = std::min(i > kAround ? i - kAround : 0, count - 1);
       line[i] = sums_[first + at * stride];
@@ -90,6 +95,9 @@ void FreeShare::add_up(std::size_t stride, std::size_t count) {
       sums_[first + i * stride] = sum;
       sum -= line[i];
     }
+  };
+  for (std::size_t outer = 0; outer < sums_.size(); outer += stride * count) {
+    for (std::size_t inner = 0; inner < stride; ++inner) add_up_from(outer + inner);
   }
 }
 
