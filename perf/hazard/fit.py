@@ -71,7 +71,7 @@ def counts(grid, sensor, frames, scale):
         T = T_grid_world @ T_world_camera
         directions = (rays / lengths[:, None]) @ T[:3, :3].T
         end = np.where(z > 0, z * lengths, 0)
-        t = np.arange(0.2, 1.2, step) + step / 2
+        t = np.arange(0.2 * scale, 1.2 * scale, step) + step / 2
         p = T[:3, 3] + t[None, :, None] * directions[:, None, :]
         index = np.floor(p / V).astype(int) - low
         inside = ((index >= 0) & (index < states.shape)).all(-1)

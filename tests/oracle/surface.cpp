@@ -120,7 +120,8 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
       value.pixel_area = std::max(value.pixel_area, across);
       const double distance = hazard.distance(run->voxel);
       last_across = across;
-      if (distance > 1.2 * hazard.pooling().length * (1 + 1e-9)) {
+      if (distance >
+          std::max(1.2 * hazard.pooling().length, V * (1 << hazard.cell_shift())) * (1 + 1e-9)) {
         value.area += P * across * run->weighted / length;
         stretch_area += P * across * run->weighted / length;
       }

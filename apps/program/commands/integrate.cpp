@@ -268,9 +268,9 @@ void check_flags(const Options& options, const App& app) {
 void refuse_empty(const Options& options, const ReadingSource& source, const Totals& totals) {
   if (totals.skipped > 0) return totals.tally.name_left_out();
   if (options.clouds.empty()) return totals.tally.require_any(*source.folder());
-  if (!options.map.empty()) return;
   const IntegrationReport& sum = totals.sum;
   warn_if_out_of_range(options.clouds.front(), sum);
+  if (!options.map.empty()) return;
   if (sum.readings_inside + sum.plane_readings + sum.voxels_crossed > 0) return;
   refuse(options.clouds.front() + ": none of " + with_commas(sum.readings) +
          " readings lies in the workspace");

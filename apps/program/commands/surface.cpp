@@ -126,6 +126,8 @@ void surface(const Options& options, const App& app) {
   const std::vector<FusedPoint> points = fused_points(map.grid, {}, exec);
   if (points.empty()) refuse(options.map + ": no voxel has readings that make a surface");
   const SurfaceMesh surface = surface_of(points, pooling_of(map.grid.snapshot()), exec);
+  std::optional<QualityFigures> figures;
+  if (truth) figures = figures_of(*truth, map, surface, points, exec);
   write_surfaces(surface, points, options.out, options.points);
   std::vector<double> sigmas = surface_sigmas(surface, points);
   std::optional<double> median;
@@ -134,8 +136,6 @@ void surface(const Options& options, const App& app) {
     std::nth_element(sigmas.begin(), middle, sigmas.end());
     median = *middle;
   }
-  std::optional<QualityFigures> figures;
-  if (truth) figures = figures_of(*truth, map, surface, points, exec);
 
   if (options.common.json) {
     return print_json({{"points", points.size()},

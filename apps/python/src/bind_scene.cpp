@@ -88,7 +88,7 @@ object_size : float, optional
 hazard : float, path or array_like, the grid's shape, optional
     Rate at which a ray in unknown voxels meets the surface [1/m], for the surface gain: the same
     everywhere, from a .vdb file (its grid of floats "hazard", or the only one), or one for each
-    voxel; by the distance from what is seen unless given.
+    voxel; by distance from and elevation over what is seen unless given.
 num_threads : int
     Of the build; 0: all hardware threads.
 

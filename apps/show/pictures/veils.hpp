@@ -37,9 +37,12 @@ class Veils {
         const Eigen::Vector3d vertex(mesh.vertices[mesh.triangles[i][k]].data());
         const Eigen::Vector3d q = T_camera_world * vertex;
         p[k] = vertex - T_world_camera.translation();
-        triangle.box.extend(Eigen::Vector2d(camera.fx * q.x() / q.z() + camera.cx,
-                                            camera.fy * q.y() / q.z() + camera.cy));
-        if (q.z() > 0) continue;  // beside or behind the eye: anywhere
+        if (q.z() > 0) {
+          triangle.box.extend(Eigen::Vector2d(camera.fx * q.x() / q.z() + camera.cx,
+                                              camera.fy * q.y() / q.z() + camera.cy));
+          continue;
+        }
+        // Beside or behind the eye: anywhere.
         triangle.box.extend(Eigen::Vector2d::Constant(-1e9));
         triangle.box.extend(Eigen::Vector2d::Constant(1e9));
       }

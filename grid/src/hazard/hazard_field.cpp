@@ -204,7 +204,8 @@ void HazardField::find_distances(const GridSnapshot& snapshot,
   const detail::NearestCells nearest(squared_, size_, reach);
   find_continuations(nearest, detail::FreeShare(snapshot, cells, shift_));
   find_rates(reach);
-  const double known = kKnownDistance * pooling_.length / cell;  // [cells]
+  // [cells]; the neighbours of one with evidence at least
+  const double known = std::max(kKnownDistance * pooling_.length / cell, 1.0);
   most_known_ = static_cast<std::uint32_t>(known * known);
 }
 
@@ -232,15 +233,16 @@ void HazardField::find_continuations(const detail::NearestCells& nearest,
 
 void HazardField::find_rates(int reach) {
   const double cell = voxel_size_ * (1 << shift_);
-  near_rates_.resize(static_cast<std::size_t>(reach * reach) + 1);
-  const double far = model_.rate(kFar) * factors_.back();
+  rates_.resize(static_cast<std::size_t>(reach * reach) + 1);
   // Where a class ends the factor steps: what is nearer has at least the rate of what is farther.
-  double most = far;
-  for (std::size_t i = near_rates_.size(); i-- > 0;) {
+  double most = model_.rate(kFar) * factors_.back();
+  for (std::size_t i = rates_.size(); i-- > 0;) {
     const double distance = std::sqrt(static_cast<double>(i)) * cell;
-    const std::size_t k = HazardCounters::class_of(distance / model_.decay_length);
-    most = std::max(most, model_.rate(distance) * factors_[k]);
-    near_rates_[i] = static_cast<float>((most - far) / 255);
+    const double all = model_.rate(distance);
+    most = std::max(most, all * factors_[HazardCounters::class_of(distance / model_.decay_length)]);
+    const double factor = all > 0 ? most / all : 0;
+    rates_[i] = {static_cast<float>(factor * model_.far_rate),
+                 static_cast<float>(factor * (all - model_.far_rate) / 255)};
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -69,7 +70,7 @@ TEST(HazardField, DistancesAreThoseOfBruteForce) {
       const double c = field.continuation(v);
       EXPECT_NEAR(field.rate(v), 0.5 + 30.0 * c * std::exp(-expected / model.decay_length), 1e-5);
       EXPECT_NEAR(field.start_rate(v), field.rate(v), 1e-5);
-      EXPECT_EQ(field.is_new(v), expected > 1.2 * kVoxel + 1e-9);
+      EXPECT_EQ(field.is_new(v), expected > kVoxel * std::max(1.2, 1.0 * (1 << shift)) + 1e-9);
     }
   }
   EXPECT_EQ(checks, 8000U);
@@ -210,7 +211,8 @@ TEST(HazardField, VoxelsFinerThanTheFootprintCountTogether) {
       }
       ++finite;
       EXPECT_NEAR(field.distance(v), expected, 1e-12);
-      EXPECT_EQ(field.is_new(v), expected > 1.2 * footprint + 1e-9);
+      const double cell = kVoxel * (1 << field.cell_shift());
+      EXPECT_EQ(field.is_new(v), expected > std::max(1.2 * footprint, cell) + 1e-9);
     }
   }
   EXPECT_EQ(checks, 4000U);

@@ -83,6 +83,7 @@ std::vector<Pose> poses_in_reach(const std::vector<ReachRegion::Shell>& shells, 
   for (std::size_t i = 0; i < shells.size(); ++i) {
     const ReachRegion::Shell& shell = shells[i];
     const std::size_t wanted = count * (i + 1) / shells.size();
+    if (!(shell.max_radius > 0)) continue;
     const double least = std::max(shell.min_radius, 1e-6 * shell.max_radius);
     // More of them begin with the same ones.
     std::vector<Pose> found;

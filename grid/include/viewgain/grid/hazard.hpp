@@ -102,7 +102,7 @@ struct VIEWGAIN_EXPORT HazardConfig {
 /// and never throw; calls cost constant time.
 class VIEWGAIN_EXPORT HazardField {
  public:
-  /// Exact distances in 3 passes over the box of cells with evidence, widened by the cut, with 16
+  /// Exact distances in 3 passes over the box of cells with evidence, widened by the cut, with 14
   /// bytes a cell of it, of which 3 stay: about 7 ms for 112³ voxels of object, whatever the size
   /// of the workspace. Throws as HazardConfig::validate(), and Error(capacity) for a box of more
   /// than 2³¹ cells.
@@ -138,7 +138,8 @@ class VIEWGAIN_EXPORT HazardField {
     if (volume_) return volume_rate(voxel);
     const std::size_t cell = cell_of(voxel);
     if (cell == kBeyond || squared_[cell] == kNoDistance) return far_rate_;
-    return far_rate_ + near_rates_[squared_[cell]] * static_cast<float>(continuation_[cell]);
+    const std::array<float, 2>& rates = rates_[squared_[cell]];
+    return rates[0] + rates[1] * static_cast<float>(continuation_[cell]);
   }
   /// The same by the model alone, without what the counters say [1/m].
   [[nodiscard]] double start_rate(Index3 voxel) const {
@@ -182,11 +183,11 @@ class VIEWGAIN_EXPORT HazardField {
   double voxel_size_;
   int shift_ = 0;  // of the cells that have a distance
   Index3 low_cell_{};
-  std::array<std::size_t, 3> size_{};                       // of the box of distances [cells]
-  VoxelBox near_box_{};                                     // the same in voxels
-  std::vector<std::uint16_t> squared_;                      // [cells²]
-  std::vector<std::uint8_t> continuation_;                  // c [1/255]
-  std::vector<float> near_rates_;                           // by squared distance, of 1/255
+  std::array<std::size_t, 3> size_{};        // of the box of distances [cells]
+  VoxelBox near_box_{};                      // the same in voxels
+  std::vector<std::uint16_t> squared_;       // [cells²]
+  std::vector<std::uint8_t> continuation_;   // c [1/255]
+  std::vector<std::array<float, 2>> rates_;  // by squared distance: where c is 0, and each 1/255
   std::array<double, HazardCounters::kClasses> factors_{};  // by class of distance
   float far_rate_ = 0;
   bool follows_counters_ = false;
