@@ -118,10 +118,8 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
       const double t = 0.5 * (run->begin + run->end) * V;
       const double across = std::min(angle * t * t, cap);
       value.pixel_area = std::max(value.pixel_area, across);
-      const double distance = hazard.distance(run->voxel);
       last_across = across;
-      if (distance >
-          std::max(1.2 * hazard.pooling().length, V * (1 << hazard.cell_shift())) * (1 + 1e-9)) {
+      if (hazard.is_new(run->voxel)) {
         value.area += P * across * run->weighted / length;
         stretch_area += P * across * run->weighted / length;
       }
