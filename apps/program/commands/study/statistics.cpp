@@ -8,7 +8,6 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <set>
 
 namespace viewgain::app {
 namespace {
@@ -93,15 +92,11 @@ MeanWithError mean_of(std::span<const double> values, std::span<const std::size_
   if (result.count == 0) return {kNothing, kNothing, 0};
   const auto n = static_cast<double>(result.count);
   result.mean /= n;
-  std::set<std::size_t> finite;  // clusters that have a finite value
-  for (std::size_t i = 0; i < std::min(values.size(), clusters.size()); ++i) {
-    if (std::isfinite(values[i])) finite.insert(clusters[i]);
-  }
+  const bool by_cluster = std::any_of(clusters.begin(), clusters.end(),
+                                      [&](std::size_t c) { return c != clusters.front(); });
   std::map<std::size_t, double> sums;  // of deviations
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::isfinite(values[i])) {
-      sums[finite.size() > 1 ? clusters[i] : i] += values[i] - result.mean;
-    }
+    if (std::isfinite(values[i])) sums[by_cluster ? clusters[i] : i] += values[i] - result.mean;
   }
   const auto groups = static_cast<double>(sums.size());
   double squares = 0;

@@ -25,7 +25,8 @@ struct MeanWithError {
 /// the cluster-robust one, CR1: its square is G / (G - 1) times the sum over the G clusters of
 /// their squared sums of deviations, by the squared count (Cameron and Miller, A Practitioner's
 /// Guide to Cluster-Robust Inference, Journal of Human Resources 50, 2015). Where all are of
-/// one cluster, or none is given, values count as independent.
+/// one cluster, or none is given, values count as independent; where of several one alone has
+/// finite values there is no error: NaN.
 [[nodiscard]] MeanWithError mean_of(std::span<const double> values,
                                     std::span<const std::size_t> clusters = {});
 
