@@ -4,15 +4,17 @@
 """fit.py VIEWGAIN MESH... [--size M] [--voxel M] [--seed N] [--work DIR]: the constants of HazardConfig::Model.
 
 Models each mesh by `reconstruct`, keeps the maps after views 1, 3 and 5, and lets noise-free rays from 80 poses of a
-sphere run through each map's unknown voxels: by distance d and elevation s over what is known, how many metres they
-pass and how often the true surface meets them there. Prints the model of the form
+sphere run through each map's unknown voxels: by distance d, elevation s over what is known and share o of directions
+that are open to free space, how many metres they pass and how often the true surface meets them there. Prints the
+model of the form
 
-    h = (h_inf / h_0 + exp(-d / lambda)) c(s) h_0
+    h = h_inf + h_0 exp(-d / lambda) c(s) g(o)
 
-that makes this likeliest, and its log-likelihood per meeting on each mesh when it is left out of the fit. d and s are
-as HazardField has them: to voxels with three hits, whose normal leads to where more of 7^3 voxels is free. Run it with
-PYTHONPATH=build/release/python; it takes a minute a mesh. The constants in grid/src/hazard are of camel, lion-head,
-mannequin-devil, elephant, armadillo, bear and bull (CGAL's), seeds 1 and 2.
+that makes this likeliest, and its log-likelihood per meeting on each mesh when it is left out of the fit. d, s and o
+are as HazardField has them: to voxels with three hits, whose normal leads to where more of 7^3 voxels is free; open
+within a tenth of the object's size. Run it with PYTHONPATH=build/release/python; it takes a minute a mesh. The
+constants in grid/src/hazard are of camel, lion-head, mannequin-devil, elephant, armadillo, bear and bull (CGAL's), seeds
+1 to 4.
 """
 import argparse
 import pathlib
@@ -26,6 +28,8 @@ VIEWS = (1, 3, 5)
 STRIDE = 5                                  # of pixels
 DISTANCES = 1e-3 * np.array([0, 5.05, 7.5, 10.05, 15, 20, 25, 30, 40, 50, 65, 85, 110, 140])  # at 0.35 m
 ELEVATIONS = np.linspace(-1.1, 1.1, 12)
+OPEN = 14                                   # classes: 0 of the 26 directions, 1 or 2, 3 or 4, ...
+OPEN_REACH = 0.1                            # [object sizes]
 PRIOR = 40                                  # meetings by which a factor is held to 1
 
 
@@ -33,8 +37,27 @@ def run(*words):
     subprocess.run([str(word) for word in words], check=True, capture_output=True)
 
 
-def features(grid):
-    """State, and by bins the distance and elevation, of all voxels."""
+def open_directions(states, reach):
+    """Of the 26 directions, along how many free space comes within `reach` voxels and before anything occupied."""
+    free, unknown = (states == viewgain.VoxelState.FREE), (states == viewgain.VoxelState.UNKNOWN)
+    most = int(reach)
+    count = np.zeros(states.shape, int)
+    padded = [np.pad(mask, most) for mask in (free, unknown)]
+    for by in np.ndindex(3, 3, 3):
+        by = np.array(by) - 1
+        if not by.any():
+            continue
+        is_open, is_closed = np.zeros(states.shape, bool), np.zeros(states.shape, bool)
+        for k in range(1, max(1, int(reach / np.linalg.norm(by))) + 1):
+            there = tuple(slice(most + k * b, most + k * b + n) for b, n in zip(by, states.shape))
+            is_open |= ~is_closed & padded[0][there]
+            is_closed |= ~padded[1][there]
+        count += is_open
+    return count
+
+
+def features(grid, size):
+    """State, and distance, elevation and count of open directions, of all voxels."""
     states, V = grid.states(), grid.voxel_size
     occupied = grid.occupied()
     evidence = np.zeros(states.shape, bool)
@@ -49,17 +72,18 @@ def features(grid):
     n = normal[(slice(None), *nearest)]
     product = np.linalg.norm(n, axis=0) * np.linalg.norm(away, axis=0)
     sine = np.divide((n * away).sum(0), product, out=np.zeros(states.shape), where=product > 1e-12)
-    return states, distance * V, sine
+    return states, distance * V, sine, open_directions(states, OPEN_REACH * size / V)
 
 
-def counts(grid, sensor, frames, scale):
-    """[distance, elevation]: metres passed and meetings."""
-    states, distance, sine = features(grid)
+def counts(grid, sensor, frames, size):
+    """[distance, elevation, open]: metres passed and meetings."""
+    scale = size / 0.35
+    states, distance, sine, is_open = features(grid, size)
     V, low = grid.voxel_size, np.asarray(grid.min_index)
     cls = (np.clip(np.digitize(distance / scale, DISTANCES) - 1, 0, len(DISTANCES) - 1) * (len(ELEVATIONS) - 1)
-           + np.clip(np.digitize(sine, ELEVATIONS) - 1, 0, len(ELEVATIONS) - 2))
-    size = len(DISTANCES) * (len(ELEVATIONS) - 1)
-    passed, met = np.zeros(size), np.zeros(size)
+           + np.clip(np.digitize(sine, ELEVATIONS) - 1, 0, len(ELEVATIONS) - 2)) * OPEN + (is_open + 1) // 2
+    classes_of_all = len(DISTANCES) * (len(ELEVATIONS) - 1) * OPEN
+    passed, met = np.zeros(classes_of_all), np.zeros(classes_of_all)
     camera = sensor.camera
     v, u = np.mgrid[STRIDE // 2:camera.height:STRIDE, STRIDE // 2:camera.width:STRIDE]
     rays = np.stack([(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, np.ones(u.shape)], -1).reshape(-1, 3)
@@ -82,25 +106,34 @@ def counts(grid, sensor, frames, scale):
         is_met = (t[None] - step / 2 <= end[:, None]) & (end[:, None] < t[None] + step / 2)
         counted = (state == viewgain.VoxelState.UNKNOWN) & before & (t[None] - step / 2 <= end[:, None])
         classes = cls[where]
-        passed += step * np.bincount(classes[counted], minlength=size)
-        met += np.bincount(classes[counted & is_met], minlength=size)
-    return np.stack([passed, met]).reshape(2, len(DISTANCES), -1)
+        passed += step * np.bincount(classes[counted], minlength=classes_of_all)
+        met += np.bincount(classes[counted & is_met], minlength=classes_of_all)
+    return np.stack([passed, met]).reshape(2, len(DISTANCES), -1, OPEN)
 
 
 def fit(data):
-    """(log-likelihood, lambda, h_inf / h_0, h_0, c) by a grid of lambda and h_inf and, for c, scaling in turn."""
+    """(log-likelihood, lambda, h_inf, h_0, c, g, rates): lambda and h_inf by a grid, c and g by expectation and
+    maximisation in turn; the greatest of c and of g is 1."""
     passed, met = data
     middle = np.append((DISTANCES[:-1] + DISTANCES[1:]) / 2, 1.2 * DISTANCES[-1])
     best = None
-    for decay in 1e-3 * np.array([12, 14, 16, 18, 20, 22, 25]):
-        for far in (0, 1e-3, 3e-3, 1e-2):
-            base = (np.exp(-middle / decay) + far)[:, None]
-            c = (met.sum(0) + PRIOR) / ((passed * base).sum(0) * met.sum() / (passed * base).sum() + PRIOR)
-            c /= c.max()
-            h = met.sum() / (passed * base * c).sum()
-            value = likelihood(data, h * base * c)
+    for decay in 1e-3 * np.array([14, 16, 18, 20, 22, 25, 28]):
+        for far in (0, 0.01, 0.03, 0.1):
+            c, g = np.ones(met.shape[1]), np.ones(OPEN)
+            near = np.exp(-middle / decay)[:, None, None]
+            h = met.sum() / (passed * near).sum()
+            for _ in range(40):
+                for axes, factor in (((0, 2), c), ((0, 1), g)):
+                    rates = h * near * c[:, None] * g
+                    own = np.divide(met * rates, far + rates, out=np.zeros(met.shape), where=rates > 0)
+                    factor *= (own.sum(axes) + PRIOR) / ((passed * rates).sum(axes) + PRIOR)
+                h *= c.max() * g.max()
+                c /= c.max()
+                g /= g.max()
+            rates = far + h * near * c[:, None] * g
+            value = likelihood(data, rates)
             if best is None or value > best[0]:
-                best = (value, decay, far, h, c, h * base * c)
+                best = (value, decay, far, h, c, g, rates)
     return best
 
 
@@ -132,15 +165,17 @@ def main():
             "--sensor", "sr4000", "--noise", "off", "--background", 0, "--out", truth)
         frames = [(f.T_world_camera, f.depth) for f in viewgain.read_frames(truth)]
         grids = [maps / "maps" / f"{view:02}.vdb" for view in VIEWS]
-        data[mesh.stem] = sum(counts(viewgain.BeliefGrid.load(g), sensor, frames, args.size / 0.35)
+        data[mesh.stem] = sum(counts(viewgain.BeliefGrid.load(g), sensor, frames, args.size)
                               for g in grids if g.exists())
-    _, decay, far, h, c, _ = fit(sum(data.values()))
-    print(f"near_rate {h * 0.35:.3g} / size, decay_length {decay / 0.35:.3g} size, far_rate {h * far * 0.35:.3g} / size")
-    print("c", " ".join(f"{value:.3g}" for value in c))
+    value, decay, far, h, c, g, _ = fit(sum(data.values()))
+    print(f"near_rate {h * 0.35:.3g} / size, decay_length {decay / 0.35:.3g} size, far_rate {far * 0.35:.3g} / size: "
+          f"{value:.3f} nat a meeting")
+    print("c", " ".join(f"{factor:.3g}" for factor in c))
+    print("g", " ".join(f"{factor:.3g}" for factor in g))
     for name, own in data.items():
         others = sum(counted for other, counted in data.items() if other != name)
         if len(data) > 1:
-            print(f"{name}: {likelihood(own, fit(others)[5]):.3f} nat a meeting")
+            print(f"{name}: {likelihood(own, fit(others)[-1]):.3f} nat a meeting")
 
 
 if __name__ == "__main__":

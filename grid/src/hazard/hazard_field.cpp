@@ -6,6 +6,7 @@
 
 #include "free_share.hpp"
 #include "nearest_cells.hpp"
+#include "open_directions.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/hazard.hpp"
 #include "viewgain/support/belief_block.hpp"
@@ -117,10 +118,18 @@ Factors monotone_factors(const HazardConfig::Model& model, const HazardCounters&
 }  // namespace
 
 double HazardConfig::Model::continuation(double sine_of_elevation) {
-  constexpr std::array<double, 11> kAt{0.41, 0.54,  0.79,  1.00,  0.85, 0.49,
-                                       0.26, 0.132, 0.066, 0.030, 0.015};  // from -1 to 1
+  constexpr std::array<double, 11> kAt{0.30, 0.58,  0.81,  1.00,  0.95, 0.53,
+                                       0.28, 0.162, 0.106, 0.064, 0.032};  // from -1 to 1
   const double place = std::clamp(5 * (sine_of_elevation + 1), 0.0, 10.0);
   const std::size_t before = std::min<std::size_t>(static_cast<std::size_t>(place), 9);
+  return std::lerp(kAt[before], kAt[before + 1], place - static_cast<double>(before));
+}
+
+double HazardConfig::Model::openness(double share_of_directions) {
+  constexpr std::array<double, 14> kAt{0.25, 0.26, 0.32,  0.53,  0.83,  1.00,   0.88,
+                                       0.53, 0.29, 0.165, 0.076, 0.030, 0.0052, 0.0005};
+  const double place = std::clamp(13 * share_of_directions, 0.0, 13.0);
+  const std::size_t before = std::min<std::size_t>(static_cast<std::size_t>(place), 12);
   return std::lerp(kAt[before], kAt[before + 1], place - static_cast<double>(before));
 }
 
@@ -202,16 +211,24 @@ void HazardField::find_distances(const GridSnapshot& snapshot,
   for (const Index3& v : evidence) squared_[cell_of(v)] = 0;
   static_assert(kNoDistance == detail::kNoDistance);
   const detail::NearestCells nearest(squared_, size_, reach);
-  find_continuations(nearest, detail::FreeShare(snapshot, cells, shift_));
+  const detail::FreeShare free(snapshot, cells, shift_);
+  const int open_reach = static_cast<int>(
+      std::clamp(HazardConfig::Model::kOpenReach * model_.decay_length / cell, 1.0, 63.0));
+  find_shapes(nearest, free, detail::OpenDirections(snapshot, cells, shift_, free, open_reach));
   find_rates(reach);
   // [cells]; the neighbours of one with evidence at least
   const double known = std::max(kKnownDistance * pooling_.length / cell, 1.0);
   most_known_ = static_cast<std::uint32_t>(known * known);
 }
 
-void HazardField::find_continuations(const detail::NearestCells& nearest,
-                                     const detail::FreeShare& free) {
-  continuation_.assign(squared_.size(), 255);
+void HazardField::find_shapes(const detail::NearestCells& nearest, const detail::FreeShare& free,
+                              const detail::OpenDirections& open) {
+  using Model = HazardConfig::Model;
+  shapes_.assign(squared_.size(), static_cast<std::uint16_t>(kShapeUnit));
+  std::array<double, detail::OpenDirections::kDirections + 1> openness{};
+  for (std::size_t k = 0; k < openness.size(); ++k) {
+    openness[k] = Model::openness(static_cast<double>(k) / detail::OpenDirections::kDirections);
+  }
   std::size_t i = 0;
   for (std::size_t x = 0; x < size_[0]; ++x) {
     for (std::size_t y = 0; y < size_[1]; ++y) {
@@ -224,8 +241,9 @@ void HazardField::find_continuations(const detail::NearestCells& nearest,
         const Eigen::Vector3d away(-dx, -dy, -dz);
         const double product = n.norm() * away.norm();
         const double sine = product > 0 ? n.dot(away) / product : 0.0;
-        continuation_[i] =
-            static_cast<std::uint8_t>(std::lround(255 * HazardConfig::Model::continuation(sine)));
+        const double shape =
+            Model::continuation(sine) * openness[static_cast<std::size_t>(open.count(x, y, z))];
+        shapes_[i] = static_cast<std::uint16_t>(std::lround(kShapeUnit * shape));
       }
     }
   }
@@ -242,7 +260,7 @@ void HazardField::find_rates(int reach) {
     most = std::max(most, all * factors_[HazardCounters::class_of(distance / model_.decay_length)]);
     const double factor = all > 0 ? most / all : 0;
     rates_[i] = {static_cast<float>(factor * model_.far_rate),
-                 static_cast<float>(factor * (all - model_.far_rate) / 255)};
+                 static_cast<float>(factor * (all - model_.far_rate) / kShapeUnit)};
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <random>
 #include <utility>
@@ -90,7 +91,8 @@ TEST(HazardCalibration, CountsWhatAFineWalkCounts) {
       }
       for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
         const HazardCounters::Class& c = grid.hazard_counters().classes[k];
-        const double scale = HazardCounters::kFrame / all;
+        // A frame by which fewer than ten meetings are expected counts for less.
+        const double scale = HazardCounters::kFrame / std::max(all, 10.0);
         EXPECT_NEAR(static_cast<double>(c.expected), expected[k] * scale,
                     0.03 * HazardCounters::kFrame)
             << k;
@@ -101,7 +103,7 @@ TEST(HazardCalibration, CountsWhatAFineWalkCounts) {
     }
   }
   EXPECT_EQ(cases, 6U);
-  EXPECT_GT(classes, 36U);
+  EXPECT_EQ(classes, 36U);
 }
 
 TEST(HazardCalibration, FindsTheRateOfAWorldThatHasOne) {

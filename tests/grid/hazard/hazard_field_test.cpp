@@ -67,8 +67,9 @@ TEST(HazardField, DistancesAreThoseOfBruteForce) {
       }
       ++finite;
       EXPECT_NEAR(field.distance(v), expected, 1e-12);
-      const double c = field.continuation(v);
-      EXPECT_NEAR(field.rate(v), 0.5 + 30.0 * c * std::exp(-expected / model.decay_length), 1e-5);
+      const double shape = field.shape(v);
+      EXPECT_NEAR(field.rate(v), 0.5 + 30.0 * shape * std::exp(-expected / model.decay_length),
+                  1e-5);
       EXPECT_NEAR(field.start_rate(v), field.rate(v), 1e-5);
       EXPECT_EQ(field.is_new(v), expected > kVoxel * std::max(1.2, 1.0 * (1 << shift)) + 1e-9);
     }
@@ -77,9 +78,9 @@ TEST(HazardField, DistancesAreThoseOfBruteForce) {
   EXPECT_GT(finite, 3000U);
 }
 
-// What HazardConfig::Model::continuation() is at a voxel for each of the nearest cells with
-// evidence, from the definition; the near box's faces go on beyond it.
-std::vector<double> continuations(const BeliefGrid& grid, const HazardField& field, Index3 voxel) {
+// What HazardConfig::Model::continuation() times openness() is at a voxel for each of the nearest
+// cells with evidence, from the definition; the near box's faces go on beyond it.
+std::vector<double> shapes(const BeliefGrid& grid, const HazardField& field, Index3 voxel) {
   const int shift = field.cell_shift();
   const VoxelBox box = field.near_box();
   const auto cell_of = [&](Index3 v) {
@@ -110,6 +111,27 @@ std::vector<double> continuations(const BeliefGrid& grid, const HazardField& fie
     return sum;
   };
   const Eigen::Vector3i here = cell_of(voxel);
+  const double decay_length = field.model().decay_length;
+  const double reach =
+      std::floor(HazardConfig::Model::kOpenReach * decay_length / (kVoxel * (1 << shift)));
+  const auto is_occupied = [&](const Eigen::Vector3i& cell) {
+    bool any = false;
+    grid.for_each_belief([&](Index3 v, const Belief&) { any = any || cell_of(v) == cell; });
+    return any;
+  };
+  int open = 0;
+  for (int i = 0; i < 27; ++i) {
+    const Eigen::Vector3i by(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
+    const double length = by.cast<double>().norm();
+    for (int k = 1; length > 0 && (k == 1 || k * length <= reach); ++k) {
+      const Eigen::Vector3i cell = here + k * by;
+      if (cell != cell.cwiseMax(low).cwiseMin(high) || is_occupied(cell)) break;
+      if (share(cell) == 1) {
+        ++open;
+        break;
+      }
+    }
+  }
   int nearest = 1 << 30;
   std::vector<Eigen::Vector3i> cells;
   grid.for_each_belief([&](Index3 v, const Belief& belief) {
@@ -128,14 +150,15 @@ std::vector<double> continuations(const BeliefGrid& grid, const HazardField& fie
     const Eigen::Vector3d away = (here - cell).cast<double>();
     const double product = n.norm() * away.norm();
     values.push_back(
-        HazardConfig::Model::continuation(product > 1e-9 ? n.dot(away) / product : 0.0));
+        HazardConfig::Model::continuation(product > 1e-9 ? n.dot(away) / product : 0.0) *
+        HazardConfig::Model::openness(open / 26.0));
   }
   return values;
 }
 
-TEST(HazardField, ContinuationsAreThoseOfTheDefinition) {
+TEST(HazardField, ShapesAreThoseOfTheDefinition) {
   std::mt19937 random(27);
-  std::size_t checks = 0, tilted = 0;
+  std::size_t checks = 0, varied = 0;
   for (int shift = 0; shift < 3; ++shift) {
     BeliefGrid grid = grid_of({29, 22, 26});
     // Free on one side of a slope.
@@ -153,16 +176,16 @@ TEST(HazardField, ContinuationsAreThoseOfTheDefinition) {
       const Index3 v = any_voxel(grid, random);
       if (grid.state(v) == VoxelState::free || std::isinf(field.distance(v))) continue;
       double off = 1;
-      for (const double c : continuations(grid, field, v)) {
-        off = std::min(off, std::abs(c - field.continuation(v)));
-        tilted += std::abs(c - HazardConfig::Model::continuation(0)) > 0.05;
+      for (const double shape : shapes(grid, field, v)) {
+        off = std::min(off, std::abs(shape - field.shape(v)));
+        varied += shape > 0.05 && shape < 0.5;
       }
-      EXPECT_LT(off, 0.5 / 255 + (shift > 0 ? 0.01 : 1e-9));  // shares are whole voxels there
+      EXPECT_LT(off, shift > 0 ? 0.01 : 1e-4);  // shares are whole voxels there
       ++checks;
     }
   }
   EXPECT_GT(checks, 150U);
-  EXPECT_GT(tilted, 100U);
+  EXPECT_GT(varied, 100U);
 }
 
 TEST(HazardField, SurfaceGoesOnAsItIs) {
@@ -183,9 +206,13 @@ TEST(HazardField, SurfaceGoesOnAsItIs) {
   EXPECT_GT(beyond, 1.5F * before);
   EXPECT_GT(beyond, 1.1F * behind);
   EXPECT_EQ(HazardConfig::Model::continuation(-0.4), 1.0);
-  EXPECT_EQ(HazardConfig::Model::continuation(-1), 0.41);
-  EXPECT_EQ(HazardConfig::Model::continuation(1), 0.015);
-  EXPECT_NEAR(HazardConfig::Model::continuation(0.1), 0.375, 1e-12);
+  EXPECT_EQ(HazardConfig::Model::continuation(-1), 0.30);
+  EXPECT_EQ(HazardConfig::Model::continuation(1), 0.032);
+  EXPECT_NEAR(HazardConfig::Model::continuation(0.1), 0.405, 1e-12);
+  EXPECT_EQ(HazardConfig::Model::openness(0), 0.25);
+  EXPECT_EQ(HazardConfig::Model::openness(5.0 / 13), 1.0);
+  EXPECT_NEAR(HazardConfig::Model::openness(6.5 / 13), 0.705, 1e-12);
+  EXPECT_EQ(HazardConfig::Model::openness(1), 0.0005);
 }
 
 TEST(HazardField, VoxelsFinerThanTheFootprintCountTogether) {
@@ -237,8 +264,8 @@ TEST(HazardField, TheSizeIsThatOfTheEvidenceUnlessGiven) {
   const Index3 base = grid.min_index();
   put(grid, {base.x + 10, base.y + 10, base.z + 10}, 5);
   put(grid, {base.x + 29, base.y + 12, base.z + 10}, 5);
-  EXPECT_NEAR(HazardField(grid.snapshot()).model().decay_length, 0.051 * 0.20, 1e-12);
-  EXPECT_NEAR(HazardField(grid.snapshot(), {.object_size = 0.5}).model().decay_length, 0.0255,
+  EXPECT_NEAR(HazardField(grid.snapshot()).model().decay_length, 0.0457 * 0.20, 1e-12);
+  EXPECT_NEAR(HazardField(grid.snapshot(), {.object_size = 0.5}).model().decay_length, 0.02285,
               1e-12);
 }
 

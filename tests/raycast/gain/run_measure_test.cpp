@@ -64,8 +64,10 @@ TEST(RunMeasure, PassesASlabToTheWallBehindIt) {
       }
     }
   }
-  const auto scene = VoxelScene::build(
-      grid, {}, {}, {.model = HazardConfig::Model::constant(kRate, 4 * V / 0.051)});
+  const auto scene =
+      VoxelScene::build(grid, {}, {},
+                        {.model = HazardConfig::Model::constant(
+                             kRate, 4 * V / HazardConfig::Model::for_size(1).decay_length)});
   Sensor sensor = test::lattice_sensor(1, 1);
   const Pose pose = test::axis_pose({-30, 8.5, 8.5}, 0, true);
   for (const GainModel model : {GainModel::paper, GainModel::surface, GainModel::combined}) {

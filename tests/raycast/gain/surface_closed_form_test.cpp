@@ -55,7 +55,9 @@ BeliefGrid slab(int begin, int end, int wall = 1000) {
 
 /// The same rate everywhere, in cells of 2^shift voxels.
 HazardConfig constant(int shift, double rate = kRate) {
-  return {.model = HazardConfig::Model::constant(rate, 4 * kExactVoxel * (1 << shift) / 0.051)};
+  return {
+      .model = HazardConfig::Model::constant(
+          rate, 4 * kExactVoxel * (1 << shift) / HazardConfig::Model::for_size(1).decay_length)};
 }
 
 ViewGain gain_of(const BeliefGrid& grid, const Sensor& sensor, const HazardConfig& hazard,

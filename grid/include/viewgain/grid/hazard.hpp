@@ -21,40 +21,49 @@ namespace viewgain {
 namespace detail {
 class FreeShare;
 class NearestCells;
+class OpenDirections;
 }  // namespace detail
 
 /// How likely rays meet the surface in unknown voxels.
 struct VIEWGAIN_EXPORT HazardConfig {
   /// The hazard of unknown space: the rate at which a ray through it meets the surface, by where
-  /// it lies to what is known of the surface (apps/docs/guide/surface_gain.md):
-  /// h(d, s) = far_rate + near_rate c(s) exp(-d / decay_length), and far_rate beyond 5 decay
-  /// lengths; d is the distance, s the sine of the elevation over the known surface's tangent plane
-  /// at its nearest point, 1 towards free space. Members check nothing; validate() does.
+  /// it lies to what is known (apps/docs/guide/surface_gain.md):
+  /// h(d, s, o) = far_rate + near_rate c(s) g(o) exp(-d / decay_length), and far_rate beyond 5
+  /// decay lengths; d is the distance to known surface, s the sine of the elevation over its
+  /// tangent plane at the nearest point, 1 towards free space, and o the share of the 26 directions
+  /// to the cells around along which free space comes within 2.2 decay lengths and before anything
+  /// occupied. Members check nothing; validate() does.
   struct Model {
-    double near_rate = 160;        ///< h_0 [1/m]
-    double decay_length = 0.0179;  ///< lambda [m]
-    double far_rate = 0.14;        ///< h_inf [1/m]
+    double near_rate = 231;       ///< h_0 [1/m]
+    double decay_length = 0.016;  ///< lambda [m]
+    double far_rate = 0.029;      ///< h_inf [1/m]
 
-    static constexpr double kCut = 5.0;  ///< [decay lengths]
+    static constexpr double kCut = 5.0;        ///< [decay lengths]
+    static constexpr double kOpenReach = 2.2;  ///< of the directions of o [decay lengths]
 
     /// Start values for an object whose longest side is `size` [m]: fitted to seven objects of 0.35
     /// m (perf/hazard/fit.py) and taken to go with the size.
     [[nodiscard]] static Model for_size(double size) {
-      return {56.0 / size, 0.051 * size, 0.05 / size};
+      return {81.0 / size, 0.0457 * size, 0.01 / size};
     }
     /// The same `rate` [1/m] everywhere; `size` [m] as above says how fine the cells are.
     [[nodiscard]] static Model constant(double rate, double size) {
-      return {0.0, 0.051 * size, rate};
+      return {0.0, 0.0457 * size, rate};
     }
 
     /// c(s): surfaces go on as they are, bending away from free space rather than into it. Linear
     /// between values at each fifth of s, fitted with the rest; 1 at -0.4, less elsewhere.
     [[nodiscard]] static VIEWGAIN_EXPORT double continuation(double sine_of_elevation);
 
-    /// Hazard [1/m] at this distance from known surface [m], where `continuation` is c.
-    [[nodiscard]] double rate(double distance, double continuation = 1.0) const {
+    /// g(o): surface lies between free space and what is hidden. What sees free space nearly all
+    /// around is a rest that no ray happened to pass, what sees none is inside. Linear between
+    /// values at each thirteenth of o, fitted with the rest.
+    [[nodiscard]] static VIEWGAIN_EXPORT double openness(double share_of_directions);
+
+    /// Hazard [1/m] at this distance from known surface [m], where `shape` is c g.
+    [[nodiscard]] double rate(double distance, double shape = 1.0) const {
       return distance <= kCut * decay_length
-                 ? far_rate + near_rate * continuation * std::exp(-distance / decay_length)
+                 ? far_rate + near_rate * shape * std::exp(-distance / decay_length)
                  : far_rate;
     }
     bool operator==(const Model&) const = default;
@@ -93,7 +102,7 @@ struct VIEWGAIN_EXPORT HazardConfig {
 /// The hazard in a map as it stands. Immutable; all members may be called from many threads.
 ///
 /// Rates are constant in hazard cells: cubes of 1, 2, 4 or 8 voxels an edge on the lattice of the
-/// leaves, about a quarter of the decay length wide. Distances are between centres of such cells,
+/// leaves, about a quarter of the decay length wide.  Distances are between centres of such cells,
 /// to the nearest one with an occupied voxel of at least 3 hits, cut at 5 decay lengths or 127
 /// cells; voxels that are finer than the sensor's footprint count in the cubes of pooling_of(). The
 /// surface's normal at such a cell leads to where more of the 7³ cells around are free. The
@@ -102,8 +111,8 @@ struct VIEWGAIN_EXPORT HazardConfig {
 /// and never throw; calls cost constant time.
 class VIEWGAIN_EXPORT HazardField {
  public:
-  /// Exact distances in 3 passes over the box of cells with evidence, widened by the cut, with 14
-  /// bytes a cell of it, of which 3 stay: about 7 ms for 112³ voxels of object, whatever the size
+  /// Exact distances in 3 passes over the box of cells with evidence, widened by the cut, with 16
+  /// bytes a cell of it, of which 4 stay: about 7 ms for 112³ voxels of object, whatever the size
   /// of the workspace. Throws as HazardConfig::validate(), and Error(capacity) for a box of more
   /// than 2³¹ cells.
   explicit HazardField(const GridSnapshot& snapshot, const HazardConfig& config = {});
@@ -126,12 +135,12 @@ class VIEWGAIN_EXPORT HazardField {
                ? std::numeric_limits<double>::infinity()
                : std::sqrt(static_cast<double>(squared_[cell])) * voxel_size_ * (1 << shift_);
   }
-  /// c of a voxel that is not free: HazardConfig::Model::continuation() at its cell, where several
-  /// cells with evidence are the nearest at that of one of them, in steps of 1/255; 1 beyond the
-  /// cut.
-  [[nodiscard]] double continuation(Index3 voxel) const {
+  /// c g of a voxel that is not free: HazardConfig::Model::continuation() at its cell, where
+  /// several cells with evidence are the nearest at that of one of them, times openness(); in steps
+  /// of 1/16384, 1 beyond the cut.
+  [[nodiscard]] double shape(Index3 voxel) const {
     const std::size_t cell = cell_of(voxel);
-    return cell == kBeyond ? 1.0 : continuation_[cell] / 255.0;
+    return cell == kBeyond ? 1.0 : shapes_[cell] / kShapeUnit;
   }
   /// In a voxel that is not free [1/m], as a ray meets it: single precision.
   [[nodiscard]] float rate(Index3 voxel) const {
@@ -139,11 +148,11 @@ class VIEWGAIN_EXPORT HazardField {
     const std::size_t cell = cell_of(voxel);
     if (cell == kBeyond || squared_[cell] == kNoDistance) return far_rate_;
     const std::array<float, 2>& rates = rates_[squared_[cell]];
-    return rates[0] + rates[1] * static_cast<float>(continuation_[cell]);
+    return rates[0] + rates[1] * static_cast<float>(shapes_[cell]);
   }
   /// The same by the model alone, without what the counters say [1/m].
   [[nodiscard]] double start_rate(Index3 voxel) const {
-    return model_.rate(distance(voxel), continuation(voxel));
+    return model_.rate(distance(voxel), shape(voxel));
   }
   [[nodiscard]] const Pooling& pooling() const { return pooling_; }  ///< of the map
   /// Does surface found in this voxel count as new? d > 1.2 pooling lengths.
@@ -161,6 +170,7 @@ class VIEWGAIN_EXPORT HazardField {
   static constexpr std::uint16_t kNoDistance = 0xFFFF;
   static constexpr std::size_t kBeyond = std::numeric_limits<std::size_t>::max();
   static constexpr int kMaxReach = 127;  // of distances [cells]
+  static constexpr double kShapeUnit = 16384;
 
   [[nodiscard]] std::size_t cell_of(Index3 voxel) const {
     if (!near_box_.contains(voxel)) return kBeyond;
@@ -174,7 +184,8 @@ class VIEWGAIN_EXPORT HazardField {
     return {(v.x >> shift_) + by, (v.y >> shift_) + by, (v.z >> shift_) + by};
   }
   void find_distances(const GridSnapshot& snapshot, const std::vector<Index3>& evidence);
-  void find_continuations(const detail::NearestCells& nearest, const detail::FreeShare& free);
+  void find_shapes(const detail::NearestCells& nearest, const detail::FreeShare& free,
+                   const detail::OpenDirections& open);
   void find_rates(int reach);
 
   HazardConfig::Model model_;
@@ -183,11 +194,12 @@ class VIEWGAIN_EXPORT HazardField {
   double voxel_size_;
   int shift_ = 0;  // of the cells that have a distance
   Index3 low_cell_{};
-  std::array<std::size_t, 3> size_{};        // of the box of distances [cells]
-  VoxelBox near_box_{};                      // the same in voxels
-  std::vector<std::uint16_t> squared_;       // [cells²]
-  std::vector<std::uint8_t> continuation_;   // c [1/255]
-  std::vector<std::array<float, 2>> rates_;  // by squared distance: where c is 0, and each 1/255
+  std::array<std::size_t, 3> size_{};   // of the box of distances [cells]
+  VoxelBox near_box_{};                 // the same in voxels
+  std::vector<std::uint16_t> squared_;  // [cells²]
+  std::vector<std::uint16_t> shapes_;   // c g [1/kShapeUnit]
+  std::vector<std::array<float, 2>>
+      rates_;  // by squared distance: where c g is 0, and each 1/kShapeUnit
   std::array<double, HazardCounters::kClasses> factors_{};  // by class of distance
   float far_rate_ = 0;
   bool follows_counters_ = false;
