@@ -73,7 +73,7 @@ int longest_side(const VoxelBox& box) {
 
 // log2 of the hazard cells' edge [voxels].
 int shift_for(double decay_length, double voxel_size) {
-  const double wanted = std::log2(0.25 * decay_length / voxel_size);
+  const double wanted = std::log2(0.28 * decay_length / voxel_size);
   return static_cast<int>(std::clamp(std::round(wanted), 0.0, 3.0));
 }
 

@@ -21,13 +21,13 @@ class OpenDirections {
 
   /// `free` is of the same box; `reach` in cells, at least 1, at most 63. A diagonal goes by as
   /// many whole steps as its length allows, one at least. Costs some 130 passes over the cells, 64
-  /// of them at once, and 1.2 bytes a cell.
+  /// of them at once, and 2 bytes a cell.
   OpenDirections(const GridSnapshot& snapshot, const VoxelBox& cells, int shift,
                  const FreeShare& free, int reach);
 
   /// At a cell's place from the box's lowest; 0 to 26. Of free and occupied cells too.
   [[nodiscard]] int count(std::size_t x, std::size_t y, std::size_t z) const {
-    const std::size_t word = (x * size_[1] + y) * words_ + z / 64;
+    const std::size_t word = word_of(x * size_[1] + y, z);
     int sum = 0;
     for (std::size_t k = 0; k < kPlanes; ++k) {
       sum += static_cast<int>(counts_[k][word] >> (z % 64) & 1U) << k;
@@ -38,7 +38,8 @@ class OpenDirections {
  private:
   static constexpr std::size_t kPlanes = 5;  // bits of a count
 
-  // One bit a cell, rows along z in whole words; bits beyond a row's end mean nothing.
+  // One bit a cell, rows along z in whole words and one that is 0; other bits beyond a row's end
+  // mean nothing.
   using Bits = std::vector<std::uint64_t>;
   // From each cell so many steps on: has free space come by then; is all still unknown?
   struct Steps {
@@ -46,7 +47,9 @@ class OpenDirections {
   };
   using Direction = std::array<int, 3>;
 
-  [[nodiscard]] Bits moved(const Bits& bits, const Direction& by, int steps) const;
+  [[nodiscard]] std::size_t word_of(std::size_t row, std::size_t z) const {
+    return 1 + row * words_ + z / 64;
+  }
   [[nodiscard]] Steps joined(const Steps& first, const Steps& then, const Direction& by,
                              int steps) const;
   void add(const Bits& bits);

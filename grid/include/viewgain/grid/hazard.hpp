@@ -102,7 +102,7 @@ struct VIEWGAIN_EXPORT HazardConfig {
 /// The hazard in a map as it stands. Immutable; all members may be called from many threads.
 ///
 /// Rates are constant in hazard cells: cubes of 1, 2, 4 or 8 voxels an edge on the lattice of the
-/// leaves, about a quarter of the decay length wide.  Distances are between centres of such cells,
+/// leaves, about 0.28 decay lengths wide. Distances are between centres of such cells,
 /// to the nearest one with an occupied voxel of at least 3 hits, cut at 5 decay lengths or 127
 /// cells; voxels that are finer than the sensor's footprint count in the cubes of pooling_of(). The
 /// surface's normal at such a cell leads to where more of the 7³ cells around are free. The
