@@ -106,7 +106,7 @@ void describe(Options& o, Visitor& visit) {
       "stop_area", "--stop-area", o.stop_area,
       "of --gain surface and combined: stop when the best candidate promises less than this "
       "share of the surface so far as new surface, on the mean of three decisions; 0: never; "
-      "default: 0.0016",
+      "default: 0.003",
       as_it_is);
   visit.option("stop_idle", "--stop-idle", o.stop_idle,
                "stop after so many views in a row that change entropy and unknown voxels by "

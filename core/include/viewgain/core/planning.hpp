@@ -127,7 +127,7 @@ inline constexpr double kStopGainShare = 0.01;
 
 /// Default of PlanningConfig::stop_area, a share of the surface so far; perf/results/loop.md says
 /// where the camel stops by it.
-inline constexpr double kStopArea = 1.6e-3;
+inline constexpr double kStopArea = 3e-3;
 
 /// A view that brings less than this share of what was promised breaks the promise.
 inline constexpr double kKeptShare = 0.2;

@@ -252,11 +252,11 @@ TEST_F(Reconstruct, StopAreaIsThatOfTheGainsThatExpectIt) {
         "cube.off", test::joined({"--max-views", "1", "--pictures", "off", "--size", "0.2"}, more));
     return json::parse(read("run/run.json"))["settings"]["stop_area"].get<double>();
   };
-  EXPECT_EQ(setting({}), 0.0016);
+  EXPECT_EQ(setting({}), 0.003);
   EXPECT_EQ(setting({"--gain", "paper"}), 0);
   EXPECT_EQ(setting({"--policy", "frontier"}), 0);
-  EXPECT_EQ(setting({"--gain", "surface"}), 0.0016);
-  EXPECT_EQ(setting({"--gain", "combined"}), 0.0016);
+  EXPECT_EQ(setting({"--gain", "surface"}), 0.003);
+  EXPECT_EQ(setting({"--gain", "combined"}), 0.003);
   EXPECT_EQ(setting({"--gain", "combined", "--stop-area", "0"}), 0);
 }
 
